@@ -1,0 +1,70 @@
+"""Exact regime maps of vibrating structures with one dry-friction contact.
+
+============  ==========================================================================
+module        what is in it
+============  ==========================================================================
+system        what is simulated: masses, springs, damping, load, contact
+curves        `boundaries`: beta_lim, beta_stick and the response functions over frequency
+maps          `sweep`: regime maps; plan, run in parallel, label
+steady        `response`: one steady state in time
+settings      settings of the steady-state solver
+regimes       the table of regime, origin and status codes
+labels        names, units and meanings of everything in a dataset
+checks        checks of input
+config        configuration files
+storage       files: written whole or not at all, read with a check
+plot          pictures
+cli           the command line
+_kernels      the only home of jitted code: numbers and arrays in, numbers and codes out
+============  ==========================================================================
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from .errors import InputError, NoSteadyState
+from .version import __version__
+
+if TYPE_CHECKING:
+    from .curves import boundaries
+    from .config import load_config
+    from .plot import plot_regimes, plot_response
+    from .settings import Solver
+    from .steady import response
+    from .maps import sweep
+    from .system import System
+
+__all__ = [
+    "InputError",
+    "NoSteadyState",
+    "Solver",
+    "System",
+    "__version__",
+    "boundaries",
+    "load_config",
+    "plot_regimes",
+    "plot_response",
+    "response",
+    "sweep",
+]
+
+# Loaded when first used: numba, xarray and matplotlib together take most of a second to import, and
+# `frictionmap --help` needs none of them.
+_HOME = {
+    "Solver": "settings",
+    "System": "system",
+    "boundaries": "curves",
+    "load_config": "config",
+    "plot_regimes": "plot",
+    "plot_response": "plot",
+    "response": "steady",
+    "sweep": "maps",
+}
+
+
+def __getattr__(name: str) -> object:
+    if name in _HOME:
+        value = getattr(import_module(f".{_HOME[name]}", __name__), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

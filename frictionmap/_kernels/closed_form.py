@@ -1,0 +1,157 @@
+"""Closed forms of one vibrating mode: trigonometry of pi/(2R), d and q of T(B.8), u and g of T(7.11-12).
+
+A mode has natural frequency ``w`` and damping ratio ``zeta``; with ``R = r/w`` and ``a = 1/R`` the
+thesis's functions of ``tau`` are functions of ``theta = a tau``.  Over-damped modes are the analytic
+continuation (sin -> sinh); every form below stays accurate through ``zeta = 1``.
+"""
+
+import math
+
+from .jit import kernel
+
+HALF_PI = 0.5 * math.pi
+_SPLIT = 134217729.0  # 2**27 + 1, Dekker's constant for splitting a double in two halves
+
+
+@kernel
+def residual(numerator, multiple, r):
+    """``numerator - multiple*r`` with one rounding (Dekker's product), ``multiple`` a whole number."""
+    product = multiple * r
+    if not abs(product) < 1e290:  # the splitting would overflow; the quotient is 0 or 1 there anyway
+        return numerator - product
+    t = _SPLIT * multiple
+    m_high = t - (t - multiple)
+    m_low = multiple - m_high
+    t = _SPLIT * r
+    r_high = t - (t - r)
+    r_low = r - r_high
+    error = ((m_high * r_high - product) + m_high * r_low + m_low * r_high) + m_low * r_low
+    return (numerator - product) - error
+
+
+@kernel
+def sincos_quarter(numerator, less, r):
+    """Sine and cosine of ``(pi/2) (numerator - less)/r``, exact to rounding next to every zero of both.
+
+    ``less`` carries what ``numerator`` alone would round away.  The whole quarter turns are taken off before the division, so that nothing is lost next to
+    ``R = 1/(2n+1)`` and ``R = 1/(2n)``, where the plain expression keeps no digit.
+    """
+    turns = (numerator - less) / r
+    if not turns < 4503599627370496.0:  # 2**52: no fraction left in a double
+        return math.nan, math.nan
+    whole = math.floor(turns + 0.5)
+    angle = HALF_PI * ((residual(numerator, whole, r) - less) / r)
+    sine = math.sin(angle)
+    cosine = math.cos(angle)
+    quadrant = whole - 4.0 * math.floor(0.25 * whole)
+    if quadrant == 0.0:
+        return sine, cosine
+    if quadrant == 1.0:
+        return cosine, -sine
+    if quadrant == 2.0:
+        return -sine, -cosine
+    return -cosine, sine
+
+
+@kernel
+def decay(zeta, theta):
+    """``q`` and ``e = R q'`` of T(B.8b), (B.9b) at ``theta = tau/R``; then ``d = e + 2 zeta q``.
+
+    Free motion of a mode from (eta, R eta'): ``eta d + R eta' q`` and ``-eta q + R eta' e``.
+    """
+    if zeta < 1.0:
+        s = math.sqrt((1.0 - zeta) * (1.0 + zeta))
+        envelope = math.exp(-zeta * theta)
+        q = envelope * math.sin(s * theta) / s
+        return q, envelope * math.cos(s * theta) - zeta * q
+    if zeta == 1.0:
+        envelope = math.exp(-theta)
+        q = envelope * theta
+        return q, envelope - q
+    s = math.sqrt((zeta - 1.0) * (zeta + 1.0))
+    slow = 1.0 / (zeta + s)
+    q = math.exp(-slow * theta) * (-math.expm1(-2.0 * s * theta)) / (2.0 * s)
+    return q, math.exp(-(zeta + s) * theta) - slow * q
+
+
+@kernel
+def _sinh_less_argument(x):
+    """``sinh(x) - x`` without cancellation."""
+    if abs(x) > 1.0:
+        return math.sinh(x) - x
+    square = x * x
+    term = x * square / 6.0
+    total = term
+    n = 5.0
+    while abs(term) > 1e-17 * abs(total):
+        term *= square / (n * (n - 1.0))
+        total += term
+        n += 2.0
+    return total
+
+
+@kernel
+def _argument_less_sin(x):
+    """``x - sin(x)`` without cancellation."""
+    if abs(x) > 1.0:
+        return x - math.sin(x)
+    square = x * x
+    term = x * square / 6.0
+    total = term
+    n = 5.0
+    while abs(term) > 1e-17 * abs(total):
+        term *= -square / (n * (n - 1.0))
+        total += term
+        n += 2.0
+    return total
+
+
+@kernel
+def damping_functions(w, zeta, r):
+    """The damping functions ``u`` and ``g`` of a mode, T(7.11), (7.12).
+
+    For ``zeta = 0``: ``u = tan(pi/(2R))/R`` and ``g = 0``.  At an exact pole ``u`` is infinite.
+    """
+    a = w / r
+    if zeta == 0.0:
+        sine, cosine = sincos_quarter(w, 0.0, r)
+        if cosine == 0.0:
+            return math.inf, 0.0
+        return a * sine / cosine, 0.0
+    x = math.pi * zeta * a
+    small = math.exp(-x)  # every hyperbolic function below is scaled by exp(-x)
+    if zeta < 1.0:
+        s = math.sqrt((1.0 - zeta) * (1.0 + zeta))
+        # where exp(-x) is nothing, the angle does not matter and may be out of range
+        sine, cosine = 0.0, 0.0
+        if small > 0.0:
+            less = w * zeta * zeta / (1.0 + s)  # w s = w - less; the form that rounds less
+            if zeta < 0.5:
+                sine, cosine = sincos_quarter(w, less, r)
+            else:
+                sine, cosine = sincos_quarter(w * s, 0.0, r)
+        gap = -math.expm1(-x)
+        below = 0.5 * gap * gap + 2.0 * cosine * cosine * small
+        swing = 2.0 * sine * cosine * small / s
+        angle = s * math.pi * a
+        if angle < 1.0 and x < 1.0:
+            above = small * (_sinh_less_argument(x) + (zeta / s) * _argument_less_sin(angle))
+        else:
+            above = 0.5 * gap * (1.0 + small) - zeta * swing
+        return a * swing / below, above / below
+    if zeta == 1.0:
+        swing = small * math.pi * a
+        below = 0.5 * (1.0 + small * small) + small
+        if x < 1.0:
+            return a * swing / below, small * _sinh_less_argument(x) / below
+        return a * swing / below, (0.5 * (1.0 - small * small) - swing) / below
+    s = math.sqrt((zeta - 1.0) * (zeta + 1.0))
+    angle = s * math.pi * a
+    slow = math.exp(-math.pi * a / (zeta + s))  # exp(angle - x)
+    swing = slow * (-math.expm1(-2.0 * angle)) / (2.0 * s)
+    below = 0.5 * (1.0 + small * small) + 0.5 * slow * (1.0 + math.exp(-2.0 * angle))
+    if x < 1.0:
+        above = small * (_sinh_less_argument(x) - (zeta / s) * _sinh_less_argument(angle))
+    else:
+        above = 0.5 * (1.0 - small * small) - zeta * swing
+    return a * swing / below, above / below

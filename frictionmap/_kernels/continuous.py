@@ -1,0 +1,105 @@
+"""The continuous orbit of theory 2 for the normalised oscillator, and how near to it nothing can stop."""
+
+import math
+from typing import NamedTuple
+
+from .closed_form import decay
+from .jit import kernel
+
+
+class Oscillator(NamedTuple):
+    """The normalised oscillator at one r; everything here depends on (r, zeta) only."""
+
+    r: float
+    zeta: float
+    v_abs: float  # |V|, infinite at an undamped resonance
+    v_arg: float
+    u: float
+    g: float
+
+
+@kernel
+def continuous_amplitude(v_abs, u, g, b):
+    """Z of T(2.34), (7.20) for chi^2/w^2 = 1; infinite at an undamped resonance."""
+    if math.isinf(v_abs):
+        return math.inf
+    if b == 0.0:
+        return v_abs  # u may have no limit (r = 0)
+    swing = b * u
+    return math.sqrt((v_abs - swing) * (v_abs + swing)) - b * g
+
+
+@kernel
+def orbit_phase(oscillator, b):
+    """Load phase at a maximum of z of the continuous orbit."""
+    swing = b * oscillator.u
+    root = math.sqrt((oscillator.v_abs - swing) * (oscillator.v_abs + swing))
+    return math.atan2(-swing, root) - oscillator.v_arg
+
+
+@kernel
+def distance_to_orbit(oscillator, b, amplitude, phase, z, c, s):
+    """Energy norm sqrt(z^2 + r^2 z'^2) of the distance from the continuous orbit of a state at rest."""
+    a = 1.0 / oscillator.r
+    # tau on the orbit, from its maximum; on the rising half the orbit is the mirror of the falling one
+    tau = math.atan2(s, c) - phase
+    tau -= 2.0 * math.pi * math.floor(tau / (2.0 * math.pi))
+    sign = 1.0
+    if tau > math.pi:
+        tau -= math.pi
+        sign = -1.0
+    q, e = decay(oscillator.zeta, a * tau)
+    g1 = 1.0 + oscillator.g
+    d = e + 2.0 * oscillator.zeta * q
+    from_cos = amplitude + b * oscillator.g
+    swing = b * oscillator.u
+    cosine = math.cos(tau)
+    sine = math.sin(tau)
+    orbit_z = from_cos * cosine + swing * sine + b * (1.0 - g1 * d) - swing * oscillator.r * q
+    orbit_v = swing * (cosine - e) - from_cos * sine + b * g1 * a * q
+    return math.hypot(z - sign * orbit_z, oscillator.r * orbit_v)
+
+
+@kernel
+def stop_free_radius(step, oscillator, b, mu_b, amplitude, phase):
+    """A distance (energy norm) from the continuous orbit within which no motion can stop.
+
+    A stop at distance eps needs r |z'| <= eps and |load| <= mu b + eps of the orbit; the least
+    max(r |z'|, |load| - mu b) over half a period is bounded below from scan steps and their curvature.
+    """
+    c = -math.cos(phase)
+    s = -math.sin(phase)
+    z = -amplitude
+    w = 0.0
+    stiffness = step.stiffness
+    omega = math.sqrt(stiffness)
+    square = step.h * step.h
+    acceleration = stiffness * (c - b - z)
+    energy = omega * abs(acceleration) + abs(stiffness * s * step.h + step.damping * acceleration)
+    to_velocity = oscillator.r / step.h
+    radius = math.inf
+    load = abs(z - c) - mu_b
+    n = int(math.ceil(math.pi / step.h))
+    for _ in range(n):
+        energy += stiffness * square
+        z1 = step.zz * z + step.zw * w + step.z_cos * c + step.z_sin * s - step.z_one * b
+        w1 = step.wz * z + step.ww * w + step.w_cos * c + step.w_sin * s - step.w_one * b
+        c1 = step.cos * c - step.sin * s
+        s = step.cos * s + step.sin * c
+        c = c1
+        load1 = abs(z1 - c) - mu_b
+        fast = to_velocity * (min(w, w1) - 0.125 * energy)
+        loaded = min(load, load1) - 0.125 * (energy / omega + square)
+        radius = min(radius, max(fast, loaded))
+        z = z1
+        w = w1
+        load = load1
+    return radius
+
+
+@kernel
+def is_even_submultiple(r):
+    """Whether r is 1/(2n) as exactly as a double can say it."""
+    half = 0.5 / r
+    n = math.floor(half + 0.5)
+    return n >= 1.0 and n < 1e6 and r == 0.5 / n

@@ -1,0 +1,56 @@
+"""Response functions and boundaries over frequency: once per r, however many beta a map has."""
+
+import math
+
+from .closed_form import damping_functions
+from .jit import kernel
+from .maxima import largest_bracket
+
+
+@kernel
+def response_functions(r, zeta, u, g, v_abs, v_arg, h, s):
+    """Fill the functions of theory 2 and 3 for one mode with w = chi = lambda = 1.
+
+    Parameters
+    ----------
+    r : (n,) frequency ratios >= 0
+    zeta : damping ratio
+    u, g, h, s : (n,) outputs U, G, H, S
+    v_abs, v_arg : (n,) outputs, V = 1/(1 - r^2 + 2 i zeta r)
+
+    Notes
+    -----
+    At r = 0 (limits): V = 1, S infinite; U has no limit without damping (nan) and is 0 with it.  At an
+    undamped resonance V and U are infinite.
+    """
+    for i in range(r.size):
+        x = r[i]
+        if x == 0.0:
+            v_abs[i] = 1.0
+            v_arg[i] = 0.0
+            u[i] = math.nan if zeta == 0.0 else 0.0
+            g[i] = 0.0 if zeta == 0.0 else 1.0
+            h[i] = 0.0 if zeta == 0.0 else math.inf
+            s[i] = math.inf
+            continue
+        real = (1.0 - x) * (1.0 + x)
+        imaginary = 2.0 * zeta * x
+        size = math.hypot(real, imaginary)
+        v_abs[i] = 1.0 / size if size > 0.0 else math.inf
+        v_arg[i] = -math.atan2(imaginary, real)
+        u[i], g[i] = damping_functions(1.0, zeta, x)
+        inverse = 1.0 / (x * x)
+        h[i] = 0.0 if zeta == 0.0 else inverse * (g[i] + 2.0 * zeta * x * u[i])
+        s[i] = largest_bracket(1.0 / x, zeta, u[i], g[i], h[i] + inverse)
+
+
+@kernel
+def boundary(r, v_abs, u, h, s, mu, out):
+    """beta_lim of theory 3 over the load amplitude in the contact, for one mode; `out` has shape (n,)."""
+    for i in range(r.size):
+        if r[i] == 0.0:
+            out[i] = 0.0
+        elif math.isinf(v_abs[i]):
+            out[i] = 0.25 * math.pi  # |V|/U -> pi/4, and both outgrow S
+        else:
+            out[i] = v_abs[i] / math.hypot(u[i], max(s[i], h[i] + mu / (r[i] * r[i])))

@@ -1,0 +1,243 @@
+"""Events of the normalised oscillator: where a slide ends, and what follows.
+
+The equation keeps its form when (z, z', cos, sin) all change sign.  Every slide is therefore followed
+as an upward one: a state that is about to move down is *mirrored* first.
+"""
+
+import math
+
+import numpy as np
+
+from .jit import kernel
+from .phases import MAX_TERMS, expand
+
+#: What follows the end of a slide.
+REVERSE = 0  # slides back at once
+STOP_THEN_BACK = 1  # stops, then moves the other way
+STOP_THEN_ON = 2  # stops, then moves on the same way
+TOUCH = 3  # velocity touches zero and the slide goes on: the load pushes on beyond mu b
+STUCK = 4  # stops and never moves again
+
+#: A slide's end was not found within the scan steps allowed.
+NO_END = -1
+
+#: 1/(k+1): from the series of the velocity to that of the displacement.
+_INVERSE = np.array([1.0 / (k + 1.0) for k in range(MAX_TERMS)])
+
+#: A guess of an event further off than this, in scan steps, lies where the velocity only touches zero.
+_NEARLY = 0.25
+
+#: A Newton step of third order shorter than this, in scan steps, ends at rounding.
+_ONE_STEP = 1e-5
+
+_MAX_POLISH = 8
+
+#: Certified steps to a root converge quadratically, and linearly at a double root (a grazing touch),
+#: where 200 of them exhaust a double.
+_MAX_APPROACH = 200
+
+
+@kernel
+def first_root(p, first, terms):
+    """The first root in (0, 1] of p[first] + p[first+1] x + ...; 2.0 if there is none.
+
+    The value at 0 must be >= 0.  From x the polynomial stays above the parabola
+    p(x) + p'(x) d - B d^2/2, where B bounds |p''|; the step d to the parabola's root passes no root
+    of p, and where p has a simple root the steps are Newton's from one side.  Nothing can be missed.
+    """
+    bound = 0.0
+    for k in range(first + 2, terms):
+        bound += (k - first) * (k - first - 1.0) * abs(p[k])
+    x = 0.0
+    for _ in range(_MAX_APPROACH):
+        value = 0.0
+        slope = 0.0
+        for k in range(terms - 1, first - 1, -1):
+            slope = slope * x + value
+            value = value * x + p[k]
+        if value <= 0.0:
+            # at the start a value of zero with a rising slope is not the root looked for
+            if x > 0.0 or slope <= 0.0:
+                return x
+            value = 0.0
+        below = -slope + math.sqrt(slope * slope + 2.0 * bound * value)
+        if value == 0.0:
+            new = x + 2.0 * slope / bound if bound > 0.0 else 2.0
+        elif below <= 0.0:
+            return 2.0  # rises for good
+        else:
+            new = x + 2.0 * value / below
+        if new > 1.0:
+            return 2.0
+        if new == x:
+            return x
+        x = new
+    return x
+
+
+@kernel
+def _cubic_root(w, slope, w1, slope1):
+    """Root in [0, 1] of the cubic with these values and slopes at 0 and 1, falling from w > 0 to w1 <= 0."""
+    third = 2.0 * (w - w1) + slope + slope1
+    second = 3.0 * (w1 - w) - 2.0 * slope - slope1
+    x = w / (w - w1)
+    for _ in range(2):
+        value = w + x * (slope + x * (second + x * third))
+        x -= value / (slope + x * (2.0 * second + 3.0 * x * third))
+    return min(max(x, 0.0), 1.0)
+
+
+@kernel
+def _at_root(step, b, z, c, s, x, work):
+    """(x, z, cos, sin) at the zero of the velocity next to x, from the series in `work`.
+
+    Newton steps of third order, with the derivatives from the equation of motion: one takes a guess that
+    is off by 1e-5 to rounding.
+    """
+    for _ in range(_MAX_POLISH):
+        rise = 0.0
+        velocity = 0.0
+        for k in range(step.terms - 1, -1, -1):
+            velocity = velocity * x + work[k]
+            rise = rise * x + work[k] * _INVERSE[k]
+        place = z + rise * x
+        angle = step.h * x
+        cosine = math.cos(angle)
+        sine = math.sin(angle)
+        c1 = cosine * c - sine * s
+        s1 = cosine * s + sine * c
+        acceleration = step.stiffness * (c1 - b - place) - step.damping * velocity
+        jerk = -step.stiffness * (s1 * step.h + velocity) - step.damping * acceleration
+        if not abs(velocity) < _NEARLY * abs(acceleration):
+            break  # the velocity only touches zero, and x is as good as can be
+        move = -velocity / acceleration
+        move *= 1.0 - 0.5 * jerk / acceleration * move
+        x += move
+        if abs(move) < _ONE_STEP:
+            place += move * (velocity + move * (0.5 * acceleration + move * jerk * (1.0 / 6.0)))
+            angle = step.h * move
+            less = 0.5 * angle * angle
+            c2 = c1 - angle * s1 - less * c1
+            s1 = s1 + angle * c1 - less * s1
+            c1 = c2
+            break
+    norm = 1.5 - 0.5 * (c1 * c1 + s1 * s1)  # back to the unit circle
+    return x, place, norm * c1, norm * s1
+
+
+@kernel
+def slide(step, b, z, w, acceleration, c, s, max_steps, work):
+    """Follow an upward slide from (z, w >= 0) to the first zero of the velocity.
+
+    Parameters
+    ----------
+    step : Step
+    b : kinetic friction over load amplitude
+    z, w, acceleration, c, s : state; `acceleration` = h^2 z'' exactly, > 0 or 0 with a rising load
+        where w = 0
+    max_steps : scan steps allowed
+    work : scratch, MAX_TERMS long
+
+    Returns
+    -------
+    (steps, z, c, s) with `steps` the scan steps taken, a fraction included; NO_END if not found.
+
+    Notes
+    -----
+    A step is passed without a closer look when the cubic through the velocities and accelerations at
+    its ends has Bernstein coefficients above the cubic's largest error, max|w''''|/384, which follows
+    from the energy of the motion of z'': no dip of the velocity can hide.
+    """
+    stiffness = step.stiffness
+    damping = step.damping
+    h = step.h
+    omega = math.sqrt(stiffness)
+    square = h * h
+    # |z3| + omega |z2| can grow by the load only: by stiffness h^2 a step.  (zk: k-th x-derivative)
+    jerk = -stiffness * (s * h + w) - damping * acceleration
+    energy = omega * abs(acceleration) + abs(jerk)
+    growth = stiffness * square
+    fourth = (damping + omega) * (energy + growth) + growth  # bound on |z4| in the step
+    # |w''''| = |z5| <= stiffness (h^3 + |z3|) + damping |z4|, |z4| <= (damping + omega) energy + growth
+    per_energy = (stiffness + damping * (damping + omega)) / 384.0
+    error = per_energy * (energy + growth) + (stiffness * square * h + damping * growth) / 384.0
+    error_growth = per_energy * growth
+    curve = (damping + omega) * growth
+    z_pull = step.z_one * b
+    w_pull = step.w_one * b
+    n = 0.0
+    sure = w == 0.0 and acceleration >= 0.0 and acceleration + jerk - 0.5 * fourth > 0.0
+    while n < max_steps and w >= 0.0:  # a velocity that is not a number ends it too
+        # in this order the load's part does not wait for the state
+        z1 = (step.z_cos * c + step.z_sin * s - z_pull) + (step.zz * z + step.zw * w)
+        w1 = (step.w_cos * c + step.w_sin * s - w_pull) + (step.wz * z + step.ww * w)
+        c1 = step.cos * c - step.sin * s
+        s1 = step.cos * s + step.sin * c
+        acceleration1 = stiffness * (c1 - b - z1) - damping * w1
+        if not sure:
+            sure = (
+                w > error
+                and w1 > error
+                and w + acceleration * (1.0 / 3.0) > error
+                and w1 - acceleration1 * (1.0 / 3.0) > error
+            )
+        if not sure:
+            expand(step, b, z, w, acceleration, c, s, work)
+            if w > 0.0 and w1 <= 0.0 and max(acceleration, acceleration1) + 0.125 * fourth < 0.0:
+                x = _cubic_root(w, acceleration, w1, acceleration1)  # w falls: one root
+            else:
+                first = 0
+                if n == 0.0 and w == 0.0:
+                    first = 1 if acceleration != 0.0 else 2  # the start is not the root looked for
+                x = first_root(work, first, step.terms)
+            if x <= 1.0:
+                x, z, c, s = _at_root(step, b, z, c, s, x, work)
+                return n + x, z, c, s
+        n += 1.0
+        error += error_growth
+        fourth += curve
+        z = z1
+        w = w1
+        c = c1
+        s = s1
+        acceleration = acceleration1
+        sure = False
+    return float(NO_END), z, c, s
+
+
+@kernel
+def after_slide(b, mu_b, z, c, s):
+    """What follows an upward slide that ended at displacement z and load phase (c, s).
+
+    Returns (code, z, c, s, push, wait): the state from which the next upward slide starts, mirrored if
+    the motion turns back; push = r^2 z'' at its start; wait = duration of the stop in tau.
+
+    Sticks if |load| <= mu b (a tie sticks); a stop ends when |load| exceeds mu b.
+    """
+    load = z - c
+    if load > mu_b:
+        return REVERSE, -z, -c, -s, load - b, 0.0
+    if load < -mu_b:
+        return TOUCH, z, c, s, -load - b, 0.0
+    c_back = z - mu_b  # the load leaves upwards where cos falls through this ...
+    c_on = z + mu_b  # ... and downwards where cos rises through that
+    falls = c_back > -1.0
+    rises = c_on < 1.0
+    if not (falls or rises):
+        return STUCK, z, c, s, 0.0, math.inf
+    falling = s > 0.0 or (s == 0.0 and c > 0.0)
+    back = falls and (falling or not rises)
+    at_once = falling if back else not falling  # leaves on the half turn that it is on
+    c_end = c_back if back else c_on
+    s_end = math.sqrt(max(0.0, (1.0 - c_end) * (1.0 + c_end)))
+    if not back:
+        s_end = -s_end
+    wait = math.atan2(s_end * c - c_end * s, c_end * c + s_end * s)
+    if at_once:
+        wait = max(wait, 0.0)  # rounding: the load can be past its end by a bit already
+    elif wait <= 0.0:
+        wait += 2.0 * math.pi
+    push = mu_b - b
+    if back:
+        return STOP_THEN_BACK, -z, -c_end, -s_end, push, wait
+    return STOP_THEN_ON, z, c_end, s_end, push, wait

@@ -1,0 +1,273 @@
+"""Configuration files (TOML): read, overridden, checked key by key."""
+
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import Path
+
+import numpy as np
+
+from . import checks
+from .errors import InputError
+from .settings import Solver
+from .system import System
+
+#: Values of one axis; more are surely a slip of the keyboard, and would not fit in memory with the others.
+_MOST_VALUES = checks.MOST_CELLS
+
+_SYSTEM_KEYS = (
+    "contact",
+    "contact_masses",
+    "load_mass",
+    "mass_ratios",
+    "stiffness_ratios",
+    "damping_ratios",
+)
+_SOLVER_KEYS = ("start", "cycles", "tolerance", "steps", "skip", "steady", "outputs")
+_SECTIONS = {
+    "title": (),
+    "system": _SYSTEM_KEYS,
+    "grid": ("r", "beta", "mu"),
+    "solver": _SOLVER_KEYS,
+}
+_AXIS_KEYS = ("start", "stop", "step", "num", "values")
+#: Ways to give an axis exclude each other: on the command line, a key takes the place of these.
+_RIVALS = {
+    "start": ("values",),
+    "stop": ("values",),
+    "step": ("num", "values"),
+    "num": ("step", "values"),
+    "values": ("start", "stop", "step", "num"),
+}
+#: What tomllib raises; its own error is a ValueError, and so is that of a number with thousands of digits.
+_NOT_TOML = (ValueError, RecursionError)
+
+
+@dataclass(frozen=True)
+class Config:
+    """A checked configuration."""
+
+    title: str
+    system: System
+    r: np.ndarray
+    beta: np.ndarray
+    mu: np.ndarray
+    solver: Solver
+    text: str  # the TOML text used, overrides applied
+    name: str  # of the file, without its ending
+
+
+def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
+    """Read a configuration file and apply overrides such as ``grid.r.step=0.01``.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or is not TOML; a key is unknown, missing, of the wrong type or out of
+        range.  The message names the key.
+    """
+    path = Path(path)
+    try:
+        text = path.read_bytes().decode("utf-8-sig")  # some editors put a mark at the beginning
+    except UnicodeDecodeError:
+        raise InputError(f"configuration {path} must be text in UTF-8; it is not") from None
+    except OSError as error:
+        raise InputError(
+            f"configuration {path} cannot be read ({error.strerror or error}); give the path of a TOML file"
+        ) from None
+    try:
+        tree = tomllib.loads(text)
+    except _NOT_TOML as error:
+        raise InputError(f"configuration {path} must be TOML; got: {error}") from None
+    for override in overrides:
+        _override(tree, override)
+    if overrides:
+        text = _to_toml(tree)
+    return _check(tree, text, path.stem)
+
+
+def _override(tree: dict, override: str) -> None:
+    """Set one dotted key to a TOML value; a bare word counts as a string."""
+    key, equals, value_text = override.partition("=")
+    parts = [part.strip() for part in key.split(".")]
+    if not equals or not all(parts) or not value_text.strip():
+        raise InputError(f"--set must be KEY=VALUE, such as grid.r.step=0.01; got {override!r}")
+    value_text = value_text.strip()
+    try:
+        value = tomllib.loads(f"value = {value_text}")["value"]
+    except _NOT_TOML:
+        value = value_text  # a word such as rest or none
+    branch = tree
+    for depth, part in enumerate(parts[:-1], start=1):
+        branch = branch.setdefault(part, {})
+        if not isinstance(branch, dict):
+            name = ".".join(parts[:depth])
+            raise InputError(f"--set {override}: {name} must be a table to have keys; it is {branch!r}")
+    if parts[0] == "grid" and len(parts) == 3:
+        for rival in _RIVALS.get(parts[-1], ()):
+            branch.pop(rival, None)
+    branch[parts[-1]] = value
+
+
+def _quoted(text: str) -> str:
+    """Text as a TOML basic string: JSON has the same escapes, but leaves the delete character."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _to_toml(tree: Mapping[str, object]) -> str:
+    """A checked-to-be configuration tree as TOML text."""
+
+    def value(item: object) -> str:
+        if isinstance(item, bool):
+            return "true" if item else "false"
+        if isinstance(item, str):
+            return _quoted(item)
+        if isinstance(item, list):
+            return "[" + ", ".join(value(element) for element in item) + "]"
+        if isinstance(item, dict):
+            return "{ " + ", ".join(f"{key} = {value(v)}" for key, v in item.items()) + " }"
+        return repr(item)
+
+    lines = [f"{key} = {value(v)}" for key, v in tree.items() if not isinstance(v, dict)]
+    for name, table in tree.items():
+        if isinstance(table, dict):
+            lines += ["", f"[{name}]"]
+            lines += [f"{key} = {value(v)}" for key, v in table.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _unknown(key: str, section: str, legal: Sequence[str]) -> InputError:
+    name = f"{section}.{key}" if section else key
+    where = f"the keys of [{section}]" if section else "the keys"
+    return InputError(f"unknown key {name}{checks.nearest(key, legal)}; {where} are {', '.join(legal)}")
+
+
+def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
+    table = tree.get(name, {})
+    if not isinstance(table, Mapping):
+        raise InputError(f"{name} must be a table [{name}]; got {table!r}")
+    for key in table:
+        if key not in _SECTIONS[name]:
+            raise _unknown(key, name, _SECTIONS[name])
+    return table
+
+
+def _build(kind: type, table: Mapping[str, object], section: str) -> object:
+    try:
+        return kind(**table)
+    except InputError as error:
+        raise InputError(f"{section}.{error}") from None
+
+
+def _check(tree: Mapping[str, object], text: str, name: str) -> Config:
+    for key in tree:
+        if key not in _SECTIONS:
+            raise _unknown(key, "", tuple(_SECTIONS))
+    title = tree.get("title", name)
+    if not isinstance(title, str):
+        raise InputError(f"title must be text; got {title!r}")
+    if "system" not in tree:
+        raise InputError("the configuration must have a table [system]; it has none")
+    system = _build(System, _table(tree, "system"), "system")
+    solver = _build(Solver, _table(tree, "solver"), "solver")
+    grid = _table(tree, "grid")
+    for key in ("r", "beta"):
+        if key not in grid:
+            raise InputError(f"grid.{key} must be given; it is missing")
+    counts = {key: _count(grid.get(key, [1.0]), f"grid.{key}") for key in ("mu", "r", "beta")}
+    checks.cells(counts["mu"], counts["r"], counts["beta"])
+    axes = {
+        key: checks.axis(_values(grid.get(key, [1.0]), f"grid.{key}"), f"grid.{key}", **bounds)
+        for key, bounds in (
+            ("r", {"least": 0.0, "most": checks.LARGEST_RATIO}),
+            ("beta", {"least": 0.0}),
+            ("mu", {"least": 1.0}),
+        )
+    }
+    return Config(title, system, axes["r"], axes["beta"], axes["mu"], solver, text, name)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _axis_table(axis: Mapping[str, object], name: str) -> None:
+    """Refuse an axis table that does not say one thing."""
+    for key in axis:
+        if key not in _AXIS_KEYS:
+            raise _unknown(key, name, _AXIS_KEYS)
+    legal = "{ start, stop, step }, { start, stop, num } or { values }"
+    keys = set(axis)
+    if keys not in ({"values"}, {"start", "stop", "step"}, {"start", "stop", "num"}):
+        raise InputError(f"{name} must be {legal}; got {', '.join(axis) or 'nothing'}")
+    if "values" in axis:
+        return
+    start = checks.number(axis["start"], f"{name}.start")
+    stop = checks.number(axis["stop"], f"{name}.stop")
+    if stop < start:
+        raise InputError(f"{name}.stop must be >= start ({start:g}); got {stop:g}")
+    if "step" in axis:
+        checks.number(axis["step"], f"{name}.step", above=0.0)
+    else:
+        checks.whole(axis["num"], f"{name}.num", least=1, most=_MOST_VALUES)
+
+
+def _steps(axis: Mapping[str, object], name: str) -> int:
+    """Number of whole steps from start to stop, counted in decimal as they were typed."""
+    start, stop, step = (Decimal(repr(axis[key])) for key in ("start", "stop", "step"))
+    count = (stop - start) / step
+    if count >= _MOST_VALUES:
+        raise InputError(
+            f"{name}.step must leave at most {_MOST_VALUES:.0e} values; "
+            f"got {axis['step']!r}, which makes {float(count) + 1:.3g}"
+        )
+    return int(count)
+
+
+def _count(axis: object, name: str) -> int:
+    """How many values an axis will have, before any memory is taken for them."""
+    if isinstance(axis, Mapping):
+        _axis_table(axis, name)
+        if "values" in axis:
+            return _count_list(axis["values"], f"{name}.values")
+        return _steps(axis, name) + 1 if "step" in axis else int(axis["num"])
+    if isinstance(axis, list):
+        return _count_list(axis, name)
+    if _is_number(axis):
+        checks.number(axis, name)
+        return 1
+    raise InputError(f"{name} must be a number, a list of numbers or a table; got {axis!r}")
+
+
+def _count_list(values: object, name: str) -> int:
+    if not isinstance(values, list):
+        raise InputError(f"{name} must be a list of numbers; got {values!r}")
+    for index, value in enumerate(values):
+        checks.number(value, f"{name}[{index}]")
+    return len(values)
+
+
+def _values(axis: object, name: str) -> object:
+    """The values of an axis that `_count` has accepted."""
+    if not isinstance(axis, Mapping):
+        return axis
+    if "values" in axis:
+        return axis["values"]
+    if "num" in axis:
+        return np.linspace(float(axis["start"]), float(axis["stop"]), int(axis["num"]))
+    return _decimal_steps(Decimal(repr(axis["start"])), Decimal(repr(axis["step"])), _steps(axis, name))
+
+
+def _decimal_steps(start: Decimal, step: Decimal, count: int) -> np.ndarray:
+    """start + k step, k = 0..count, as the doubles next to the decimal numbers.
+
+    So 35 steps of 0.02 are 0.7, and a tie with a boundary is the one that was meant.
+    """
+    places = max(0, *(-int(number.as_tuple().exponent) for number in (start, step)))
+    unit = 10**places
+    first, increment = int(start * unit), int(step * unit)
+    if places <= 22 and abs(first) + increment * count < 2**53:  # then the division rounds once
+        return (first + increment * np.arange(count + 1)) / float(unit)
+    return np.array([float(start + k * step) for k in range(count + 1)])

@@ -1,0 +1,240 @@
+"""Regime maps: plan which cells need integration, run them in parallel, label the result."""
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from itertools import islice
+
+import numpy as np
+import xarray as xr
+
+from . import checks, regimes
+from ._kernels.cycle import Limits
+from ._kernels.sweep import Outputs, fill_closed_form, fill_integrated
+from .curves import Curves, boundary_variables, curves
+from .labels import CELL_VARIABLES, coordinate, label_variable, stamp
+from .settings import Solver
+from .system import System
+
+#: Cells a thread takes at a time: some milliseconds of work, so that the threads finish together, progress
+#: is seen and an interrupt is obeyed; and enough for the start of a tile not to count.
+TILE = 1024
+
+#: Rows of the map a thread fills by closed form at a time.
+ROW_CELLS = 262144
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Which cells are open: in each row (mu, r), those from `low` to before `high` in beta."""
+
+    low: np.ndarray  # (n_mu * n_r,)
+    high: np.ndarray
+    rows: np.ndarray  # the rows that have open cells
+    ends: np.ndarray  # number of open cells up to and with each of them
+
+    @property
+    def cells(self) -> int:
+        """Number of open cells."""
+        return int(self.ends[-1]) if self.ends.size else 0
+
+
+def plan(found: Curves, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Plan:
+    """Sort the cells into those that a formula decides and those that are open (theory.md 6).
+
+    - beta = 0 is linear; where the load in the contact is zero (joined base-wall, r = 0), nothing moves.
+    - skip = "exact", mu = 1: continuous below beta_lim, stuck from beta_stick on, whatever the start.
+    - skip = "exact", start from rest: one mass with beta >= beta_stick never begins to move.
+    - r = 0 has no motion to integrate; a regime, but no number of stops, follows from the boundaries.
+    """
+    f = found.frequencies
+    shape = found.beta_lim.shape
+    no_load = np.broadcast_to(f.load == 0.0, shape)
+    no_motion = np.broadcast_to(f.r == 0.0, shape)
+    low = np.full(shape, int(beta[0] == 0.0))
+    high = np.full(shape, beta.size)
+    stuck_from = np.searchsorted(beta, found.beta_stick)
+    if solver.skip == "exact":
+        smooth = (mu == 1.0)[:, np.newaxis]
+        proved = smooth | (solver.start == "rest")
+        high = np.where(proved, stuck_from, high)
+        low = np.where(smooth, np.maximum(low, np.searchsorted(beta, found.beta_lim)), low)
+    high = np.where(no_motion, stuck_from, high)
+    low = np.where(no_load, 0, np.minimum(low, high))
+    open_cells = np.where(no_motion, 0, high - low).ravel()
+    rows = np.flatnonzero(open_cells)
+    return Plan(low.ravel(), high.ravel(), rows, np.cumsum(open_cells[rows]))
+
+
+def _allocate(shape: tuple[int, int, int], names: Sequence[str]) -> Outputs:
+    """Outputs asked for, unresolved until they are filled; the others have no cells."""
+    unresolved = {
+        "regime": regimes.UNRESOLVED,
+        "stops_per_cycle": np.nan,
+        "contact_amplitude": np.nan,
+        "stuck_fraction": np.nan,
+        "period": 0,
+        "origin": regimes.CLOSED_FORM,
+        "cycles": 0,
+        "status": regimes.NOT_COMPUTED,
+    }
+    return Outputs(
+        **{
+            name: np.full(shape if name in names else (0, 0, 0), value, CELL_VARIABLES[name].dtype)
+            for name, value in unresolved.items()
+        }
+    )
+
+
+def default_threads() -> int:
+    """Processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _run(jobs: Sequence[tuple[Callable[..., None], tuple]], threads: int, done: Callable) -> None:
+    """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
+
+    This thread only waits, so that an interrupt reaches it at once.
+    """
+    pool = ThreadPoolExecutor(threads)
+    running: dict[Future, int] = {}
+    waiting = iter(enumerate(jobs))
+    try:
+        while True:
+            for index, (function, arguments) in islice(waiting, 2 * threads - len(running)):
+                running[pool.submit(function, *arguments)] = index
+            if not running:
+                return
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                future.result()
+                done(running.pop(future))
+    finally:
+        pool.shutdown(wait=not running, cancel_futures=True)
+
+
+def _fill(
+    system: System,
+    found: Curves,
+    mu: np.ndarray,
+    beta: np.ndarray,
+    solver: Solver,
+    out: Outputs,
+    threads: int,
+    progress: Progress | None,
+) -> None:
+    work = plan(found, mu, beta, solver)
+    n_rows = work.low.size
+    rows_at_once = max(1, ROW_CELLS // beta.size)
+    stop = np.zeros(1, dtype=np.uint8)
+    limits = Limits(float(solver.cycles), solver.tolerance, solver.steady == "solved")
+    jobs: list[tuple[Callable[..., None], tuple]] = []
+    sizes: list[int] = []
+    for first in range(0, n_rows, rows_at_once):
+        last = min(first + rows_at_once, n_rows)
+        jobs.append(
+            (
+                fill_closed_form,
+                (first, last, work.low, work.high, beta, found.frequencies, system.zeta, out),
+            )
+        )
+        sizes.append(0)
+    for first in range(0, work.cells, TILE):
+        last = min(first + TILE, work.cells)
+        arguments = (
+            first, last, work.rows, work.ends, work.low, beta, mu, found.lim, found.beta_stick,
+            found.frequencies, system.zeta, float(solver.steps), limits, solver.start == "moving",
+            out, stop,
+        )  # fmt: skip
+        jobs.append((fill_integrated, arguments))
+        sizes.append(last - first)
+
+    count = 0
+
+    def done(index: int) -> None:
+        nonlocal count
+        count += sizes[index]
+        if progress is not None:
+            progress(count, work.cells)
+
+    try:
+        _run(jobs, threads, done)
+    except BaseException:
+        stop[0] = 1  # the kernels look at it at every event
+        raise
+
+
+def sweep(
+    system: System,
+    r: object,
+    beta: object,
+    mu: object = 1.0,
+    *,
+    solver: Solver | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    **settings: object,
+) -> xr.Dataset:
+    """Classify the steady state on a mu-r-beta grid and count its stops per cycle.
+
+    Parameters
+    ----------
+    system : System
+    r : array_like, shape (n_r,)
+        Frequency ratios omega/omega_1 [-], >= 0, increasing.
+    beta : array_like, shape (n_beta,)
+        Kinetic friction force over load amplitude F/P (F/(k1 Y)) [-], >= 0, increasing.
+    mu : array_like, shape (n_mu,)
+        Static over kinetic friction [-], >= 1, increasing.
+    solver : Solver, optional
+        Settings; or give them one by one as keywords: start, cycles, tolerance, steps, skip, steady,
+        outputs (see `Solver`).
+    threads : int, optional
+        Threads to use; default: all processors of the process.  The result is the same to the bit.
+    progress : callable, optional
+        Called as progress(done, all) with numbers of integrated cells.
+
+    Returns
+    -------
+    xarray.Dataset
+        On (mu, r, beta): the outputs asked for.  On (mu, r): `beta_lim`, `beta_lim_modal`,
+        `beta_stick`.  Unresolved cells have regime -1; `status` says why.
+
+    Raises
+    ------
+    InputError
+        An axis or a setting is out of range.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.sweep(fm.System(), r=[0.3], beta=[0.01, 0.5, 1.0])
+    >>> ds.stops_per_cycle.values
+    array([[[ 0.,  2., nan]]], dtype=float32)
+    """
+    solver = solver or Solver(**settings)  # type: ignore[arg-type]
+    r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
+    beta = checks.axis(beta, "beta", least=0.0)
+    mu = checks.axis(mu, "mu", least=1.0)
+    checks.cells(mu.size, r.size, beta.size)
+    if threads is None:
+        threads = default_threads()
+    else:
+        checks.whole(threads, "threads", least=1)
+    found = curves(system, r, mu)
+    out = _allocate((mu.size, r.size, beta.size), solver.outputs)
+    _fill(system, found, mu, beta, solver, out, threads, progress)
+    cells = {
+        name: label_variable(name, ("mu", "r", "beta"), getattr(out, name))
+        for name in solver.outputs
+    }
+    axes = {"mu": mu, "r": r, "beta": beta}
+    ds = xr.Dataset(
+        cells | boundary_variables(found),
+        coords={name: coordinate(name, values) for name, values in axes.items()},
+    )
+    return stamp(ds, "Motion regimes and stops per cycle", system)

@@ -1,0 +1,74 @@
+"""The one table of regime, origin and status codes: name, meaning, colour, advice."""
+
+from typing import NamedTuple
+
+UNRESOLVED = -1
+PERMANENT_STICKING = 0
+STICK_SLIP = 1
+CONTINUOUS = 2
+
+CLOSED_FORM = 0
+INTEGRATED = 1
+SOLVED = 2
+
+RESOLVED = 0
+NOT_REACHED = 1
+TOO_MANY_EVENTS = 2
+MARGINAL = 3
+QUASI_STATIC = 4
+NOT_COMPUTED = 5
+NOT_PERIODIC = 6
+
+
+class Code(NamedTuple):
+    """One value of a coded variable."""
+
+    value: int
+    name: str  # as in the file's flag_meanings
+    meaning: str  # for people; for a status: the cause and what to do about it
+
+
+REGIMES = (
+    Code(UNRESOLVED, "unresolved", "no steady state found; see status"),
+    Code(PERMANENT_STICKING, "permanent_sticking", "the contact never slides"),
+    Code(STICK_SLIP, "stick_slip", "the contact slides and stops"),
+    Code(CONTINUOUS, "continuous", "the contact slides without stopping"),
+)
+
+ORIGINS = (
+    Code(CLOSED_FORM, "closed_form", "decided by a formula"),
+    Code(INTEGRATED, "integrated", "followed from the starting state to the steady state"),
+    Code(SOLVED, "periodic_orbit", "followed for a while, then solved as a periodic orbit"),
+)
+
+STATUSES = (
+    Code(RESOLVED, "resolved", "the steady state was found"),
+    Code(
+        NOT_REACHED,
+        "not_reached",
+        "no steady state within `cycles` excitation periods: raise solver.cycles",
+    ),
+    Code(
+        TOO_MANY_EVENTS,
+        "too_many_events",
+        "more starts and stops than the solver follows: the motion chatters; change r or beta a little",
+    ),
+    Code(
+        MARGINAL,
+        "marginal",
+        "undamped at r = 1/(2n): a continuum of steady states, chosen by the starting state; where the "
+        "regime is continuous the amplitude given is the symmetric one's; add a little damping",
+    ),
+    Code(
+        QUASI_STATIC,
+        "quasi_static",
+        "r = 0: the regime is certain, but the number of stops has no limit there; ask for r > 0",
+    ),
+    Code(NOT_COMPUTED, "not_computed", "the run ended before this cell: run it again"),
+    Code(
+        NOT_PERIODIC,
+        "not_periodic",
+        "stick-slip that did not repeat within `cycles`: stops, amplitude and share stuck are those of "
+        "100 periods; if it is only slow, raise solver.cycles",
+    ),
+)

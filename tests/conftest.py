@@ -1,0 +1,40 @@
+"""Shared set-up: where kernels are cached, and where the reference values lie."""
+
+import hashlib
+import json
+import os
+import tempfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+
+# A kernel's cache is renewed when its own file changes, not when a kernel that it calls does.  One cache for
+# each state of the sources makes sure that the tests see the code as it is.
+_SOURCES = sorted((ROOT / "frictionmap").glob("_kernels/*.py")) + [ROOT / "frictionmap" / "regimes.py"]
+_STATE = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()[:16]
+os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(tempfile.gettempdir()) / f"frictionmap-kernels-{_STATE}"))
+os.environ.setdefault("MPLBACKEND", "agg")
+
+REFERENCE = Path(os.environ.get("FRICTIONMAP_REFERENCE", ROOT.parent / "shared" / "reference"))
+
+
+def _rows(name: str) -> tuple[dict, list[dict]]:
+    path = REFERENCE / name
+    if not path.is_file():
+        pytest.skip(f"the reference values {name} are not at hand")
+    content = json.loads(path.read_text())
+    return content["systems"], content["rows"]
+
+
+@pytest.fixture(scope="session")
+def boundary_rows() -> list[dict]:
+    """Rows of the 22-digit boundary values for one mass."""
+    return [row for row in _rows("boundaries.json")[1] if row["system"].startswith("sdof")]
+
+
+@pytest.fixture(scope="session")
+def steady_rows() -> list[dict]:
+    """Rows of the 22-digit steady states for one mass."""
+    return [row for row in _rows("steady_states.json")[1] if row["system"].startswith("sdof")]

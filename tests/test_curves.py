@@ -1,0 +1,187 @@
+"""Response functions and boundaries against 40-digit arithmetic, limits and the thesis's numbers."""
+
+import math
+
+import mpmath as mp
+import numpy as np
+import precise
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import frictionmap as fm
+from frictionmap._kernels.closed_form import damping_functions, decay, sincos_quarter
+from frictionmap._kernels.maxima import largest_bracket
+
+CONTACT = {"sdof-wall": "fixed-wall", "sdof-base": "joined-base-wall"}
+
+#: Rounding of a dozen operations; the functions themselves lose no digit.
+TIGHT = 2e-14
+
+
+def relative(value, exact):
+    """Relative error of a double against a high-precision value."""
+    if abs(exact) < 1e-60:  # zero, but for the rounding of the high precision
+        return abs(value)
+    return float(abs((mp.mpf(value) - exact) / exact))
+
+
+def test_reference_rows(boundary_rows):
+    """V, U, G, H, S, beta_lim and beta_stick of every row, to 1e-12 relative."""
+    for row in boundary_rows:
+        system = fm.System(contact=CONTACT[row["system"]], damping_ratios=float(row["zeta"]))
+        ds = fm.boundaries(system, [float(row["r"])], [1.0, 1.2, 2.0])
+        with mp.workdps(30):
+            for name, key in (("V", "V_re"), ("V_imag", "V_im"), *((n, n) for n in "UGHS")):
+                assert relative(float(ds[name][0]), mp.mpf(row[key])) < 1e-12, (name, row)
+            for m, mu in enumerate(("1", "1.2", "2")):
+                for name, key in (
+                    ("beta_lim", f"beta_lim_mu{mu}"),
+                    ("beta_lim_modal", f"beta_lim_modal_sum_mu{mu}"),
+                ):
+                    assert relative(float(ds[name][m, 0]), mp.mpf(row[key])) < 1e-12, (name, mu, row)
+                stick = mp.mpf(row["beta_stick_mu1"]) / float(mu)
+                assert relative(float(ds["beta_stick"][m, 0]), stick) < 1e-12, (mu, row)
+
+
+# r and zeta where something is special: resonance, odd and even sub-multiples, zeta = 1, both ends
+RATIOS = [0.03, 0.1, 1 / 7, 0.2, 0.25, 0.3, 1 / 3, 0.34, 0.45, 0.5, 0.7, 0.999, 1.0 - 1e-9, 1.001, 1.7, 9.0]
+DAMPINGS = [0.0, 1e-9, 1e-3, 0.05, 0.3, 0.9, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 1.3, 5.0]
+
+
+@pytest.mark.parametrize("zeta", DAMPINGS)
+def test_functions_against_40_digits(zeta):
+    """U, G, H, S and beta_lim for every kind of damping, resonance and sub-multiple."""
+    for r in RATIOS:
+        exact = precise.functions(r, zeta, samples=60)
+        ds = fm.boundaries(fm.System(damping_ratios=zeta), [r], [1.0, 1.5])
+        # large zeta: g is the difference of two close functions of (zeta +- sqrt(zeta^2 - 1))
+        tolerance = TIGHT * max(1.0, 1.0 / r) * (1.0 + zeta**2)
+        for name in "UGHS":
+            value, reference = float(ds[name][0]), getattr(exact, name.lower())
+            assert relative(value, reference) < tolerance, (name, r, zeta)
+        for m, mu in enumerate((1.0, 1.5)):
+            reference = precise.beta_lim(exact, r, mu)
+            assert relative(float(ds["beta_lim"][m, 0]), reference) < tolerance, (r, zeta)
+
+
+@pytest.mark.parametrize("distance", [10.0**-k for k in range(3, 16)])
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 6, 7, 20, 21])
+def test_no_digit_is_lost_next_to_sub_multiples(n, distance):
+    """sin and cos of pi/(2r) keep full relative precision next to all of their zeros."""
+    for r in ((1.0 + distance) / n, (1.0 - distance) / n):
+        sine, cosine = sincos_quarter(1.0, 0.0, r)
+        with mp.workdps(50):
+            angle = mp.pi / (2 * mp.mpf(r))
+            assert relative(sine, mp.sin(angle)) < 1e-15
+            assert relative(cosine, mp.cos(angle)) < 1e-15
+
+
+@pytest.mark.parametrize("r", [1.0 - 1e-3, 1.0 + 1e-6, 1.0 - 1e-9, 1.0 + 1e-12, 1.0 - 2**-53])
+def test_beta_lim_next_to_resonance(r):
+    """U/V is a finite ratio of infinite functions there; no digit of it may be lost."""
+    exact = precise.functions(r, 0.0, samples=20)
+    for mu in (1.0, 2.0):
+        ds = fm.boundaries(fm.System(), [r], mu)
+        assert relative(float(ds.beta_lim[0, 0]), precise.beta_lim(exact, r, mu)) < TIGHT
+
+
+def test_limits():
+    """r = 0, r = 1, odd and even sub-multiples, r -> infinity."""
+    ds = fm.boundaries(fm.System(), [0.0, 0.25, 1 / 3, 0.5, 1.0, 1e7], [1.0, 2.0])
+    assert ds.beta_lim[0, 0] == 0.0
+    assert ds.beta_lim[0, 4] == math.pi / 4
+    assert ds.beta_lim[1, 4] == math.pi / 4
+    assert math.isinf(ds.V[4])
+    assert math.isinf(ds.U[4])
+    # beta_lim vanishes at 1/3; the double next to 1/3 is off by 2e-17
+    assert ds.beta_lim[0, 2] < 1e-15
+    # U = 0: |V|/S with S = 1/r^2
+    assert ds.U[3] == 0.0
+    assert float(ds.beta_lim[0, 3]) == pytest.approx(1 / 3, rel=1e-15)
+    for m, mu in enumerate((1.0, 2.0)):  # T(2.31) with mu squared
+        limit = 2.0 / math.sqrt(4.0 * mu**2 + math.pi**2)
+        assert float(ds.beta_lim[m, 5]) == pytest.approx(limit, rel=1e-12)
+
+
+def test_printed_numbers():
+    """T p. 43 (2.30): finite peak from pi/4 = 0.785 on; T(2.31): 0.537 (three digits are printed)."""
+    ds = fm.boundaries(fm.System(), [1.0, 1e6])
+    assert round(float(ds.beta_lim[0, 0]), 3) == 0.785
+    assert round(float(ds.beta_lim[0, 1]), 3) == 0.537
+
+
+def test_joined_base_wall_is_the_fixed_wall_scaled():
+    """The load in the contact is |F|, F = r^2 - 2 i zeta r: beta_lim and beta_stick scale with it."""
+    r = np.linspace(0.06, 3.0, 50)
+    for zeta in (0.0, 0.1, 1.2):
+        wall = fm.boundaries(fm.System(damping_ratios=zeta), r, [1.0, 1.5])
+        base = fm.boundaries(fm.System(contact="joined-base-wall", damping_ratios=zeta), r, [1.0, 1.5])
+        load = np.abs(r**2 - 2j * zeta * r)
+        np.testing.assert_allclose(base.beta_lim, wall.beta_lim * load, rtol=1e-14)
+        np.testing.assert_allclose(base.beta_stick, wall.beta_stick * load, rtol=1e-14)
+        response = (base.V + 1j * base.V_imag).values
+        x = 1.0 / (1.0 - r**2 + 2j * zeta * r)  # T(3.9): V of z is that of x less the base's motion
+        np.testing.assert_allclose(response, x - 1.0, rtol=1e-10)
+
+
+def test_mu_1_beta_lim_never_passes_beta_stick():
+    """With mu = 1 a continuous motion needs a load above the friction: the strip is never negative."""
+    r = np.concatenate((np.geomspace(1e-3, 1e3, 2000), 1.0 / np.arange(1, 30)))
+    for zeta in (0.0, 0.01, 0.5, 2.0):
+        ds = fm.boundaries(fm.System(damping_ratios=zeta), np.unique(r))
+        assert np.all(ds.beta_lim <= ds.beta_stick)
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(
+    r=st.floats(0.01, 3.0),
+    zeta=st.one_of(st.just(0.0), st.floats(1e-6, 2.0)),
+)
+def test_maximum_is_global(r, zeta):
+    """No sample of the bracket lies above S, and S is reached."""
+    u, g = damping_functions(1.0, zeta, r)
+    h = (g + 2.0 * zeta * r * u) / r**2
+    if not (math.isfinite(u) and abs(u) < 1e8):
+        return  # next to a pole of u samples in double precision prove nothing
+    end = h + 1.0 / r**2
+    s = largest_bracket(1.0 / r, zeta, u, g, end)
+    count = int(200 * max(1.0, 1.0 / r))
+    tau = math.pi * np.arange(1, count) / count
+    q, e = np.array([decay(zeta, t / r) for t in tau]).T
+    values = (u * np.cos(tau) + (1.0 + g) * q / r - u * e) / np.sin(tau)
+    size = np.abs(values).max() + abs(u) + end
+    # samples next to 0 and pi are quotients of two small numbers
+    rounding = 1e-14 * size / np.sin(tau) / r
+    assert np.all(values <= s + rounding)
+    # between samples the bracket is curved by at most (its size)/r^2
+    spacing = (math.pi / count / r) ** 2
+    assert max(values.max(), end) >= s - 0.5 * spacing * size - rounding.min()
+
+
+def test_search_is_skipped_where_it_cannot_matter():
+    """Undamped with r >= 1/2: the end of the interval is the maximum (and so the floor comes back)."""
+    for r in np.linspace(0.5, 4.0, 50):
+        u, g = damping_functions(1.0, 0.0, r)
+        assert largest_bracket(1.0 / r, 0.0, u, g, 1.0 / r**2) == 1.0 / r**2
+
+
+@pytest.mark.parametrize(
+    ("r", "message"),
+    [
+        ([], "r must have at least one value"),
+        ([0.5, 0.2], "r must be increasing; got 0.2 at index 1"),
+        ([-1.0], "r must be >= 0; got -1"),
+        ([math.nan], "r must be finite"),
+        ([1e9], "r must be <= 1e"),
+        ("fast", "r must be numbers"),
+    ],
+)
+def test_bad_axes(r, message):
+    with pytest.raises(fm.InputError, match=message):
+        fm.boundaries(fm.System(), r)
+
+
+def test_bad_mu():
+    with pytest.raises(fm.InputError, match="mu must be >= 1; got 0.5"):
+        fm.boundaries(fm.System(), [1.0], [0.5])

@@ -284,9 +284,7 @@ class HeyokaPeer(Peer):
         z, v = heyoka.make_vars("z", "v")
         stiffness, damping, friction, drive = (heyoka.par[i] for i in range(4))
         push = drive * heyoka.cos(heyoka.time) - damping * v - stiffness * z - friction
-        slide_end = heyoka.t_event(
-            v - SLIDE_END, direction=heyoka.event_direction.negative, cooldown=0.0
-        )
+        slide_end = heyoka.t_event(v - SLIDE_END, direction=heyoka.event_direction.negative, cooldown=0.0)
         self.integrator = heyoka.taylor_adaptive(
             sys=[(z, v), (v, push)], state=[0.0, 0.0], t_events=[slide_end],
             fast_math=fast_math, **options,

@@ -26,12 +26,12 @@ from .errors import InputError, NoSteadyState
 from .version import __version__
 
 if TYPE_CHECKING:
-    from .curves import boundaries
     from .config import load_config
+    from .curves import boundaries
+    from .maps import sweep
     from .plot import plot_regimes, plot_response
     from .settings import Solver
     from .steady import response
-    from .maps import sweep
     from .system import System
 
 __all__ = [

@@ -2,10 +2,11 @@
 
 import json
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -43,6 +44,9 @@ _RIVALS = {
 }
 #: What tomllib raises; its own error is a ValueError, and so is that of a number with thousands of digits.
 _NOT_TOML = (ValueError, RecursionError)
+
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -154,7 +158,7 @@ def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
     return table
 
 
-def _build(kind: type, table: Mapping[str, object], section: str) -> object:
+def _build(kind: Callable[..., T], table: Mapping[str, object], section: str) -> T:
     try:
         return kind(**table)
     except InputError as error:

@@ -27,7 +27,6 @@ class Curves:
     beta_stick: np.ndarray
 
 
-
 def response_function(system: System, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """V of z, theory.md 2, real and imaginary part; at an undamped resonance infinite and 0."""
     stiffness = (1.0 - r) * (1.0 + r) + 2j * system.zeta * r

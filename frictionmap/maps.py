@@ -228,10 +228,7 @@ def sweep(
     found = curves(system, r, mu)
     out = _allocate((mu.size, r.size, beta.size), solver.outputs)
     _fill(system, found, mu, beta, solver, out, threads, progress)
-    cells = {
-        name: label_variable(name, ("mu", "r", "beta"), getattr(out, name))
-        for name in solver.outputs
-    }
+    cells = {name: label_variable(name, ("mu", "r", "beta"), getattr(out, name)) for name in solver.outputs}
     axes = {"mu": mu, "r": r, "beta": beta}
     ds = xr.Dataset(
         cells | boundary_variables(found),

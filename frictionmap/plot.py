@@ -1,8 +1,9 @@
 """Pictures: regime maps, boundaries, one response in time."""
 
 import textwrap
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -34,7 +35,7 @@ _CLASSES = (
     ("3 stops", "#3f8fb5"),
     ("4 stops", "#2c5aa0"),
     ("more stops", "#1b1f5c"),
-    ("sub-harmonic, not whole", "#b04fa3"),
+    ("stops per cycle not whole", "#b04fa3"),
     ("stick-slip, not counted", "#d9a066"),
     ("stuck or unresolved", "#c8c8c8"),
 )
@@ -46,10 +47,20 @@ _COARSE = 120
 #: Panels of one figure; more cannot be read, and would not fit in memory.
 MOST_PANELS = 60
 
-_LIM = {"color": "black", "linewidth": 1.4, "label": r"$\beta_\mathrm{lim}$"}
-_STICK = {"color": "black", "linewidth": 1.4, "linestyle": (0, (4, 2)), "label": r"$\beta_\mathrm{stick}$"}
+_LIM: dict[str, Any] = {"color": "black", "linewidth": 1.4, "label": r"$\beta_\mathrm{lim}$"}
+_STICK: dict[str, Any] = {
+    "color": "black",
+    "linewidth": 1.4,
+    "linestyle": (0, (4, 2)),
+    "label": r"$\beta_\mathrm{stick}$",
+}
 
-_MODAL = {"color": "#b04fa3", "linewidth": 1.0, "linestyle": ":", "label": "lower bound, sum of modal maxima"}
+_MODAL: dict[str, Any] = {
+    "color": "#b04fa3",
+    "linewidth": 1.0,
+    "linestyle": ":",
+    "label": "lower bound, sum of modal maxima",
+}
 
 
 def _halo() -> list[AbstractPathEffect]:
@@ -288,7 +299,11 @@ def save_picture(ds: xr.Dataset, path: Path) -> None:
     """Draw a dataset of any kind into a file, whole or not at all."""
     if path.suffix.lower() not in FORMATS:
         raise InputError(f"-o must end in {', '.join(FORMATS)}; got {path}")
-    draw = {"map": plot_regimes, "boundaries": plot_boundaries, "response": plot_response}[kind(ds)]
-    axes = draw(ds)
+    draw: dict[str, Callable[[xr.Dataset], Any]] = {
+        "map": plot_regimes,
+        "boundaries": plot_boundaries,
+        "response": plot_response,
+    }
+    axes = draw[kind(ds)](ds)
     with whole_file(path) as scratch:
         axes[0].figure.savefig(scratch, dpi=160)

@@ -161,10 +161,10 @@ def response(
         since = np.mod(tau - start, total)
         since[since > total * (1.0 - 1e-15)] = 0.0  # rounding must not place a sample past the end
         order = np.argsort(since, kind="stable")
-        sampled = np.empty((3, tau.size))
+        places, speeds, forces = np.empty((3, tau.size))
         senses = np.empty(tau.size, dtype=np.int8)
-        sample_slides(step, b, rows, since[order], *sampled, senses, np.empty(MAX_TERMS))
-        z[order], v[order], friction[order] = sampled
+        sample_slides(step, b, rows, since[order], places, speeds, forces, senses, np.empty(MAX_TERMS))
+        z[order], v[order], friction[order] = places, speeds, forces
         phase[order] = senses
         event_tau, event_phase, event_z = _events(rows, begin)
         event_tau = np.mod(event_tau + start, total)
@@ -200,10 +200,7 @@ def response(
     )
     ds = ds.assign({name: v[0, 0] for name, v in boundary_variables(found).items()})
     ds = ds.assign(
-        {
-            name: label_variable(name, (), CELL_VARIABLES[name].dtype(value))
-            for name, value in summary.items()
-        }
+        {name: label_variable(name, (), CELL_VARIABLES[name].dtype(value)) for name, value in summary.items()}
     )
     cell = {"r": r, "beta": beta, "mu": mu}
     ds = ds.assign_coords({name: coordinate(name, value) for name, value in cell.items()})

@@ -60,7 +60,7 @@ def write(ds: xr.Dataset, path: Path, command: str = "") -> None:
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     ds = ds.assign_attrs(history=f"{now} {command}".strip())
     # no fill value: it would turn integer codes into floats on reading, and CF forbids it on axes
-    encoding = {name: {"_FillValue": None} for name in ds.variables}
+    encoding: dict = {name: {"_FillValue": None} for name in ds.variables}
     for name, variable in ds.data_vars.items():
         if variable.ndim:
             encoding[name] |= _COMPRESSION

@@ -48,9 +48,9 @@ def describe_file(ds: xr.Dataset) -> str:
         if name in ds.coords:
             lines.append(f"  {name:8} {_axis(np.atleast_1d(ds[name].values))}")
     lines.append("variables")
-    for name, variable in ds.data_vars.items():
+    for label, variable in ds.data_vars.items():
         dims = ", ".join(str(dim) for dim in variable.dims)
-        lines.append(f"  {name:18} ({dims})  {variable.attrs.get('long_name', '')}")
+        lines.append(f"  {label!s:18} ({dims})  {variable.attrs.get('long_name', '')}")
     if what == "response":
         lines.append(describe_response(ds))
     if what == "map":

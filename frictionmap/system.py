@@ -16,9 +16,7 @@ def _ratios(values: object, name: str) -> tuple[float, ...]:
         raise InputError(f"{name} must be a list of numbers; got {values!r}")
     if len(values) == 0:
         raise InputError(f"{name} must have at least one value; got none")
-    ratios = tuple(
-        checks.number(value, f"{name}[{index}]", above=0.0) for index, value in enumerate(values)
-    )
+    ratios = tuple(checks.number(value, f"{name}[{index}]", above=0.0) for index, value in enumerate(values))
     if ratios[0] != 1.0:
         raise InputError(f"{name}[0] must be 1, the unit of the others; got {ratios[0]:g}")
     return ratios
@@ -79,9 +77,7 @@ class System:
                 "contact must be fixed-wall or joined-base-wall for one mass; got 'between-masses'"
             )
         contact_masses = self.contact_masses
-        if isinstance(contact_masses, (str, bytes)) or not isinstance(
-            contact_masses, (Sequence, np.ndarray)
-        ):
+        if isinstance(contact_masses, (str, bytes)) or not isinstance(contact_masses, (Sequence, np.ndarray)):
             raise InputError(f"contact_masses must be a list; got {contact_masses!r}")
         if len(contact_masses) != 1:
             raise InputError(
@@ -93,8 +89,7 @@ class System:
         if isinstance(damping, (Sequence, np.ndarray)) and not isinstance(damping, (str, bytes)):
             if len(damping) != len(masses):
                 raise InputError(
-                    f"damping_ratios must be one number or one a mode ({len(masses)}); "
-                    f"got {len(damping)}"
+                    f"damping_ratios must be one number or one a mode ({len(masses)}); got {len(damping)}"
                 )
             zeta = checks.number(damping[0], "damping_ratios[0]", least=0.0, most=checks.LARGEST_DAMPING)
         else:

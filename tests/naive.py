@@ -169,8 +169,13 @@ class Flow:
         return theta**EXPONENTS @ (self.taylor @ y) if theta else y
 
     def first_zero(
-        self, y: np.ndarray, steps: int, sides: tuple[int, ...], offset: float,
-        fresh: bool, slope: float | None = None,
+        self,
+        y: np.ndarray,
+        steps: int,
+        sides: tuple[int, ...],
+        offset: float,
+        fresh: bool,
+        slope: float | None = None,
     ) -> tuple[int, float, int] | None:
         """First zero of offset + side q, for any of the sides, within so many steps of y.
 
@@ -210,7 +215,7 @@ class Flow:
         rate = self.watch_slope[: len(g)] @ y
         turns = np.flatnonzero(rate[:-1] * rate[1:] < 0.0).tolist()
         depth = [2.0 * max(abs(rate[k]), abs(rate[k + 1])) for k in turns]
-        return [k for k, deep in zip(turns, depth) if min(g[k], g[k + 1]) <= deep]
+        return [k for k, deep in zip(turns, depth, strict=True) if min(g[k], g[k + 1]) <= deep]
 
     def turning_points(self, y: np.ndarray, row: np.ndarray, end: float) -> Iterator[float]:
         """Values of row.y where it is stationary, strictly inside `end` steps."""
@@ -483,9 +488,7 @@ def blocks(flow: Flow, segment: Segment) -> Iterator[tuple[np.ndarray, float]]:
 def turning_points(motion: Motion, segment: Segment, row: np.ndarray) -> list[float]:
     """Stationary values of row.y inside a segment."""
     flow = motion.sliding if segment.mode else motion.sticking
-    return [
-        value for y, end in blocks(flow, segment) for value in flow.turning_points(y, row, end)
-    ]
+    return [value for y, end in blocks(flow, segment) for value in flow.turning_points(y, row, end)]
 
 
 def tie_distance(motion: Motion, segments: list[Segment]) -> float:
@@ -591,7 +594,11 @@ def naive_steady_state(
         else:
             margin = tie_distance(motion, window)
         return NaiveResult(
-            status, period, residual=history.residual(periods), cycles=len(march), margin=margin,
+            status,
+            period,
+            residual=history.residual(periods),
+            cycles=len(march),
+            margin=margin,
             **measure(motion, window, periods),
         )
 

@@ -45,7 +45,7 @@ def bracket(tau: mp.mpf, r: mp.mpf, zeta: mp.mpf, u: mp.mpf, g: mp.mpf) -> mp.mp
 
 
 def functions(r: float, zeta: float, samples: int = 400) -> Precise:
-    """All functions at the doubles r and zeta, to 30 digits at least; S by dense sampling and golden-section polishing."""
+    """All functions at the doubles r and zeta, to 30 digits; S by dense sampling and polishing."""
     with mp.workdps(DIGITS):
         r, zeta = mp.mpf(r), mp.mpf(zeta)
         v = 1 / mp.mpc(1 - r**2, 2 * zeta * r)

@@ -183,5 +183,5 @@ def test_bad_axes(r, message):
 
 
 def test_bad_mu():
-    with pytest.raises(fm.InputError, match="mu must be >= 1; got 0.5"):
+    with pytest.raises(fm.InputError, match=r"mu must be >= 1; got 0\.5"):
         fm.boundaries(fm.System(), [1.0], [0.5])

@@ -33,8 +33,9 @@ def residual(numerator, multiple, r):
 def sincos_quarter(numerator, less, r):
     """Sine and cosine of ``(pi/2) (numerator - less)/r``, exact to rounding next to every zero of both.
 
-    ``less`` carries what ``numerator`` alone would round away.  The whole quarter turns are taken off before the division, so that nothing is lost next to
-    ``R = 1/(2n+1)`` and ``R = 1/(2n)``, where the plain expression keeps no digit.
+    ``less`` carries what ``numerator`` alone would round away.  The whole quarter turns are taken off
+    before the division, so that nothing is lost next to ``R = 1/(2n+1)`` and ``R = 1/(2n)``, where the
+    plain expression keeps no digit.
     """
     turns = (numerator - less) / r
     if not turns < 4503599627370496.0:  # 2**52: no fraction left in a double

@@ -105,9 +105,7 @@ class Cell(NamedTuple):
 @kernel
 def _cell(regime, status, origin, stops, amplitude, stuck, period, cycles):
     nan = math.nan
-    return Cell(
-        regime, status, origin, stops, amplitude, stuck, period, cycles, nan, nan, nan, 1.0, 0
-    )
+    return Cell(regime, status, origin, stops, amplitude, stuck, period, cycles, nan, nan, nan, 1.0, 0)
 
 
 @kernel
@@ -120,9 +118,7 @@ def _unresolved(status, cycles):
 def stuck_cell(origin, cycles, z, sign):
     """Permanent sticking at z."""
     nan = math.nan
-    return Cell(
-        PERMANENT_STICKING, RESOLVED, origin, nan, 0.0, 1.0, 1, cycles, z, nan, nan, sign, 0
-    )
+    return Cell(PERMANENT_STICKING, RESOLVED, origin, nan, 0.0, 1.0, 1, cycles, z, nan, nan, sign, 0)
 
 
 @kernel
@@ -144,9 +140,7 @@ def quasi_static_cell():
 @kernel
 def _orbit_cell(step, r, b, mu_b, z, c, s, sign, code, count, origin, cycles, work):
     """The steady state that returns to an anchor after `count` slides, or sooner."""
-    slides, halves, stops, amplitude, stuck = measure_orbit(
-        step, r, b, mu_b, z, c, s, code, count, work
-    )
+    slides, halves, stops, amplitude, stuck = measure_orbit(step, r, b, mu_b, z, c, s, code, count, work)
     if halves < 1:
         return _unresolved(NOT_REACHED, cycles)
     period = halves if halves % 2 == 1 else halves // 2
@@ -365,7 +359,7 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
 
     if oscillator.zeta == 0.0 and is_even_submultiple(oscillator.r) and b < b_lim:
         return _unresolved(MARGINAL, time / _TURN)
-    if old_stops == 0 or running > 0 and stops == 0:
+    if old_stops == 0 or (running > 0 and stops == 0):
         return _unresolved(NOT_REACHED, time / _TURN)
     return _cell(
         STICK_SLIP, NOT_PERIODIC, INTEGRATED, old_stops * _TURN / window, old_largest,

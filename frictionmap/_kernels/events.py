@@ -27,8 +27,8 @@ _INVERSE = np.array([1.0 / (k + 1.0) for k in range(MAX_TERMS)])
 #: A guess of an event further off than this, in scan steps, lies where the velocity only touches zero.
 _NEARLY = 0.25
 
-#: A Newton step of third order shorter than this, in scan steps, ends at rounding.
-_ONE_STEP = 1e-5
+#: A Newton step of fourth order shorter than this, in scan steps, ends at rounding.
+_ONE_STEP = 2e-4
 
 _MAX_POLISH = 8
 
@@ -88,19 +88,34 @@ def _cubic_root(w, slope, w1, slope1):
 
 
 @kernel
+def _sum_at(p, terms, x):
+    """The polynomial p at x and its integral from 0; even and odd powers apart, side by side."""
+    square = x * x
+    even = odd = even_rise = odd_rise = 0.0
+    top = terms - 1 - (terms - 1) % 2  # the highest even power
+    if top + 1 < terms:
+        odd = p[top + 1]
+        odd_rise = p[top + 1] * _INVERSE[top + 1]
+    even = p[top]
+    even_rise = p[top] * _INVERSE[top]
+    for k in range(top - 2, -1, -2):
+        even = even * square + p[k]
+        odd = odd * square + p[k + 1]
+        even_rise = even_rise * square + p[k] * _INVERSE[k]
+        odd_rise = odd_rise * square + p[k + 1] * _INVERSE[k + 1]
+    return even + odd * x, (even_rise + odd_rise * x) * x
+
+
+@kernel
 def _at_root(step, b, z, c, s, x, work):
     """(x, z, cos, sin) at the zero of the velocity next to x, from the series in `work`.
 
-    Newton steps of third order, with the derivatives from the equation of motion: one takes a guess that
-    is off by 1e-5 to rounding.
+    Newton steps of fourth order, with the derivatives from the equation of motion: one takes a guess that
+    is off by 1e-4 to rounding.
     """
     for _ in range(_MAX_POLISH):
-        rise = 0.0
-        velocity = 0.0
-        for k in range(step.terms - 1, -1, -1):
-            velocity = velocity * x + work[k]
-            rise = rise * x + work[k] * _INVERSE[k]
-        place = z + rise * x
+        velocity, rise = _sum_at(work, step.terms, x)
+        place = z + rise
         angle = step.h * x
         cosine = math.cos(angle)
         sine = math.sin(angle)
@@ -110,15 +125,24 @@ def _at_root(step, b, z, c, s, x, work):
         jerk = -step.stiffness * (s1 * step.h + velocity) - step.damping * acceleration
         if not abs(velocity) < _NEARLY * abs(acceleration):
             break  # the velocity only touches zero, and x is as good as can be
-        move = -velocity / acceleration
-        move *= 1.0 - 0.5 * jerk / acceleration * move
+        snap = -step.stiffness * (c1 * step.h * step.h + acceleration) - step.damping * jerk
+        # reversion of velocity + acceleration m + jerk m^2/2 + snap m^3/6 = 0
+        inverse = 1.0 / acceleration
+        first = -velocity * inverse
+        second = 0.5 * jerk * inverse
+        third = snap * inverse * (1.0 / 6.0)
+        move = first * (1.0 - first * (second - first * (2.0 * second * second - third)))
         x += move
-        if abs(move) < _ONE_STEP:
-            place += move * (velocity + move * (0.5 * acceleration + move * jerk * (1.0 / 6.0)))
+        if abs(first) < _ONE_STEP:
+            place += move * (
+                velocity
+                + move * (0.5 * acceleration + move * (jerk * (1.0 / 6.0) + move * snap * (1.0 / 24.0)))
+            )
             angle = step.h * move
             less = 0.5 * angle * angle
-            c2 = c1 - angle * s1 - less * c1
-            s1 = s1 + angle * c1 - less * s1
+            more = angle - angle * less * (1.0 / 3.0)
+            c2 = c1 - more * s1 - less * c1
+            s1 = s1 + more * c1 - less * s1
             c1 = c2
             break
     norm = 1.5 - 0.5 * (c1 * c1 + s1 * s1)  # back to the unit circle

@@ -5,4 +5,3 @@ from numba import njit
 #: Kernels never raise (`error_model="numpy"`), never re-order arithmetic (fast-math off) and
 #: release the interpreter lock, so that a pool of threads can run them side by side.
 kernel = njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
-

@@ -176,12 +176,7 @@ def measure_orbit(step, r, b, mu_b, z, c, s, code, count, work):
             stuck += wait
             time += wait
         slides += 1
-        if (
-            event == code
-            and abs(z - z0) <= _SAME * abs(z0)
-            and abs(c - c0) <= _SAME
-            and abs(s - s0) <= _SAME
-        ):
+        if event == code and abs(z - z0) <= _SAME * abs(z0) and abs(c - c0) <= _SAME and abs(s - s0) <= _SAME:
             break
     halves = int(math.floor(time / math.pi + 0.5))
     return slides, halves, stops, amplitude, stuck / time

@@ -100,7 +100,9 @@ def step_constants(r, zeta, steps):
     """The `Step` of frequency ratio r > 0 for `steps` scan steps per period of the fastest part."""
     a = 1.0 / r
     fastest = a * (zeta + math.sqrt((zeta - 1.0) * (zeta + 1.0))) if zeta > 1.0 else a
-    turn = 2.0 * math.pi / steps  # what the fastest part turns in one step
+    # What the fastest part turns in one step.  The steps of a period are made odd in number, so that a
+    # slide of half a period (every one of a continuous motion) ends inside a step, not next to a node.
+    turn = 2.0 * math.pi / (2.0 * math.floor(0.5 * steps) + 1.0)
     h = turn / max(1.0, fastest)
     terms = 4
     size = turn * turn * turn * turn / 24.0

@@ -186,6 +186,4 @@ def integrate_one(beta, mu, lim, stick, load, phase, oscillator, step, fine, lim
     history = np.empty((HISTORY_ROWS, HISTORY))
     work = np.empty(MAX_TERMS)
     stop = np.zeros(1, dtype=np.uint8)
-    return steady_cell(
-        step, fine, oscillator, b, mu_b, lim, z, v, c, s, limits, stop, history, work
-    )
+    return steady_cell(step, fine, oscillator, b, mu_b, lim, z, v, c, s, limits, stop, history, work)

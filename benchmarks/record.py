@@ -1,0 +1,60 @@
+"""What is kept of a benchmark: machine, versions, medians and spread, as JSON."""
+
+import json
+import os
+import platform
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from importlib.metadata import version
+from pathlib import Path
+
+PACKAGES = ("numpy", "numba", "scipy", "xarray")
+
+
+def processor() -> str:
+    """Name of the processor."""
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
+
+
+def machine() -> dict:
+    """The machine and the versions that a result holds for."""
+    return {
+        "processor": processor(),
+        "processors": os.cpu_count(),
+        "load": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+        "versions": {name: version(name) for name in PACKAGES},
+    }
+
+
+def spread(seconds: Sequence[float]) -> dict:
+    """Median, least and most of repeated timings."""
+    return {
+        "median": statistics.median(seconds),
+        "least": min(seconds),
+        "most": max(seconds),
+        "runs": len(seconds),
+    }
+
+
+def timed(function: Callable[[], object]) -> tuple[float, object]:
+    """Wall-clock seconds of one call, and what it returned."""
+    began = time.perf_counter()
+    result = function()
+    return time.perf_counter() - began, result
+
+
+def save(name: str, content: dict, folder: Path) -> Path:
+    """Write one result."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{name}.json"
+    path.write_text(json.dumps({"machine": machine(), **content}, indent=2) + "\n")
+    return path

@@ -1,0 +1,148 @@
+"""Which module may know which: cheap start, kernels without objects, pictures in one place."""
+
+import ast
+import importlib
+import os
+import pkgutil
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import frictionmap as fm
+
+PACKAGE = Path(fm.__file__).parent
+KERNELS = sorted((PACKAGE / "_kernels").glob("*.py"))
+SOURCES = sorted(PACKAGE.rglob("*.py"))
+HEAVY = ("numba", "xarray", "matplotlib", "scipy", "netCDF4", "pandas")
+
+
+def imported(path):
+    """Absolute names of the modules a source file imports."""
+    package = ["frictionmap", *path.relative_to(PACKAGE).parts[:-1]]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else []
+            module = ".".join(base + (node.module.split(".") if node.module else []))
+            yield from (f"{module}.{alias.name}" for alias in node.names)
+
+
+def run(code):
+    search = os.pathsep.join([str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")])
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | {"PYTHONPATH": search},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    ).stdout
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["map", "--help"], ["map"], ["--version"]])
+def test_help_and_usage_errors_import_nothing_heavy(arguments):
+    code = f"""
+import contextlib, io, sys
+import frictionmap, frictionmap.cli
+text = io.StringIO()
+with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text), contextlib.suppress(SystemExit):
+    frictionmap.cli.main({arguments!r})
+print([name for name in {HEAVY!r} if name in sys.modules])
+"""
+    assert run(code) == "[]\n"
+
+
+def test_a_configuration_is_checked_without_anything_heavy(tmp_path):
+    (tmp_path / "bad.toml").write_text("[sistem]")
+    code = f"""
+import contextlib, io, sys
+import frictionmap.config
+try:
+    frictionmap.load_config({str(tmp_path / "bad.toml")!r})
+except frictionmap.InputError as error:
+    print(error)
+print([name for name in {HEAVY!r} if name in sys.modules])
+"""
+    message, heavy = run(code).splitlines()
+    assert message.startswith("unknown key sistem (did you mean system?)")
+    assert heavy == "[]"
+
+
+@pytest.mark.parametrize("path", KERNELS, ids=lambda path: path.name)
+def test_kernels_know_numbers_and_codes_only(path):
+    legal = ("numpy", "numba", "math", "typing", "frictionmap.regimes", "frictionmap._kernels")
+    for name in imported(path):
+        assert any(name == module or name.startswith(f"{module}.") for module in legal), name
+
+
+def test_imports_are_read_right():
+    """The check above sees relative imports as what they are."""
+    names = set(imported(PACKAGE / "_kernels" / "sweep.py"))
+    assert "frictionmap._kernels.jit.kernel" in names
+    assert any(name.startswith("frictionmap.regimes") for path in KERNELS for name in imported(path))
+
+
+@pytest.mark.parametrize(
+    ("module", "home"),
+    [("matplotlib", {"plot.py"}), ("argparse", {"cli.py"}), ("tomllib", {"config.py"}), ("netCDF4", set())],
+)
+def test_one_home(module, home):
+    users = {path.name for path in SOURCES if any(name.split(".")[0] == module for name in imported(path))}
+    assert users == home
+
+
+def test_jitted_code_is_in_the_kernels_only():
+    users = {
+        path.parent.name for path in SOURCES if any(name.split(".")[0] == "numba" for name in imported(path))
+    }
+    assert users == {"_kernels"}
+
+
+def test_the_layers_do_not_know_those_above():
+    above = {
+        "checks.py": {"system", "settings", "maps", "cli", "config", "storage", "plot"},
+        "system.py": {"maps", "curves", "cli", "config", "storage", "plot"},
+        "maps.py": {"cli", "config", "storage", "plot"},
+        "curves.py": {"maps", "steady", "cli", "config", "storage", "plot"},
+        "steady.py": {"cli", "config", "storage", "plot"},
+        "storage.py": {"cli", "config", "plot", "maps", "steady"},
+        "plot.py": {"cli", "config", "maps", "steady", "_kernels"},
+    }
+    for name, modules in above.items():
+        used = {part.split(".")[1] for part in imported(PACKAGE / name) if part.startswith("frictionmap.")}
+        assert not used & modules, name
+
+
+# Public names
+
+
+def test_public_names_stay_what_they_are_whatever_is_imported():
+    """`fm.sweep` is the function, also once all modules, some with similar names, are loaded."""
+    before = {name: getattr(fm, name) for name in fm.__all__}
+    for module in pkgutil.walk_packages(fm.__path__, "frictionmap."):
+        if module.name != "frictionmap.__main__":
+            importlib.import_module(module.name)
+    for name, value in before.items():
+        assert getattr(fm, name) is value
+        assert not isinstance(value, ModuleType), name
+        assert isinstance(value, str) or callable(value)
+        assert isinstance(value, str) or value.__doc__, name
+
+
+def test_public_names_with_a_module_imported_first():
+    types = "import frictionmap as fm; print(*(type(getattr(fm, name)) for name in fm.__all__))"
+    assert "module" not in run(f"import frictionmap.maps; {types}")
+
+
+def test_lazy_names_are_public_and_listed_once():
+    assert set(fm._HOME) <= set(fm.__all__)
+    assert len(set(fm.__all__)) == len(fm.__all__)
+
+
+def test_an_unknown_name():
+    with pytest.raises(AttributeError, match=r"module 'frictionmap' has no attribute 'sweeep'"):
+        fm.sweeep  # noqa: B018

@@ -17,7 +17,7 @@ from frictionmap._kernels.continuous import Oscillator
 from frictionmap._kernels.cycle import HISTORY, HISTORY_ROWS, Limits, steady_cell
 from frictionmap._kernels.phases import MAX_TERMS, step_constants
 from frictionmap._kernels.sweep import FINE_STEPS, normalised_friction
-from frictionmap.curves import curves
+from frictionmap.curves import one_mass_curves
 
 from .peers import PEERS, Cell, HeyokaPeer
 from .record import save, spread, timed
@@ -54,12 +54,12 @@ def prepare(cells: list[Cell]) -> tuple:
     rows = []
     for cell in cells:
         system = fm.System(contact=cell.contact, damping_ratios=cell.zeta)
-        found = curves(system, np.array([cell.r]), np.array([cell.mu]))
+        found = one_mass_curves(system, np.array([cell.r]), np.array([cell.mu]))
         f = found.frequencies
         rows.append(
             (
                 f.load[0], f.phase[0], (cell.r, cell.zeta, f.v_abs[0], f.v_arg[0], f.u[0], f.g[0]),
-                found.lim[0, 0], found.beta_stick[0, 0], cell.beta, cell.mu,
+                found.lim[0, 0], found.curves.beta_stick[0, 0], cell.beta, cell.mu,
             )
         )  # fmt: skip
     columns = [np.array(column) for column in zip(*rows, strict=True)]

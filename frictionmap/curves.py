@@ -7,6 +7,7 @@ import xarray as xr
 
 from . import checks
 from ._kernels.curves import boundary, response_functions
+from ._kernels.sums import many_mode_functions
 from ._kernels.sweep import Frequencies
 from .labels import coordinate, label_variable, stamp
 from .system import System
@@ -16,27 +17,33 @@ from .system import System
 class Curves:
     """What depends on r, and on (mu, r), only; arrays of shape (n_r,) and (n_mu, n_r).
 
-    U, G, H and S are those of theory.md 2 and 3; `lim` is beta_lim over the load amplitude.
+    V, U, G, H and S are those of theory.md 2 and 3.
     """
 
-    frequencies: Frequencies
+    v: np.ndarray  # complex; infinite at an undamped resonance
+    u: np.ndarray
+    g: np.ndarray
     h: np.ndarray
     s: np.ndarray
-    lim: np.ndarray
     beta_lim: np.ndarray
+    beta_lim_modal: np.ndarray
     beta_stick: np.ndarray
 
 
-def response_function(system: System, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """V of z, theory.md 2, real and imaginary part; at an undamped resonance infinite and 0."""
-    stiffness = (1.0 - r) * (1.0 + r) + 2j * system.zeta * r
-    resonance = stiffness == 0.0
-    value = system.contact_load(r) / np.where(resonance, 1.0, stiffness)
-    return np.where(resonance, np.inf, value.real), np.where(resonance, 0.0, value.imag)
+@dataclass(frozen=True)
+class OneMass:
+    """Curves of one mass, and what its cells need of them: `lim` is beta_lim over the load amplitude."""
+
+    curves: Curves
+    frequencies: Frequencies
+    lim: np.ndarray
 
 
-def curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
-    """All curves of a system; `r` and `mu` are checked axes."""
+def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
+    """All curves of a system of one mass; `r` and `mu` are checked axes.
+
+    One mass has its own search of S, with intervals in closed form, and one equation for both contacts.
+    """
     load = system.contact_load(r)
     v_abs, v_arg, u, g, h, s = np.empty((6, r.size))
     response_functions(r, system.zeta, u, g, v_abs, v_arg, h, s)
@@ -45,26 +52,64 @@ def curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     lim = np.empty((mu.size, r.size))
     for row, value in zip(lim, mu, strict=True):
         boundary(r, v_abs, u, h, s, value, row)
-    return Curves(
-        frequencies=frequencies,
+    stiffness = (1.0 - r) * (1.0 + r) + 2j * system.zeta * r
+    resonance = stiffness == 0.0
+    found = Curves(
+        v=np.where(resonance, np.inf, load / np.where(resonance, 1.0, stiffness)),
+        u=u,
+        g=g,
         h=h,
         s=s,
-        lim=lim,
         beta_lim=lim * amplitude,
+        beta_lim_modal=lim * amplitude,  # of one mode the maximum of the sum is the sum of the maxima
         beta_stick=amplitude / mu[:, np.newaxis],
+    )
+    return OneMass(found, frequencies, lim)
+
+
+def _lim(v: np.ndarray, u: np.ndarray, bracket: np.ndarray) -> np.ndarray:
+    """|V|/sqrt(U^2 + bracket^2); 0 where U or S alone is infinite, or U has no limit (r = 0)."""
+    size = np.hypot(np.where(np.isnan(u), np.inf, u), bracket)
+    finite = np.isfinite(size)
+    return np.where(finite, np.abs(v) / np.where(finite, size, 1.0), 0.0)
+
+
+def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
+    """All curves of a system of any number of masses; `r` and `mu` are checked axes."""
+    modes = system.modes
+    v = modes.response(r, modes.chi) - modes.base_motion
+    u, g, h, s, by_modes = np.empty((5, r.size))
+    many_mode_functions(r, modes.w, modes.zeta, modes.chi, modes.inverse_mass, u, g, h, s, by_modes)
+    end = np.zeros(r.size)
+    np.divide(modes.inverse_mass, r**2, out=end, where=r > 0.0)
+    lim, lim_modal = np.empty((2, mu.size, r.size))
+    resonance = np.isinf(v) & np.isinf(u)
+    # there |V|/|U| -> (pi/4) |lambda_i/chi_i|, and both outgrow S
+    seen = np.isclose(modes.w, r[:, np.newaxis], rtol=0.0, atol=0.0)
+    ratio = np.abs(modes.participation) / np.where(modes.chi == 0.0, np.inf, np.abs(modes.chi))
+    at_resonance = 0.25 * np.pi * (seen * ratio).sum(axis=1)
+    for m, value in enumerate(mu):
+        with np.errstate(invalid="ignore"):  # inf - inf at a resonance, replaced below
+            static = h + value * end
+            lim[m] = np.where(resonance, at_resonance, _lim(v, u, np.maximum(s, static)))
+            lim_modal[m] = np.where(resonance, at_resonance, _lim(v, u, np.maximum(by_modes, static)))
+    return Curves(
+        v=v,
+        u=u,
+        g=g,
+        h=h,
+        s=s,
+        beta_lim=lim,
+        beta_lim_modal=lim_modal,
+        beta_stick=np.abs(modes.held_load(r)) / mu[:, np.newaxis],
     )
 
 
 def boundary_variables(found: Curves) -> dict[str, xr.Variable]:
     """beta_lim, beta_lim_modal and beta_stick, dims (mu, r)."""
     return {
-        # one mode: the maximum of the sum is the sum of the maxima
-        name: label_variable(name, ("mu", "r"), values)
-        for name, values in (
-            ("beta_lim", found.beta_lim),
-            ("beta_lim_modal", found.beta_lim),
-            ("beta_stick", found.beta_stick),
-        )
+        name: label_variable(name, ("mu", "r"), getattr(found, name))
+        for name in ("beta_lim", "beta_lim_modal", "beta_stick")
     }
 
 
@@ -75,7 +120,7 @@ def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
     ----------
     system : System
     r : array_like, shape (n_r,)
-        Frequency ratios omega/omega_1 [-], >= 0, increasing.
+        Frequency ratios omega/omega_1, omega_1 = sqrt(k_1/m_1) [-], >= 0, increasing.
     mu : array_like, shape (n_mu,)
         Static over kinetic friction [-], >= 1, increasing.
 
@@ -100,13 +145,13 @@ def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
     """
     r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
     mu = checks.axis(mu, "mu", least=1.0)
-    found = curves(system, r, mu)
-    real, imaginary = response_function(system, r)
+    many = system.n > 1
+    found = many_mode_curves(system, r, mu) if many else one_mass_curves(system, r, mu).curves
     functions = {
-        "V": real,
-        "V_imag": imaginary,
-        "U": found.frequencies.u,
-        "G": found.frequencies.g,
+        "V": found.v.real,
+        "V_imag": np.where(np.isinf(found.v.real), 0.0, found.v.imag),
+        "U": found.u,
+        "G": found.g,
         "H": found.h,
         "S": found.s,
     }

@@ -12,7 +12,8 @@ import xarray as xr
 from . import checks, regimes
 from ._kernels.cycle import Limits
 from ._kernels.sweep import Outputs, fill_closed_form, fill_integrated
-from .curves import Curves, boundary_variables, curves
+from .curves import OneMass, boundary_variables, one_mass_curves
+from .errors import InputError
 from .labels import CELL_VARIABLES, coordinate, label_variable, stamp
 from .settings import Solver
 from .system import System
@@ -42,7 +43,16 @@ class Plan:
         return int(self.ends[-1]) if self.ends.size else 0
 
 
-def plan(found: Curves, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Plan:
+def one_mass(system: System) -> None:
+    """Refuse what the integrator does not cover yet."""
+    if system.n > 1:
+        raise InputError(
+            f"mass_ratios must have one value for maps and responses: they cover one mass so far, curves "
+            f"(boundaries) any number; got {system.n}"
+        )
+
+
+def plan(found: OneMass, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Plan:
     """Sort the cells into those that a formula decides and those that are open (theory.md 6).
 
     - beta = 0 is linear; where the load in the contact is zero (joined base-wall, r = 0), nothing moves.
@@ -51,17 +61,18 @@ def plan(found: Curves, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Pla
     - r = 0 has no motion to integrate; a regime, but no number of stops, follows from the boundaries.
     """
     f = found.frequencies
-    shape = found.beta_lim.shape
+    beta_lim, beta_stick = found.curves.beta_lim, found.curves.beta_stick
+    shape = beta_lim.shape
     no_load = np.broadcast_to(f.load == 0.0, shape)
     no_motion = np.broadcast_to(f.r == 0.0, shape)
     low = np.full(shape, int(beta[0] == 0.0))
     high = np.full(shape, beta.size)
-    stuck_from = np.searchsorted(beta, found.beta_stick)
+    stuck_from = np.searchsorted(beta, beta_stick)
     if solver.skip == "exact":
         smooth = (mu == 1.0)[:, np.newaxis]
         proved = smooth | (solver.start == "rest")
         high = np.where(proved, stuck_from, high)
-        low = np.where(smooth, np.maximum(low, np.searchsorted(beta, found.beta_lim)), low)
+        low = np.where(smooth, np.maximum(low, np.searchsorted(beta, beta_lim)), low)
     high = np.where(no_motion, stuck_from, high)
     low = np.where(no_load, 0, np.minimum(low, high))
     open_cells = np.where(no_motion, 0, high - low).ravel()
@@ -119,7 +130,7 @@ def _run(jobs: Sequence[tuple[Callable[..., None], tuple]], threads: int, done: 
 
 def _fill(
     system: System,
-    found: Curves,
+    found: OneMass,
     mu: np.ndarray,
     beta: np.ndarray,
     solver: Solver,
@@ -146,7 +157,7 @@ def _fill(
     for first in range(0, work.cells, TILE):
         last = min(first + TILE, work.cells)
         arguments = (
-            first, last, work.rows, work.ends, work.low, beta, mu, found.lim, found.beta_stick,
+            first, last, work.rows, work.ends, work.low, beta, mu, found.lim, found.curves.beta_stick,
             found.frequencies, system.zeta, float(solver.steps), limits, solver.start == "moving",
             out, stop,
         )  # fmt: skip
@@ -225,13 +236,14 @@ def sweep(
         threads = default_threads()
     else:
         checks.whole(threads, "threads", least=1)
-    found = curves(system, r, mu)
+    one_mass(system)
+    found = one_mass_curves(system, r, mu)
     out = _allocate((mu.size, r.size, beta.size), solver.outputs)
     _fill(system, found, mu, beta, solver, out, threads, progress)
     cells = {name: label_variable(name, ("mu", "r", "beta"), getattr(out, name)) for name in solver.outputs}
     axes = {"mu": mu, "r": r, "beta": beta}
     ds = xr.Dataset(
-        cells | boundary_variables(found),
+        cells | boundary_variables(found.curves),
         coords={name: coordinate(name, values) for name, values in axes.items()},
     )
     return stamp(ds, "Motion regimes and stops per cycle", system)

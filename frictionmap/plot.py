@@ -214,7 +214,7 @@ def _draw_map(ax: "Axes", panel: xr.Dataset) -> set[int]:
 
 def _legend(owner: "Figure | Axes", present: list[set[int]]) -> None:
     shown = sorted(set().union(*present))
-    handles = [_patch(*_CLASSES[i]) for i in shown]
+    handles: list[Any] = [_patch(*_CLASSES[i]) for i in shown]
     handles += [Line2D([], [], **_LIM), Line2D([], [], **_STICK)]
     if isinstance(owner, Figure):
         _legend_below(owner, handles)

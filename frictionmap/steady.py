@@ -24,10 +24,10 @@ from ._kernels.history import (
 from ._kernels.orbits import SHORTEST_STOP
 from ._kernels.phases import MAX_TERMS, Step, step_constants
 from ._kernels.sweep import FINE_STEPS, integrate_one, normalised_friction
-from .curves import Curves, boundary_variables, curves
+from .curves import OneMass, boundary_variables, one_mass_curves
 from .errors import InputError, NoSteadyState
 from .labels import CELL_VARIABLES, coordinate, label_variable, stamp
-from .maps import plan
+from .maps import one_mass, plan
 from .settings import Solver
 from .system import System
 
@@ -38,7 +38,7 @@ _TURN = 2.0 * math.pi
 
 
 def _slides(
-    found: Curves, beta: float, mu: float, solver: Solver, zeta: float
+    found: OneMass, beta: float, mu: float, solver: Solver, zeta: float
 ) -> tuple[Step, float, np.ndarray, float]:
     """(step, b, rows, rest): the slides of the steady state over one period; none where stuck at `rest`."""
     f = found.frequencies
@@ -48,14 +48,14 @@ def _slides(
         raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
     step = step_constants(r, zeta, float(solver.steps))
     oscillator = Oscillator(r, zeta, f.v_abs[0], f.v_arg[0], f.u[0], f.g[0])
-    b, mu_b = normalised_friction(beta, load, mu, found.beta_stick[0, 0])
+    b, mu_b = normalised_friction(beta, load, mu, found.curves.beta_stick[0, 0])
     scratch = np.empty(MAX_TERMS)
     rest = 0.0
     rows = np.empty((0, COLUMNS))
     if work.cells:
         limits = Limits(float(solver.cycles), solver.tolerance, solver.steady == "solved")
         cell = integrate_one(
-            beta, mu, found.lim[0, 0], found.beta_stick[0, 0], load, phase, oscillator, step,
+            beta, mu, found.lim[0, 0], found.curves.beta_stick[0, 0], load, phase, oscillator, step,
             step_constants(r, zeta, max(float(solver.steps), FINE_STEPS)), limits, solver.start == "moving",
         )  # fmt: skip
         if cell.period == 0:
@@ -142,7 +142,8 @@ def response(
     beta = checks.number(beta, "beta", least=0.0)
     mu = checks.number(mu, "mu", least=1.0)
     checks.whole(points, "points", least=2)
-    found = curves(system, np.array([r]), np.array([mu]))
+    one_mass(system)
+    found = one_mass_curves(system, np.array([r]), np.array([mu]))
     load, lead = found.frequencies.load[0], found.frequencies.phase[0]
     step, b, rows, rest = _slides(found, beta, mu, solver, system.zeta)
 
@@ -198,7 +199,7 @@ def response(
         {name: label_variable(name, dims, values) for name, (dims, values) in variables.items()},
         coords={"tau": coordinate("tau", tau), "dof": coordinate("dof", np.arange(1, 2))},
     )
-    ds = ds.assign({name: v[0, 0] for name, v in boundary_variables(found).items()})
+    ds = ds.assign({name: v[0, 0] for name, v in boundary_variables(found.curves).items()})
     ds = ds.assign(
         {name: label_variable(name, (), CELL_VARIABLES[name].dtype(value)) for name, value in summary.items()}
     )

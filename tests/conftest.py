@@ -35,6 +35,12 @@ def boundary_rows() -> list[dict]:
 
 
 @pytest.fixture(scope="session")
+def all_boundaries() -> tuple[dict, list[dict]]:
+    """Systems and rows of the 22-digit boundary values."""
+    return _rows("boundaries.json")
+
+
+@pytest.fixture(scope="session")
 def steady_rows() -> list[dict]:
     """Rows of the 22-digit steady states for one mass."""
     return [row for row in _rows("steady_states.json")[1] if row["system"].startswith("sdof")]

@@ -190,7 +190,7 @@ BAD_CONFIGURATIONS = {
     ),
     "two masses": (
         toml(system="mass_ratios = [1.0, 2.0]\nstiffness_ratios = [1.0, 1.0]"),
-        ["system.mass_ratios must have one value", "this version covers one mass", "got 2"],
+        ["mass_ratios must have one value", "one mass", "got 2"],
     ),
     "no masses": (toml(system="mass_ratios = []"), ["system.mass_ratios", "at least one value"]),
     "a mass of zero": (toml(system="mass_ratios = [0]"), ["system.mass_ratios[0] must be > 0", "got 0"]),

@@ -247,6 +247,8 @@ def test_bad_overrides(base, override, message):
 def test_the_value_is_shown_with_all_its_digits(base):
     with pytest.raises(InputError, match=r"^grid\.mu must be >= 1; got 0\.9999999999 at index 0$"):
         load_config(base, ["grid.mu=0.9999999999"])
+    with pytest.raises(InputError, match=r"^system\.damping_ratios must be >= 0; got -1\.0000000001$"):
+        load_config(base, ["system.damping_ratios=-1.0000000001"])
     with pytest.raises(InputError, match=r"^solver\.tolerance must be <= 0\.001; got 0\.0010000000001$"):
         load_config(base, ["solver.tolerance=0.0010000000001"])
 

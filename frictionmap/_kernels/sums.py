@@ -1,0 +1,240 @@
+"""Response functions and boundaries of many modes; one evaluation per r, however many beta a map has.
+
+S of many modes is the maximum of the sum over modes, theory.md 3.  With ``Y = sum c_i h_i'``,
+``c_i = chi_i^2/w_i^2``, the bracket is ``f = (U cos + Y)/sin`` and ``f' = m/sin^2`` where
+
+    m = Y' sin - Y cos - U,        m' = W sin,        W = Y'' + Y.
+
+Intervals are halved until each is settled, by one of two proofs: no value in it can beat the best so far,
+since ``U cos + Y - best sin`` is negative at both ends by more than its curvature allows; or W keeps its
+sign, since it is far enough from zero at both ends, so that m has one root at most.  Then the largest
+value is an end's or the root's, which Newton's method finds.
+"""
+
+import math
+
+import numpy as np
+
+from .closed_form import damping_functions, decay
+from .jit import kernel
+from .maxima import largest_bracket
+
+#: First intervals per period of the fastest mode; fewer make more halvings, more are wasted.
+_INTERVALS = 4.0
+
+#: Halvings of an interval: beyond 40 it holds nothing that a double could tell from its ends.
+_DEEPEST = 40
+
+_MAX_ITERATIONS = 60
+
+#: f is flat at its maximum: an error of 1e-9 in the fastest angle is one of 1e-18 of f.
+_ANGLE_TOLERANCE = 1e-9
+
+#: Rows of the table of modes that `mode_sums` fills, one column a mode: c, a = 1/R, zeta, and y_i = h_i',
+#: y_i' and y_i'' + y_i over (q, e) of `decay`.
+C, A, ZETA, Y_Q, Y_E, P_Q, P_E, K_Q, K_E = range(9)
+ROWS = 9
+
+
+@kernel
+def mode_sums(r, w, zeta, chi, table):
+    """U, G, H of theory.md 2 at r > 0, and the bound of (5.55); fills `table` for `largest_sum`.
+
+    Returns (U, G, H, S by modes, modes in the table).  Modes that the contact does not see (chi = 0) are
+    left out: their u may be infinite.
+    """
+    total_u = 0.0
+    total_g = 0.0
+    total_h = 0.0
+    by_modes = 0.0
+    n = 0
+    for i in range(w.size):
+        if chi[i] == 0.0:
+            continue
+        u, g = damping_functions(w[i], zeta[i], r)
+        a = w[i] / r
+        c = (chi[i] / w[i]) ** 2
+        total_u += c * u
+        total_g += c * g
+        slope = g * a * a
+        if zeta[i] > 0.0:
+            slope += 2.0 * zeta[i] * a * u
+        total_h += c * slope
+        if math.isinf(u):
+            by_modes = math.inf
+            continue
+        by_modes += c * largest_bracket(a, zeta[i], u, g, slope + a * a)
+        table[C, n] = c
+        table[A, n] = a
+        table[ZETA, n] = zeta[i]
+        table[Y_Q, n] = (1.0 + g) * a
+        table[Y_E, n] = -u
+        table[P_Q, n] = a * u
+        table[P_E, n] = slope + a * a
+        table[K_Q, n] = (1.0 - a * a) * table[Y_Q, n] - 2.0 * zeta[i] * a * table[P_Q, n]
+        table[K_E, n] = (a * a - 1.0) * u - 2.0 * zeta[i] * a * table[P_E, n]
+        n += 1
+    return total_u, total_g, total_h, by_modes, n
+
+
+@kernel
+def _amplitude(zeta, q, e):
+    """Bound over theta >= 0 of abs(q Q + e E) with (Q, E) of `decay`."""
+    if zeta < 1.0:
+        # exp(-zeta theta) [e cos(s theta) + (q - zeta e) sin(s theta)/s], and |sin(s t)/s| <= t
+        s = math.sqrt((1.0 - zeta) * (1.0 + zeta))
+        swing = abs(q - zeta * e)
+        least = min(swing / s, swing / (math.e * zeta)) if zeta > 0.0 else swing
+        return math.hypot(e, swing / s) if least == swing / s else abs(e) + least
+    # Q <= 1/(e zeta) at its top, |E| <= 1
+    return abs(e) + abs(q) / zeta
+
+
+@kernel
+def _values(tau, table, n):
+    """Y, Y' and W = Y'' + Y at tau."""
+    y = 0.0
+    p = 0.0
+    k = 0.0
+    for i in range(n):
+        q, e = decay(table[ZETA, i], table[A, i] * tau)
+        c = table[C, i]
+        y += c * (table[Y_Q, i] * q + table[Y_E, i] * e)
+        p += c * (table[P_Q, i] * q + table[P_E, i] * e)
+        k += c * (table[K_Q, i] * q + table[K_E, i] * e)
+    return y, p, k
+
+
+@kernel
+def _f(tau, u, y, p):
+    """The bracket, in the form that does not cancel where m = 0; and m."""
+    sine = math.sin(tau)
+    cosine = math.cos(tau)
+    m = p * sine - y * cosine - u
+    return y * sine + p * cosine - m * cosine / sine, m
+
+
+@kernel
+def _at_crossing(low, high, u, fastest, table, n):
+    """f at the root of m in (low, high), where m falls and W < 0."""
+    tau = 0.5 * (low + high)
+    value = -math.inf
+    for _ in range(_MAX_ITERATIONS):
+        y, p, k = _values(tau, table, n)
+        value, m = _f(tau, u, y, p)
+        if m > 0.0:
+            low = tau
+        elif m < 0.0:
+            high = tau
+        else:
+            break
+        slope = k * math.sin(tau)
+        new = tau - m / slope if slope < 0.0 else low
+        if not (low < new < high):
+            new = 0.5 * (low + high)
+        if abs(new - tau) * fastest <= _ANGLE_TOLERANCE:
+            break
+        tau = new
+    return value
+
+
+@kernel
+def largest_sum(u, floor, table, n, stack):
+    """max(floor, S) for the modes in `table`; `stack` is scratch of shape (2 * _DEEPEST + 8, 8)."""
+    if n == 0:
+        return floor
+    fastest = 1.0
+    bend_n = abs(u)  # bound on |n''|, n = U cos + Y
+    bend_w = 0.0  # bound on |W''|
+    for i in range(n):
+        a = table[A, i]
+        zeta = table[ZETA, i]
+        rate = a * (zeta + math.sqrt((zeta - 1.0) * (zeta + 1.0))) if zeta > 1.0 else a
+        fastest = max(fastest, rate)
+        size_y = _amplitude(zeta, table[Y_Q, i], table[Y_E, i])
+        size_p = _amplitude(zeta, table[P_Q, i], table[P_E, i])
+        # y'' = -2 zeta a y' - a^2 y, and so for W
+        bend_n += table[C, i] * (2.0 * zeta * a * size_p + a * a * size_y)
+        size_k = _amplitude(zeta, table[K_Q, i], table[K_E, i])
+        rate_k = _amplitude(zeta, -a * table[K_E, i], a * (table[K_Q, i] - 2.0 * zeta * table[K_E, i]))
+        bend_w += table[C, i] * (2.0 * zeta * a * rate_k + a * a * size_k)
+    best = floor
+    count = int(math.ceil(_INTERVALS * 0.5 * fastest)) + 2
+    _, _, k0 = _values(0.0, table, n)
+    n0 = 0.0  # n(0) = n(pi) = 0
+    m0 = 0.0
+    tau0 = 0.0
+    for j in range(1, count + 1):
+        tau1 = math.pi * j / count
+        y1, p1, k1 = _values(tau1, table, n)
+        if j < count:
+            f1, m1 = _f(tau1, u, y1, p1)
+            best = max(best, f1)
+            n1 = u * math.cos(tau1) + y1
+        else:
+            m1 = 0.0
+            n1 = 0.0
+        # a stack of intervals: tau, n, m, W at both ends
+        stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = tau0, n0, m0, k0
+        stack[0, 4], stack[0, 5], stack[0, 6], stack[0, 7] = tau1, n1, m1, k1
+        depth = 1
+        while depth > 0:
+            depth -= 1
+            low, n_low, m_low, k_low = (
+                stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3]
+            )  # fmt: skip
+            high, n_high, m_high, k_high = (
+                stack[depth, 4], stack[depth, 5], stack[depth, 6], stack[depth, 7]
+            )  # fmt: skip
+            square = (high - low) ** 2 * 0.125
+            over_low = n_low - best * math.sin(low)
+            over_high = n_high - best * math.sin(high) if high < math.pi else 0.0
+            if max(over_low, over_high) + square * (bend_n + abs(best)) < 0.0:
+                continue
+            slack = square * bend_w
+            if min(k_low, k_high) > slack or (max(k_low, k_high) < -slack):
+                if m_low > 0.0 and m_high < 0.0 and k_low < 0.0:
+                    best = max(best, _at_crossing(low, high, u, fastest, table, n))
+                continue
+            if (high - low) * fastest < 1e-6 or depth + 2 > stack.shape[0]:
+                continue  # flat: its ends, which were looked at, say all that a double can
+            tau = 0.5 * (low + high)
+            y, p, k = _values(tau, table, n)
+            f, m = _f(tau, u, y, p)
+            best = max(best, f)
+            middle = u * math.cos(tau) + y
+            stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3] = low, n_low, m_low, k_low
+            stack[depth, 4], stack[depth, 5], stack[depth, 6], stack[depth, 7] = tau, middle, m, k
+            stack[depth + 1, 0], stack[depth + 1, 1] = tau, middle
+            stack[depth + 1, 2], stack[depth + 1, 3] = m, k
+            stack[depth + 1, 4], stack[depth + 1, 5] = high, n_high
+            stack[depth + 1, 6], stack[depth + 1, 7] = m_high, k_high
+            depth += 2
+        tau0, n0, m0, k0 = tau1, n1, m1, k1
+    return best
+
+
+@kernel
+def many_mode_functions(r, w, zeta, chi, inverse_mass, u, g, h, s, by_modes):
+    """Fill U, G, H, S of theory.md 2 and 3 and the bound of T(5.55) over frequencies r, shape (n_r,).
+
+    At r = 0 (limits): S is infinite; U has no limit if a seen mode is undamped (nan), else it is 0.
+    """
+    table = np.empty((ROWS, w.size))
+    stack = np.empty((2 * _DEEPEST, 8))
+    for j in range(r.size):
+        if r[j] == 0.0:
+            u[j], g[j], h[j] = 0.0, 0.0, 0.0
+            for i in range(w.size):
+                if chi[i] != 0.0:
+                    if zeta[i] == 0.0:
+                        u[j] = math.nan
+                    else:
+                        g[j] += (chi[i] / w[i]) ** 2
+                        h[j] = math.inf
+            s[j] = math.inf
+            by_modes[j] = math.inf
+            continue
+        u[j], g[j], h[j], by_modes[j], n = mode_sums(r[j], w, zeta, chi, table)
+        floor = h[j] + inverse_mass / (r[j] * r[j])
+        s[j] = math.inf if math.isinf(u[j]) else largest_sum(u[j], floor, table, n, stack)

@@ -189,28 +189,44 @@ def _near_return(history, events, closeness, shortest):
 
 
 @kernel
-def _solve_symmetric(step, oscillator, b, mu_b, history, events, tolerance, work):
-    """The symmetric orbit with one or two stops a half period: (found, z, c, s).
-
-    Next to a multiplier of -1 a motion stays asymmetric for thousands of periods, with an order of events
-    that the symmetric orbit between its two halves does not have.  Where the steady state is unique, an
-    orbit found is the one, however it was found.
-    """
+def _middle(history, events):
+    """Displacement between the last stop and the one before; nan if there is none before."""
     now = events - 1
-    z = history[PLACES, now % HISTORY]
     for lag in range(1, min(events, HISTORY)):
         then = (now - lag) % HISTORY
         if history[CODES, then] == STOP_THEN_BACK or history[CODES, then] == STOP_THEN_ON:
-            middle = 0.5 * (z + history[PLACES, then])
-            for count in (1, 2):
-                found, z1, c1, s1, _ = solve_orbit(
-                    step, oscillator, b, mu_b, middle, 0.0, 0.0, True, history[CODES],
-                    events - count, count, tolerance, work,
-                )  # fmt: skip
-                if found:
-                    return True, z1, c1, s1
-            break
-    return False, z, 0.0, 0.0
+            return 0.5 * (history[PLACES, now % HISTORY] + history[PLACES, then])
+    return math.nan
+
+
+@kernel
+def _solve(step, oscillator, b, mu_b, c, s, stopped, lag, gap, history, events, tolerance, work):
+    """The periodic orbit that the motion approaches, by Newton's method: (found, z, c, s, slides).
+
+    First the order of events of the last return is tried, from where the motion is now.  Next to a
+    multiplier of -1 a motion stays asymmetric for thousands of periods, with an order of events that the
+    symmetric orbit between its two halves does not have.  So, where the steady state is unique (mu = 1)
+    and an orbit found is the one however it was found, the symmetric orbits with one or two stops a half
+    period are tried too.
+    """
+    now = (events - 1) % HISTORY
+    z = history[PLACES, now]
+    unique = mu_b == b
+    guesses = 3 if unique and history[CODES, now] == STOP_THEN_BACK else 1
+    start = z
+    for guess in range(guesses):
+        count = lag
+        if guess > 0:
+            start = _middle(history, events)
+            count = guess
+        found, z1, c1, s1, contraction = solve_orbit(
+            step, oscillator, b, mu_b, start, c, s, stopped, history[CODES], events - count, count,
+            tolerance, work,
+        )  # fmt: skip
+        off = abs(z1 - z) + (0.0 if stopped else abs(z) * (abs(c1 - c) + abs(s1 - s)))
+        if found and (unique or off <= _HEADING * gap * abs(z) / (1.0 - contraction)):
+            return True, z1, c1, s1, count
+    return False, z, c, s, 0
 
 
 @kernel
@@ -249,6 +265,9 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
     pause = 1  # half periods until the next try of Newton's method; longer after each failure
     next_try = 2
     tries = 0
+    slides = 0  # of the periodic orbit, once it is found
+    solved = False
+    code = REVERSE
     old_lag = 0  # the last near return
     old_gap = math.inf
     # stops, time stuck and largest displacement in the last whole window, and in the one under way
@@ -324,39 +343,31 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
             continue
         if limits.newton:
             if half >= next_try:
-                found, z1, c1, s1, contraction = solve_orbit(
-                    step, oscillator, b, mu_b, z, c, s, stopped, history[CODES], events - lag, lag,
+                solved, z1, c1, s1, slides = _solve(
+                    step, oscillator, b, mu_b, c, s, stopped, lag, gap, history, events,
                     limits.tolerance, work,
                 )  # fmt: skip
-                off = abs(z1 - z) + (0.0 if stopped else abs(z) * (abs(c1 - c) + abs(s1 - s)))
-                if found and (unique or off <= _HEADING * gap * abs(z) / (1.0 - contraction)):
-                    return _orbit_cell(
-                        step, oscillator.r, b, mu_b, z1, c1, s1, sign, code, lag, SOLVED, time / _TURN,
-                        work,
-                    )  # fmt: skip
-                if unique and code == STOP_THEN_BACK:
-                    found, z1, c1, s1 = _solve_symmetric(
-                        step, oscillator, b, mu_b, history, events, limits.tolerance, work
-                    )
-                    if found:
-                        return _orbit_cell(
-                            step, oscillator.r, b, mu_b, z1, c1, s1, sign, code, 2, SOLVED,
-                            time / _TURN, work,
-                        )  # fmt: skip
+                if solved:
+                    z, c, s = z1, c1, s1
+                    break
                 tries += 1
                 pause += 1 + pause // 4
                 next_try = half + pause
         elif gap <= limits.tolerance and lag == old_lag:
             rate = min(gap / old_gap, 0.999999) if old_gap > 0.0 else 0.0
             if gap * rate <= 10.0 * limits.tolerance * (1.0 - rate):
+                slides = lag
                 if stopped:
                     c, s = stop_ends(mu_b, z)
-                return _orbit_cell(
-                    step, oscillator.r, b, mu_b, z, c, s, sign, code, lag, INTEGRATED, time / _TURN, work
-                )
+                break
         old_lag = lag
         old_gap = gap
 
+    if slides > 0:
+        return _orbit_cell(
+            step, oscillator.r, b, mu_b, z, c, s, sign, code, slides, SOLVED if solved else INTEGRATED,
+            time / _TURN, work,
+        )  # fmt: skip
     if oscillator.zeta == 0.0 and is_even_submultiple(oscillator.r) and b < b_lim:
         return _unresolved(MARGINAL, time / _TURN)
     if old_stops == 0 or (running > 0 and stops == 0):

@@ -5,6 +5,8 @@ module        what is in it
 ============  ==========================================================================
 system        what is simulated: masses, springs, damping, load, contact
 curves        `boundaries`: beta_lim, beta_stick and the response functions over frequency
+features      limits, peak thresholds, invariant points, quasi-static displacement
+modes         modes, participation of contact and load, the structure held at its contact
 maps          `sweep`: regime maps; plan, run in parallel, label
 steady        `response`: one steady state in time
 settings      settings of the steady-state solver

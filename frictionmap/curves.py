@@ -9,6 +9,7 @@ from . import checks
 from ._kernels.curves import boundary, response_functions
 from ._kernels.sums import many_mode_functions
 from ._kernels.sweep import Frequencies
+from .features import high_frequency_limits, peak_thresholds
 from .labels import coordinate, label_variable, stamp
 from .system import System
 
@@ -129,7 +130,9 @@ def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
     xarray.Dataset
         On (mu, r): `beta_lim` (continuous below it, theory.md 3), `beta_lim_modal` (T(5.65) with (5.55))
         and `beta_stick` (permanent sticking is possible from it on, theory.md 4).  On r: the response
-        function of z, `V` (real part) and `V_imag`, and `U`, `G`, `H`, `S`.
+        function of z, `V` (real part) and `V_imag`, and `U`, `G`, `H`, `S`.  Features (theory.md 7): by
+        mode `natural_frequency` and `peak_threshold`; `held_frequency`; by mu the limits for r -> infinity,
+        `beta_lim_high` and `beta_stick_high`.
 
     Raises
     ------
@@ -157,5 +160,15 @@ def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
     }
     variables = boundary_variables(found)
     variables |= {name: label_variable(name, ("r",), v) for name, v in functions.items()}
+    limits = [high_frequency_limits(system, value) for value in mu]
+    features = {
+        "natural_frequency": ("mode", system.modes.w),
+        "peak_threshold": ("mode", peak_thresholds(system)),
+        "beta_lim_high": ("mu", np.array([limit.beta_lim for limit in limits])),
+        "beta_stick_high": ("mu", np.array([limit.beta_stick for limit in limits])),
+    }
+    if system.n > 1:  # one mass held does not vibrate, and NetCDF has no empty dimension
+        features["held_frequency"] = ("held_mode", system.modes.held_frequencies())
+    variables |= {name: label_variable(name, (dim,), v) for name, (dim, v) in features.items()}
     ds = xr.Dataset(variables, coords={"mu": coordinate("mu", mu), "r": coordinate("r", r)})
     return stamp(ds, "Boundaries of the motion regimes", system)

@@ -69,6 +69,15 @@ CURVES = {
     "U": Label(np.float64, "first damping function"),
     "G": Label(np.float64, "second damping function"),
     "H": Label(np.float64, "damping term of the boundary, thesis section 7.2.5"),
+    "natural_frequency": Label(np.float64, "natural frequencies, in units of r"),
+    "peak_threshold": Label(
+        np.float64,
+        "least friction ratio for a finite resonant peak",
+        comment="thesis (6.2), (6.26); with damping (7.62), approximate",
+    ),
+    "held_frequency": Label(np.float64, "natural frequencies with the contact held, in units of r"),
+    "beta_lim_high": Label(np.float64, "limit of beta_lim for r to infinity"),
+    "beta_stick_high": Label(np.float64, "limit of beta_stick for r to infinity"),
     "S": Label(np.float64, "largest value of the sliding condition over half a period"),
 }
 

@@ -5,6 +5,7 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
+from conftest import ROOT
 
 import frictionmap as fm
 from frictionmap._kernels.closed_form import decay
@@ -188,3 +189,13 @@ def test_bad_contacts_of_many():
 def test_maps_of_many_masses_are_refused():
     with pytest.raises(fm.InputError, match="one mass"):
         fm.sweep(fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1]), [1.0], [0.5])
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "configs").glob("*.toml")), ids=lambda path: path.stem)
+def test_every_configuration_loads(path):
+    """Each file of configs/ is legal, and its curves have no hole but those that are limits."""
+    config = fm.load_config(path)
+    ds = fm.boundaries(config.system, config.r, config.mu)
+    assert not np.any(np.isnan(ds.beta_lim))
+    assert not np.any(np.isnan(ds.beta_stick))
+    assert np.all(ds.beta_lim >= 0.0)

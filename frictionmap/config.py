@@ -4,7 +4,7 @@ import json
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from decimal import Decimal
+from decimal import ROUND_CEILING, Decimal
 from pathlib import Path
 from typing import TypeVar
 
@@ -219,7 +219,7 @@ def _axis_table(axis: Mapping[str, object], name: str) -> None:
 
 
 def _steps(axis: Mapping[str, object], name: str) -> int:
-    """Number of whole steps from start to stop, counted in decimal as they were typed."""
+    """Number of steps from start to stop, the last one shorter if need be; in decimal, as typed."""
     start, stop, step = (Decimal(repr(axis[key])) for key in ("start", "stop", "step"))
     count = (stop - start) / step
     if count >= _MOST_VALUES:
@@ -227,7 +227,7 @@ def _steps(axis: Mapping[str, object], name: str) -> int:
             f"{name}.step must leave at most {_MOST_VALUES:.0e} values; "
             f"got {axis['step']!r}, which makes {float(count) + 1:.3g}"
         )
-    return int(count)
+    return int(count.to_integral_value(ROUND_CEILING))
 
 
 def _count(axis: object, name: str) -> int:
@@ -261,7 +261,10 @@ def _values(axis: object, name: str) -> object:
         return axis["values"]
     if "num" in axis:
         return np.linspace(float(axis["start"]), float(axis["stop"]), int(axis["num"]))
-    return _decimal_steps(Decimal(repr(axis["start"])), Decimal(repr(axis["step"])), _steps(axis, name))
+    start, step = (Decimal(repr(axis[key])) for key in ("start", "step"))
+    values = _decimal_steps(start, step, _steps(axis, name))
+    values[-1] = axis["stop"]  # both ends are included
+    return values
 
 
 def _decimal_steps(start: Decimal, step: Decimal, count: int) -> np.ndarray:

@@ -246,7 +246,8 @@ def plot_boundaries(ds: xr.Dataset) -> np.ndarray:
         r, lim = _curve(ds["r"].values, panel["beta_lim"].values)
         _, stick = _curve(ds["r"].values, panel["beta_stick"].values)
         finite = np.concatenate((lim[np.isfinite(lim)], stick[np.isfinite(stick)]))
-        top = 1.15 * finite.max(initial=0.1)
+        # beta_stick has poles where the held structure resonates: they leave the picture at the top
+        top = min(1.15 * finite.max(initial=0.1), 2.0 * lim[np.isfinite(lim)].max(initial=0.05))
         ax.fill_between(r, 0.0, np.minimum(lim, top), color=_PALE)
         ax.fill_between(r, np.minimum(stick, top), top, color=_CLASSES[_STUCK][1])
         ax.plot(r, lim, path_effects=_halo(), **_LIM)

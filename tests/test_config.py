@@ -121,7 +121,7 @@ def test_decimal_steps_of_any_size_are_rounded_once(start, step):
         ("{ start = 0, stop = 1, num = 5 }", [0.0, 0.25, 0.5, 0.75, 1.0]),
         ("{ start = 0.5, stop = 0.5, num = 1 }", [0.5]),
         ("{ start = 0.5, stop = 0.5, step = 0.1 }", [0.5]),
-        ("{ start = 0, stop = 1, step = 0.4 }", [0.0, 0.4, 0.8]),
+        ("{ start = 0, stop = 1, step = 0.4 }", [0.0, 0.4, 0.8, 1.0]),  # ends included
         ("{ start = 1, stop = 3, step = 1 }", [1.0, 2.0, 3.0]),
         ("{ values = [0, 0.3] }", [0.0, 0.3]),
         ("[0.1, 2]", [0.1, 2.0]),

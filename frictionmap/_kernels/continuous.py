@@ -78,7 +78,7 @@ def stop_free_radius(step, oscillator, b, mu_b, amplitude, phase):
     energy = omega * abs(acceleration) + abs(stiffness * s * step.h + step.damping * acceleration)
     to_velocity = oscillator.r / step.h
     radius = math.inf
-    load = abs(z - c) - mu_b
+    load = z - c
     n = int(math.ceil(math.pi / step.h))
     for _ in range(n):
         energy += stiffness * square
@@ -87,9 +87,11 @@ def stop_free_radius(step, oscillator, b, mu_b, amplitude, phase):
         c1 = step.cos * c - step.sin * s
         s = step.cos * s + step.sin * c
         c = c1
-        load1 = abs(z1 - c) - mu_b
+        load1 = z1 - c
         fast = to_velocity * (min(w, w1) - 0.125 * energy)
-        loaded = min(load, load1) - 0.125 * (energy / omega + square)
+        # a load that changes its sign inside the step passes zero there
+        least = min(abs(load), abs(load1)) if load * load1 > 0.0 else 0.0
+        loaded = least - 0.125 * (energy / omega + square) - mu_b
         radius = min(radius, max(fast, loaded))
         z = z1
         w = w1

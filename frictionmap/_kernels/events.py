@@ -55,18 +55,19 @@ def first_root(p, first, terms):
         for k in range(terms - 1, first - 1, -1):
             slope = slope * x + value
             value = value * x + p[k]
-        if value <= 0.0:
-            # at the start a value of zero with a rising slope is not the root looked for
-            if x > 0.0 or slope <= 0.0:
-                return x
-            value = 0.0
-        below = -slope + math.sqrt(slope * slope + 2.0 * bound * value)
-        if value == 0.0:
-            new = x + 2.0 * slope / bound if bound > 0.0 else 2.0
-        elif below <= 0.0:
-            return 2.0  # rises for good
+        if value <= 0.0 and (x > 0.0 or slope <= 0.0):
+            return x  # at the start a value of zero with a rising slope is not the root looked for
+        value = max(value, 0.0)
+        root = math.sqrt(slope * slope + 2.0 * bound * value)
+        # the parabola's root, in the form that does not cancel
+        if slope > 0.0:
+            if bound == 0.0:
+                return 2.0  # rises for good
+            new = x + (slope + root) / bound
+        elif root > slope:
+            new = x + 2.0 * value / (root - slope)
         else:
-            new = x + 2.0 * value / below
+            return 2.0  # constant
         if new > 1.0:
             return 2.0
         if new == x:

@@ -1,0 +1,70 @@
+"""The bounds that make events and shortcuts certain."""
+
+import math
+
+import numpy as np
+import pytest
+
+import frictionmap as fm
+from frictionmap._kernels.closed_form import decay
+from frictionmap._kernels.continuous import (
+    Oscillator,
+    continuous_amplitude,
+    orbit_phase,
+    stop_free_radius,
+)
+from frictionmap._kernels.events import first_root
+from frictionmap._kernels.phases import step_constants
+from frictionmap.curves import one_mass_curves
+
+
+@pytest.mark.parametrize("value", [0.0, 1e-40, 1e-22, 1e-17, 1e-9, 1e-3])
+def test_first_root_after_a_rising_start(value):
+    """A tiny value that rises first: value + x/1000 - 2 x^2/1000 has its root next to 1/2."""
+    p = np.array([0.0, value, 1e-3, -2e-3, 0.0, 0.0])
+    exact = (1e-3 + math.sqrt(1e-6 + 8e-3 * value)) / 4e-3
+    found = first_root(p, 1, 6)
+    assert found == pytest.approx(exact, rel=1e-14) if exact <= 1.0 else found == 2.0
+
+
+def test_first_root_of_random_polynomials():
+    """Never later than the first change of sign of dense samples, and a zero where it says."""
+    rng = np.random.default_rng(11)
+    x = np.linspace(0.0, 1.0, 20001)
+    for _ in range(500):
+        p = rng.normal(size=8) / np.cumprod(np.arange(1.0, 9.0))
+        p[0] = abs(p[0]) * 10.0 ** rng.uniform(-12, 0)
+        values = np.polynomial.polynomial.polyval(x, p)
+        below = np.flatnonzero(values <= 0.0)
+        root = first_root(p, 0, 8)
+        if below.size:
+            assert root <= x[below[0]] + 1e-12
+        if root <= 1.0:
+            size = np.abs(p).sum()
+            assert abs(np.polynomial.polynomial.polyval(root, p)) <= 1e-13 * size
+
+
+def test_nothing_can_stop_within_the_radius():
+    """The radius never exceeds the least max(r |z'|, |load| - mu b) over the orbit, sampled densely."""
+    rng = np.random.default_rng(3)
+    positive = 0
+    for _ in range(400):
+        zeta = float(rng.choice([0.0, rng.uniform(0.0, 2.0), 10.0 ** rng.uniform(-3.0, 1.3)]))
+        r, mu = 10.0 ** rng.uniform(-1.0, 1.5), float(rng.choice([1.0, rng.uniform(1.0, 3.0)]))
+        found = one_mass_curves(fm.System(damping_ratios=zeta), np.array([r]), np.array([mu]))
+        f = found.frequencies
+        oscillator = Oscillator(r, zeta, f.v_abs[0], f.v_arg[0], f.u[0], f.g[0])
+        b = float(found.lim[0, 0]) * min(1.0 - 1e-9, 10.0 ** rng.uniform(-6.0, 0.0))
+        amplitude = continuous_amplitude(oscillator.v_abs, oscillator.u, oscillator.g, b)
+        phase = orbit_phase(oscillator, b)
+        step = step_constants(r, zeta, 64.0)
+        radius = stop_free_radius(step, oscillator, b, mu * b, amplitude, phase)
+        tau = np.linspace(0.0, math.pi, 8001)
+        q, e = np.array([decay(zeta, t / r) for t in tau]).T
+        g1, from_cos, swing = 1.0 + oscillator.g, amplitude + b * oscillator.g, b * oscillator.u
+        z = from_cos * np.cos(tau) + swing * np.sin(tau) + b * (1.0 - g1 * (e + 2 * zeta * q)) - swing * r * q
+        v = swing * (np.cos(tau) - e) - from_cos * np.sin(tau) + b * g1 * q / r
+        least = np.maximum(r * np.abs(v), np.abs(z - np.cos(tau + phase)) - mu * b).min()
+        assert radius <= least * (1.0 + 1e-2) + 1e-9, (zeta, r, mu, b)
+        positive += radius > 0.0
+    assert positive > 200

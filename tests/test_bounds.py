@@ -2,6 +2,7 @@
 
 import math
 
+import mpmath as mp
 import numpy as np
 import pytest
 
@@ -13,8 +14,8 @@ from frictionmap._kernels.continuous import (
     orbit_phase,
     stop_free_radius,
 )
-from frictionmap._kernels.events import first_root
-from frictionmap._kernels.phases import step_constants
+from frictionmap._kernels.events import first_root, slide
+from frictionmap._kernels.phases import MAX_TERMS, step_constants
 from frictionmap.curves import one_mass_curves
 
 
@@ -68,3 +69,40 @@ def test_nothing_can_stop_within_the_radius():
         assert radius <= least * (1.0 + 1e-2) + 1e-9, (zeta, r, mu, b)
         positive += radius > 0.0
     assert positive > 200
+
+
+@pytest.mark.parametrize(
+    ("beta", "place"),
+    [(1.05, 0.01195), (1.2, -0.10899), (1.5, 0.36402)],
+)
+def test_where_a_moving_mass_sticks_for_good(beta, place):
+    """r = 0.25, mu = 1, from a moving start: places found by marching event by event, five digits."""
+    ds = fm.response(fm.System(), 0.25, beta, start="moving", skip="none", points=10)
+    assert int(ds.regime) == 0
+    assert float(ds.z[0]) == pytest.approx(place, abs=5e-6)
+
+
+@pytest.mark.parametrize(
+    ("steps", "r", "b", "z", "v", "c", "s"),
+    [
+        (4.0, 8.833707792815149, 1.370367278807733e-05, -0.9989228207925247, 3.6418001626437013e-07,
+         -0.9965281004332572, 0.08325710208074799),
+        (24.0, 0.5558862112528401, 1.179618511125476e-06, 0.766525118439465, 0.005952460067772305,
+         0.7166424833834543, -0.6974407150503873),
+    ],
+)  # fmt: skip
+def test_a_slide_ends_only_where_the_velocity_is_zero(steps, r, b, z, v, c, s):
+    """Undamped slides whose velocity dips to zero but for rounding: the closed form at the end found."""
+    step = step_constants(r, 0.0, steps)
+    acceleration = step.stiffness * (c - b - z)
+    n, _, _, _ = slide(step, b, z, v * step.h, acceleration, c, s, 1e5, np.empty(MAX_TERMS))
+    t = n * step.h
+    with mp.workdps(40):
+        a, z, v, c, s, t = 1 / mp.mpf(r), mp.mpf(z), mp.mpf(v), mp.mpf(c), mp.mpf(s), mp.mpf(t)
+        gain = 1 / (1 - mp.mpf(r) ** 2)
+        velocity = (
+            -(z - gain * c + b) * a * mp.sin(a * t)
+            + (v + gain * s) * mp.cos(a * t)
+            - gain * (s * mp.cos(t) + c * mp.sin(t))
+        )
+    assert abs(float(velocity)) < 1e-9 * float(v) + 1e-14

@@ -67,6 +67,9 @@ _NEAR_RETURN_UNIQUE = 2.0
 #: this many times what the last return and the contraction there make one expect.
 _HEADING = 4.0
 
+#: Distance to an end of the places of rest, over r^2, below which a slide takes less than a tenth of it.
+_CREEPING = 0.02
+
 #: Half periods of ever larger motion after which an undamped resonance counts as unbounded.
 _GROWING = 64
 
@@ -186,6 +189,24 @@ def _near_return(history, events, closeness, shortest):
             if (shortest and best > 0) or seen == _MAX_RETURN:
                 break
     return best, best_gap
+
+
+@kernel
+def _creeps(r, mu_b, history, events):
+    """Whether stops creep to an end of |z| <= mu b - 1, where the contact sticks for good (mu = 1).
+
+    At a small distance y from it a slide takes some 4.5 y^2/r^2 off y: the end is never passed, and never
+    reached in a finite time.
+    """
+    if events < 2:
+        return False
+    now = (events - 1) % HISTORY
+    then = (events - 2) % HISTORY
+    if history[CODES, now] != STOP_THEN_ON or history[CODES, then] != STOP_THEN_ON:
+        return False
+    far = abs(history[PLACES, now]) - (mu_b - 1.0)
+    taken = abs(history[PLACES, then]) - abs(history[PLACES, now])
+    return far < _CREEPING * r * r and 0.0 <= taken < 0.5 * far
 
 
 @kernel
@@ -309,8 +330,7 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
             old_stops, old_stuck, old_largest = stops, stuck, largest
             stops, stuck, largest = 0, 0.0, 0.0
         largest = max(largest, size)
-        if stopped and unique and mu_b >= 1.0:
-            # it creeps to the nearer end of the places where it can stick for good, and never arrives
+        if unique and mu_b >= 1.0 and _creeps(oscillator.r, mu_b, history, events):
             return stuck_cell(INTEGRATED, time / _TURN, math.copysign(mu_b - 1.0, z), sign)
         if stopped:
             stops += 1

@@ -32,9 +32,9 @@ _ONE_STEP = 2e-4
 
 _MAX_POLISH = 8
 
-#: Certified steps to a root converge quadratically, and linearly at a double root (a grazing touch),
-#: where 200 of them exhaust a double.
-_MAX_APPROACH = 200
+#: Certified steps to a root converge quadratically; past a grazing dip they crawl, at a rate that is the
+#: square root of the dip's curvature over the bound, thousands of them for a dip of rounding depth.
+_MAX_APPROACH = 20000
 
 
 @kernel
@@ -124,8 +124,11 @@ def _at_root(step, b, z, c, s, x, work):
         s1 = cosine * s + sine * c
         acceleration = step.stiffness * (c1 - b - place) - step.damping * velocity
         jerk = -step.stiffness * (s1 * step.h + velocity) - step.damping * acceleration
-        if not abs(velocity) < _NEARLY * abs(acceleration):
-            break  # the velocity only touches zero, and x is as good as can be
+        if (
+            not abs(velocity) < _NEARLY * abs(acceleration)
+            or not abs(velocity * jerk) < _NEARLY * acceleration * acceleration
+        ):
+            break  # the velocity only touches zero; the reversion diverges, and x is as good as can be
         snap = -step.stiffness * (c1 * step.h * step.h + acceleration) - step.damping * jerk
         # reversion of velocity + acceleration m + jerk m^2/2 + snap m^3/6 = 0
         inverse = 1.0 / acceleration

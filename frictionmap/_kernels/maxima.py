@@ -78,7 +78,7 @@ def largest_bracket(a, zeta, u, g, floor):
     """
     if zeta >= 1.0 or (zeta == 0.0 and a <= 2.0):
         # over-damped: y'' + y has one zero at most, so there is no interval between two of them;
-        # undamped with R >= 1/2: y'' + y has none
+        # undamped with R >= 1/2: it has one, at pi/2
         return floor
     y_q = (1.0 + g) * a
     p_q = a * u

@@ -86,7 +86,7 @@ def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     lim, lim_modal = np.empty((2, mu.size, r.size))
     resonance = np.isinf(v) & np.isinf(u)
     # there |V|/|U| -> (pi/4) |lambda_i/chi_i|, and both outgrow S
-    seen = np.isclose(modes.w, r[:, np.newaxis], rtol=0.0, atol=0.0)
+    seen = modes.w == r[:, np.newaxis]  # only where r is a natural frequency to the bit are they infinite
     ratio = np.abs(modes.participation) / np.where(modes.chi == 0.0, np.inf, np.abs(modes.chi))
     at_resonance = 0.25 * np.pi * (seen * ratio).sum(axis=1)
     for m, value in enumerate(mu):

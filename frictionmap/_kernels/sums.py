@@ -140,7 +140,7 @@ def _at_crossing(low, high, u, fastest, table, n):
 
 @kernel
 def largest_sum(u, floor, table, n, stack):
-    """max(floor, S) for the modes in `table`; `stack` is scratch of shape (2 * _DEEPEST + 8, 8)."""
+    """max(floor, S) for the modes in `table`; `stack` is scratch of shape (2 * _DEEPEST, 8)."""
     if n == 0:
         return floor
     fastest = 1.0

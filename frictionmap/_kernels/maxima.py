@@ -17,10 +17,10 @@ from .closed_form import HALF_PI, decay
 from .jit import kernel
 
 #: Newton's method inside a bracket halves it at worst; 60 halvings exhaust a double.
-_MAX_ITERATIONS = 60
+MAX_ITERATIONS = 60
 
 #: f is flat at its maximum: an error of 1e-9 in the angle a*tau is one of 1e-18 of f.
-_ANGLE_TOLERANCE = 1e-9
+ANGLE_TOLERANCE = 1e-9
 
 
 @kernel
@@ -37,6 +37,19 @@ def _evaluate(tau, a, zeta, u, forms):
 
 
 @kernel
+def narrow(low, high, tau, m, slope):
+    """A smaller bracket of the root of the falling m, and Newton's next point in it (or its middle)."""
+    if m > 0.0:
+        low = tau
+    else:
+        high = tau
+    new = tau - m / slope if slope < 0.0 else low
+    if not (low < new < high):
+        new = 0.5 * (low + high)
+    return low, high, new
+
+
+@kernel
 def _stationary_value(low, high, a, zeta, u, forms):
     """f at the root of m in (low, high), where m falls; -inf if there is none or m rises."""
     if _evaluate(0.5 * (low + high), a, zeta, u, forms)[1] >= 0.0:
@@ -47,20 +60,13 @@ def _stationary_value(low, high, a, zeta, u, forms):
         return -math.inf
     tau = 0.5 * (low + high)
     value = -math.inf
-    for _ in range(_MAX_ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         m, bend, value = _evaluate(tau, a, zeta, u, forms)
         value -= m / math.tan(tau)  # f = (u cos + y)/sin in the form that does not cancel near m = 0
-        if m > 0.0:
-            low = tau
-        elif m < 0.0:
-            high = tau
-        else:
+        if m == 0.0:
             break
-        slope = bend * math.sin(tau)
-        new = tau - m / slope if slope < 0.0 else low
-        if not (low < new < high):
-            new = 0.5 * (low + high)
-        if abs(new - tau) * a <= _ANGLE_TOLERANCE:
+        low, high, new = narrow(low, high, tau, m, bend * math.sin(tau))
+        if abs(new - tau) * a <= ANGLE_TOLERANCE:
             break
         tau = new
     return value

@@ -17,18 +17,13 @@ import numpy as np
 
 from .closed_form import damping_functions, decay
 from .jit import kernel
-from .maxima import largest_bracket
+from .maxima import ANGLE_TOLERANCE, MAX_ITERATIONS, largest_bracket, narrow
 
 #: First intervals per period of the fastest mode; fewer make more halvings, more are wasted.
 _INTERVALS = 4.0
 
 #: Halvings of an interval: beyond 40 it holds nothing that a double could tell from its ends.
 _DEEPEST = 40
-
-_MAX_ITERATIONS = 60
-
-#: f is flat at its maximum: an error of 1e-9 in the fastest angle is one of 1e-18 of f.
-_ANGLE_TOLERANCE = 1e-9
 
 #: Rows of the table of modes that `mode_sums` fills, one column a mode: c, a = 1/R, zeta, and y_i = h_i',
 #: y_i' and y_i'' + y_i over (q, e) of `decay`.
@@ -119,20 +114,13 @@ def _at_crossing(low, high, u, fastest, table, n):
     """f at the root of m in (low, high), where m falls and W < 0."""
     tau = 0.5 * (low + high)
     value = -math.inf
-    for _ in range(_MAX_ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         y, p, k = _values(tau, table, n)
         value, m = _f(tau, u, y, p)
-        if m > 0.0:
-            low = tau
-        elif m < 0.0:
-            high = tau
-        else:
+        if m == 0.0:
             break
-        slope = k * math.sin(tau)
-        new = tau - m / slope if slope < 0.0 else low
-        if not (low < new < high):
-            new = 0.5 * (low + high)
-        if abs(new - tau) * fastest <= _ANGLE_TOLERANCE:
+        low, high, new = narrow(low, high, tau, m, k * math.sin(tau))
+        if abs(new - tau) * fastest <= ANGLE_TOLERANCE:
             break
         tau = new
     return value

@@ -36,7 +36,7 @@ def solve_cells(load, phase, oscillators, lim, stick, beta, mu, limits):
     out = np.empty((beta.size, 2))
     for k in range(beta.size):
         r, zeta, v_abs, v_arg, u, g = oscillators[k]
-        oscillator = Oscillator(r, zeta, v_abs, v_arg, u, g)
+        oscillator = Oscillator(r, zeta, v_abs, v_arg, u, g, False)
         step = step_constants(r, zeta, 24.0)
         fine = step_constants(r, zeta, FINE_STEPS)
         b, mu_b = normalised_friction(beta[k], load[k], mu[k], stick[k])

@@ -4,9 +4,14 @@
 module        what is in it
 ============  ==========================================================================
 system        what is simulated: masses, springs, damping, load, contact
+continuous    `continuous_motion`: the motion that never sticks, in closed form
 curves        `boundaries`: beta_lim, beta_stick and the response functions over frequency
 features      limits, peak thresholds, invariant points, quasi-static displacement
+matrices      M, K and C from a file or from arrays, checked
 modes         modes, participation of contact and load, the structure held at its contact
+held          the held structure as a set of oscillators
+structures    a structure in the numbers that the kernels take
+cells         what the cells of a map need: one mass, or any structure
 maps          `sweep`: regime maps; plan, run in parallel, label
 steady        `response`: one steady state in time
 settings      settings of the steady-state solver
@@ -29,6 +34,7 @@ from .version import __version__
 
 if TYPE_CHECKING:
     from .config import load_config
+    from .continuous import continuous_motion
     from .curves import boundaries
     from .maps import sweep
     from .plot import plot_regimes, plot_response
@@ -43,6 +49,7 @@ __all__ = [
     "System",
     "__version__",
     "boundaries",
+    "continuous_motion",
     "load_config",
     "plot_regimes",
     "plot_response",
@@ -56,6 +63,7 @@ _HOME = {
     "Solver": "settings",
     "System": "system",
     "boundaries": "curves",
+    "continuous_motion": "continuous",
     "load_config": "config",
     "plot_regimes": "plot",
     "plot_response": "plot",

@@ -71,7 +71,7 @@ def whole(value: object, name: str, *, least: int, most: int | None = None) -> i
     return int(value)
 
 
-def _one_line(value: object) -> str:
+def one_line(value: object) -> str:
     """repr, without the line breaks that arrays have in theirs."""
     return " ".join(repr(value).split())
 
@@ -83,7 +83,7 @@ def axis(values: object, name: str, *, least: float, most: float = math.inf) -> 
     except ValueError:  # rows of different lengths
         given = np.empty(0, dtype=object)
     if given.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false
-        raise InputError(f"{name} must be numbers; got {_one_line(values)}")
+        raise InputError(f"{name} must be numbers; got {one_line(values)}")
     result = given.astype(np.float64)
     if result.ndim != 1:
         raise InputError(f"{name} must be one-dimensional; got {result.ndim} dimensions")

@@ -25,6 +25,11 @@ _SYSTEM_KEYS = (
     "mass_ratios",
     "stiffness_ratios",
     "damping_ratios",
+    "matrices",
+    "frequency_scale",
+    "stiffness_scale",
+    "excitation",
+    "damping_reference",
 )
 _SOLVER_KEYS = ("start", "cycles", "tolerance", "steps", "skip", "steady", "outputs")
 _SECTIONS = {
@@ -66,6 +71,8 @@ class Config:
 def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
     """Read a configuration file and apply overrides such as ``grid.r.step=0.01``.
 
+    A path in it, also one of an override, is relative to the folder of the file.
+
     Raises
     ------
     InputError
@@ -89,7 +96,7 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
         _override(tree, override)
     if overrides:
         text = _to_toml(tree)
-    return _check(tree, text, path.stem)
+    return _check(tree, text, path)
 
 
 def _override(tree: dict, override: str) -> None:
@@ -165,7 +172,19 @@ def _build(kind: Callable[..., T], table: Mapping[str, object], section: str) ->
         raise InputError(f"{section}.{error}") from None
 
 
-def _check(tree: Mapping[str, object], text: str, name: str) -> Config:
+def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, object]:
+    """The table [system], with `matrices` as seen from the folder of the configuration."""
+    table = _table(tree, "system")
+    if "matrices" not in table:
+        return table
+    matrices = table["matrices"]
+    if not isinstance(matrices, str) or not matrices:
+        raise InputError(f"system.matrices must be the path of an .npz file; got {matrices!r}")
+    return {**table, "matrices": folder / matrices}
+
+
+def _check(tree: Mapping[str, object], text: str, path: Path) -> Config:
+    name = path.stem
     for key in tree:
         if key not in _SECTIONS:
             raise _unknown(key, "", tuple(_SECTIONS))
@@ -174,7 +193,7 @@ def _check(tree: Mapping[str, object], text: str, name: str) -> Config:
         raise InputError(f"title must be text; got {title!r}")
     if "system" not in tree:
         raise InputError("the configuration must have a table [system]; it has none")
-    system = _build(System, _table(tree, "system"), "system")
+    system = _build(System, _system_table(tree, path.parent), "system")
     solver = _build(Solver, _table(tree, "solver"), "solver")
     grid = _table(tree, "grid")
     for key in ("r", "beta"):

@@ -9,9 +9,23 @@ from . import checks
 from ._kernels.curves import boundary, response_functions
 from ._kernels.sums import many_mode_functions
 from ._kernels.sweep import Frequencies
-from .features import high_frequency_limits, peak_thresholds
+from .features import (
+    all_mass_invariant_points,
+    high_frequency_limits,
+    invariant_points,
+    one_phase,
+    peak_thresholds,
+)
 from .labels import coordinate, label_variable, stamp
 from .system import System
+
+#: Invariant points that a file lists, from the highest down; below them hardly any motion is continuous.
+_LISTED_POINTS = 40
+
+#: A point may lie on an end of the axis, and is found beside it: the search reaches so much further, and
+#: keeps what is no further off than rounding.
+_REACH = 1e-6
+_ON_END = 1e-13
 
 
 @dataclass(frozen=True)
@@ -41,7 +55,7 @@ class OneMass:
 
 
 def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
-    """All curves of a system of one mass; `r` and `mu` are checked axes.
+    """All curves of a normalised system, whose one mode has w = 1; `r` and `mu` are checked axes.
 
     One mass has its own search of S, with intervals in closed form, and one equation for both contacts.
     """
@@ -49,7 +63,10 @@ def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
     v_abs, v_arg, u, g, h, s = np.empty((6, r.size))
     response_functions(r, system.zeta, u, g, v_abs, v_arg, h, s)
     amplitude = np.abs(load)
-    frequencies = Frequencies(r, amplitude, np.angle(load), v_abs, v_arg, u, g)
+    half = np.divide(0.5, r, out=np.zeros_like(r), where=r > 0.0)
+    even = (half >= 1.0) & (half == np.floor(half))
+    marginal = even & (system.zeta == 0.0)
+    frequencies = Frequencies(r, amplitude, np.angle(load), v_abs, v_arg, u, g, marginal)
     lim = np.empty((mu.size, r.size))
     for row, value in zip(lim, mu, strict=True):
         boundary(r, v_abs, u, h, s, value, row)
@@ -78,7 +95,7 @@ def _lim(v: np.ndarray, u: np.ndarray, bracket: np.ndarray) -> np.ndarray:
 def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     """All curves of a system of any number of masses; `r` and `mu` are checked axes."""
     modes = system.modes
-    v = modes.response(r, modes.chi) - modes.base_motion
+    v = modes.contact_response(r)
     u, g, h, s, by_modes = np.empty((5, r.size))
     many_mode_functions(r, modes.w, modes.zeta, modes.chi, modes.inverse_mass, u, g, h, s, by_modes)
     end = np.zeros(r.size)
@@ -86,8 +103,8 @@ def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     lim, lim_modal = np.empty((2, mu.size, r.size))
     resonance = np.isinf(v) & np.isinf(u)
     # there |V|/|U| -> (pi/4) |lambda_i/chi_i|, and both outgrow S
-    seen = modes.w == r[:, np.newaxis]  # only where r is a natural frequency to the bit are they infinite
-    ratio = np.abs(modes.participation) / np.where(modes.chi == 0.0, np.inf, np.abs(modes.chi))
+    seen = modes.dynamic_stiffness(r) == 0.0  # r is an undamped frequency to the bit: else they are finite
+    ratio = np.abs(modes.participation(r)) / np.where(modes.chi == 0.0, np.inf, np.abs(modes.chi))
     at_resonance = 0.25 * np.pi * (seen * ratio).sum(axis=1)
     for m, value in enumerate(mu):
         with np.errstate(invalid="ignore"):  # inf - inf at a resonance, replaced below
@@ -106,12 +123,66 @@ def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     )
 
 
+def find_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
+    """All curves of any system; `r` and `mu` are checked axes."""
+    if system.normalised:
+        return one_mass_curves(system, r, mu).curves
+    return many_mode_curves(system, r, mu)
+
+
 def boundary_variables(found: Curves) -> dict[str, xr.Variable]:
     """beta_lim, beta_lim_modal and beta_stick, dims (mu, r)."""
     return {
         name: label_variable(name, ("mu", "r"), getattr(found, name))
         for name in ("beta_lim", "beta_lim_modal", "beta_stick")
     }
+
+
+def _padded(rows: list[np.ndarray]) -> np.ndarray:
+    """Rows of different lengths in one array, filled up with NaN."""
+    table = np.full((len(rows), max(row.size for row in rows)), np.nan)
+    for row, values in zip(table, rows, strict=True):
+        row[: values.size] = values
+    return table
+
+
+def _invariants(system: System, r: np.ndarray) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """Invariant points within the axis; a variable is left out if it would be empty, as NetCDF demands."""
+    positive = r[r > 0.0]
+    if positive.size < 2:
+        return {}
+    first = positive[0]
+    low, high = first * (1.0 - _ON_END), r[-1] * (1.0 + _ON_END)
+    reach = first * (1.0 - _REACH), min(r[-1] * (1.0 + _REACH), checks.LARGEST_RATIO), _LISTED_POINTS
+    found: dict[str, tuple[tuple[str, ...], np.ndarray]] = {}
+    points = invariant_points(system, *reach)
+    points = points[(points >= low) & (points <= high)]
+    if points.size:
+        found["invariant_point"] = ("invariant",), points
+    if one_phase(system) and not system.modes.zeta.any():
+        rows = [row[(row >= low) & (row <= high)] for row in all_mass_invariant_points(system, *reach)]
+        if any(row.size for row in rows):
+            found["mass_invariant_point"] = ("dof", "mass_invariant"), _padded(rows)
+    return found
+
+
+def _feature_variables(system: System, r: np.ndarray, mu: np.ndarray) -> dict[str, xr.Variable]:
+    """Features of theory.md 7 that are curves or lists."""
+    modes = system.modes
+    limits = [high_frequency_limits(system, value) for value in mu]
+    found = {
+        "natural_frequency": (("mode",), modes.w),
+        "peak_threshold": (("mode",), peak_thresholds(system)),
+        "beta_lim_high": (("mu",), np.array([limit.beta_lim for limit in limits])),
+        "beta_stick_high": (("mu",), np.array([limit.beta_stick for limit in limits])),
+        **_invariants(system, r),
+    }
+    if system.n > 1:  # one mass held does not vibrate, and NetCDF has no empty dimension
+        found["held_frequency"] = ("held_mode",), modes.held_frequencies()
+        found["held_response"] = ("dof", "r"), np.abs(modes.held_response(r)).T
+    else:
+        found["held_response"] = ("dof", "r"), np.full((1, r.size), float(modes.base_motion))
+    return {name: label_variable(name, dims, values) for name, (dims, values) in found.items()}
 
 
 def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
@@ -121,7 +192,8 @@ def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
     ----------
     system : System
     r : array_like, shape (n_r,)
-        Frequency ratios omega/omega_1, omega_1 = sqrt(k_1/m_1) [-], >= 0, increasing.
+        Frequency ratios omega/omega_1 [-], >= 0, increasing; omega_1 = sqrt(k_1/m_1) of a chain, else the
+        system's frequency_scale.
     mu : array_like, shape (n_mu,)
         Static over kinetic friction [-], >= 1, increasing.
 
@@ -132,7 +204,11 @@ def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
         and `beta_stick` (permanent sticking is possible from it on, theory.md 4).  On r: the response
         function of z, `V` (real part) and `V_imag`, and `U`, `G`, `H`, `S`.  Features (theory.md 7): by
         mode `natural_frequency` and `peak_threshold`; `held_frequency`; by mu the limits for r -> infinity,
-        `beta_lim_high` and `beta_stick_high`.
+        `beta_lim_high` and `beta_stick_high`; on (dof, r) `held_response`, the amplitude of each mass with
+        the contact held, infinite where that resonates; within the axis `invariant_point`, where friction
+        leaves z as it is (the phase only, with damping), and on (dof, mass_invariant), without damping only,
+        `mass_invariant_point`, where it leaves the monoharmonic amplitude of a mass as it is, NaN where
+        there are fewer.  Of invariant points the highest 40 or so are listed, and no empty variable.
 
     Raises
     ------
@@ -148,8 +224,7 @@ def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
     """
     r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
     mu = checks.axis(mu, "mu", least=1.0)
-    many = system.n > 1
-    found = many_mode_curves(system, r, mu) if many else one_mass_curves(system, r, mu).curves
+    found = find_curves(system, r, mu)
     functions = {
         "V": found.v.real,
         "V_imag": np.where(np.isinf(found.v.real), 0.0, found.v.imag),
@@ -160,15 +235,7 @@ def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
     }
     variables = boundary_variables(found)
     variables |= {name: label_variable(name, ("r",), v) for name, v in functions.items()}
-    limits = [high_frequency_limits(system, value) for value in mu]
-    features = {
-        "natural_frequency": ("mode", system.modes.w),
-        "peak_threshold": ("mode", peak_thresholds(system)),
-        "beta_lim_high": ("mu", np.array([limit.beta_lim for limit in limits])),
-        "beta_stick_high": ("mu", np.array([limit.beta_stick for limit in limits])),
-    }
-    if system.n > 1:  # one mass held does not vibrate, and NetCDF has no empty dimension
-        features["held_frequency"] = ("held_mode", system.modes.held_frequencies())
-    variables |= {name: label_variable(name, (dim,), v) for name, (dim, v) in features.items()}
-    ds = xr.Dataset(variables, coords={"mu": coordinate("mu", mu), "r": coordinate("r", r)})
+    variables |= _feature_variables(system, r, mu)
+    axes = {"mu": mu, "r": r, "dof": np.arange(1, system.n + 1)}
+    ds = xr.Dataset(variables, coords={name: coordinate(name, axis) for name, axis in axes.items()})
     return stamp(ds, "Boundaries of the motion regimes", system)

@@ -5,17 +5,31 @@ Equation numbers are those of theory.md 7 and of the thesis (T).
 
 import math
 from collections.abc import Callable
-from itertools import pairwise
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from . import checks
-from ._kernels.closed_form import damping_functions
+from ._kernels.damping import first_damping_functions
+from .errors import InputError
+from .modes import ModalModel
 from .system import System
 
-#: Samples between two poles that a change of sign is looked for in.
-_SAMPLES = 200
+#: Invariant points crowd towards r = 0, where hardly any motion is continuous: no more than so many are
+#: looked for, from the highest down.
+MOST_POINTS = 1000
+
+#: Between two poles a change of sign is looked for at these shares of the way: ever closer to the poles,
+#: where a mode of little weight bends the sum only at its own.
+_NEAR = 0.25 ** np.arange(1.0, 16.0)
+_SHARES = np.unique(np.concatenate((_NEAR, 1.0 - _NEAR, np.arange(1.0, 16.0) / 16.0)))
+
+#: Phases of a load that differ by less than this are one: a few units of rounding of an exponential.
+_ONE_PHASE = 1e-14
+
+#: Halvings of an interval: then its ends are neighbouring doubles.
+_HALVINGS = 64
 
 
 class HighFrequency(NamedTuple):
@@ -33,7 +47,7 @@ def peak_thresholds(system: System) -> np.ndarray:
     """
     modes = system.modes
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.abs(modes.participation) / np.abs(modes.chi)
+        ratio = np.abs(np.diagonal(modes.participation(modes.w))) / np.abs(modes.chi)  # each at its own w
     x = math.pi * modes.zeta
     # (cosh x - 1)/(2 zeta sinh x) = tanh(x/2)/(2 zeta), which is pi/4 at zeta = 0
     factor = np.full(x.size, 0.25 * math.pi)
@@ -41,88 +55,229 @@ def peak_thresholds(system: System) -> np.ndarray:
     return np.where(modes.chi == 0.0, np.inf, ratio * factor)
 
 
+def peak_amplitudes(system: System, beta: float) -> np.ndarray:
+    """Amplitude of every mass at every resonance, T(7.60), approximate; shape (n, n): mass, mode.
+
+    It falls with beta on a straight line, to 0 at the mode's `peak_thresholds`; from there on NaN, as the
+    motion is not continuous.  Infinite without damping.
+    """
+    beta = checks.number(beta, "beta", least=0.0)
+    modes = system.modes
+    part = np.abs(modes.phi * np.diagonal(modes.participation(modes.w))) / modes.w**2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # |phi chi|/w^2 sinh/(cosh - 1) is the frictionless peak over the threshold
+        left = 1.0 - beta / peak_thresholds(system) if beta > 0.0 else np.ones(modes.w.size)
+        peaks = np.where(part > 0.0, part / (2.0 * modes.zeta) * left, 0.0)
+    return np.where(left > 0.0, peaks, np.nan)
+
+
 def high_frequency_limits(system: System, mu: float = 1.0) -> HighFrequency:
     """beta_lim and beta_stick for r -> infinity, T(2.31), (6.8), (6.28), (6.29), with mu squared.
 
-    Zero if the load acts elsewhere than on a mass in contact; a joined base-wall's grow with r^2.
+    Zero if the load acts elsewhere than on a mass in contact; a joined base-wall's grow with r^2, those of
+    dashpots to the base with r.
     """
     mu = checks.number(mu, "mu", least=1.0)
-    if system.base_motion:
-        return HighFrequency(math.inf, math.inf)
     modes = system.modes
-    share = abs(modes.contact @ np.linalg.solve(modes.mass, modes.load)) / modes.inverse_mass
+    if system.base_motion or modes.contact_acceleration(modes.load_rate) != 0.0:
+        return HighFrequency(math.inf, math.inf)
+    # where the parts that grow leave each other, what C makes of them in the next power of r is left:
+    # c^T M^-1 (load - C M^-1 load_rate)
+    left = modes.load - modes.damping @ np.linalg.solve(modes.mass, modes.load_rate)
+    share = abs(modes.contact_acceleration(left)) / modes.inverse_mass
     return HighFrequency(float(share) * 2.0 / math.hypot(2.0 * mu, math.pi), float(share) / mu)
 
 
 def quasi_static_displacement(system: System, beta: float) -> np.ndarray:
-    """Displacements for r -> 0 while the contact slides: K x0 = p - beta c, T(6.5); shape (n,)."""
+    """Displacements for r -> 0 while the contact slides: K x0 = p - beta c, T(6.5); shape (n,).
+
+    They are those at tau = 0, where the load is the real part of its phasor, with the contact sliding
+    towards larger z; the contact sticks instead if beta is not below beta_stick at r = 0.
+    """
     beta = checks.number(beta, "beta", least=0.0)
     modes = system.modes
     return np.linalg.solve(modes.stiffness, modes.load.real - beta * modes.contact)
 
 
-def _functions(system: System, r: float, weights: np.ndarray) -> tuple[float, float]:
-    """V and U of the displacement with modal weights (chi for z, phi_k for x_k), undamped parts real."""
-    modes = system.modes
-    v = modes.response(np.array([r]), weights)[0].real
-    u = sum(
-        weight * chi / w**2 * damping_functions(w, zeta, r)[0]
-        for w, zeta, chi, weight in zip(modes.w, modes.zeta, modes.chi, weights, strict=True)
-        if chi != 0.0
-    )
-    return float(v), float(u)
+class _Range(NamedTuple):
+    """A stretch of frequencies, and where in it the sums over modes turn sharply."""
+
+    low: float
+    high: float
+    edges: np.ndarray  # increasing, strictly inside
+    poles: np.ndarray  # of the edges, those where a sum may be infinite
 
 
-def _roots(f: Callable[[float], float], poles: np.ndarray, low: float, high: float) -> np.ndarray:
-    """Roots of f in (low, high), which is smooth between its poles."""
-    from scipy.optimize import brentq
+def _range(modes: ModalModel, low: object, high: object, most: object) -> _Range:
+    """The checked range, cut at its lower end so that it has at most about `most` edges.
 
-    edges = np.unique(np.concatenate(([low], poles[(poles > low) & (poles < high)], [high])))
-    roots = []
-    for left, right in pairwise(edges):
-        r = left + (right - left) * (np.arange(_SAMPLES) + 0.5) / _SAMPLES
-        values = np.array([f(x) for x in r])
-        for k in np.flatnonzero(np.sign(values[1:]) * np.sign(values[:-1]) < 0):
-            roots.append(brentq(f, r[k], r[k + 1], xtol=1e-15, rtol=1e-15))
-        roots.extend(r[values == 0.0])
-    return np.unique(roots)
-
-
-def _poles(system: System, low: float) -> np.ndarray:
-    """Natural frequencies and, above `low`, their odd sub-multiples, where U is infinite without damping."""
-    modes = system.modes
-    seen = modes.w[modes.chi != 0.0]
-    if seen.size == 0:
-        return modes.w
-    odd = np.arange(1.0, max(3.0, 2.0 * seen.max() / low), 2.0)
-    return np.unique(np.concatenate((modes.w, (seen[:, np.newaxis] / odd).ravel())))
-
-
-def invariant_points(system: System, low: float, high: float) -> np.ndarray:
-    """Frequency ratios in (low, high) where the amplitude of z does not depend on beta: U = 0, T(6.9).
-
-    Without damping these are all: between two of its poles U falls from +inf to -inf, once.
+    Edges are the natural frequencies and, of every seen mode that vibrates, the damped frequency over
+    1, 3, 5...: there u of T(7.11) has its poles, or without them changes its sign.
     """
     low = checks.number(low, "low", above=0.0)
-    high = checks.number(high, "high", above=low)
-    chi = system.modes.chi
-    return _roots(lambda r: _functions(system, r, chi)[1], _poles(system, low), low, high)
+    high = checks.number(high, "high", above=low, most=checks.LARGEST_RATIO)
+    most = checks.whole(most, "most", least=1)
+    seen = (modes.chi != 0.0) & (modes.zeta < 1.0)
+    edges, poles = [modes.w], [modes.w[modes.zeta == 0.0]]
+    for w, zeta in zip(modes.w[seen], modes.zeta[seen], strict=True):
+        top = w * math.sqrt((1.0 - zeta) * (1.0 + zeta))
+        first = 2.0 * math.floor(0.5 * top / high) + 1.0
+        last = min(top / low, first + 2.0 * most)
+        found = top / np.arange(first, last + 1.0, 2.0)
+        edges.append(found)
+        if zeta == 0.0:
+            poles.append(found)
+    inside = [np.unique(np.concatenate(part)) for part in (edges, poles)]
+    inside = [part[(part > low) & (part < high)] for part in inside]
+    if inside[0].size > most:
+        low = float(inside[0][-most - 1])
+        inside = [part[part > low] for part in inside]
+    return _Range(low, high, *inside)
 
 
-def mass_invariant_points(system: System, mass: int, low: float, high: float) -> np.ndarray:
-    """The same for the displacement of one mass, undamped: 1 - 2 V_k U/(V U_k) = 0, T(6.10).
+def _roots(f: Callable[[np.ndarray], np.ndarray], where: _Range) -> list[np.ndarray]:
+    """Roots with a change of sign of several functions: f takes (n_r,) and returns (n_r, n_functions).
 
-    Of a mass in contact with a fixed wall the points are those of `invariant_points`.
+    A pair of roots between two samples is missed.
+    """
+    edges = np.concatenate(([where.low], where.edges, [where.high]))
+    r = np.unique(edges[:-1, np.newaxis] + np.diff(edges)[:, np.newaxis] * _SHARES)
+    r = r[~np.isin(r, where.poles)]  # a narrow stretch has samples that round to its ends
+    values = f(r)
+    sign = np.sign(values)
+    same_side = np.searchsorted(where.poles, r[1:]) == np.searchsorted(where.poles, r[:-1])
+    k, which = np.nonzero((sign[1:] * sign[:-1] < 0.0) & same_side[:, np.newaxis])
+    low, high, rising = r[k], r[k + 1], sign[k + 1, which]
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        if np.all((middle == low) | (middle == high)):
+            break
+        above = np.take_along_axis(f(middle), which[:, np.newaxis], axis=1)[:, 0] * rising >= 0.0
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    exact = (sign == 0.0) & (values != 0.0).any(axis=0)  # not of a function that is zero everywhere
+    return [np.unique(np.concatenate((high[which == j], r[exact[:, j]]))) for j in range(values.shape[1])]
+
+
+def _first_damping(modes: ModalModel, weights: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """U of coordinates with modal weights (n_rows, n): sum of weights chi_i/w_i^2 u_i; (n_r, n_rows)."""
+    seen = modes.chi != 0.0
+    u = np.empty((r.size, int(seen.sum())))
+    first_damping_functions(r, modes.w[seen], modes.zeta[seen], u)
+    return u @ (weights[:, seen] * (modes.chi / modes.w**2)[seen]).T
+
+
+def invariant_points(system: System, low: float, high: float, most: int = MOST_POINTS) -> np.ndarray:
+    """Frequency ratios in (low, high) where friction leaves z as it is: U = 0, T(6.9), increasing.
+
+    Without damping amplitude and phase of z are there what they are without friction, and these are all
+    such points: between two of its poles U falls from +inf to -inf, once.  With damping it is the phase.
+    Of more than about `most` points the highest are returned.
+    """
+    modes = system.modes
+    where = _range(modes, low, high, most)
+    return _roots(lambda r: _first_damping(modes, modes.chi[np.newaxis], r), where)[0]
+
+
+def _turned_load(modes: ModalModel) -> np.ndarray:
+    """The load with its largest entry made real and positive, which turns the whole motion with it."""
+    return modes.load * np.exp(-1j * np.angle(modes.load[np.argmax(np.abs(modes.load))]))
+
+
+def one_phase(system: System) -> bool:
+    """Whether all masses are loaded in phase, or in opposition: with two phases no amplitude is invariant."""
+    turned = _turned_load(system.modes)
+    return bool(np.all(np.abs(turned.imag) <= _ONE_PHASE * np.abs(turned)))
+
+
+def _undamped(system: System) -> ModalModel:
+    """The structure without its damping and with a real load."""
+    if not one_phase(system):
+        raise InputError(
+            f"load must have one phase for invariant points of a mass; got {system.modes.load.tolist()}"
+        )
+    modes = system.modes
+    turned = _turned_load(modes)
+    none = np.zeros(modes.w.size)
+    return replace(
+        modes,
+        zeta=none,
+        damping=np.zeros_like(modes.damping),
+        load=turned.real.astype(complex),
+        load_rate=none.astype(complex),
+    )
+
+
+def _responses(modes: ModalModel, rows: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """V_k without damping and with a real load, at no resonance; (n_r, n_rows)."""
+    return (modes.participation(r).real / modes.dynamic_stiffness(r).real) @ rows.T
+
+
+def _displacement_rows(modes: ModalModel, masses: np.ndarray) -> np.ndarray:
+    """phi_k of the masses (counted from 1), (n_masses, n), with exact zeros at nodes of a mode."""
+    rows = modes.phi[masses - 1]
+    return np.where(np.abs(rows) <= 1e-13 * np.abs(modes.phi).max(axis=0), 0.0, rows)
+
+
+def _follows_contact(modes: ModalModel, rows: np.ndarray) -> np.ndarray:
+    """Whether a mass is the contact itself, one against a fixed wall; bool (n_masses,)."""
+    return (not modes.base_motion) & np.isclose(np.abs(rows), np.abs(modes.chi), 1e-12, 1e-13).all(axis=1)
+
+
+def all_mass_invariant_points(
+    system: System, low: float, high: float, most: int = MOST_POINTS
+) -> list[np.ndarray]:
+    """`mass_invariant_points` of every mass, at about the cost of one."""
+    modes = _undamped(system)
+    where = _range(modes, low, high, most)
+    rows = _displacement_rows(modes, np.arange(1, system.n + 1))
+    own = _follows_contact(modes, rows)
+
+    def functions(r: np.ndarray) -> np.ndarray:
+        u = _first_damping(modes, np.vstack((rows, modes.chi)), r)
+        u_k, u_z = u[:, :-1], u[:, -1:]
+        v_k, v = _responses(modes, rows, r), modes.contact_response(r).real[:, np.newaxis]
+        # of the contact itself T(6.10) is never zero, but what it is multiplied with here is
+        return np.column_stack((u_k, np.where(own | (u_k == 0.0), 0.0, v * u_k - 2.0 * v_k * u_z)))
+
+    roots = _roots(functions, where)
+    return [np.union1d(roots[k], roots[k + system.n]) for k in range(system.n)]
+
+
+def mass_invariant_points(
+    system: System, mass: int, low: float, high: float, most: int = MOST_POINTS
+) -> np.ndarray:
+    """The same for the displacement of one mass: U_k = 0, and 1 - 2 V_k U/(V U_k) = 0, T(6.10).
+
+    There friction turns from lowering the monoharmonic amplitude T(5.50) to raising it, or back; of the
+    exact amplitude these are the limits of `inversion_points` for beta -> 0.  Of a mass in contact with a
+    fixed wall they are those of `invariant_points`.  Damping is left out: with it they are approximate,
+    T 7.4.3.  The load must have one phase.
     """
     mass = checks.whole(mass, "mass", least=1, most=system.n)
-    low = checks.number(low, "low", above=0.0)
-    high = checks.number(high, "high", above=low)
-    modes = system.modes
-    row = modes.phi[mass - 1]
+    return all_mass_invariant_points(system, low, high, most)[mass - 1]
 
-    def difference(r: float) -> float:
-        v_k, u_k = _functions(system, r, row)
-        v, u = _functions(system, r, modes.chi)
-        return (v - modes.base_motion) * u_k - 2.0 * v_k * u
 
-    return _roots(difference, _poles(system, low), low, high)
+def first_harmonic_invariant_points(
+    system: System, mass: int, low: float, high: float, most: int = MOST_POINTS
+) -> np.ndarray:
+    """Frequency ratios in (low, high) where no friction changes the first harmonic's amplitude of a mass.
+
+    With the compliance H_k = sum phi_ki chi_i/(w_i^2 - r^2), which the first harmonic of the friction force
+    acts through, abs(X)^2 = V_k^2 + (8 beta^2/pi) H_k (V_k U/V + 2 H_k/pi): its zeros, for all beta alike.
+    In T 4.4 the inversion of frequency-based curves.  Damping is left out; the load must have one phase.
+    """
+    mass = checks.whole(mass, "mass", least=1, most=system.n)
+    modes = _undamped(system)
+    where = _range(modes, low, high, most)
+    rows = _displacement_rows(modes, np.array([mass]))
+    own = _follows_contact(modes, rows)
+    pushed = replace(modes, load=modes.contact.astype(complex))  # H_k is V_k of a load c
+
+    def functions(r: np.ndarray) -> np.ndarray:
+        u = _first_damping(modes, modes.chi[np.newaxis], r)
+        h_k, v_k = _responses(pushed, rows, r), _responses(modes, rows, r)
+        v = modes.contact_response(r).real[:, np.newaxis]
+        over = np.where(own, 1.0, v), np.where(own, 1.0, v_k)  # V_k = V of the contact itself
+        return np.column_stack((h_k, over[1] * u + 2.0 / math.pi * over[0] * h_k))
+
+    return np.unique(np.concatenate(_roots(functions, where)))

@@ -54,6 +54,11 @@ CELL_VARIABLES = {
     "origin": Label(np.int8, "how the cell was decided", regimes.ORIGINS),
     "cycles": Label(np.int32, "excitation periods integrated for the cell"),
     "status": Label(np.int8, "whether the steady state was found, and if not, why", regimes.STATUSES),
+    "amplitude": Label(
+        np.float64,
+        "amplitude of the displacement of each mass, over P/k1 (Y)",
+        comment="largest modulus over the steady state; infinite at a resonance, NaN where unresolved",
+    ),
 }
 
 CURVES = {
@@ -76,6 +81,21 @@ CURVES = {
         comment="thesis (6.2), (6.26); with damping (7.62), approximate",
     ),
     "held_frequency": Label(np.float64, "natural frequencies with the contact held, in units of r"),
+    "held_response": Label(
+        np.float64,
+        "amplitude of the displacement of each mass with the contact held, over P/k1 (Y)",
+        comment="infinite where the held structure resonates",
+    ),
+    "invariant_point": Label(
+        np.float64,
+        "frequency ratios where friction leaves the motion in the contact as it is",
+        comment="zeros of U, thesis (6.9); with damping they are invariant for the phase only",
+    ),
+    "mass_invariant_point": Label(
+        np.float64,
+        "frequency ratios where friction leaves the monoharmonic amplitude of a mass as it is",
+        comment="zeros of U_k and thesis (6.10), undamped; NaN fills up where a mass has fewer",
+    ),
     "beta_lim_high": Label(np.float64, "limit of beta_lim for r to infinity"),
     "beta_stick_high": Label(np.float64, "limit of beta_stick for r to infinity"),
     "S": Label(np.float64, "largest value of the sliding condition over half a period"),
@@ -104,6 +124,11 @@ HISTORY_VARIABLES["event_phase"] = HISTORY_VARIABLES["event_phase"]._replace(
 )
 
 LABELS = {**CELL_VARIABLES, **CURVES, **HISTORY_VARIABLES}
+
+
+def cell_dims(name: str) -> tuple[str, ...]:
+    """Dimensions of a cell variable."""
+    return ("mu", "r", "beta", "dof") if name == "amplitude" else ("mu", "r", "beta")
 
 
 def coordinate(name: str, values: np.ndarray | float) -> xr.Variable:

@@ -10,11 +10,10 @@ import numpy as np
 import xarray as xr
 
 from . import checks, regimes
-from ._kernels.cycle import Limits
-from ._kernels.sweep import Outputs, fill_closed_form, fill_integrated
-from .curves import OneMass, boundary_variables, one_mass_curves
-from .errors import InputError
-from .labels import CELL_VARIABLES, coordinate, label_variable, stamp
+from ._kernels.sweep import Outputs
+from .cells import Cells, Job, make_cells
+from .curves import boundary_variables
+from .labels import CELL_VARIABLES, cell_dims, coordinate, label_variable, stamp
 from .settings import Solver
 from .system import System
 
@@ -43,34 +42,24 @@ class Plan:
         return int(self.ends[-1]) if self.ends.size else 0
 
 
-def one_mass(system: System) -> None:
-    """Refuse what the integrator does not cover yet."""
-    if system.n > 1:
-        raise InputError(
-            f"mass_ratios must have one value for maps and responses: they cover one mass so far, curves "
-            f"(boundaries) any number; got {system.n}"
-        )
-
-
-def plan(found: OneMass, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Plan:
+def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Plan:
     """Sort the cells into those that a formula decides and those that are open (theory.md 6).
 
-    - beta = 0 is linear; where the load in the contact is zero (joined base-wall, r = 0), nothing moves.
+    - beta = 0 is linear; where nothing loads the contact (joined base-wall, r = 0), nothing moves.
     - skip = "exact", mu = 1: continuous below beta_lim, stuck from beta_stick on, whatever the start.
     - skip = "exact", start from rest: one mass with beta >= beta_stick never begins to move.
     - r = 0 has no motion to integrate; a regime, but no number of stops, follows from the boundaries.
     """
-    f = found.frequencies
-    beta_lim, beta_stick = found.curves.beta_lim, found.curves.beta_stick
+    beta_lim, beta_stick = cells.curves.beta_lim, cells.curves.beta_stick
     shape = beta_lim.shape
-    no_load = np.broadcast_to(f.load == 0.0, shape)
-    no_motion = np.broadcast_to(f.r == 0.0, shape)
+    no_load = np.broadcast_to(cells.no_load, shape)
+    no_motion = np.broadcast_to(r == 0.0, shape)
     low = np.full(shape, int(beta[0] == 0.0))
     high = np.full(shape, beta.size)
     stuck_from = np.searchsorted(beta, beta_stick)
     if solver.skip == "exact":
         smooth = (mu == 1.0)[:, np.newaxis]
-        proved = smooth | (solver.start == "rest")
+        proved = smooth | (solver.start == "rest" and cells.rest_sticks)
         high = np.where(proved, stuck_from, high)
         low = np.where(smooth, np.maximum(low, np.searchsorted(beta, beta_lim)), low)
     high = np.where(no_motion, stuck_from, high)
@@ -80,7 +69,7 @@ def plan(found: OneMass, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Pl
     return Plan(low.ravel(), high.ravel(), rows, np.cumsum(open_cells[rows]))
 
 
-def _allocate(shape: tuple[int, int, int], names: Sequence[str]) -> Outputs:
+def _allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> Outputs:
     """Outputs asked for, unresolved until they are filled; the others have no cells."""
     unresolved = {
         "regime": regimes.UNRESOLVED,
@@ -91,10 +80,14 @@ def _allocate(shape: tuple[int, int, int], names: Sequence[str]) -> Outputs:
         "origin": regimes.CLOSED_FORM,
         "cycles": 0,
         "status": regimes.NOT_COMPUTED,
+        "amplitude": np.nan,
     }
+    sizes = dict.fromkeys(unresolved, shape) | {"amplitude": (*shape, dofs)}
     return Outputs(
         **{
-            name: np.full(shape if name in names else (0, 0, 0), value, CELL_VARIABLES[name].dtype)
+            name: np.full(
+                sizes[name] if name in names else (0,) * len(sizes[name]), value, CELL_VARIABLES[name].dtype
+            )
             for name, value in unresolved.items()
         }
     )
@@ -107,7 +100,7 @@ def default_threads() -> int:
     return os.cpu_count() or 1
 
 
-def _run(jobs: Sequence[tuple[Callable[..., None], tuple]], threads: int, done: Callable) -> None:
+def _run(jobs: Sequence[Job], threads: int, done: Callable) -> None:
     """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
 
     This thread only waits, so that an interrupt reaches it at once.
@@ -129,39 +122,20 @@ def _run(jobs: Sequence[tuple[Callable[..., None], tuple]], threads: int, done: 
 
 
 def _fill(
-    system: System,
-    found: OneMass,
-    mu: np.ndarray,
-    beta: np.ndarray,
-    solver: Solver,
-    out: Outputs,
-    threads: int,
-    progress: Progress | None,
+    cells: Cells, work: Plan, columns: int, out: Outputs, threads: int, progress: Progress | None
 ) -> None:
-    work = plan(found, mu, beta, solver)
     n_rows = work.low.size
-    rows_at_once = max(1, ROW_CELLS // beta.size)
+    rows_at_once = max(1, ROW_CELLS // columns)
     stop = np.zeros(1, dtype=np.uint8)
-    limits = Limits(float(solver.cycles), solver.tolerance, solver.steady == "solved")
-    jobs: list[tuple[Callable[..., None], tuple]] = []
+    jobs: list[Job] = []
     sizes: list[int] = []
     for first in range(0, n_rows, rows_at_once):
         last = min(first + rows_at_once, n_rows)
-        jobs.append(
-            (
-                fill_closed_form,
-                (first, last, work.low, work.high, beta, found.frequencies, system.zeta, out),
-            )
-        )
-        sizes.append(0)
+        jobs += cells.closed(first, last, work.low, work.high, out)
+    sizes += [0] * len(jobs)
     for first in range(0, work.cells, TILE):
         last = min(first + TILE, work.cells)
-        arguments = (
-            first, last, work.rows, work.ends, work.low, beta, mu, found.lim, found.curves.beta_stick,
-            found.frequencies, system.zeta, float(solver.steps), limits, solver.start == "moving",
-            out, stop,
-        )  # fmt: skip
-        jobs.append((fill_integrated, arguments))
+        jobs.append(cells.opened(first, last, work.rows, work.ends, work.low, out, stop))
         sizes.append(last - first)
 
     count = 0
@@ -177,6 +151,7 @@ def _fill(
     except BaseException:
         stop[0] = 1  # the kernels look at it at every event
         raise
+    cells.finish(out)
 
 
 def sweep(
@@ -231,19 +206,20 @@ def sweep(
     r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
     beta = checks.axis(beta, "beta", least=0.0)
     mu = checks.axis(mu, "mu", least=1.0)
-    checks.cells(mu.size, r.size, beta.size)
+    checks.cells(mu.size, r.size, beta.size * (system.n if "amplitude" in solver.outputs else 1))
     if threads is None:
         threads = default_threads()
     else:
         checks.whole(threads, "threads", least=1)
-    one_mass(system)
-    found = one_mass_curves(system, r, mu)
-    out = _allocate((mu.size, r.size, beta.size), solver.outputs)
-    _fill(system, found, mu, beta, solver, out, threads, progress)
-    cells = {name: label_variable(name, ("mu", "r", "beta"), getattr(out, name)) for name in solver.outputs}
+    cells = make_cells(system, r, beta, mu, solver)
+    out = _allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
+    _fill(cells, plan(cells, r, mu, beta, solver), beta.size, out, threads, progress)
+    variables = {name: label_variable(name, cell_dims(name), getattr(out, name)) for name in solver.outputs}
     axes = {"mu": mu, "r": r, "beta": beta}
+    if "amplitude" in solver.outputs:
+        axes["dof"] = np.arange(1, system.n + 1)
     ds = xr.Dataset(
-        cells | boundary_variables(found.curves),
+        variables | boundary_variables(cells.curves),
         coords={name: coordinate(name, values) for name, values in axes.items()},
     )
     return stamp(ds, "Motion regimes and stops per cycle", system)

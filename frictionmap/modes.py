@@ -1,18 +1,42 @@
-"""Modes of a structure, participation of contact and load, and the structure with its contact held."""
+"""Modes of a structure, participation of contact and load, and the structure with its contact held.
+
+Everything is dimensionless, as in theory.md 1.
+"""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+_EPS = float(np.finfo(float).eps)
+
+#: An eigen-solver's squared frequencies are off by up to 3 sqrt(n) eps times the largest of them (seen over
+#: structures with repeated frequencies and spreads of up to 10^8).  Two that differ by less than this times
+#: sqrt(n) eps are one to it, and it returns an arbitrary mix of their modes.
+_SAME_FREQUENCY = 8.0
+
+#: Computed modes are orthonormal to a few n eps.  A product with them that vanishes comes out as such a
+#: multiple of the most that it could be; this times n eps of it is above the rounding, and nothing that
+#: double precision could tell from zero is lost.
+_ZERO_PRODUCT = 64.0
+
 
 def solve_modes(mass: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Natural frequencies w (n,) and modes phi (n, n), one a column, with phi^T M phi = 1."""
+    """Natural frequencies w (n,), increasing, and modes phi (n, n), one a column, with phi^T M phi = 1.
+
+    Frequencies that rounding alone tells apart are made equal to the bit.
+    """
     if mass.shape == (1, 1):
         return np.sqrt(stiffness[0] / mass[0]), 1.0 / np.sqrt(mass)
     from scipy.linalg import eigh  # not needed, and not loaded, for one mass
 
     squares, phi = eigh(stiffness, mass)
-    return np.sqrt(squares), phi
+    gap = _SAME_FREQUENCY * np.sqrt(squares.size) * _EPS * squares[-1]
+    first_of_group = np.concatenate(([True], np.diff(squares) > gap))
+    group = np.cumsum(first_of_group) - 1
+    means = np.bincount(group, weights=squares) / np.bincount(group)
+    squares = np.where(np.bincount(group)[group] > 1, means[group], squares)
+    return np.sqrt(np.maximum(squares, 0.0)), phi  # rounding may make one negative
 
 
 def modal_damping(mass: np.ndarray, w: np.ndarray, phi: np.ndarray, zeta: np.ndarray) -> np.ndarray:
@@ -21,12 +45,138 @@ def modal_damping(mass: np.ndarray, w: np.ndarray, phi: np.ndarray, zeta: np.nda
     return (shaped * (2.0 * zeta * w)) @ shaped.T
 
 
+def damped_modes(damping: np.ndarray, w: np.ndarray, phi: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Damping ratios and modes of a structure with the damping matrix C1.
+
+    Returns
+    -------
+    zeta : (n,) from the diagonal of phi^T C1 phi = 2 zeta w
+    phi : (n, n) the modes, turned among those of one frequency so that they diagonalise C1
+    coupling : largest |(phi^T C1 phi)_ij| off the diagonal over sqrt(its ii times its jj), rounding left out
+    """
+    n = w.size
+    phi = phi.copy()
+    for value in np.unique(w):
+        group = np.flatnonzero(w == value)
+        if group.size > 1:
+            part = phi[:, group]
+            phi[:, group] = part @ np.linalg.eigh(part.T @ damping @ part)[1]
+    product = phi.T @ damping @ phi
+    rates = np.diag(product).copy()
+    rounding = _ZERO_PRODUCT * n * _EPS * rates.max(initial=0.0)
+    rates[rates <= rounding] = 0.0
+    for i in range(1, n):  # equal to rounding: made equal, so that the contact can turn these modes
+        if w[i] == w[i - 1] and abs(rates[i] - rates[i - 1]) <= rounding:
+            rates[i] = rates[i - 1]
+    size = np.sqrt(np.outer(rates, rates))
+    beyond = np.abs(product - np.diag(np.diag(product))) - rounding
+    coupling = np.divide(beyond, size, out=np.where(beyond > 0.0, np.inf, 0.0), where=size > 0.0)
+    return rates / (2.0 * w), phi, float(coupling.max(initial=0.0))
+
+
+def gather_contact(w: np.ndarray, zeta: np.ndarray, phi: np.ndarray, contact: np.ndarray) -> np.ndarray:
+    """Modes turned among those of one frequency and damping so that the contact sees one of them only.
+
+    Any basis of such a group is as good: with this one the group has one pole, and the others none.
+    """
+    phi = phi.copy()
+    for value in np.unique(np.column_stack((w, zeta)), axis=0):
+        group = np.flatnonzero((w == value[0]) & (zeta == value[1]))
+        if group.size > 1:
+            part = phi[:, group]
+            # the first column of the orthogonal factor lies along chi, the others across it
+            turn = np.linalg.qr((contact @ part)[:, np.newaxis], mode="complete")[0]
+            phi[:, group] = part @ turn
+    return phi
+
+
+def _modal_sum(stiffness: np.ndarray, parts: np.ndarray) -> np.ndarray:
+    """Sum over modes of parts/stiffness, both (n_r, n); infinite at a resonance with a part."""
+    resonant = (stiffness == 0.0) & (parts != 0.0)
+    terms = np.where(parts != 0.0, parts, 0.0) / np.where(stiffness == 0.0, 1.0, stiffness)
+    return np.where(resonant.any(axis=1), np.inf, np.where(resonant, 0.0, terms).sum(axis=1))
+
+
+def _held_squares(mass: np.ndarray, stiffness: np.ndarray, contact: np.ndarray) -> np.ndarray:
+    """Squared natural frequencies of the undamped structure with c.x = 0 held, (n - 1,)."""
+    if contact.size == 1:
+        return np.empty(0)
+    from scipy.linalg import eigh
+
+    # an orthonormal basis of the motions that leave the contact alone
+    basis = np.linalg.svd(contact[np.newaxis])[2][1:].T
+    return eigh(basis.T @ stiffness @ basis, basis.T @ mass @ basis, eigvals_only=True)
+
+
+def _unfed_resonance(bordered: np.ndarray, mass: np.ndarray, right: np.ndarray) -> np.ndarray | None:
+    """Solution of equations that rounding alone keeps from being singular, if the load feeds no resonance.
+
+    It is the limit, in which the resonant motions are absent: what remains is orthogonal to them with
+    respect to the mass.  None if the load feeds them.
+    """
+    rounding = _ZERO_PRODUCT * right.size * _EPS
+    left, sizes, rows = np.linalg.svd(bordered)
+    kept = sizes > rounding * sizes[0]
+    along = left.conj().T @ right
+    if np.any(np.abs(along[~kept]) > rounding * np.linalg.norm(right)):
+        return None
+    solution = rows[kept].conj().T @ (along[kept] / sizes[kept])
+    resonant = rows[~kept].conj().T
+    shape = mass @ resonant[:-1]
+    amounts = np.linalg.solve(shape.conj().T @ resonant[:-1], shape.conj().T @ solution[:-1])
+    return solution - resonant @ amounts
+
+
+def _solve_held(
+    mass: np.ndarray,
+    stiffness: np.ndarray,
+    damping: np.ndarray,
+    contact: np.ndarray,
+    r: np.ndarray,
+    load: np.ndarray,
+) -> np.ndarray:
+    """The motion with c.x = 0 and the force that holds it, (n_r, n + 1), theory.md 4; `load` is (n_r, n).
+
+    Infinite, all of it, where the load feeds an undamped resonance of the held structure.
+    """
+    n = contact.size
+    bordered = np.zeros((n + 1, n + 1), dtype=complex)
+    # the border in the size of the rest (a power of two rounds nothing): else the units of the structure
+    # would decide what is singular
+    size = 2.0 ** np.round(np.log2(np.abs(stiffness).max()))
+    bordered[:n, n] = size * contact
+    bordered[n, :n] = size * contact
+    units = np.append(np.ones(n), size)
+    held = np.empty((r.size, n + 1), dtype=complex)
+    squares = _held_squares(mass, stiffness, contact)
+    rounding = _ZERO_PRODUCT * n * _EPS * squares.max(initial=0.0)
+    for k, value in enumerate(r):
+        bordered[:n, :n] = stiffness - value**2 * mass + 1j * value * damping
+        right = np.append(load[k], 0.0)
+        if np.any(np.abs(squares - value**2) <= rounding):
+            unfed = _unfed_resonance(bordered, mass, right)
+            if unfed is not None:
+                held[k] = units * unfed
+                continue
+        try:
+            held[k] = units * np.linalg.solve(bordered, right)
+        except np.linalg.LinAlgError:
+            held[k] = np.inf
+    return held
+
+
 @dataclass(frozen=True)
 class ModalModel:
-    """A structure in its modes; nothing here depends on r (theory.md 1).
+    """A structure in its modes; it depends on r through functions of r only (theory.md 1).
 
-    w, phi, zeta: natural frequencies (n,), modes (n, n) and damping ratios (n,); contact: c (n,);
-    load: phasor p (n,); base_motion: s; mass, stiffness, damping: matrices (n, n), damping over r.
+    Attributes
+    ----------
+    w, zeta : (n,) natural frequencies, in the unit of r, and damping ratios
+    phi : (n, n) modes, one a column, with phi^T M phi = 1
+    contact : (n,) c
+    load, load_rate : (n,) complex; the load's phasor is p(r) = load + i r load_rate
+    base_motion : s; if it is 1, load = K ones, and load_rate is zero or C1 ones
+    mass, stiffness, damping : (n, n) M/r^2, K and C1 = C/r
     """
 
     w: np.ndarray
@@ -34,73 +184,138 @@ class ModalModel:
     zeta: np.ndarray
     contact: np.ndarray
     load: np.ndarray
+    load_rate: np.ndarray
     base_motion: int
     mass: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
 
-    @property
+    def _shares(self, vector: np.ndarray) -> np.ndarray:
+        """vector.phi_i (n,), exactly zero where it is zero but for rounding.
+
+        |v.phi_i| <= sqrt(v^T M^-1 v) by Cauchy and Schwarz, as phi_i^T M phi_i = 1.  Left as they are, the
+        1e-17 of an eigen-solver would give U, or V, a pole of a mode that the contact, or the load, does
+        not touch.
+        """
+        shares = vector @ self.phi
+        most = np.sqrt(np.real(np.conj(vector) @ np.linalg.solve(self.mass, vector)))
+        return np.where(np.abs(shares) <= _ZERO_PRODUCT * self.w.size * _EPS * most, 0.0, shares)
+
+    @cached_property
     def chi(self) -> np.ndarray:
-        """Participation of the contact, c.phi_i (n,)."""
-        return self.contact @ self.phi
+        """Participation of the contact, c.phi_i (n,); exactly 0 in modes that the contact does not see."""
+        return self._shares(self.contact)
 
-    @property
-    def participation(self) -> np.ndarray:
-        """Participation of the load, lambda_i = p.phi_i (n,), complex."""
-        return self.load @ self.phi
+    @cached_property
+    def _load_shares(self) -> tuple[np.ndarray, np.ndarray]:
+        """Participation of load and of load_rate."""
+        return self._shares(self.load), self._shares(self.load_rate)
 
-    @property
+    @cached_property
+    def _base_shares(self) -> tuple[np.ndarray, np.ndarray]:
+        """Participation of M ones and of load_rate - C1 ones, the loads of `relative_load`."""
+        ones = np.ones(self.w.size)
+        return self._shares(self.mass @ ones), self._shares(self.load_rate - self.damping @ ones)
+
+    @cached_property
     def inverse_mass(self) -> float:
         """1/m_eff of the contact."""
         return float(self.contact @ np.linalg.solve(self.mass, self.contact))
 
+    def contact_acceleration(self, load: np.ndarray) -> complex:
+        """c^T M^-1 load, acceleration in the contact by a load (n,); exactly 0 where it is but rounding."""
+        across = np.linalg.solve(self.mass, load)
+        most = np.sqrt(self.inverse_mass * np.real(np.conj(load) @ across))  # by Cauchy and Schwarz
+        value = complex(self.contact @ across)
+        return 0.0 if abs(value) <= _ZERO_PRODUCT * self.w.size * _EPS * most else value
+
+    def participation(self, r: np.ndarray) -> np.ndarray:
+        """Participation of the load, lambda_i = p(r).phi_i, complex (n_r, n)."""
+        load, rate = self._load_shares
+        return load + 1j * np.asarray(r, dtype=float)[:, np.newaxis] * rate
+
+    def relative_load(self, r: np.ndarray) -> np.ndarray:
+        """Phasor of the load on x - s, which is x as seen from the contact's other side, (n_r, n).
+
+        With base motion p - (K - r^2 M + i r C1) ones = r^2 M ones + i r (load_rate - C1 ones), without
+        the difference of nearly equal numbers that p - K ones would be; else p.
+        """
+        r = np.asarray(r, dtype=float)[:, np.newaxis]
+        if not self.base_motion:
+            return self.load + 1j * r * self.load_rate
+        ones = np.ones(self.w.size)
+        return r**2 * (self.mass @ ones) + 1j * r * (self.load_rate - self.damping @ ones)
+
+    def relative_participation(self, r: np.ndarray) -> np.ndarray:
+        """relative_load(r).phi_i, (n_r, n)."""
+        if not self.base_motion:
+            return self.participation(r)
+        base, rate = self._base_shares
+        r = np.asarray(r, dtype=float)[:, np.newaxis]
+        return r**2 * base + 1j * r * rate
+
     def dynamic_stiffness(self, r: np.ndarray) -> np.ndarray:
-        """w_i^2 - r^2 + 2 i zeta_i w_i r, shape (r.size, n), without cancellation at resonance."""
+        """w_i^2 - r^2 + 2 i zeta_i w_i r, shape (n_r, n), without cancellation at resonance."""
         r = np.asarray(r, dtype=float)[:, np.newaxis]
         return (self.w - r) * (self.w + r) + 2j * self.zeta * self.w * r
 
     def response(self, r: np.ndarray, weights: np.ndarray) -> np.ndarray:
-        """sum_i weights_i lambda_i/(w_i^2 - r^2 + 2 i zeta_i w_i r), complex (r.size,).
+        """sum_i weights_i lambda_i/(w_i^2 - r^2 + 2 i zeta_i w_i r), complex (n_r,).
 
-        Infinite at an undamped resonance that is both loaded and seen.
+        V_k of a mass with weights phi[k].  Infinite at an undamped resonance that is loaded and weighted.
         """
+        return _modal_sum(self.dynamic_stiffness(r), weights * self.participation(r))
+
+    def contact_response(self, r: np.ndarray) -> np.ndarray:
+        """V of theory.md 2, the response function of z, complex (n_r,); infinite as `response`.
+
+        It is response(r, chi) - s, without the loss of digits that the difference would have at small r.
+        """
+        return _modal_sum(self.dynamic_stiffness(r), self.chi * self.relative_participation(r))
+
+    def _held(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """x - s (n_r, n) and F (n_r,) with the contact held.
+
+        Modes that the contact does not see move as if free and leave F alone: taken out of the equations
+        they cannot make them singular.
+        """
+        seen = self.chi != 0.0
+        if seen.all():
+            held = _solve_held(
+                self.mass, self.stiffness, self.damping, self.contact, r, self.relative_load(r)
+            )
+            return held[:, :-1], held[:, -1]
+        w, zeta = self.w[seen], self.zeta[seen]
+        parts = self.relative_participation(r)
+        held = _solve_held(
+            np.eye(w.size), np.diag(w**2), np.diag(2.0 * zeta * w), self.chi[seen], r, parts[:, seen]
+        )
+        free = np.where(seen, 0.0, parts)
         stiffness = self.dynamic_stiffness(r)
-        part = weights * self.participation
-        resonant = (stiffness == 0.0) & (part != 0.0)
-        terms = np.where(part != 0.0, part, 0.0) / np.where(stiffness == 0.0, 1.0, stiffness)
-        return np.where(resonant.any(axis=1), np.inf, np.where(resonant, 0.0, terms).sum(axis=1))
+        motion = np.column_stack([_modal_sum(stiffness, row * free) for row in self.phi])
+        resonant = np.isinf(held[:, -1])
+        motion += np.where(resonant[:, np.newaxis], 0.0, held[:, :-1]) @ self.phi[:, seen].T
+        motion[resonant] = np.inf
+        return motion, held[:, -1]
+
+    def static_response(self) -> np.ndarray:
+        """Displacements of the masses without friction at r = 0, complex (n,)."""
+        return np.linalg.solve(self.stiffness, self.load)
 
     def held_load(self, r: np.ndarray) -> np.ndarray:
-        """Phasor F of the force that holds the contact at z' = 0, theory.md 4; complex (r.size,).
+        """Phasor F of the force that holds the contact at z' = 0, theory.md 4; complex (n_r,).
 
-        Infinite where the held structure resonates without damping.
+        Infinite where the load feeds an undamped resonance of the held structure.
         """
-        n = self.w.size
-        bordered = np.zeros((r.size, n + 1, n + 1), dtype=complex)
-        bordered[:, :n, :n] = (
-            self.stiffness
-            - (r**2)[:, np.newaxis, np.newaxis] * self.mass
-            + 1j * r[:, np.newaxis, np.newaxis] * self.damping
-        )
-        bordered[:, :n, n] = self.contact
-        bordered[:, n, :n] = self.contact
-        right = np.append(self.load, complex(self.base_motion))
-        held = np.empty(r.size, dtype=complex)
-        for k in range(r.size):
-            try:
-                held[k] = np.linalg.solve(bordered[k], right)[n]
-            except np.linalg.LinAlgError:
-                held[k] = np.inf
-        return held
+        return self._held(r)[1]
+
+    def held_response(self, r: np.ndarray) -> np.ndarray:
+        """Phasors X of the displacements of all masses with the contact held, theory.md 4; (n_r, n).
+
+        Infinite where the load feeds an undamped resonance of the held structure.
+        """
+        return self._held(r)[0] + self.base_motion
 
     def held_frequencies(self) -> np.ndarray:
         """Natural frequencies of the undamped structure with its contact held, shape (n - 1,)."""
-        n = self.w.size
-        if n == 1:
-            return np.empty(0)
-        # an orthonormal basis of the motions that leave the contact alone: c.x = 0
-        from scipy.linalg import eigh
-
-        basis = np.linalg.svd(self.contact[np.newaxis])[2][1:].T
-        squares = eigh(basis.T @ self.stiffness @ basis, basis.T @ self.mass @ basis, eigvals_only=True)
-        return np.sqrt(squares)
+        return np.sqrt(_held_squares(self.mass, self.stiffness, self.contact))

@@ -56,7 +56,8 @@ STATUSES = (
     Code(
         MARGINAL,
         "marginal",
-        "undamped at r = 1/(2n): a continuum of steady states, chosen by the starting state; where the "
+        "undamped at an even sub-multiple of a natural frequency (r = 1/(2n)), or at one of the held "
+        "structure that the load does not drive: a continuum of steady states, chosen by the start; where the "
         "regime is continuous the amplitude given is the symmetric one's; add a little damping",
     ),
     Code(

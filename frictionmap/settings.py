@@ -16,6 +16,7 @@ OUTPUTS = (
     "origin",
     "cycles",
     "status",
+    "amplitude",
 )
 
 

@@ -1,13 +1,13 @@
-"""One steady state in time: motion of the mass and of the contact, friction force, starts and stops."""
+"""One steady state in time: motion of the masses and of the contact, friction force, starts and stops."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
 from . import checks, regimes
-from ._kernels.continuous import Oscillator
-from ._kernels.cycle import Limits
+from ._kernels.continuous import Oscillator, orbit_phase
 from ._kernels.history import (
     COLUMNS,
     COS,
@@ -24,10 +24,11 @@ from ._kernels.history import (
 from ._kernels.orbits import SHORTEST_STOP
 from ._kernels.phases import MAX_TERMS, Step, step_constants
 from ._kernels.sweep import FINE_STEPS, integrate_one, normalised_friction
-from .curves import OneMass, boundary_variables, one_mass_curves
+from .cells import Cells, OneMassCells, StructureCells, limits, make_cells, status_meaning
+from .curves import boundary_variables
 from .errors import InputError, NoSteadyState
 from .labels import CELL_VARIABLES, coordinate, label_variable, stamp
-from .maps import one_mass, plan
+from .maps import plan
 from .settings import Solver
 from .system import System
 
@@ -37,42 +38,92 @@ POINTS = 2000
 _TURN = 2.0 * math.pi
 
 
-def _slides(
-    found: OneMass, beta: float, mu: float, solver: Solver, zeta: float
-) -> tuple[Step, float, np.ndarray, float]:
+@dataclass(frozen=True)
+class Question:
+    """One steady state that is asked for."""
+
+    system: System
+    r: float
+    beta: float
+    mu: float
+    solver: Solver
+    points: int
+
+
+@dataclass(frozen=True)
+class History:
+    """A steady state in time; events are the starts of slides and stops, in order."""
+
+    period: int
+    tau: np.ndarray
+    x: np.ndarray  # (n, tau.size)
+    v: np.ndarray
+    z: np.ndarray  # (tau.size,)
+    friction: np.ndarray
+    phase: np.ndarray
+    events: tuple[np.ndarray, np.ndarray, np.ndarray]  # tau, phase that begins, z
+    durations: np.ndarray  # of the stops
+    amplitude: float
+    stuck: bool  # for good
+
+
+def _times(period: int, points: int) -> np.ndarray:
+    return np.linspace(0.0, _TURN * period, points * period + 1)
+
+
+def _since(tau: np.ndarray, start: float, total: float) -> np.ndarray:
+    """Times from `start` on, within one steady period."""
+    since = np.mod(tau - start, total)
+    since[since > total * (1.0 - 1e-15)] = 0.0  # rounding must not place a sample past the end
+    return since
+
+
+def _no_steady_state(question: Question, why: str) -> NoSteadyState:
+    return NoSteadyState(f"r = {question.r:g}, beta = {question.beta:g}, mu = {question.mu:g}: {why}")
+
+
+_UNBOUNDED = "an undamped resonance; the motion grows without bound"
+
+
+def _decided(cells: Cells, question: Question) -> int:
+    """The regime that a formula gives; unresolved where the cell is open."""
+    beta, mu = np.array([question.beta]), np.array([question.mu])
+    work = plan(cells, np.array([question.r]), mu, beta, question.solver)
+    if work.cells:
+        return regimes.UNRESOLVED
+    return regimes.CONTINUOUS if work.low[0] else regimes.PERMANENT_STICKING
+
+
+def _slides(question: Question, cells: OneMassCells) -> tuple[Step, float, np.ndarray, float]:
     """(step, b, rows, rest): the slides of the steady state over one period; none where stuck at `rest`."""
-    f = found.frequencies
-    work = plan(found, np.array([mu]), np.array([beta]), solver)
-    r, load, phase = f.r[0], f.load[0], f.phase[0]
-    if r == 0.0:
-        raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
+    r, beta, mu, solver, zeta = (
+        question.r, question.beta, question.mu, question.solver, question.system.zeta
+    )  # fmt: skip
+    found, f = cells.found, cells.found.frequencies
+    load, phase = f.load[0], f.phase[0]
     step = step_constants(r, zeta, float(solver.steps))
-    oscillator = Oscillator(r, zeta, f.v_abs[0], f.v_arg[0], f.u[0], f.g[0])
+    oscillator = Oscillator(r, zeta, f.v_abs[0], f.v_arg[0], f.u[0], f.g[0], f.marginal[0])
     b, mu_b = normalised_friction(beta, load, mu, found.curves.beta_stick[0, 0])
     scratch = np.empty(MAX_TERMS)
     rest = 0.0
     rows = np.empty((0, COLUMNS))
-    if work.cells:
-        limits = Limits(float(solver.cycles), solver.tolerance, solver.steady == "solved")
+    regime = _decided(cells, question)
+    if regime == regimes.UNRESOLVED:
         cell = integrate_one(
             beta, mu, found.lim[0, 0], found.curves.beta_stick[0, 0], load, phase, oscillator, step,
-            step_constants(r, zeta, max(float(solver.steps), FINE_STEPS)), limits, solver.start == "moving",
+            step_constants(r, zeta, max(float(solver.steps), FINE_STEPS)), limits(solver),
+            solver.start == "moving",
         )  # fmt: skip
         if cell.period == 0:
-            status = next(code for code in regimes.STATUSES if code.value == cell.status)
-            raise NoSteadyState(f"r = {r:g}, beta = {beta:g}, mu = {mu:g}: {status.meaning}")
+            raise _no_steady_state(question, status_meaning(cell.status))
         regime, rest = cell.regime, cell.sign * cell.z
         rows = np.empty((cell.events, COLUMNS))
-    else:
-        regime = regimes.CONTINUOUS if work.low[0] else regimes.PERMANENT_STICKING
     if regime == regimes.PERMANENT_STICKING:
-        return step, b, rows, rest
+        return step, b, np.empty((0, COLUMNS)), rest
     if rows.size:
         orbit_slides(step, r, b, mu_b, cell.z, cell.cos, cell.sin, cell.sign, rows, scratch)
     elif math.isinf(oscillator.v_abs):
-        raise NoSteadyState(
-            f"r = {r:g}, beta = {beta:g}: an undamped resonance; the motion grows without bound"
-        )
+        raise _no_steady_state(question, _UNBOUNDED)
     else:
         rows = np.empty((2, COLUMNS))
         continuous_slides(step, oscillator, b, rows, scratch)
@@ -91,6 +142,144 @@ def _events(rows: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray, np.ndarray
     phases = np.concatenate((rows[:, SIGN], np.zeros(int(stops.sum()))))
     places = np.concatenate((rows[:, SIGN] * rows[:, Z], (rows[:, SIGN] * rows[:, Z_END])[stops]))
     return times, phases, places
+
+
+def _one_mass_history(question: Question, cells: OneMassCells) -> History:
+    f = cells.found.frequencies
+    load, lead = f.load[0], f.phase[0]
+    step, b, rows, rest = _slides(question, cells)
+    durations = rows[:, LENGTH] + rows[:, WAIT]
+    total = float(durations.sum())
+    period = max(1, round(total / _TURN))
+    tau = _times(period, question.points)
+    z = np.full(tau.size, rest)
+    v = np.zeros(tau.size)
+    friction = np.cos(tau + lead) - rest
+    phase = np.zeros(tau.size, dtype=np.int8)
+    events = (np.empty(0), np.empty(0), np.empty(0))
+    if rows.size:
+        begin = np.concatenate(([0.0], np.cumsum(durations)[:-1]))
+        start = math.atan2(rows[0, SIGN] * rows[0, SIN], rows[0, SIGN] * rows[0, COS]) - lead
+        since = _since(tau, start, total)
+        order = np.argsort(since, kind="stable")
+        places, speeds, forces = np.empty((3, tau.size))
+        senses = np.empty(tau.size, dtype=np.int8)
+        sample_slides(step, b, rows, since[order], places, speeds, forces, senses, np.empty(MAX_TERMS))
+        z[order], v[order], friction[order] = places, speeds, forces
+        phase[order] = senses
+        times, begins, at = _events(rows, begin)
+        times = np.mod(times + start, total)
+        order = np.argsort(times, kind="stable")
+        events = (times[order], begins[order], load * at[order])
+    base = question.system.base_motion
+    z, v = load * z, load * v
+    return History(
+        period, tau, (z + base * np.cos(tau))[np.newaxis], (v - base * np.sin(tau))[np.newaxis], z,
+        load * friction, phase, events, rows[:, WAIT][rows[:, WAIT] > SHORTEST_STOP],
+        load * np.abs(rows[:, Z_END]).max(initial=0.0), not rows.size,
+    )  # fmt: skip
+
+
+def _structure_phases(question: Question, cells: StructureCells) -> tuple[np.ndarray, float]:
+    """(rows, rest): the phases of the steady state over one period; none where stuck at `rest`."""
+    from ._kernels import structure_history as history
+    from ._kernels.oscillators import make_scratch
+    from ._kernels.returns import make_workspace
+    from ._kernels.structure import make_structure
+    from ._kernels.structure_sweep import one_structure
+
+    found, solver, beta = cells.found, question.solver, question.beta
+    n = found.seen.size
+    steps = float(solver.steps)
+    columns = history.STATE + 2 * n
+    regime = _decided(cells, question)
+    events = 0
+    rest = 0.0
+    state = np.empty((2, n))
+    if regime == regimes.UNRESOLVED:
+        cell = one_structure(
+            beta, question.mu, cells.curves.beta_lim[0, 0], question.r, found.model, found.loads, found.orbit,
+            bool(found.marginal[0]), found.starts, steps, limits(solver), state,
+        )  # fmt: skip
+        if cell.period == 0:
+            raise _no_steady_state(question, status_meaning(cell.status))
+        regime, events, rest = cell.regime, cell.events, cell.sign * cell.z
+    if regime == regimes.PERMANENT_STICKING:
+        return np.empty((0, columns)), rest
+    st = make_structure(found.model, found.loads, 0, question.r, steps)
+    work = make_workspace(n)
+    if events:
+        rows = np.empty((2 * events, columns))
+        state[1] /= st.rate
+        count = history.orbit_phases(
+            st, beta, question.mu * beta, state, cell.cos, cell.sin, cell.sign, cell.net, events, rows, work,
+            make_scratch(n),
+        )  # fmt: skip
+        rows = rows[:count]
+    elif math.isinf(found.orbit.v_abs[0]):
+        raise _no_steady_state(question, _UNBOUNDED)
+    else:
+        rows = np.empty((1, columns))
+        orbit = found.orbit
+        phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], beta)
+        history.continuous_phase(st, orbit, 0, beta, phase, rows, work)
+    if round(float(rows[:, history.LENGTH].sum()) / math.pi) % 2:  # it returned as its mirror image
+        mirrored = rows.copy()
+        mirrored[:, history.SIGN] *= -1.0
+        rows = np.concatenate((rows, mirrored))
+    return rows, 0.0
+
+
+def _structure_history(question: Question, cells: StructureCells) -> History:
+    from ._kernels import structure_history as history
+    from ._kernels.oscillators import make_scratch
+    from ._kernels.returns import make_workspace
+    from ._kernels.structure import make_structure
+
+    found = cells.found
+    if found.resonant.any():
+        raise _no_steady_state(question, _UNBOUNDED)
+    rows, rest = _structure_phases(question, cells)
+    n = found.seen.size
+    total = float(rows[:, history.LENGTH].sum())
+    period = max(1, round(total / _TURN))
+    tau = _times(period, question.points)
+    turn = np.exp(1j * tau)
+    if not rows.size:
+        held = found.held[0][:, np.newaxis] * turn
+        force = question.system.modes.held_load(np.array([question.r]))[0] * turn
+        return History(
+            period, tau, held.real + found.shapes.lift[:, np.newaxis] * rest, -held.imag,
+            np.full(tau.size, rest), force.real - found.model.stiffness * rest, np.zeros(tau.size, np.int8),
+            (np.empty(0), np.empty(0), np.empty(0)), np.empty(0), 0.0, True,
+        )  # fmt: skip
+    sign = rows[0, history.SIGN]
+    start = math.atan2(sign * rows[0, history.SIN], sign * rows[0, history.COS])
+    since = _since(tau, start, total)
+    order = np.argsort(since, kind="stable")
+    st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
+    coordinates, velocities = np.empty((2, n, tau.size))
+    z, friction = np.empty((2, tau.size))
+    sense = np.empty(tau.size, dtype=np.int8)
+    history.sample_phases(
+        st, question.beta, rows, rows.shape[0], since[order], coordinates, velocities, z, friction, sense,
+        make_workspace(n), make_scratch(n),
+    )  # fmt: skip
+    back = np.empty_like(order)
+    back[order] = np.arange(order.size)
+    alone = (found.alone_re[0] + 1j * found.alone_im[0])[:, np.newaxis] * turn
+    begin = np.concatenate(([0.0], np.cumsum(rows[:, history.LENGTH])[:-1]))
+    times = np.mod(begin + start, total)
+    # a slide starts where the phase before it ended
+    places = np.roll(rows[:, history.SIGN] * rows[:, history.Z_END], 1)
+    chosen = np.argsort(times, kind="stable")
+    stops = rows[:, history.SENSE] == 0.0
+    return History(
+        period, tau, (found.shapes.free @ coordinates)[:, back] + alone.real,
+        (found.shapes.free @ velocities)[:, back] - alone.imag, z[back], friction[back], sense[back],
+        (times[chosen], (rows[:, history.SIGN] * rows[:, history.SENSE])[chosen], places[chosen]),
+        rows[stops, history.LENGTH], float(np.abs(rows[:, history.Z_END]).max()), False,
+    )  # fmt: skip
 
 
 def response(
@@ -142,64 +331,41 @@ def response(
     beta = checks.number(beta, "beta", least=0.0)
     mu = checks.number(mu, "mu", least=1.0)
     checks.whole(points, "points", least=2)
-    one_mass(system)
-    found = one_mass_curves(system, np.array([r]), np.array([mu]))
-    load, lead = found.frequencies.load[0], found.frequencies.phase[0]
-    step, b, rows, rest = _slides(found, beta, mu, solver, system.zeta)
-
-    durations = rows[:, LENGTH] + rows[:, WAIT]
-    total = float(durations.sum())
-    period = max(1, round(total / _TURN))
-    tau = np.linspace(0.0, _TURN * period, points * period + 1)
-    z = np.full(tau.size, rest)
-    v = np.zeros(tau.size)
-    friction = np.cos(tau + lead) - rest
-    phase = np.zeros(tau.size, dtype=np.int8)
-    event_tau, event_phase, event_z = np.empty((3, 0))
-    if rows.size:
-        begin = np.concatenate(([0.0], np.cumsum(durations)[:-1]))
-        start = math.atan2(rows[0, SIGN] * rows[0, SIN], rows[0, SIGN] * rows[0, COS]) - lead
-        since = np.mod(tau - start, total)
-        since[since > total * (1.0 - 1e-15)] = 0.0  # rounding must not place a sample past the end
-        order = np.argsort(since, kind="stable")
-        places, speeds, forces = np.empty((3, tau.size))
-        senses = np.empty(tau.size, dtype=np.int8)
-        sample_slides(step, b, rows, since[order], places, speeds, forces, senses, np.empty(MAX_TERMS))
-        z[order], v[order], friction[order] = places, speeds, forces
-        phase[order] = senses
-        event_tau, event_phase, event_z = _events(rows, begin)
-        event_tau = np.mod(event_tau + start, total)
-        order = np.argsort(event_tau, kind="stable")
-        event_tau, event_phase, event_z = event_tau[order], event_phase[order], event_z[order]
-
-    stuck = rows[:, WAIT][rows[:, WAIT] > SHORTEST_STOP]
+    if r == 0.0:
+        raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
+    question = Question(system, r, beta, mu, solver, points)
+    cells = make_cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
+    if isinstance(cells, OneMassCells):
+        history = _one_mass_history(question, cells)
+    else:
+        assert isinstance(cells, StructureCells)
+        history = _structure_history(question, cells)
+    stops = history.durations.size
+    regime = regimes.STICK_SLIP if stops else regimes.CONTINUOUS
     summary = {
-        "regime": regimes.STICK_SLIP if stuck.size else regimes.CONTINUOUS,
-        "stops_per_cycle": stuck.size / period,
-        "contact_amplitude": load * np.abs(rows[:, Z_END]).max(initial=0.0),
-        "stuck_fraction": stuck.sum() / total if rows.size else 1.0,
-        "period": period,
+        "regime": regimes.PERMANENT_STICKING if history.stuck else regime,
+        "stops_per_cycle": math.nan if history.stuck else stops / history.period,
+        "contact_amplitude": history.amplitude,
+        "stuck_fraction": 1.0 if history.stuck else history.durations.sum() / (_TURN * history.period),
+        "period": history.period,
     }
-    if not rows.size:
-        summary |= {"regime": regimes.PERMANENT_STICKING, "stops_per_cycle": math.nan}
-
-    base = system.base_motion
-    z, v, friction = load * z, load * v, load * friction
+    times, begins, places = history.events
     variables = {
-        "x": (("dof", "tau"), (z + base * np.cos(tau))[np.newaxis]),
-        "v": (("dof", "tau"), (v - base * np.sin(tau))[np.newaxis]),
-        "z": (("tau",), z),
-        "friction": (("tau",), friction),
-        "phase": (("tau",), phase),
-        "event_tau": (("event",), event_tau),
-        "event_phase": (("event",), event_phase.astype(np.int8)),
-        "event_z": (("event",), load * event_z),
+        "x": (("dof", "tau"), history.x),
+        "v": (("dof", "tau"), history.v),
+        "z": (("tau",), history.z),
+        "friction": (("tau",), history.friction),
+        "phase": (("tau",), history.phase),
+        "event_tau": (("event",), times),
+        "event_phase": (("event",), begins.astype(np.int8)),
+        "event_z": (("event",), places),
     }
+    dofs = np.arange(1, system.n + 1)
     ds = xr.Dataset(
         {name: label_variable(name, dims, values) for name, (dims, values) in variables.items()},
-        coords={"tau": coordinate("tau", tau), "dof": coordinate("dof", np.arange(1, 2))},
+        coords={"tau": coordinate("tau", history.tau), "dof": coordinate("dof", dofs)},
     )
-    ds = ds.assign({name: v[0, 0] for name, v in boundary_variables(found.curves).items()})
+    ds = ds.assign({name: v[0, 0] for name, v in boundary_variables(cells.curves).items()})
     ds = ds.assign(
         {name: label_variable(name, (), CELL_VARIABLES[name].dtype(value)) for name, value in summary.items()}
     )

@@ -44,3 +44,9 @@ def all_boundaries() -> tuple[dict, list[dict]]:
 def steady_rows() -> list[dict]:
     """Rows of the 22-digit steady states for one mass."""
     return [row for row in _rows("steady_states.json")[1] if row["system"].startswith("sdof")]
+
+
+@pytest.fixture(scope="session")
+def all_steady() -> tuple[dict, list[dict]]:
+    """Systems and rows of the 22-digit steady states."""
+    return _rows("steady_states.json")

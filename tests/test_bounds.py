@@ -54,10 +54,10 @@ def test_nothing_can_stop_within_the_radius():
         r, mu = 10.0 ** rng.uniform(-1.0, 1.5), float(rng.choice([1.0, rng.uniform(1.0, 3.0)]))
         found = one_mass_curves(fm.System(damping_ratios=zeta), np.array([r]), np.array([mu]))
         f = found.frequencies
-        oscillator = Oscillator(r, zeta, f.v_abs[0], f.v_arg[0], f.u[0], f.g[0])
+        oscillator = Oscillator(r, zeta, f.v_abs[0], f.v_arg[0], f.u[0], f.g[0], False)
         b = float(found.lim[0, 0]) * min(1.0 - 1e-9, 10.0 ** rng.uniform(-6.0, 0.0))
         amplitude = continuous_amplitude(oscillator.v_abs, oscillator.u, oscillator.g, b)
-        phase = orbit_phase(oscillator, b)
+        phase = orbit_phase(oscillator.v_abs, oscillator.v_arg, oscillator.u, b)
         step = step_constants(r, zeta, 64.0)
         radius = stop_free_radius(step, oscillator, b, mu * b, amplitude, phase)
         tau = np.linspace(0.0, math.pi, 8001)

@@ -191,6 +191,28 @@ def test_an_override_may_add_a_table(tmp_path):
     assert config.solver.cycles == 7
 
 
+def test_matrices_are_looked_for_beside_the_configuration(base, tmp_path, monkeypatch):
+    for name in ("elsewhere", "data"):
+        (tmp_path / name).mkdir()
+    np.savez(tmp_path / "data" / "frame.npz", M=np.eye(2), K=np.array([[2.0, -1.0], [-1.0, 1.0]]))
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    overrides = ["system.matrices=data/frame.npz", "system.frequency_scale=0.5", "system.stiffness_scale=2"]
+    config = load_config(base, overrides)
+    assert config.system == System(
+        contact="joined-base-wall", damping_ratios=0.25, matrices=tmp_path / "data" / "frame.npz",
+        frequency_scale=0.5, stiffness_scale=2.0,
+    )  # fmt: skip
+    assert tomllib.loads(config.text)["system"]["matrices"] == "data/frame.npz"
+    assert_same(load_config(written(tmp_path, config.text)), config)
+
+
+def test_excitation_and_damping_reference(base):
+    overrides = ["system.contact=fixed-wall", "system.excitation=base", "system.damping_reference=base"]
+    system = load_config(base, overrides).system
+    assert system == System(excitation="base", damping_reference="base", damping_ratios=0.25)
+    assert system.contact_load(np.array([2.0])).tolist() == [1.0 + 1.0j]
+
+
 def test_the_text_with_overrides_gives_the_same_problem(base, tmp_path):
     overrides = [
         "grid.r.step=0.05",

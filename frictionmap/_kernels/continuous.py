@@ -16,6 +16,7 @@ class Oscillator(NamedTuple):
     v_arg: float
     u: float
     g: float
+    marginal: bool  # undamped at r = 1/(2n), where the continuous motions are a continuum
 
 
 @kernel
@@ -30,11 +31,10 @@ def continuous_amplitude(v_abs, u, g, b):
 
 
 @kernel
-def orbit_phase(oscillator, b):
-    """Load phase at a maximum of z of the continuous orbit."""
-    swing = b * oscillator.u
-    root = math.sqrt((oscillator.v_abs - swing) * (oscillator.v_abs + swing))
-    return math.atan2(-swing, root) - oscillator.v_arg
+def orbit_phase(v_abs, v_arg, u, b):
+    """Load phase phi_z at a maximum of z of the continuous orbit, theory.md 2."""
+    swing = b * u
+    return math.atan2(-swing, math.sqrt((v_abs - swing) * (v_abs + swing))) - v_arg
 
 
 @kernel
@@ -97,11 +97,3 @@ def stop_free_radius(step, oscillator, b, mu_b, amplitude, phase):
         w = w1
         load = load1
     return radius
-
-
-@kernel
-def is_even_submultiple(r):
-    """Whether r is 1/(2n) as exactly as a double can say it."""
-    half = 0.5 / r
-    n = math.floor(half + 0.5)
-    return n >= 1.0 and n < 1e6 and r == 0.5 / n

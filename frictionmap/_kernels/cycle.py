@@ -30,7 +30,6 @@ from ..regimes import (
 from .continuous import (
     continuous_amplitude,
     distance_to_orbit,
-    is_even_submultiple,
     orbit_phase,
     stop_free_radius,
 )
@@ -45,7 +44,7 @@ from .events import (
     slide,
 )
 from .jit import kernel
-from .orbits import measure_orbit, solve_orbit, stop_ends
+from .orbits import first_push, measure_orbit, solve_orbit, stop_ends
 
 #: Events remembered; a steady period with more is not recognised.  The rows of the memory:
 HISTORY = 2048
@@ -103,12 +102,13 @@ class Cell(NamedTuple):
     sin: float
     sign: float  # -1.0 where that state is the mirror image of the true one
     events: int  # slides until it returns; 0 where stuck and for the closed form
+    net: float  # force in the contact at its start, friction taken off
 
 
 @kernel
 def _cell(regime, status, origin, stops, amplitude, stuck, period, cycles):
     nan = math.nan
-    return Cell(regime, status, origin, stops, amplitude, stuck, period, cycles, nan, nan, nan, 1.0, 0)
+    return Cell(regime, status, origin, stops, amplitude, stuck, period, cycles, nan, nan, nan, 1.0, 0, nan)
 
 
 @kernel
@@ -118,18 +118,17 @@ def _unresolved(status, cycles):
 
 
 @kernel
-def stuck_cell(origin, cycles, z, sign):
+def stuck_cell(origin, status, cycles, z, sign):
     """Permanent sticking at z."""
     nan = math.nan
-    return Cell(PERMANENT_STICKING, RESOLVED, origin, nan, 0.0, 1.0, 1, cycles, z, nan, nan, sign, 0)
+    return Cell(PERMANENT_STICKING, status, origin, nan, 0.0, 1.0, 1, cycles, z, nan, nan, sign, 0, nan)
 
 
 @kernel
 def continuous_cell(oscillator, b, origin, cycles):
     """Continuous motion by the closed form."""
-    marginal = oscillator.zeta == 0.0 and b > 0.0 and is_even_submultiple(oscillator.r)
     amplitude = continuous_amplitude(oscillator.v_abs, oscillator.u, oscillator.g, b)
-    status = MARGINAL if marginal else RESOLVED
+    status = MARGINAL if oscillator.marginal and b > 0.0 else RESOLVED
     return _cell(CONTINUOUS, status, origin, 0.0, amplitude, 0.0, 1, cycles)
 
 
@@ -150,7 +149,7 @@ def _orbit_cell(step, r, b, mu_b, z, c, s, sign, code, count, origin, cycles, wo
     regime = STICK_SLIP if stops > 0 else CONTINUOUS
     return Cell(
         regime, RESOLVED, origin, 2.0 * stops / halves, amplitude, stuck, period, cycles,
-        z, c, s, sign, slides,
+        z, c, s, sign, slides, first_push(b, mu_b, z, c),
     )  # fmt: skip
 
 
@@ -273,7 +272,7 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
     amplitude = phase = radius = 0.0
     if orbit:
         amplitude = continuous_amplitude(oscillator.v_abs, oscillator.u, oscillator.g, b)
-        phase = orbit_phase(oscillator, b)
+        phase = orbit_phase(oscillator.v_abs, oscillator.v_arg, oscillator.u, b)
         radius = stop_free_radius(fine, oscillator, b, mu_b, amplitude, phase)
 
     time = 0.0
@@ -311,7 +310,7 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
         time += n * step.h
         code, z, c, s, push, wait = after_slide(b, mu_b, z, c, s)
         if code == STUCK:
-            return stuck_cell(INTEGRATED, time / _TURN, z, sign)
+            return stuck_cell(INTEGRATED, RESOLVED, time / _TURN, z, sign)
         w = 0.0
         acceleration = step.stiffness * push
         if code == REVERSE or code == STOP_THEN_BACK:
@@ -331,7 +330,7 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
             stops, stuck, largest = 0, 0.0, 0.0
         largest = max(largest, size)
         if unique and mu_b >= 1.0 and _creeps(oscillator.r, mu_b, history, events):
-            return stuck_cell(INTEGRATED, time / _TURN, math.copysign(mu_b - 1.0, z), sign)
+            return stuck_cell(INTEGRATED, RESOLVED, time / _TURN, math.copysign(mu_b - 1.0, z), sign)
         if stopped:
             stops += 1
             stuck += wait
@@ -388,7 +387,7 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
             step, oscillator.r, b, mu_b, z, c, s, sign, code, slides, SOLVED if solved else INTEGRATED,
             time / _TURN, work,
         )  # fmt: skip
-    if oscillator.zeta == 0.0 and is_even_submultiple(oscillator.r) and b < b_lim:
+    if oscillator.marginal and b < b_lim:
         return _unresolved(MARGINAL, time / _TURN)
     if old_stops == 0 or (running > 0 and stops == 0):
         return _unresolved(NOT_REACHED, time / _TURN)

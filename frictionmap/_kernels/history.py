@@ -45,7 +45,7 @@ def _record(step, r, b, mu_b, z, c, s, push, sign, rows, work):
 def continuous_slides(step, oscillator, b, rows, work):
     """The slides of the continuous orbit, from its minimum on; `rows` has shape (2, COLUMNS)."""
     z = -continuous_amplitude(oscillator.v_abs, oscillator.u, oscillator.g, b)
-    phase = orbit_phase(oscillator, b)
+    phase = orbit_phase(oscillator.v_abs, oscillator.v_arg, oscillator.u, b)
     c = -math.cos(phase)
     return _record(step, oscillator.r, b, b, z, c, -math.sin(phase), c - z - b, 1.0, rows, work)
 

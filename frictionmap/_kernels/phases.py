@@ -96,19 +96,28 @@ def expand(step, b, z, w, acceleration, c, s, out):
 
 
 @kernel
-def step_constants(r, zeta, steps):
-    """The `Step` of frequency ratio r > 0 for `steps` scan steps per period of the fastest part."""
-    a = 1.0 / r
-    fastest = a * (zeta + math.sqrt((zeta - 1.0) * (zeta + 1.0))) if zeta > 1.0 else a
-    # What the fastest part turns in one step.  The steps of a period are made odd in number, so that a
-    # slide of half a period (every one of a continuous motion) ends inside a step, not next to a node.
+def series_terms(steps):
+    """(turn, terms): what the fastest part turns in one step, and the terms of the Taylor series in it.
+
+    The steps of a period are made odd in number, so that a slide of half a period (every one of a
+    continuous motion) ends inside a step, not next to a node.
+    """
     turn = 2.0 * math.pi / (2.0 * math.floor(0.5 * steps) + 1.0)
-    h = turn / max(1.0, fastest)
     terms = 4
     size = turn * turn * turn * turn / 24.0
     while size > _NEGLIGIBLE and terms < MAX_TERMS:
         terms += 1
         size *= turn / terms
+    return turn, terms
+
+
+@kernel
+def step_constants(r, zeta, steps):
+    """The `Step` of frequency ratio r > 0 for `steps` scan steps per period of the fastest part."""
+    a = 1.0 / r
+    fastest = a * (zeta + math.sqrt((zeta - 1.0) * (zeta + 1.0))) if zeta > 1.0 else a
+    turn, terms = series_terms(steps)
+    h = turn / max(1.0, fastest)
     stiffness = (a * h) * (a * h)
     damping = 2.0 * zeta * a * h
     series = np.empty((5, terms))

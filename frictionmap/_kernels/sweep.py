@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..regimes import CLOSED_FORM
+from ..regimes import CLOSED_FORM, RESOLVED
 from .continuous import Oscillator
 from .cycle import (
     HISTORY,
@@ -29,6 +29,7 @@ class Frequencies(NamedTuple):
     v_arg: np.ndarray
     u: np.ndarray
     g: np.ndarray
+    marginal: np.ndarray  # bool; see Oscillator
 
 
 class Outputs(NamedTuple):
@@ -42,10 +43,11 @@ class Outputs(NamedTuple):
     origin: np.ndarray
     cycles: np.ndarray
     status: np.ndarray
+    amplitude: np.ndarray  # has the masses for a fourth dimension
 
 
 @kernel
-def _store(out, m, i, j, cell, load):
+def store(out, m, i, j, cell, load):
     if out.regime.size:
         out.regime[m, i, j] = cell.regime
     if out.stops_per_cycle.size:
@@ -68,7 +70,7 @@ def _store(out, m, i, j, cell, load):
 def _oscillator(frequencies, zeta, i):
     return Oscillator(
         frequencies.r[i], zeta, frequencies.v_abs[i], frequencies.v_arg[i],
-        frequencies.u[i], frequencies.g[i],
+        frequencies.u[i], frequencies.g[i], frequencies.marginal[i],
     )  # fmt: skip
 
 
@@ -126,12 +128,12 @@ def fill_closed_form(first, last, low, high, beta, frequencies, zeta, out):
         oscillator = _oscillator(frequencies, zeta, i)
         load = frequencies.load[i]
         for j in range(low[row]):
-            _store(out, m, i, j, continuous_cell(oscillator, beta[j] / load, CLOSED_FORM, 0.0), load)
+            store(out, m, i, j, continuous_cell(oscillator, beta[j] / load, CLOSED_FORM, 0.0), load)
         if oscillator.r == 0.0:
             for j in range(low[row], high[row]):
-                _store(out, m, i, j, quasi_static_cell(), load)
+                store(out, m, i, j, quasi_static_cell(), load)
         for j in range(high[row], beta.size):
-            _store(out, m, i, j, stuck_cell(CLOSED_FORM, 0.0, 0.0, 1.0), load)
+            store(out, m, i, j, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
 
 
 @kernel
@@ -173,7 +175,7 @@ def fill_integrated(
             found = steady_cell(
                 step, fine, oscillator, b, mu_b, lim[m, i], z, v, c, s, limits, stop, history, work
             )
-            _store(out, m, i, j, found, load)
+            store(out, m, i, j, found, load)
             cell += 1
         k += 1
 

@@ -1,0 +1,268 @@
+"""One structure at one frequency, ready to be followed: free and held oscillators, and the way between them.
+
+While it slides, its state is that of the free modes; a stop leaves the contact where it is, and the rest
+moves as the held oscillators do, about the static shape (`lift`) that the contact's place gives it.  Both
+are in units of one scan step: row 0 the coordinates, row 1 their change per step.
+
+With a joined base-wall all displacements are taken relative to the base: then its contact is that with a
+fixed wall, under another load (`modes.relative_load`), and no kernel knows of a moving base.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from .jit import kernel
+from .oscillators import (
+    F1,
+    FC,
+    FS,
+    OMEGA,
+    OW,
+    OZ,
+    ROWS,
+    ZETA,
+    D,
+    K,
+    fill_steps,
+    value,
+)
+from .phases import series_terms
+
+# Rows of the table of free modes: frequency, damping ratio, participation, static lift, and what the load in
+# the contact has of the coordinate and of its velocity in t = tau/r.
+W, DAMPING, CHI, LIFT, LOAD, LOAD_RATE = 0, 1, 2, 3, 4, 5
+MODE_ROWS = 6
+
+
+class Structure(NamedTuple):
+    """Everything here depends on (system, r, steps) only."""
+
+    n: int  # free modes that the contact sees
+    m: int  # held oscillators, n - 1
+    r: float
+    h: float  # scan step in tau
+    rate: float  # r/h: velocities in t per change in a step
+    terms: int
+    inverse_mass: float  # 1/m_eff
+    stiffness: float  # static stiffness at the contact
+    free_cos: float  # the load in the contact while it slides, less its modal part
+    free_sin: float
+    held_cos: float  # and while it is held
+    held_sin: float
+    modes: np.ndarray  # (MODE_ROWS, n)
+    free: np.ndarray  # (ROWS, n) tables of `oscillators`
+    held: np.ndarray  # (ROWS, m)
+    direct: np.ndarray  # (2, m) cos and sin part of the load in y' of the held oscillators
+    to_free: np.ndarray  # (2n, 2m), see `held.HeldStructure`
+    to_held: np.ndarray  # (2m, 2n)
+
+
+class Model(NamedTuple):
+    """A system in numbers; nothing here depends on r."""
+
+    modes: np.ndarray  # (MODE_ROWS, n)
+    omega: np.ndarray  # (m,) held oscillators
+    ratio: np.ndarray
+    watch: np.ndarray  # (2m,) the load in the contact of (y, p)
+    to_free: np.ndarray
+    to_held: np.ndarray
+    inverse_mass: float
+    stiffness: float
+
+
+class Loads(NamedTuple):
+    """The load at every r; arrays (n_r, n), (n_r, m) and (n_r,)."""
+
+    free_cos: np.ndarray  # (n_r, n) load on the free modes
+    free_sin: np.ndarray
+    held_cos: np.ndarray  # (n_r, m) load on the held oscillators
+    held_sin: np.ndarray
+    direct_cos: np.ndarray  # (n_r, m)
+    direct_sin: np.ndarray
+    contact_cos: np.ndarray  # (n_r,) load on the contact's mass alone
+    contact_sin: np.ndarray
+
+
+@kernel
+def fastest_rate(omega, zeta):
+    """Rate of the fastest part of the free motion of an oscillator."""
+    if zeta > 1.0:
+        return omega * (zeta + math.sqrt((zeta - 1.0) * (zeta + 1.0)))
+    return omega
+
+
+@kernel
+def make_structure(model, loads, i, r, steps):
+    """The `Structure` at the i-th frequency, r > 0, for `steps` scan steps per period of the fastest part."""
+    n = model.modes.shape[1]
+    m = model.omega.size
+    fastest = 0.0
+    for j in range(n):
+        fastest = max(fastest, fastest_rate(model.modes[W, j], model.modes[DAMPING, j]))
+    for j in range(m):
+        fastest = max(fastest, fastest_rate(model.omega[j], model.ratio[j]))
+    turn, terms = series_terms(steps)
+    h = turn / max(1.0, fastest / r)
+    scale = h / r
+    square = scale * scale
+    free = np.zeros((ROWS, n))
+    for j in range(n):
+        w = model.modes[W, j]
+        zeta = model.modes[DAMPING, j]
+        free[K, j] = (w * scale) * (w * scale)
+        free[D, j] = 2.0 * zeta * (w * scale)
+        free[FC, j] = loads.free_cos[i, j] * square
+        free[FS, j] = loads.free_sin[i, j] * square
+        free[F1, j] = -model.modes[CHI, j] * square
+        free[OW, j] = model.modes[CHI, j]
+        free[OMEGA, j] = w
+        free[ZETA, j] = zeta
+    fill_steps(free, n, h, terms)
+    held = np.zeros((ROWS, m))
+    direct = np.empty((2, m))
+    contact_cos = -loads.contact_cos[i]
+    contact_sin = -loads.contact_sin[i]
+    for j in range(m):
+        omega = model.omega[j]
+        held[K, j] = (omega * scale) * (omega * scale)
+        held[D, j] = 2.0 * model.ratio[j] * (omega * scale)
+        held[FC, j] = loads.held_cos[i, j] * square
+        held[FS, j] = loads.held_sin[i, j] * square
+        held[OZ, j] = model.watch[j]
+        held[OW, j] = model.watch[m + j] / scale
+        held[OMEGA, j] = omega
+        held[ZETA, j] = model.ratio[j]
+        direct[0, j] = loads.direct_cos[i, j]
+        direct[1, j] = loads.direct_sin[i, j]
+        contact_cos -= model.watch[m + j] * direct[0, j]
+        contact_sin -= model.watch[m + j] * direct[1, j]
+    fill_steps(held, m, h, terms)
+    return Structure(
+        n, m, r, h, r / h, terms, model.inverse_mass, model.stiffness,
+        -loads.contact_cos[i], -loads.contact_sin[i], contact_cos, contact_sin,
+        model.modes, free, held, direct, model.to_free, model.to_held,
+    )  # fmt: skip
+
+
+@kernel
+def place(st, state):
+    """z of a free state."""
+    total = 0.0
+    for i in range(st.n):
+        total += st.modes[CHI, i] * state[0, i]
+    return total
+
+
+@kernel
+def contact_load(st, state, c, s):
+    """The load in the contact while it slides, theory.md 5."""
+    total = st.free_cos * c + st.free_sin * s
+    for i in range(st.n):
+        total += st.modes[LOAD, i] * state[0, i] + st.modes[LOAD_RATE, i] * (st.rate * state[1, i])
+    return total
+
+
+@kernel
+def held_load(st, held, z, c, s):
+    """The load in the contact while it is held at z."""
+    return value(st.held, st.m, st.held_cos, st.held_sin, st.stiffness * z, held, c, s)
+
+
+@kernel
+def hold(st, state, z, c, s, held):
+    """The held state that a free state with z' = 0 is."""
+    n, m = st.n, st.m
+    for k in range(m):
+        y = 0.0
+        p = 0.0
+        for i in range(n):
+            u = state[0, i] - st.modes[LIFT, i] * z
+            v = st.rate * state[1, i]
+            y += st.to_held[k, i] * u + st.to_held[k, n + i] * v
+            p += st.to_held[m + k, i] * u + st.to_held[m + k, n + i] * v
+        held[0, k] = y
+        held[1, k] = (p + st.direct[0, k] * c + st.direct[1, k] * s) / st.rate
+
+
+@kernel
+def release(st, held, z, c, s, state):
+    """The free state that a held state is."""
+    n, m = st.n, st.m
+    for i in range(n):
+        u = st.modes[LIFT, i] * z
+        v = 0.0
+        for k in range(m):
+            p = st.rate * held[1, k] - st.direct[0, k] * c - st.direct[1, k] * s
+            u += st.to_free[i, k] * held[0, k] + st.to_free[i, m + k] * p
+            v += st.to_free[n + i, k] * held[0, k] + st.to_free[n + i, m + k] * p
+        state[0, i] = u
+        state[1, i] = v / st.rate
+
+
+@kernel
+def mirror(st, state):
+    """Change the sign of a free state."""
+    for i in range(st.n):
+        state[0, i] = -state[0, i]
+        state[1, i] = -state[1, i]
+
+
+@kernel
+def energy(st, state):
+    """sqrt(sum w_i^2 z_i^2 + z_i'^2) of a free state, the derivative in t: the energy norm of theory.md 6."""
+    total = 0.0
+    for i in range(st.n):
+        total += (st.modes[W, i] * state[0, i]) ** 2 + (st.rate * state[1, i]) ** 2
+    return math.sqrt(total)
+
+
+@kernel
+def _in_step(table, k, h):
+    """Whether an undamped oscillator that the load does not drive vibrates in step with the load for good."""
+    still = table[D, k] == 0.0 and table[FC, k] == 0.0 and table[FS, k] == 0.0
+    # its frequency differs from r by no more than the rounding of either
+    return still and abs(table[K, k] - h * h) <= 1e-15 * h * h
+
+
+@kernel
+def vibrates_in_step(st):
+    """Whether a held oscillator does: then the load in a stop depends on the start for good."""
+    found = False
+    for k in range(st.m):
+        found = found or _in_step(st.held, k, st.h)
+    return found
+
+
+@kernel
+def largest_load_to_come(st, held, z, c, s):
+    """A bound on the load in the contact for as long as it stays held; infinite at an undamped resonance."""
+    y_re = st.held_cos
+    y_im = -st.held_sin
+    free = 0.0
+    h = st.h
+    table = st.held
+    for k in range(st.m):
+        # steady answer a e^{i tau} of the oscillator, and what of the motion is not it
+        d_re = table[K, k] - h * h
+        d_im = h * table[D, k]
+        size = d_re * d_re + d_im * d_im
+        f_re, f_im = table[FC, k], -table[FS, k]
+        a_re = a_im = 0.0
+        if _in_step(table, k, h):
+            a_re = held[0, k] * c - held[1, k] / h * s
+            a_im = -held[0, k] * s - held[1, k] / h * c
+        elif f_re != 0.0 or f_im != 0.0:
+            if size == 0.0:
+                return math.inf
+            a_re = (f_re * d_re + f_im * d_im) / size
+            a_im = (f_im * d_re - f_re * d_im) / size
+        z_off = held[0, k] - (a_re * c - a_im * s)
+        w_off = held[1, k] + h * (a_re * s + a_im * c)
+        y_re += table[OZ, k] * a_re - table[OW, k] * h * a_im
+        y_im += table[OZ, k] * a_im + table[OW, k] * h * a_re
+        # the energy of free motion never grows
+        reach = math.sqrt(table[OZ, k] * table[OZ, k] / table[K, k] + table[OW, k] * table[OW, k])
+        free += reach * math.sqrt(table[K, k] * z_off * z_off + w_off * w_off)
+    return math.hypot(y_re, y_im) + abs(st.stiffness * z) + free

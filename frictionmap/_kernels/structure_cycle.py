@@ -1,0 +1,377 @@
+"""The steady state of one cell of a structure: followed event by event, then solved as a periodic orbit.
+
+The same way as `cycle` goes for one mass.  There a stop forgets all but the contact's place; here the rest of
+the structure remembers, so anchors are compared, and solved for, with the whole state.
+"""
+
+import math
+from typing import NamedTuple
+
+from ..regimes import (
+    CONTINUOUS,
+    INTEGRATED,
+    MARGINAL,
+    NOT_COMPUTED,
+    NOT_PERIODIC,
+    NOT_REACHED,
+    RESOLVED,
+    SOLVED,
+    STICK_SLIP,
+    TOO_MANY_EVENTS,
+)
+from .continuous import continuous_amplitude, orbit_phase
+from .cycle import Cell, _cell, _unresolved, stuck_cell
+from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
+from .follow import NO_RELEASE, after_slide, slide_on
+from .jit import kernel
+from .oscillators import FELL
+from .returns import copy_state, return_map, solve_return, spectral_radius
+from .structure import W, energy, place, vibrates_in_step
+from .structure_orbit import orbit_state, stop_free_radius
+
+#: Anchors remembered; a steady period with more is not recognised.  One a column; the rows of the memory:
+MEMORY = 512
+CODE, COS, SIN, TIME, SIGN, STATE = 0, 1, 2, 3, 4, 5
+
+#: A stop shorter than this (in tau) is a touch of no duration, seen through rounding.
+SHORTEST_STOP = 1e-12
+
+#: Anchors looked back over for a return.
+_MAX_RETURN = 64
+
+#: Events per excitation period and unit of the fastest frequency over r beyond which the motion only
+#: chatters.
+_EVENTS_PER_CYCLE = 4096.0
+
+#: A return this close (relative to the motion) is worth a Newton iteration; the load's phase has to be this
+#: close even where, with mu = 1, the steady state is unique and any state will do to start from.
+_NEAR_RETURN = 0.1
+_NEAR_PHASE = 0.3
+
+#: With several steady states: how much further off than expected the one solved for may be.
+_HEADING = 4.0
+
+#: Half periods of ever larger motion after which an undamped resonance counts as unbounded.
+_GROWING = 64
+
+#: Excitation periods over which a motion that does not repeat is averaged.
+_AVERAGED = 100.0
+
+#: Anchors this close are one.
+_SAME = 1e-8
+
+_TURN = 2.0 * math.pi
+
+
+class Friction(NamedTuple):
+    """The contact of one cell."""
+
+    beta: float
+    mu_beta: float
+    b_lim: float  # boundary of beta to continuous motion
+
+
+@kernel
+def memory_rows(n):
+    """Rows of the memory for n free modes."""
+    return STATE + 2 * n
+
+
+@kernel
+def _remember(st, memory, column, code, c, s, time, sign, state):
+    memory[CODE, column] = code
+    memory[COS, column] = c
+    memory[SIN, column] = s
+    memory[TIME, column] = time
+    memory[SIGN, column] = sign
+    for i in range(st.n):
+        memory[STATE + i, column] = state[0, i]
+        memory[STATE + st.n + i, column] = state[1, i]
+
+
+@kernel
+def _distance(st, memory, now, then):
+    """Energy norm of the difference of two remembered states."""
+    total = 0.0
+    for i in range(st.n):
+        z = memory[STATE + i, now] - memory[STATE + i, then]
+        v = memory[STATE + st.n + i, now] - memory[STATE + st.n + i, then]
+        total += (st.modes[W, i] * z) ** 2 + (st.rate * v) ** 2
+    return math.sqrt(total)
+
+
+@kernel
+def _near_return(st, memory, events, size, unique, shortest):
+    """(lag, gap, halves): slides since the motion was nearly where it is now; lag = 0 if it was not."""
+    now = (events - 1) % MEMORY
+    best, best_gap, best_halves = 0, math.inf, 0
+    near = math.inf if unique else _NEAR_RETURN
+    seen = 0
+    for lag in range(1, min(events, MEMORY)):
+        then = (events - 1 - lag) % MEMORY
+        if memory[CODE, then] != memory[CODE, now]:
+            continue
+        turn = abs(memory[COS, now] - memory[COS, then]) + abs(memory[SIN, now] - memory[SIN, then])
+        if turn > _NEAR_PHASE:
+            continue
+        halves = int(math.floor((memory[TIME, now] - memory[TIME, then]) / math.pi + 0.5))
+        if halves < 1 or (halves % 2 == 1) != (memory[SIGN, now] != memory[SIGN, then]):
+            continue
+        gap = turn + _distance(st, memory, now, then) / size
+        if gap <= near:
+            best, best_gap, best_halves = lag, gap, halves
+            near = 0.25 * gap
+        seen += 1
+        if (shortest and best > 0) or seen == _MAX_RETURN:
+            break
+    return best, best_gap, best_halves
+
+
+@kernel
+def _solve(st, friction, unique, net, state, c, s, lag, gap, halves, memory, events, limits, work, scratch):
+    """The periodic orbit that the motion approaches, by Newton's method; (found, cos, sin), state at an
+    anchor.
+
+    The unknown is the state in the middle of the slide that starts at the last anchor.
+    """
+    n = st.n
+    beta, mu_beta = friction.beta, friction.mu_beta
+    copy_state(state, work.middle, n)
+    copy_state(state, work.moved, n)
+    steps, end, _, _, _ = slide_on(st, beta, True, net, work.moved, c, s, _TURN * 4.0 / st.h, scratch)
+    if end != FELL:
+        return False, c, s
+    _, _, c_m, s_m, _ = slide_on(st, beta, True, net, work.middle, c, s, 0.5 * steps, scratch)
+    copy_state(work.middle, work.start, n)
+    codes = memory[CODE]
+    if not solve_return(
+        st, beta, mu_beta, c_m, s_m, codes, events - lag, lag, halves, limits.tolerance, work, scratch
+    ):
+        return False, c, s
+    if not unique:
+        # it must attract, and be where the motion is heading
+        copy_state(work.middle, work.moved, n)
+        if not return_map(
+            st, beta, mu_beta, work.moved, c_m, s_m, codes, events - lag, lag, halves, True, work, scratch
+        ):
+            return False, c, s
+        contraction = spectral_radius(work.flow, 2 * n, work.square)
+        for i in range(n):
+            work.moved[0, i] = work.middle[0, i] - work.start[0, i]
+            work.moved[1, i] = work.middle[1, i] - work.start[1, i]
+        off = energy(st, work.moved)
+        if not (contraction < 1.0 and off <= _HEADING * gap * energy(st, work.middle) / (1.0 - contraction)):
+            return False, c, s
+    copy_state(work.middle, state, n)
+    _, end, c, s, _ = slide_on(st, beta, False, 0.0, state, c_m, s_m, _TURN * 4.0 / st.h, scratch)
+    return end == FELL, c, s
+
+
+@kernel
+def measure(st, friction, net, state, c, s, code, count, work, scratch):
+    """The orbit that returns to the anchor `state`, reached by an event `code`, after `count` slides, or
+    sooner.
+
+    Returns (slides, half periods, stops, amplitude, share of time stuck); `state` is left as it was.
+    """
+    n = st.n
+    copy_state(state, work.moved, n)
+    c0, s0 = c, s
+    time = stuck = amplitude = 0.0
+    stops = 0
+    slides = 0
+    limit = 100.0 * _TURN * max(1.0, st.r) / st.h
+    for _ in range(count):
+        steps, _, c, s, _ = slide_on(st, friction.beta, True, net, work.moved, c, s, limit, scratch)
+        amplitude = max(amplitude, abs(place(st, work.moved)))
+        time += steps * st.h
+        event, c, s, net, wait, _, _ = after_slide(
+            st, friction.beta, friction.mu_beta, work.moved, work.held, c, s, limit * st.h, scratch
+        )
+        if (event == STOP_THEN_BACK or event == STOP_THEN_ON) and wait > SHORTEST_STOP:
+            stops += 1
+            stuck += wait
+        time += wait
+        slides += 1
+        if event == code and abs(c - c0) + abs(s - s0) <= _SAME:
+            for i in range(n):
+                work.middle[0, i] = work.moved[0, i] - state[0, i]
+                work.middle[1, i] = work.moved[1, i] - state[1, i]
+            if energy(st, work.middle) <= _SAME * energy(st, state):
+                break
+    halves = int(math.floor(time / math.pi + 0.5))
+    return slides, halves, stops, amplitude, stuck / time
+
+
+@kernel
+def _orbit_cell(st, friction, net, state, c, s, sign, code, count, origin, cycles, work, scratch):
+    """The steady state that returns to an anchor after `count` slides, or sooner."""
+    slides, halves, stops, amplitude, stuck = measure(
+        st, friction, net, state, c, s, code, count, work, scratch
+    )
+    if halves < 1:
+        return _unresolved(NOT_REACHED, cycles)
+    period = halves if halves % 2 == 1 else halves // 2
+    regime = STICK_SLIP if stops > 0 else CONTINUOUS
+    return Cell(
+        regime, RESOLVED, origin, 2.0 * stops / halves, amplitude, stuck, period, cycles,
+        math.nan, c, s, sign, slides, net,
+    )  # fmt: skip
+
+
+@kernel
+def steady_structure(
+    st, fine, orbit, i, marginal, friction, unique, moves, state, c, s, limits, stop, memory, work, scratch
+):  # fmt: skip
+    """Steady state reached from a free state at load phase (c, s).
+
+    Parameters
+    ----------
+    st : Structure
+    fine : a Structure with steps at least as short, for bounds over a whole orbit
+    orbit, i, marginal : response functions, the frequency's place in them, whether r = w_k/(2 k) there
+    friction : Friction; beta > 0
+    unique : mu = 1
+    moves : whether it starts with z' > 0; otherwise z' = 0
+    state : (2, n) start; replaced by an anchor of the steady state
+    limits, stop : as in `cycle.steady_cell`
+    memory, work, scratch : arrays that are written into
+    """
+    n = st.n
+    beta, mu_beta = friction.beta, friction.mu_beta
+    end_time = _TURN * limits.cycles
+    max_steps = end_time / st.h + 1.0
+    max_events = _EVENTS_PER_CYCLE * limits.cycles * max(1.0, 1.0 / st.h)
+    v_abs = orbit.v_abs[i]
+    resonance = math.isinf(v_abs)
+    in_step = vibrates_in_step(st)
+    around = beta < friction.b_lim and not resonance
+    amplitude = phase = radius = 0.0
+    if around:
+        phase = orbit_phase(v_abs, orbit.v_arg[i], orbit.u[i], beta)
+        amplitude = continuous_amplitude(v_abs, orbit.u[i], orbit.g[i], beta)
+        radius = stop_free_radius(fine, orbit, i, beta, mu_beta, phase, work.table, work.middle, work.moved)
+
+    time = 0.0
+    sign = 1.0
+    events = running = growing = 0
+    peak = 0.0
+    half = tries = 0
+    pause = 1
+    next_try = 2
+    slides = 0
+    solved = False
+    code = REVERSE
+    net = 0.0
+    old_lag, old_gap = 0, math.inf
+    window = _TURN * min(_AVERAGED, 0.5 * limits.cycles)
+    window_end = window
+    stops, stuck, largest = 0, 0.0, 0.0
+    old_stops, old_stuck, old_largest = 0, 0.0, 0.0
+
+    while time < end_time:
+        if stop[0] != 0:
+            return _unresolved(NOT_COMPUTED, time / _TURN)
+        if moves or events > 0:
+            steps, end, c, s, _ = slide_on(st, beta, events > 0, net, state, c, s, max_steps, scratch)
+            if end != FELL:
+                break
+            time += steps * st.h
+        z = place(st, state)
+        size = abs(z)
+        code, c, s, net, wait, _, _ = after_slide(
+            st, beta, mu_beta, state, work.held, c, s, end_time - time, scratch
+        )
+        if code == STUCK:
+            return stuck_cell(INTEGRATED, MARGINAL if in_step else RESOLVED, time / _TURN, z, sign)
+        if code == NO_RELEASE:
+            break
+        if code == REVERSE or code == STOP_THEN_BACK:
+            sign = -sign
+        events += 1
+        if events > max_events:
+            return _unresolved(TOO_MANY_EVENTS, time / _TURN)
+        stopped = code == STOP_THEN_BACK or code == STOP_THEN_ON
+        if time >= window_end:
+            window_end += window
+            old_stops, old_stuck, old_largest = stops, stuck, largest
+            stops, stuck, largest = 0, 0.0, 0.0
+        largest = max(largest, size)
+        if stopped:
+            if wait > SHORTEST_STOP:
+                stops += 1
+            stuck += wait
+            time += wait
+            running = 0
+            growing = 0
+        else:
+            running += 1
+            growing = growing + 1 if size > peak else 0
+            if resonance and growing >= _GROWING and beta < friction.b_lim:
+                return _cell(CONTINUOUS, RESOLVED, INTEGRATED, 0.0, math.inf, 0.0, 1, time / _TURN)
+        _remember(st, memory, (events - 1) % MEMORY, code, c, s, time, sign, state)
+        if around and not stopped and (running > 1 or events == 1):
+            orbit_state(st, orbit, i, beta, phase, c, s, work.moved)
+            for j in range(n):
+                work.moved[0, j] -= state[0, j]
+                work.moved[1, j] -= state[1, j]
+            gap = energy(st, work.moved)
+            if gap < radius or gap <= limits.tolerance * energy(st, state):
+                status = MARGINAL if marginal else RESOLVED
+                return _cell(CONTINUOUS, status, INTEGRATED, 0.0, amplitude, 0.0, 1, time / _TURN)
+        peak = size
+
+        # look for a return once a half period: at stops, or at turns where it no longer stops
+        if int(time / math.pi) == half or code == TOUCH:
+            continue
+        if not stopped and (around or resonance or running < 8):
+            continue
+        half = int(time / math.pi)
+        shortest = limits.newton and tries % 2 == 0
+        lag, gap, halves = _near_return(
+            st, memory, events, energy(st, state), unique and limits.newton, shortest
+        )
+        if lag == 0 or (not stopped and running < 2 * lag):
+            old_lag = 0
+            continue
+        if limits.newton:
+            if half >= next_try:
+                copy_state(state, work.anchor, n)
+                solved, c1, s1 = _solve(
+                    st, friction, unique, net, work.anchor, c, s, lag, gap, halves, memory, events, limits,
+                    work, scratch,
+                )  # fmt: skip
+                if solved:
+                    # the anchor that follows the solved slide
+                    copy_state(work.anchor, state, n)
+                    code, c, s, net, _, _, _ = after_slide(
+                        st, beta, mu_beta, state, work.held, c1, s1, end_time, scratch
+                    )
+                    if code == REVERSE or code == STOP_THEN_BACK:
+                        sign = -sign
+                    slides = lag
+                    break
+                tries += 1
+                pause += 1 + pause // 4
+                next_try = half + pause
+        elif gap <= limits.tolerance and lag == old_lag:
+            rate = min(gap / old_gap, 0.999999) if old_gap > 0.0 else 0.0
+            if gap * rate <= 10.0 * limits.tolerance * (1.0 - rate):
+                slides = lag
+                break
+        old_lag = lag
+        old_gap = gap
+
+    if slides > 0:
+        return _orbit_cell(
+            st, friction, net, state, c, s, sign, code, slides, SOLVED if solved else INTEGRATED,
+            time / _TURN, work, scratch,
+        )  # fmt: skip
+    if in_step or (marginal and beta < friction.b_lim):
+        return _unresolved(MARGINAL, time / _TURN)
+    if old_stops == 0 or (running > 0 and stops == 0):
+        return _unresolved(NOT_REACHED, time / _TURN)
+    return _cell(
+        STICK_SLIP, NOT_PERIODIC, INTEGRATED, old_stops * _TURN / window, old_largest,
+        old_stuck / window, 0, time / _TURN,
+    )  # fmt: skip

@@ -1,0 +1,156 @@
+"""Fill the open cells of a structure's map one by one."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..regimes import CONTINUOUS, PERMANENT_STICKING
+from .continuous import orbit_phase
+from .jit import kernel
+from .oscillators import make_scratch
+from .returns import make_workspace
+from .structure import make_structure
+from .structure_cycle import MEMORY, Friction, memory_rows, steady_structure
+from .structure_history import (
+    continuous_phase,
+    largest_displacements,
+    orbit_phases,
+    phase_columns,
+)
+from .sweep import FINE_STEPS, store
+
+
+class Starts(NamedTuple):
+    """Starting states at every r: of the free modes, velocities in t = tau/r, and the load's phase."""
+
+    place: np.ndarray  # (n_r, n)
+    velocity: np.ndarray  # (n_r, n)
+    cos: np.ndarray  # (n_r,)
+    sin: np.ndarray
+    moving: bool
+
+
+@kernel
+def _start(st, starts, i, state):
+    for j in range(st.n):
+        state[0, j] = starts.place[i, j]
+        state[1, j] = starts.velocity[i, j] / st.rate
+
+
+@kernel
+def _continuous(fine, orbit, i, beta, shapes, re, im, out, work, scratch):
+    """Largest displacements on the continuous orbit."""
+    v_abs = orbit.v_abs[i]
+    if math.isinf(v_abs):
+        out[:] = math.inf
+        return
+    rows = np.empty((1, phase_columns(fine.n)))
+    continuous_phase(fine, orbit, i, beta, orbit_phase(v_abs, orbit.v_arg[i], orbit.u[i], beta), rows, work)
+    largest_displacements(fine, beta, shapes, re, im, rows, 1, out, work, scratch)
+
+
+@kernel
+def _displacements(
+    st, fine, orbit, i, friction, found, state, shapes, re, im, held, out, work, scratch
+):  # fmt: skip
+    """Largest displacements of all masses in a cell that was followed to its steady state."""
+    if found.regime == PERMANENT_STICKING:
+        for k in range(out.size):
+            out[k] = abs(held[k]) + abs(shapes.lift[k] * found.z)
+    elif found.regime == CONTINUOUS and found.events == 0:
+        _continuous(fine, orbit, i, friction.beta, shapes, re, im, out, work, scratch)
+    elif found.events > 0:
+        rows = np.empty((2 * found.events, phase_columns(st.n)))
+        count = orbit_phases(
+            st, friction.beta, friction.mu_beta, state, found.cos, found.sin, found.sign, found.net,
+            found.events, rows, work, scratch,
+        )  # fmt: skip
+        largest_displacements(fine, friction.beta, shapes, re, im, rows, count, out, work, scratch)
+
+
+@kernel
+def fill_closed_displacements(
+    first, last, low, high, beta, r, model, loads, orbit, shapes, re, im, held, steps, out
+):  # fmt: skip
+    """Largest displacements of the cells that `sweep.fill_closed_form` fills; `out` (n_mu, n_r, n_beta,
+    n_dof)."""
+    n = model.modes.shape[1]
+    work = make_workspace(n)
+    scratch = make_scratch(n)
+    n_r = r.size
+    for row in range(first, last):
+        m = row // n_r
+        i = row % n_r
+        if low[row] > 0 and r[i] > 0.0:
+            fine = make_structure(model, loads, i, r[i], max(steps, FINE_STEPS))
+            for j in range(low[row]):
+                _continuous(fine, orbit, i, beta[j], shapes, re[i], im[i], out[m, i, j], work, scratch)
+        for j in range(high[row], beta.size):
+            for k in range(out.shape[3]):
+                out[m, i, j, k] = abs(held[i, k])
+
+
+@kernel
+def fill_structures(
+    first, last, rows, ends, low, beta, mu, lim, r, model, loads, orbit, marginal, starts, shapes, re, im,
+    held, steps, limits, out, stop,
+):  # fmt: skip
+    """Cells first..last-1 of the list of open cells; arguments as in `sweep.fill_integrated`.
+
+    shapes, re, im : what the displacements of the masses are made of, see `structure_history`
+    held : (n_r, n_dof) phasors of the displacements with the contact held
+    """
+    n = model.modes.shape[1]
+    memory = np.empty((memory_rows(n), MEMORY))
+    work = make_workspace(n)
+    scratch = make_scratch(n)
+    state = np.empty((2, n))
+    n_r = r.size
+    k = np.searchsorted(ends, first, side="right")
+    cell = first
+    while cell < last:
+        row = rows[k]
+        m = row // n_r
+        i = row % n_r
+        begin = ends[k - 1] if k > 0 else 0
+        st = make_structure(model, loads, i, r[i], steps)
+        fine = make_structure(model, loads, i, r[i], max(steps, FINE_STEPS))
+        until = min(last, ends[k])
+        while cell < until:
+            if stop[0] != 0:
+                return
+            j = low[row] + cell - begin
+            _start(st, starts, i, state)
+            friction = Friction(beta[j], mu[m] * beta[j], lim[m, i])
+            found = steady_structure(
+                st, fine, orbit, i, marginal[i], friction, mu[m] == 1.0,
+                starts.moving, state, starts.cos[i], starts.sin[i], limits, stop, memory, work, scratch,
+            )  # fmt: skip
+            store(out, m, i, j, found, 1.0)
+            if out.amplitude.size:
+                _displacements(
+                    st, fine, orbit, i, friction, found, state, shapes, re[i], im[i], held[i],
+                    out.amplitude[m, i, j], work, scratch,
+                )  # fmt: skip
+            cell += 1
+        k += 1
+
+
+@kernel
+def one_structure(
+    beta, mu, lim, r, model, loads, orbit, marginal, starts, steps, limits, state
+):  # fmt: skip
+    """The steady state of one open cell at the only frequency; `state` (2, n) becomes an anchor of it."""
+    n = model.modes.shape[1]
+    st = make_structure(model, loads, 0, r, steps)
+    fine = make_structure(model, loads, 0, r, max(steps, FINE_STEPS))
+    _start(st, starts, 0, state)
+    found = steady_structure(
+        st, fine, orbit, 0, marginal, Friction(beta, mu * beta, lim), mu == 1.0, starts.moving, state,
+        starts.cos[0], starts.sin[0], limits, np.zeros(1, dtype=np.uint8),
+        np.empty((memory_rows(n), MEMORY)), make_workspace(n), make_scratch(n),
+    )  # fmt: skip
+    for j in range(n):
+        state[1, j] *= st.rate
+    return found

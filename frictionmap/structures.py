@@ -1,0 +1,163 @@
+"""A structure in the numbers that the kernels take: modes, held oscillators, loads and starts over r."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ._kernels.closed_form import damping_functions
+from ._kernels.structure import CHI, LIFT, MODE_ROWS, Loads, Model
+from ._kernels.structure_history import Shapes
+from ._kernels.structure_orbit import Continuous
+from ._kernels.structure_sweep import Starts
+from .curves import Curves
+from .held import held_structure
+from .modes import ModalModel
+from .system import System
+
+#: The moving start, in units of the motion that the load alone sustains: energy amplitude, and the cap on
+#: that motion near resonance; as `_kernels.sweep.start_state` has it for one mass.
+_MOVING = 1.5
+_MOVING_CAP = 10.0
+
+#: A share of the load smaller than this times n eps of the most that it could be is rounding; as in `modes`.
+_ZERO_SHARE = 64.0
+
+
+@dataclass(frozen=True)
+class Structures:
+    """A system at frequencies r: everything that its cells need; nothing of what moves is meant at r = 0."""
+
+    seen: np.ndarray  # the modes that the contact sees
+    model: Model
+    loads: Loads
+    orbit: Continuous
+    marginal: np.ndarray  # (n_r,) bool
+    starts: Starts
+    shapes: Shapes
+    alone_re: np.ndarray  # (n_r, n_dof) phasor of what moves with the load alone; 0 where infinite
+    alone_im: np.ndarray
+    resonant: np.ndarray  # (n_r, n_dof) bool, where that is infinite
+    held: np.ndarray  # (n_r, n_dof) phasor of the displacements with the contact held
+
+
+def _model(modes: ModalModel, seen: np.ndarray) -> Model:
+    w, zeta, chi = modes.w[seen], modes.zeta[seen], modes.chi[seen]
+    held = held_structure(w, zeta, chi)
+    table = np.empty((MODE_ROWS, w.size))
+    mass = 1.0 / np.sum(chi**2)  # m_eff
+    load, load_rate = mass * chi * w**2, 2.0 * mass * chi * zeta * w
+    table[:] = w, zeta, chi, held.lift, load, load_rate
+    watch = np.concatenate((load, load_rate)) @ held.to_free
+    return Model(
+        table, held.omega, held.zeta, watch, np.ascontiguousarray(held.to_free),
+        np.ascontiguousarray(held.to_held), 1.0 / mass, held.stiffness,
+    )  # fmt: skip
+
+
+def _shares(parts: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """parts @ rows.T, (n_r, m), exactly zero where it is zero but for rounding.
+
+    A held oscillator that the load does not drive must not be driven by 1e-17: undamped at its resonance that
+    would grow.
+    """
+    shares = parts @ rows.T
+    most = np.linalg.norm(parts, axis=1)[:, np.newaxis] * np.linalg.norm(rows, axis=1)
+    return np.where(np.abs(shares) <= _ZERO_SHARE * rows.shape[1] * np.finfo(float).eps * most, 0.0, shares)
+
+
+def _loads(model: Model, r: np.ndarray, participation: np.ndarray) -> Loads:
+    """cos and sin parts of Re(lambda e^{i tau}) on free modes, held oscillators and in the contact."""
+    n = model.modes.shape[1]
+    m = model.omega.size
+    chi = model.modes[CHI]
+    cosine, sine = participation.real, -participation.imag
+    on_y, on_p = model.to_held[:m, n:], model.to_held[m:, n:]
+    direct_cos, direct_sin = _shares(cosine, on_y), _shares(sine, on_y)
+    # y' = p + direct: its derivative joins the load on y''
+    rate = 2.0 * model.ratio * model.omega
+    turn = r[:, np.newaxis]
+    held_cos = _shares(cosine, on_p) + rate * direct_cos + turn * direct_sin
+    held_sin = _shares(sine, on_p) + rate * direct_sin - turn * direct_cos
+    contact_cos, contact_sin = cosine @ chi / model.inverse_mass, sine @ chi / model.inverse_mass
+    arrays = (
+        cosine, sine, held_cos, held_sin, direct_cos, direct_sin, contact_cos, contact_sin,
+    )  # fmt: skip
+    return Loads(*(np.ascontiguousarray(a) for a in arrays))
+
+
+def _orbit(
+    modes: ModalModel, seen: np.ndarray, r: np.ndarray, participation: np.ndarray, curves: Curves
+) -> Continuous:
+    stiffness = modes.dynamic_stiffness(r)[:, seen]
+    resonant = stiffness == 0.0
+    response = np.where(resonant, np.inf, participation / np.where(resonant, 1.0, stiffness))
+    u, g = np.empty((2, r.size, seen.size))
+    for k, i in enumerate(seen):
+        for j, value in enumerate(r):
+            u[j, k], g[j, k] = damping_functions(modes.w[i], modes.zeta[i], value)
+    return Continuous(
+        np.ascontiguousarray(response.real), np.ascontiguousarray(response.imag), u, g, np.abs(curves.v),
+        np.angle(curves.v), curves.u, curves.g,
+    )  # fmt: skip
+
+
+def _starts(
+    system: System, seen: np.ndarray, r: np.ndarray, participation: np.ndarray, moving: bool
+) -> Starts:
+    """At rest: every mass at rest at 0, one on a joined base-wall at the base's displacement; tau = 0.
+
+    Moving: the contact at z = 0, all modes at their largest speed, at 1.5 times the amplitude that the load
+    alone sustains of each, that taken as 10 times its static answer at most; the load that would act in the
+    held contact falls through zero.
+    """
+    modes = system.modes
+    if not moving:
+        c = modes.contact
+        x = modes.base_motion * (c / (c @ c) - 1.0)  # relative to the base
+        place = (modes.phi[:, seen].T @ modes.mass @ x)[np.newaxis].repeat(r.size, axis=0)
+        return Starts(place, np.zeros_like(place), np.ones(r.size), np.zeros(r.size), False)
+    w = modes.w[seen]
+    stiffness = np.ascontiguousarray(np.abs(modes.dynamic_stiffness(r)[:, seen]))
+    with np.errstate(divide="ignore"):
+        gain = np.minimum(1.0 / stiffness, _MOVING_CAP / w**2)
+    size = _MOVING * np.abs(participation) * gain * np.maximum(w, r[:, np.newaxis])
+    held = modes.held_load(r)
+    lead = np.where(np.isfinite(held), np.angle(held), 0.0)
+    return Starts(np.zeros_like(size), size * np.sign(modes.chi[seen]), np.sin(lead), np.cos(lead), True)
+
+
+def _alone(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Phasor (n_r, n_dof) of the base's motion and of the modes that the contact does not see; where
+    infinite."""
+    unseen = np.flatnonzero(modes.chi == 0.0)
+    stiffness = modes.dynamic_stiffness(r)[:, unseen]
+    loads = modes.relative_participation(r)[:, unseen]
+    resonant = (stiffness == 0.0) & (loads != 0.0)
+    parts = np.where(stiffness == 0.0, 0.0, loads / np.where(stiffness == 0.0, 1.0, stiffness))
+    alone = modes.base_motion + parts @ modes.phi[:, unseen].T
+    return alone.astype(complex), (resonant.astype(float) @ np.abs(modes.phi[:, unseen].T)) > 0.0
+
+
+def structures(system: System, r: np.ndarray, curves: Curves, moving: bool) -> Structures:
+    """Everything that the cells of a system need at frequencies r, for which `curves` are."""
+    modes = system.modes
+    seen = np.flatnonzero(modes.chi)
+    model = _model(modes, seen)
+    alone, resonant = _alone(modes, r)
+    held = modes.held_response(r)
+    r = np.where(r > 0.0, r, 1.0)  # no cell at r = 0 is followed: any other number does
+    participation = np.ascontiguousarray(modes.relative_participation(r)[:, seen])
+    half = 0.5 * modes.w[seen] / r[:, np.newaxis]
+    even = (half >= 1.0) & (half == np.floor(half)) & (modes.zeta[seen] == 0.0)
+    phi = modes.phi[:, seen]
+    # contiguous, all of them: another memory layout would be another type to the kernels, compiled anew
+    shapes = Shapes(
+        np.ascontiguousarray(phi), np.ascontiguousarray(phi @ model.to_free[: seen.size]),
+        phi @ model.modes[LIFT],
+    )  # fmt: skip
+    return Structures(
+        seen, model, _loads(model, r, participation), _orbit(modes, seen, r, participation, curves),
+        even.any(axis=1), _starts(system, seen, r, participation, moving), shapes,
+        np.ascontiguousarray(alone.real), np.ascontiguousarray(alone.imag), resonant,
+        np.ascontiguousarray(held),
+    )  # fmt: skip

@@ -1,0 +1,358 @@
+"""Maps and responses of structures: 40-digit values, a slow independent reference, invariants."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from naive import naive_steady_state
+from test_many_masses import chain
+
+import frictionmap as fm
+from frictionmap import regimes
+from frictionmap._kernels import structure_history as history
+from frictionmap._kernels.closed_form import decay
+from frictionmap._kernels.oscillators import ROWS, WW, WZ, ZW, ZZ, D, K, fill_steps, make_scratch
+from frictionmap._kernels.returns import make_workspace
+from frictionmap._kernels.structure import make_structure
+from frictionmap.cells import StructureCells
+from frictionmap.held import held_structure
+from frictionmap.settings import OUTPUTS
+from frictionmap.steady import Question, _structure_phases
+
+#: 22-digit steady states from rest, 40-digit event-driven marching; for a checkout without the reference.
+TABLE = (
+    # contact, load, gamma, kappa, zeta, mu, r, beta, stops, Z, share stuck, max |x_k|
+    (
+        ("wall", 2), 1, (1, 1, 1), (1, 1, 1), 0.05, 1.5, 0.729, 0.2015, 2, 0.3280714247568952322,
+        0.2390331774950027, (0.48443392, 0.32807142, 0.78835606),
+    ),
+    (
+        ("wall", 1), 1, (1,) * 5, (1,) * 5, 0.1, 2.0, 0.46, 0.2021, 2, 0.5048697237111875156,
+        0.3231489956378937, (0.50486972, 0.21815491, 0.49068378, 0.87180679, 1.11253659),
+    ),
+    (
+        ("base", 1), 1, (1, 1), (1, 1), 0.05, 1.5, 0.694, 0.6161, 2, 1.399391216573382855,
+        0.1866522580385208, (1.12259371, 1.90836551),
+    ),
+    (
+        ("base", 2), 1, (1, 0.8, 1.7), (1, 2, 0.6), 0.05, 1.15, 0.538, 1.556, 2, 0.4948353736745304359,
+        0.3661118447780609, (0.90973029, 0.59699059, 3.14977355),
+    ),
+    (
+        ("masses", 1, 2), 1, (1, 0.5), (1, 0.5), 0.05, 1.0, 0.504, 0.1887, 2, 0.140032063676292020,
+        0.5273551344871521, (1.60426693, 1.61364053),
+    ),
+)  # fmt: skip
+
+
+def steady(system, r, beta, mu=1.0, **settings):
+    """One cell of a map with every output, as plain numbers."""
+    ds = fm.sweep(system, [r], [beta], [mu], outputs=OUTPUTS, threads=1, **settings)
+    return {name: ds[name].values[0, 0, 0] for name in OUTPUTS}
+
+
+def compare(found, stops, amplitude, stuck, masses):
+    """Tolerances of the reference: its masses' maxima are sampled, to some 1e-8."""
+    assert found["stops_per_cycle"] == stops
+    assert found["contact_amplitude"] == pytest.approx(amplitude, rel=1e-9)
+    assert found["stuck_fraction"] == pytest.approx(stuck, abs=1e-7)
+    assert found["amplitude"] == pytest.approx(masses, abs=1e-7 * max(masses))
+
+
+@pytest.mark.parametrize("row", TABLE)
+@pytest.mark.parametrize("settings", [{}, {"skip": "none"}, {"steady": "marched"}, {"steps": 7}])
+def test_table(row, settings):
+    contact, load, gamma, kappa, zeta, mu, r, beta, *expected = row
+    system = chain({"contact": contact, "load": load, "gamma": gamma, "kappa": kappa}, zeta)
+    compare(steady(system, r, beta, mu, **settings), *expected)
+
+
+@pytest.mark.parametrize("skip", ["exact", "none"])
+def test_reference_rows(all_steady, skip):
+    """Rows with status ok, one mass included: stops equal, Z to 1e-9, masses to 1e-7; stuck ones stuck."""
+    systems, rows = all_steady
+    seen = 0
+    for row in rows:
+        system = chain(systems[row["system"]], float(row["zeta"]))
+        found = steady(system, float(row["r"]), float(row["beta"]), float(row["mu"]), skip=skip)
+        if row["status"] == "stuck":
+            assert found["regime"] == regimes.PERMANENT_STICKING, row
+        if row["status"] == "ok":
+            seen += 1
+            masses = [float(x) for x in row["X"]]
+            compare(found, row["stops"], float(row["Z"]), float(row["stuck_fraction"]), masses)
+    assert seen > 90
+
+
+def random_chain(rng, zeta):
+    """A random chain, contact and load; and the same as the slow reference wants it."""
+    n = int(rng.integers(2, 5))
+    gamma, kappa = (np.concatenate(([1.0], rng.uniform(0.3, 3.0, n - 1))) for _ in range(2))
+    kind = rng.choice(["wall", "base", "masses"])
+    first = int(rng.integers(1, n)) if kind == "masses" else int(rng.integers(1, n + 1))
+    contact = (str(kind), first)
+    if kind == "masses":
+        contact = ("masses", first, int(rng.integers(first + 1, n + 1)))
+    load = 1 if kind == "base" else int(rng.integers(1, n + 1))
+    entry = {"contact": contact, "load": load, "gamma": tuple(gamma), "kappa": tuple(kappa)}
+    return chain(entry, zeta), entry
+
+
+def test_random_cells_against_the_slow_reference():
+    """100 random damped cells: nothing in common with the reference but the equations of motion."""
+    rng = np.random.default_rng(11)
+    compared = 0
+    for _ in range(100):
+        zeta = float(rng.choice([0.03, 0.1, 0.5, 1.0, 1.7]))
+        system, entry = random_chain(rng, zeta)
+        mu = float(rng.choice([1.0, 1.2, 2.0]))
+        r = float(rng.uniform(0.2, 2.0))
+        beta = float(rng.uniform(0.02, 1.05)) * fm.boundaries(system, [r]).beta_stick.item()
+        slow = naive_steady_state(zeta=zeta, r=r, beta=beta, mu=mu, cycles=600, tol=1e-10, **entry)
+        found = steady(system, r, beta, mu)
+        cell = (entry, zeta, mu, r, beta)
+        if slow.status == "stuck":
+            assert found["regime"] == regimes.PERMANENT_STICKING, cell
+        if slow.status != "ok":
+            continue
+        compared += 1
+        assert found["stops_per_cycle"] == slow.stops, cell
+        # the reference waits until its state repeats to 1e-10: slow modes may still be on their way
+        assert found["contact_amplitude"] == pytest.approx(slow.Z, rel=1e-7, abs=1e-8 * max(slow.X)), cell
+        assert found["amplitude"] == pytest.approx(slow.X, abs=1e-5 * max(slow.X)), cell
+        assert found["stuck_fraction"] == pytest.approx(slow.stuck_fraction, abs=1e-4), cell
+    assert compared > 70
+
+
+@pytest.mark.parametrize("contact", ["fixed-wall", "joined-base-wall"])
+@pytest.mark.parametrize("zeta", [0.0, 0.03, 1.0, 2.0])
+@pytest.mark.parametrize("start", ["rest", "moving"])
+def test_one_mass_by_the_code_for_many(contact, zeta, start):
+    """Both kernels give the same map; asking for the amplitude of the mass takes the one for structures."""
+    rng = np.random.default_rng(5)
+    system = fm.System(contact=contact, damping_ratios=zeta)
+    grid = {
+        "r": np.sort(rng.uniform(0.1, 2.5, 12)),
+        "beta": np.sort(rng.uniform(0.0, 1.5 if contact == "fixed-wall" else 4.0, 12)),
+        "mu": [1.0, 1.5],
+    }
+    one = fm.sweep(system, **grid, start=start, outputs=OUTPUTS[:-1])
+    many = fm.sweep(system, **grid, start=start, outputs=OUTPUTS)
+    both = ((one.status == 0) & (many.status == 0)).values
+    assert both.mean() > 0.97
+    np.testing.assert_array_equal(one.regime.values[both], many.regime.values[both])
+    for name in ("stops_per_cycle", "contact_amplitude", "stuck_fraction"):
+        np.testing.assert_allclose(many[name].values[both], one[name].values[both], rtol=1e-6, atol=1e-9)
+    z = one.contact_amplitude.values[both]
+    np.testing.assert_allclose(many.contact_amplitude.values[both], z, rtol=1e-10, atol=1e-12)
+    if contact == "fixed-wall":  # a mass that sticks for good may do so off its place
+        both &= (one.regime != regimes.PERMANENT_STICKING).values
+        z = one.contact_amplitude.values[both]
+        np.testing.assert_allclose(many.amplitude.values[..., 0][both], z, rtol=1e-10, atol=1e-12)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.02, 0.7, 1.0, 1.5, [0.1, 1.0, 3.0, 0.0]])
+def test_held_structure(zeta):
+    """Its motions leave the contact alone, obey the equations of motion, and are all there are."""
+    w = np.array([0.4, 1.1, 1.7, 2.6])
+    zeta = np.broadcast_to(np.asarray(zeta, dtype=float), w.shape).copy()
+    chi = np.array([0.7, -0.4, 1.1, 0.2])
+    held = held_structure(w, zeta, chi)
+    n, m = w.size, w.size - 1
+    assert np.max(np.abs(held.to_held @ held.to_free - np.eye(2 * m))) < 1e-12
+    assert np.max(np.abs(chi @ held.to_free[:n])) < 1e-13
+    assert np.max(np.abs(chi @ held.to_free[n:])) < 1e-13
+    # y'' = -omega^2 y - 2 zeta omega y' in every column: u'' + 2 zeta w u' + w^2 u is along chi
+    flow = np.block(
+        [
+            [np.zeros((m, m)), np.eye(m)],
+            [-np.diag(held.omega**2), -np.diag(2.0 * held.zeta * held.omega)],
+        ]
+    )
+    u, v = held.to_free[:n], held.to_free[n:]
+    rate = held.to_free @ flow
+    np.testing.assert_allclose(rate[:n], v, atol=1e-12)
+    left = rate[n:] + (2.0 * zeta * w)[:, np.newaxis] * v + (w**2)[:, np.newaxis] * u
+    along = np.outer(chi, chi @ left) / (chi @ chi)
+    np.testing.assert_allclose(left, along, atol=1e-11)
+    assert chi @ held.lift == pytest.approx(1.0, rel=1e-14)
+
+
+def gauss_samples(system, r, beta, mu):
+    """Weights, times, velocities of the masses and of the contact, friction: Gauss points in every phase."""
+    solver = fm.Solver()
+    cells = StructureCells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
+    question = Question(system, r, beta, mu, solver, 2)
+    rows, _ = _structure_phases(question, cells)
+    found = cells.found
+    x, weight = np.polynomial.legendre.leggauss(12)
+    begins = np.concatenate(([0.0], np.cumsum(rows[:, history.LENGTH])))
+    panels = [np.linspace(left, right, 41) for left, right in pairwise(begins)]
+    left = np.concatenate([edges[:-1] for edges in panels])[:, np.newaxis]
+    width = np.concatenate([np.diff(edges) for edges in panels])[:, np.newaxis]
+    since = (left + 0.5 * width * (1.0 + x)).ravel()
+    n = found.seen.size
+    st = make_structure(found.model, found.loads, 0, r, 24.0)
+    coordinates, velocities = np.empty((2, n, since.size))
+    z, friction = np.empty((2, since.size))
+    history.sample_phases(
+        st, beta, rows, rows.shape[0], since, coordinates, velocities, z, friction,
+        np.empty(since.size, dtype=np.int8), make_workspace(n), make_scratch(n),
+    )  # fmt: skip
+    sign = rows[0, history.SIGN]
+    tau = since + math.atan2(sign * rows[0, history.SIN], sign * rows[0, history.COS])
+    relative = found.shapes.free @ velocities  # to the base, if it moves
+    return (0.5 * width * weight).ravel(), tau, relative, friction
+
+
+@pytest.mark.parametrize("case", range(20))
+def test_energy_over_a_period(case):
+    """Work of the load = friction work + damping work, to 1e-10.
+
+    Seen from the base the load on a joined base-wall is p - (K - r^2 M + i r C) ones, and the wall at rest.
+    """
+    rng = np.random.default_rng(case)
+    system, _ = random_chain(rng, float(rng.choice([0.02, 0.3, 1.0, 1.4])))
+    r = float(rng.uniform(0.3, 2.0))
+    beta = float(rng.uniform(0.05, 0.8)) * fm.boundaries(system, [r]).beta_stick.item()
+    weight, tau, v, friction = gauss_samples(system, r, beta, 1.2)
+    modes = system.modes
+    dynamic = modes.stiffness - r**2 * modes.mass + 1j * r * modes.damping
+    phasor = modes.load + 1j * r * modes.load_rate - modes.base_motion * dynamic.sum(axis=1)
+    load = (phasor[:, np.newaxis] * np.exp(1j * tau)).real
+    work = weight @ np.sum(load * v, axis=0)
+    rubbed = weight @ (friction * (modes.contact @ v))
+    damped = weight @ (r * np.einsum("it,ij,jt->t", v, modes.damping, v))
+    assert rubbed > 0.0
+    assert damped > 0.0
+    assert work == pytest.approx(rubbed + damped, rel=1e-10)
+
+
+def test_responses_obey_the_equations():
+    """x' is the derivative of x, and M x'' + C x' + K x + c f = p cos(tau) between events, by differences."""
+    rng = np.random.default_rng(2)
+    for _ in range(6):
+        system, _ = random_chain(rng, float(rng.choice([0.0, 0.05, 1.2])) or 0.04)
+        r = float(rng.uniform(0.4, 1.8))
+        beta = 0.4 * fm.boundaries(system, [r]).beta_stick.item()
+        ds = fm.response(system, r, beta, 1.2, points=8000)
+        modes = system.modes
+        tau, x, v = ds.tau.values, ds.x.values, ds.v.values
+        h = tau[1] - tau[0]
+        # differences of fourth order, where the five points lie in one phase
+        same = (ds.phase.values[:-4] == ds.phase.values[4:]) & (ds.phase.values[:-4] == ds.phase.values[2:-2])
+        inside = np.flatnonzero(same) + 2
+
+        def slope(y, inside=inside, h=h):
+            return (y[:, :-4] - 8 * y[:, 1:-3] + 8 * y[:, 3:-1] - y[:, 4:])[:, inside - 2] / (12 * h)
+
+        np.testing.assert_allclose(slope(x), v[:, inside], atol=1e-9 * np.abs(v).max())
+        force = (
+            r**2 * modes.mass @ slope(v) + r * modes.damping @ v[:, inside] + modes.stiffness @ x[:, inside]
+            + np.outer(modes.contact, ds.friction.values[inside])
+        )  # fmt: skip
+        load = ((modes.load + 1j * r * modes.load_rate)[:, np.newaxis] * np.exp(1j * tau[inside])).real
+        off = np.abs(force - load).max(axis=0)
+        # an event between two samples of one phase (a slide that passes into the next) spoils a few
+        assert np.quantile(off, 0.99) < 1e-7 * max(1.0, np.abs(load).max())
+        z = modes.contact @ x - modes.base_motion * np.cos(tau)
+        np.testing.assert_allclose(z, ds.z.values, atol=1e-12 * max(1.0, np.abs(x).max()))
+        assert float(ds.contact_amplitude) == pytest.approx(np.abs(z).max(), rel=1e-5)
+
+
+def test_undamped_map():
+    """T Fig. 6.7, mu = 1, a coarse grid: all resolved but those at r = 0 and the held resonance r = 1."""
+    system = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1])
+    r, beta = np.arange(51) / 20.0, np.arange(25) / 20.0  # a tie with beta_stick = 1 is one to the bit
+    ds = fm.sweep(system, r, beta, outputs=OUTPUTS[:-1])
+    unresolved = (ds.status != 0).any("beta").squeeze("mu")
+    assert set(ds.r.values[unresolved.values]) <= {0.0, 0.5, 1.0}
+    smooth = ds.squeeze("mu")
+    known = (smooth.r > 0.0) & (smooth.status == 0)
+    stuck = (smooth.beta >= smooth.beta_stick).broadcast_like(smooth.regime) & known
+    assert bool((smooth.regime.where(stuck, 0) == regimes.PERMANENT_STICKING).all())
+
+
+def test_threads_and_steps_change_nothing():
+    """Same bits for any number of threads; the same answers for any number of scan steps."""
+    system = fm.System(
+        contact_masses=[2], mass_ratios=[1, 2, 0.5], stiffness_ratios=[1, 0.5, 2], damping_ratios=0.02
+    )
+    grid = {"r": np.linspace(0.05, 2.5, 40), "beta": np.linspace(0.0, 2.0, 70), "mu": [1.0, 1.4]}
+    one = fm.sweep(system, **grid, outputs=OUTPUTS, threads=1)
+    two = fm.sweep(system, **grid, outputs=OUTPUTS, threads=2)
+    for name in OUTPUTS:
+        np.testing.assert_array_equal(one[name].values, two[name].values, err_msg=name)
+    for steps in (5, 60):
+        other = fm.sweep(system, **grid, outputs=OUTPUTS, steps=steps)
+        both = ((one.status == 0) & (other.status == 0)).values
+        assert both.mean() > 0.99
+        same = (one.stops_per_cycle == other.stops_per_cycle) | one.stops_per_cycle.isnull()
+        assert np.mean(same.values[both]) > 0.999  # with mu > 1 two steady states may lie close together
+        close = np.isclose(one.contact_amplitude, other.contact_amplitude, rtol=1e-8, atol=1e-10)
+        assert np.mean(close[both]) > 0.999
+
+
+def test_a_stiff_link_acts_as_one_mass():
+    """Two masses on a link of stiffness 1e6, its mode damped critically, move as one of their sum."""
+    two = fm.System(mass_ratios=[1.0, 2.0], stiffness_ratios=[1.0, 1e6], damping_ratios=[0.03, 1.0])
+    one = fm.System(damping_ratios=0.03)
+    for r, beta in ((0.3, 0.5), (0.7, 0.6), (1.4, 0.3)):
+        r_two = r / math.sqrt(3.0)
+        linked, single = steady(two, r_two, beta, 1.2), steady(one, r, beta, 1.2)
+        # at a turn the link lets the contact's own mass rest for as long as the link takes to relax
+        assert linked["stuck_fraction"] == pytest.approx(single["stuck_fraction"], abs=2e-3)
+        assert linked["contact_amplitude"] == pytest.approx(single["contact_amplitude"], rel=2e-3)
+
+
+def test_scaling_and_renumbering():
+    """Units of force, mass and stiffness, and the order of the masses, change nothing."""
+    mass = np.diag([1.0, 0.7, 1.9])
+    stiffness = np.array([[2.3, -1.3, 0.0], [-1.3, 1.9, -0.6], [0.0, -0.6, 0.6]])
+    plain = fm.System(
+        matrices={"M": mass, "K": stiffness}, contact_masses=[2], load_mass=3, damping_ratios=0.05,
+        frequency_scale=1.0,
+    )  # fmt: skip
+    other = fm.System(
+        matrices={"M": 250.0 * mass, "K": 4000.0 * stiffness}, contact_masses=[2], load_mass=3,
+        damping_ratios=0.05, frequency_scale=4.0, stiffness_scale=4000.0,
+    )  # fmt: skip
+    order = [2, 0, 1]
+    turned = fm.System(
+        matrices={"M": mass[np.ix_(order, order)], "K": stiffness[np.ix_(order, order)]}, contact_masses=[3],
+        load_mass=1, damping_ratios=0.05, frequency_scale=1.0,
+    )  # fmt: skip
+    for r, beta, mu in ((0.5, 0.2, 1.0), (0.9, 0.1, 1.5), (1.6, 0.3, 1.2)):
+        a, b, c = (steady(system, r, beta, mu) for system in (plain, other, turned))
+        for name in ("regime", "stops_per_cycle"):
+            np.testing.assert_array_equal(a[name], b[name])
+            np.testing.assert_array_equal(a[name], c[name])
+        assert b["amplitude"] == pytest.approx(a["amplitude"], rel=1e-9)
+        assert c["amplitude"] == pytest.approx(a["amplitude"][order], rel=1e-9)
+
+
+def test_unseen_modes():
+    """Two equal pendants on one mass: the mode in which they swing against each other is not seen."""
+    mass = np.diag([1.0, 0.5, 0.5])
+    stiffness = np.array([[3.0, -1.0, -1.0], [-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])
+    system = fm.System(matrices={"M": mass, "K": stiffness}, frequency_scale=1.0, load_mass=1)
+    assert np.sum(system.modes.chi == 0.0) == 1
+    found = steady(system, 0.8, 0.3)
+    assert found["status"] == regimes.RESOLVED
+    assert found["amplitude"][1] == pytest.approx(found["amplitude"][2], rel=1e-12)
+    single = fm.System(mass_ratios=[1.0, 1.0], stiffness_ratios=[1.0, 2.0])
+    alone = steady(single, 0.8, 0.3)
+    assert found["contact_amplitude"] == pytest.approx(alone["contact_amplitude"], rel=1e-9)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.3, 1.0, 2.0])
+def test_decay_is_what_the_oscillators_do(zeta):
+    """The step's map against the closed form T(B.8)."""
+    table = np.zeros((ROWS, 1))
+    turn = 0.2
+    table[K, 0], table[D, 0] = turn**2, 2.0 * zeta * turn
+    fill_steps(table, 1, 0.1, 20)
+    q, e = decay(zeta, turn)
+    expected = [e + 2.0 * zeta * q, q / turn, -q * turn, e]
+    assert [table[row, 0] for row in (ZZ, ZW, WZ, WW)] == pytest.approx(expected, rel=1e-14)

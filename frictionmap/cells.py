@@ -13,7 +13,7 @@ from . import regimes
 from ._kernels.cycle import Limits
 from ._kernels.sweep import Frequencies, Outputs, fill_closed_form, fill_integrated
 from .curves import Curves, many_mode_curves, one_mass_curves
-from .settings import Solver
+from .settings import DETAILS, Solver
 from .system import System
 
 Job = tuple[Callable[..., None], tuple]
@@ -39,6 +39,9 @@ class Cells(Protocol):
         stop: np.ndarray,
     ) -> Job:  # fmt: skip
         """A job for cells first..last-1 of the list of open cells."""
+
+    def reachable(self, out: Outputs, stop: np.ndarray) -> list[Job]:
+        """Jobs for what else a cell could end in, if that was asked for."""
 
     def finish(self, out: Outputs) -> None:
         """What is left to do when all jobs are done."""
@@ -75,6 +78,10 @@ class OneMassCells:
         )  # fmt: skip
         return fill_integrated, arguments
 
+    def reachable(self, out: Outputs, stop: np.ndarray) -> list[Job]:
+        """See `Cells`."""
+        return []
+
     def finish(self, out: Outputs) -> None:
         """See `Cells`."""
 
@@ -91,13 +98,14 @@ class StructureCells:
 
         self.curves = many_mode_curves(system, r, mu)
         self.no_load = (r == 0.0) & bool(system.base_motion)
-        self.found = structures(system, r, self.curves, solver.start == "moving")
+        self.found = structures(system, r, self.curves)
+        self.starts = self.found.moving if solver.start == "moving" else self.found.rest
         self._static = np.abs(system.modes.static_response())
         self._r, self._mu, self._beta, self._solver = r, mu, beta, solver
 
     def closed(self, first: int, last: int, low: np.ndarray, high: np.ndarray, out: Outputs) -> list[Job]:
         """See `Cells`."""
-        from ._kernels.structure_sweep import fill_closed_displacements
+        from ._kernels.structure_sweep import fill_closed_details
 
         orbit = self.found.orbit
         ones = np.ones(self._r.size)
@@ -105,14 +113,31 @@ class StructureCells:
             self._r, ones, 0.0 * ones, orbit.v_abs, orbit.v_arg, orbit.u, orbit.g, self.found.marginal
         )
         jobs: list[Job] = [(fill_closed_form, (first, last, low, high, self._beta, found, 0.0, out))]
-        if out.amplitude.size:
+        if set(DETAILS) & set(self._solver.outputs):
             f = self.found
             arguments = (
-                first, last, low, high, self._beta, self._r, f.model, f.loads, orbit, f.shapes, f.alone_re,
-                f.alone_im, f.held, float(self._solver.steps), out.amplitude,
+                first, last, low, high, self._beta, self._mu, self.curves.beta_lim, self._r, f.model, f.loads,
+                orbit, f.shapes, f.alone_re, f.alone_im, f.held, float(self._solver.steps), out,
             )  # fmt: skip
-            jobs.append((fill_closed_displacements, arguments))
+            jobs.append((fill_closed_details, arguments))
         return jobs
+
+    def reachable(self, out: Outputs, stop: np.ndarray) -> list[Job]:
+        """See `Cells`."""
+        if not {"also_reachable", "sliding_limit"} & set(self._solver.outputs):
+            return []
+        from ._kernels.coexistence import fill_reachable
+
+        f = self.found
+        shape = (self._mu.size, self._r.size, self._beta.size)
+        flags = out.also_reachable if out.also_reachable.size else np.zeros(shape, dtype=np.int8)
+        far = out.sliding_limit if out.sliding_limit.size else np.empty(shape[:2])
+        shared = (
+            self._beta, self._mu, self.curves.beta_lim, self.curves.beta_stick, self._r, f.model, f.loads,
+            f.orbit, f.marginal, f.rest, f.moving, float(self._solver.steps), limits(self._solver), flags,
+            far, stop,
+        )  # fmt: skip
+        return [(fill_reachable, (row, row + 1, *shared)) for row in range(shape[0] * shape[1])]
 
     def opened(
         self, first: int, last: int, rows: np.ndarray, ends: np.ndarray, low: np.ndarray, out: Outputs,
@@ -124,7 +149,7 @@ class StructureCells:
         f = self.found
         arguments = (
             first, last, rows, ends, low, self._beta, self._mu, self.curves.beta_lim, self._r, f.model,
-            f.loads, f.orbit, f.marginal, f.starts, f.shapes, f.alone_re, f.alone_im, f.held,
+            f.loads, f.orbit, f.marginal, self.starts, f.shapes, f.alone_re, f.alone_im, f.held,
             float(self._solver.steps), limits(self._solver), out, stop,
         )  # fmt: skip
         return fill_structures, arguments
@@ -140,7 +165,7 @@ class StructureCells:
 
 def make_cells(system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver) -> Cells:
     """The cells of a map; r, beta and mu are checked axes."""
-    one = system.normalised and "amplitude" not in solver.outputs
+    one = system.normalised and not set(DETAILS) & set(solver.outputs)
     return (OneMassCells if one else StructureCells)(system, r, beta, mu, solver)
 
 

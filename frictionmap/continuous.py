@@ -270,7 +270,7 @@ def continuous_motion(system: System, r: float, beta: float) -> ContinuousMotion
     >>> import frictionmap as fm
     >>> motion = fm.continuous_motion(fm.System(contact="joined-base-wall"), r=1.6, beta=0.5)
     >>> round(float(motion.amplitude[0]), 4)
-    0.6514
+    0.665
     """
     r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
     beta = checks.number(beta, "beta", least=0.0)

@@ -9,6 +9,7 @@ from . import checks
 from ._kernels.curves import boundary, response_functions
 from ._kernels.sums import many_mode_functions
 from ._kernels.sweep import Frequencies
+from .errors import InputError
 from .features import (
     all_mass_invariant_points,
     high_frequency_limits,
@@ -19,13 +20,19 @@ from .features import (
 from .labels import coordinate, label_variable, stamp
 from .system import System
 
-#: Invariant points that a file lists, from the highest down; below them hardly any motion is continuous.
+#: About so many invariant points beyond one a mode are listed, from the highest down: below them hardly any
+#: motion is continuous.  Those of masses are listed up to so many masses: they cost the square of it.
 _LISTED_POINTS = 40
+_LISTED_MASSES = 12
 
 #: A point may lie on an end of the axis, and is found beside it: the search reaches so much further, and
 #: keeps what is no further off than rounding.
 _REACH = 1e-6
 _ON_END = 1e-13
+
+
+#: Least r over the fastest rate of a structure: some 10^6 intervals are searched for S there.
+_LEAST_RATIO = 1e-6
 
 
 @dataclass(frozen=True)
@@ -95,6 +102,14 @@ def _lim(v: np.ndarray, u: np.ndarray, bracket: np.ndarray) -> np.ndarray:
 def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     """All curves of a system of any number of masses; `r` and `mu` are checked axes."""
     modes = system.modes
+    rates = modes.w * np.where(modes.zeta > 1.0, 2.0 * modes.zeta, 1.0)
+    least = _LEAST_RATIO * float(rates.max())
+    small = (r > 0.0) & (r < least)
+    if small.any():
+        raise InputError(
+            f"r must be 0, or >= {least:.3g} for this structure: below, S takes too many steps to find; "
+            f"got {r[small][0]:g}"
+        )
     v = modes.contact_response(r)
     u, g, h, s, by_modes = np.empty((5, r.size))
     many_mode_functions(r, modes.w, modes.zeta, modes.chi, modes.inverse_mass, u, g, h, s, by_modes)
@@ -153,13 +168,14 @@ def _invariants(system: System, r: np.ndarray) -> dict[str, tuple[tuple[str, ...
         return {}
     first = positive[0]
     low, high = first * (1.0 - _ON_END), r[-1] * (1.0 + _ON_END)
-    reach = first * (1.0 - _REACH), min(r[-1] * (1.0 + _REACH), checks.LARGEST_RATIO), _LISTED_POINTS
+    end = min(r[-1] * (1.0 + _REACH), checks.LARGEST_RATIO)
+    reach = first * (1.0 - _REACH), end, _LISTED_POINTS + system.n
     found: dict[str, tuple[tuple[str, ...], np.ndarray]] = {}
     points = invariant_points(system, *reach)
     points = points[(points >= low) & (points <= high)]
     if points.size:
         found["invariant_point"] = ("invariant",), points
-    if one_phase(system) and not system.modes.zeta.any():
+    if system.n <= _LISTED_MASSES and one_phase(system) and not system.modes.zeta.any():
         rows = [row[(row >= low) & (row <= high)] for row in all_mass_invariant_points(system, *reach)]
         if any(row.size for row in rows):
             found["mass_invariant_point"] = ("dof", "mass_invariant"), _padded(rows)
@@ -208,7 +224,8 @@ def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
         the contact held, infinite where that resonates; within the axis `invariant_point`, where friction
         leaves z as it is (the phase only, with damping), and on (dof, mass_invariant), without damping only,
         `mass_invariant_point`, where it leaves the monoharmonic amplitude of a mass as it is, NaN where
-        there are fewer.  Of invariant points the highest 40 or so are listed, and no empty variable.
+        there are fewer.  The highest 40 or so points and one a mode are listed, those of masses for up to 12
+        masses; a variable without points is left out.  `frictionmap.features` has them all.
 
     Raises
     ------

@@ -28,8 +28,11 @@ _SHARES = np.unique(np.concatenate((_NEAR, 1.0 - _NEAR, np.arange(1.0, 16.0) / 1
 #: Phases of a load that differ by less than this are one: a few units of rounding of an exponential.
 _ONE_PHASE = 1e-14
 
-#: Halvings of an interval: then its ends are neighbouring doubles.
-_HALVINGS = 64
+_EPS = float(np.finfo(float).eps)
+
+#: Steps to a root at most: every third is a halving, and no interval is halved more often than a double's
+#: bits allow.
+_STEPS = 200
 
 
 class HighFrequency(NamedTuple):
@@ -135,10 +138,49 @@ def _range(modes: ModalModel, low: object, high: object, most: object) -> _Range
     return _Range(low, high, *inside)
 
 
-def _roots(f: Callable[[np.ndarray], np.ndarray], where: _Range) -> list[np.ndarray]:
-    """Roots with a change of sign of several functions: f takes (n_r,) and returns (n_r, n_functions).
+def _polish(
+    f: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    which: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    at_low: np.ndarray,
+    at_high: np.ndarray,
+) -> np.ndarray:
+    """Roots of the functions `which` between low and high, all (n_roots,), to two units of rounding.
 
-    A pair of roots between two samples is missed.
+    The Illinois method: false position, where the value at an end that stays twice is halved; every third
+    step is a bisection, which bounds their number.
+    """
+    root = high.copy()
+    left = np.arange(low.size)
+    stayed = np.zeros(low.size)  # which end did: -1 low, 1 high
+    for step in range(_STEPS):
+        least = 2.0 * _EPS * high
+        open_ = (high - low > 2.0 * least) & (at_high != 0.0)
+        root[left] = np.where(open_, root[left], high)
+        left, which, low, high, at_low, at_high, least, stayed = (
+            part[open_] for part in (left, which, low, high, at_low, at_high, least, stayed)
+        )
+        if left.size == 0:
+            break
+        if step % 3 == 2:
+            new = 0.5 * (low + high)
+        else:
+            new = np.clip(low + (high - low) * (at_low / (at_low - at_high)), low + least, high - least)
+        value = f(new, which)
+        moves_low = value * np.sign(at_low) > 0.0
+        low, high = np.where(moves_low, new, low), np.where(moves_low, high, new)
+        at_high = np.where(moves_low, np.where(stayed > 0.0, 0.5 * at_high, at_high), value)
+        at_low = np.where(moves_low, value, np.where(stayed < 0.0, 0.5 * at_low, at_low))
+        stayed = np.where(moves_low, 1.0, -1.0)
+    return root
+
+
+def _roots(f: Callable[..., np.ndarray], where: _Range) -> list[np.ndarray]:
+    """Roots with a change of sign of several functions.
+
+    f(r) returns the values of all functions, (n_r, n_functions); f(r, which) those of one a frequency,
+    (n_r,).  A pair of roots between two samples is missed.
     """
     edges = np.concatenate(([where.low], where.edges, [where.high]))
     r = np.unique(edges[:-1, np.newaxis] + np.diff(edges)[:, np.newaxis] * _SHARES)
@@ -147,23 +189,24 @@ def _roots(f: Callable[[np.ndarray], np.ndarray], where: _Range) -> list[np.ndar
     sign = np.sign(values)
     same_side = np.searchsorted(where.poles, r[1:]) == np.searchsorted(where.poles, r[:-1])
     k, which = np.nonzero((sign[1:] * sign[:-1] < 0.0) & same_side[:, np.newaxis])
-    low, high, rising = r[k], r[k + 1], sign[k + 1, which]
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if np.all((middle == low) | (middle == high)):
-            break
-        above = np.take_along_axis(f(middle), which[:, np.newaxis], axis=1)[:, 0] * rising >= 0.0
-        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    found = _polish(f, which, r[k], r[k + 1], values[k, which], values[k + 1, which])
     exact = (sign == 0.0) & (values != 0.0).any(axis=0)  # not of a function that is zero everywhere
-    return [np.unique(np.concatenate((high[which == j], r[exact[:, j]]))) for j in range(values.shape[1])]
+    return [np.unique(np.concatenate((found[which == j], r[exact[:, j]]))) for j in range(values.shape[1])]
 
 
-def _first_damping(modes: ModalModel, weights: np.ndarray, r: np.ndarray) -> np.ndarray:
-    """U of coordinates with modal weights (n_rows, n): sum of weights chi_i/w_i^2 u_i; (n_r, n_rows)."""
+def _first_damping(modes: ModalModel, r: np.ndarray) -> np.ndarray:
+    """u_i/w_i^2 chi_i, and 0 of modes that the contact does not see, whose u may be infinite; (n_r, n)."""
     seen = modes.chi != 0.0
     u = np.empty((r.size, int(seen.sum())))
     first_damping_functions(r, modes.w[seen], modes.zeta[seen], u)
-    return u @ (weights[:, seen] * (modes.chi / modes.w**2)[seen]).T
+    terms = np.zeros((r.size, seen.size))
+    terms[:, seen] = u * (modes.chi / modes.w**2)[seen]
+    return terms
+
+
+def _sums(terms: np.ndarray, rows: np.ndarray, which: np.ndarray | None) -> np.ndarray:
+    """Sums over modes, terms (n_r, n), with weights (n_rows, n): (n_r, n_rows), or (n_r,) of one a term."""
+    return terms @ rows.T if which is None else np.einsum("ij,ij->i", terms, rows[which])
 
 
 def invariant_points(system: System, low: float, high: float, most: int = MOST_POINTS) -> np.ndarray:
@@ -175,7 +218,8 @@ def invariant_points(system: System, low: float, high: float, most: int = MOST_P
     """
     modes = system.modes
     where = _range(modes, low, high, most)
-    return _roots(lambda r: _first_damping(modes, modes.chi[np.newaxis], r), where)[0]
+    row = modes.chi[np.newaxis]
+    return _roots(lambda r, which=None: _sums(_first_damping(modes, r), row, which), where)[0]
 
 
 def _turned_load(modes: ModalModel) -> np.ndarray:
@@ -207,9 +251,9 @@ def _undamped(system: System) -> ModalModel:
     )
 
 
-def _responses(modes: ModalModel, rows: np.ndarray, r: np.ndarray) -> np.ndarray:
-    """V_k without damping and with a real load, at no resonance; (n_r, n_rows)."""
-    return (modes.participation(r).real / modes.dynamic_stiffness(r).real) @ rows.T
+def _responses(modes: ModalModel, r: np.ndarray) -> np.ndarray:
+    """lambda_i/(w_i^2 - r^2) without damping and with a real load, at no resonance; (n_r, n)."""
+    return modes.participation(r).real / modes.dynamic_stiffness(r).real
 
 
 def _displacement_rows(modes: ModalModel, masses: np.ndarray) -> np.ndarray:
@@ -232,12 +276,17 @@ def all_mass_invariant_points(
     rows = _displacement_rows(modes, np.arange(1, system.n + 1))
     own = _follows_contact(modes, rows)
 
-    def functions(r: np.ndarray) -> np.ndarray:
-        u = _first_damping(modes, np.vstack((rows, modes.chi)), r)
-        u_k, u_z = u[:, :-1], u[:, -1:]
-        v_k, v = _responses(modes, rows, r), modes.contact_response(r).real[:, np.newaxis]
+    def functions(r: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
+        row = None if which is None else which % system.n
+        u, v = _first_damping(modes, r), _responses(modes, r)
+        u_k, v_k = _sums(u, rows, row), _sums(v, rows, row)
+        u_z, v_z = u @ modes.chi, modes.contact_response(r).real
+        if which is None:
+            u_z, v_z = u_z[:, np.newaxis], v_z[:, np.newaxis]
         # of the contact itself T(6.10) is never zero, but what it is multiplied with here is
-        return np.column_stack((u_k, np.where(own | (u_k == 0.0), 0.0, v * u_k - 2.0 * v_k * u_z)))
+        free = ~own if row is None else ~own[row]
+        other = np.where(free & (u_k != 0.0), v_z * u_k - 2.0 * v_k * u_z, 0.0)
+        return np.hstack((u_k, other)) if which is None else np.where(which < system.n, u_k, other)
 
     roots = _roots(functions, where)
     return [np.union1d(roots[k], roots[k + system.n]) for k in range(system.n)]
@@ -273,11 +322,12 @@ def first_harmonic_invariant_points(
     own = _follows_contact(modes, rows)
     pushed = replace(modes, load=modes.contact.astype(complex))  # H_k is V_k of a load c
 
-    def functions(r: np.ndarray) -> np.ndarray:
-        u = _first_damping(modes, modes.chi[np.newaxis], r)
-        h_k, v_k = _responses(pushed, rows, r), _responses(modes, rows, r)
-        v = modes.contact_response(r).real[:, np.newaxis]
-        over = np.where(own, 1.0, v), np.where(own, 1.0, v_k)  # V_k = V of the contact itself
-        return np.column_stack((h_k, over[1] * u + 2.0 / math.pi * over[0] * h_k))
+    def functions(r: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
+        h_k, v_k = _responses(pushed, r) @ rows[0], _responses(modes, r) @ rows[0]
+        v = modes.contact_response(r).real
+        if own[0]:  # V_k = V
+            v_k, v = np.ones(r.size), np.ones(r.size)
+        other = v_k * (_first_damping(modes, r) @ modes.chi) + 2.0 / math.pi * v * h_k
+        return np.column_stack((h_k, other)) if which is None else np.where(which == 0, h_k, other)
 
     return np.unique(np.concatenate(_roots(functions, where)))

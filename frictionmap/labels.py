@@ -23,6 +23,7 @@ class Label(NamedTuple):
     long_name: str
     codes: tuple[regimes.Code, ...] = ()
     comment: str = ""
+    flags: str = "flag_values"
 
 
 COORDINATES = {
@@ -54,6 +55,24 @@ CELL_VARIABLES = {
     "origin": Label(np.int8, "how the cell was decided", regimes.ORIGINS),
     "cycles": Label(np.int32, "excitation periods integrated for the cell"),
     "status": Label(np.int8, "whether the steady state was found, and if not, why", regimes.STATUSES),
+    "multiplier": Label(
+        np.float64,
+        "largest modulus of the Floquet multipliers over the steady period",
+        comment="below 1: a disturbance dies out; NaN where stuck or none was computed",
+    ),
+    "asymmetry": Label(
+        np.float32,
+        "largest modulus of z(tau + pi) + z(tau), over contact_amplitude",
+        comment="0 where the motion is antiperiodic; NaN where stuck or unresolved",
+    ),
+    "also_reachable": Label(
+        np.int8, "every regime that was found stable in the cell", regimes.REACHABLE, flags="flag_masks"
+    ),
+    "sliding_limit": Label(
+        np.float64,
+        "largest friction ratio for which a sliding steady state was found",
+        comment="followed along the branch; beta_stick where mu = 1",
+    ),
     "amplitude": Label(
         np.float64,
         "amplitude of the displacement of each mass, over P/k1 (Y)",
@@ -128,6 +147,8 @@ LABELS = {**CELL_VARIABLES, **CURVES, **HISTORY_VARIABLES}
 
 def cell_dims(name: str) -> tuple[str, ...]:
     """Dimensions of a cell variable."""
+    if name == "sliding_limit":
+        return ("mu", "r")
     return ("mu", "r", "beta", "dof") if name == "amplitude" else ("mu", "r", "beta")
 
 
@@ -142,7 +163,7 @@ def attributes(name: str) -> dict[str, object]:
     label = LABELS[name]
     result: dict[str, object] = {"long_name": label.long_name}
     if label.codes:
-        result["flag_values"] = np.array([code.value for code in label.codes], dtype=label.dtype)
+        result[label.flags] = np.array([code.value for code in label.codes], dtype=label.dtype)
         result["flag_meanings"] = " ".join(code.name for code in label.codes)
         result["comment"] = "; ".join(f"{code.name}: {code.meaning}" for code in label.codes)
     else:

@@ -80,9 +80,14 @@ def _allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> O
         "origin": regimes.CLOSED_FORM,
         "cycles": 0,
         "status": regimes.NOT_COMPUTED,
+        "multiplier": np.nan,
+        "asymmetry": np.nan,
+        "also_reachable": 0,
+        "sliding_limit": np.nan,
         "amplitude": np.nan,
     }
-    sizes = dict.fromkeys(unresolved, shape) | {"amplitude": (*shape, dofs)}
+    sizes: dict[str, tuple[int, ...]] = dict.fromkeys(unresolved, shape)
+    sizes |= {"amplitude": (*shape, dofs), "sliding_limit": shape[:2]}
     return Outputs(
         **{
             name: np.full(
@@ -137,6 +142,10 @@ def _fill(
         last = min(first + TILE, work.cells)
         jobs.append(cells.opened(first, last, work.rows, work.ends, work.low, out, stop))
         sizes.append(last - first)
+
+    others = cells.reachable(out, stop)
+    jobs += others
+    sizes += [0] * len(others)
 
     count = 0
 

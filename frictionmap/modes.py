@@ -20,6 +20,9 @@ _SAME_FREQUENCY = 8.0
 #: double precision could tell from zero is lost.
 _ZERO_PRODUCT = 64.0
 
+#: Frequencies whose held structures are solved for together.
+_STACK = 256
+
 
 def solve_modes(mass: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Natural frequencies w (n,), increasing, and modes phi (n, n), one a column, with phi^T M phi = 1.
@@ -150,10 +153,21 @@ def _solve_held(
     held = np.empty((r.size, n + 1), dtype=complex)
     squares = _held_squares(mass, stiffness, contact)
     rounding = _ZERO_PRODUCT * n * _EPS * squares.max(initial=0.0)
-    for k, value in enumerate(r):
-        bordered[:n, :n] = stiffness - value**2 * mass + 1j * value * damping
+    near = np.any(np.abs(squares - r[:, np.newaxis] ** 2) <= rounding, axis=1)
+    some = np.flatnonzero(~near)
+    for part in np.array_split(some, some.size // _STACK + 1):  # stacked: one call costs more than a solution
+        x = r[part, np.newaxis, np.newaxis]
+        stack = np.tile(bordered, (part.size, 1, 1))
+        stack[:, :n, :n] = stiffness - x**2 * mass + 1j * x * damping
+        right = np.column_stack((load[part], np.zeros(part.size)))
+        try:
+            held[part] = units * np.linalg.solve(stack, right[..., np.newaxis])[..., 0]
+        except np.linalg.LinAlgError:
+            near[part] = True
+    for k in np.flatnonzero(near):
+        bordered[:n, :n] = stiffness - r[k] ** 2 * mass + 1j * r[k] * damping
         right = np.append(load[k], 0.0)
-        if np.any(np.abs(squares - value**2) <= rounding):
+        if np.any(np.abs(squares - r[k] ** 2) <= rounding):
             unfed = _unfed_resonance(bordered, mass, right)
             if unfed is not None:
                 held[k] = units * unfed

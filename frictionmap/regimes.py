@@ -35,6 +35,13 @@ REGIMES = (
     Code(CONTINUOUS, "continuous", "the contact slides without stopping"),
 )
 
+#: Bits of `also_reachable`.
+REACHABLE = (
+    Code(1, "permanent_sticking", "the contact may stick for good"),
+    Code(2, "stick_slip", "the contact may slide and stop"),
+    Code(4, "continuous", "the contact may slide without stopping"),
+)
+
 ORIGINS = (
     Code(CLOSED_FORM, "closed_form", "decided by a formula"),
     Code(INTEGRATED, "integrated", "followed from the starting state to the steady state"),
@@ -57,8 +64,8 @@ STATUSES = (
         MARGINAL,
         "marginal",
         "undamped at an even sub-multiple of a natural frequency (r = 1/(2n)), or at one of the held "
-        "structure that the load does not drive: a continuum of steady states, chosen by the start; where the "
-        "regime is continuous the amplitude given is the symmetric one's; add a little damping",
+        "structure that the load does not drive: a continuum of steady states, chosen by the start; where "
+        "the regime is continuous the amplitude given is the symmetric one's; add a little damping",
     ),
     Code(
         QUASI_STATIC,

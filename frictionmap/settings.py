@@ -16,8 +16,15 @@ OUTPUTS = (
     "origin",
     "cycles",
     "status",
+    "multiplier",
+    "asymmetry",
+    "also_reachable",
+    "sliding_limit",
     "amplitude",
 )
+
+#: Those that take the code for structures, whatever the number of masses.
+DETAILS = ("multiplier", "asymmetry", "also_reachable", "sliding_limit", "amplitude")
 
 
 @dataclass(frozen=True)

@@ -199,7 +199,7 @@ def _structure_phases(question: Question, cells: StructureCells) -> tuple[np.nda
     if regime == regimes.UNRESOLVED:
         cell = one_structure(
             beta, question.mu, cells.curves.beta_lim[0, 0], question.r, found.model, found.loads, found.orbit,
-            bool(found.marginal[0]), found.starts, steps, limits(solver), state,
+            bool(found.marginal[0]), cells.starts, steps, limits(solver), state,
         )  # fmt: skip
         if cell.period == 0:
             raise _no_steady_state(question, status_meaning(cell.status))

@@ -32,7 +32,8 @@ class Structures:
     loads: Loads
     orbit: Continuous
     marginal: np.ndarray  # (n_r,) bool
-    starts: Starts
+    rest: Starts
+    moving: Starts
     shapes: Shapes
     alone_re: np.ndarray  # (n_r, n_dof) phasor of what moves with the load alone; 0 where infinite
     alone_im: np.ndarray
@@ -138,7 +139,7 @@ def _alone(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return alone.astype(complex), (resonant.astype(float) @ np.abs(modes.phi[:, unseen].T)) > 0.0
 
 
-def structures(system: System, r: np.ndarray, curves: Curves, moving: bool) -> Structures:
+def structures(system: System, r: np.ndarray, curves: Curves) -> Structures:
     """Everything that the cells of a system need at frequencies r, for which `curves` are."""
     modes = system.modes
     seen = np.flatnonzero(modes.chi)
@@ -157,7 +158,8 @@ def structures(system: System, r: np.ndarray, curves: Curves, moving: bool) -> S
     )  # fmt: skip
     return Structures(
         seen, model, _loads(model, r, participation), _orbit(modes, seen, r, participation, curves),
-        even.any(axis=1), _starts(system, seen, r, participation, moving), shapes,
+        even.any(axis=1), _starts(system, seen, r, participation, False),
+        _starts(system, seen, r, participation, True), shapes,
         np.ascontiguousarray(alone.real), np.ascontiguousarray(alone.imag), resonant,
         np.ascontiguousarray(held),
     )  # fmt: skip

@@ -513,6 +513,24 @@ def test_without_friction():
             tau = np.array([0.0, 1.0, 4.0])
             np.testing.assert_allclose(motion.displacement(tau)[0], np.cos(tau) / (1.0 - r**2), atol=1e-14)
             np.testing.assert_allclose(motion.velocity(tau)[0], -np.sin(tau) / (1.0 - r**2), atol=1e-14)
+    pole = fm.System(matrices={"M": [[1.0]], "K": [[9.0]]}, frequency_scale=1.0)  # w = 3: u is infinite at 1
+    motion = fm.continuous_motion(pole, 1.0, 0.0)
+    for amplitudes in (motion.amplitude, motion.monoharmonic_amplitude, np.abs(motion.first_harmonic)):
+        np.testing.assert_allclose(amplitudes, 1.0 / 8.0, rtol=1e-15)
+    with pytest.raises(fm.NoSteadyState, match="beta_lim = 0"):
+        fm.continuous_motion(pole, 1.0, 1e-300)
+
+
+def test_on_the_boundary_next_to_a_pole():
+    """|V| = beta_lim |U| there but for rounding, which must not be taken for no motion."""
+    for place in (1.0, 1.0 / 3.0, 1.0 / 5.0):
+        for distance in NEAR:
+            r = place * (1.0 + distance)
+            for contact in ("fixed-wall", "joined-base-wall"):
+                system = fm.System(contact=contact)
+                motion = fm.continuous_motion(system, r, beta_lim(system, r))
+                assert np.isfinite(motion.amplitude).all()
+                assert motion.contact_amplitude >= 0.0
 
 
 def test_modes_that_the_contact_does_not_see():

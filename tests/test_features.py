@@ -390,7 +390,7 @@ def test_boundaries_list_them():
         assert "mass_invariant_point" not in ds
     # many near r = 0: the highest are listed
     ds = fm.boundaries(system, [0.0, 1e-3, 1.0, 3.0])
-    assert 30 <= ds.invariant_point.size <= 41
+    assert 30 <= ds.invariant_point.size <= 45
     # with damping: none of a mass; with two phases: none of a mass
     assert "mass_invariant_point" not in fm.boundaries(equal_chain(2, damping_ratios=0.1), [0.3, 3.0])
     phases = equal_chain(2, load=[1.0, 1.0j])

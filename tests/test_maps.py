@@ -15,7 +15,7 @@ from frictionmap.settings import OUTPUTS as EVERY
 
 BASE = fm.System(contact="joined-base-wall")
 
-OUTPUTS = EVERY[:-1]  # that of the masses would take the code for structures
+OUTPUTS = EVERY[: EVERY.index("multiplier")]  # that of the masses would take the code for structures
 
 
 @pytest.fixture(scope="module")

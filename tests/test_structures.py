@@ -20,6 +20,8 @@ from frictionmap.held import held_structure
 from frictionmap.settings import OUTPUTS
 from frictionmap.steady import Question, _structure_phases
 
+PLAIN = OUTPUTS[: OUTPUTS.index("multiplier")]
+
 #: 22-digit steady states from rest, 40-digit event-driven marching; for a checkout without the reference.
 TABLE = (
     # contact, load, gamma, kappa, zeta, mu, r, beta, stops, Z, share stuck, max |x_k|
@@ -137,7 +139,7 @@ def test_one_mass_by_the_code_for_many(contact, zeta, start):
         "beta": np.sort(rng.uniform(0.0, 1.5 if contact == "fixed-wall" else 4.0, 12)),
         "mu": [1.0, 1.5],
     }
-    one = fm.sweep(system, **grid, start=start, outputs=OUTPUTS[:-1])
+    one = fm.sweep(system, **grid, start=start, outputs=PLAIN)
     many = fm.sweep(system, **grid, start=start, outputs=OUTPUTS)
     both = ((one.status == 0) & (many.status == 0)).values
     assert both.mean() > 0.97
@@ -265,7 +267,7 @@ def test_undamped_map():
     """T Fig. 6.7, mu = 1, a coarse grid: all resolved but those at r = 0 and the held resonance r = 1."""
     system = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1])
     r, beta = np.arange(51) / 20.0, np.arange(25) / 20.0  # a tie with beta_stick = 1 is one to the bit
-    ds = fm.sweep(system, r, beta, outputs=OUTPUTS[:-1])
+    ds = fm.sweep(system, r, beta, outputs=PLAIN)
     unresolved = (ds.status != 0).any("beta").squeeze("mu")
     assert set(ds.r.values[unresolved.values]) <= {0.0, 0.5, 1.0}
     smooth = ds.squeeze("mu")
@@ -356,3 +358,32 @@ def test_decay_is_what_the_oscillators_do(zeta):
     q, e = decay(zeta, turn)
     expected = [e + 2.0 * zeta * q, q / turn, -q * turn, e]
     assert [table[row, 0] for row in (ZZ, ZW, WZ, WW)] == pytest.approx(expected, rel=1e-14)
+
+
+def test_special_frequencies():
+    """At and next to natural and held frequencies and their sub-multiples: no hole without a status."""
+    for zeta, allowed in ((0.01, {0}), (0.0, {0, regimes.MARGINAL, regimes.NOT_PERIODIC})):
+        system = fm.System(
+            contact_masses=[2], mass_ratios=[1, 0.7, 1.6], stiffness_ratios=[1, 1.3, 0.6], damping_ratios=zeta
+        )
+        places = np.concatenate((system.modes.w, system.modes.held_frequencies()))
+        off = np.array([0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3])
+        r = np.unique(np.multiply.outer(np.divide.outer(places, [1, 2, 3, 4]), 1.0 + off))
+        ds = fm.sweep(system, r, [0.1, 0.4, 0.9], outputs=(*PLAIN, "amplitude"), cycles=1000)
+        status = ds.status.values
+        assert set(np.unique(status)) <= allowed
+        assert np.mean(status == 0) > 0.95
+        good = status == 0
+        assert np.all(ds.regime.values[good] >= 0)
+        assert not np.any(np.isnan(ds.contact_amplitude.values[good]))
+        assert not np.any(np.isnan(ds.amplitude.values[good]))
+        # 1e-12 apart nothing jumps, but for what a pole of that width does
+        if zeta > 0.0:
+            near = np.flatnonzero(np.diff(r) < 3e-12 * r[1:])
+            z = ds.contact_amplitude.values[0]
+            np.testing.assert_allclose(z[near], z[near + 1], rtol=1e-8, atol=1e-9)
+
+
+def test_very_low_frequencies_are_refused():
+    with pytest.raises(fm.InputError, match="r must be 0, or >= "):
+        fm.boundaries(fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1]), [1e-9])

@@ -23,8 +23,8 @@ _MAX_NEWTON = 16
 #: Newton steps below this share of the motion have to shrink fast.
 _NEAR_END = 1e-6
 
-#: Squarings of the derivative for its spectral radius: the 1024th power, whose root is right to a percent.
-_SQUARINGS = 10
+#: Squarings of the derivative for its spectral radius: the root of so high a power is right to rounding.
+_SQUARINGS = 40
 
 _TURN = 2.0 * math.pi
 

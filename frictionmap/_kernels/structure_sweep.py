@@ -7,6 +7,7 @@ import numpy as np
 
 from ..regimes import CONTINUOUS, PERMANENT_STICKING
 from .continuous import orbit_phase
+from .floquet import asymmetry, continuous_multiplier, orbit_multiplier
 from .jit import kernel
 from .oscillators import make_scratch
 from .returns import make_workspace
@@ -32,49 +33,73 @@ class Starts(NamedTuple):
 
 
 @kernel
-def _start(st, starts, i, state):
+def put_start(st, starts, i, state):
+    """Set the state to the start at the i-th frequency; the load's phase (cos, sin) there."""
     for j in range(st.n):
         state[0, j] = starts.place[i, j]
         state[1, j] = starts.velocity[i, j] / st.rate
+    return starts.cos[i], starts.sin[i]
 
 
 @kernel
-def _continuous(fine, orbit, i, beta, shapes, re, im, out, work, scratch):
-    """Largest displacements on the continuous orbit."""
-    v_abs = orbit.v_abs[i]
-    if math.isinf(v_abs):
-        out[:] = math.inf
-        return
-    rows = np.empty((1, phase_columns(fine.n)))
-    continuous_phase(fine, orbit, i, beta, orbit_phase(v_abs, orbit.v_arg[i], orbit.u[i], beta), rows, work)
-    largest_displacements(fine, beta, shapes, re, im, rows, 1, out, work, scratch)
+def _continuous(fine, orbit, i, friction, shapes, re, im, out, m, j, work, scratch):
+    """What was asked for beyond `sweep.store`, of the continuous orbit."""
+    if out.asymmetry.size:
+        out.asymmetry[m, i, j] = 0.0
+    if out.multiplier.size:
+        out.multiplier[m, i, j] = continuous_multiplier(
+            fine, orbit, i, friction.beta, friction.mu_beta, work, scratch
+        )
+    if out.amplitude.size:
+        v_abs = orbit.v_abs[i]
+        if math.isinf(v_abs):
+            out.amplitude[m, i, j, :] = math.inf
+            return
+        rows = np.empty((1, phase_columns(fine.n)))
+        phase = orbit_phase(v_abs, orbit.v_arg[i], orbit.u[i], friction.beta)
+        continuous_phase(fine, orbit, i, friction.beta, phase, rows, work)
+        largest_displacements(
+            fine, friction.beta, shapes, re, im, rows, 1, out.amplitude[m, i, j], work, scratch
+        )
 
 
 @kernel
-def _displacements(
-    st, fine, orbit, i, friction, found, state, shapes, re, im, held, out, work, scratch
+def _details(
+    st, fine, orbit, i, friction, found, state, shapes, re, im, held, out, m, j, work, scratch
 ):  # fmt: skip
-    """Largest displacements of all masses in a cell that was followed to its steady state."""
+    """What was asked for beyond `sweep.store`, of a cell that was followed to its steady state."""
     if found.regime == PERMANENT_STICKING:
-        for k in range(out.size):
-            out[k] = abs(held[k]) + abs(shapes.lift[k] * found.z)
+        for k in range(out.amplitude.shape[3]):
+            out.amplitude[m, i, j, k] = abs(held[k]) + abs(shapes.lift[k] * found.z)
     elif found.regime == CONTINUOUS and found.events == 0:
-        _continuous(fine, orbit, i, friction.beta, shapes, re, im, out, work, scratch)
+        _continuous(fine, orbit, i, friction, shapes, re, im, out, m, j, work, scratch)
     elif found.events > 0:
-        rows = np.empty((2 * found.events, phase_columns(st.n)))
-        count = orbit_phases(
-            st, friction.beta, friction.mu_beta, state, found.cos, found.sin, found.sign, found.net,
-            found.events, rows, work, scratch,
-        )  # fmt: skip
-        largest_displacements(fine, friction.beta, shapes, re, im, rows, count, out, work, scratch)
+        if out.multiplier.size:
+            out.multiplier[m, i, j] = orbit_multiplier(
+                st, friction.beta, friction.mu_beta, found.net, state, found.cos, found.sin, found.events,
+                work, scratch,
+            )  # fmt: skip
+        if out.amplitude.size or out.asymmetry.size:
+            rows = np.empty((2 * found.events, phase_columns(st.n)))
+            count = orbit_phases(
+                st, friction.beta, friction.mu_beta, state, found.cos, found.sin, found.sign, found.net,
+                found.events, rows, work, scratch,
+            )  # fmt: skip
+            if out.amplitude.size:
+                largest_displacements(
+                    fine, friction.beta, shapes, re, im, rows, count, out.amplitude[m, i, j], work, scratch
+                )
+            if out.asymmetry.size:
+                out.asymmetry[m, i, j] = asymmetry(
+                    st, friction.beta, rows, count, found.amplitude, work, scratch
+                )
 
 
 @kernel
-def fill_closed_displacements(
-    first, last, low, high, beta, r, model, loads, orbit, shapes, re, im, held, steps, out
+def fill_closed_details(
+    first, last, low, high, beta, mu, lim, r, model, loads, orbit, shapes, re, im, held, steps, out
 ):  # fmt: skip
-    """Largest displacements of the cells that `sweep.fill_closed_form` fills; `out` (n_mu, n_r, n_beta,
-    n_dof)."""
+    """What was asked for beyond `sweep.store`, of the cells that `sweep.fill_closed_form` fills."""
     n = model.modes.shape[1]
     work = make_workspace(n)
     scratch = make_scratch(n)
@@ -85,10 +110,11 @@ def fill_closed_displacements(
         if low[row] > 0 and r[i] > 0.0:
             fine = make_structure(model, loads, i, r[i], max(steps, FINE_STEPS))
             for j in range(low[row]):
-                _continuous(fine, orbit, i, beta[j], shapes, re[i], im[i], out[m, i, j], work, scratch)
+                friction = Friction(beta[j], mu[m] * beta[j], lim[m, i])
+                _continuous(fine, orbit, i, friction, shapes, re[i], im[i], out, m, j, work, scratch)
         for j in range(high[row], beta.size):
-            for k in range(out.shape[3]):
-                out[m, i, j, k] = abs(held[i, k])
+            for k in range(out.amplitude.shape[3]):
+                out.amplitude[m, i, j, k] = abs(held[i, k])
 
 
 @kernel
@@ -106,6 +132,7 @@ def fill_structures(
     work = make_workspace(n)
     scratch = make_scratch(n)
     state = np.empty((2, n))
+    detailed = out.amplitude.size + out.multiplier.size + out.asymmetry.size > 0
     n_r = r.size
     k = np.searchsorted(ends, first, side="right")
     cell = first
@@ -121,17 +148,17 @@ def fill_structures(
             if stop[0] != 0:
                 return
             j = low[row] + cell - begin
-            _start(st, starts, i, state)
+            c, s = put_start(st, starts, i, state)
             friction = Friction(beta[j], mu[m] * beta[j], lim[m, i])
             found = steady_structure(
                 st, fine, orbit, i, marginal[i], friction, mu[m] == 1.0,
-                starts.moving, state, starts.cos[i], starts.sin[i], limits, stop, memory, work, scratch,
+                starts.moving, state, c, s, limits, stop, memory, work, scratch,
             )  # fmt: skip
             store(out, m, i, j, found, 1.0)
-            if out.amplitude.size:
-                _displacements(
-                    st, fine, orbit, i, friction, found, state, shapes, re[i], im[i], held[i],
-                    out.amplitude[m, i, j], work, scratch,
+            if detailed:
+                _details(
+                    st, fine, orbit, i, friction, found, state, shapes, re[i], im[i], held[i], out, m, j,
+                    work, scratch,
                 )  # fmt: skip
             cell += 1
         k += 1
@@ -145,10 +172,10 @@ def one_structure(
     n = model.modes.shape[1]
     st = make_structure(model, loads, 0, r, steps)
     fine = make_structure(model, loads, 0, r, max(steps, FINE_STEPS))
-    _start(st, starts, 0, state)
+    c, s = put_start(st, starts, 0, state)
     found = steady_structure(
         st, fine, orbit, 0, marginal, Friction(beta, mu * beta, lim), mu == 1.0, starts.moving, state,
-        starts.cos[0], starts.sin[0], limits, np.zeros(1, dtype=np.uint8),
+        c, s, limits, np.zeros(1, dtype=np.uint8),
         np.empty((memory_rows(n), MEMORY)), make_workspace(n), make_scratch(n),
     )  # fmt: skip
     for j in range(n):

@@ -43,6 +43,10 @@ class Outputs(NamedTuple):
     origin: np.ndarray
     cycles: np.ndarray
     status: np.ndarray
+    multiplier: np.ndarray
+    asymmetry: np.ndarray
+    also_reachable: np.ndarray
+    sliding_limit: np.ndarray  # (n_mu, n_r)
     amplitude: np.ndarray  # has the masses for a fourth dimension
 
 

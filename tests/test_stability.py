@@ -1,0 +1,192 @@
+"""Floquet multipliers, symmetry, and what else a cell could end in."""
+
+import math
+
+import numpy as np
+import pytest
+from test_structures import random_chain
+
+import frictionmap as fm
+from frictionmap._kernels.follow import after_slide, slide_on
+from frictionmap._kernels.oscillators import make_scratch
+from frictionmap._kernels.returns import make_workspace, return_map, spectral_radius
+from frictionmap._kernels.structure import make_structure
+from frictionmap.cells import StructureCells
+
+OUTPUTS = ("regime", "status", "multiplier", "asymmetry", "stops_per_cycle", "period")
+BASE = fm.System(contact="joined-base-wall")
+
+
+def multiplier(system, r, beta, mu=1.0, **settings):
+    return fm.sweep(system, [r], [beta], [mu], outputs=OUTPUTS, **settings).multiplier.item()
+
+
+@pytest.mark.parametrize(
+    ("r", "beta", "half"),
+    [
+        (2.0, 0.5, 0.525707j),
+        (0.75, 0.5, 0.344681 + 0.509822j),
+        (0.9, 0.6, 0.781573 + 0.229366j),
+        (0.5, 0.2, -1.0),
+    ],
+)
+def test_published_multipliers(r, beta, half):
+    """Multipliers of the half-period map of one mass on a fixed wall, to the digits given."""
+    assert multiplier(fm.System(), r, beta) == pytest.approx(abs(half) ** 2, abs=1.5e-6)
+
+
+@pytest.mark.parametrize("r", [0.75, 0.9, 2.0, 3.0])
+def test_closed_form_of_one_mass(r):
+    """Two turns a period: det of the half-period map is the ratio of the accelerations at a turn.
+
+    With a complex pair the modulus is its root: rho = (Z - beta/r^2)/(Z + beta/r^2) over a period.
+    """
+    ds = fm.sweep(fm.System(), [r], [0.3], outputs=("contact_amplitude", "multiplier"))
+    z = ds.contact_amplitude.item()
+    # at a maximum of z, before and after the turn: r^2 z'' = c - z -+ beta, c the load there
+    u = math.tan(math.pi / (2.0 * r)) / (1.0 / r) / r**2
+    cosine = math.sqrt(1.0 - (0.3 * u * (1.0 - r**2)) ** 2) * np.sign(1.0 - r**2)
+    ratio = (z - cosine - 0.3) / (z - cosine + 0.3)
+    assert ds.multiplier.item() == pytest.approx(abs(ratio), rel=1e-9)
+
+
+def test_derivative_of_the_return_map():
+    """Against differences of second order, on orbits with stops, turns, and over-damped held structures."""
+    rng = np.random.default_rng(4)
+    checked = 0
+    for _ in range(40):
+        system, _ = random_chain(rng, float(rng.choice([0.01, 0.2, 1.0, 1.6])))
+        r, mu = float(rng.uniform(0.4, 1.8)), float(rng.choice([1.0, 1.3, 2.0]))
+        beta = float(rng.uniform(0.1, 0.6)) * fm.boundaries(system, [r]).beta_stick.item()
+        cells = StructureCells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver())
+        found = cells.found
+        n = found.seen.size
+        st = make_structure(found.model, found.loads, 0, r, 24.0)
+        scratch, work = make_scratch(n), make_workspace(n)
+        state = np.array([found.moving.place[0], found.moving.velocity[0] / st.rate])
+        c, s = found.moving.cos[0], found.moving.sin[0]
+        # some slides on, to the middle of one
+        net, seen = 0.0, []
+        for k in range(6):
+            _, _, c, s, _ = slide_on(st, beta, k > 0, net, state, c, s, 1e6, scratch)
+            code, c, s, net, *_ = after_slide(st, beta, mu * beta, state, work.held, c, s, 1e3, scratch)
+            seen.append(code)
+        if seen[-1] > 2:
+            continue
+        ahead = state.copy()
+        steps, *_ = slide_on(st, beta, True, net, ahead, c, s, 1e6, scratch)
+        _, _, c, s, _ = slide_on(st, beta, True, net, state, c, s, 0.5 * steps, scratch)
+        # what follows, for as many half periods as there are slides
+        for count in (1, 2, 3):
+            codes = follow_codes(st, beta, mu * beta, state, c, s, count, work, scratch)
+            for halves in (1, 2, 3):
+                good = return_map(
+                    st, beta, mu * beta, state.copy(), c, s, codes, 0, count, halves, True, work, scratch
+                )
+                if good:
+                    break
+            if good:
+                break
+        if not good:
+            continue
+        flow = work.flow.copy()
+        for j in range(2 * n):
+            ends = []
+            step = 1e-6 * np.abs(state).max()
+            for sign in (1.0, -1.0):
+                moved = state.copy()
+                moved[j // n, j % n] += sign * step / (st.rate if j >= n else 1.0)
+                if not return_map(
+                    st, beta, mu * beta, moved, c, s, codes, 0, count, halves, False, work, scratch
+                ):
+                    break
+                ends.append(np.concatenate((moved[0], moved[1] * st.rate)))
+            if len(ends) == 2:
+                column = (ends[0] - ends[1]) / (2.0 * step)
+                np.testing.assert_allclose(flow[:, j], column, atol=2e-4 * np.abs(flow).max())
+                checked += 1
+    assert checked > 40
+
+
+def follow_codes(st, beta, mu_beta, state, c, s, count, work, scratch):
+    """Codes of the next events."""
+    state = state.copy()
+    codes, net = np.empty(count), 0.0
+    for k in range(count):
+        _, _, c, s, _ = slide_on(st, beta, k > 0, net, state, c, s, 1e6, scratch)
+        codes[k], c, s, net, *_ = after_slide(st, beta, mu_beta, state, work.held, c, s, 1e3, scratch)
+    return codes
+
+
+def test_spectral_radius():
+    rng = np.random.default_rng(0)
+    for n in (1, 2, 5, 12):
+        for _ in range(20):
+            matrix = rng.normal(size=(n, n))
+            exact = np.abs(np.linalg.eigvals(matrix)).max()
+            assert spectral_radius(matrix.copy(), n, np.empty((n, n))) == pytest.approx(exact, rel=1e-9)
+    assert spectral_radius(np.zeros((3, 3)), 3, np.empty((3, 3))) == 0.0
+    assert spectral_radius(np.array([[0.0, 1.0], [0.0, 0.0]]), 2, np.empty((2, 2))) == 0.0
+
+
+def test_steady_states_are_stable_and_antiperiodic_where_unique():
+    """mu = 1: no multiplier above 1, no asymmetry; damped structures of up to four masses."""
+    rng = np.random.default_rng(8)
+    for _ in range(30):
+        system, _ = random_chain(rng, 0.05)
+        r = float(rng.uniform(0.3, 2.0))
+        beta = np.array([0.1, 0.4, 0.7, 0.95]) * fm.boundaries(system, [r]).beta_stick.item()
+        ds = fm.sweep(system, [r], beta, outputs=OUTPUTS)
+        sliding = ((ds.regime > 0) & (ds.status == 0)).values
+        assert np.all(ds.multiplier.values[sliding] < 1.0)
+        assert np.all(ds.asymmetry.values[sliding] == 0.0)
+
+
+def test_asymmetric_motion():
+    """One stop a cycle cannot be antiperiodic: joined base-wall, r = 0.52, beta = 0.06, mu = 1.5."""
+    ds = fm.sweep(BASE, [0.52], [0.06], 1.5, outputs=OUTPUTS)
+    assert ds.stops_per_cycle.item() == 1.0
+    history = fm.response(BASE, 0.52, 0.06, 1.5, points=4000)
+    z = history.z.values[:-1]
+    exact = np.abs(z + np.roll(z, 2000)).max() / float(history.contact_amplitude)
+    assert ds.asymmetry.item() == pytest.approx(exact, rel=1e-3)
+    assert ds.multiplier.item() < 1.0
+
+
+@pytest.mark.parametrize(
+    ("system", "r", "beta", "flags"),
+    [
+        (fm.System(), 0.9, 0.7, 1 | 4),
+        (fm.System(), 0.303, 0.76, 1 | 2),
+        (BASE, 0.52, 0.06, 2 | 4),
+    ],
+)
+def test_coexistence(system, r, beta, flags):
+    """Cells with two answers, found by exact integration; theory.md 6."""
+    ds = fm.sweep(system, [r], [beta], 1.5, outputs=("also_reachable", "sliding_limit"))
+    assert ds.also_reachable.item() == flags
+    assert ds.sliding_limit.item() >= beta * (1.0 - 1e-12) or flags == 2 | 4
+
+
+def test_one_answer_where_it_is_unique():
+    """mu = 1: one regime in every cell, that of the map; and sliding ends at beta_stick."""
+    rng = np.random.default_rng(3)
+    r, beta = np.sort(rng.uniform(0.1, 2.5, 40)), np.sort(rng.uniform(0.0, 1.3, 50))
+    ds = fm.sweep(fm.System(), r, beta, outputs=("regime", "also_reachable", "sliding_limit"))
+    np.testing.assert_array_equal(ds.also_reachable.values, 1 << ds.regime.values)
+    np.testing.assert_array_equal(ds.sliding_limit.values, ds.beta_stick.values)
+
+
+def test_reachable_holds_what_is_reached():
+    """mu > 1, two masses: the regimes from rest and from a moving start are among those reachable."""
+    system = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.02)
+    grid = {"r": np.linspace(0.3, 2.0, 12), "beta": np.linspace(0.05, 1.0, 20), "mu": [1.4]}
+    ds = fm.sweep(system, **grid, outputs=("regime", "also_reachable", "sliding_limit"))
+    moving = fm.sweep(system, **grid, start="moving")
+    for regime in (ds.regime.values, moving.regime.values):
+        known = regime >= 0
+        assert np.all(ds.also_reachable.values[known] & (1 << regime[known]))
+    assert np.any((ds.also_reachable.values & 1 > 0) & (ds.also_reachable.values & 6 > 0))
+    slides = (ds.also_reachable.values & 6 > 0).any(axis=2)
+    highest = np.where(ds.also_reachable.values & 6 > 0, ds.beta.values, 0.0).max(axis=2)
+    assert np.all(ds.sliding_limit.values[slides] >= highest[slides] * (1.0 - 1e-12))

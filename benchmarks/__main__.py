@@ -11,9 +11,15 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 def main() -> None:
     """Parse and run."""
-    from . import against, phases, startup
+    from . import against, bound, phases, startup, structures
 
-    benchmarks = {"peers": against.run, "startup": startup.run, "phases": phases.run}
+    benchmarks = {
+        "peers": against.run,
+        "startup": startup.run,
+        "phases": phases.run,
+        "structures": structures.run,
+        "bound": bound.run,
+    }
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("benchmark", choices=[*benchmarks, "all"])
     parser.add_argument("--quick", action="store_true", help="few cells and runs: does it work?")

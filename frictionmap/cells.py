@@ -144,15 +144,28 @@ class StructureCells:
         stop: np.ndarray,
     ) -> Job:  # fmt: skip
         """See `Cells`."""
-        from ._kernels.structure_sweep import fill_structures
+        return self._follow, (first, last, rows, ends, low, out, stop)
+
+    def _follow(
+        self, first: int, last: int, rows: np.ndarray, ends: np.ndarray, low: np.ndarray, out: Outputs,
+        stop: np.ndarray,
+    ) -> None:  # fmt: skip
+        from ._kernels.structure_sweep import ANCHOR, fill_details, fill_structures
 
         f = self.found
-        arguments = (
+        where = (
             first, last, rows, ends, low, self._beta, self._mu, self.curves.beta_lim, self._r, f.model,
-            f.loads, f.orbit, f.marginal, self.starts, f.shapes, f.alone_re, f.alone_im, f.held,
-            float(self._solver.steps), limits(self._solver), out, stop,
+            f.loads,
         )  # fmt: skip
-        return fill_structures, arguments
+        steps = float(self._solver.steps)
+        detailed = {"amplitude", "multiplier", "asymmetry"} & set(self._solver.outputs)
+        shape = (last - first, ANCHOR + 2 * f.seen.size) if detailed else (0, 0)
+        anchors = np.zeros(shape)
+        fill_structures(
+            *where, f.orbit, f.marginal, self.starts, steps, limits(self._solver), out, anchors, stop
+        )
+        if detailed and not stop[0]:
+            fill_details(*where, f.orbit, f.shapes, f.alone_re, f.alone_im, f.held, steps, out, anchors)
 
     def finish(self, out: Outputs) -> None:
         """The limit r = 0 without friction; and modes that the contact does not see may resonate."""

@@ -61,16 +61,19 @@ def _from_vector(vector: np.ndarray, root: complex) -> np.ndarray:
 
 
 def _pairings(roots: np.ndarray) -> list[list[tuple[complex, complex]]]:
-    """Ways to pair real roots: each with its nearest, which a double root needs, or slow with fast."""
-    roots = np.sort(roots.real)
-    half = roots.size // 2
-    left = list(roots)
+    """Ways to pair nearly real roots: complex ones with their conjugates; real ones each with its nearest,
+    which a double root needs, or slow with fast."""
+    pairs = [(root, root.conjugate()) for root in roots if root.imag > 0.0]
+    real = np.sort(roots[roots.imag == 0.0].real)
+    half = real.size // 2
+    left = list(real)
     near = []
     while left:
         gaps = np.diff(left) / np.abs(left[1:])
         k = int(np.argmin(np.abs(gaps)))
         near.append((complex(left.pop(k)), complex(left.pop(k))))
-    return [near, [(complex(a), complex(b)) for a, b in zip(roots[:half], roots[half:], strict=True)]]
+    far = [(complex(a), complex(b)) for a, b in zip(real[:half], real[half:], strict=True)]
+    return [pairs + near, pairs + far]
 
 
 def _basis(matrix: np.ndarray, pairs: list[tuple[complex, complex]], vectors: np.ndarray) -> np.ndarray:

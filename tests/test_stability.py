@@ -7,7 +7,7 @@ import pytest
 from test_structures import random_chain
 
 import frictionmap as fm
-from frictionmap._kernels.follow import after_slide, slide_on
+from frictionmap._kernels.follow import MOVING, after_slide, slide_on
 from frictionmap._kernels.oscillators import make_scratch
 from frictionmap._kernels.returns import make_workspace, return_map, spectral_radius
 from frictionmap._kernels.structure import make_structure
@@ -66,16 +66,16 @@ def test_derivative_of_the_return_map():
         state = np.array([found.moving.place[0], found.moving.velocity[0] / st.rate])
         c, s = found.moving.cos[0], found.moving.sin[0]
         # some slides on, to the middle of one
-        net, seen = 0.0, []
-        for k in range(6):
-            _, _, c, s, _ = slide_on(st, beta, k > 0, net, state, c, s, 1e6, scratch)
+        net, seen = MOVING, []
+        for _ in range(6):
+            _, _, c, s, _ = slide_on(st, beta, net, state, c, s, 1e6, scratch)
             code, c, s, net, *_ = after_slide(st, beta, mu * beta, state, work.held, c, s, 1e3, scratch)
             seen.append(code)
         if seen[-1] > 2:
             continue
         ahead = state.copy()
-        steps, *_ = slide_on(st, beta, True, net, ahead, c, s, 1e6, scratch)
-        _, _, c, s, _ = slide_on(st, beta, True, net, state, c, s, 0.5 * steps, scratch)
+        steps, *_ = slide_on(st, beta, net, ahead, c, s, 1e6, scratch)
+        _, _, c, s, _ = slide_on(st, beta, net, state, c, s, 0.5 * steps, scratch)
         # what follows, for as many half periods as there are slides
         for count in (1, 2, 3):
             codes = follow_codes(st, beta, mu * beta, state, c, s, count, work, scratch)
@@ -111,9 +111,9 @@ def test_derivative_of_the_return_map():
 def follow_codes(st, beta, mu_beta, state, c, s, count, work, scratch):
     """Codes of the next events."""
     state = state.copy()
-    codes, net = np.empty(count), 0.0
+    codes, net = np.empty(count), MOVING
     for k in range(count):
-        _, _, c, s, _ = slide_on(st, beta, k > 0, net, state, c, s, 1e6, scratch)
+        _, _, c, s, _ = slide_on(st, beta, net, state, c, s, 1e6, scratch)
         codes[k], c, s, net, *_ = after_slide(st, beta, mu_beta, state, work.held, c, s, 1e3, scratch)
     return codes
 

@@ -17,10 +17,11 @@ from frictionmap._kernels.returns import make_workspace
 from frictionmap._kernels.structure import make_structure
 from frictionmap.cells import StructureCells
 from frictionmap.held import held_structure
-from frictionmap.settings import OUTPUTS
+from frictionmap.settings import OUTPUTS as EVERY
 from frictionmap.steady import Question, _structure_phases
 
-PLAIN = OUTPUTS[: OUTPUTS.index("multiplier")]
+PLAIN = EVERY[: EVERY.index("multiplier")]
+OUTPUTS = (*PLAIN, "multiplier", "asymmetry", "amplitude")
 
 #: 22-digit steady states from rest, 40-digit event-driven marching; for a checkout without the reference.
 TABLE = (
@@ -154,12 +155,29 @@ def test_one_mass_by_the_code_for_many(contact, zeta, start):
         np.testing.assert_allclose(many.amplitude.values[..., 0][both], z, rtol=1e-10, atol=1e-12)
 
 
-@pytest.mark.parametrize("zeta", [0.0, 0.02, 0.7, 1.0, 1.5, [0.1, 1.0, 3.0, 0.0]])
-def test_held_structure(zeta):
+def held_cases():
+    """Frequencies, damping ratios and participations; critical damping leaves nearly real pairs of roots."""
+    w, chi = np.array([0.4, 1.1, 1.7, 2.6]), np.array([0.7, -0.4, 1.1, 0.2])
+    for zeta in (0.0, 0.02, 0.7, 1.0, 1.5, [0.1, 1.0, 3.0, 0.0]):
+        yield w, np.broadcast_to(np.asarray(zeta, dtype=float), w.shape).copy(), chi
+    yield np.array([1.0, 2.0]), np.array([0.9999996, 0.9999996]), np.array([1.0, 1.0])
+    gamma = (
+        1.0,
+        0.5043345433309722,
+        4.132522213002301,
+        1.0611386323347798,
+        4.122176074441159,
+        0.318155182948,
+    )
+    kappa = (1.0, 0.53451269100158, 1.040433105848468, 4.321235096920506, 1.2894117514999355, 2.04761613668)
+    modes = chain({"contact": ("base", 1), "load": 1, "gamma": gamma, "kappa": kappa}, 1.0).modes
+    yield modes.w, modes.zeta, modes.chi
+
+
+@pytest.mark.parametrize("case", list(held_cases()))
+def test_held_structure(case):
     """Its motions leave the contact alone, obey the equations of motion, and are all there are."""
-    w = np.array([0.4, 1.1, 1.7, 2.6])
-    zeta = np.broadcast_to(np.asarray(zeta, dtype=float), w.shape).copy()
-    chi = np.array([0.7, -0.4, 1.1, 0.2])
+    w, zeta, chi = case
     held = held_structure(w, zeta, chi)
     n, m = w.size, w.size - 1
     assert np.max(np.abs(held.to_held @ held.to_free - np.eye(2 * m))) < 1e-12

@@ -22,7 +22,8 @@ _TURN = 2.0 * math.pi
 @kernel
 def _around(st, beta, mu_beta, c, s, codes, count, halves, work, scratch):
     """Largest modulus over the steady period from work.middle in a slide; nan if it does not fit."""
-    if not return_map(st, beta, mu_beta, work.middle, c, s, codes, 0, count, halves, True, work, scratch):
+    first = np.int64(0)  # not a literal, which would be compiled for itself
+    if not return_map(st, beta, mu_beta, work.middle, c, s, codes, first, count, halves, True, work, scratch):
         return math.nan
     radius = spectral_radius(work.flow, 2 * st.n, work.square)
     return radius * radius if halves % 2 == 1 else radius
@@ -39,7 +40,7 @@ def orbit_multiplier(st, beta, mu_beta, net, state, c, s, count, work, scratch):
     first = 0.0
     c1, s1, push = c, s, net
     for k in range(count):
-        steps, end, c1, s1, _ = slide_on(st, beta, True, push, work.moved, c1, s1, limit, scratch)
+        steps, end, c1, s1, _ = slide_on(st, beta, push, work.moved, c1, s1, limit, scratch)
         if end != FELL:
             return math.nan
         if k == 0:
@@ -52,7 +53,7 @@ def orbit_multiplier(st, beta, mu_beta, net, state, c, s, count, work, scratch):
     if not time < math.inf:
         return math.nan
     copy_state(state, work.middle, st.n)
-    _, _, c, s, _ = slide_on(st, beta, True, net, work.middle, c, s, 0.5 * first, scratch)
+    _, _, c, s, _ = slide_on(st, beta, net, work.middle, c, s, 0.5 * first, scratch)
     halves = int(math.floor(time / math.pi + 0.5))
     return _around(st, beta, mu_beta, c, s, codes, count, halves, work, scratch)
 
@@ -67,7 +68,9 @@ def continuous_multiplier(st, orbit, i, beta, mu_beta, work, scratch):
     # in the middle of the rising half
     c, s = math.sin(phase), -math.cos(phase)
     orbit_state(st, orbit, i, beta, phase, c, s, work.middle)
-    return _around(st, beta, mu_beta, c, s, np.full(1, float(REVERSE)), 1, 1, work, scratch)
+    return _around(
+        st, beta, mu_beta, c, s, np.full(1, float(REVERSE)), np.int64(1), np.int64(1), work, scratch
+    )
 
 
 @kernel

@@ -5,11 +5,14 @@ import math
 
 from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
 from .jit import kernel
-from .oscillators import AT_LIMIT, FAILED, ROSE, scan
+from .oscillators import AT_LIMIT, ELSEWHERE, FAILED, ROSE, scan
 from .structure import contact_load, hold, largest_load_to_come, mirror, place, release, vibrates_in_step
 
 #: What follows a slide, beside the codes of `events`: a stop that is not known to end, or to last.
 NO_RELEASE = 5
+
+#: In place of a force at the start of a slide: it is under way already.
+MOVING = -1.0
 
 #: Excess of the load over mu beta, relative to it, below which slides take off no more than rounding.
 _CREEPING = 1e-9
@@ -18,14 +21,14 @@ _TURN = 2.0 * math.pi
 
 
 @kernel
-def slide_on(st, beta, from_rest, net, state, c, s, limit, scratch):
+def slide_on(st, beta, net, state, c, s, limit, scratch):
     """An upward slide to the zero of the velocity, or for `limit` steps; see `oscillators.scan`.
 
-    from_rest: it starts with no velocity under the force `net` in the contact, friction taken off.
+    It starts with no velocity under the force `net` >= 0 in the contact, friction taken off; or net = MOVING.
     """
-    push = net * st.inverse_mass / (st.rate * st.rate)
+    push = net * st.inverse_mass / (st.rate * st.rate) if net >= 0.0 else ELSEWHERE
     return scan(
-        st.free, st.n, beta, 0.0, 0.0, 0.0, 0.0, math.inf, from_rest, push, state, c, s, st.h,
+        st.free, st.n, beta, 0.0, 0.0, 0.0, 0.0, math.inf, push, state, c, s, st.h,
         st.terms, limit, scratch,
     )  # fmt: skip
 
@@ -45,7 +48,7 @@ def pause(st, mu_beta, z, held, c, s, allowed, scratch):
         if largest_load_to_come(st, held, z, c, s) <= most:
             return AT_LIMIT, c, s, wait, 0.0
         n, end, c, s, slope = scan(
-            st.held, st.m, 0.0, st.held_cos, st.held_sin, st.stiffness * z, -mu_beta, mu_beta, False, 0.0,
+            st.held, st.m, 0.0, st.held_cos, st.held_sin, st.stiffness * z, -mu_beta, mu_beta, ELSEWHERE,
             held, c, s, st.h, st.terms, period, scratch,
         )  # fmt: skip
         wait += n * st.h

@@ -31,6 +31,9 @@ ROWS = 21
 #: upper one, or is not a number.
 AT_LIMIT, FELL, ROSE, FAILED = 0, 1, 2, 3
 
+#: In place of a slope at the start: y starts inside its range.
+ELSEWHERE = -1.0
+
 
 class Scratch(NamedTuple):
     """Arrays that kernels write into."""
@@ -200,7 +203,7 @@ def _inside(y0, dy0, y1, dy1, low, high, error):
 
 @kernel
 def scan(
-    table, n, friction, yc, ys, level, low, high, from_edge, push, state, c, s, h, terms, limit, scratch
+    table, n, friction, yc, ys, level, low, high, push, state, c, s, h, terms, limit, scratch
 ):  # fmt: skip
     """Follow the motion until y leaves [low, high], or for `limit` steps.
 
@@ -209,7 +212,7 @@ def scan(
     table, n, friction : the oscillators and the friction force on them
     yc, ys, level : see the module
     low, high : range of y; one may be infinite
-    from_edge : y starts at `low` exactly, with slope `push` >= 0: that root is not the one looked for
+    push : if >= 0, y starts at `low` exactly with this slope, and that root is not looked for; else ELSEWHERE
     state : (2, n) z and w; replaced by the state at the end
     c, s : cos(tau), sin(tau)
     h, terms : length of a step in tau, terms of the Taylor series in it
@@ -227,6 +230,7 @@ def scan(
     c0, s0 = c, s
     following = scratch.next
     second, third, fourth, second_growth, fourth_growth = bounds(table, n, friction, yc, ys, state, c, s, h)
+    from_edge = push >= 0.0  # told by a number: a flag would be compiled once for each value
     y = low if from_edge else value(table, n, yc, ys, level, state, c, s)
     done = 0.0
     while y == y:  # a number

@@ -13,7 +13,7 @@ import numpy as np
 
 from .closed_form import decay
 from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
-from .follow import after_slide, slide_on
+from .follow import MOVING, after_slide, slide_on
 from .jit import kernel
 from .oscillators import AT_LIMIT, FELL, OMEGA, OW, OZ, ROWS, ZETA
 from .structure import CHI, LIFT, energy
@@ -43,6 +43,7 @@ class Workspace(NamedTuple):
     start: np.ndarray  # (2, n) where Newton's method started
     anchor: np.ndarray  # (2, n)
     table: np.ndarray  # (ROWS, n)
+    codes: np.ndarray  # (1,)
 
 
 @kernel
@@ -52,7 +53,7 @@ def make_workspace(n):
     return Workspace(
         np.zeros((2, m)), np.zeros((2, n)), np.zeros((2, n)), np.zeros((2 * n, 2 * n)),
         np.zeros((2 * m + 1, 2 * n)), np.zeros((2 * n, 2 * n)), np.zeros(2 * n), np.zeros(2 * n),
-        np.zeros((2, n)), np.zeros((2, n)), np.zeros((ROWS, n)),
+        np.zeros((2, n)), np.zeros((2, n)), np.zeros((ROWS, n)), np.zeros(1),
     )  # fmt: skip
 
 
@@ -159,9 +160,9 @@ def return_map(st, beta, mu_beta, state, c, s, codes, first, count, halves, deri
     odd = halves % 2 == 1
     mirrored = False
     time = 0.0
-    net = 0.0
+    net = MOVING
     for m in range(count):
-        n, end, c, s, _ = slide_on(st, beta, m > 0, net, state, c, s, limit, scratch)
+        n, end, c, s, _ = slide_on(st, beta, net, state, c, s, limit, scratch)
         if end != FELL:
             return False
         time += n * st.h
@@ -186,7 +187,7 @@ def return_map(st, beta, mu_beta, state, c, s, codes, first, count, halves, deri
     rest += _TURN * math.floor((whole - time - rest) / _TURN + 0.5)
     if not rest > 0.0:
         return False
-    n, end, c, s, _ = slide_on(st, beta, count > 0, net, state, c, s, rest / st.h, scratch)
+    n, end, c, s, _ = slide_on(st, beta, net, state, c, s, rest / st.h, scratch)
     if end != AT_LIMIT:
         return False
     if derive:

@@ -236,6 +236,20 @@ def vibrates_in_step(st):
 
 
 @kernel
+def _steady(table, k, h):
+    """Phasor a of the steady answer Re(a e^{i tau}) of an oscillator; infinite at an undamped resonance."""
+    f_re, f_im = table[FC, k], -table[FS, k]
+    if f_re == 0.0 and f_im == 0.0:
+        return 0.0, 0.0
+    d_re = table[K, k] - h * h
+    d_im = h * table[D, k]
+    size = d_re * d_re + d_im * d_im
+    if size == 0.0:
+        return math.inf, 0.0
+    return (f_re * d_re + f_im * d_im) / size, (f_im * d_re - f_re * d_im) / size
+
+
+@kernel
 def largest_load_to_come(st, held, z, c, s):
     """A bound on the load in the contact for as long as it stays held; infinite at an undamped resonance."""
     y_re = st.held_cos
@@ -244,20 +258,13 @@ def largest_load_to_come(st, held, z, c, s):
     h = st.h
     table = st.held
     for k in range(st.m):
-        # steady answer a e^{i tau} of the oscillator, and what of the motion is not it
-        d_re = table[K, k] - h * h
-        d_im = h * table[D, k]
-        size = d_re * d_re + d_im * d_im
-        f_re, f_im = table[FC, k], -table[FS, k]
-        a_re = a_im = 0.0
+        # the steady answer of the oscillator, and what of the motion is not it
+        a_re, a_im = _steady(table, k, h)
+        if math.isinf(a_re):
+            return math.inf
         if _in_step(table, k, h):
             a_re = held[0, k] * c - held[1, k] / h * s
             a_im = -held[0, k] * s - held[1, k] / h * c
-        elif f_re != 0.0 or f_im != 0.0:
-            if size == 0.0:
-                return math.inf
-            a_re = (f_re * d_re + f_im * d_im) / size
-            a_im = (f_im * d_re - f_re * d_im) / size
         z_off = held[0, k] - (a_re * c - a_im * s)
         w_off = held[1, k] + h * (a_re * s + a_im * c)
         y_re += table[OZ, k] * a_re - table[OW, k] * h * a_im
@@ -266,3 +273,32 @@ def largest_load_to_come(st, held, z, c, s):
         reach = math.sqrt(table[OZ, k] * table[OZ, k] / table[K, k] + table[OW, k] * table[OW, k])
         free += reach * math.sqrt(table[K, k] * z_off * z_off + w_off * w_off)
     return math.hypot(y_re, y_im) + abs(st.stiffness * z) + free
+
+
+@kernel
+def release_steady(st, mu_beta, held, state):
+    """Where the contact, held at z = 0 in the steady motion of the rest, is let go upwards.
+
+    Returns (whether it is, cos, sin of the load's phase); `state` becomes the free state there.
+    """
+    h = st.h
+    table = st.held
+    y_re, y_im = st.held_cos, -st.held_sin
+    for k in range(st.m):
+        a_re, a_im = _steady(table, k, h)
+        if math.isinf(a_re):
+            return False, 1.0, 0.0
+        y_re += table[OZ, k] * a_re - table[OW, k] * h * a_im
+        y_im += table[OZ, k] * a_im + table[OW, k] * h * a_re
+    most = math.hypot(y_re, y_im)
+    if not most > mu_beta:
+        return False, 1.0, 0.0
+    # the load |Y| cos(tau + arg Y) falls through -mu beta
+    tau = math.acos(-mu_beta / most) - math.atan2(y_im, y_re)
+    c, s = math.cos(tau), math.sin(tau)
+    for k in range(st.m):
+        a_re, a_im = _steady(table, k, h)
+        held[0, k] = a_re * c - a_im * s
+        held[1, k] = -h * (a_re * s + a_im * c)
+    release(st, held, 0.0, c, s, state)
+    return True, c, s

@@ -22,11 +22,11 @@ from ..regimes import (
 from .continuous import continuous_amplitude, orbit_phase
 from .cycle import Cell, _cell, _unresolved, stuck_cell
 from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
-from .follow import NO_RELEASE, after_slide, slide_on
+from .follow import MOVING, NO_RELEASE, after_slide, slide_on
 from .jit import kernel
 from .oscillators import FELL
 from .returns import copy_state, return_map, solve_return, spectral_radius
-from .structure import W, energy, place, vibrates_in_step
+from .structure import W, energy, place, release_steady, vibrates_in_step
 from .structure_orbit import orbit_state, stop_free_radius
 
 #: Anchors remembered; a steady period with more is not recognised.  One a column; the rows of the memory:
@@ -43,9 +43,10 @@ _MAX_RETURN = 64
 #: chatters.
 _EVENTS_PER_CYCLE = 4096.0
 
-#: A return this close (relative to the motion) is worth a Newton iteration; the load's phase has to be this
+#: A return this close (relative to the motion) is worth a Newton iteration: with several steady states
+#: one that is 0.1 off says too little of where the motion is heading.  The load's phase has to be this
 #: close even where, with mu = 1, the steady state is unique and any state will do to start from.
-_NEAR_RETURN = 0.1
+_NEAR_RETURN = 0.01
 _NEAR_PHASE = 0.3
 
 #: With several steady states: how much further off than expected the one solved for may be.
@@ -128,7 +129,9 @@ def _near_return(st, memory, events, size, unique, shortest):
 
 
 @kernel
-def _solve(st, friction, unique, net, state, c, s, lag, gap, halves, memory, events, limits, work, scratch):
+def _solve(
+    st, friction, unique, net, state, c, s, codes, first, lag, gap, halves, limits, work, scratch
+):  # fmt: skip
     """The periodic orbit that the motion approaches, by Newton's method; (found, cos, sin), state at an
     anchor.
 
@@ -138,21 +141,20 @@ def _solve(st, friction, unique, net, state, c, s, lag, gap, halves, memory, eve
     beta, mu_beta = friction.beta, friction.mu_beta
     copy_state(state, work.middle, n)
     copy_state(state, work.moved, n)
-    steps, end, _, _, _ = slide_on(st, beta, True, net, work.moved, c, s, _TURN * 4.0 / st.h, scratch)
+    steps, end, _, _, _ = slide_on(st, beta, net, work.moved, c, s, _TURN * 4.0 / st.h, scratch)
     if end != FELL:
         return False, c, s
-    _, _, c_m, s_m, _ = slide_on(st, beta, True, net, work.middle, c, s, 0.5 * steps, scratch)
+    _, _, c_m, s_m, _ = slide_on(st, beta, net, work.middle, c, s, 0.5 * steps, scratch)
     copy_state(work.middle, work.start, n)
-    codes = memory[CODE]
     if not solve_return(
-        st, beta, mu_beta, c_m, s_m, codes, events - lag, lag, halves, limits.tolerance, work, scratch
+        st, beta, mu_beta, c_m, s_m, codes, first, lag, halves, limits.tolerance, work, scratch
     ):
         return False, c, s
     if not unique:
         # it must attract, and be where the motion is heading
         copy_state(work.middle, work.moved, n)
         if not return_map(
-            st, beta, mu_beta, work.moved, c_m, s_m, codes, events - lag, lag, halves, True, work, scratch
+            st, beta, mu_beta, work.moved, c_m, s_m, codes, first, lag, halves, True, work, scratch
         ):
             return False, c, s
         contraction = spectral_radius(work.flow, 2 * n, work.square)
@@ -163,7 +165,7 @@ def _solve(st, friction, unique, net, state, c, s, lag, gap, halves, memory, eve
         if not (contraction < 1.0 and off <= _HEADING * gap * energy(st, work.middle) / (1.0 - contraction)):
             return False, c, s
     copy_state(work.middle, state, n)
-    _, end, c, s, _ = slide_on(st, beta, False, 0.0, state, c_m, s_m, _TURN * 4.0 / st.h, scratch)
+    _, end, c, s, _ = slide_on(st, beta, MOVING, state, c_m, s_m, _TURN * 4.0 / st.h, scratch)
     return end == FELL, c, s
 
 
@@ -182,7 +184,7 @@ def measure(st, friction, net, state, c, s, code, count, work, scratch):
     slides = 0
     limit = 100.0 * _TURN * max(1.0, st.r) / st.h
     for _ in range(count):
-        steps, _, c, s, _ = slide_on(st, friction.beta, True, net, work.moved, c, s, limit, scratch)
+        steps, _, c, s, _ = slide_on(st, friction.beta, net, work.moved, c, s, limit, scratch)
         amplitude = max(amplitude, abs(place(st, work.moved)))
         time += steps * st.h
         event, c, s, net, wait, _, _ = after_slide(
@@ -262,7 +264,7 @@ def steady_structure(
     slides = 0
     solved = False
     code = REVERSE
-    net = 0.0
+    net = MOVING
     old_lag, old_gap = 0, math.inf
     window = _TURN * min(_AVERAGED, 0.5 * limits.cycles)
     window_end = window
@@ -273,7 +275,7 @@ def steady_structure(
         if stop[0] != 0:
             return _unresolved(NOT_COMPUTED, time / _TURN)
         if moves or events > 0:
-            steps, end, c, s, _ = slide_on(st, beta, events > 0, net, state, c, s, max_steps, scratch)
+            steps, end, c, s, _ = slide_on(st, beta, net, state, c, s, max_steps, scratch)
             if end != FELL:
                 break
             time += steps * st.h
@@ -331,30 +333,41 @@ def steady_structure(
         lag, gap, halves = _near_return(
             st, memory, events, energy(st, state), unique and limits.newton, shortest
         )
-        if lag == 0 or (not stopped and running < 2 * lag):
+        near = lag > 0 and (stopped or running >= 2 * lag)
+        if not near:
             old_lag = 0
-            continue
-        if limits.newton:
-            if half >= next_try:
-                copy_state(state, work.anchor, n)
+        if limits.newton and half >= next_try and (near or unique):
+            copy_state(state, work.anchor, n)
+            codes = memory[CODE]
+            first, count = events - lag, lag
+            c1, s1, net1, sign1 = c, s, net, sign
+            # just below beta_stick the motion creeps for thousands of periods to where it slides, by little,
+            # from its held motion; where the steady state is unique that is tried too
+            if not near or (unique and tries % 3 == 2):
+                starts, c1, s1 = release_steady(st, mu_beta, work.held, work.anchor)
+                codes, first, count, halves = work.codes, 0, 1 if starts else 0, 1
+                codes[0] = STOP_THEN_BACK
+                net1, sign1 = mu_beta - beta, 1.0
+            if count > 0:
                 solved, c1, s1 = _solve(
-                    st, friction, unique, net, work.anchor, c, s, lag, gap, halves, memory, events, limits,
+                    st, friction, unique, net1, work.anchor, c1, s1, codes, first, count, gap, halves, limits,
                     work, scratch,
                 )  # fmt: skip
-                if solved:
-                    # the anchor that follows the solved slide
-                    copy_state(work.anchor, state, n)
-                    code, c, s, net, _, _, _ = after_slide(
-                        st, beta, mu_beta, state, work.held, c1, s1, end_time, scratch
-                    )
-                    if code == REVERSE or code == STOP_THEN_BACK:
-                        sign = -sign
-                    slides = lag
-                    break
-                tries += 1
-                pause += 1 + pause // 4
-                next_try = half + pause
-        elif gap <= limits.tolerance and lag == old_lag:
+            if solved:
+                # the anchor that follows the solved slide
+                copy_state(work.anchor, state, n)
+                code, c, s, net, _, _, _ = after_slide(
+                    st, beta, mu_beta, state, work.held, c1, s1, end_time, scratch
+                )
+                sign = -sign1 if code == REVERSE or code == STOP_THEN_BACK else sign1
+                slides = count
+                break
+            tries += 1
+            pause += 1 + pause // 4
+            next_try = half + pause
+        if not near:
+            continue
+        if not limits.newton and gap <= limits.tolerance and lag == old_lag:
             rate = min(gap / old_gap, 0.999999) if old_gap > 0.0 else 0.0
             if gap * rate <= 10.0 * limits.tolerance * (1.0 - rate):
                 slides = lag

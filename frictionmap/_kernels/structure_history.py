@@ -65,7 +65,7 @@ def orbit_phases(st, beta, mu_beta, state, c, s, sign, net, count, rows, work, s
     for _ in range(count):
         copy_state(state, work.start, st.n)
         c0, s0 = c, s
-        n, _, c, s, _ = slide_on(st, beta, True, net, state, c, s, limit, scratch)
+        n, _, c, s, _ = slide_on(st, beta, net, state, c, s, limit, scratch)
         z = place(st, state)
         _write(st, rows, k, n * st.h, 1.0, sign, c0, s0, math.nan, z, work.start, st.n)
         k += 1

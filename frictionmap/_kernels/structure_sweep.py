@@ -21,6 +21,9 @@ from .structure_history import (
 )
 from .sweep import FINE_STEPS, store
 
+# Columns of a table of steady states; the state at the anchor follows.
+REGIME, SLIDES, COS, SIN, SIGN, NET, AMPLITUDE, ANCHOR = 0, 1, 2, 3, 4, 5, 6, 7
+
 
 class Starts(NamedTuple):
     """Starting states at every r: of the free modes, velocities in t = tau/r, and the load's phase."""
@@ -64,35 +67,74 @@ def _continuous(fine, orbit, i, friction, shapes, re, im, out, m, j, work, scrat
 
 
 @kernel
-def _details(
-    st, fine, orbit, i, friction, found, state, shapes, re, im, held, out, m, j, work, scratch
+def _note(st, found, state, row):
+    """Note a steady state: what it is, and the state, load phase, sign and force at its anchor."""
+    row[REGIME] = found.regime
+    row[SLIDES] = found.events
+    row[COS] = found.cos
+    row[SIN] = found.sin
+    row[SIGN] = found.sign
+    row[NET] = found.net
+    row[AMPLITUDE] = found.z if found.regime == PERMANENT_STICKING else found.amplitude
+    for j in range(st.n):
+        row[ANCHOR + j] = state[0, j]
+        row[ANCHOR + st.n + j] = state[1, j]
+
+
+@kernel
+def fill_details(
+    first, last, rows, ends, low, beta, mu, lim, r, model, loads, orbit, shapes, re, im, held, steps, out,
+    anchors
 ):  # fmt: skip
-    """What was asked for beyond `sweep.store`, of a cell that was followed to its steady state."""
-    if found.regime == PERMANENT_STICKING:
-        for k in range(out.amplitude.shape[3]):
-            out.amplitude[m, i, j, k] = abs(held[k]) + abs(shapes.lift[k] * found.z)
-    elif found.regime == CONTINUOUS and found.events == 0:
-        _continuous(fine, orbit, i, friction, shapes, re, im, out, m, j, work, scratch)
-    elif found.events > 0:
-        if out.multiplier.size:
-            out.multiplier[m, i, j] = orbit_multiplier(
-                st, friction.beta, friction.mu_beta, found.net, state, found.cos, found.sin, found.events,
-                work, scratch,
-            )  # fmt: skip
-        if out.amplitude.size or out.asymmetry.size:
-            rows = np.empty((2 * found.events, phase_columns(st.n)))
-            count = orbit_phases(
-                st, friction.beta, friction.mu_beta, state, found.cos, found.sin, found.sign, found.net,
-                found.events, rows, work, scratch,
-            )  # fmt: skip
-            if out.amplitude.size:
-                largest_displacements(
-                    fine, friction.beta, shapes, re, im, rows, count, out.amplitude[m, i, j], work, scratch
-                )
-            if out.asymmetry.size:
-                out.asymmetry[m, i, j] = asymmetry(
-                    st, friction.beta, rows, count, found.amplitude, work, scratch
-                )
+    """What was asked for beyond `sweep.store`, of the cells that `fill_structures` filled.
+
+    shapes, re, im : what the displacements of the masses are made of, see `structure_history`
+    held : (n_r, n_dof) phasors of the displacements with the contact held
+    """
+    n = model.modes.shape[1]
+    work = make_workspace(n)
+    scratch = make_scratch(n)
+    state = np.empty((2, n))
+    n_r = r.size
+    for cell in range(first, last):
+        k = np.searchsorted(ends, cell, side="right")
+        m = rows[k] // n_r
+        i = rows[k] % n_r
+        j = low[rows[k]] + cell - (ends[k - 1] if k > 0 else 0)
+        row = anchors[cell - first]
+        count = int(row[SLIDES])
+        friction = Friction(beta[j], mu[m] * beta[j], lim[m, i])
+        fine = make_structure(model, loads, i, r[i], max(steps, FINE_STEPS))
+        if row[REGIME] == PERMANENT_STICKING:
+            for d in range(out.amplitude.shape[3]):
+                out.amplitude[m, i, j, d] = abs(held[i, d]) + abs(shapes.lift[d] * row[AMPLITUDE])
+        elif row[REGIME] == CONTINUOUS and count == 0:
+            _continuous(fine, orbit, i, friction, shapes, re[i], im[i], out, m, j, work, scratch)
+        elif count > 0:
+            st = make_structure(model, loads, i, r[i], steps)
+            for d in range(n):
+                state[0, d] = row[ANCHOR + d]
+                state[1, d] = row[ANCHOR + n + d]
+            if out.multiplier.size:
+                out.multiplier[m, i, j] = orbit_multiplier(
+                    st, friction.beta, friction.mu_beta, row[NET], state, row[COS], row[SIN], count, work,
+                    scratch,
+                )  # fmt: skip
+            if out.amplitude.size or out.asymmetry.size:
+                phases = np.empty((2 * count, phase_columns(n)))
+                count = orbit_phases(
+                    st, friction.beta, friction.mu_beta, state, row[COS], row[SIN], row[SIGN], row[NET],
+                    count, phases, work, scratch,
+                )  # fmt: skip
+                if out.amplitude.size:
+                    largest_displacements(
+                        fine, friction.beta, shapes, re[i], im[i], phases, count, out.amplitude[m, i, j],
+                        work, scratch,
+                    )  # fmt: skip
+                if out.asymmetry.size:
+                    out.asymmetry[m, i, j] = asymmetry(
+                        st, friction.beta, phases, count, row[AMPLITUDE], work, scratch
+                    )
 
 
 @kernel
@@ -119,20 +161,20 @@ def fill_closed_details(
 
 @kernel
 def fill_structures(
-    first, last, rows, ends, low, beta, mu, lim, r, model, loads, orbit, marginal, starts, shapes, re, im,
-    held, steps, limits, out, stop,
+    first, last, rows, ends, low, beta, mu, lim, r, model, loads, orbit, marginal, starts, steps, limits, out,
+    anchors, stop,
 ):  # fmt: skip
     """Cells first..last-1 of the list of open cells; arguments as in `sweep.fill_integrated`.
 
-    shapes, re, im : what the displacements of the masses are made of, see `structure_history`
-    held : (n_r, n_dof) phasors of the displacements with the contact held
+    anchors : (last - first, ANCHOR + 2n) where the steady state of each is noted for `fill_details`, or (0,
+    0)
     """
     n = model.modes.shape[1]
     memory = np.empty((memory_rows(n), MEMORY))
     work = make_workspace(n)
     scratch = make_scratch(n)
     state = np.empty((2, n))
-    detailed = out.amplitude.size + out.multiplier.size + out.asymmetry.size > 0
+    start = first
     n_r = r.size
     k = np.searchsorted(ends, first, side="right")
     cell = first
@@ -155,11 +197,8 @@ def fill_structures(
                 starts.moving, state, c, s, limits, stop, memory, work, scratch,
             )  # fmt: skip
             store(out, m, i, j, found, 1.0)
-            if detailed:
-                _details(
-                    st, fine, orbit, i, friction, found, state, shapes, re[i], im[i], held[i], out, m, j,
-                    work, scratch,
-                )  # fmt: skip
+            if anchors.size:
+                _note(st, found, state, anchors[cell - start])
             cell += 1
         k += 1
 

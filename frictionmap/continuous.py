@@ -25,6 +25,9 @@ _PARTS = 32
 #: The search ends when nothing can lie higher by this share of what was found, or after so many rounds: by
 #: then an interval is shorter than the rounding of a time within it.
 _TOLERANCE = 4e-16
+
+#: Intervals that are cut up at a time; a motion of many masses with many equal maxima leaves some hundred.
+_MOST_OPEN = 20000
 _ROUNDS = 8
 
 #: Below this (1 + 2 zeta) theta, 1 - d is summed as a series; terms beyond the last are less than rounding.
@@ -202,6 +205,9 @@ def _largest_moduli(motion: ContinuousMotion, harmonic: np.ndarray, compliance: 
     if motion.beta == 0.0:
         return np.abs(harmonic)
     bend = np.abs(harmonic) + motion.beta * (np.abs(compliance) @ motion._largest_accelerations())
+    # next to a pole of u the parts cancel: below the rounding of the largest there is nothing to look for
+    parts = 1.0 + np.abs(1.0 + motion._g) + np.abs(motion._u) * motion.r / motion._w
+    size = np.abs(harmonic) + motion.beta * (np.abs(compliance) @ parts)
     length = math.pi / _INTERVALS
     t = np.linspace(0.0, math.pi, _INTERVALS + 1)
     x = np.abs(motion._half(t, harmonic, compliance, False))
@@ -213,8 +219,9 @@ def _largest_moduli(motion: ContinuousMotion, harmonic: np.ndarray, compliance: 
     top = np.maximum(x[:, :-1], x[:, 1:]).ravel()
     for _ in range(_ROUNDS):
         slack = length * length / 8.0 * bend
-        wanted = (top + slack[mass] > best[mass]) & (slack > _TOLERANCE * best)[mass]
-        if not wanted.any():
+        wanted = (top + slack[mass] > best[mass]) & (slack > _TOLERANCE * np.maximum(best, size))[mass]
+        # so many are left only where the parts cancel down to rounding, all along: samples say as much
+        if not 0 < np.count_nonzero(wanted) <= _MOST_OPEN:
             break
         mass, start = mass[wanted], start[wanted]
         length /= _PARTS

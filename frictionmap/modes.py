@@ -20,8 +20,8 @@ _SAME_FREQUENCY = 8.0
 #: double precision could tell from zero is lost.
 _ZERO_PRODUCT = 64.0
 
-#: Frequencies whose held structures are solved for together.
-_STACK = 256
+#: Entries of the matrices of held structures that are solved for together, 16 MB of them.
+_STACK = 2**20
 
 
 def solve_modes(mass: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -155,7 +155,9 @@ def _solve_held(
     rounding = _ZERO_PRODUCT * n * _EPS * squares.max(initial=0.0)
     near = np.any(np.abs(squares - r[:, np.newaxis] ** 2) <= rounding, axis=1)
     some = np.flatnonzero(~near)
-    for part in np.array_split(some, some.size // _STACK + 1):  # stacked: one call costs more than a solution
+    for part in np.array_split(
+        some, some.size * (n + 1) ** 2 // _STACK + 1
+    ):  # stacked: one call costs more than a solution
         x = r[part, np.newaxis, np.newaxis]
         stack = np.tile(bordered, (part.size, 1, 1))
         stack[:, :n, :n] = stiffness - x**2 * mass + 1j * x * damping

@@ -142,8 +142,8 @@ def from_rest(slide, amplitude, phase, limit, cycles):
     return Outcome(stops, peak) if state.sign else STUCK
 
 
-class Peer:
-    """A solver under test. A subclass names its package and integrates one slide."""
+class Installed:
+    """What is installed of a solver under test. A subclass names it and its package."""
 
     name = ""
     package = ""
@@ -166,6 +166,10 @@ class Peer:
     def version(self):
         """Version of the package behind this peer."""
         return installed_version(self.package)
+
+
+class Peer(Installed):
+    """A solver under test. A subclass integrates one slide."""
 
     def run(self, contact, r, beta, mu=1.0, zeta=0.0, cycles=200):
         """Integrate one cell from rest; the stops and max |z| of its last excitation period."""

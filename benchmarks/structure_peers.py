@@ -10,12 +10,11 @@ offset of that event, -1e-13, is explained in `peers.HeyokaPeer`.
 
 import math
 from importlib import import_module
-from importlib.metadata import version as installed_version
 from typing import NamedTuple
 
 import numpy as np
 
-from .peers import MAX_PHASES, SLIDE_END, TWO_PI, Outcome
+from .peers import MAX_PHASES, SLIDE_END, TWO_PI, Installed, Outcome
 
 #: A stop shorter than this is not counted: what is left of one that rounding makes.
 SHORTEST_STOP = 1e-9
@@ -39,35 +38,18 @@ def matrices(chain: Chain) -> tuple[np.ndarray, np.ndarray]:
     return stiffness, (phi * (2.0 * chain.zeta * np.sqrt(squares))) @ phi.T
 
 
-class StructurePeer:
+class StructurePeer(Installed):
     """A solver under test.  A subclass integrates one slide and one stop.
 
     `slide(theta, sign, end)` and `stop(theta, end)` change `self.state`; they return the phase of the load
     and True, or the sign of the next slide, if it ended by itself; False, or 0, if `end` came first.
     """
 
-    name = ""
-    package = ""
-
     def __init__(self, chain):
         self.n, self.contact, self.load = chain.masses, chain.contact - 1, chain.load - 1
         self.rate = self.n + self.contact  # place of z' in the state
         self.stiffness, self.damping = matrices(chain)
         self.contact_drive = float(self.contact == self.load)
-
-    @classmethod
-    def why_missing(cls):
-        """Return why this peer cannot run here, or "" if it can."""
-        try:
-            import_module(cls.package)
-        except ImportError as error:
-            return f"{cls.package} cannot be imported ({error})"
-        return ""
-
-    @property
-    def version(self):
-        """Version of the package behind this peer."""
-        return installed_version(self.package)
 
     def run(self, r, beta, mu, cycles, periods):
         """March `cycles` excitation periods from rest; stops a cycle and max |z| of the last `periods`."""

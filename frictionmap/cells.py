@@ -9,11 +9,10 @@ from typing import Protocol
 
 import numpy as np
 
-from . import regimes
 from ._kernels.cycle import Limits
 from ._kernels.sweep import Frequencies, Outputs, fill_closed_form, fill_integrated
 from .curves import Curves, many_mode_curves, one_mass_curves
-from .settings import DETAILS, Solver
+from .settings import COEXISTENCE, DETAILS, Solver
 from .system import System
 
 Job = tuple[Callable[..., None], tuple]
@@ -113,7 +112,7 @@ class StructureCells:
             self._r, ones, 0.0 * ones, orbit.v_abs, orbit.v_arg, orbit.u, orbit.g, self.found.marginal
         )
         jobs: list[Job] = [(fill_closed_form, (first, last, low, high, self._beta, found, 0.0, out))]
-        if set(DETAILS) & set(self._solver.outputs):
+        if DETAILS & set(self._solver.outputs):
             f = self.found
             arguments = (
                 first, last, low, high, self._beta, self._mu, self.curves.beta_lim, self._r, f.model, f.loads,
@@ -124,7 +123,7 @@ class StructureCells:
 
     def reachable(self, out: Outputs, stop: np.ndarray) -> list[Job]:
         """See `Cells`."""
-        if not {"also_reachable", "sliding_limit"} & set(self._solver.outputs):
+        if not COEXISTENCE & set(self._solver.outputs):
             return []
         from ._kernels.coexistence import fill_reachable
 
@@ -158,7 +157,7 @@ class StructureCells:
             f.loads,
         )  # fmt: skip
         steps = float(self._solver.steps)
-        detailed = {"amplitude", "multiplier", "asymmetry"} & set(self._solver.outputs)
+        detailed = DETAILS & set(self._solver.outputs)
         shape = (last - first, ANCHOR + 2 * f.seen.size) if detailed else (0, 0)
         anchors = np.zeros(shape)
         fill_structures(
@@ -178,10 +177,5 @@ class StructureCells:
 
 def make_cells(system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver) -> Cells:
     """The cells of a map; r, beta and mu are checked axes."""
-    one = system.normalised and not set(DETAILS) & set(solver.outputs)
+    one = system.normalised and not (DETAILS | COEXISTENCE) & set(solver.outputs)
     return (OneMassCells if one else StructureCells)(system, r, beta, mu, solver)
-
-
-def status_meaning(status: int) -> str:
-    """What a status says, and what to do about it."""
-    return next(code.meaning for code in regimes.STATUSES if code.value == status)

@@ -289,7 +289,7 @@ class ModalModel:
         """
         return _modal_sum(self.dynamic_stiffness(r), self.chi * self.relative_participation(r))
 
-    def _held(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def held(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """x - s (n_r, n) and F (n_r,) with the contact held.
 
         Modes that the contact does not see move as if free and leave F alone: taken out of the equations
@@ -323,14 +323,14 @@ class ModalModel:
 
         Infinite where the load feeds an undamped resonance of the held structure.
         """
-        return self._held(r)[1]
+        return self.held(r)[1]
 
     def held_response(self, r: np.ndarray) -> np.ndarray:
         """Phasors X of the displacements of all masses with the contact held, theory.md 4; (n_r, n).
 
         Infinite where the load feeds an undamped resonance of the held structure.
         """
-        return self._held(r)[0] + self.base_motion
+        return self.held(r)[0] + self.base_motion
 
     def held_frequencies(self) -> np.ndarray:
         """Natural frequencies of the undamped structure with its contact held, shape (n - 1,)."""

@@ -80,3 +80,8 @@ STATUSES = (
         "100 periods; if it is only slow, raise solver.cycles",
     ),
 )
+
+
+def status_meaning(status: int) -> str:
+    """What a status says, and what to do about it."""
+    return next(code.meaning for code in STATUSES if code.value == status)

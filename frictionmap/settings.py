@@ -23,8 +23,10 @@ OUTPUTS = (
     "amplitude",
 )
 
-#: Those that take the code for structures, whatever the number of masses.
-DETAILS = ("multiplier", "asymmetry", "also_reachable", "sliding_limit", "amplitude")
+#: Those that take the code for structures, whatever the number of masses: of the steady state that a cell
+#: has, and of what else it could end in.
+DETAILS = frozenset(("multiplier", "asymmetry", "amplitude"))
+COEXISTENCE = frozenset(("also_reachable", "sliding_limit"))
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from ._kernels.history import (
 from ._kernels.orbits import SHORTEST_STOP
 from ._kernels.phases import MAX_TERMS, Step, step_constants
 from ._kernels.sweep import FINE_STEPS, integrate_one, normalised_friction
-from .cells import Cells, OneMassCells, StructureCells, limits, make_cells, status_meaning
+from .cells import Cells, OneMassCells, StructureCells, limits, make_cells
 from .curves import boundary_variables
 from .errors import InputError, NoSteadyState
 from .labels import CELL_VARIABLES, coordinate, label_variable, stamp
@@ -115,7 +115,7 @@ def _slides(question: Question, cells: OneMassCells) -> tuple[Step, float, np.nd
             solver.start == "moving",
         )  # fmt: skip
         if cell.period == 0:
-            raise _no_steady_state(question, status_meaning(cell.status))
+            raise _no_steady_state(question, regimes.status_meaning(cell.status))
         regime, rest = cell.regime, cell.sign * cell.z
         rows = np.empty((cell.events, COLUMNS))
     if regime == regimes.PERMANENT_STICKING:
@@ -202,7 +202,7 @@ def _structure_phases(question: Question, cells: StructureCells) -> tuple[np.nda
             bool(found.marginal[0]), cells.starts, steps, limits(solver), state,
         )  # fmt: skip
         if cell.period == 0:
-            raise _no_steady_state(question, status_meaning(cell.status))
+            raise _no_steady_state(question, regimes.status_meaning(cell.status))
         regime, events, rest = cell.regime, cell.events, cell.sign * cell.z
     if regime == regimes.PERMANENT_STICKING:
         return np.empty((0, columns)), rest

@@ -102,34 +102,33 @@ def _orbit(
     )  # fmt: skip
 
 
-def _starts(
-    system: System, seen: np.ndarray, r: np.ndarray, participation: np.ndarray, moving: bool
-) -> Starts:
-    """At rest: every mass at rest at 0, one on a joined base-wall at the base's displacement; tau = 0.
+def _rest(modes: ModalModel, seen: np.ndarray, n_r: int) -> Starts:
+    """Every mass at rest at 0, one on a joined base-wall at the base's displacement; tau = 0."""
+    c = modes.contact
+    x = modes.base_motion * (c / (c @ c) - 1.0)  # relative to the base
+    place = (modes.phi[:, seen].T @ modes.mass @ x)[np.newaxis].repeat(n_r, axis=0)
+    return Starts(place, np.zeros_like(place), np.ones(n_r), np.zeros(n_r), False)
 
-    Moving: the contact at z = 0, all modes at their largest speed, at 1.5 times the amplitude that the load
-    alone sustains of each, that taken as 10 times its static answer at most; the load that would act in the
-    held contact falls through zero.
+
+def _moving(
+    modes: ModalModel, seen: np.ndarray, r: np.ndarray, participation: np.ndarray, force: np.ndarray
+) -> Starts:
+    """The contact at z = 0, every mode at its largest speed; the load in the held contact falls through 0.
+
+    Its amplitude is 1.5 times what the load alone sustains of it, that taken as 10 times its static answer at
+    most; `force` (n_r,) is the phasor of the held load.
     """
-    modes = system.modes
-    if not moving:
-        c = modes.contact
-        x = modes.base_motion * (c / (c @ c) - 1.0)  # relative to the base
-        place = (modes.phi[:, seen].T @ modes.mass @ x)[np.newaxis].repeat(r.size, axis=0)
-        return Starts(place, np.zeros_like(place), np.ones(r.size), np.zeros(r.size), False)
     w = modes.w[seen]
     stiffness = np.ascontiguousarray(np.abs(modes.dynamic_stiffness(r)[:, seen]))
     with np.errstate(divide="ignore"):
         gain = np.minimum(1.0 / stiffness, _MOVING_CAP / w**2)
     size = _MOVING * np.abs(participation) * gain * np.maximum(w, r[:, np.newaxis])
-    held = modes.held_load(r)
-    lead = np.where(np.isfinite(held), np.angle(held), 0.0)
+    lead = np.where(np.isfinite(force), np.angle(force), 0.0)
     return Starts(np.zeros_like(size), size * np.sign(modes.chi[seen]), np.sin(lead), np.cos(lead), True)
 
 
 def _alone(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Phasor (n_r, n_dof) of the base's motion and of the modes that the contact does not see; where
-    infinite."""
+    """Phasor (n_r, n_dof) of the base's motion and of the modes that are not seen; where infinite."""
     unseen = np.flatnonzero(modes.chi == 0.0)
     stiffness = modes.dynamic_stiffness(r)[:, unseen]
     loads = modes.relative_participation(r)[:, unseen]
@@ -145,7 +144,8 @@ def structures(system: System, r: np.ndarray, curves: Curves) -> Structures:
     seen = np.flatnonzero(modes.chi)
     model = _model(modes, seen)
     alone, resonant = _alone(modes, r)
-    held = modes.held_response(r)
+    held, force = modes.held(r)
+    held = held + modes.base_motion
     r = np.where(r > 0.0, r, 1.0)  # no cell at r = 0 is followed: any other number does
     participation = np.ascontiguousarray(modes.relative_participation(r)[:, seen])
     half = 0.5 * modes.w[seen] / r[:, np.newaxis]
@@ -158,8 +158,7 @@ def structures(system: System, r: np.ndarray, curves: Curves) -> Structures:
     )  # fmt: skip
     return Structures(
         seen, model, _loads(model, r, participation), _orbit(modes, seen, r, participation, curves),
-        even.any(axis=1), _starts(system, seen, r, participation, False),
-        _starts(system, seen, r, participation, True), shapes,
+        even.any(axis=1), _rest(modes, seen, r.size), _moving(modes, seen, r, participation, force), shapes,
         np.ascontiguousarray(alone.real), np.ascontiguousarray(alone.imag), resonant,
         np.ascontiguousarray(held),
     )  # fmt: skip

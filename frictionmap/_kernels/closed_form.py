@@ -55,6 +55,14 @@ def sincos_quarter(numerator, less, r):
 
 
 @kernel
+def fastest_rate(omega, zeta):
+    """Rate of the fastest part of the free motion of an oscillator."""
+    if zeta > 1.0:
+        return omega * (zeta + math.sqrt((zeta - 1.0) * (zeta + 1.0)))
+    return omega
+
+
+@kernel
 def decay(zeta, theta):
     """``q`` and ``e = R q'`` of T(B.8b), (B.9b) at ``theta = tau/R``; then ``d = e + 2 zeta q``.
 

@@ -38,16 +38,20 @@ def orbit_phase(v_abs, v_arg, u, b):
 
 
 @kernel
+def since_maximum(c, s, phase):
+    """(tau, sign): time since the orbit's last maximum, or minimum; there the orbit is the mirror image."""
+    tau = math.atan2(s, c) - phase
+    tau -= 2.0 * math.pi * math.floor(tau / (2.0 * math.pi))
+    if tau > math.pi:
+        return tau - math.pi, -1.0
+    return tau, 1.0
+
+
+@kernel
 def distance_to_orbit(oscillator, b, amplitude, phase, z, c, s):
     """Energy norm sqrt(z^2 + r^2 z'^2) of the distance from the continuous orbit of a state at rest."""
     a = 1.0 / oscillator.r
-    # tau on the orbit, from its maximum; on the rising half the orbit is the mirror of the falling one
-    tau = math.atan2(s, c) - phase
-    tau -= 2.0 * math.pi * math.floor(tau / (2.0 * math.pi))
-    sign = 1.0
-    if tau > math.pi:
-        tau -= math.pi
-        sign = -1.0
+    tau, sign = since_maximum(c, s, phase)
     q, e = decay(oscillator.zeta, a * tau)
     g1 = 1.0 + oscillator.g
     d = e + 2.0 * oscillator.zeta * q

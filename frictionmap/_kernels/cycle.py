@@ -106,15 +106,15 @@ class Cell(NamedTuple):
 
 
 @kernel
-def _cell(regime, status, origin, stops, amplitude, stuck, period, cycles):
+def plain_cell(regime, status, origin, stops, amplitude, stuck, period, cycles):
     nan = math.nan
     return Cell(regime, status, origin, stops, amplitude, stuck, period, cycles, nan, nan, nan, 1.0, 0, nan)
 
 
 @kernel
-def _unresolved(status, cycles):
+def unresolved(status, cycles):
     nan = math.nan
-    return _cell(UNRESOLVED, status, INTEGRATED, nan, nan, nan, 0, cycles)
+    return plain_cell(UNRESOLVED, status, INTEGRATED, nan, nan, nan, 0, cycles)
 
 
 @kernel
@@ -129,28 +129,51 @@ def continuous_cell(oscillator, b, origin, cycles):
     """Continuous motion by the closed form."""
     amplitude = continuous_amplitude(oscillator.v_abs, oscillator.u, oscillator.g, b)
     status = MARGINAL if oscillator.marginal and b > 0.0 else RESOLVED
-    return _cell(CONTINUOUS, status, origin, 0.0, amplitude, 0.0, 1, cycles)
+    return plain_cell(CONTINUOUS, status, origin, 0.0, amplitude, 0.0, 1, cycles)
 
 
 @kernel
 def quasi_static_cell():
     """r = 0 between the boundaries: stick-slip whose number of stops has no limit."""
     nan = math.nan
-    return _cell(STICK_SLIP, QUASI_STATIC, CLOSED_FORM, nan, nan, nan, 0, 0.0)
+    return plain_cell(STICK_SLIP, QUASI_STATIC, CLOSED_FORM, nan, nan, nan, 0, 0.0)
+
+
+@kernel
+def periodic_cell(halves, stops, amplitude, stuck, origin, cycles, z, c, s, sign, slides, net):
+    """A steady state that returns, as its mirror image if need be, after `halves` half periods."""
+    if halves < 1:
+        return unresolved(NOT_REACHED, cycles)
+    period = halves if halves % 2 == 1 else halves // 2
+    regime = STICK_SLIP if stops > 0 else CONTINUOUS
+    return Cell(
+        regime, RESOLVED, origin, 2.0 * stops / halves, amplitude, stuck, period, cycles,
+        z, c, s, sign, slides, net,
+    )  # fmt: skip
+
+
+@kernel
+def averaged_cell(window, stops, amplitude, stuck, cycles):
+    """Stick-slip that does not repeat, by what it did in a window of time."""
+    return plain_cell(
+        STICK_SLIP, NOT_PERIODIC, INTEGRATED, stops * _TURN / window, amplitude, stuck / window, 0, cycles
+    )
+
+
+@kernel
+def settled(gap, old_gap, tolerance):
+    """Whether returns that were `old_gap` and are `gap` off leave less than the tolerance to go."""
+    rate = min(gap / old_gap, 0.999999) if old_gap > 0.0 else 0.0
+    return gap * rate <= 10.0 * tolerance * (1.0 - rate)
 
 
 @kernel
 def _orbit_cell(step, r, b, mu_b, z, c, s, sign, code, count, origin, cycles, work):
     """The steady state that returns to an anchor after `count` slides, or sooner."""
     slides, halves, stops, amplitude, stuck = measure_orbit(step, r, b, mu_b, z, c, s, code, count, work)
-    if halves < 1:
-        return _unresolved(NOT_REACHED, cycles)
-    period = halves if halves % 2 == 1 else halves // 2
-    regime = STICK_SLIP if stops > 0 else CONTINUOUS
-    return Cell(
-        regime, RESOLVED, origin, 2.0 * stops / halves, amplitude, stuck, period, cycles,
-        z, c, s, sign, slides, first_push(b, mu_b, z, c),
-    )  # fmt: skip
+    return periodic_cell(
+        halves, stops, amplitude, stuck, origin, cycles, z, c, s, sign, slides, first_push(b, mu_b, z, c)
+    )
 
 
 @kernel
@@ -301,7 +324,7 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
     n = 0.0
     while time < end:
         if stop[0] != 0:
-            return _unresolved(NOT_COMPUTED, time / _TURN)
+            return unresolved(NOT_COMPUTED, time / _TURN)
         if v > 0.0 or events > 0:
             n, z, c, s = slide(step, b, z, w, acceleration, c, s, max_steps, work)
             if n == NO_END:
@@ -322,7 +345,7 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
         history[SINES, now] = s
         events += 1
         if events > max_events:
-            return _unresolved(TOO_MANY_EVENTS, time / _TURN)
+            return unresolved(TOO_MANY_EVENTS, time / _TURN)
         stopped = code == STOP_THEN_BACK or code == STOP_THEN_ON
         if time >= window_end:
             window_end += window
@@ -372,13 +395,11 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
                 tries += 1
                 pause += 1 + pause // 4
                 next_try = half + pause
-        elif gap <= limits.tolerance and lag == old_lag:
-            rate = min(gap / old_gap, 0.999999) if old_gap > 0.0 else 0.0
-            if gap * rate <= 10.0 * limits.tolerance * (1.0 - rate):
-                slides = lag
-                if stopped:
-                    c, s = stop_ends(mu_b, z)
-                break
+        elif gap <= limits.tolerance and lag == old_lag and settled(gap, old_gap, limits.tolerance):
+            slides = lag
+            if stopped:
+                c, s = stop_ends(mu_b, z)
+            break
         old_lag = lag
         old_gap = gap
 
@@ -388,10 +409,7 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
             time / _TURN, work,
         )  # fmt: skip
     if oscillator.marginal and b < b_lim:
-        return _unresolved(MARGINAL, time / _TURN)
+        return unresolved(MARGINAL, time / _TURN)
     if old_stops == 0 or (running > 0 and stops == 0):
-        return _unresolved(NOT_REACHED, time / _TURN)
-    return _cell(
-        STICK_SLIP, NOT_PERIODIC, INTEGRATED, old_stops * _TURN / window, old_largest,
-        old_stuck / window, 0, time / _TURN,
-    )  # fmt: skip
+        return unresolved(NOT_REACHED, time / _TURN)
+    return averaged_cell(window, old_stops, old_largest, old_stuck, time / _TURN)

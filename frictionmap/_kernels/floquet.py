@@ -8,6 +8,7 @@ from .continuous import orbit_phase
 from .events import REVERSE
 from .follow import after_slide, slide_on
 from .jit import kernel
+from .orbits import longest_slide
 from .oscillators import FELL
 from .returns import copy_state, return_map, spectral_radius
 from .structure_history import sample_phases
@@ -15,8 +16,6 @@ from .structure_orbit import orbit_state
 
 #: Samples of z in half a period of the excitation for its asymmetry.
 _SAMPLES = 256
-
-_TURN = 2.0 * math.pi
 
 
 @kernel
@@ -31,11 +30,10 @@ def _around(st, beta, mu_beta, c, s, codes, count, halves, work, scratch):
 
 @kernel
 def orbit_multiplier(st, beta, mu_beta, net, state, c, s, count, work, scratch):
-    """Largest modulus of the multipliers of the orbit that returns to the anchor `state` after `count`
-    slides."""
+    """Largest modulus of the multipliers of the orbit that returns to an anchor after `count` slides."""
     copy_state(state, work.moved, st.n)
     codes = np.empty(count)
-    limit = 100.0 * _TURN * max(1.0, st.r) / st.h
+    limit = longest_slide(st, st.r)
     time = 0.0
     first = 0.0
     c1, s1, push = c, s, net
@@ -68,9 +66,9 @@ def continuous_multiplier(st, orbit, i, beta, mu_beta, work, scratch):
     # in the middle of the rising half
     c, s = math.sin(phase), -math.cos(phase)
     orbit_state(st, orbit, i, beta, phase, c, s, work.middle)
-    return _around(
-        st, beta, mu_beta, c, s, np.full(1, float(REVERSE)), np.int64(1), np.int64(1), work, scratch
-    )
+    work.codes[0] = REVERSE
+    once = np.int64(1)
+    return _around(st, beta, mu_beta, c, s, work.codes, once, once, work, scratch)
 
 
 @kernel

@@ -141,6 +141,18 @@ def _watch(table, n, yc, ys, level, c, s, h, terms, series, watched):
 
 
 @kernel
+def step_on(table, n, friction, state, c, s, following):
+    """The state one scan step on, into `following`."""
+    for i in range(n):
+        z = state[0, i]
+        w = state[1, i]
+        forced_z = table[ZC, i] * c + table[ZS, i] * s + table[Z1, i] * friction
+        forced_w = table[WC, i] * c + table[WS, i] * s + table[W1, i] * friction
+        following[0, i] = forced_z + (table[ZZ, i] * z + table[ZW, i] * w)
+        following[1, i] = forced_w + (table[WZ, i] * z + table[WW, i] * w)
+
+
+@kernel
 def value(table, n, yc, ys, level, state, c, s):
     """y of a state."""
     total = yc * c + ys * s + level
@@ -235,13 +247,7 @@ def scan(
     done = 0.0
     while y == y:  # a number
         whole = done + 1.0 <= limit
-        for i in range(n):
-            z = state[0, i]
-            w = state[1, i]
-            forced_z = table[ZC, i] * c + table[ZS, i] * s + table[Z1, i] * friction
-            forced_w = table[WC, i] * c + table[WS, i] * s + table[W1, i] * friction
-            following[0, i] = forced_z + (table[ZZ, i] * z + table[ZW, i] * w)
-            following[1, i] = forced_w + (table[WZ, i] * z + table[WW, i] * w)
+        step_on(table, n, friction, state, c, s, following)
         c1 = turn_c * c - turn_s * s
         s1 = turn_c * s + turn_s * c
         y1 = value(table, n, yc, ys, level, following, c1, s1)

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .closed_form import fastest_rate
 from .jit import kernel
 
 #: Terms of the Taylor series that any legal number of scan steps per period may need.
@@ -115,9 +116,8 @@ def series_terms(steps):
 def step_constants(r, zeta, steps):
     """The `Step` of frequency ratio r > 0 for `steps` scan steps per period of the fastest part."""
     a = 1.0 / r
-    fastest = a * (zeta + math.sqrt((zeta - 1.0) * (zeta + 1.0))) if zeta > 1.0 else a
     turn, terms = series_terms(steps)
-    h = turn / max(1.0, fastest)
+    h = turn / max(1.0, fastest_rate(a, zeta))
     stiffness = (a * h) * (a * h)
     damping = 2.0 * zeta * a * h
     series = np.empty((5, terms))

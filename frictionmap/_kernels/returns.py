@@ -223,14 +223,20 @@ def solve_linear(matrix, right, n):
 
 
 @kernel
+def _largest_entry(matrix, n):
+    norm = 0.0
+    for i in range(n):
+        for j in range(n):
+            norm = max(norm, abs(matrix[i, j]))
+    return norm
+
+
+@kernel
 def spectral_radius(matrix, n, a):
     """Largest modulus of the eigenvalues, from the root of a high power; `matrix` is lost, `a` is scratch."""
     log = 0.0
     for _ in range(_SQUARINGS):
-        norm = 0.0
-        for i in range(n):
-            for j in range(n):
-                norm = max(norm, abs(matrix[i, j]))
+        norm = _largest_entry(matrix, n)
         if norm == 0.0:
             return 0.0
         log = 2.0 * (log + math.log(norm))
@@ -243,10 +249,7 @@ def spectral_radius(matrix, n, a):
             for k in range(n):
                 for j in range(n):
                     matrix[i, j] += a[i, k] * a[k, j]
-    norm = 0.0
-    for i in range(n):
-        for j in range(n):
-            norm = max(norm, abs(matrix[i, j]))
+    norm = _largest_entry(matrix, n)
     if norm == 0.0:
         return 0.0
     return math.exp((log + math.log(norm)) / 2.0**_SQUARINGS)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .closed_form import fastest_rate
 from .jit import kernel
 from .oscillators import (
     F1,
@@ -83,14 +84,6 @@ class Loads(NamedTuple):
     direct_sin: np.ndarray
     contact_cos: np.ndarray  # (n_r,) load on the contact's mass alone
     contact_sin: np.ndarray
-
-
-@kernel
-def fastest_rate(omega, zeta):
-    """Rate of the fastest part of the free motion of an oscillator."""
-    if zeta > 1.0:
-        return omega * (zeta + math.sqrt((zeta - 1.0) * (zeta + 1.0)))
-    return omega
 
 
 @kernel

@@ -12,18 +12,17 @@ from ..regimes import (
     INTEGRATED,
     MARGINAL,
     NOT_COMPUTED,
-    NOT_PERIODIC,
     NOT_REACHED,
     RESOLVED,
     SOLVED,
-    STICK_SLIP,
     TOO_MANY_EVENTS,
 )
 from .continuous import continuous_amplitude, orbit_phase
-from .cycle import Cell, _cell, _unresolved, stuck_cell
+from .cycle import averaged_cell, periodic_cell, plain_cell, settled, stuck_cell, unresolved
 from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
 from .follow import MOVING, NO_RELEASE, after_slide, slide_on
 from .jit import kernel
+from .orbits import longest_slide
 from .oscillators import FELL
 from .returns import copy_state, return_map, solve_return, spectral_radius
 from .structure import W, energy, place, release_steady, vibrates_in_step
@@ -39,8 +38,7 @@ SHORTEST_STOP = 1e-12
 #: Anchors looked back over for a return.
 _MAX_RETURN = 64
 
-#: Events per excitation period and unit of the fastest frequency over r beyond which the motion only
-#: chatters.
+#: Events per excitation period (over the scan step, if that is less than 1) of a motion that only chatters.
 _EVENTS_PER_CYCLE = 4096.0
 
 #: A return this close (relative to the motion) is worth a Newton iteration: with several steady states
@@ -48,6 +46,9 @@ _EVENTS_PER_CYCLE = 4096.0
 #: close even where, with mu = 1, the steady state is unique and any state will do to start from.
 _NEAR_RETURN = 0.01
 _NEAR_PHASE = 0.3
+
+#: An orbit with a slide longer than this (in tau) is not solved for, but waited for.
+_LONGEST_SLIDE = 8.0 * math.pi
 
 #: With several steady states: how much further off than expected the one solved for may be.
 _HEADING = 4.0
@@ -132,16 +133,16 @@ def _near_return(st, memory, events, size, unique, shortest):
 def _solve(
     st, friction, unique, net, state, c, s, codes, first, lag, gap, halves, limits, work, scratch
 ):  # fmt: skip
-    """The periodic orbit that the motion approaches, by Newton's method; (found, cos, sin), state at an
-    anchor.
+    """The periodic orbit that the motion approaches, by Newton's method: (found, cos, sin).
 
-    The unknown is the state in the middle of the slide that starts at the last anchor.
+    The unknown is the state in the middle of the slide that starts at the last anchor; `state` becomes the
+    orbit's at the end of that slide.
     """
     n = st.n
     beta, mu_beta = friction.beta, friction.mu_beta
     copy_state(state, work.middle, n)
     copy_state(state, work.moved, n)
-    steps, end, _, _, _ = slide_on(st, beta, net, work.moved, c, s, _TURN * 4.0 / st.h, scratch)
+    steps, end, _, _, _ = slide_on(st, beta, net, work.moved, c, s, _LONGEST_SLIDE / st.h, scratch)
     if end != FELL:
         return False, c, s
     _, _, c_m, s_m, _ = slide_on(st, beta, net, work.middle, c, s, 0.5 * steps, scratch)
@@ -165,14 +166,13 @@ def _solve(
         if not (contraction < 1.0 and off <= _HEADING * gap * energy(st, work.middle) / (1.0 - contraction)):
             return False, c, s
     copy_state(work.middle, state, n)
-    _, end, c, s, _ = slide_on(st, beta, MOVING, state, c_m, s_m, _TURN * 4.0 / st.h, scratch)
+    _, end, c, s, _ = slide_on(st, beta, MOVING, state, c_m, s_m, _LONGEST_SLIDE / st.h, scratch)
     return end == FELL, c, s
 
 
 @kernel
 def measure(st, friction, net, state, c, s, code, count, work, scratch):
-    """The orbit that returns to the anchor `state`, reached by an event `code`, after `count` slides, or
-    sooner.
+    """The orbit that returns to the anchor `state`, reached by `code`, after `count` slides or sooner.
 
     Returns (slides, half periods, stops, amplitude, share of time stuck); `state` is left as it was.
     """
@@ -182,7 +182,7 @@ def measure(st, friction, net, state, c, s, code, count, work, scratch):
     time = stuck = amplitude = 0.0
     stops = 0
     slides = 0
-    limit = 100.0 * _TURN * max(1.0, st.r) / st.h
+    limit = longest_slide(st, st.r)
     for _ in range(count):
         steps, _, c, s, _ = slide_on(st, friction.beta, net, work.moved, c, s, limit, scratch)
         amplitude = max(amplitude, abs(place(st, work.moved)))
@@ -211,14 +211,7 @@ def _orbit_cell(st, friction, net, state, c, s, sign, code, count, origin, cycle
     slides, halves, stops, amplitude, stuck = measure(
         st, friction, net, state, c, s, code, count, work, scratch
     )
-    if halves < 1:
-        return _unresolved(NOT_REACHED, cycles)
-    period = halves if halves % 2 == 1 else halves // 2
-    regime = STICK_SLIP if stops > 0 else CONTINUOUS
-    return Cell(
-        regime, RESOLVED, origin, 2.0 * stops / halves, amplitude, stuck, period, cycles,
-        math.nan, c, s, sign, slides, net,
-    )  # fmt: skip
+    return periodic_cell(halves, stops, amplitude, stuck, origin, cycles, math.nan, c, s, sign, slides, net)
 
 
 @kernel
@@ -273,7 +266,7 @@ def steady_structure(
 
     while time < end_time:
         if stop[0] != 0:
-            return _unresolved(NOT_COMPUTED, time / _TURN)
+            return unresolved(NOT_COMPUTED, time / _TURN)
         if moves or events > 0:
             steps, end, c, s, _ = slide_on(st, beta, net, state, c, s, max_steps, scratch)
             if end != FELL:
@@ -292,7 +285,7 @@ def steady_structure(
             sign = -sign
         events += 1
         if events > max_events:
-            return _unresolved(TOO_MANY_EVENTS, time / _TURN)
+            return unresolved(TOO_MANY_EVENTS, time / _TURN)
         stopped = code == STOP_THEN_BACK or code == STOP_THEN_ON
         if time >= window_end:
             window_end += window
@@ -310,7 +303,7 @@ def steady_structure(
             running += 1
             growing = growing + 1 if size > peak else 0
             if resonance and growing >= _GROWING and beta < friction.b_lim:
-                return _cell(CONTINUOUS, RESOLVED, INTEGRATED, 0.0, math.inf, 0.0, 1, time / _TURN)
+                return plain_cell(CONTINUOUS, RESOLVED, INTEGRATED, 0.0, math.inf, 0.0, 1, time / _TURN)
         _remember(st, memory, (events - 1) % MEMORY, code, c, s, time, sign, state)
         if around and not stopped and (running > 1 or events == 1):
             orbit_state(st, orbit, i, beta, phase, c, s, work.moved)
@@ -320,7 +313,7 @@ def steady_structure(
             gap = energy(st, work.moved)
             if gap < radius or gap <= limits.tolerance * energy(st, state):
                 status = MARGINAL if marginal else RESOLVED
-                return _cell(CONTINUOUS, status, INTEGRATED, 0.0, amplitude, 0.0, 1, time / _TURN)
+                return plain_cell(CONTINUOUS, status, INTEGRATED, 0.0, amplitude, 0.0, 1, time / _TURN)
         peak = size
 
         # look for a return once a half period: at stops, or at turns where it no longer stops
@@ -367,11 +360,10 @@ def steady_structure(
             next_try = half + pause
         if not near:
             continue
-        if not limits.newton and gap <= limits.tolerance and lag == old_lag:
-            rate = min(gap / old_gap, 0.999999) if old_gap > 0.0 else 0.0
-            if gap * rate <= 10.0 * limits.tolerance * (1.0 - rate):
-                slides = lag
-                break
+        returned = lag == old_lag and gap <= limits.tolerance
+        if not limits.newton and returned and settled(gap, old_gap, limits.tolerance):
+            slides = lag
+            break
         old_lag = lag
         old_gap = gap
 
@@ -381,10 +373,7 @@ def steady_structure(
             time / _TURN, work, scratch,
         )  # fmt: skip
     if in_step or (marginal and beta < friction.b_lim):
-        return _unresolved(MARGINAL, time / _TURN)
+        return unresolved(MARGINAL, time / _TURN)
     if old_stops == 0 or (running > 0 and stops == 0):
-        return _unresolved(NOT_REACHED, time / _TURN)
-    return _cell(
-        STICK_SLIP, NOT_PERIODIC, INTEGRATED, old_stops * _TURN / window, old_largest,
-        old_stuck / window, 0, time / _TURN,
-    )  # fmt: skip
+        return unresolved(NOT_REACHED, time / _TURN)
+    return averaged_cell(window, old_stops, old_largest, old_stuck, time / _TURN)

@@ -8,6 +8,7 @@ import numpy as np
 from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from .follow import after_slide, slide_on
 from .jit import kernel
+from .orbits import longest_slide
 from .oscillators import advance, expand
 from .returns import copy_state
 from .structure import held_load, hold, place, release
@@ -60,7 +61,7 @@ def orbit_phases(st, beta, mu_beta, state, c, s, sign, net, count, rows, work, s
 
     `state` becomes the state at the end.
     """
-    limit = 100.0 * 2.0 * math.pi * max(1.0, st.r) / st.h
+    limit = longest_slide(st, st.r)
     k = 0
     for _ in range(count):
         copy_state(state, work.start, st.n)

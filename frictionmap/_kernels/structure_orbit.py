@@ -6,8 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .closed_form import decay
+from .continuous import since_maximum
 from .jit import kernel
-from .oscillators import OW, OZ, ROWS, W1, WC, WS, WW, WZ, Z1, ZC, ZS, ZW, ZZ, bounds, value
+from .oscillators import OW, OZ, ROWS, bounds, step_on, value
 from .structure import CHI, DAMPING, LOAD, LOAD_RATE, W, contact_load
 
 
@@ -27,12 +28,7 @@ class Continuous(NamedTuple):
 @kernel
 def orbit_state(st, orbit, i, beta, phase, c, s, out):
     """State (2, n) of the continuous orbit at the load's phase (c, s); `phase` is that of its maximum."""
-    tau = math.atan2(s, c) - phase
-    tau -= 2.0 * math.pi * math.floor(tau / (2.0 * math.pi))
-    sign = 1.0
-    if tau > math.pi:
-        tau -= math.pi
-        sign = -1.0
+    tau, sign = since_maximum(c, s, phase)
     cosine = math.cos(tau + phase)
     sine = math.sin(tau + phase)
     for j in range(st.n):
@@ -75,30 +71,13 @@ def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, followin
     speed = 0.0
     load = contact_load(st, state, c, s)
     radius = math.inf
-    table = st.free
     for _ in range(int(math.ceil(math.pi / st.h))):
-        for j in range(st.n):
-            z = state[0, j]
-            w = state[1, j]
-            following[0, j] = (
-                table[ZC, j] * c
-                + table[ZS, j] * s
-                + table[Z1, j] * beta
-                + table[ZZ, j] * z
-                + table[ZW, j] * w
-            )
-            following[1, j] = (
-                table[WC, j] * c
-                + table[WS, j] * s
-                + table[W1, j] * beta
-                + table[WZ, j] * z
-                + table[WW, j] * w
-            )
+        step_on(st.free, st.n, beta, state, c, s, following)
         for j in range(st.n):
             state[0, j] = following[0, j]
             state[1, j] = following[1, j]
         c, s = turn_c * c - turn_s * s, turn_c * s + turn_s * c
-        speed1 = value(table, st.n, 0.0, 0.0, 0.0, state, c, s)
+        speed1 = value(st.free, st.n, 0.0, 0.0, 0.0, state, c, s)
         load1 = contact_load(st, state, c, s)
         fast = fast_per * (min(speed, speed1) - 0.125 * curve)
         # a load that changes its sign inside the step passes zero there

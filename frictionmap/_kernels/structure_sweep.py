@@ -96,22 +96,26 @@ def fill_details(
     scratch = make_scratch(n)
     state = np.empty((2, n))
     n_r = r.size
+    k = np.searchsorted(ends, first, side="right")
+    i = -1
     for cell in range(first, last):
-        k = np.searchsorted(ends, cell, side="right")
+        while cell >= ends[k]:
+            k += 1
         m = rows[k] // n_r
-        i = rows[k] % n_r
+        if rows[k] % n_r != i:
+            i = rows[k] % n_r
+            st = make_structure(model, loads, i, r[i], steps)
+            fine = make_structure(model, loads, i, r[i], max(steps, FINE_STEPS))
         j = low[rows[k]] + cell - (ends[k - 1] if k > 0 else 0)
         row = anchors[cell - first]
         count = int(row[SLIDES])
         friction = Friction(beta[j], mu[m] * beta[j], lim[m, i])
-        fine = make_structure(model, loads, i, r[i], max(steps, FINE_STEPS))
         if row[REGIME] == PERMANENT_STICKING:
             for d in range(out.amplitude.shape[3]):
                 out.amplitude[m, i, j, d] = abs(held[i, d]) + abs(shapes.lift[d] * row[AMPLITUDE])
         elif row[REGIME] == CONTINUOUS and count == 0:
             _continuous(fine, orbit, i, friction, shapes, re[i], im[i], out, m, j, work, scratch)
         elif count > 0:
-            st = make_structure(model, loads, i, r[i], steps)
             for d in range(n):
                 state[0, d] = row[ANCHOR + d]
                 state[1, d] = row[ANCHOR + n + d]
@@ -166,8 +170,7 @@ def fill_structures(
 ):  # fmt: skip
     """Cells first..last-1 of the list of open cells; arguments as in `sweep.fill_integrated`.
 
-    anchors : (last - first, ANCHOR + 2n) where the steady state of each is noted for `fill_details`, or (0,
-    0)
+    anchors : (last - first, ANCHOR + 2n), the steady state of each for `fill_details`; or (0, 0)
     """
     n = model.modes.shape[1]
     memory = np.empty((memory_rows(n), MEMORY))

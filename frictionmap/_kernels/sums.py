@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from .closed_form import damping_functions, decay
+from .closed_form import damping_functions, decay, fastest_rate
 from .jit import kernel
 from .maxima import ANGLE_TOLERANCE, MAX_ITERATIONS, largest_bracket, narrow
 
@@ -137,8 +137,7 @@ def largest_sum(u, floor, table, n, stack):
     for i in range(n):
         a = table[A, i]
         zeta = table[ZETA, i]
-        rate = a * (zeta + math.sqrt((zeta - 1.0) * (zeta + 1.0))) if zeta > 1.0 else a
-        fastest = max(fastest, rate)
+        fastest = max(fastest, fastest_rate(a, zeta))
         size_y = _amplitude(zeta, table[Y_Q, i], table[Y_E, i])
         size_p = _amplitude(zeta, table[P_Q, i], table[P_E, i])
         # y'' = -2 zeta a y' - a^2 y, and so for W

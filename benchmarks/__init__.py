@@ -12,6 +12,7 @@ phases           `phases`: nanoseconds per slide and stop
 structure_peers  the same solvers for chains of masses
 structures       `structures`: cost against the number of masses; five masses against the peers
 bound            `bound`: beta_lim, the thesis's sum of maxima and a slow simulation; docs/fig-5-55.png
-record           machine, versions, medians; results as JSON
+figures          drawn without a display, written beside the numbers they show
+record           machine, versions, medians, tables; results as JSON; one processor
 ===============  ======================================================================================
 """

@@ -25,6 +25,7 @@ import numpy as np
 
 import frictionmap as fm
 
+from .figures import new_figure, save_figure
 from .record import save
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -127,16 +128,12 @@ def _brackets(r: tuple[float, ...], zeta: float, cycles: int, width: float) -> l
 
 def draw(undamped: list[dict], damped: list[dict], path: Path) -> None:
     """The curves and the simulated points."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     ends = 0.17, 0.85
     r = np.unique(np.concatenate((np.linspace(*ends, 2721), [row["r1"] for row in undamped])))
     curves = fm.boundaries(chain(0.0), r)
     exact, modal = curves.beta_lim.values[0], curves.beta_lim_modal.values[0]
     purple = "#b04fa3"
-    figure = Figure(figsize=(7.4, 6.8), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(7.4, 6.8)
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     top.set_title(
         "Friction above which a continuous motion begins to stop\n"
@@ -194,8 +191,7 @@ def draw(undamped: list[dict], damped: list[dict], path: Path) -> None:
     for axes in (top, bottom):
         axes.grid(alpha=0.25)
         axes.set_xlim(*ends)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=150)
+    save_figure(figure, path)
 
 
 def run(quick: bool, results: Path) -> dict:
@@ -209,5 +205,4 @@ def run(quick: bool, results: Path) -> dict:
     save("bound", content, results)
     path = results / "fig-5-55.png" if quick else FIGURE
     draw(undamped, damped, path)
-    print(f"drawn: {path}")
     return content

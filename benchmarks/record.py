@@ -5,7 +5,8 @@ import os
 import platform
 import statistics
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 
@@ -50,6 +51,28 @@ def timed(function: Callable[[], object]) -> tuple[float, object]:
     began = time.perf_counter()
     result = function()
     return time.perf_counter() - began, result
+
+
+@contextmanager
+def pinned() -> Iterator[None]:
+    """Keep this process on one processor, where the system can: what is timed is not moved about."""
+    if not hasattr(os, "sched_setaffinity"):
+        yield
+        return
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {max(before)})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, before)
+
+
+def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
+    """Print rows under a header, columns as wide as what is in them; numbers to three digits."""
+    words = [[f"{cell:.3g}" if isinstance(cell, float) else str(cell) for cell in row] for row in rows]
+    widths = [max(map(len, column)) for column in zip(header, *words, strict=True)]
+    for row in (header, ["-" * width for width in widths], *words):
+        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
 
 
 def save(name: str, content: dict, folder: Path) -> Path:

@@ -36,6 +36,7 @@ from frictionmap.curves import many_mode_curves, one_mass_curves
 from frictionmap.maps import _allocate
 from frictionmap.settings import Solver
 
+from .figures import new_figure, save_figure
 from .peers import Outcome
 from .record import save, spread, timed
 from .structure_peers import PEERS, Chain, StructurePeer
@@ -369,13 +370,9 @@ def peers(quick: bool) -> dict:
 
 def draw(content: dict, path: Path) -> None:
     """Cost against the number of masses, and time a cell against the peers."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     found = content["cost"]
     n = np.array(MASSES)
-    figure = Figure(figsize=(10.0, 4.4), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(10.0, 4.4)
     left, right = figure.subplots(1, 2)
     rows = [found[str(masses)] for masses in MASSES]
     for values, marker, label in (
@@ -417,8 +414,7 @@ def draw(content: dict, path: Path) -> None:
     right.set_xlabel("time for one cell [ms]")
     right.set_title("Steady state of five masses (chain of T Fig. 6.17)", fontsize=10)
     right.legend(fontsize=8)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=150)
+    save_figure(figure, path)
 
 
 def run(quick: bool, results: Path) -> dict:
@@ -426,5 +422,4 @@ def run(quick: bool, results: Path) -> dict:
     content = {"cost": cost(quick), "peers": peers(quick)}
     save("structures", content, results)
     draw(content, results / "structures.png")
-    print(f"drawn: {results / 'structures.png'}")
     return content

@@ -63,6 +63,9 @@ _MODAL: dict[str, Any] = {
 }
 
 
+_SEVERAL: dict[str, Any] = {"hatch": "////", "edgecolor": "#404040", "linewidth": 0.0}
+
+
 def _halo() -> list[AbstractPathEffect]:
     return [withStroke(linewidth=3.0, foreground="white")]
 
@@ -136,8 +139,29 @@ def _name_region(ax: "Axes", mask: np.ndarray, r: np.ndarray, beta: np.ndarray, 
     ax.text(*where, text, ha="center", va="center", fontsize=9, path_effects=_halo())
 
 
+def _hatch_several(ax: "Axes", panel: xr.Dataset) -> bool:
+    """Hatch the cells that have several answers, one of which the start chooses; whether there are any."""
+    if "also_reachable" not in panel:
+        return False
+    flags = panel["also_reachable"].values
+    several = (flags & (flags - 1)) != 0  # more than one bit
+    r, beta = panel["r"].values, panel["beta"].values
+    if r.size == 1:
+        r, several = _edges(r), several.repeat(2, axis=0)
+    if beta.size == 1:
+        beta, several = _edges(beta), several.repeat(2, axis=1)
+    if several.any():
+        hatches = ax.contourf(
+            r, beta, several.T, levels=[0.5, 1.5], colors="none", hatches=[_SEVERAL["hatch"]]
+        )
+        hatches.set(edgecolor=_SEVERAL["edgecolor"], linewidth=_SEVERAL["linewidth"])
+    return bool(several.any())
+
+
 def plot_regimes(ds: xr.Dataset, ax: "Axes | None" = None) -> "Axes | np.ndarray":
     """Picture of a regime map: stops per cycle in discrete colours, boundaries over it.
+
+    Where the map holds `also_reachable`, cells that other starts end differently in are hatched.
 
     Parameters
     ----------
@@ -161,11 +185,12 @@ def plot_regimes(ds: xr.Dataset, ax: "Axes | None" = None) -> "Axes | np.ndarray
     if ax is not None:
         if len(panels) > 1:
             raise InputError(f"ax must come with a map of one mu; got {len(panels)}: use ds.sel(mu=...)")
-        _legend(ax, [_draw_map(ax, panels[0])])
+        _legend(ax, [_draw_map(ax, panels[0])], _hatch_several(ax, panels[0]))
         return ax
     figure, axes = _figure(len(panels), ds.attrs.get("title", ""))
     present = [_draw_map(panel_ax, panel) for panel_ax, panel in zip(axes, panels, strict=True)]
-    _legend(figure, present)
+    several = [_hatch_several(panel_ax, panel) for panel_ax, panel in zip(axes, panels, strict=True)]
+    _legend(figure, present, any(several))
     return axes
 
 
@@ -212,9 +237,11 @@ def _draw_map(ax: "Axes", panel: xr.Dataset) -> set[int]:
     return set(np.unique(found).tolist())
 
 
-def _legend(owner: "Figure | Axes", present: list[set[int]]) -> None:
+def _legend(owner: "Figure | Axes", present: list[set[int]], several: bool) -> None:
     shown = sorted(set().union(*present))
     handles: list[Any] = [_patch(*_CLASSES[i]) for i in shown]
+    if several:
+        handles.append(Patch(facecolor="none", label="several answers: the start decides", **_SEVERAL))
     handles += [Line2D([], [], **_LIM), Line2D([], [], **_STICK)]
     if isinstance(owner, Figure):
         _legend_below(owner, handles)

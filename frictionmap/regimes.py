@@ -63,9 +63,10 @@ STATUSES = (
     Code(
         MARGINAL,
         "marginal",
-        "undamped at an even sub-multiple of a natural frequency (r = 1/(2n)), or at one of the held "
-        "structure that the load does not drive: a continuum of steady states, chosen by the start; where "
-        "the regime is continuous the amplitude given is the symmetric one's; add a little damping",
+        "undamped at an even sub-multiple of a natural frequency (r = 1/(2n)), of the sum or difference of "
+        "two, or at a frequency of the held structure that the load does not drive: a continuum of steady "
+        "states, chosen by the start; where the regime is continuous the amplitude given is the symmetric "
+        "one's; add a little damping",
     ),
     Code(
         QUASI_STATIC,
@@ -76,8 +77,8 @@ STATUSES = (
     Code(
         NOT_PERIODIC,
         "not_periodic",
-        "stick-slip that did not repeat within `cycles`: stops, amplitude and share stuck are those of "
-        "100 periods; if it is only slow, raise solver.cycles",
+        "stick-slip that repeats in no 8 periods, as far as it was followed (`cycles`): stops, amplitude and "
+        "share stuck are those of the last 100 periods; if it is only slow, raise solver.cycles",
     ),
 )
 

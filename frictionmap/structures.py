@@ -138,6 +138,24 @@ def _alone(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return alone.astype(complex), (resonant.astype(float) @ np.abs(modes.phi[:, unseen].T)) > 0.0
 
 
+def _marginal(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """Whether continuous motions at r form a continuum (n_r,): some free vibration leaves the turns alone.
+
+    An undamped mode that turns n times in half a period of the load does, r = w_k/(2 n), T(3.33).  Two do
+    together, their velocities cancelling in the contact, where that is so of the sum or the difference of
+    their frequencies: w_k -+ w_j = 2 n r, to the rounding of the two.
+    """
+    free = w[zeta == 0.0]
+    found = (free >= 2.0 * r[:, np.newaxis]) & (np.mod(0.5 * free / r[:, np.newaxis], 1.0) == 0.0)
+    found = found.any(axis=1)
+    for k in range(1, free.size):
+        for both in (free[k] + free[:k], free[k] - free[:k]):
+            turns = 0.5 * both / r[:, np.newaxis]
+            off = np.abs(turns - np.round(turns)) * r[:, np.newaxis]
+            found |= ((turns > 0.5) & (off <= 1e-15 * free[k])).any(axis=1)
+    return found
+
+
 def structures(system: System, r: np.ndarray, curves: Curves) -> Structures:
     """Everything that the cells of a system need at frequencies r, for which `curves` are."""
     modes = system.modes
@@ -148,8 +166,6 @@ def structures(system: System, r: np.ndarray, curves: Curves) -> Structures:
     held = held + modes.base_motion
     r = np.where(r > 0.0, r, 1.0)  # no cell at r = 0 is followed: any other number does
     participation = np.ascontiguousarray(modes.relative_participation(r)[:, seen])
-    half = 0.5 * modes.w[seen] / r[:, np.newaxis]
-    even = (half >= 1.0) & (half == np.floor(half)) & (modes.zeta[seen] == 0.0)
     phi = modes.phi[:, seen]
     # contiguous, all of them: another memory layout would be another type to the kernels, compiled anew
     shapes = Shapes(
@@ -158,7 +174,8 @@ def structures(system: System, r: np.ndarray, curves: Curves) -> Structures:
     )  # fmt: skip
     return Structures(
         seen, model, _loads(model, r, participation), _orbit(modes, seen, r, participation, curves),
-        even.any(axis=1), _rest(modes, seen, r.size), _moving(modes, seen, r, participation, force), shapes,
+        _marginal(modes.w[seen], modes.zeta[seen], r), _rest(modes, seen, r.size),
+        _moving(modes, seen, r, participation, force), shapes,
         np.ascontiguousarray(alone.real), np.ascontiguousarray(alone.imag), resonant,
         np.ascontiguousarray(held),
     )  # fmt: skip

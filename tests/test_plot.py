@@ -177,6 +177,19 @@ def test_a_map_without_regime_and_stops(tiny_map):
         fm.plot_regimes(tiny_map[["contact_amplitude"]])
 
 
+def test_several_answers_are_hatched():
+    """Cells that other starts end differently in: hatched, and in the legend; nothing where none are."""
+    r, beta = np.linspace(0.2, 1.2, 6), np.linspace(0.5, 0.9, 5)
+    ds = fm.sweep(fm.System(), r, beta, [1.0, 1.5], outputs=["regime", "also_reachable"])
+    for mu, expected in ((1.0, False), (1.5, True)):
+        for part in (ds, ds.isel(r=[3]), ds.isel(beta=[2])):
+            ax = Figure().subplots()
+            fm.plot_regimes(part.sel(mu=mu), ax=ax)
+            words = [text.get_text() for text in ax.get_legend().get_texts()]
+            assert ("several answers: the start decides" in words) == expected
+            drawn(ax.figure)
+
+
 @pytest.mark.parametrize("outputs", [["regime"], ["stops_per_cycle"], ["regime", "stops_per_cycle"]])
 def test_either_output_will_do(tiny_map, outputs):
     axes = fm.plot_regimes(tiny_map[[*outputs, "beta_lim", "beta_stick"]])

@@ -7,6 +7,7 @@ import pytest
 from test_structures import random_chain
 
 import frictionmap as fm
+from frictionmap._kernels.events import REVERSE
 from frictionmap._kernels.follow import MOVING, after_slide, slide_on
 from frictionmap._kernels.oscillators import make_scratch
 from frictionmap._kernels.returns import make_workspace, return_map, spectral_radius
@@ -48,6 +49,47 @@ def test_closed_form_of_one_mass(r):
     cosine = math.sqrt(1.0 - (0.3 * u * (1.0 - r**2)) ** 2) * np.sign(1.0 - r**2)
     ratio = (z - cosine - 0.3) / (z - cosine + 0.3)
     assert ds.multiplier.item() == pytest.approx(abs(ratio), rel=1e-9)
+
+
+def test_determinant_is_the_product_of_acceleration_ratios():
+    """Volume in the space of states shrinks at turns, by (load - beta)/(load + beta), and by damping only.
+
+    The load there is that of the response.  A stop forgets the contact's velocity: the determinant is 0.
+    """
+    rng = np.random.default_rng(5)
+    turned = stopped = 0
+    while turned < 20 or stopped < 10:
+        zeta = float(rng.choice([0.0, 0.02, 0.4]))
+        system, _ = random_chain(rng, zeta)
+        r, mu = float(rng.uniform(0.3, 2.0)), float(rng.choice([1.0, 1.5]))
+        beta = float(rng.uniform(0.02, 0.7)) * fm.boundaries(system, [r]).beta_stick.item()
+        cells = StructureCells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver())
+        found = cells.found
+        n = found.seen.size
+        st = make_structure(found.model, found.loads, 0, r, 24.0)
+        scratch, work = make_scratch(n), make_workspace(n)
+        state = np.array([found.moving.place[0], found.moving.velocity[0] / st.rate])
+        c, s = found.moving.cos[0], found.moving.sin[0]
+        ratio, codes = 1.0, follow_codes(st, beta, mu * beta, state, c, s, 4, work, scratch)
+        moved, net, at, time = state.copy(), MOVING, (c, s), 0.0
+        for k in range(4):
+            steps, _, *at, _ = slide_on(st, beta, net, moved, *at, 1e6, scratch)
+            code, *at, net, wait, load, _ = after_slide(
+                st, beta, mu * beta, moved, work.held, *at, 1e3, scratch
+            )
+            if code > 2 or abs(time + steps * st.h + wait) > 2.9 * np.pi:
+                break
+            time += steps * st.h + wait
+            ratio *= (load - beta) / (load + beta) if code == REVERSE else 0.0
+            halves = np.int64(k % 2 + 1) if (time < np.pi * (k % 2 + 1)) else np.int64(k % 2 + 3)
+            if return_map(
+                st, beta, mu * beta, state.copy(), c, s, codes, 0, k + 1, halves, True, work, scratch
+            ):
+                decay = np.exp(-2.0 * np.sum(system.modes.zeta * system.modes.w) * np.pi * halves / r)
+                flow = work.flow[: 2 * n, : 2 * n]
+                assert np.linalg.det(flow) == pytest.approx(ratio * decay, rel=1e-8, abs=1e-11)
+                turned += ratio > 0.0
+                stopped += ratio == 0.0
 
 
 def test_derivative_of_the_return_map():

@@ -16,7 +16,7 @@ from .jit import kernel
 from .oscillators import make_scratch
 from .returns import copy_state, make_workspace
 from .structure import make_structure
-from .structure_cycle import MEMORY, Friction, memory_rows, steady_structure
+from .structure_cycle import Friction, fitting_memory, steady_structure
 from .structure_orbit import orbit_state
 from .structure_sweep import put_start
 from .sweep import FINE_STEPS
@@ -59,7 +59,7 @@ def fill_reachable(
 ):  # fmt: skip
     """Rows first..last-1 of (mu, r): `reachable` (n_mu, n_r, n_beta) flags, `sliding_limit` (n_mu, n_r)."""
     n = model.modes.shape[1]
-    memory = np.empty((memory_rows(n), MEMORY))
+    memory = np.empty((0, 0))
     work = make_workspace(n)
     scratch = make_scratch(n)
     state = np.empty((2, n))
@@ -84,6 +84,7 @@ def fill_reachable(
             continue
         st = make_structure(model, loads, i, r[i], steps)
         fine = make_structure(model, loads, i, r[i], max(steps, FINE_STEPS))
+        memory = fitting_memory(st, memory)
         best, c_best, s_best = 0.0, 0.0, 0.0
         # 0: rest, 1: moving, 2: upwards from the neighbour below, 3: downwards from the one above
         for start in range(1 if unique else 4):

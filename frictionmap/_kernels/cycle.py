@@ -44,12 +44,20 @@ from .events import (
     slide,
 )
 from .jit import kernel
-from .orbits import first_push, measure_orbit, solve_orbit, stop_ends
+from .orbits import first_push, full_period, half_periods, measure_orbit, solve_orbit, stop_ends
 
-#: Events remembered; a steady period with more is not recognised.  The rows of the memory:
-HISTORY = 2048
-CODES, PLACES, COSINES, SINES = 0, 1, 2, 3
-HISTORY_ROWS = 4
+#: Events remembered, at least and at most: a steady period with more is not recognised.  At small r there
+#: are up to 1/(2r) in a period.  The rows of the memory:
+_HISTORY = 2048
+_LONGEST_HISTORY = 2**18
+CODES, PLACES, COSINES, SINES, TIMES = 0, 1, 2, 3, 4
+HISTORY_ROWS = 5
+
+#: The orbit solved for last, from which the next cell's may be found: slides until it returns (0: there is
+#: none), displacement and sign at the end of a stop, and from there on the events, at most MOST_EVENTS.
+COUNT, PLACE, SIDE, FIRST = 0, 1, 2, 3
+MOST_EVENTS = 32
+NEIGHBOUR = FIRST + MOST_EVENTS
 
 #: Anchors looked back over for a return: symmetric motions need one or a few, sub-harmonic ones more.
 _MAX_RETURN = 32
@@ -72,8 +80,11 @@ _CREEPING = 0.02
 #: Half periods of ever larger motion after which an undamped resonance counts as unbounded.
 _GROWING = 64
 
-#: Excitation periods over which a motion that does not repeat is averaged.
-_AVERAGED = 100.0
+#: Excitation periods after which a steady motion repeats; one that takes more counts as not periodic.
+LONGEST_PERIOD = 8
+
+#: Excitation periods over which such a motion is averaged.
+AVERAGED = 100.0
 
 _TURN = 2.0 * math.pi
 
@@ -103,6 +114,12 @@ class Cell(NamedTuple):
     sign: float  # -1.0 where that state is the mirror image of the true one
     events: int  # slides until it returns; 0 where stuck and for the closed form
     net: float  # force in the contact at its start, friction taken off
+
+
+@kernel
+def history_length(r):
+    """Events to remember at the frequency r: those of four periods of the load."""
+    return int(min(max(_HISTORY, math.ceil(2.0 / r)), _LONGEST_HISTORY))
 
 
 @kernel
@@ -144,20 +161,36 @@ def periodic_cell(halves, stops, amplitude, stuck, origin, cycles, z, c, s, sign
     """A steady state that returns, as its mirror image if need be, after `halves` half periods."""
     if halves < 1:
         return unresolved(NOT_REACHED, cycles)
-    period = halves if halves % 2 == 1 else halves // 2
     regime = STICK_SLIP if stops > 0 else CONTINUOUS
     return Cell(
-        regime, RESOLVED, origin, 2.0 * stops / halves, amplitude, stuck, period, cycles,
+        regime, RESOLVED, origin, 2.0 * stops / halves, amplitude, stuck, full_period(halves), cycles,
         z, c, s, sign, slides, net,
     )  # fmt: skip
 
 
 @kernel
-def averaged_cell(window, stops, amplitude, stuck, cycles):
-    """Stick-slip that does not repeat, by what it did in a window of time."""
+def averaged_cell(since, time, end, stops, amplitude, stuck):
+    """Stick-slip that does not repeat, by what it did from `since` on.
+
+    A motion that was left before its end, or did not stop at all in that time, is not decided.
+    """
+    if stops == 0 or time < end:
+        return unresolved(NOT_REACHED, time / _TURN)
+    measured = time - since
     return plain_cell(
-        STICK_SLIP, NOT_PERIODIC, INTEGRATED, stops * _TURN / window, amplitude, stuck / window, 0, cycles
-    )
+        STICK_SLIP, NOT_PERIODIC, INTEGRATED, stops * _TURN / measured, amplitude, stuck / measured, 0,
+        time / _TURN,
+    )  # fmt: skip
+
+
+@kernel
+def certain_stops(stops, slides, halves, b, mu_b, b_lim):
+    """Stops of an orbit in `halves` half periods: one in each where none was seen but one there must be.
+
+    From b_lim on, and with mu = 1, no motion with two turns a period is without stops.  Next to b_lim they
+    last shorter than rounding can tell.
+    """
+    return halves if stops == 0 and slides <= halves and mu_b == b and b >= b_lim else stops
 
 
 @kernel
@@ -168,9 +201,10 @@ def settled(gap, old_gap, tolerance):
 
 
 @kernel
-def _orbit_cell(step, r, b, mu_b, z, c, s, sign, code, count, origin, cycles, work):
+def _orbit_cell(step, r, b, mu_b, b_lim, z, c, s, sign, code, count, origin, cycles, work):
     """The steady state that returns to an anchor after `count` slides, or sooner."""
     slides, halves, stops, amplitude, stuck = measure_orbit(step, r, b, mu_b, z, c, s, code, count, work)
+    stops = certain_stops(stops, slides, halves, b, mu_b, b_lim)
     return periodic_cell(
         halves, stops, amplitude, stuck, origin, cycles, z, c, s, sign, slides, first_push(b, mu_b, z, c)
     )
@@ -194,14 +228,17 @@ def _near_return(history, events, closeness, shortest):
     The shortest return, or the one beyond which a longer one is not closer by far: a sub-harmonic
     motion may be nearly symmetric.
     """
-    now = (events - 1) % HISTORY
+    now = (events - 1) % history.shape[1]
     best = 0
     best_gap = math.inf
     near = closeness
     seen = 0
-    for lag in range(1, min(events, HISTORY)):
-        then = (events - 1 - lag) % HISTORY
-        if history[CODES, then] == history[CODES, now]:
+    for lag in range(1, min(events, history.shape[1])):
+        then = (events - 1 - lag) % history.shape[1]
+        halves = half_periods(history[TIMES, now] - history[TIMES, then])
+        if halves > 2 * LONGEST_PERIOD:
+            break
+        if history[CODES, then] == history[CODES, now] and full_period(halves) <= LONGEST_PERIOD:
             gap = _gap(history, now, then)
             if gap <= near:
                 best = lag
@@ -222,8 +259,8 @@ def _creeps(r, mu_b, history, events):
     """
     if events < 2:
         return False
-    now = (events - 1) % HISTORY
-    then = (events - 2) % HISTORY
+    now = (events - 1) % history.shape[1]
+    then = (events - 2) % history.shape[1]
     if history[CODES, now] != STOP_THEN_ON or history[CODES, then] != STOP_THEN_ON:
         return False
     far = abs(history[PLACES, now]) - (mu_b - 1.0)
@@ -235,10 +272,10 @@ def _creeps(r, mu_b, history, events):
 def _middle(history, events):
     """Displacement between the last stop and the one before; nan if there is none before."""
     now = events - 1
-    for lag in range(1, min(events, HISTORY)):
-        then = (now - lag) % HISTORY
+    for lag in range(1, min(events, history.shape[1])):
+        then = (now - lag) % history.shape[1]
         if history[CODES, then] == STOP_THEN_BACK or history[CODES, then] == STOP_THEN_ON:
-            return 0.5 * (history[PLACES, now % HISTORY] + history[PLACES, then])
+            return 0.5 * (history[PLACES, now % history.shape[1]] + history[PLACES, then])
     return math.nan
 
 
@@ -252,7 +289,7 @@ def _solve(step, oscillator, b, mu_b, c, s, stopped, lag, gap, history, events, 
     and an orbit found is the one however it was found, the symmetric orbits with one or two stops a half
     period are tried too.
     """
-    now = (events - 1) % HISTORY
+    now = (events - 1) % history.shape[1]
     z = history[PLACES, now]
     unique = mu_b == b
     guesses = 3 if unique and history[CODES, now] == STOP_THEN_BACK else 1
@@ -273,7 +310,37 @@ def _solve(step, oscillator, b, mu_b, c, s, stopped, lag, gap, history, events, 
 
 
 @kernel
-def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop, history, work):
+def cell_nearby(step, oscillator, b, mu_b, b_lim, limits, neighbour, work):
+    """The steady state where it is the only one, mu = 1, from an orbit near by; unresolved if that fails.
+
+    It is that of the last cell, if that was solved for, or the motion without stops, which begins to stop
+    where it turns.
+    """
+    count = int(neighbour[COUNT])
+    if count == 0:
+        if math.isinf(oscillator.v_abs) or not b_lim > 0.0:
+            return unresolved(NOT_REACHED, 0.0)
+        count = 1
+        neighbour[PLACE] = -continuous_amplitude(oscillator.v_abs, oscillator.u, oscillator.g, b_lim)
+        neighbour[SIDE] = 1.0
+        neighbour[FIRST] = STOP_THEN_BACK
+    neighbour[COUNT] = 0.0
+    solved, z, c, s, _ = solve_orbit(
+        step, oscillator, b, mu_b, neighbour[PLACE], 1.0, 0.0, True, neighbour[FIRST:], 0, count,
+        limits.tolerance, work,
+    )  # fmt: skip
+    if not solved:
+        return unresolved(NOT_REACHED, 0.0)
+    neighbour[COUNT] = count
+    neighbour[PLACE] = z
+    code = int(neighbour[FIRST + count - 1])
+    return _orbit_cell(
+        step, oscillator.r, b, mu_b, b_lim, z, c, s, neighbour[SIDE], code, count, SOLVED, 0.0, work
+    )
+
+
+@kernel
+def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop, history, neighbour, work):
     """Steady state reached from (z, z' = v >= 0) at load phase (c, s).
 
     Parameters
@@ -283,7 +350,8 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
     b, mu_b : kinetic and static friction over the load amplitude; b > 0
     b_lim : boundary of b to continuous motion
     stop : (1,) set by another thread to end the work
-    history, work : scratch; shapes (HISTORY_ROWS, HISTORY) and (MAX_TERMS,)
+    history, work : scratch; from `make_history`, and of shape (MAX_TERMS,)
+    neighbour : (NEIGHBOUR,) becomes the orbit solved for
     """
     end = _TURN * limits.cycles
     max_steps = end / step.h + 1.0
@@ -314,8 +382,9 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
     old_lag = 0  # the last near return
     old_gap = math.inf
     # stops, time stuck and largest displacement in the last whole window, and in the one under way
-    window = _TURN * min(_AVERAGED, 0.5 * limits.cycles)
+    window = _TURN * min(AVERAGED, 0.5 * limits.cycles)
     window_end = window
+    old_opened = opened = 0.0  # when these began
     stops, stuck, largest = 0, 0.0, 0.0
     old_stops, old_stuck, old_largest = 0, 0.0, 0.0
 
@@ -338,17 +407,19 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
         acceleration = step.stiffness * push
         if code == REVERSE or code == STOP_THEN_BACK:
             sign = -sign
-        now = events % HISTORY
+        now = events % history.shape[1]
         history[CODES, now] = code
         history[PLACES, now] = z
         history[COSINES, now] = c
         history[SINES, now] = s
+        history[TIMES, now] = time
         events += 1
         if events > max_events:
             return unresolved(TOO_MANY_EVENTS, time / _TURN)
         stopped = code == STOP_THEN_BACK or code == STOP_THEN_ON
         if time >= window_end:
             window_end += window
+            old_opened, opened = opened, time
             old_stops, old_stuck, old_largest = stops, stuck, largest
             stops, stuck, largest = 0, 0.0, 0.0
         largest = max(largest, size)
@@ -391,6 +462,12 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
                 )  # fmt: skip
                 if solved:
                     z, c, s = z1, c1, s1
+                    if stopped and slides <= MOST_EVENTS:
+                        neighbour[COUNT] = slides
+                        neighbour[PLACE] = z
+                        neighbour[SIDE] = sign
+                        for m in range(slides):
+                            neighbour[FIRST + m] = history[CODES, (events - slides + m) % history.shape[1]]
                     break
                 tries += 1
                 pause += 1 + pause // 4
@@ -405,11 +482,23 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
 
     if slides > 0:
         return _orbit_cell(
-            step, oscillator.r, b, mu_b, z, c, s, sign, code, slides, SOLVED if solved else INTEGRATED,
+            step, oscillator.r, b, mu_b, b_lim, z, c, s, sign, code, slides, SOLVED if solved else INTEGRATED,
             time / _TURN, work,
         )  # fmt: skip
     if oscillator.marginal and b < b_lim:
         return unresolved(MARGINAL, time / _TURN)
-    if old_stops == 0 or (running > 0 and stops == 0):
-        return unresolved(NOT_REACHED, time / _TURN)
-    return averaged_cell(window, old_stops, old_largest, old_stuck, time / _TURN)
+    return averaged_cell(
+        old_opened, time, end, old_stops + stops, max(old_largest, largest), old_stuck + stuck
+    )
+
+
+@kernel
+def solve_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop, history, neighbour, work):
+    """`cell_nearby` where that may do, else `steady_cell`; the same arguments."""
+    if mu_b == b and limits.newton and b >= b_lim:
+        found = cell_nearby(step, oscillator, b, mu_b, b_lim, limits, neighbour, work)
+        if found.regime != UNRESOLVED:
+            return found
+    return steady_cell(
+        step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop, history, neighbour, work
+    )

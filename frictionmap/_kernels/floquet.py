@@ -8,7 +8,7 @@ from .continuous import orbit_phase
 from .events import REVERSE
 from .follow import after_slide, slide_on
 from .jit import kernel
-from .orbits import longest_slide
+from .orbits import half_periods, longest_slide
 from .oscillators import FELL
 from .returns import copy_state, return_map, spectral_radius
 from .structure_history import sample_phases
@@ -52,7 +52,7 @@ def orbit_multiplier(st, beta, mu_beta, net, state, c, s, count, work, scratch):
         return math.nan
     copy_state(state, work.middle, st.n)
     _, _, c, s, _ = slide_on(st, beta, net, work.middle, c, s, 0.5 * first, scratch)
-    halves = int(math.floor(time / math.pi + 0.5))
+    halves = half_periods(time)
     return _around(st, beta, mu_beta, c, s, codes, count, halves, work, scratch)
 
 
@@ -77,7 +77,7 @@ def asymmetry(st, beta, rows, count, amplitude, work, scratch):
     total = 0.0
     for k in range(count):
         total += rows[k, 0]
-    halves = int(math.floor(total / math.pi + 0.5))
+    halves = half_periods(total)
     if halves % 2 == 1:
         return 0.0
     size = halves * _SAMPLES

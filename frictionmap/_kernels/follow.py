@@ -6,7 +6,16 @@ import math
 from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
 from .jit import kernel
 from .oscillators import AT_LIMIT, ELSEWHERE, FAILED, ROSE, scan
-from .structure import contact_load, hold, largest_load_to_come, mirror, place, release, vibrates_in_step
+from .structure import (
+    contact_load,
+    held_period,
+    hold,
+    largest_load_to_come,
+    mirror,
+    place,
+    release,
+    vibrates_in_step,
+)
 
 #: What follows a slide, beside the codes of `events`: a stop that is not known to end, or to last.
 NO_RELEASE = 5
@@ -42,6 +51,7 @@ def pause(st, mu_beta, z, held, c, s, allowed, scratch):
     """
     wait = 0.0
     period = _TURN / st.h
+    repeat = 0.0
     # in step with the load the motion creeps to where the load never exceeds mu beta, by ever shorter slides
     most = mu_beta * (1.0 + _CREEPING) if vibrates_in_step(st) else mu_beta
     while True:
@@ -54,6 +64,10 @@ def pause(st, mu_beta, z, held, c, s, allowed, scratch):
         wait += n * st.h
         if end != AT_LIMIT:
             return end, c, s, wait, slope
+        if repeat == 0.0:
+            repeat = held_period(st)
+        if wait > (repeat - 0.5) * _TURN:
+            return AT_LIMIT, c, s, wait, 0.0
         if not wait < allowed:
             return FAILED, c, s, wait, 0.0
 

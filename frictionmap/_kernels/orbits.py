@@ -30,6 +30,18 @@ _LONGEST_SLIDE = 100.0
 
 
 @kernel
+def half_periods(time):
+    """Half periods of the excitation nearest to a time in tau."""
+    return int(math.floor(time / math.pi + 0.5))
+
+
+@kernel
+def full_period(halves):
+    """Excitation periods of a motion that returns after `halves` half periods, as its mirror image if odd."""
+    return halves if halves % 2 == 1 else halves // 2
+
+
+@kernel
 def stop_ends(mu_b, z):
     """Load phase (cos, sin) at which a stop at z ends, the motion that follows being upwards."""
     c = z + mu_b
@@ -178,5 +190,5 @@ def measure_orbit(step, r, b, mu_b, z, c, s, code, count, work):
         slides += 1
         if event == code and abs(z - z0) <= _SAME * abs(z0) and abs(c - c0) <= _SAME and abs(s - s0) <= _SAME:
             break
-    halves = int(math.floor(time / math.pi + 0.5))
+    halves = half_periods(time)
     return slides, halves, stops, amplitude, stuck / time

@@ -12,13 +12,19 @@ from typing import NamedTuple
 import numpy as np
 
 from .closed_form import decay
-from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
-from .follow import MOVING, after_slide, slide_on
+from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
+from .follow import MOVING, NO_RELEASE, after_slide, slide_on
 from .jit import kernel
 from .oscillators import AT_LIMIT, FELL, OMEGA, OW, OZ, ROWS, ZETA
 from .structure import CHI, LIFT, energy
 
 _MAX_NEWTON = 16
+
+#: Events of an order of events found by `order_of_events`.
+MOST_CODES = 64
+
+#: Columns of `Workspace.anchored`.
+HALVES, PHASE_COS, PHASE_SIN, SIDE = 0, 1, 2, 3
 
 #: Newton steps below this share of the motion have to shrink fast.
 _NEAR_END = 1e-6
@@ -43,7 +49,10 @@ class Workspace(NamedTuple):
     start: np.ndarray  # (2, n) where Newton's method started
     anchor: np.ndarray  # (2, n)
     table: np.ndarray  # (ROWS, n)
-    codes: np.ndarray  # (1,)
+    codes: np.ndarray  # (MOST_CODES,) an order of events
+    near: np.ndarray  # (2, n)
+    solved: np.ndarray  # (2, n) middle of a slide of the orbit solved for last, and how it is anchored:
+    anchored: np.ndarray  # (4,) half periods to its return (0: there is none), cos, sin, sign
 
 
 @kernel
@@ -53,7 +62,8 @@ def make_workspace(n):
     return Workspace(
         np.zeros((2, m)), np.zeros((2, n)), np.zeros((2, n)), np.zeros((2 * n, 2 * n)),
         np.zeros((2 * m + 1, 2 * n)), np.zeros((2 * n, 2 * n)), np.zeros(2 * n), np.zeros(2 * n),
-        np.zeros((2, n)), np.zeros((2, n)), np.zeros((ROWS, n)), np.zeros(1),
+        np.zeros((2, n)), np.zeros((2, n)), np.zeros((ROWS, n)), np.zeros(MOST_CODES), np.zeros((2, n)),
+        np.zeros((2, n)), np.zeros(4),
     )  # fmt: skip
 
 
@@ -196,6 +206,34 @@ def return_map(st, beta, mu_beta, state, c, s, codes, first, count, halves, deri
 
 
 @kernel
+def order_of_events(st, beta, mu_beta, state, c, s, halves, codes, work, scratch):
+    """Number of events in the `halves` half periods from a state in a slide, and what they are, into `codes`.
+
+    0 if they are too many, or do not lead back into a slide in the same direction, mirrored if odd.
+    """
+    whole = math.pi * halves
+    mirrored = False
+    time = 0.0
+    net = MOVING
+    count = 0
+    while True:
+        n, end, c, s, _ = slide_on(st, beta, net, state, c, s, (whole - time) / st.h, scratch)
+        time += n * st.h
+        if end == AT_LIMIT:
+            return count if mirrored == (halves % 2 == 1) else 0
+        if end != FELL or count == codes.size:
+            return 0
+        code, c, s, net, wait, _, _ = after_slide(st, beta, mu_beta, state, work.held, c, s, whole, scratch)
+        time += wait
+        if code == TOUCH or code == STUCK or code == NO_RELEASE or not time < whole:
+            return 0
+        if code != STOP_THEN_ON:
+            mirrored = not mirrored
+        codes[count] = code
+        count += 1
+
+
+@kernel
 def solve_linear(matrix, right, n):
     """Solve matrix x = right in place, x in `right`; False if it is singular."""
     for k in range(n):
@@ -256,32 +294,37 @@ def spectral_radius(matrix, n, a):
 
 
 @kernel
+def newton_step(st, beta, mu_beta, c, s, codes, first, count, halves, work, scratch):
+    """A step of Newton's method from work.middle, into work.moved; its size, infinite if there is none."""
+    n = st.n
+    size = 2 * n
+    copy_state(work.middle, work.moved, n)
+    if not return_map(st, beta, mu_beta, work.moved, c, s, codes, first, count, halves, True, work, scratch):
+        return math.inf
+    for i in range(n):
+        work.step[i] = work.moved[0, i] - work.middle[0, i]
+        work.step[n + i] = (work.moved[1, i] - work.middle[1, i]) * st.rate
+    for i in range(size):
+        for j in range(size):
+            work.square[i, j] = (1.0 if i == j else 0.0) - work.flow[i, j]
+    if not solve_linear(work.square, work.step, size):
+        return math.inf
+    for i in range(n):
+        work.moved[0, i] = work.step[i]
+        work.moved[1, i] = work.step[n + i] / st.rate
+    return energy(st, work.moved)
+
+
+@kernel
 def solve_return(st, beta, mu_beta, c, s, codes, first, count, halves, tolerance, work, scratch):
     """Newton's method on the return map from work.middle, which becomes the solution; whether it is one."""
     n = st.n
-    size = 2 * n
     last = math.inf
     for _ in range(_MAX_NEWTON):
-        copy_state(work.middle, work.moved, n)
-        if not return_map(
-            st, beta, mu_beta, work.moved, c, s, codes, first, count, halves, True, work, scratch
-        ):
-            return False
-        for i in range(n):
-            work.step[i] = work.moved[0, i] - work.middle[0, i]
-            work.step[n + i] = (work.moved[1, i] - work.middle[1, i]) * st.rate
-        for i in range(size):
-            for j in range(size):
-                work.square[i, j] = (1.0 if i == j else 0.0) - work.flow[i, j]
-        if not solve_linear(work.square, work.step, size):
-            return False
-        for i in range(n):
-            work.moved[0, i] = work.step[i]
-            work.moved[1, i] = work.step[n + i] / st.rate
-        scale = energy(st, work.middle)
-        move = energy(st, work.moved)
+        move = newton_step(st, beta, mu_beta, c, s, codes, first, count, halves, work, scratch)
         if not move < math.inf:
             return False
+        scale = energy(st, work.middle)
         if move <= tolerance * scale and move >= 0.5 * last:
             return True  # as good as rounding allows
         if move > 0.25 * last and tolerance * scale < move < _NEAR_END * scale:

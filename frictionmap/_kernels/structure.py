@@ -36,6 +36,9 @@ from .phases import series_terms
 W, DAMPING, CHI, LIFT, LOAD, LOAD_RATE = 0, 1, 2, 3, 4, 5
 MODE_ROWS = 6
 
+#: Load periods beyond which `held_period` does not look for a repetition.
+_LONGEST_REPEAT = 256
+
 
 class Structure(NamedTuple):
     """Everything here depends on (system, r, steps) only."""
@@ -226,6 +229,27 @@ def vibrates_in_step(st):
     for k in range(st.m):
         found = found or _in_step(st.held, k, st.h)
     return found
+
+
+@kernel
+def held_period(st):
+    """Load periods after which the load and all the held oscillators repeat; infinite if they do not.
+
+    Then a load that has not let go of the contact within them never will, though `largest_load_to_come`,
+    which adds up the oscillators as if they met sooner or later, cannot tell.
+    """
+    for k in range(st.m):
+        if st.held[D, k] != 0.0 or math.isinf(_steady(st.held, k, st.h)[0]):
+            return math.inf
+    for periods in range(1, _LONGEST_REPEAT + 1):
+        repeats = True
+        for k in range(st.m):
+            turns = periods * math.sqrt(st.held[K, k]) / st.h
+            # what it differs from a whole number by no more than the rounding of either frequency
+            repeats = repeats and abs(turns - math.floor(turns + 0.5)) <= 1e-15 * turns
+        if repeats:
+            return float(periods)
+    return math.inf
 
 
 @kernel

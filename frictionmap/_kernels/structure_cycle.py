@@ -7,29 +7,53 @@ the structure remembers, so anchors are compared, and solved for, with the whole
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from ..regimes import (
     CONTINUOUS,
     INTEGRATED,
     MARGINAL,
     NOT_COMPUTED,
-    NOT_REACHED,
     RESOLVED,
     SOLVED,
     TOO_MANY_EVENTS,
 )
 from .continuous import continuous_amplitude, orbit_phase
-from .cycle import averaged_cell, periodic_cell, plain_cell, settled, stuck_cell, unresolved
+from .cycle import (
+    AVERAGED,
+    LONGEST_PERIOD,
+    averaged_cell,
+    certain_stops,
+    periodic_cell,
+    plain_cell,
+    settled,
+    stuck_cell,
+    unresolved,
+)
 from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
 from .follow import MOVING, NO_RELEASE, after_slide, slide_on
 from .jit import kernel
-from .orbits import longest_slide
+from .orbits import full_period, half_periods, longest_slide
 from .oscillators import FELL
-from .returns import copy_state, return_map, solve_return, spectral_radius
+from .returns import (
+    HALVES,
+    PHASE_COS,
+    PHASE_SIN,
+    SIDE,
+    copy_state,
+    newton_step,
+    order_of_events,
+    return_map,
+    solve_return,
+    spectral_radius,
+)
 from .structure import W, energy, place, release_steady, vibrates_in_step
 from .structure_orbit import orbit_state, stop_free_radius
 
-#: Anchors remembered; a steady period with more is not recognised.  One a column; the rows of the memory:
-MEMORY = 512
+#: Anchors remembered, at least and at most: a steady period with more is not recognised.  One a column; the
+#: rows of the memory:
+_MEMORY = 512
+_LONGEST_MEMORY = 2**16
 CODE, COS, SIN, TIME, SIGN, STATE = 0, 1, 2, 3, 4, 5
 
 #: A stop shorter than this (in tau) is a touch of no duration, seen through rounding.
@@ -50,14 +74,14 @@ _NEAR_PHASE = 0.3
 #: An orbit with a slide longer than this (in tau) is not solved for, but waited for.
 _LONGEST_SLIDE = 8.0 * math.pi
 
+#: Orders of events that are tried on the way from a neighbour's orbit.
+_MOST_ORDERS = 8
+
 #: With several steady states: how much further off than expected the one solved for may be.
 _HEADING = 4.0
 
 #: Half periods of ever larger motion after which an undamped resonance counts as unbounded.
 _GROWING = 64
-
-#: Excitation periods over which a motion that does not repeat is averaged.
-_AVERAGED = 100.0
 
 #: Anchors this close are one.
 _SAME = 1e-8
@@ -74,9 +98,10 @@ class Friction(NamedTuple):
 
 
 @kernel
-def memory_rows(n):
-    """Rows of the memory for n free modes."""
-    return STATE + 2 * n
+def fitting_memory(st, memory):
+    """The memory, or a longer one where the structure may need it: for four periods of the load."""
+    needed = int(min(max(_MEMORY, math.ceil(2.0 / st.h)), _LONGEST_MEMORY))
+    return memory if memory.shape[1] >= needed else np.empty((STATE + 2 * st.n, needed))
 
 
 @kernel
@@ -105,19 +130,23 @@ def _distance(st, memory, now, then):
 @kernel
 def _near_return(st, memory, events, size, unique, shortest):
     """(lag, gap, halves): slides since the motion was nearly where it is now; lag = 0 if it was not."""
-    now = (events - 1) % MEMORY
+    now = (events - 1) % memory.shape[1]
     best, best_gap, best_halves = 0, math.inf, 0
     near = math.inf if unique else _NEAR_RETURN
     seen = 0
-    for lag in range(1, min(events, MEMORY)):
-        then = (events - 1 - lag) % MEMORY
+    for lag in range(1, min(events, memory.shape[1])):
+        then = (events - 1 - lag) % memory.shape[1]
         if memory[CODE, then] != memory[CODE, now]:
             continue
         turn = abs(memory[COS, now] - memory[COS, then]) + abs(memory[SIN, now] - memory[SIN, then])
         if turn > _NEAR_PHASE:
             continue
-        halves = int(math.floor((memory[TIME, now] - memory[TIME, then]) / math.pi + 0.5))
+        halves = half_periods(memory[TIME, now] - memory[TIME, then])
+        if halves > 2 * LONGEST_PERIOD:
+            break
         if halves < 1 or (halves % 2 == 1) != (memory[SIGN, now] != memory[SIGN, then]):
+            continue
+        if full_period(halves) > LONGEST_PERIOD:
             continue
         gap = turn + _distance(st, memory, now, then) / size
         if gap <= near:
@@ -133,19 +162,32 @@ def _near_return(st, memory, events, size, unique, shortest):
 def _solve(
     st, friction, unique, net, state, c, s, codes, first, lag, gap, halves, limits, work, scratch
 ):  # fmt: skip
-    """The periodic orbit that the motion approaches, by Newton's method: (found, cos, sin).
-
-    The unknown is the state in the middle of the slide that starts at the last anchor; `state` becomes the
-    orbit's at the end of that slide.
-    """
+    """The periodic orbit that the motion approaches: `_converge` from the middle of the next slide."""
     n = st.n
-    beta, mu_beta = friction.beta, friction.mu_beta
+    beta = friction.beta
     copy_state(state, work.middle, n)
     copy_state(state, work.moved, n)
     steps, end, _, _, _ = slide_on(st, beta, net, work.moved, c, s, _LONGEST_SLIDE / st.h, scratch)
     if end != FELL:
         return False, c, s
     _, _, c_m, s_m, _ = slide_on(st, beta, net, work.middle, c, s, 0.5 * steps, scratch)
+    return _converge(
+        st, friction, unique, state, c_m, s_m, codes, first, lag, gap, halves, limits, work, scratch
+    )
+
+
+@kernel
+def _converge(
+    st, friction, unique, state, c_m, s_m, codes, first, lag, gap, halves, limits, work, scratch
+):  # fmt: skip
+    """A periodic orbit by Newton's method: (found, cos, sin).
+
+    The unknown, work.middle, is the state in a slide at the load's phase (c_m, s_m); `state` becomes the
+    orbit's at the end of that slide.
+    """
+    n = st.n
+    beta, mu_beta = friction.beta, friction.mu_beta
+    c, s = c_m, s_m
     copy_state(work.middle, work.start, n)
     if not solve_return(
         st, beta, mu_beta, c_m, s_m, codes, first, lag, halves, limits.tolerance, work, scratch
@@ -167,7 +209,55 @@ def _solve(
             return False, c, s
     copy_state(work.middle, state, n)
     _, end, c, s, _ = slide_on(st, beta, MOVING, state, c_m, s_m, _LONGEST_SLIDE / st.h, scratch)
-    return end == FELL, c, s
+    if end != FELL:
+        return False, c, s
+    copy_state(work.middle, work.solved, n)
+    work.anchored[HALVES], work.anchored[PHASE_COS], work.anchored[PHASE_SIN] = halves, c_m, s_m
+    return True, c, s
+
+
+@kernel
+def _from_neighbour(st, orbit, i, friction, limits, work, scratch):
+    """The steady state, the only one, from an orbit near by: (found, cos, sin, sign, slides).
+
+    It is that of the last cell, if that was solved for, or the motion without stops whose velocity touches
+    zero where the strip of the open cells begins.  `_converge` from there, with the events that follow.
+    """
+    beta, mu_beta = friction.beta, friction.mu_beta
+    halves, c, s = int(work.anchored[HALVES]), work.anchored[PHASE_COS], work.anchored[PHASE_SIN]
+    sign = work.anchored[SIDE]
+    if halves > 0:
+        copy_state(work.solved, work.middle, st.n)
+    else:
+        v_abs, u = orbit.v_abs[i], orbit.u[i]
+        if math.isinf(v_abs) or not beta * abs(u) < v_abs:
+            return False, 1.0, 0.0, 1.0, 0
+        phase = orbit_phase(v_abs, orbit.v_arg[i], u, beta)
+        # in the middle of the rising half
+        halves, c, s, sign = 1, math.sin(phase), -math.cos(phase), 1.0
+        orbit_state(st, orbit, i, beta, phase, c, s, work.middle)
+    work.anchored[HALVES] = 0.0
+    zero = np.int64(0)
+    for _ in range(_MOST_ORDERS):
+        copy_state(work.middle, work.moved, st.n)
+        count = order_of_events(st, beta, mu_beta, work.moved, c, s, halves, work.codes, work, scratch)
+        if count == 0:
+            break
+        copy_state(work.middle, work.near, st.n)
+        found, c1, s1 = _converge(
+            st, friction, True, work.anchor, c, s, work.codes, zero, count, 0.0, halves, limits, work, scratch
+        )
+        if found:
+            return True, c1, s1, sign, count
+        # the order changes on the way: a step with this one, then on with what follows there
+        copy_state(work.near, work.middle, st.n)
+        move = newton_step(st, beta, mu_beta, c, s, work.codes, zero, count, halves, work, scratch)
+        if not move < math.inf:
+            break
+        for j in range(st.n):
+            work.middle[0, j] += work.moved[0, j]
+            work.middle[1, j] += work.moved[1, j]
+    return False, c, s, sign, 0
 
 
 @kernel
@@ -201,7 +291,7 @@ def measure(st, friction, net, state, c, s, code, count, work, scratch):
                 work.middle[1, i] = work.moved[1, i] - state[1, i]
             if energy(st, work.middle) <= _SAME * energy(st, state):
                 break
-    halves = int(math.floor(time / math.pi + 0.5))
+    halves = half_periods(time)
     return slides, halves, stops, amplitude, stuck / time
 
 
@@ -211,6 +301,7 @@ def _orbit_cell(st, friction, net, state, c, s, sign, code, count, origin, cycle
     slides, halves, stops, amplitude, stuck = measure(
         st, friction, net, state, c, s, code, count, work, scratch
     )
+    stops = certain_stops(stops, slides, halves, friction.beta, friction.mu_beta, friction.b_lim)
     return periodic_cell(halves, stops, amplitude, stuck, origin, cycles, math.nan, c, s, sign, slides, net)
 
 
@@ -226,7 +317,7 @@ def steady_structure(
     fine : a Structure with steps at least as short, for bounds over a whole orbit
     orbit, i, marginal : response functions, the frequency's place in them, whether r = w_k/(2 k) there
     friction : Friction; beta > 0
-    unique : mu = 1
+    unique : mu = 1; then the orbit solved for last, if any (work.anchored), is tried as a start
     moves : whether it starts with z' > 0; otherwise z' = 0
     state : (2, n) start; replaced by an anchor of the steady state
     limits, stop : as in `cycle.steady_cell`
@@ -256,15 +347,19 @@ def steady_structure(
     next_try = 2
     slides = 0
     solved = False
+    c1, s1, sign1 = c, s, 1.0
     code = REVERSE
     net = MOVING
     old_lag, old_gap = 0, math.inf
-    window = _TURN * min(_AVERAGED, 0.5 * limits.cycles)
+    window = _TURN * min(AVERAGED, 0.5 * limits.cycles)
     window_end = window
+    old_opened = opened = 0.0  # when these began
     stops, stuck, largest = 0, 0.0, 0.0
     old_stops, old_stuck, old_largest = 0, 0.0, 0.0
 
-    while time < end_time:
+    if unique and limits.newton and not (in_step or (marginal and beta < friction.b_lim)):
+        solved, c1, s1, sign1, slides = _from_neighbour(st, orbit, i, friction, limits, work, scratch)
+    while not solved and time < end_time:
         if stop[0] != 0:
             return unresolved(NOT_COMPUTED, time / _TURN)
         if moves or events > 0:
@@ -289,6 +384,7 @@ def steady_structure(
         stopped = code == STOP_THEN_BACK or code == STOP_THEN_ON
         if time >= window_end:
             window_end += window
+            old_opened, opened = opened, time
             old_stops, old_stuck, old_largest = stops, stuck, largest
             stops, stuck, largest = 0, 0.0, 0.0
         largest = max(largest, size)
@@ -304,7 +400,7 @@ def steady_structure(
             growing = growing + 1 if size > peak else 0
             if resonance and growing >= _GROWING and beta < friction.b_lim:
                 return plain_cell(CONTINUOUS, RESOLVED, INTEGRATED, 0.0, math.inf, 0.0, 1, time / _TURN)
-        _remember(st, memory, (events - 1) % MEMORY, code, c, s, time, sign, state)
+        _remember(st, memory, (events - 1) % memory.shape[1], code, c, s, time, sign, state)
         if around and not stopped and (running > 1 or events == 1):
             orbit_state(st, orbit, i, beta, phase, c, s, work.moved)
             for j in range(n):
@@ -347,12 +443,6 @@ def steady_structure(
                     work, scratch,
                 )  # fmt: skip
             if solved:
-                # the anchor that follows the solved slide
-                copy_state(work.anchor, state, n)
-                code, c, s, net, _, _, _ = after_slide(
-                    st, beta, mu_beta, state, work.held, c1, s1, end_time, scratch
-                )
-                sign = -sign1 if code == REVERSE or code == STOP_THEN_BACK else sign1
                 slides = count
                 break
             tries += 1
@@ -367,6 +457,12 @@ def steady_structure(
         old_lag = lag
         old_gap = gap
 
+    if solved:
+        # the anchor that follows the solved slide
+        copy_state(work.anchor, state, n)
+        code, c, s, net, _, _, _ = after_slide(st, beta, mu_beta, state, work.held, c1, s1, end_time, scratch)
+        work.anchored[SIDE] = sign1
+        sign = -sign1 if code == REVERSE or code == STOP_THEN_BACK else sign1
     if slides > 0:
         return _orbit_cell(
             st, friction, net, state, c, s, sign, code, slides, SOLVED if solved else INTEGRATED,
@@ -374,6 +470,6 @@ def steady_structure(
         )  # fmt: skip
     if in_step or (marginal and beta < friction.b_lim):
         return unresolved(MARGINAL, time / _TURN)
-    if old_stops == 0 or (running > 0 and stops == 0):
-        return unresolved(NOT_REACHED, time / _TURN)
-    return averaged_cell(window, old_stops, old_largest, old_stuck, time / _TURN)
+    return averaged_cell(
+        old_opened, time, end_time, old_stops + stops, max(old_largest, largest), old_stuck + stuck
+    )

@@ -10,9 +10,9 @@ from .continuous import orbit_phase
 from .floquet import asymmetry, continuous_multiplier, orbit_multiplier
 from .jit import kernel
 from .oscillators import make_scratch
-from .returns import make_workspace
+from .returns import HALVES, make_workspace
 from .structure import make_structure
-from .structure_cycle import MEMORY, Friction, memory_rows, steady_structure
+from .structure_cycle import Friction, fitting_memory, steady_structure
 from .structure_history import (
     continuous_phase,
     largest_displacements,
@@ -173,7 +173,7 @@ def fill_structures(
     anchors : (last - first, ANCHOR + 2n), the steady state of each for `fill_details`; or (0, 0)
     """
     n = model.modes.shape[1]
-    memory = np.empty((memory_rows(n), MEMORY))
+    memory = np.empty((0, 0))
     work = make_workspace(n)
     scratch = make_scratch(n)
     state = np.empty((2, n))
@@ -188,7 +188,9 @@ def fill_structures(
         begin = ends[k - 1] if k > 0 else 0
         st = make_structure(model, loads, i, r[i], steps)
         fine = make_structure(model, loads, i, r[i], max(steps, FINE_STEPS))
+        memory = fitting_memory(st, memory)
         until = min(last, ends[k])
+        work.anchored[HALVES] = 0.0  # the last row's orbits are no neighbours
         while cell < until:
             if stop[0] != 0:
                 return
@@ -218,7 +220,7 @@ def one_structure(
     found = steady_structure(
         st, fine, orbit, 0, marginal, Friction(beta, mu * beta, lim), mu == 1.0, starts.moving, state,
         c, s, limits, np.zeros(1, dtype=np.uint8),
-        np.empty((memory_rows(n), MEMORY)), make_workspace(n), make_scratch(n),
+        fitting_memory(st, np.empty((0, 0))), make_workspace(n), make_scratch(n),
     )  # fmt: skip
     for j in range(n):
         state[1, j] *= st.rate

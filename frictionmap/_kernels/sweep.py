@@ -8,11 +8,13 @@ import numpy as np
 from ..regimes import CLOSED_FORM, RESOLVED
 from .continuous import Oscillator
 from .cycle import (
-    HISTORY,
+    COUNT,
     HISTORY_ROWS,
+    NEIGHBOUR,
     continuous_cell,
+    history_length,
     quasi_static_cell,
-    steady_cell,
+    solve_cell,
     stuck_cell,
 )
 from .jit import kernel
@@ -155,7 +157,8 @@ def fill_integrated(
     lim, stick : (n_mu, n_r) b_lim over the load amplitude, and beta_stick
     steps : scan steps per period of the fastest part of the motion
     """
-    history = np.empty((HISTORY_ROWS, HISTORY))
+    history = np.empty((HISTORY_ROWS, 0))
+    neighbour = np.zeros(NEIGHBOUR)
     work = np.empty(MAX_TERMS)
     n_r = frequencies.r.size
     k = np.searchsorted(ends, first, side="right")
@@ -170,14 +173,17 @@ def fill_integrated(
         fine = step_constants(oscillator.r, zeta, max(steps, FINE_STEPS))
         z, v, c, s = start_state(oscillator, frequencies.phase[i], moving)
         load = frequencies.load[i]
+        if history.shape[1] < history_length(oscillator.r):
+            history = np.empty((HISTORY_ROWS, history_length(oscillator.r)))
         until = min(last, ends[k])
+        neighbour[COUNT] = 0.0  # the last row's orbits are no neighbours
         while cell < until:
             if stop[0] != 0:
                 return
             j = low[row] + cell - begin
             b, mu_b = normalised_friction(beta[j], load, mu[m], stick[m, i])
-            found = steady_cell(
-                step, fine, oscillator, b, mu_b, lim[m, i], z, v, c, s, limits, stop, history, work
+            found = solve_cell(
+                step, fine, oscillator, b, mu_b, lim[m, i], z, v, c, s, limits, stop, history, neighbour, work
             )
             store(out, m, i, j, found, load)
             cell += 1
@@ -189,7 +195,9 @@ def integrate_one(beta, mu, lim, stick, load, phase, oscillator, step, fine, lim
     """The steady state of one open cell; arguments as in `fill_integrated`, for this cell."""
     z, v, c, s = start_state(oscillator, phase, moving)
     b, mu_b = normalised_friction(beta, load, mu, stick)
-    history = np.empty((HISTORY_ROWS, HISTORY))
+    history = np.empty((HISTORY_ROWS, history_length(oscillator.r)))
     work = np.empty(MAX_TERMS)
     stop = np.zeros(1, dtype=np.uint8)
-    return steady_cell(step, fine, oscillator, b, mu_b, lim, z, v, c, s, limits, stop, history, work)
+    return solve_cell(
+        step, fine, oscillator, b, mu_b, lim, z, v, c, s, limits, stop, history, np.zeros(NEIGHBOUR), work
+    )

@@ -51,6 +51,16 @@ def test_closed_form_of_one_mass(r):
     assert ds.multiplier.item() == pytest.approx(abs(ratio), rel=1e-9)
 
 
+def set_moving(system, r, beta, mu):
+    """(n, structure, its moving start with cos and sin of the load's phase, workspace, scratch)."""
+    found = StructureCells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver()).found
+    n = found.seen.size
+    st = make_structure(found.model, found.loads, 0, r, 24.0)
+    moving = found.moving
+    state = np.array([moving.place[0], moving.velocity[0] / st.rate])
+    return n, st, state, moving.cos[0], moving.sin[0], make_workspace(n), make_scratch(n)
+
+
 def test_determinant_is_the_product_of_acceleration_ratios():
     """Volume in the space of states shrinks at turns, by (load - beta)/(load + beta), and by damping only.
 
@@ -63,13 +73,7 @@ def test_determinant_is_the_product_of_acceleration_ratios():
         system, _ = random_chain(rng, zeta)
         r, mu = float(rng.uniform(0.3, 2.0)), float(rng.choice([1.0, 1.5]))
         beta = float(rng.uniform(0.02, 0.7)) * fm.boundaries(system, [r]).beta_stick.item()
-        cells = StructureCells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver())
-        found = cells.found
-        n = found.seen.size
-        st = make_structure(found.model, found.loads, 0, r, 24.0)
-        scratch, work = make_scratch(n), make_workspace(n)
-        state = np.array([found.moving.place[0], found.moving.velocity[0] / st.rate])
-        c, s = found.moving.cos[0], found.moving.sin[0]
+        n, st, state, c, s, work, scratch = set_moving(system, r, beta, mu)
         ratio, codes = 1.0, follow_codes(st, beta, mu * beta, state, c, s, 4, work, scratch)
         moved, net, at, time = state.copy(), MOVING, (c, s), 0.0
         for k in range(4):
@@ -100,13 +104,7 @@ def test_derivative_of_the_return_map():
         system, _ = random_chain(rng, float(rng.choice([0.01, 0.2, 1.0, 1.6])))
         r, mu = float(rng.uniform(0.4, 1.8)), float(rng.choice([1.0, 1.3, 2.0]))
         beta = float(rng.uniform(0.1, 0.6)) * fm.boundaries(system, [r]).beta_stick.item()
-        cells = StructureCells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver())
-        found = cells.found
-        n = found.seen.size
-        st = make_structure(found.model, found.loads, 0, r, 24.0)
-        scratch, work = make_scratch(n), make_workspace(n)
-        state = np.array([found.moving.place[0], found.moving.velocity[0] / st.rate])
-        c, s = found.moving.cos[0], found.moving.sin[0]
+        n, st, state, c, s, work, scratch = set_moving(system, r, beta, mu)
         # some slides on, to the middle of one
         net, seen = MOVING, []
         for _ in range(6):

@@ -14,7 +14,7 @@ from ..regimes import CONTINUOUS, NOT_COMPUTED, PERMANENT_STICKING, STICK_SLIP
 from .continuous import orbit_phase
 from .jit import kernel
 from .oscillators import make_scratch
-from .returns import copy_state, make_workspace
+from .returns import HALVES, copy_state, make_workspace
 from .structure import make_structure
 from .structure_cycle import Friction, fitting_memory, steady_structure
 from .structure_orbit import orbit_state
@@ -85,6 +85,7 @@ def fill_reachable(
         st = make_structure(model, loads, i, r[i], steps)
         fine = make_structure(model, loads, i, r[i], max(steps, FINE_STEPS))
         memory = fitting_memory(st, memory)
+        work.anchored[HALVES] = 0.0  # the last row's orbits are no neighbours
         best, c_best, s_best = 0.0, 0.0, 0.0
         # 0: rest, 1: moving, 2: upwards from the neighbour below, 3: downwards from the one above
         for start in range(1 if unique else 4):

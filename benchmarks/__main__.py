@@ -2,36 +2,59 @@
 
 import argparse
 import os
+import time
+from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 
 # one thread each, before any library is loaded
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
+#: Sub-command: the module with its `run`, imported only when it is asked for.
+BENCHMARKS = {
+    "accuracy": "accuracy",
+    "peers": "against",
+    "scaling": "scaling",
+    "startup": "startup",
+    "stress": "stress",
+    "steady": "steady",
+    "structures": "structures",
+    "bound": "bound",
+}
+RESULTS = Path(__file__).parent / "results"
+
+
+def _run(name: str, quick: bool, results: Path) -> float:
+    """Run one benchmark; the seconds it took, imports and compilation included."""
+    print(f"\n{name}", flush=True)
+    began = time.perf_counter()
+    run: Callable[[bool, Path], dict] = import_module(f".{BENCHMARKS[name]}", __package__).run
+    run(quick, results)
+    return time.perf_counter() - began
+
 
 def main() -> None:
     """Parse and run."""
-    from . import against, bound, phases, startup, structures
-
-    benchmarks = {
-        "peers": against.run,
-        "startup": startup.run,
-        "phases": phases.run,
-        "structures": structures.run,
-        "bound": bound.run,
-    }
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("benchmark", choices=[*benchmarks, "all"])
+    parser.add_argument("benchmark", choices=[*BENCHMARKS, "all", "readme"])
     parser.add_argument("--quick", action="store_true", help="few cells and runs: does it work?")
     parser.add_argument(
         "--results",
         type=Path,
-        default=Path(__file__).parent / "results" / "local",
-        help="folder for the results (default: benchmarks/results/local)",
+        help="folder of the results (default: benchmarks/results/local; readme: benchmarks/results)",
     )
     options = parser.parse_args()
-    for name in benchmarks if options.benchmark == "all" else [options.benchmark]:
-        benchmarks[name](options.quick, options.results)
+    if options.benchmark == "readme":  # quotes what is there
+        from .readme import rewrite
+
+        rewrite(options.results or RESULTS)
+        return
+    names = list(BENCHMARKS) if options.benchmark == "all" else [options.benchmark]
+    seconds = {name: _run(name, options.quick, options.results or RESULTS / "local") for name in names}
+    print()
+    for name, taken in seconds.items():
+        print(f"{name:10} took {taken:6.1f} s")
 
 
 if __name__ == "__main__":

@@ -1,36 +1,72 @@
-"""The same cells by every solver, alternating, one thread each, answers checked while timed.
+"""One mass by every solver: the same cells, alternating, one thread each, answers checked while timed.
 
-The peers integrate 200 excitation periods, the thesis's number; ours ends when the steady state is found.
-Compilation and imports are not counted (see `startup`).  The map of T Fig. 3.12 by a peer is extrapolated
-from a random sample of its cells, stuck ones included.
+Cells.  Random moving cells of the open strip of T Fig. 3.12.  The peers integrate 200 excitation periods, the
+thesis's number; ours ends when the steady state is found, and makes all constants of a cell anew.  A round
+runs all cells by the peer and all by ours; what is given is the median of the rounds' means, and the answers
+compared are those of the timed calls.  Compilation and imports are done before (see `startup`).
+
+Map.  The whole of T Fig. 3.12 by a peer is extrapolated from a random sample of its cells, stuck ones
+included; ours is run whole.
+
+Solved and marched.  Our own kernels with Newton's method on the return map, and without it (`steady =
+"marched"`), for open cells and for continuous ones next to a resonance, which the default would not integrate
+at all.  One mass, and the chain of T Fig. 6.17.
+
+Settings of the peers.  heyoka runs at what its documentation recommends for speed and what was found fastest
+here (`peers.HeyokaPeer` has the list): one compiled program for all cells with their numbers as parameters,
+fast_math, machine precision, terminal events, propagate_until.  Its batch mode advances several cells in one
+SIMD program; it is a peer of its own here (`batch_peer`), with the logic of stops on whole arrays.  Its
+ensemble mode copies the integrator for each propagation and spreads them over processors: all comparisons
+here are on one, and a propagation ends with each slide.  Five masses against the peers: `structures`.
 """
 
 import math
 import statistics
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from time import perf_counter
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from numba import njit
 
 import frictionmap as fm
+from frictionmap import regimes
 from frictionmap._kernels.continuous import Oscillator
-from frictionmap._kernels.cycle import HISTORY, HISTORY_ROWS, Limits, steady_cell
+from frictionmap._kernels.cycle import HISTORY, HISTORY_ROWS, NEIGHBOUR, Limits, steady_cell
 from frictionmap._kernels.phases import MAX_TERMS, step_constants
-from frictionmap._kernels.sweep import FINE_STEPS, normalised_friction
+from frictionmap._kernels.sweep import FINE_STEPS, Outputs, normalised_friction
+from frictionmap.cells import make_cells
 from frictionmap.curves import one_mass_curves
+from frictionmap.maps import _allocate
+from frictionmap.settings import Solver
 
-from .peers import PEERS, Cell, HeyokaPeer
-from .record import save, spread, timed
+from .batch_peer import FEW_LANES, HeyokaBatchPeer
+from .figures import new_figure, save_figure
+from .peers import PEERS, Cell, HeyokaPeer, Outcome, Peer
+from .quoting import two_digits
+from .record import pinned, save, spread, table, timed
+from .structures import SMALL_Z, equal_chain
 
 CYCLES = 200
 R = np.arange(126) * 2 / 100
 BETA = np.arange(401) / 100
+
+#: Cells and rounds of each peer, in full and in quick.
+COUNTS = {
+    "solve_ivp RK45": ((20, 3), (2, 1)),
+    "heyoka": ((200, 7), (20, 2)),
+    "heyoka, batch": ((1000, 3), (256, 1)),
+}
 
 
 @njit
 def solve_cells(load, phase, oscillators, lim, stick, beta, mu, limits):
     """Stops and amplitude of single cells, each with all its constants computed anew."""
     history = np.empty((HISTORY_ROWS, HISTORY))
+    neighbour = np.zeros(NEIGHBOUR)
     work = np.empty(MAX_TERMS)
     stop = np.zeros(1, dtype=np.uint8)
     out = np.empty((beta.size, 2))
@@ -42,7 +78,7 @@ def solve_cells(load, phase, oscillators, lim, stick, beta, mu, limits):
         b, mu_b = normalised_friction(beta[k], load[k], mu[k], stick[k])
         cell = steady_cell(
             step, fine, oscillator, b, mu_b, lim[k], 0.0, 0.0, math.cos(phase[k]), math.sin(phase[k]),
-            limits, stop, history, work,
+            limits, stop, history, neighbour, work,
         )  # fmt: skip
         out[k, 0] = cell.stops
         out[k, 1] = cell.amplitude * load[k]
@@ -76,7 +112,7 @@ def sample_cells(count: int, moving: bool, rng: np.random.Generator, mu: float =
     return found
 
 
-def _compare(ours: np.ndarray, theirs: list, cells: list[Cell]) -> dict:
+def _compare(ours: np.ndarray, theirs: list[Outcome], cells: list[Cell]) -> dict:
     """How the answers differ: cells with other stop counts, and the median error of the amplitude."""
     other = [
         cell._asdict()
@@ -89,74 +125,362 @@ def _compare(ours: np.ndarray, theirs: list, cells: list[Cell]) -> dict:
         if 0.0 < z < math.inf and math.isfinite(their_z)
     ]
     return {
-        "cells with other stop counts": other,
+        "cells with other stop counts": len(other),
+        "which": other,
         "median relative difference of Z": statistics.median(errors) if errors else None,
     }
 
 
-def run(quick: bool, results: Path) -> dict:
-    """Measure, print and save."""
-    rng = np.random.default_rng(312)
-    content: dict = {"cycles of the peers": CYCLES, "cells": {}, "map": {}}
-    counts = {"solve_ivp": 2 if quick else 30, "heyoka": 20 if quick else 200}
-    system = fm.System(contact="joined-base-wall")
-    fm.sweep(system, R[10:12], BETA[5:40], 1.0, threads=1)  # compile
-    for peer_class in PEERS:
+# ---------------------------------------------------------------- cells
+
+
+def _by_peer(peer: Peer | HeyokaBatchPeer, cells: list[Cell]) -> list[Outcome]:
+    """All cells by a peer: at once if it can, one by one if not."""
+    if isinstance(peer, HeyokaBatchPeer):
+        return peer.run_all(cells, CYCLES)
+    return [peer.run(*cell[:4], cell.zeta, cycles=CYCLES) for cell in cells]
+
+
+def against(make: Callable[[], Peer | HeyokaBatchPeer], cells: list[Cell], rounds: int) -> dict:
+    """One peer on some cells, alternating with ours."""
+    began = perf_counter()
+    peer = make()
+    set_up = perf_counter() - began
+    arguments = prepare(cells)
+    solve_cells(*prepare(cells[:1]))  # compiles
+    _by_peer(peer, cells[:1])
+    seconds_theirs, seconds_ours, theirs, ours = [], [], [], np.empty((0, 2))
+    for _ in range(rounds):
+        taken, theirs = timed(lambda: _by_peer(peer, cells))
+        seconds_theirs.append(taken / len(cells))
+        for _ in range(3):
+            taken, ours = timed(lambda: solve_cells(*arguments))
+            seconds_ours.append(taken / len(cells))
+    return {
+        "version": peer.version,
+        "set-up seconds": set_up,
+        "cells": len(cells),
+        "seconds a cell": spread(seconds_theirs),
+        "our seconds a cell": spread(seconds_ours),
+        "ratio": statistics.median(seconds_theirs) / statistics.median(seconds_ours),
+        "differences": _compare(ours, theirs, cells),
+    }
+
+
+class _Clocked:
+    """heyoka's integrator with a clock on `propagate_until`."""
+
+    def __init__(self, integrator: Any) -> None:
+        self.integrator = integrator
+        self.seconds = 0.0
+
+    @property
+    def time(self) -> float:
+        """The integrator's."""
+        return self.integrator.time
+
+    @time.setter
+    def time(self, value: float) -> None:
+        self.integrator.time = value
+
+    def propagate_until(self, end: float) -> None:
+        """The integrator's, timed."""
+        began = perf_counter()
+        self.integrator.propagate_until(end)
+        self.seconds += perf_counter() - began
+
+
+def share_in_integrator(cells: list[Cell]) -> float:
+    """Share of heyoka's time inside its integrator; the rest is the logic of stops around it, in Python."""
+    peer = HeyokaPeer()
+    total = timed(lambda: _by_peer(peer, cells))[0]
+    peer.integrator = clocked = _Clocked(peer.integrator)
+    _by_peer(peer, cells)
+    return clocked.seconds / total
+
+
+def single_cells(quick: bool, rng: np.random.Generator) -> dict:
+    """Measure and print moving cells by every peer."""
+    content: dict = {}
+    rows = []
+    for peer_class in (*PEERS, HeyokaBatchPeer):
         why = peer_class.why_missing()
         if why:
             print(f"{peer_class.name}: skipped, {why}")
-            content["cells"][peer_class.name] = {"skipped": why}
+            content[peer_class.name] = {"skipped": why}
             continue
-        set_up, peer = timed(peer_class)
-        cells = sample_cells(counts.get(peer_class.name, 20), True, rng)
-        arguments = prepare(cells)
-        solve_cells(*prepare(cells[:1]))  # compile
-        seconds_theirs, seconds_ours, theirs, ours = [], [], [], None
-        for cell in cells:  # alternating: both see the same machine
-            taken, outcome = timed(lambda c=cell, p=peer: p.run(*c[:4], c.zeta, cycles=CYCLES))
-            seconds_theirs.append(taken)
-            theirs.append(outcome)
-            taken, ours = timed(lambda a=arguments: solve_cells(*a))
-            seconds_ours.append(taken / len(cells))
-        ratio = statistics.mean(seconds_theirs) / statistics.median(seconds_ours)
-        content["cells"][peer_class.name] = {
-            "version": peer.version,
-            "set-up seconds": set_up,
-            "cells": len(cells),
-            "seconds a cell": spread(seconds_theirs) | {"mean": statistics.mean(seconds_theirs)},
-            "our seconds a cell": spread(seconds_ours),
-            "ratio of means": ratio,
-            "differences": _compare(ours, theirs, cells),
-        }
-        print(
-            f"{peer_class.name}: {statistics.mean(seconds_theirs):.3g} s a moving cell, ours "
-            f"{statistics.median(seconds_ours):.3g} s: {ratio:,.0f} times"
-        )
-    content["map"] = whole_map(system, quick, rng)
-    save("peers", content, results)
+        count, rounds = COUNTS[peer_class.name][quick]
+        few = quick and peer_class is HeyokaBatchPeer
+        make = partial(HeyokaBatchPeer, FEW_LANES) if few else peer_class
+        found = against(make, sample_cells(count, True, rng), rounds)
+        if peer_class is HeyokaPeer:
+            found["share of the time in the integrator"] = share_in_integrator(sample_cells(count, True, rng))
+        content[peer_class.name] = found
+        differences = found["differences"]
+        rows.append(
+            (
+                f"{peer_class.name} {found['version']}", count, 1e6 * found["seconds a cell"]["median"],
+                1e6 * found["our seconds a cell"]["median"], f"{found['ratio']:,.0f}",
+                differences["cells with other stop counts"], differences["median relative difference of Z"],
+            )
+        )  # fmt: skip
+    table(("moving cells of Fig. 3.12", "cells", "us", "ours, us", "ratio", "other stops", "Z off by"), rows)
     return content
 
 
-def whole_map(system: fm.System, quick: bool, rng: np.random.Generator) -> dict:
+# ---------------------------------------------------------------- map
+
+
+def whole_map(quick: bool, rng: np.random.Generator) -> dict:
     """The published map, mu = 1 and 1.5, against heyoka extrapolated from random cells of it."""
-    found = {}
+    system = fm.System(contact="joined-base-wall")
+    found: dict = {}
+    why = HeyokaPeer.why_missing()
+    peer = None if why else HeyokaPeer()
     for mu in (1.0, 1.5):
-        seconds = [
-            timed(lambda m=mu: fm.sweep(system, R, BETA, m, threads=1))[0] for _ in range(3 if quick else 15)
-        ]
-        entry = {"cells": R.size * BETA.size, "seconds": spread(seconds)}
-        if not HeyokaPeer.why_missing():
-            peer = HeyokaPeer()
-            cells = sample_cells(20 if quick else 200, False, rng, mu)
-            theirs = [timed(lambda c=c, p=peer: p.run(*c[:4], c.zeta, cycles=CYCLES))[0] for c in cells]
-            total = statistics.mean(theirs) * R.size * BETA.size
-            entry |= {
-                "heyoka, extrapolated from random cells": {"cells": len(cells), "seconds": total},
-                "ratio": total / statistics.median(seconds),
+        fm.sweep(system, R[10:12], BETA[5:40], mu, threads=1)  # compiles
+        cells = sample_cells(20 if quick else 200, False, rng, mu)
+        ours: list[float] = []
+        theirs = np.zeros(len(cells))
+        for k, cell in enumerate(cells):  # alternating: a run of ours after every tenth cell of theirs
+            if peer is not None:
+                theirs[k] = timed(lambda c=cell, p=peer: p.run(*c[:4], c.zeta, cycles=CYCLES))[0]
+            if k % 10 == 0:
+                ours.append(timed(lambda m=mu: fm.sweep(system, R, BETA, m, threads=1))[0])
+        entry: dict = {"cells": R.size * BETA.size, "seconds": spread(ours)}
+        if peer is None:
+            entry["heyoka"] = {"skipped": why}
+        else:
+            total = float(theirs.mean()) * entry["cells"]
+            entry["heyoka, extrapolated from random cells"] = {
+                "cells": len(cells),
+                "seconds": total,
+                "standard error of the sample": float(theirs.std(ddof=1) / math.sqrt(len(cells)))
+                * entry["cells"],
             }
-            print(
-                f"map of Fig. 3.12, mu = {mu:g}: {statistics.median(seconds):.3g} s; heyoka, extrapolated "
-                f"from {len(cells)} random cells, {total:.3g} s: {entry['ratio']:,.0f} times"
-            )
+            entry["ratio"] = total / statistics.median(ours)
         found[f"mu = {mu:g}"] = entry
+    if peer is None:
+        print(f"map by heyoka: skipped, {why}")
+        return found
+    table(
+        ("map of Fig. 3.12", "cells", "seconds", "heyoka, extrapolated", "from cells", "ratio"),
+        [
+            (
+                name, entry["cells"], entry["seconds"]["median"],
+                entry["heyoka, extrapolated from random cells"]["seconds"],
+                entry["heyoka, extrapolated from random cells"]["cells"], f"{entry['ratio']:,.0f}",
+            )
+            for name, entry in found.items()
+        ],
+    )  # fmt: skip
     return found
+
+
+# ---------------------------------------------------------------- solved and marched
+
+MARCHED_CYCLES = {False: 200_000, True: 2_000}  # by quick
+OPEN_CELLS = {False: 60, True: 10}
+NEARNESS = (1e-2, 1e-3, 1e-4)  # to resonance, relative
+BELOW_LIM = (0.05, 0.01)  # beta under beta_lim, relative
+LARGEST_BETA = 4.0
+LEAST_RUNS, MOST_RUNS = 3, 200
+
+OPEN, NEAR = "open cells", "continuous cells next to resonance"
+
+
+def _open_cells(system: fm.System, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Random r and beta between beta_lim and beta_stick."""
+    r = np.sort(rng.uniform(0.1, 2.5, 4 * count))
+    ends = fm.boundaries(system, r)
+    low, high = ends.beta_lim.values[0], np.minimum(ends.beta_stick.values[0], LARGEST_BETA)
+    keep = np.flatnonzero(low < high)
+    keep = np.sort(rng.choice(keep, count, replace=False))
+    return r[keep], rng.uniform(low[keep], high[keep])
+
+
+def _near_cells(system: fm.System, quick: bool) -> tuple[np.ndarray, np.ndarray]:
+    """r next to the first natural frequency on both sides, beta a little below beta_lim."""
+    nearness = NEARNESS[:1] if quick else NEARNESS
+    off = np.sort([sign * near for near in nearness for sign in (-1.0, 1.0)])
+    r = float(system.modes.w[0]) * (1.0 + off)
+    lim = fm.boundaries(system, r).beta_lim.values[0]
+    shares = 1.0 - np.array(BELOW_LIM)
+    return np.repeat(r, shares.size), (lim[:, np.newaxis] * shares).ravel()
+
+
+def cells_by_kernel(
+    system: fm.System, r: np.ndarray, beta: np.ndarray, steady: str, cycles: int
+) -> Callable[[], Outputs]:
+    """A function that solves cells (r[k], beta[k]), mu = 1, by the kernel of maps; k is out[0, k, k]."""
+    solver = Solver(
+        steady=steady,
+        cycles=cycles,
+        tolerance=1e-10,
+        outputs=("regime", "stops_per_cycle", "contact_amplitude", "cycles", "status"),
+    )
+    out = _allocate((1, r.size, r.size), system.n, solver.outputs)
+    one_a_row = np.arange(r.size)
+    cells = make_cells(system, r, beta, np.ones(1), solver)
+    function, arguments = cells.opened(
+        0, r.size, one_a_row, one_a_row + 1, one_a_row, out, np.zeros(1, dtype=np.uint8)
+    )
+
+    def solve() -> Outputs:
+        function(*arguments)
+        return out
+
+    return solve
+
+
+def _diagonal(values: np.ndarray) -> np.ndarray:
+    return values[0].diagonal()
+
+
+def solved_and_marched(
+    system: fm.System, r: np.ndarray, beta: np.ndarray, cycles: int, budget: float
+) -> dict:
+    """Both ways on the cells that both resolve in so many cycles, alternating; `budget` in seconds."""
+    resolved = np.ones(r.size, dtype=bool)
+    for steady in ("solved", "marched"):  # compiles, too
+        resolved &= _diagonal(cells_by_kernel(system, r, beta, steady, cycles)().status) == regimes.RESOLVED
+    left_out = int((~resolved).sum())
+    r, beta = r[resolved], beta[resolved]
+    ways = {steady: cells_by_kernel(system, r, beta, steady, cycles) for steady in ("solved", "marched")}
+    seconds: dict[str, list[float]] = {name: [] for name in ways}
+    answers: dict[str, Outputs] = {}
+    spent, runs = 0.0, 0
+    while runs < LEAST_RUNS or (spent < budget and runs < MOST_RUNS):
+        runs += 1
+        for name, way in ways.items():
+            taken, answers[name] = timed(way)
+            seconds[name].append(taken / r.size)
+            spent += taken
+    one, other = answers["solved"], answers["marched"]
+    z, other_z = (_diagonal(out.contact_amplitude) for out in (one, other))
+    return {
+        "cells": int(r.size),
+        "cells left out, not settled": left_out,
+        "seconds a cell, solved": spread(seconds["solved"]),
+        "seconds a cell, marched": spread(seconds["marched"]),
+        "ratio": statistics.median(seconds["marched"]) / statistics.median(seconds["solved"]),
+        "periods followed, solved": float(np.mean(_diagonal(one.cycles))),
+        "periods followed, marched": float(np.mean(_diagonal(other.cycles))),
+        "continuous cells": int((_diagonal(one.regime) == regimes.CONTINUOUS).sum()),
+        "cells with other stop counts": int(
+            (_diagonal(one.stops_per_cycle) != _diagonal(other.stops_per_cycle)).sum()
+        ),
+        "largest relative difference of Z": float(np.max(np.abs(z - other_z) / np.maximum(z, SMALL_Z))),
+    }
+
+
+def ways_to_the_steady_state(quick: bool, rng: np.random.Generator) -> dict:
+    """Measure and print solved against marched, one and five masses."""
+    cycles, budget = MARCHED_CYCLES[quick], 0.2 if quick else 2.0
+    content: dict = {"tolerance": 1e-10, "periods at most": cycles}
+    rows = []
+    for masses in (1, 5):
+        for zeta in (0.0, 0.01):
+            system = fm.System(damping_ratios=zeta) if masses == 1 else equal_chain(5, 3, 1, zeta)
+            name = f"{masses} mass{'es' if masses > 1 else ''}, zeta = {zeta:g}"
+            entry = content[name] = {
+                OPEN: solved_and_marched(
+                    system, *_open_cells(system, OPEN_CELLS[quick], rng), cycles, budget
+                ),
+                NEAR: solved_and_marched(system, *_near_cells(system, quick), cycles, budget),
+            }
+            rows += [
+                (
+                    f"{name}: {kind}", one["cells"], one["cells left out, not settled"],
+                    1e6 * one["seconds a cell, solved"]["median"],
+                    1e6 * one["seconds a cell, marched"]["median"], one["ratio"],
+                    one["periods followed, solved"], one["periods followed, marched"],
+                    one["cells with other stop counts"], one["largest relative difference of Z"],
+                )
+                for kind, one in entry.items()
+            ]  # fmt: skip
+    table(
+        (
+            "steady states", "cells", "left out", "solved, us", "marched, us", "ratio", "periods", "marched",
+            "other stops", "Z off by",
+        ),
+        rows,
+    )  # fmt: skip
+    return content
+
+
+# ---------------------------------------------------------------- picture
+
+
+def _bars(axes: Axes, rows: list[tuple[str, float, float]], labels: tuple[str, str], unit: str) -> None:
+    """Two bars a row, with how many times the first one is."""
+    names = [name for name, _, _ in rows]
+    places = np.arange(len(rows))
+    for shift, values, colour, label in (
+        (-0.2, [row[1] for row in rows], "#c8c8c8", labels[0]),
+        (0.2, [row[2] for row in rows], "#2c5aa0", labels[1]),
+    ):
+        axes.barh(places + shift, values, 0.4, color=colour, label=label)
+    for place, (_, slow, fast) in zip(places, rows, strict=True):
+        axes.text(slow, place - 0.2, f" {two_digits(slow / fast)} x", va="center", fontsize=8)
+    axes.set_xscale("log")
+    axes.set_xlim(right=30.0 * max(max(row[1:]) for row in rows))
+    axes.set_yticks(places, names, fontsize=8)
+    axes.invert_yaxis()
+    axes.set_xlabel(unit)
+    axes.grid(alpha=0.25, axis="x")
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, frameon=False)
+
+
+def draw(content: dict, path: Path) -> None:
+    """Against the peers on the left, solved against marched on the right."""
+    figure = new_figure(12.5, 4.6)
+    left, right = figure.subplots(1, 2)
+    rows = [
+        (
+            f"moving cell\n{name}",
+            1e3 * entry["seconds a cell"]["median"],
+            1e3 * entry["our seconds a cell"]["median"],
+        )
+        for name, entry in content["cells"].items()
+        if "ratio" in entry
+    ] + [
+        (
+            f"whole map, {name}\nheyoka (extrapolated)",
+            1e3 * entry["heyoka, extrapolated from random cells"]["seconds"],
+            1e3 * entry["seconds"]["median"],
+        )
+        for name, entry in content["map"].items()
+        if "ratio" in entry
+    ]
+    _bars(left, rows, ("peer", "frictionmap"), "time [ms]")
+    left.set_title("One mass, T Fig. 3.12, one thread: against general ODE solvers", fontsize=10)
+    short = {OPEN: "open cells (mostly with stops)", NEAR: "continuous, next to resonance"}
+    rows = [
+        (
+            f"{name}\n{short[kind]}",
+            1e6 * one["seconds a cell, marched"]["median"],
+            1e6 * one["seconds a cell, solved"]["median"],
+        )
+        for name, entry in content["solved and marched"].items()
+        if isinstance(entry, dict)
+        for kind, one in entry.items()
+    ]
+    _bars(right, rows, ("marched until it repeats", "with Newton's method (default)"), "time a cell [µs]")
+    right.set_title("Our own kernels: what Newton's method gains", fontsize=10)
+    save_figure(figure, path)
+
+
+def run(quick: bool, results: Path) -> dict:
+    """Measure, print, save and draw."""
+    rng = np.random.default_rng(312)
+    with pinned():
+        content = {
+            "cycles of the peers": CYCLES,
+            "cells": single_cells(quick, rng),
+            "map": whole_map(quick, rng),
+            "solved and marched": ways_to_the_steady_state(quick, rng),
+        }
+    save("peers", content, results)
+    draw(content, results / "peers.png")
+    return content

@@ -106,8 +106,10 @@ def restart(amplitude, limit, theta, z):
     return theta + wait, sign, wait
 
 
-def march(slide, amplitude, limit, state, end):
+def march(slide, amplitude, limit, state, end, begins=None):
     """Go from slide to slide up to phase `end`; return state, stops that began, and max |z|.
+
+    The phases at which they began are added to the list `begins`, if there is one.
 
     `slide(theta, z, v, sign, end)` integrates one slide and returns theta, z, v: at its end with
     v = 0, or at phase `end` with v as it is there. A sign of 0 in the state: stuck for good.
@@ -121,8 +123,11 @@ def march(slide, amplitude, limit, state, end):
         peak = max(peak, abs(z))
         if v:
             break
+        began = theta
         theta, sign, wait = restart(amplitude, limit, theta, z)
         stops += wait > 0
+        if begins is not None and wait > 0:
+            begins.append(began)
         if not sign:
             break
     else:
@@ -130,15 +135,20 @@ def march(slide, amplitude, limit, state, end):
     return State(theta, z, v, sign), stops, peak
 
 
-def from_rest(slide, amplitude, phase, limit, cycles):
-    """March `cycles` periods from z = z' = 0 at tau = 0; the outcome of the last one."""
+def from_rest(slide, amplitude, phase, limit, cycles, begins=None):
+    """March `cycles` periods from z = z' = 0 at tau = 0; the outcome of the last one.
+
+    `begins` is filled with the phases of the load at which its stops began.
+    """
     theta, sign, _ = restart(amplitude, limit, phase, 0.0)
     state = State(theta, 0.0, 0.0, sign)
     stops, peak = 0, 0.0
     for end in (phase + TWO_PI * (cycles - 1), phase + TWO_PI * cycles):
         if not state.sign:
             return STUCK
-        state, stops, peak = march(slide, amplitude, limit, state, end)
+        if begins is not None:
+            begins.clear()
+        state, stops, peak = march(slide, amplitude, limit, state, end, begins)
     return Outcome(stops, peak) if state.sign else STUCK
 
 
@@ -171,13 +181,16 @@ class Installed:
 class Peer(Installed):
     """A solver under test. A subclass integrates one slide."""
 
-    def run(self, contact, r, beta, mu=1.0, zeta=0.0, cycles=200):
-        """Integrate one cell from rest; the stops and max |z| of its last excitation period."""
+    def run(self, contact, r, beta, mu=1.0, zeta=0.0, cycles=200, begins=None):
+        """Integrate one cell from rest; the stops and max |z| of its last excitation period.
+
+        `begins`, a list, is filled with the phases of the load in the contact at which its stops began.
+        """
         amplitude, phase = load_in_contact(contact, r, zeta)
         if amplitude <= mu * beta:
             return STUCK
         self.prepare(amplitude, r, beta, zeta)
-        return from_rest(self.slide, amplitude, phase, mu * beta, cycles)
+        return from_rest(self.slide, amplitude, phase, mu * beta, cycles, begins)
 
     def prepare(self, amplitude, r, beta, zeta):
         """Take the numbers of one cell."""
@@ -204,7 +217,8 @@ class SolveIvpPeer(Peer):
     rtol = 1e-6
     atol = 1e-12
 
-    def __init__(self):
+    def __init__(self, method="RK45", rtol=rtol, atol=atol):
+        self.method, self.rtol, self.atol = method, rtol, atol
         self.solve = import_module("scipy.integrate").solve_ivp
         self.events = {1: self.slide_end(1), -1: self.slide_end(-1)}
 
@@ -240,7 +254,7 @@ class SolveIvpPeer(Peer):
     def slide(self, theta, z, v, sign, end):
         """Integrate one slide."""
         answer = self.solve(
-            self.motion(sign), (theta, end), (z, v), method="RK45",
+            self.motion(sign), (theta, end), (z, v), method=self.method,
             rtol=self.rtol, atol=self.atol, events=self.events[sign],
         )  # fmt: skip
         if answer.status < 0:

@@ -1,6 +1,7 @@
 """What is kept of a benchmark: machine, versions, medians and spread, as JSON."""
 
 import json
+import math
 import os
 import platform
 import statistics
@@ -9,6 +10,9 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
+from typing import TypeVar
+
+Result = TypeVar("Result")
 
 PACKAGES = ("numpy", "numba", "scipy", "xarray")
 
@@ -46,7 +50,7 @@ def spread(seconds: Sequence[float]) -> dict:
     }
 
 
-def timed(function: Callable[[], object]) -> tuple[float, object]:
+def timed(function: Callable[[], Result]) -> tuple[float, Result]:
     """Wall-clock seconds of one call, and what it returned."""
     began = time.perf_counter()
     result = function()
@@ -75,9 +79,19 @@ def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
         print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
 
 
+def finite(content: object) -> object:
+    """A result with None for every number that is not finite: JSON has no other word for it."""
+    if isinstance(content, dict):
+        return {key: finite(value) for key, value in content.items()}
+    if isinstance(content, list | tuple):
+        return [finite(value) for value in content]
+    return None if isinstance(content, float) and not math.isfinite(content) else content
+
+
 def save(name: str, content: dict, folder: Path) -> Path:
     """Write one result."""
+    text = json.dumps(finite({"machine": machine(), **content}), indent=2, allow_nan=False)
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.json"
-    path.write_text(json.dumps({"machine": machine(), **content}, indent=2) + "\n")
+    path.write_text(text + "\n")
     return path

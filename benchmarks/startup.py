@@ -1,4 +1,9 @@
-"""Start-up in fresh processes: --help, first run (every kernel compiled), second run."""
+"""Start-up in fresh processes: import, --help, first run (kernels compiled), second run, plot.
+
+Every round starts with an empty cache of kernels, and every line of it is a process of its own.  The map of
+T Fig. 3.12 stands for one mass.  A structure (T Fig. 7.7, two damped masses) has kernels of its own, which
+take longer to compile; the quick form leaves them out.  The file of a second run has to be that of the first.
+"""
 
 import os
 import subprocess
@@ -6,33 +11,102 @@ import sys
 import tempfile
 from pathlib import Path
 
-from .record import save, spread, timed
+import xarray as xr
 
-CONFIG = Path(__file__).resolve().parent.parent / "configs" / "fig-3-12.toml"
+from .figures import new_figure, save_figure
+from .record import pinned, save, spread, table, timed
+
+ROOT = Path(__file__).resolve().parent.parent
+ONE_MASS, STRUCTURE = (ROOT / "configs" / name for name in ("fig-3-12.toml", "fig-7-7-zeta-0.1.toml"))
+
+#: Rounds, and how many of them compile the kernels of structures too; by quick.
+ROUNDS = {False: 4, True: 1}
+STRUCTURE_ROUNDS = {False: 3, True: 0}
+
+NOTHING = "python, doing nothing"
+IMPORT, IMPORT_SWEEP, HELP = "import frictionmap", "import of frictionmap.sweep", "frictionmap --help"
+FIRST, SECOND, PLOT = "map of one mass, first run", "map of one mass, second run", "plot of the map"
+FIRST_STRUCTURE, SECOND_STRUCTURE = "map of two masses, first run", "map of two masses, second run"
 
 
-def _run(arguments: list[str], cache: str, folder: str) -> float:
-    environment = {**os.environ, "NUMBA_CACHE_DIR": cache}
-    command = [sys.executable, "-m", "frictionmap", *arguments]
+def _process(arguments: list[str], cache: str, folder: str) -> float:
+    """Seconds of one fresh Python process."""
+    search = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    environment = {**os.environ, "NUMBA_CACHE_DIR": cache, "PYTHONPATH": search}
+    command = [sys.executable, *arguments]
     seconds, _ = timed(
         lambda: subprocess.run(command, env=environment, cwd=folder, check=True, capture_output=True)
     )
     return seconds
 
 
-def run(quick: bool, results: Path) -> dict:
-    """Measure, print and save."""
-    repeats = 1 if quick else 5
-    timings: dict[str, list[float]] = {"--help": [], "first run": [], "second run": [], "plot": []}
-    for _ in range(repeats):
+def _both_runs(config: Path, cache: str, folder: str) -> tuple[float, float]:
+    """Seconds of the first and the second run of a map; what they wrote has to be the same."""
+    taken = [
+        _process(["-m", "frictionmap", "map", str(config), "-o", name, "--threads", "1"], cache, folder)
+        for name in ("first.nc", "second.nc")
+    ]
+    with (
+        xr.open_dataset(Path(folder) / "first.nc") as first,
+        xr.open_dataset(Path(folder) / "second.nc") as second,
+    ):
+        if not first.equals(second):
+            raise RuntimeError(f"{config.name}: first and second run differ")
+    return taken[0], taken[1]
+
+
+def _round(structure: bool) -> dict[str, float]:
+    """Seconds of each process, in the order of a user's first day."""
+    taken = {}
+    with tempfile.TemporaryDirectory() as cache, tempfile.TemporaryDirectory() as folder:
+        taken[NOTHING] = _process(["-c", "pass"], cache, folder)
+        taken[IMPORT] = _process(["-c", "import frictionmap"], cache, folder)
+        taken[IMPORT_SWEEP] = _process(["-c", "from frictionmap import System, sweep"], cache, folder)
+        taken[HELP] = _process(["-m", "frictionmap", "--help"], cache, folder)
+        taken[FIRST], taken[SECOND] = _both_runs(ONE_MASS, cache, folder)
+        taken[PLOT] = _process(["-m", "frictionmap", "plot", "first.nc"], cache, folder)
+    if structure:
         with tempfile.TemporaryDirectory() as cache, tempfile.TemporaryDirectory() as folder:
-            command = ["map", str(CONFIG), "-o", "map.nc", "--overwrite"]
-            timings["--help"].append(_run(["--help"], cache, folder))
-            timings["first run"].append(_run(command, cache, folder))
-            timings["second run"].append(_run(command, cache, folder))
-            timings["plot"].append(_run(["plot", "map.nc"], cache, folder))
-    content = {name: spread(seconds) for name, seconds in timings.items()}
-    for name, entry in content.items():
-        print(f"{name:10}: {entry['median']:.2f} s ({entry['least']:.2f} to {entry['most']:.2f})")
-    save("startup", {"seconds": content}, results)
+            taken[FIRST_STRUCTURE], taken[SECOND_STRUCTURE] = _both_runs(STRUCTURE, cache, folder)
+    return taken
+
+
+def draw(seconds: dict, path: Path) -> None:
+    """One bar a process."""
+    figure = new_figure(8.0, 0.45 * len(seconds) + 1.3)
+    axes = figure.subplots()
+    names = list(seconds)
+    medians = [entry["median"] for entry in seconds.values()]
+    colours = ["#d98032" if "first run" in name else "#2c5aa0" for name in names]
+    axes.barh(names, medians, color=colours)
+    for place, entry in enumerate(seconds.values()):
+        axes.plot([entry["least"], entry["most"]], [place, place], color="black", linewidth=1.0)
+        axes.text(1.1 * entry["most"], place, f"{entry['median']:.2g} s", va="center", fontsize=9)
+    axes.set_xscale("log")
+    axes.set_xlim(right=3.0 * max(entry["most"] for entry in seconds.values()))
+    axes.invert_yaxis()
+    axes.set_xlabel("time of a fresh process [s]; line: least to most")
+    axes.set_title("Only the first run compiles (orange)")
+    axes.grid(alpha=0.25, axis="x")
+    save_figure(figure, path)
+
+
+def run(quick: bool, results: Path) -> dict:
+    """Measure, print, save and draw."""
+    with pinned():  # the processes started inherit it
+        rounds = [_round(structure=k < STRUCTURE_ROUNDS[quick]) for k in range(ROUNDS[quick])]
+    seconds = {name: spread([one[name] for one in rounds if name in one]) for name in rounds[0]}
+    table(
+        ("fresh process", "seconds", "least", "most", "runs"),
+        [
+            (name, entry["median"], entry["least"], entry["most"], entry["runs"])
+            for name, entry in seconds.items()
+        ],
+    )
+    content: dict = {"seconds": seconds}
+    if quick:
+        content["skipped"] = "runs of a structure: compiling takes longer than a quick look"
+        print(f"skipped, {content['skipped']}")
+    save("startup", content, results)
+    draw(seconds, results / "startup.png")
     return content

@@ -38,7 +38,7 @@ from frictionmap.settings import Solver
 
 from .figures import new_figure, save_figure
 from .peers import Outcome
-from .record import save, spread, timed
+from .record import pinned, save, spread, timed
 from .structure_peers import PEERS, Chain, StructurePeer
 
 MASSES = (1, 2, 5, 20, 50)
@@ -419,7 +419,8 @@ def draw(content: dict, path: Path) -> None:
 
 def run(quick: bool, results: Path) -> dict:
     """Measure, print, save and draw."""
-    content = {"cost": cost(quick), "peers": peers(quick)}
+    with pinned():
+        content = {"cost": cost(quick), "peers": peers(quick)}
     save("structures", content, results)
     draw(content, results / "structures.png")
     return content

@@ -1,0 +1,273 @@
+"""The numbers in README.md: tables made from the results, between two marker comments.
+
+    python -m benchmarks all --results benchmarks/results
+    python -m benchmarks readme
+
+measures everything and writes the tables anew; a test compares them with the committed results.  A benchmark
+whose results are not there is left out.
+"""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+from .quoted_errors import accuracy_lines, steady_lines, stress_lines
+from .quoting import duration, markdown, rounded_off, two_digits
+
+README = Path(__file__).resolve().parent.parent / "README.md"
+BEGIN = "<!-- from benchmarks/results by `python -m benchmarks readme`: do not edit -->"
+END = "<!-- end of the results -->"
+
+#: The benchmarks whose results are quoted.
+QUOTED = ("peers", "structures", "accuracy", "stress", "steady", "scaling", "startup")
+
+
+def _row(what: str, ours: float, theirs: float) -> tuple[str, ...]:
+    return what, duration(ours), duration(theirs), two_digits(theirs / ours)
+
+
+# ---------------------------------------------------------------- peers
+
+
+_PEER_NAMES = {
+    "solve_ivp RK45": "scipy's `solve_ivp` (RK45 with events)",
+    "heyoka": "heyoka's Taylor integrator with events",
+    "heyoka, batch": "heyoka's batch mode",
+    "solve_ivp DOP853": "`solve_ivp` (DOP853)",
+}
+
+
+def _peer_rows(peers: dict) -> Iterator[tuple[str, ...]]:
+    for name, entry in peers["cells"].items():
+        if "ratio" in entry:
+            yield _row(
+                f"a moving cell of T Fig. 3.12, against {_PEER_NAMES.get(name, name)}",
+                entry["our seconds a cell"]["median"],
+                entry["seconds a cell"]["median"],
+            )
+    for mu, entry in peers["map"].items():
+        sample = entry.get("heyoka, extrapolated from random cells")
+        if sample:
+            yield _row(
+                f"the map of T Fig. 3.12, {mu} ({entry['cells']:,} cells), against heyoka, extrapolated "
+                f"from {sample['cells']} random cells",
+                entry["seconds"]["median"],
+                sample["seconds"],
+            )
+
+
+def _structure_rows(structures: dict) -> Iterator[tuple[str, ...]]:
+    for name, by_damping in structures["peers"].items():
+        for damping, entry in by_damping.items():
+            if isinstance(entry, dict):
+                yield _row(
+                    f"an open cell of five masses, {damping}, against {_PEER_NAMES.get(name, name)}",
+                    entry["our seconds a cell"]["median"],
+                    entry["seconds a cell"]["median"],
+                )
+
+
+def _answers(peers: dict | None, structures: dict | None) -> str:
+    """How many cells were compared, and how the answers differ."""
+    one = [e for e in peers["cells"].values() if "ratio" in e] if peers else []
+    many = [
+        e
+        for by_damping in (structures["peers"].values() if structures else ())
+        for e in by_damping.values()
+        if isinstance(e, dict)
+    ]
+    cells = sum(entry["cells"] for entry in one + many)
+    other = sum(entry["differences"]["cells with other stop counts"] for entry in one)
+    other += sum(len(entry["differences"]["cells with other stop counts"]) for entry in many)
+    text = f"Of the {cells:,} cells compared {other or 'none'} had another number of stops."
+    medians = [
+        f"{rounded_off(entry['differences']['median relative difference of Z'])} ({name})"
+        for name, entry in (peers["cells"].items() if peers else ())
+        if "ratio" in entry
+    ]
+    return f"{text} Amplitudes of one mass differ by {', '.join(medians)} in the median." if medians else text
+
+
+def _caveats(peers: dict | None, structures: dict | None) -> Iterator[str]:
+    """What the ratios above leave out."""
+    share = (peers or {"cells": {}})["cells"].get("heyoka", {}).get("share of the time in the integrator")
+    if share is not None:
+        yield (
+            f"Of heyoka's time for one mass {two_digits(100.0 * share)} % is spent in the integrator, the "
+            "rest in the logic of stops around it, in Python; the batch mode has that logic on arrays."
+        )
+    lower = [
+        entry["ratio with the curves"] / entry["ratio"]
+        for by_damping in (structures["peers"].values() if structures else ())
+        for entry in by_damping.values()
+        if isinstance(entry, dict)
+    ]
+    if lower:
+        yield (
+            "Ours is the kernel of maps: with the boundaries of each cell's own frequency counted too, which "
+            f"the cells of a map share, the ratios of five masses are {two_digits(min(lower))} to "
+            f"{two_digits(max(lower))} of those given."
+        )
+
+
+def _newton(peers: dict) -> str:
+    """What Newton's method gains, and next to a resonance."""
+    ways = [
+        (name, kind, one)
+        for name, entry in peers["solved and marched"].items()
+        if isinstance(entry, dict)
+        for kind, one in entry.items()
+    ]
+    gains = sorted((one["ratio"], name) for name, kind, one in ways if kind == "open cells")
+    near = [one["seconds a cell, solved"]["median"] for _, kind, one in ways if kind != "open cells"]
+    least, most = (f"{two_digits(ratio)} ({name})" for ratio, name in (gains[0], gains[-1]))
+    shares = [one["ratio"] for _, kind, one in ways if kind != "open cells"]
+    return (
+        f"Newton's method makes an open cell {least} to {most} times as fast as marching until the motion "
+        'repeats. A continuous cell next to a resonance, which only `skip = "none"` and mu > 1 integrate, '
+        f"takes {duration(min(near))} to {duration(max(near))}, and marching without it "
+        f"{two_digits(min(shares))} to {two_digits(max(shares))} times that."
+    )
+
+
+def _peer_lines(peers: dict | None, structures: dict | None) -> list[str]:
+    """Against general-purpose solvers."""
+    rows = list(_peer_rows(peers)) if peers else []
+    rows += _structure_rows(structures) if structures else []
+    notes = [_answers(peers, structures), *_caveats(peers, structures)]
+    notes += [_newton(peers)] if peers else []
+    return [
+        "",
+        "### Against general-purpose solvers",
+        *markdown(("one thread", "frictionmap", "peer", "times"), rows),
+        "",
+        *(f"- {note}" for note in notes),
+    ]
+
+
+# ---------------------------------------------------------------- growth
+
+
+def _scaling_rows(scaling: dict) -> Iterator[tuple[str, ...]]:
+    for mu, rows in scaling["cells"]["maps"].items():
+        done = [row for row in rows if "seconds" in row]
+        last = done[-1]
+        yield (
+            f"cells: map of T Fig. 3.12 on ever finer grids, {mu}, one thread",
+            f"{duration(done[0]['seconds']['median'])} for {done[0]['cells']:,} cells, "
+            f"{duration(last['seconds']['median'])} for {last['cells']:,} "
+            f"({duration(1e-9 * last['ns a cell'])} a cell)",
+        )
+    memory = scaling["cells"]["bytes a cell"]
+    yield "memory of the three default outputs", f"{two_digits(memory)} bytes a cell"
+    threads = scaling["threads"]["threads"]
+    most = max(threads, key=int)
+    yield f"{most} threads", f"{two_digits(threads[most]['speed-up'])} times as fast, the same bits"
+    line = scaling["open cells"]
+    closed = max(line["line: ns a closed cell"], 0.0)
+    yield (
+        "share of open cells",
+        f"{duration(1e-9 * closed)} a cell that a formula decides, "
+        f"{duration(1e-9 * line['line: ns more an open cell'])} more if it is open",
+    )
+    low = scaling["low frequency"]["zeta = 0"]
+    ends = [f"{duration(1e-6 * row['us a cell']['median'])} at r = {row['r']:g}" for row in low]
+    settled = [text for text, row in zip(ends, low, strict=True) if row["cells that do not repeat"] == 0]
+    yield "low frequency: an open cell of an undamped mass", f"{settled[0]}, {settled[-1]}"
+    odd = [
+        f"{text} ({row['cells that do not repeat']} of {row['cells']} cells do not repeat)"
+        for text, row in zip(ends, low, strict=True)
+        if row["cells that do not repeat"] > 0
+    ]
+    if odd:
+        yield "the same where motions no longer repeat within `cycles`", ", ".join(odd)
+    phases = scaling["phases"].values()
+    kernel = [entry["kernel"]["median"] for entry in phases]
+    ratio = [entry["kernel over its closed forms"] for entry in phases]
+    yield (
+        "a phase (slide or stop) of one mass",
+        f"{min(kernel):.0f} to {max(kernel):.0f} ns: {two_digits(min(ratio))} to {two_digits(max(ratio))} "
+        "times what its closed forms take without any logic",
+    )
+
+
+def _mass_rows(structures: dict) -> Iterator[tuple[str, ...]]:
+    cost = structures["cost"]
+    line = cost["ns a scan step, line over masses"]
+    special, general = cost["1, kernel for one mass"], cost["1"]
+    step = f"{two_digits(line['constant'])} + {two_digits(line['a mass'])} N ns"
+    yield "number of masses N", f"a scan step of a structure takes {step}"
+    cells = [entry["map"]["us a cell"]["median"] for entry in (special, general)]
+    yield (
+        "one mass by its own kernel, and by the code for structures",
+        f"{duration(1e-9 * special['ns a phase'])} and {duration(1e-9 * general['ns a phase'])} a phase, "
+        f"{duration(1e-6 * cells[0])} and {duration(1e-6 * cells[1])} an integrated cell",
+    )
+
+
+# ---------------------------------------------------------------- all
+
+
+def _start_rows(startup: dict) -> list[tuple[str, ...]]:
+    return [
+        (name, f"{duration(entry['median'])} ({duration(entry['least'])} to {duration(entry['most'])})")
+        for name, entry in startup["seconds"].items()
+    ]
+
+
+def _machine(found: dict[str, dict]) -> str:
+    """Where the results come from."""
+    machines = {
+        json.dumps({key: value for key, value in content["machine"].items() if key != "load"})
+        for content in found.values()
+    }
+    lines = []
+    for text in sorted(machines):
+        machine = json.loads(text)
+        versions = ", ".join(f"{name} {number}" for name, number in machine["versions"].items())
+        lines.append(
+            f"{machine['processor']}, {machine['processors']} processors, {machine['system']}, "
+            f"Python {machine['python']}, {versions}"
+        )
+    return f"Measured on: {'; '.join(lines)}."
+
+
+def block(results: Path) -> str:
+    """The part of README.md between the markers."""
+    found = {
+        name: json.loads((results / f"{name}.json").read_text(encoding="utf-8"))
+        for name in QUOTED
+        if (results / f"{name}.json").is_file()
+    }
+    peers, structures = found.get("peers"), found.get("structures")
+    lines = [_machine(found)]
+    if peers or structures:
+        lines += _peer_lines(peers, structures)
+    for name, quote in (("accuracy", accuracy_lines), ("stress", stress_lines), ("steady", steady_lines)):
+        if name in found:
+            lines += quote(found[name])
+    growth = list(_scaling_rows(found["scaling"])) if "scaling" in found else []
+    growth += _mass_rows(structures) if structures else []
+    if growth or "startup" in found:
+        lines += ["", "### How cost grows"]
+    lines += markdown(("how cost grows", "time"), growth)
+    if "startup" in found:
+        lines += markdown(("fresh process", "time (least to most)"), _start_rows(found["startup"]))
+    return "\n".join(lines)
+
+
+def parts(text: str) -> tuple[str, str, str]:
+    """README before the block, the block, and what comes after."""
+    before, begin, rest = text.partition(f"{BEGIN}\n")
+    inside, end, after = rest.partition(END)
+    if not begin or not end:
+        raise ValueError(f"README.md needs the lines\n{BEGIN}\n{END}")
+    return before, inside.removesuffix("\n"), after
+
+
+def rewrite(results: Path, readme: Path = README) -> None:
+    """Put the block of these results into README.md."""
+    before, _, after = parts(readme.read_text(encoding="utf-8"))
+    text = f"{before}{BEGIN}\n{block(results)}\n{END}{after}"
+    readme.write_text(text, encoding="utf-8")
+    print(f"written: {readme}")

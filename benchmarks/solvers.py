@@ -1,0 +1,404 @@
+"""Every way to a steady state in one form: cells in; stops, amplitude and times of the stops out.
+
+A method is prepared for a scene and a setting; what is timed is `solve` alone, and `read` makes answers of
+what it returned.  All but "frictionmap" march the same number of excitation periods from rest and report the
+last.  What "frictionmap" finds is timed without the times of its stops, which `response` gives.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+import frictionmap as fm
+from frictionmap._kernels import events
+from frictionmap._kernels.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
+from frictionmap._kernels.follow import after_slide, slide_on
+from frictionmap._kernels.oscillators import make_scratch
+from frictionmap._kernels.phases import MAX_TERMS, step_constants
+from frictionmap._kernels.structure import make_structure, place
+from frictionmap.cells import OneMassCells, make_cells
+from frictionmap.maps import _allocate
+from frictionmap.settings import Solver
+
+from . import peers, structure_peers, sundials
+from .baselines import (
+    MOST_STOPS,
+    SHORTEST_STOP,
+    TWO_PI,
+    Problem,
+    chain_problem,
+    march_moreau,
+    march_rk4,
+    moreau_inverse,
+    one_mass_problem,
+)
+from .structure_peers import Chain
+
+#: Each cell is solved so often in one timed call of ours: a call costs as much as a cell.
+COPIES = 40
+
+
+class Scene(NamedTuple):
+    """Where random cells are drawn."""
+
+    name: str
+    contact: str
+    masses: int
+    frequencies: tuple[float, float]
+    mu: float
+    zeta: float
+
+    @property
+    def chain(self) -> Chain:
+        """The structure as peers know it: contact on mass 2, load on mass 1."""
+        return Chain(self.masses, 2, 1, self.zeta)
+
+    @property
+    def system(self) -> fm.System:
+        """The structure as the package knows it."""
+        if self.masses == 1:
+            return fm.System(contact=self.contact, damping_ratios=self.zeta)
+        ones = [1.0] * self.masses
+        return fm.System(
+            contact_masses=[self.chain.contact], load_mass=self.chain.load, mass_ratios=ones,
+            stiffness_ratios=ones, damping_ratios=self.zeta,
+        )  # fmt: skip
+
+    def problem(self, r: float, beta: float) -> Problem:
+        """One of its cells, as the baselines know it."""
+        if self.masses == 1:
+            return one_mass_problem(peers.Cell(self.contact, r, beta, self.mu, self.zeta))
+        return chain_problem(self.chain, r, beta, self.mu)
+
+
+class Answer(NamedTuple):
+    """Of the last period; `begins` are the tau in [0, 2 pi) at which stops begin."""
+
+    stops: float
+    amplitude: float
+    begins: list[float]
+
+
+FAILED = Answer(math.nan, math.nan, [])
+
+#: (solve, read, cells that one call solves)
+Prepared = tuple[Callable[[], object], Callable[[object], list[Answer]], int]
+
+
+class Method(NamedTuple):
+    """A way to steady states, over a setting that trades time for accuracy."""
+
+    name: str
+    setting: str  # what is varied
+    settings: Sequence[float]
+    quick: Sequence[float]
+    slow: bool  # few repeats
+    prepare: Callable[[Scene, list[tuple[float, float]], float, int], Prepared]
+    why_not: Callable[[Scene], str]
+
+
+# ---------------------------------------------------------------- ours
+
+
+def _sorted_copies(cells: list[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:
+    """r and beta of every cell COPIES times; the kernels take them in this order."""
+    r, beta = np.array(cells).T
+    return np.repeat(r, COPIES), np.repeat(beta, COPIES)
+
+
+def open_cells(
+    system: fm.System, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver
+) -> tuple[Callable[[], object], Callable[[], list[np.ndarray]]]:
+    """(solve, read) of cells (r_k, beta_k) by the kernel of maps; read gives stops, Z and status if kept."""
+    mus = np.array([mu])
+    out = _allocate((1, r.size, r.size), system.n, solver.outputs)
+    one_a_row = np.arange(r.size)
+    cells = make_cells(system, r, beta, mus, solver)
+    function, arguments = cells.opened(
+        0, r.size, one_a_row, one_a_row + 1, one_a_row, out, np.zeros(1, dtype=np.uint8)
+    )
+
+    def read() -> list[np.ndarray]:
+        kept = (out.stops_per_cycle, out.contact_amplitude, out.status)
+        return [values[0, one_a_row, one_a_row] for values in kept if values.size]
+
+    return lambda: function(*arguments), read
+
+
+def _stop_times(scene: Scene, r: float, beta: float, steps: int) -> list[float]:
+    """When the stops of the solved steady state begin; of a stop that is one of a longer period too."""
+    ds = fm.response(scene.system, r, beta, scene.mu, steps=steps, points=2)
+    return sorted((ds.event_tau.values[ds.event_phase.values == 0] % TWO_PI).tolist())
+
+
+def prepare_solved(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
+    """The package as it is used, at a number of scan steps."""
+    solve, values = open_cells(scene.system, *_sorted_copies(cells), scene.mu, Solver(steps=int(setting)))
+
+    def read(_result: object) -> list[Answer]:
+        stops, amplitudes = (column[::COPIES] for column in values())
+        return [
+            Answer(float(s), float(z), _stop_times(scene, *cell, int(setting)))
+            for s, z, cell in zip(stops, amplitudes, cells, strict=True)
+        ]
+
+    return solve, read, COPIES * len(cells)
+
+
+@njit(error_model="numpy")
+def _march_one_mass(r, beta, zeta, load, phase, mu, steps, cycles, out, begins):
+    """The integrator of one mass alone, from rest; out (cells, 2): stops, Z; begins (cells, MOST_STOPS)."""
+    work = np.empty(MAX_TERMS)
+    for k in range(r.size):
+        step = step_constants(r[k], zeta, steps)
+        b = beta[k] / load[k]
+        mu_b = mu * b
+        c, s = math.cos(phase[k]), math.sin(phase[k])
+        code, z, c, s, push, wait = events.after_slide(b, mu_b, 0.0, c, s)
+        sign = -1.0 if code in (REVERSE, STOP_THEN_BACK) else 1.0
+        tau = wait
+        window = TWO_PI * (cycles - 1)
+        stops = 0
+        peak = 0.0
+        while tau < window + TWO_PI:
+            n, z, c, s = events.slide(step, b, z, 0.0, step.stiffness * push, c, s, 1e9, work)
+            tau += n * step.h
+            inside = window <= tau < window + TWO_PI
+            began = math.atan2(sign * s, sign * c) - phase[k]
+            if inside:
+                peak = max(peak, abs(z))
+            code, z, c, s, push, wait = events.after_slide(b, mu_b, z, c, s)
+            if inside and wait > SHORTEST_STOP:
+                begins[k, stops] = began % TWO_PI
+                stops += 1
+            tau += wait
+            if code in (REVERSE, STOP_THEN_BACK):
+                sign = -sign
+        out[k, 0] = stops
+        out[k, 1] = peak * load[k]
+
+
+@njit(error_model="numpy")
+def _march_structure(model, loads, r, beta, mu, steps, cycles, out, begins):
+    """The integrator of structures alone, from rest; as `_march_one_mass`."""
+    n = model.modes.shape[1]
+    state, held, scratch = np.zeros((2, n)), np.zeros((2, n - 1)), make_scratch(n)
+    for k in range(r.size):
+        st = make_structure(model, loads, k, r[k], steps)
+        state[:] = 0.0
+        mu_beta = mu * beta[k]
+        code, c, s, net, wait, _, _ = after_slide(st, beta[k], mu_beta, state, held, 1.0, 0.0, 1e6, scratch)
+        sign = -1.0 if code in (REVERSE, STOP_THEN_BACK) else 1.0
+        tau = wait
+        window = TWO_PI * (cycles - 1)
+        stops = 0
+        peak = 0.0
+        while tau < window + TWO_PI:
+            steps_done, _, c, s, _ = slide_on(st, beta[k], net, state, c, s, 1e9, scratch)
+            tau += steps_done * st.h
+            inside = window <= tau < window + TWO_PI
+            began = math.atan2(sign * s, sign * c)
+            if inside:
+                peak = max(peak, abs(place(st, state)))
+            code, c, s, net, wait, _, _ = after_slide(
+                st, beta[k], mu_beta, state, held, c, s, 1e6, scratch
+            )  # fmt: skip
+            stopped = code in (STOP_THEN_BACK, STOP_THEN_ON)
+            if inside and stopped and wait > SHORTEST_STOP:
+                begins[k, stops] = began % TWO_PI
+                stops += 1
+            tau += wait
+            if code in (REVERSE, STOP_THEN_BACK):
+                sign = -sign
+        out[k, 0] = stops
+        out[k, 1] = peak
+
+
+def prepare_marched(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
+    """The fixed-step exact integrator by itself, for the same number of periods as the peers."""
+    r, beta = np.array(cells).T
+    found = make_cells(scene.system, r, beta, np.array([scene.mu]), Solver())
+    out, begins = np.empty((r.size, 2)), np.empty((r.size, MOST_STOPS))
+    if isinstance(found, OneMassCells):
+        f = found.found.frequencies
+        arguments = (
+            r, beta, scene.zeta, f.load, f.phase, scene.mu, float(setting), cycles, out, begins
+        )  # fmt: skip
+        function = _march_one_mass
+    else:
+        arguments = (
+            found.found.model, found.found.loads, r, beta, scene.mu, float(setting), cycles, out, begins
+        )  # fmt: skip
+        function = _march_structure
+
+    def read(_result: object) -> list[Answer]:
+        return [
+            Answer(stops, z, sorted(times[: int(stops)].tolist()))
+            for (stops, z), times in zip(out.tolist(), begins, strict=True)
+        ]
+
+    return lambda: function(*arguments), read, r.size
+
+
+# ---------------------------------------------------------------- fixed-step baselines
+
+
+def _within(times: np.ndarray) -> list[float]:
+    """Sorted, in [0, 2 pi)."""
+    return sorted(np.mod(times, TWO_PI).tolist())
+
+
+def prepare_rk4(located: bool) -> Callable[..., Prepared]:
+    """RK4, with events located or not."""
+
+    def prepare(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
+        problems = [scene.problem(*cell) for cell in cells]
+        march_rk4(problems[0], 16, 1, located)  # compiles
+
+        def read(found: object) -> list[Answer]:
+            return [Answer(m.stops, m.peak, _within(m.begins[: m.stops])) for m in found]
+
+        return lambda: [march_rk4(p, int(setting), cycles, located) for p in problems], read, len(cells)
+
+    return prepare
+
+
+def prepare_moreau(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
+    """Moreau-Jean time stepping."""
+    problems = [scene.problem(*cell) for cell in cells]
+    march_moreau(problems[0], moreau_inverse(problems[0], 16), 16, 1)  # compiles
+    steps = int(setting)
+
+    def read(found: object) -> list[Answer]:
+        return [Answer(stops, peak, _within(begins[:stops])) for stops, peak, begins in found]
+
+    return (
+        lambda: [march_moreau(p, moreau_inverse(p, steps), steps, cycles) for p in problems],
+        read,
+        len(cells),
+    )
+
+
+# ---------------------------------------------------------------- general-purpose solvers
+
+
+def _record_stops(peer: structure_peers.StructurePeer) -> list[float]:
+    """A list that the peer adds the start of every stop to, or of what is left of one at a new window."""
+    begins: list[float] = []
+    stop = peer.stop
+
+    def recorded(theta: float, end: float) -> tuple[float, int]:
+        begins.append(theta)
+        return stop(theta, end)
+
+    peer.stop = recorded
+    return begins
+
+
+def _run_one_mass(peer: peers.Peer, scene: Scene, cell: tuple[float, float], cycles: int) -> Answer:
+    begins: list[float] = []
+    try:
+        outcome = peer.run(scene.contact, *cell, scene.mu, scene.zeta, cycles=cycles, begins=begins)
+    except RuntimeError:
+        return FAILED
+    _, phase = peers.load_in_contact(scene.contact, cell[0], scene.zeta)
+    return Answer(outcome.stops, outcome.Z, _within(np.array(begins) - phase))
+
+
+def _run_structure(
+    peer: structure_peers.StructurePeer, begins: list[float], scene: Scene, cell: tuple[float, float],
+    cycles: int,
+) -> Answer:  # fmt: skip
+    begins.clear()
+    try:
+        outcome = peer.run(*cell, scene.mu, cycles, 1)
+    except RuntimeError:
+        return FAILED
+    window = TWO_PI * (cycles - 1)
+    return Answer(outcome.stops, outcome.Z, _within(np.array([t for t in begins if t > window])))
+
+
+def prepare_peer(one_mass: Callable, structure: Callable) -> Callable[..., Prepared]:
+    """A peer made by one of two functions of its setting."""
+
+    def prepare(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
+        if scene.masses == 1:
+            peer = one_mass(setting)
+            return (
+                lambda: [_run_one_mass(peer, scene, cell, cycles) for cell in cells],
+                lambda found: found,
+                len(cells),
+            )
+        peer = structure(scene.chain, setting)
+        begins = _record_stops(peer)
+        return (
+            lambda: [_run_structure(peer, begins, scene, cell, cycles) for cell in cells],
+            lambda found: found,
+            len(cells),
+        )
+
+    return prepare
+
+
+def _solve_ivp(chain: Chain, tolerance: float) -> structure_peers.SolveIvpPeer:
+    peer = structure_peers.SolveIvpPeer(chain)
+    peer.rtol, peer.atol = tolerance, absolute(tolerance)
+    return peer
+
+
+def absolute(tolerance: float) -> float:
+    """The absolute tolerance that goes with a relative one: displacements are about 1."""
+    return max(1e-3 * tolerance, 1e-14)
+
+
+def _always(_scene: Scene) -> str:
+    return ""
+
+
+def _one_friction_coefficient(scene: Scene) -> str:
+    return "" if scene.mu == 1.0 else "it has no separate static friction (mu = 1 only)"
+
+
+STEPS = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 100, 200)
+_NODES = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 10_000)
+_FEW_NODES = (32, 256, 2048)
+_TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
+_FEW = (1e-6,)
+_EPS = float(np.finfo(float).eps)
+
+SOLVED = "frictionmap"
+MARCHED = "frictionmap, marched"
+
+METHODS = (
+    Method(SOLVED, "steps", STEPS, (2, 24, 200), False, prepare_solved, _always),
+    Method(MARCHED, "steps", STEPS, (2, 24, 200), False, prepare_marched, _always),
+    Method("RK4, events located", "steps a period", _NODES, _FEW_NODES, False, prepare_rk4(True), _always),
+    Method("RK4", "steps a period", _NODES, _FEW_NODES, False, prepare_rk4(False), _always),
+    Method(
+        "Moreau-Jean", "steps a period", _NODES, _FEW_NODES, False, prepare_moreau,
+        _one_friction_coefficient,
+    ),
+    Method(
+        "solve_ivp DOP853", "rtol", _TOLERANCES, _FEW, True,
+        prepare_peer(lambda t: peers.SolveIvpPeer("DOP853", t, absolute(t)), _solve_ivp),
+        lambda _: peers.SolveIvpPeer.why_missing(),
+    ),
+    Method(
+        "heyoka", "tol", (*_TOLERANCES, _EPS), (1e-6, _EPS), False,
+        prepare_peer(
+            lambda t: peers.HeyokaPeer(tol=t), lambda chain, t: structure_peers.HeyokaPeer(chain, tol=t)
+        ),
+        lambda _: peers.HeyokaPeer.why_missing(),
+    ),
+    Method(
+        "CVODE", "rtol", _TOLERANCES, _FEW, True,
+        prepare_peer(
+            lambda t: sundials.CvodePeer(t, absolute(t)),
+            lambda chain, t: sundials.StructureCvodePeer(chain, t, absolute(t)),
+        ),
+        lambda _: sundials.CvodePeer.why_missing(),
+    ),
+)  # fmt: skip

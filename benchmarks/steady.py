@@ -1,0 +1,252 @@
+"""Steady states: solved against marched, one answer for mu = 1, what stays unresolved without damping.
+
+Marching waits until the motion repeats by itself, to 1e-12 a return, and knows nothing of Newton's method,
+of neighbours or of closed forms (`skip = "none"`).  Its answers are compared cell by cell; every difference
+is listed with its cause.
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+import frictionmap as fm
+from frictionmap import regimes
+
+from .figures import new_figure, save_figure
+from .record import save, table
+
+CONFIGS = Path(__file__).resolve().parent.parent / "configs"
+OUTPUTS = ("regime", "stops_per_cycle", "contact_amplitude", "status", "period")
+
+#: Excitation periods that marching may take.
+CYCLES = 20000
+
+#: Marching to 1e-12 a return is this far off where the motion creeps; a smaller Z than this [P/k1] is
+#: compared relative to this, since what repeats is the whole state.
+CLOSE = 1e-6
+SMALL_Z = 1e-3
+
+#: A cell this near to a boundary is on it, as far as rounding can tell.
+ON_BOUNDARY = 1e-14
+
+DAMPED = {
+    "2 masses, contact 2, load 1, 2 %": (2, 2, 1, 0.02),
+    "3 masses, contact 1, load 3, 1 %": (3, 1, 3, 0.01),
+    "5 masses, contact 3, load 1, 1 %": (5, 3, 1, 0.01),
+    "5 masses, contact 5, load 5, 5 %": (5, 5, 5, 0.05),
+    "4 masses, contact 2, load 4, 0.3 %": (4, 2, 4, 0.003),
+}
+
+
+def _chain(masses: int, contact: int, load: int, zeta: float) -> fm.System:
+    ones = [1.0] * masses
+    return fm.System(
+        contact_masses=[contact], load_mass=load, mass_ratios=ones, stiffness_ratios=ones, damping_ratios=zeta
+    )
+
+
+def _status(value: int) -> str:
+    return next(code.name for code in regimes.STATUSES if code.value == value)
+
+
+def _cause(cell: dict, other: dict, lim: float, stick: float) -> str:
+    """Why two answers to one cell differ."""
+    beta = cell["beta"]
+    if (
+        min(abs(beta / lim - 1.0) if lim else math.inf, abs(beta / stick - 1.0) if stick else math.inf)
+        < ON_BOUNDARY
+    ):
+        return "beta on a boundary to rounding"
+    for name, which in (("solved", cell), ("marched", other)):
+        if which["status"]:
+            return f"{name}: {_status(which['status'])}"
+    return "unexplained"
+
+
+def compare(solved: xr.Dataset, marched: xr.Dataset) -> tuple[int, list[dict], np.ndarray]:
+    """Cells that both resolve, the ones that differ with their cause, and relative differences of Z."""
+    regime = (solved.regime != marched.regime).values
+    stops = (solved.stops_per_cycle != marched.stops_per_cycle).values & (
+        solved.regime == regimes.STICK_SLIP
+    ).values
+    z = solved.contact_amplitude.values, marched.contact_amplitude.values
+    with np.errstate(invalid="ignore"):
+        off = np.abs(z[0] - z[1]) / np.maximum(np.abs(z[1]), SMALL_Z)
+    status = (solved.status != marched.status).values
+    both = ((solved.status == 0) & (marched.status == 0)).values
+    moves = both & (solved.regime > 0).values & np.isfinite(z[1])
+    different = (both & (regime | stops)) | (moves & (off > CLOSE)) | status
+    found = []
+    for m, i, j in np.argwhere(different):
+        pair = [{name: ds[name].values[m, i, j].item() for name in OUTPUTS} for ds in (solved, marched)]
+        cell = {name: solved[name].values[k].item() for name, k in (("r", i), ("beta", j), ("mu", m))}
+        lim, stick = solved.beta_lim.values[m, i], solved.beta_stick.values[m, i]
+        cause = _cause(cell | pair[0], pair[1], lim, stick)
+        found.append(cell | {"solved": pair[0], "marched": pair[1], "cause": cause})
+    return int(both.sum()), found, off[moves]
+
+
+def _summary(cells: int, both: int, found: list[dict], off: list[np.ndarray]) -> dict:
+    causes: dict[str, int] = {}
+    for row in found:
+        causes[row["cause"]] = causes.get(row["cause"], 0) + 1
+    largest = np.concatenate(off)
+    largest = largest[np.isfinite(largest)]  # an infinite one is among the differences
+    return {
+        "cells": cells,
+        "both resolved": both,
+        "differences by cause": causes,
+        "largest difference of Z": float(largest.max(initial=0.0)),
+        "median difference of Z": float(np.median(largest)) if largest.size else 0.0,
+        "differences": found,
+    }
+
+
+def published_map(quick: bool) -> dict:
+    """Every cell of T Fig. 3.12, mu = 1 and 1.5, from rest."""
+    config = fm.load_config(CONFIGS / "fig-3-12.toml")
+    every = 5 if quick else 1
+    grid = (config.system, config.r[::every], config.beta[::every], config.mu)
+    solved = fm.sweep(*grid, outputs=OUTPUTS)
+    marched = fm.sweep(*grid, outputs=OUTPUTS, skip="none", steady="marched", cycles=CYCLES)
+    both, found, off = compare(solved, marched)
+    return _summary(solved.regime.size, both, found, [off])
+
+
+def random_cells(quick: bool) -> dict:
+    """Random cells of damped chains, mu from 1 to 2, from rest and moving."""
+    rng = np.random.default_rng(2000)
+    every, found, off, both = 10 if quick else 400, [], [], 0
+    for name, arguments in DAMPED.items():
+        system = _chain(*arguments)
+        for _ in range(every):
+            r, mu = [float(rng.uniform(0.05, 3.0))], [float(rng.choice([1.0, 1.2, 1.5, 2.0]))]
+            curves = fm.boundaries(system, r, mu)
+            top = max(curves.beta_lim.item(), curves.beta_stick.item())
+            grid = (system, r, [float(rng.uniform(0.0, 1.1 * top))], mu)
+            start = str(rng.choice(["rest", "moving"]))
+            pair = [
+                fm.sweep(*grid, outputs=OUTPUTS, start=start, threads=1, **settings)
+                for settings in ({}, {"skip": "none", "steady": "marched", "cycles": CYCLES})
+            ]
+            resolved, rows, difference = compare(*pair)
+            both += resolved
+            found += [{"system": name, "start": start} | row for row in rows]
+            off.append(difference)
+    return _summary(every * len(DAMPED), both, found, off)
+
+
+def random_system(rng: np.random.Generator, zeta: float) -> fm.System:
+    """A chain of 1 to 4 random masses and springs, any contact, any load."""
+    n = int(rng.integers(1, 5))
+    mass, stiffness = (np.concatenate(([1.0], rng.uniform(0.3, 3.0, n - 1))) for _ in range(2))
+    contact = str(rng.choice(["fixed-wall", "joined-base-wall", "between-masses"][: 2 + (n > 1)]))
+    first = int(rng.integers(1, n + 1)) if contact != "between-masses" else int(rng.integers(1, n))
+    masses = [first] if contact != "between-masses" else [first, int(rng.integers(first + 1, n + 1))]
+    load = 1 if contact == "joined-base-wall" else int(rng.integers(1, n + 1))
+    return fm.System(
+        contact=contact, contact_masses=masses, load_mass=load, mass_ratios=mass.tolist(),
+        stiffness_ratios=stiffness.tolist(), damping_ratios=zeta,
+    )  # fmt: skip
+
+
+def one_answer(quick: bool) -> dict:
+    """mu = 1: marched from rest, marched from a moving start, and as a map has it; the same answer?"""
+    rng = np.random.default_rng(10000)
+    wanted = 250 if quick else 10000
+    cells = resolved = 0
+    found: list[dict] = []
+    off = []
+    while resolved < wanted:
+        system = random_system(rng, float(rng.choice([0.0, 0.005, 0.03, 0.3, 1.5])))
+        r = np.sort(rng.uniform(0.05, 2.5, 10))
+        top = min(fm.boundaries(system, r).beta_stick.values.max(), 20.0)
+        grid = (system, r, np.sort(rng.uniform(0.0, 1.2 * top, 25)))
+        plain = fm.sweep(*grid, outputs=OUTPUTS)
+        marched = [
+            fm.sweep(*grid, outputs=OUTPUTS, skip="none", steady="marched", cycles=2000, start=start)
+            for start in ("rest", "moving")
+        ]
+        decided = ((marched[0].status == 0) & (marched[1].status == 0) & (plain.status == 0)).values
+        cells += decided.size
+        resolved += int(decided.sum())
+        for other in marched:
+            _, rows, difference = compare(plain, other)
+            found += [
+                {"system": str(system)} | row
+                for row in rows
+                if row["solved"]["status"] == row["marched"]["status"] == 0
+            ]
+            off.append(difference)
+    return {"resolved by all three": resolved} | _summary(cells, resolved, found, off)
+
+
+def undamped(quick: bool) -> dict:
+    """T Fig. 6.7 and 6.14, undamped: cells by status."""
+    content: dict = {}
+    for name in ("fig-6-7", "fig-6-14"):
+        config = fm.load_config(CONFIGS / f"{name}.toml")
+        every = 5 if quick else 1
+        ds = fm.sweep(
+            config.system, config.r[::every], config.beta[::every], config.mu, outputs=("regime", "status")
+        )
+        for m, mu in enumerate(ds.mu.values):
+            values, counts = np.unique(ds.status.values[m], return_counts=True)
+            content[f"{name}, mu = {mu:g}"] = {
+                _status(int(value)): int(count) for value, count in zip(values, counts, strict=True)
+            }
+    return content
+
+
+def draw(off: dict[str, float], content: dict, path: Path) -> None:
+    """Statuses of the undamped maps, as shares of their cells."""
+    names = [code.name for code in regimes.STATUSES if any(code.name in row for row in content.values())][1:]
+    figure = new_figure(7.4, 3.6)
+    ax = figure.subplots()
+    left = np.zeros(len(content))
+    totals = np.array([sum(row.values()) for row in content.values()])
+    for name, colour in zip(names, ("#d7301f", "#fbe45b", "#b04fa3", "#2c5aa0", "#7cc5b0"), strict=False):
+        share = 100.0 * np.array([row.get(name, 0) for row in content.values()]) / totals
+        ax.barh(list(content), share, left=left, color=colour, label=name.replace("_", " "))
+        left += share
+    ax.invert_yaxis()
+    ax.set_xlabel("cells [%]")
+    worst = max(off.values())
+    ax.set_title(
+        "Undamped structures: cells without a periodic answer\n"
+        f"(elsewhere marching agrees with the solved answer: largest difference of Z {worst:.0e})",
+        fontsize=10,
+    )
+    ax.legend(fontsize=8, loc="lower right")
+    save_figure(figure, path)
+
+
+def run(quick: bool, results: Path) -> dict:
+    """Compare, print, save and draw."""
+    content = {
+        "T Fig. 3.12": published_map(quick),
+        "five damped chains": random_cells(quick),
+        "mu = 1, any start": one_answer(quick),
+    }
+
+    def causes(row: dict) -> str:
+        return ", ".join(f"{count} {cause}" for cause, count in row["differences by cause"].items()) or "none"
+
+    table(
+        ("cells of", "cells", "both resolved", "largest difference of Z", "differences by cause"),
+        [
+            (name, row["cells"], row["both resolved"], row["largest difference of Z"], causes(row))
+            for name, row in content.items()
+        ],
+    )
+    off = {name: row["largest difference of Z"] for name, row in content.items()}
+    unresolved = undamped(quick)
+    print()
+    for name, row in unresolved.items():
+        print(f"{name}: " + ", ".join(f"{count} {status}" for status, count in row.items()))
+    content["undamped maps"] = unresolved
+    save("steady", content, results)
+    draw(off, unresolved, results / "steady.png")
+    return content

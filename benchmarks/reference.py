@@ -29,6 +29,9 @@ _STEP = mp.mpf(10) ** -20
 #: Samples of the bracket of S per period of the fastest mode, and how near to the highest of them (relative)
 #: another one is polished too.
 _SAMPLES = 48
+
+#: A u of a mode above which samples in doubles lose what is sought in u cos - u e: then they have all digits.
+_LARGE_U = 1e6
 _CLOSE = 1e-3
 _MOST_POLISHED = 6
 
@@ -201,6 +204,7 @@ def _polished(rows: Sequence[tuple], big_u: Number, low: Number, high: Number) -
 def _largest(rows: Sequence[tuple], big_u: Number, floor: Number) -> tuple:
     """(S, tau) of the sum."""
     fastest = max([1.0, *(float(a * max(mp.mpf(1), 2 * zeta)) for _, a, zeta, _, _ in rows)])
+    cancels = any(abs(c * u) > _LARGE_U for c, _, _, u, _ in rows)
     count = int(_SAMPLES * max(4.0, fastest))
     found: list[tuple[float, float, float]] = []
     best = -math.inf
@@ -208,7 +212,10 @@ def _largest(rows: Sequence[tuple], big_u: Number, floor: Number) -> tuple:
     for first in range(1, count, chunk):  # chunks overlap by a sample on each side
         k = np.arange(max(first - 1, 1), min(first + chunk + 1, count))
         tau = math.pi * k / count
-        f = _sampled(rows, big_u, tau)
+        if cancels:
+            f = np.array([float(_bracket(rows, big_u, mp.mpf(t))[0]) for t in tau])
+        else:
+            f = _sampled(rows, big_u, tau)
         best = max(best, float(f.max()))
         tops = 1 + np.flatnonzero((f[1:-1] >= f[:-2]) & (f[1:-1] >= f[2:]))
         tops = tops[f[tops] >= best - _CLOSE * abs(best)]

@@ -20,8 +20,19 @@ _SAME_FREQUENCY = 8.0
 #: double precision could tell from zero is lost.
 _ZERO_PRODUCT = 64.0
 
-#: Entries of the matrices of held structures that are solved for together, 16 MB of them.
-_STACK = 2**20
+#: Decimal digits of a double.
+_DIGITS = 16
+
+#: The forces on a mass add up to zero within so many eps of their sizes: it is in balance.
+_BALANCE = 4.0
+
+
+def _made_equal(squares: np.ndarray, rounding: np.ndarray) -> np.ndarray:
+    """Increasing squared frequencies, those made equal to the bit that `rounding` (n,) alone tells apart."""
+    first_of_group = np.concatenate(([True], np.diff(squares) > rounding[1:]))
+    group = np.cumsum(first_of_group) - 1
+    means = np.bincount(group, weights=squares) / np.bincount(group)
+    return np.where(np.bincount(group)[group] > 1, means[group], squares)
 
 
 def solve_modes(mass: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -35,11 +46,27 @@ def solve_modes(mass: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np
 
     squares, phi = eigh(stiffness, mass)
     gap = _SAME_FREQUENCY * np.sqrt(squares.size) * _EPS * squares[-1]
-    first_of_group = np.concatenate(([True], np.diff(squares) > gap))
-    group = np.cumsum(first_of_group) - 1
-    means = np.bincount(group, weights=squares) / np.bincount(group)
-    squares = np.where(np.bincount(group)[group] > 1, means[group], squares)
+    squares = _made_equal(squares, np.full(squares.size, gap))
     return np.sqrt(np.maximum(squares, 0.0)), phi  # rounding may make one negative
+
+
+def solve_chain_modes(masses: np.ndarray, springs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same of a chain, each frequency to rounding of its own however far apart masses or springs are.
+
+    K = B^T diag(springs) B with the stretches B x = x_i - x_{i-1}: frequencies are the singular values of the
+    bidiagonal sqrt(springs) B / sqrt(masses), which QR iteration (gesvd) finds to high relative accuracy.  K
+    itself, whose entries are sums, has lost the digits of a soft spring beside a stiff one.
+    """
+    from scipy.linalg import svd
+
+    root = np.sqrt(masses)
+    stretches = np.diag(np.sqrt(springs) / root) - np.diag(np.sqrt(springs[1:]) / root[:-1], 1)  # transposed
+    shapes, w, _ = svd(stretches, lapack_driver="gesvd")
+    squares = w[::-1] ** 2
+    equal = _made_equal(squares, _SAME_FREQUENCY * np.sqrt(w.size) * _EPS * squares)
+    # the square root of an untouched square would round twice
+    w = np.where(equal == squares, w[::-1], np.sqrt(equal))
+    return w, np.ascontiguousarray((shapes / root[:, np.newaxis])[:, ::-1])
 
 
 def modal_damping(mass: np.ndarray, w: np.ndarray, phi: np.ndarray, zeta: np.ndarray) -> np.ndarray:
@@ -93,6 +120,11 @@ def gather_contact(w: np.ndarray, zeta: np.ndarray, phi: np.ndarray, contact: np
     return phi
 
 
+def _times(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """Complex rows (n_r, n) times a real matrix, at half the cost of a complex one."""
+    return rows.real @ matrix + 1j * (rows.imag @ matrix)
+
+
 def _modal_sum(stiffness: np.ndarray, parts: np.ndarray) -> np.ndarray:
     """Sum over modes of parts/stiffness, both (n_r, n); infinite at a resonance with a part."""
     resonant = (stiffness == 0.0) & (parts != 0.0)
@@ -138,9 +170,9 @@ def _solve_held(
     r: np.ndarray,
     load: np.ndarray,
 ) -> np.ndarray:
-    """The motion with c.x = 0 and the force that holds it, (n_r, n + 1), theory.md 4; `load` is (n_r, n).
+    """The motion with c.x = 0 and the force that holds it, (n_r, n + 1), at resonances of the held structure.
 
-    Infinite, all of it, where the load feeds an undamped resonance of the held structure.
+    `load` is (n_r, n).  Infinite, all of it, where the load feeds the resonance.
     """
     n = contact.size
     bordered = np.zeros((n + 1, n + 1), dtype=complex)
@@ -151,34 +183,56 @@ def _solve_held(
     bordered[n, :n] = size * contact
     units = np.append(np.ones(n), size)
     held = np.empty((r.size, n + 1), dtype=complex)
-    squares = _held_squares(mass, stiffness, contact)
-    rounding = _ZERO_PRODUCT * n * _EPS * squares.max(initial=0.0)
-    near = np.any(np.abs(squares - r[:, np.newaxis] ** 2) <= rounding, axis=1)
-    some = np.flatnonzero(~near)
-    for part in np.array_split(
-        some, some.size * (n + 1) ** 2 // _STACK + 1
-    ):  # stacked: one call costs more than a solution
-        x = r[part, np.newaxis, np.newaxis]
-        stack = np.tile(bordered, (part.size, 1, 1))
-        stack[:, :n, :n] = stiffness - x**2 * mass + 1j * x * damping
-        right = np.column_stack((load[part], np.zeros(part.size)))
-        try:
-            held[part] = units * np.linalg.solve(stack, right[..., np.newaxis])[..., 0]
-        except np.linalg.LinAlgError:
-            near[part] = True
-    for k in np.flatnonzero(near):
-        bordered[:n, :n] = stiffness - r[k] ** 2 * mass + 1j * r[k] * damping
+    for k, at in enumerate(r):
+        bordered[:n, :n] = stiffness - at**2 * mass + 1j * at * damping
         right = np.append(load[k], 0.0)
-        if np.any(np.abs(squares - r[k] ** 2) <= rounding):
-            unfed = _unfed_resonance(bordered, mass, right)
-            if unfed is not None:
-                held[k] = units * unfed
-                continue
-        try:
-            held[k] = units * np.linalg.solve(bordered, right)
-        except np.linalg.LinAlgError:
-            held[k] = np.inf
+        solution = _unfed_resonance(bordered, mass, right)
+        if solution is None:
+            try:
+                solution = np.linalg.solve(bordered, right)
+            except np.linalg.LinAlgError:
+                solution = np.full(n + 1, np.inf)
+        held[k] = units * solution
     return held
+
+
+def _solve_arrow(
+    stiffness: np.ndarray, chi: np.ndarray, parts: np.ndarray, gap: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Modes q and force F of stiffness_i q_i + chi_i F = parts_i, chi.q = gap.
+
+    One mode, that with the least stiffness as the contact feels it, is solved for together with F: it may
+    resonate.  The others are eliminated.
+
+    Parameters
+    ----------
+    stiffness, parts : (n_r, n)
+    chi : (n,), none of them 0
+    gap : (n_r,)
+
+    Returns
+    -------
+    q : (n_r, n)
+    F : (n_r,)
+    singular : (n_r,) bool, whether rounding alone keeps the equations from being singular
+    """
+    rows = np.arange(stiffness.shape[0])
+    last = np.argmin(np.abs(stiffness) / chi**2, axis=1)
+    first = stiffness[rows, last]
+    others = stiffness.copy()
+    others[rows, last] = np.inf  # leaves the last mode out of the sums
+    compliances = chi**2 / others
+    compliance = compliances.sum(axis=1)
+    response = (chi * parts / others).sum(axis=1) - gap
+    chi_last, part_last = chi[last], parts[rows, last]
+    below = chi_last**2 + first * compliance
+    size = chi_last**2 + np.abs(first) * np.abs(compliances).sum(axis=1)
+    singular = np.abs(below) <= _ZERO_PRODUCT * chi.size * _EPS * size
+    below = np.where(singular, 1.0, below)
+    force = (chi_last * part_last + first * response) / below
+    q = (parts - chi * force[:, np.newaxis]) / others
+    q[rows, last] = (part_last * compliance - chi_last * response) / below
+    return q, force, singular
 
 
 @dataclass(frozen=True)
@@ -193,6 +247,7 @@ class ModalModel:
     load, load_rate : (n,) complex; the load's phasor is p(r) = load + i r load_rate
     base_motion : s; if it is 1, load = K ones, and load_rate is zero or C1 ones
     mass, stiffness, damping : (n, n) M/r^2, K and C1 = C/r
+    springs : (n,) of a chain, spring i between masses i - 1 and i; else None
     """
 
     w: np.ndarray
@@ -205,6 +260,7 @@ class ModalModel:
     mass: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
+    springs: np.ndarray | None = None
 
     def _shares(self, vector: np.ndarray) -> np.ndarray:
         """vector.phi_i (n,), exactly zero where it is zero but for rounding.
@@ -282,37 +338,126 @@ class ModalModel:
         """
         return _modal_sum(self.dynamic_stiffness(r), weights * self.participation(r))
 
+    def _forces(self, r: np.ndarray, x: np.ndarray, tail: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(K - r^2 M + i r C1) (x + tail), all (n_r, n), and the sizes of the single forces on a mass, added.
+
+        A chain's springs pull by their stretch: a stiff one leaves the digits of the others alone.  `tail` is
+        below the rounding of x, and so of all forces but these.
+        """
+        r = r[:, np.newaxis]
+        if self.springs is None:
+            inertia = r**2 * _times(x, self.mass)
+            size = np.abs(x) @ np.abs(self.stiffness) + r**2 * (np.abs(x) @ np.abs(self.mass))
+            forces = _times(x, self.stiffness) - inertia
+        else:
+            inertia = r**2 * np.diag(self.mass) * x
+            pull = self.springs * (np.diff(x, axis=1, prepend=0.0) + np.diff(tail, axis=1, prepend=0.0))
+            back = np.append(pull[:, 1:], np.zeros((r.size, 1)), axis=1)
+            size = np.abs(pull) + np.abs(back) + np.abs(inertia)
+            forces = pull - back - inertia
+        if self.zeta.any():
+            shapes = self.mass @ self.phi
+            rates = 2.0 * r * self.zeta * self.w * _times(x, shapes)
+            forces += 1j * _times(rates, shapes.T)
+            size += np.abs(rates) @ np.abs(shapes.T)
+        return forces, size
+
+    def _refine(
+        self, r: np.ndarray, held: bool, stiffness: np.ndarray, load: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """x (n_r, n), z = c.x and F (n_r,) under `load`, corrected until every mass is in balance.
+
+        The modes' answers are right to the rounding of the largest of them, and a mass far from the load may
+        move by less.  What is left of the balance of its own forces tells; the modes' answer to that corrects
+        it, and masses in balance to rounding are left alone.  x is kept in two parts: a stretch may be below
+        the rounding of x.  With `held` the contact holds z = 0 by F; else F = 0.  The last value says where
+        the held structure resonates.
+        """
+        x = np.zeros(load.shape, dtype=complex)
+        tail = np.zeros_like(x)
+        left = load
+        z, force = np.zeros((2, r.size), dtype=complex)
+        singular = np.zeros(r.size, dtype=bool)
+        last = np.full(r.size, np.inf, dtype=complex)  # the first answer may be zero, as no other
+        rows = np.arange(r.size)
+        # one for every link that the load has to pass; beside a resonance each gains a digit at least
+        for _ in range(self.w.size + _DIGITS):
+            shares = _times(left, self.phi)
+            if held:
+                q, more, singular[rows] = _solve_arrow(stiffness[rows], self.chi, shares, -z[rows])
+                force[rows] += more
+            else:
+                q = shares / stiffness[rows]
+            before, part = x[rows], tail[rows] + _times(q, self.phi.T)
+            whole = before + part
+            x[rows], tail[rows] = whole, part - (whole - before)
+            z[rows] = x[rows] @ self.contact + tail[rows] @ self.contact
+            found = force if held else z
+            moved = np.abs(found[rows] - last[rows]) > _EPS * np.abs(found[rows])
+            last[rows] = found[rows]
+            rows = rows[moved & ~singular[rows]]
+            forces, size = self._forces(r[rows], x[rows], tail[rows])
+            friction = force[rows, np.newaxis] * self.contact
+            rounding = _BALANCE * _EPS * (size + np.abs(load[rows]) + np.abs(friction))
+            left = load[rows] - forces - friction
+            left = np.where(np.abs(left) <= rounding, 0.0, left)
+            uneven = left.any(axis=1) | (z[rows] != 0.0 if held else False)
+            rows, left = rows[uneven], left[uneven]
+            if rows.size == 0:
+                break
+        return x, z, force, singular
+
     def contact_response(self, r: np.ndarray) -> np.ndarray:
         """V of theory.md 2, the response function of z, complex (n_r,); infinite as `response`.
 
         It is response(r, chi) - s, without the loss of digits that the difference would have at small r.
+        Where the sum over modes cancels by more than what the modes' own frequencies leave uncertain, the
+        balance of forces has the digits that the sum has not.
         """
-        return _modal_sum(self.dynamic_stiffness(r), self.chi * self.relative_participation(r))
+        r = np.asarray(r, dtype=float)
+        stiffness = self.dynamic_stiffness(r)
+        parts = self.chi * self.relative_participation(r)
+        v = _modal_sum(stiffness, parts)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            size = np.abs(parts / stiffness).sum(axis=1)
+            near = ((self.w**2 + r[:, np.newaxis] ** 2) / np.abs(stiffness)).max(axis=1)
+            cancels = np.flatnonzero(size > near * np.abs(v))
+        if cancels.size:
+            at = r[cancels]
+            v[cancels] = self._refine(at, False, stiffness[cancels], self.relative_load(at))[1]
+        return v
 
     def held(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """x - s (n_r, n) and F (n_r,) with the contact held.
+        """x - s (n_r, n) and F (n_r,) with the contact held, theory.md 4.
 
-        Modes that the contact does not see move as if free and leave F alone: taken out of the equations
-        they cannot make them singular.
+        Infinite, all of it, where the load feeds an undamped resonance of the held structure.  Modes that
+        the contact does not see move as if free and leave F alone: taken out of the equations they cannot
+        make them singular.
         """
+        r = np.asarray(r, dtype=float)
         seen = self.chi != 0.0
-        if seen.all():
-            held = _solve_held(
-                self.mass, self.stiffness, self.damping, self.contact, r, self.relative_load(r)
-            )
-            return held[:, :-1], held[:, -1]
-        w, zeta = self.w[seen], self.zeta[seen]
-        parts = self.relative_participation(r)
-        held = _solve_held(
-            np.eye(w.size), np.diag(w**2), np.diag(2.0 * zeta * w), self.chi[seen], r, parts[:, seen]
-        )
-        free = np.where(seen, 0.0, parts)
         stiffness = self.dynamic_stiffness(r)
+        if seen.all():
+            load = self.relative_load(r)
+            motion, _, force, singular = self._refine(r, True, stiffness, load)
+            at = np.flatnonzero(singular)
+            found = _solve_held(self.mass, self.stiffness, self.damping, self.contact, r[at], load[at])
+            motion[at], force[at] = found[:, :-1], found[:, -1]
+            return motion, force
+        w, zeta, chi = self.w[seen], self.zeta[seen], self.chi[seen]
+        parts = self.relative_participation(r)
+        q, force, singular = _solve_arrow(stiffness[:, seen], chi, parts[:, seen], np.zeros(r.size))
+        at = np.flatnonzero(singular)
+        found = _solve_held(
+            np.eye(w.size), np.diag(w**2), np.diag(2.0 * zeta * w), chi, r[at], parts[np.ix_(at, seen)]
+        )
+        q[at], force[at] = found[:, :-1], found[:, -1]
+        free = np.where(seen, 0.0, parts)
         motion = np.column_stack([_modal_sum(stiffness, row * free) for row in self.phi])
-        resonant = np.isinf(held[:, -1])
-        motion += np.where(resonant[:, np.newaxis], 0.0, held[:, :-1]) @ self.phi[:, seen].T
+        resonant = np.isinf(force)
+        motion += np.where(resonant[:, np.newaxis], 0.0, q) @ self.phi[:, seen].T
         motion[resonant] = np.inf
-        return motion, held[:, -1]
+        return motion, force
 
     def static_response(self) -> np.ndarray:
         """Displacements of the masses without friction at r = 0, complex (n,)."""

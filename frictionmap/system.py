@@ -12,7 +12,7 @@ import numpy as np
 from . import checks
 from .errors import InputError
 from .matrices import Matrices, read_matrices
-from .modes import ModalModel, damped_modes, gather_contact, modal_damping, solve_modes
+from .modes import ModalModel, damped_modes, gather_contact, modal_damping, solve_chain_modes, solve_modes
 
 CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 EXCITATIONS = ("force", "base")
@@ -285,7 +285,10 @@ class System:
 
     def _solve(self, mass: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Frequencies and modes, if double precision holds the lowest beside the highest."""
-        w, phi = solve_modes(mass, stiffness)
+        if self.matrices is None and self.n > 1:
+            w, phi = solve_chain_modes(np.array(self.mass_ratios), np.array(self.stiffness_ratios))
+        else:
+            w, phi = solve_modes(mass, stiffness)
         if not w[0] > math.sqrt(w.size * _EPS) * w[-1]:
             name = "mass_ratios and stiffness_ratios" if self.matrices is None else "matrices"
             raise InputError(
@@ -359,6 +362,7 @@ class System:
             mass=mass,
             stiffness=stiffness,
             damping=damping,
+            springs=np.array(self.stiffness_ratios) if self.matrices is None else None,
         )
 
     def contact_load(self, r: np.ndarray) -> np.ndarray:

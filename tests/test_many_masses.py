@@ -132,7 +132,7 @@ def test_global_maximum_of_random_sums():
         table = np.empty((ROWS, n))
         u, _, h, _, used = mode_sums(r, w, zeta, chi, table)
         end = h + float(np.sum(chi**2)) / r**2
-        s = largest_sum(u, end, table, used, np.empty((80, 8)))
+        s = largest_sum(end, table, used, np.empty((80, 8)))
         tau = np.linspace(0.0, np.pi, 4000)[1:-1]
         y = np.zeros_like(tau)
         for i in range(used):

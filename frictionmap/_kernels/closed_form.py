@@ -116,6 +116,27 @@ def _argument_less_sin(x):
 
 
 @kernel
+def _over_damped_rise(x, zeta):
+    """``sinh(x) - zeta/s sinh(s x/zeta)``, s^2 = zeta^2 - 1, for x <= 1, without cancellation.
+
+    Its series is that of sinh with 1 - (s/zeta)^(2k) beside each term.
+    """
+    less = 1.0 / (zeta * zeta)  # 1 - (s/zeta)^2
+    square = x * x
+    term = x * square / 6.0
+    share = less
+    total = 0.0
+    n = 5.0
+    while True:
+        total += term * share
+        if term <= 1e-17 * total:
+            return total
+        term *= square / (n * (n - 1.0))
+        share = share * (1.0 - less) + less
+        n += 2.0
+
+
+@kernel
 def damping_functions(w, zeta, r):
     """The damping functions ``u`` and ``g`` of a mode, T(7.11), (7.12).
 
@@ -160,7 +181,9 @@ def damping_functions(w, zeta, r):
     swing = slow * (-math.expm1(-2.0 * angle)) / (2.0 * s)
     below = 0.5 * (1.0 + small * small) + 0.5 * slow * (1.0 + math.exp(-2.0 * angle))
     if x < 1.0:
-        above = small * (_sinh_less_argument(x) - (zeta / s) * _sinh_less_argument(angle))
+        above = small * _over_damped_rise(x, zeta)
     else:
-        above = 0.5 * (1.0 - small * small) - zeta * swing
+        # 1/2 (1 - small^2) - zeta swing without the s swing that both have, 1/2 (slow - exp(-angle - x))
+        lag = math.pi * a / (zeta + s)  # x - angle
+        above = -0.5 * math.expm1(-lag) * (1.0 + small * math.exp(-angle)) - swing / (zeta + s)
     return a * swing / below, above / below

@@ -35,7 +35,7 @@ from numba import njit
 import frictionmap as fm
 from frictionmap import regimes
 from frictionmap._kernels.continuous import Oscillator
-from frictionmap._kernels.cycle import HISTORY, HISTORY_ROWS, NEIGHBOUR, Limits, steady_cell
+from frictionmap._kernels.cycle import HISTORY_ROWS, NEIGHBOUR, Limits, history_length, steady_cell
 from frictionmap._kernels.phases import MAX_TERMS, step_constants
 from frictionmap._kernels.sweep import FINE_STEPS, Outputs, normalised_friction
 from frictionmap.cells import make_cells
@@ -65,7 +65,7 @@ COUNTS = {
 @njit
 def solve_cells(load, phase, oscillators, lim, stick, beta, mu, limits):
     """Stops and amplitude of single cells, each with all its constants computed anew."""
-    history = np.empty((HISTORY_ROWS, HISTORY))
+    history = np.empty((HISTORY_ROWS, history_length(np.min(oscillators[:, 0]))))
     neighbour = np.zeros(NEIGHBOUR)
     work = np.empty(MAX_TERMS)
     stop = np.zeros(1, dtype=np.uint8)

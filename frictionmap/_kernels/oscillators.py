@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .events import first_root
-from .jit import kernel
+from .jit import inner_kernel, kernel
 from .phases import MAX_TERMS
 
 # Rows of a table of oscillators, one a column: the equation, the sum that is watched, ...
@@ -140,7 +140,7 @@ def _watch(table, n, yc, ys, level, c, s, h, terms, series, watched):
     watched[0] += level
 
 
-@kernel
+@inner_kernel
 def step_on(table, n, friction, state, c, s, following):
     """The state one scan step on, into `following`."""
     for i in range(n):

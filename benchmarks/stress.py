@@ -55,7 +55,7 @@ _EVERY = 19
 _FEW = 5
 
 #: Random cells wanted, and seconds after which to be content with fewer; by quick.
-RANDOM_CELLS = {False: (1_000_000, 900.0), True: (300, 5.0)}
+RANDOM_CELLS = {False: (1_000_000, 600.0), True: (300, 5.0)}
 
 #: Turns a cycle of what beta_lim is the boundary of, with some room for a turn at the end of the samples.
 _TWO = 2.5

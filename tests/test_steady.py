@@ -202,6 +202,37 @@ def test_marginal_continuum_is_named():
         assert np.all(ds.regime == regime)
 
 
+def test_just_above_beta_lim():
+    """Next to beta_lim a stop is shorter than rounding tells, and marching creeps; 40-digit values."""
+    found = cell("wall", 0.3, 0.046342464513956357, zeta=0.2)  # 1.0e-14 above beta_lim
+    assert (found["regime"], found["stops_per_cycle"]) == (regimes.STICK_SLIP, 2.0)
+    found = cell("wall", 0.1, 0.010102000000000002)
+    assert (found["status"], found["stops_per_cycle"]) == (regimes.RESOLVED, 2.0)
+    assert found["contact_amplitude"] == pytest.approx(1.01010101007651, rel=1e-14)
+    # everywhere above it, for every damping: stick-slip, and few cells left over
+    rng = np.random.default_rng(1)
+    unresolved = cells = 0
+    for zeta in (0.0, 0.01, 0.2, 3.0):
+        for r in rng.uniform(0.05, 3.0, 20):
+            system = fm.System(damping_ratios=zeta)
+            lim = fm.boundaries(system, [r]).beta_lim.item()
+            ds = fm.sweep(system, [r], lim * (1.0 + 10.0 ** -np.arange(14.0, 0.0, -1.0)), outputs=ALL)
+            status = ds.status.values.ravel()
+            assert np.all(ds.regime.values.ravel()[status == regimes.RESOLVED] == regimes.STICK_SLIP)
+            unresolved += np.count_nonzero(status)
+            cells += status.size
+    assert unresolved < 0.01 * cells
+
+
+def test_thousands_of_stops_in_a_period():
+    """Undamped at low frequency, beta = 1/2: slides half of the time, to 1 - beta, one stop a free period."""
+    for r in (1e-2, 1e-3, 1e-4):
+        found = cell("wall", r, 0.5)
+        assert (found["status"], found["period"]) == (regimes.RESOLVED, 1)
+        assert found["stops_per_cycle"] == pytest.approx(0.5 / r)
+        assert found["contact_amplitude"] == pytest.approx(0.5, rel=20.0 * r * r)
+
+
 def test_no_drift_after_a_million_cycles():
     """An event is as exact at cycle 10^6 as at cycle 1."""
     system = fm.System()

@@ -659,11 +659,11 @@ def cells_at_mu(quick: bool) -> Group:
 def cells_grazing(quick: bool) -> Group:
     """beta where the number of stops changes, +- 10^-k: a dip of the velocity touches zero there."""
     group = Group("cells, grazing, stops counted")
-    for r, zeta in ((0.1, 0.0),) if quick else ((0.05, 0.0), (0.1, 0.0), (0.2, 0.02), (0.25, 0.01)):
+    for r, zeta in ((0.1, 0.0),) if quick else ((0.1, 0.0), (0.25, 0.01)):
         row = Row.of(one_mass(zeta), r)
-        for low, high in _changes(row, 1 if quick else 3):
+        for low, high in _changes(row, 1 if quick else 2):
             edge = mp.mpf(_bisected(row, low, high))
-            cells = around(edge, (4, 8) if quick else (3, 6, 9, 12))
+            cells = around(edge, (4, 8) if quick else (4, 10))
             check_cells(group, row, cells, count=True)
     return group
 
@@ -696,9 +696,9 @@ def _bisected(row: Row, low: float, high: float) -> float:
 
 def cells_chattering(quick: bool) -> Group:
     """Low r: many short stops in a cycle."""
-    group = Group("cells, chattering (r to 0.01), stops counted")
-    for r in (0.03,) if quick else (0.03, 0.02, 0.01):
-        for zeta in (0.0, 0.02) if quick else (0.0, 1e-3, 0.02):
+    group = Group("cells, chattering (r to 0.015), stops counted")
+    for r in (0.03,) if quick else (0.03, 0.015):
+        for zeta in (0.0, 0.02):
             row = Row.of(one_mass(zeta), r)
             check_cells(group, row, [(None, beta) for beta in (0.2, 0.5, 0.9)], count=True)
     return group

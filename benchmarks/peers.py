@@ -157,6 +157,7 @@ class Installed:
 
     name = ""
     package = ""
+    distribution = ""  # where that has another name than the package
 
     @classmethod
     def why_missing(cls):
@@ -175,7 +176,7 @@ class Installed:
     @property
     def version(self):
         """Version of the package behind this peer."""
-        return installed_version(self.package)
+        return installed_version(self.distribution or self.package)
 
 
 class Peer(Installed):

@@ -599,16 +599,20 @@ def _rows(quick: bool) -> list[tuple[Body, float]]:
     return [(one_mass(z, c), r) for c in contacts for z in dampings for r in ratios]
 
 
+def _check_edge(group: Group, row: Row, edge: Number, index: int, quick: bool) -> None:
+    """Cells around a boundary; stops are counted in a few rows only, as that is slow."""
+    check_cells(group, row, around(edge, _exponents(quick)))
+    if index % _EVERY == 0:
+        check_cells(group, row, around(edge, (3, 6)), count=True)
+
+
 def cells_at_lim(quick: bool) -> Group:
     """beta = beta_lim (1 +- 10^-k), mu = 1."""
     group = Group("cells, beta around beta_lim")
     for index, (body, r) in enumerate(_rows(quick)):
         row = Row.of(body, r)
-        if row.lim == 0 or row.lim > row.stick:
-            continue
-        check_cells(group, row, around(row.lim, _exponents(quick)))
-        if index % _EVERY == 0:
-            check_cells(group, row, around(row.lim, (3, 6)), count=True)
+        if row.lim != 0 and row.lim <= row.stick:
+            _check_edge(group, row, row.lim, index, quick)
     return group
 
 
@@ -617,9 +621,7 @@ def cells_at_stick(quick: bool) -> Group:
     group = Group("cells, beta around beta_stick")
     for index, (body, r) in enumerate(_rows(quick)):
         row = Row.of(body, r)
-        check_cells(group, row, around(row.stick, _exponents(quick)))
-        if index % _EVERY == 0:
-            check_cells(group, row, around(row.stick, (3, 6)), count=True)
+        _check_edge(group, row, row.stick, index, quick)
     return group
 
 

@@ -47,11 +47,7 @@ class CvodePeer(Peer):
 
     name = "CVODE"
     package = "sksundae"
-
-    @property
-    def version(self):
-        """Version of the package, whose distribution has another name."""
-        return installed_version("scikit-sundae")
+    distribution = "scikit-sundae"
 
     def __init__(self, rtol=1e-6, atol=1e-12):
         self.tolerances = rtol, atol
@@ -90,11 +86,7 @@ class StructureCvodePeer(StructurePeer):
 
     name = "CVODE"
     package = "sksundae"
-
-    @property
-    def version(self):
-        """Version of the package, whose distribution has another name."""
-        return installed_version("scikit-sundae")
+    distribution = "scikit-sundae"
 
     def __init__(self, chain: Chain, rtol=1e-6, atol=1e-12):
         super().__init__(chain)

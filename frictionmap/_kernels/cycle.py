@@ -350,7 +350,7 @@ def steady_cell(step, fine, oscillator, b, mu_b, b_lim, z, v, c, s, limits, stop
     b, mu_b : kinetic and static friction over the load amplitude; b > 0
     b_lim : boundary of b to continuous motion
     stop : (1,) set by another thread to end the work
-    history, work : scratch; from `make_history`, and of shape (MAX_TERMS,)
+    history, work : scratch; shapes (HISTORY_ROWS, `history_length` or more) and (MAX_TERMS,)
     neighbour : (NEIGHBOUR,) becomes the orbit solved for
     """
     end = _TURN * limits.cycles

@@ -331,9 +331,14 @@ def steady_structure(
     v_abs = orbit.v_abs[i]
     resonance = math.isinf(v_abs)
     in_step = vibrates_in_step(st)
+    slides = 0
+    solved = False
+    c1, s1, sign1 = c, s, 1.0
+    if unique and limits.newton and not (in_step or (marginal and beta < friction.b_lim)):
+        solved, c1, s1, sign1, slides = _from_neighbour(st, orbit, i, friction, limits, work, scratch)
     around = beta < friction.b_lim and not resonance
     amplitude = phase = radius = 0.0
-    if around:
+    if around and not solved:
         phase = orbit_phase(v_abs, orbit.v_arg[i], orbit.u[i], beta)
         amplitude = continuous_amplitude(v_abs, orbit.u[i], orbit.g[i], beta)
         radius = stop_free_radius(fine, orbit, i, beta, mu_beta, phase, work.table, work.middle, work.moved)
@@ -345,9 +350,6 @@ def steady_structure(
     half = tries = 0
     pause = 1
     next_try = 2
-    slides = 0
-    solved = False
-    c1, s1, sign1 = c, s, 1.0
     code = REVERSE
     net = MOVING
     old_lag, old_gap = 0, math.inf
@@ -357,8 +359,6 @@ def steady_structure(
     stops, stuck, largest = 0, 0.0, 0.0
     old_stops, old_stuck, old_largest = 0, 0.0, 0.0
 
-    if unique and limits.newton and not (in_step or (marginal and beta < friction.b_lim)):
-        solved, c1, s1, sign1, slides = _from_neighbour(st, orbit, i, friction, limits, work, scratch)
     while not solved and time < end_time:
         if stop[0] != 0:
             return unresolved(NOT_COMPUTED, time / _TURN)

@@ -19,7 +19,8 @@ regimes       the table of regime, origin and status codes
 labels        names, units and meanings of everything in a dataset
 checks        checks of input
 config        configuration files
-storage       files: written whole or not at all, read with a check
+storage       files: written whole or not at all
+reading       files: read with a check, brought into one form
 plot          pictures
 cli           the command line
 _kernels      the only home of jitted code: numbers and arrays in, numbers and codes out

@@ -164,7 +164,8 @@ def _compute(options: argparse.Namespace) -> None:
 
 
 def _plot(options: argparse.Namespace) -> None:
-    from .storage import check_output, read
+    from .reading import read
+    from .storage import check_output
 
     ds = read(options.file)
     output = options.output or Path(f"{options.file.stem}.png")
@@ -177,7 +178,7 @@ def _plot(options: argparse.Namespace) -> None:
 
 
 def _info(options: argparse.Namespace) -> None:
-    from .storage import read
+    from .reading import read
     from .summary import describe_file
 
     print(describe_file(read(options.file)))

@@ -15,7 +15,8 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 
 from . import regimes
 from .errors import InputError
-from .storage import kind, whole_file
+from .reading import kind
+from .storage import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,4 +1,4 @@
-"""Files: written beside their place and moved there whole; read with a check that they are ours."""
+"""Files: written beside their place and moved there whole."""
 
 import contextlib
 import os
@@ -10,7 +10,6 @@ from pathlib import Path
 import xarray as xr
 
 from .errors import InputError
-from .labels import LABELS
 
 #: A regime map of 10^6 cells takes 32 kB at this level; higher ones only take longer.
 _COMPRESSION = {"zlib": True, "complevel": 4, "shuffle": True}
@@ -69,32 +68,3 @@ def write(ds: xr.Dataset, path: Path, command: str = "") -> None:
             ds.to_netcdf(scratch, format="NETCDF4", engine="netcdf4", encoding=encoding)
         except RuntimeError as error:  # the library's word for any trouble, a full disk above all
             raise OSError(f"{path} cannot be written ({error}); is there room on the disk?") from error
-
-
-def read(path: Path) -> xr.Dataset:
-    """Read a file that this package wrote, as it is (nothing is held open)."""
-    if not path.is_file():
-        wrong = "is not a file" if path.exists() else "does not exist"
-        raise InputError(f"file {path} {wrong}; give a file written by frictionmap")
-    try:
-        with xr.open_dataset(path, engine="netcdf4") as opened:
-            ds = opened.load()
-    except (OSError, ValueError, RuntimeError) as error:
-        raise InputError(
-            f"file {path} must be NetCDF written by frictionmap; it cannot be opened ({error})"
-        ) from None
-    if not str(ds.attrs.get("source", "")).startswith("frictionmap") or not any(
-        name in LABELS for name in ds.data_vars
-    ):
-        raise InputError(
-            f"file {path} must be written by frictionmap; "
-            f"its source is {ds.attrs.get('source', 'not given')!r}"
-        )
-    return ds
-
-
-def kind(ds: xr.Dataset) -> str:
-    """What a dataset holds: "map", "response" or "boundaries"."""
-    if "tau" in ds.dims:
-        return "response"
-    return "map" if "beta" in ds.dims else "boundaries"

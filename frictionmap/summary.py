@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from . import regimes
-from .storage import kind
+from .reading import kind
 
 
 def describe_map(ds: xr.Dataset) -> str:

@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 
 import frictionmap as fm
-from frictionmap import InputError, storage
+from frictionmap import InputError, reading, storage
 from frictionmap.cli import main
 from frictionmap.settings import OUTPUTS
 
@@ -195,13 +195,13 @@ def test_values_survive(files):
 
 
 def test_kinds(opened, kind):
-    assert storage.kind(opened) == kind
+    assert reading.kind(opened) == kind
 
 
 def test_read_holds_nothing_open(files, tmp_path, kind):
     path = tmp_path / "copy.nc"
     path.write_bytes((files / f"{kind}.nc").read_bytes())
-    ds = storage.read(path)
+    ds = reading.read(path)
     path.unlink()
     assert float(ds["beta_lim"].max()) > 0.0
     assert not any(target.startswith(str(path)) for target in open_files())
@@ -221,7 +221,7 @@ def test_a_truncated_file_is_refused(files, tmp_path, length):
     with pytest.raises(
         InputError, match=r"^file .*cut\.nc must be NetCDF written by frictionmap; it cannot be"
     ):
-        storage.read(path)
+        reading.read(path)
 
 
 def test_a_damaged_file_is_refused(tmp_path):
@@ -233,7 +233,7 @@ def test_a_damaged_file_is_refused(tmp_path):
     content[middle : middle + 1000] = bytes(1000)
     path.write_bytes(content)
     with pytest.raises(InputError, match=r"damaged\.nc must be NetCDF written by frictionmap; it cannot be"):
-        storage.read(path)
+        reading.read(path)
 
 
 # Whole or not at all
@@ -314,7 +314,7 @@ def test_writing_does_not_touch_the_dataset(tiny, tmp_path):
     before = tiny.copy(deep=True)
     storage.write(tiny, tmp_path / "out.nc", "a command")
     xr.testing.assert_identical(tiny, before)
-    assert storage.read(tmp_path / "out.nc").attrs["history"].endswith("Z a command")
+    assert reading.read(tmp_path / "out.nc").attrs["history"].endswith("Z a command")
 
 
 def test_check_output_leaves_nothing(tmp_path):

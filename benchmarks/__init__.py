@@ -2,36 +2,43 @@
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
-NAME is accuracy, peers, scaling, startup, stress, steady, structures or bound.  Each one prints tables, and
-writes JSON and a figure.  `python -m benchmarks readme` puts the numbers of the committed results into
-README.md.
+NAME is accuracy, peers, scaling, startup, stress, steady, structures or bound: each one is a module of that
+name in `measures`.  It prints tables, and writes JSON and a figure.  `python -m benchmarks readme` puts the
+numbers of the committed results into README.md.
 
-===============  ======================================================================================
-module           what is in it
-===============  ======================================================================================
-accuracy         `accuracy`: error against run time, ours, time stepping and general-purpose solvers
-solvers          every method of `accuracy` behind one form
-baselines        time stepping: RK4 with sticking logic, Moreau-Jean
-bracket          the search of S: by grid, by the kernel, in 40 digits
-exact            references written from the equation of motion
-sundials         CVODE as a peer
-against          `peers`: one mass by every solver; solved against marched
-peers            general-purpose ODE solvers doing the same job
-batch_peer       one of them on many cells at a time
-scaling          `scaling`: cost against cells, threads, low frequency, share of open cells
-floor            nanoseconds per slide and stop, and what their closed forms take with no logic
-startup          `startup`: import, --help, first run (compile), second run, in fresh processes
-stress           `stress`: the numerical torture test against 40-digit arithmetic
-stress_random    up to a million random cells: does every one end, with an answer or a status?
-reference        40-digit closed forms, condition numbers and steady states
-steady           `steady`: solved against marched, one answer for mu = 1, what stays unresolved undamped
-structure_peers  the same solvers for chains of masses
-structures       `structures`: cost against the number of masses; five masses against the peers
-bound            `bound`: beta_lim, the thesis's sum of maxima and a slow simulation; docs/fig-5-55.png
-readme           the tables of README.md, made from the committed results
-quoted_errors    of these the ones about errors
-quoting          how numbers are quoted in them
-figures          drawn without a display, written beside the numbers they show
-record           machine, versions, medians, tables; results as JSON; one processor
-===============  ======================================================================================
+=============================  ========================================================================
+`measures/`                    one module for each sub-command
+  accuracy                     error against run time, ours, time stepping and general-purpose solvers
+  methods                      every method of `accuracy` behind one form
+  search_of_s                  the search of S: by grid, by the kernel, in 40 digits
+  peers                        one mass by every solver; solved against marched
+  scaling                      cost against cells, threads, low frequency, share of open cells
+  floor                        nanoseconds per slide and stop, and what their closed forms take with no logic
+  startup                      import, --help, first run (compile), second run, in fresh processes
+  stress                       the numerical torture test against 40-digit arithmetic
+  steady                       solved against marched, one answer for mu = 1, what stays unresolved undamped
+  structures                   cost against the number of masses; five masses against the peers
+  bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
+`peers/`                       other ways to do the same job
+  one_mass, chain              general-purpose ODE solvers, for one mass and for chains of masses
+  heyoka_batch                 one of them on many cells at a time
+  cvode                        CVODE of SUNDIALS
+  fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean
+`references/`                  what is right, with nothing of the package in it; the tests use it too
+  naive                        any structure from the equations of motion, in doubles
+  orbits                       event-exact steady states: one mass in doubles, structures in 40 digits
+  closed_forms                 40-digit closed forms, condition numbers and steady states
+`report/`                      what is made of the measurements
+  record                       machine, versions, medians, tables; results as JSON; one processor
+  figures                      drawn without a display, written beside the numbers they show
+  readme                       the tables of README.md, made from the committed results
+  quoted_errors                of these the ones about errors
+  quoting                      how numbers are quoted in them
+`results/`                     the committed results, and `results/local` of runs on this machine
+=============================  ========================================================================
 """
+
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+RESULTS = ROOT / "benchmarks" / "results"

@@ -7,29 +7,21 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
+from . import RESULTS
+
 # one thread each, before any library is loaded
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
-#: Sub-command: the module with its `run`, imported only when it is asked for.
-BENCHMARKS = {
-    "accuracy": "accuracy",
-    "peers": "against",
-    "scaling": "scaling",
-    "startup": "startup",
-    "stress": "stress",
-    "steady": "steady",
-    "structures": "structures",
-    "bound": "bound",
-}
-RESULTS = Path(__file__).parent / "results"
+#: Sub-commands: each has a module of its name in `measures` with a `run`, imported only when it is asked for.
+BENCHMARKS = ("accuracy", "peers", "scaling", "startup", "stress", "steady", "structures", "bound")
 
 
 def _run(name: str, quick: bool, results: Path) -> float:
     """Run one benchmark; the seconds it took, imports and compilation included."""
     print(f"\n{name}", flush=True)
     began = time.perf_counter()
-    run: Callable[[bool, Path], dict] = import_module(f".{BENCHMARKS[name]}", __package__).run
+    run: Callable[[bool, Path], dict] = import_module(f".measures.{name}", __package__).run
     run(quick, results)
     return time.perf_counter() - began
 
@@ -46,7 +38,7 @@ def main() -> None:
     )
     options = parser.parse_args()
     if options.benchmark == "readme":  # quotes what is there
-        from .readme import rewrite
+        from .report.readme import rewrite
 
         rewrite(options.results or RESULTS)
         return

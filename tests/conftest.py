@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 # A kernel's cache is renewed when its own file changes, not when a kernel that it calls does.  One cache for
 # each state of the sources makes sure that the tests see the code as it is.
-_SOURCES = [*sorted((ROOT / "frictionmap").glob("_kernels/*.py")), ROOT / "frictionmap" / "regimes.py"]
+_SOURCES = [*sorted((ROOT / "frictionmap").glob("_kernels/**/*.py")), ROOT / "frictionmap" / "regimes.py"]
 _STATE = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()[:16]
 os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(tempfile.gettempdir()) / f"frictionmap-kernels-{_STATE}"))
 os.environ.setdefault("MPLBACKEND", "agg")

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks import quoting, readme, record
 from benchmarks.__main__ import BENCHMARKS
+from benchmarks.report import quoting, readme, record
 
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "benchmarks" / "results"

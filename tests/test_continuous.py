@@ -5,9 +5,9 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
-from naive import naive_steady_state
 
 import frictionmap as fm
+from benchmarks.references.naive import naive_steady_state
 from frictionmap.continuous import _answers, inversion_points
 
 KINDS = {"wall": "fixed-wall", "base": "joined-base-wall", "masses": "between-masses"}

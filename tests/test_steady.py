@@ -5,10 +5,10 @@ from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import pytest
-from naive import naive_steady_state
 from numba import njit
 
 import frictionmap as fm
+from benchmarks.references.naive import naive_steady_state
 from frictionmap import regimes
 from frictionmap._kernels.events import after_slide, slide
 from frictionmap._kernels.phases import MAX_TERMS, step_constants

@@ -5,10 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from naive import Motion, Structure, naive_steady_state
 from test_many_masses import chain
 
 import frictionmap as fm
+from benchmarks.references.naive import Motion, Structure, naive_steady_state
 from frictionmap import regimes
 from frictionmap._kernels import structure_history as history
 from frictionmap._kernels.closed_form import decay

@@ -36,10 +36,10 @@ from frictionmap.curves import many_mode_curves, one_mass_curves
 from frictionmap.maps import _allocate
 from frictionmap.settings import Solver
 
-from .figures import new_figure, save_figure
-from .peers import Outcome
-from .record import pinned, save, spread, timed
-from .structure_peers import PEERS, Chain, StructurePeer
+from ..peers.chain import PEERS, Chain, StructurePeer
+from ..peers.one_mass import Outcome
+from ..report.figures import new_figure, save_figure
+from ..report.record import pinned, save, spread, timed
 
 MASSES = (1, 2, 5, 20, 50)
 BETA = 0.5

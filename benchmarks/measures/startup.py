@@ -13,10 +13,10 @@ from pathlib import Path
 
 import xarray as xr
 
-from .figures import new_figure, save_figure
-from .record import pinned, save, spread, table, timed
+from .. import ROOT
+from ..report.figures import new_figure, save_figure
+from ..report.record import pinned, save, spread, table, timed
 
-ROOT = Path(__file__).resolve().parent.parent
 ONE_MASS, STRUCTURE = (ROOT / "configs" / name for name in ("fig-3-12.toml", "fig-7-7-zeta-0.1.toml"))
 
 #: Rounds, and how many of them compile the kernels of structures too; by quick.

@@ -23,8 +23,10 @@ from frictionmap.cells import OneMassCells, make_cells
 from frictionmap.maps import _allocate
 from frictionmap.settings import Solver
 
-from . import peers, structure_peers, sundials
-from .baselines import (
+from ..peers import chain as chain_peers
+from ..peers import cvode, one_mass
+from ..peers.chain import Chain
+from ..peers.fixed_step import (
     MOST_STOPS,
     SHORTEST_STOP,
     TWO_PI,
@@ -35,7 +37,6 @@ from .baselines import (
     moreau_inverse,
     one_mass_problem,
 )
-from .structure_peers import Chain
 
 #: Each cell is solved so often in one timed call of ours: a call costs as much as a cell.
 COPIES = 40
@@ -70,7 +71,7 @@ class Scene(NamedTuple):
     def problem(self, r: float, beta: float) -> Problem:
         """One of its cells, as the baselines know it."""
         if self.masses == 1:
-            return one_mass_problem(peers.Cell(self.contact, r, beta, self.mu, self.zeta))
+            return one_mass_problem(one_mass.Cell(self.contact, r, beta, self.mu, self.zeta))
         return chain_problem(self.chain, r, beta, self.mu)
 
 
@@ -285,7 +286,7 @@ def prepare_moreau(scene: Scene, cells: list[tuple[float, float]], setting: floa
 # ---------------------------------------------------------------- general-purpose solvers
 
 
-def _record_stops(peer: structure_peers.StructurePeer) -> list[float]:
+def _record_stops(peer: chain_peers.StructurePeer) -> list[float]:
     """A list that the peer adds the start of every stop to, or of what is left of one at a new window."""
     begins: list[float] = []
     stop = peer.stop
@@ -298,18 +299,18 @@ def _record_stops(peer: structure_peers.StructurePeer) -> list[float]:
     return begins
 
 
-def _run_one_mass(peer: peers.Peer, scene: Scene, cell: tuple[float, float], cycles: int) -> Answer:
+def _run_one_mass(peer: one_mass.Peer, scene: Scene, cell: tuple[float, float], cycles: int) -> Answer:
     begins: list[float] = []
     try:
         outcome = peer.run(scene.contact, *cell, scene.mu, scene.zeta, cycles=cycles, begins=begins)
     except RuntimeError:
         return FAILED
-    _, phase = peers.load_in_contact(scene.contact, cell[0], scene.zeta)
+    _, phase = one_mass.load_in_contact(scene.contact, cell[0], scene.zeta)
     return Answer(outcome.stops, outcome.Z, _within(np.array(begins) - phase))
 
 
 def _run_structure(
-    peer: structure_peers.StructurePeer, begins: list[float], scene: Scene, cell: tuple[float, float],
+    peer: chain_peers.StructurePeer, begins: list[float], scene: Scene, cell: tuple[float, float],
     cycles: int,
 ) -> Answer:  # fmt: skip
     begins.clear()
@@ -343,8 +344,8 @@ def prepare_peer(one_mass: Callable, structure: Callable) -> Callable[..., Prepa
     return prepare
 
 
-def _solve_ivp(chain: Chain, tolerance: float) -> structure_peers.SolveIvpPeer:
-    peer = structure_peers.SolveIvpPeer(chain)
+def _solve_ivp(chain: Chain, tolerance: float) -> chain_peers.SolveIvpPeer:
+    peer = chain_peers.SolveIvpPeer(chain)
     peer.rtol, peer.atol = tolerance, absolute(tolerance)
     return peer
 
@@ -383,22 +384,22 @@ METHODS = (
     ),
     Method(
         "solve_ivp DOP853", "rtol", _TOLERANCES, _FEW, True,
-        prepare_peer(lambda t: peers.SolveIvpPeer("DOP853", t, absolute(t)), _solve_ivp),
-        lambda _: peers.SolveIvpPeer.why_missing(),
+        prepare_peer(lambda t: one_mass.SolveIvpPeer("DOP853", t, absolute(t)), _solve_ivp),
+        lambda _: one_mass.SolveIvpPeer.why_missing(),
     ),
     Method(
         "heyoka", "tol", (*_TOLERANCES, _EPS), (1e-6, _EPS), False,
         prepare_peer(
-            lambda t: peers.HeyokaPeer(tol=t), lambda chain, t: structure_peers.HeyokaPeer(chain, tol=t)
+            lambda t: one_mass.HeyokaPeer(tol=t), lambda chain, t: chain_peers.HeyokaPeer(chain, tol=t)
         ),
-        lambda _: peers.HeyokaPeer.why_missing(),
+        lambda _: one_mass.HeyokaPeer.why_missing(),
     ),
     Method(
         "CVODE", "rtol", _TOLERANCES, _FEW, True,
         prepare_peer(
-            lambda t: sundials.CvodePeer(t, absolute(t)),
-            lambda chain, t: sundials.StructureCvodePeer(chain, t, absolute(t)),
+            lambda t: cvode.CvodePeer(t, absolute(t)),
+            lambda chain, t: cvode.StructureCvodePeer(chain, t, absolute(t)),
         ),
-        lambda _: sundials.CvodePeer.why_missing(),
+        lambda _: cvode.CvodePeer.why_missing(),
     ),
 )  # fmt: skip

@@ -30,9 +30,9 @@ import frictionmap as fm
 from frictionmap import regimes
 from frictionmap.maps import default_threads
 
-from .figures import new_figure, save_figure
+from ..report.figures import new_figure, save_figure
+from ..report.record import pinned, save, spread, table, timed
 from .floor import phase_floor
-from .record import pinned, save, spread, table, timed
 
 #: Intervals of the coarsest grid in r and beta, and how many times finer the others are: 10^3 to 10^8 cells.
 COARSEST = (25, 40)

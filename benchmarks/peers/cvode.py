@@ -8,12 +8,11 @@ them anew with `init_step`.
 
 import math
 from importlib import import_module
-from importlib.metadata import version as installed_version
 
 import numpy as np
 
-from .peers import SLIDE_END, Peer
-from .structure_peers import Chain, StructurePeer
+from .chain import Chain, StructurePeer
+from .one_mass import SLIDE_END, Peer
 
 #: Steps inside one phase, at most: far above what any phase takes.
 MOST_STEPS = 1_000_000

@@ -2,8 +2,8 @@
 
 The chain of T Fig. 6.17: five masses, contact on mass 3, load on mass 1, mu = 1.  The thesis adds up the
 modes' maxima of S, each at its own time: a lower bound (`beta_lim_modal`).  `beta_lim` takes the maximum of
-the sum.  `tests/naive.py` marches the equations of motion and knows neither: at some frequencies the least
-beta with stops is found by bisection, once without damping and once with a little.
+the sum.  `references/naive.py` marches the equations of motion and knows neither: at some frequencies the
+least beta with stops is found by bisection, once without damping and once with a little.
 
 - Without damping a march from rest takes thousands of periods.  With mu = 1 the regime of the steady state
   does not depend on the start, so any motion that is seen to repeat itself decides.  A run starts from what
@@ -17,18 +17,17 @@ The full run draws docs/fig-5-55.png.
 """
 
 import math
-import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 import frictionmap as fm
 
-from .figures import new_figure, save_figure
-from .record import save
+from .. import ROOT
+from ..references.naive import naive_steady_state
+from ..report.figures import new_figure, save_figure
+from ..report.record import save
 
-ROOT = Path(__file__).resolve().parent.parent
 FIGURE = ROOT / "docs" / "fig-5-55.png"
 
 MASSES, CONTACT = 5, 3
@@ -44,15 +43,6 @@ def chain(zeta: float) -> fm.System:
     """The chain of T Fig. 6.17."""
     ones = [1.0] * MASSES
     return fm.System(contact_masses=[CONTACT], mass_ratios=ones, stiffness_ratios=ones, damping_ratios=zeta)
-
-
-def _naive() -> Callable:
-    folder = str(ROOT / "tests")
-    if folder not in sys.path:
-        sys.path.insert(0, folder)
-    from naive import naive_steady_state
-
-    return naive_steady_state
 
 
 def _state(system: fm.System, r: float, beta: float, below: float) -> tuple[np.ndarray, np.ndarray]:
@@ -71,7 +61,7 @@ def stops(system: fm.System, r: float, beta: float, below: float, cycles: int) -
     """Whether the simulated steady state has stops, None if left open; `below` is a beta seen without."""
     ones = [1.0] * MASSES
     start = "rest" if system.zeta else _state(system, r, beta, below)
-    found = _naive()(
+    found = naive_steady_state(
         gamma=ones, kappa=ones, contact=("wall", CONTACT), load=1, zeta=system.zeta, r=r, beta=beta,
         start=start, cycles=cycles, tol=1e-10,
     )  # fmt: skip

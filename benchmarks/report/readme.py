@@ -11,10 +11,11 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
+from .. import ROOT
 from .quoted_errors import accuracy_lines, steady_lines, stress_lines
 from .quoting import duration, markdown, rounded_off, two_digits
 
-README = Path(__file__).resolve().parent.parent / "README.md"
+README = ROOT / "README.md"
 BEGIN = "<!-- from benchmarks/results by `python -m benchmarks readme`: do not edit -->"
 END = "<!-- end of the results -->"
 

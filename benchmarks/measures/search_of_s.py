@@ -19,7 +19,7 @@ from frictionmap._kernels.curves import response_functions
 from frictionmap._kernels.sums import many_mode_functions
 from frictionmap.curves import find_curves
 
-from .record import spread, timed
+from ..report.record import spread, timed
 from .structures import equal_chain
 
 DIGITS = 40

@@ -19,7 +19,7 @@ import mpmath as mp
 import numpy as np
 from numba import njit
 
-from .baselines import SHORTEST_STOP, TWO_PI, Problem
+from ..peers.fixed_step import SHORTEST_STOP, TWO_PI, Problem
 
 #: Terms of the series in doubles, for steps of at most half a radian of the fastest part of the motion.
 TERMS = 18

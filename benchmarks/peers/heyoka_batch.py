@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .peers import LATE, SLIDE_END, STUCK, TWO_PI, Cell, Installed, Outcome, load_in_contact
+from .one_mass import LATE, SLIDE_END, STUCK, TWO_PI, Cell, Installed, Outcome, load_in_contact
 
 #: Lanes of the batch.  Of 64, 128, 256, 512 and 1024 tried, 256 was the fastest together with 512, which
 #: takes twice as long to compile.  `compact_mode` compiles in half the time; what it gains is lost in a run.

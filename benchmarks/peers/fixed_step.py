@@ -21,8 +21,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from .peers import Cell, load_in_contact
-from .structure_peers import Chain, matrices
+from .chain import Chain, matrices
+from .one_mass import Cell, load_in_contact
 
 TWO_PI = 2.0 * math.pi
 

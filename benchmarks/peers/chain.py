@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .peers import MAX_PHASES, SLIDE_END, TWO_PI, Installed, Outcome
+from .one_mass import MAX_PHASES, SLIDE_END, TWO_PI, Installed, Outcome
 
 #: A stop shorter than this is not counted: what is left of one that rounding makes.
 SHORTEST_STOP = 1e-9

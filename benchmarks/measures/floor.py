@@ -21,7 +21,7 @@ from numba import njit
 from frictionmap._kernels.events import _sum_at, after_slide, slide
 from frictionmap._kernels.phases import MAX_TERMS, expand, step_constants
 
-from .record import pinned, spread, table, timed
+from ..report.record import pinned, spread, table, timed
 
 #: r, zeta, b, mu of the normalised oscillator: short and long slides, with and without stops.
 MOTIONS = (

@@ -14,10 +14,11 @@ import xarray as xr
 import frictionmap as fm
 from frictionmap import regimes
 
-from .figures import new_figure, save_figure
-from .record import save, table
+from .. import ROOT
+from ..report.figures import new_figure, save_figure
+from ..report.record import save, table
 
-CONFIGS = Path(__file__).resolve().parent.parent / "configs"
+CONFIGS = ROOT / "configs"
 OUTPUTS = ("regime", "stops_per_cycle", "contact_amplitude", "status", "period")
 
 #: Excitation periods that marching may take.

@@ -43,11 +43,11 @@ from frictionmap.curves import one_mass_curves
 from frictionmap.maps import _allocate
 from frictionmap.settings import Solver
 
-from .batch_peer import FEW_LANES, HeyokaBatchPeer
-from .figures import new_figure, save_figure
-from .peers import PEERS, Cell, HeyokaPeer, Outcome, Peer
-from .quoting import two_digits
-from .record import pinned, save, spread, table, timed
+from ..peers.heyoka_batch import FEW_LANES, HeyokaBatchPeer
+from ..peers.one_mass import PEERS, Cell, HeyokaPeer, Outcome, Peer
+from ..report.figures import new_figure, save_figure
+from ..report.quoting import two_digits
+from ..report.record import pinned, save, spread, table, timed
 from .structures import SMALL_Z, equal_chain
 
 CYCLES = 200

@@ -16,7 +16,7 @@ import xarray as xr
 import frictionmap as fm
 from frictionmap import regimes
 
-from .record import table
+from ...report.record import table
 
 OUTPUTS = ("regime", "status", "stops_per_cycle", "contact_amplitude")
 

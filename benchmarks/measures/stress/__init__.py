@@ -9,7 +9,7 @@ Regimes at mu = 1 are proved: continuous below beta_lim, stuck from beta_stick o
 on which side a double lies.  Between them motions stop, or turn more than twice a cycle.  A wrong regime is
 `at rounding` where it is nearer to the boundary than the rounding of r can tell, else it is listed.  Stops
 are counted by the 40-digit steady state, found from rest, or for mu = 1 from anywhere.  Where there is no
-such answer, outputs have to agree with each other and their status.  Random cells (`stress_random`) follow.
+such answer, outputs have to agree with each other and their status.  Random cells (`random_cells`) follow.
 """
 
 import math
@@ -29,10 +29,11 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 import frictionmap as fm
 from frictionmap import regimes
 
-from . import reference, stress_random
-from .figures import new_figure, save_figure
-from .record import pinned, save, table
-from .reference import Number, mp
+from ...references import closed_forms as reference
+from ...references.closed_forms import Number, mp
+from ...report.figures import new_figure, save_figure
+from ...report.record import pinned, save, table
+from . import random_cells
 
 ALLOWED = 2.0  # digits beyond the condition number
 SLOW = 10.0  # seconds for a cell
@@ -877,8 +878,8 @@ def run(quick: bool, results: Path) -> dict:
             print(f"{group.name}: {group.seconds:.1f} s", flush=True)
     summaries = {group.name: _summary(group) for group in groups}
     _print(summaries)
-    random = stress_random.random_cells(*RANDOM_CELLS[quick])
-    stress_random.report(random)
+    random = random_cells.random_cells(*RANDOM_CELLS[quick])
+    random_cells.report(random)
     content = {
         "allowed beyond the condition number": ALLOWED,
         "groups": summaries,

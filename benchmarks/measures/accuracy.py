@@ -4,13 +4,13 @@ Steady states.  Random stick-slip cells in scenes of low and high frequency, bot
 one mass and three.  Every method marches `CYCLES` excitation periods from rest and reports the last, but
 for "frictionmap", the package as it is used, which ends when the steady state is found.  Kept are cells that
 repeat every excitation period and whose Floquet multipliers say that the transient is over by then: what is
-left is the method's error.  They are checked against 40-digit orbits (`exact.periodic_orbit`).  Peers of one
+left is the method's error.  They are checked against 40-digit orbits (`orbits.periodic_orbit`).  Peers of one
 mass have the end of a stop in closed form (an arccos), which favours them; fixed-step methods search for it.
-Siconos is not among the peers; its kind of time stepping, Moreau-Jean, is a baseline of ours (`baselines`).
+Siconos is not among the peers; its kind of time stepping, Moreau-Jean, is a baseline of ours (`fixed_step`).
 Time is that of the cells alone: our curves at the frequency of a cell are given beside it.
 
 Random cells.  20,000 cells of one mass by the public interface at the default settings, against an
-event-exact code of its own (`exact.settle`).
+event-exact code of its own (`orbits.settle`).
 
 Scan steps.  Time for an open cell against `steps`.
 """
@@ -28,14 +28,14 @@ from frictionmap import regimes
 from frictionmap.curves import find_curves
 from frictionmap.settings import Solver
 
-from . import bracket
-from .baselines import TWO_PI, Problem, march_rk4
-from .exact import DIGITS, Orbit, periodic_orbit, settle
-from .figures import new_figure, save_figure
-from .peers import HeyokaPeer, SolveIvpPeer, load_in_contact
-from .record import pinned, save, spread, table, timed
-from .solvers import MARCHED, METHODS, SOLVED, STEPS, Answer, Method, Scene, open_cells
-from .sundials import CvodePeer
+from ..peers.cvode import CvodePeer
+from ..peers.fixed_step import TWO_PI, Problem, march_rk4
+from ..peers.one_mass import HeyokaPeer, SolveIvpPeer, load_in_contact
+from ..references.orbits import DIGITS, Orbit, periodic_orbit, settle
+from ..report.figures import new_figure, save_figure
+from ..report.record import pinned, save, spread, table, timed
+from . import search_of_s
+from .methods import MARCHED, METHODS, SOLVED, STEPS, Answer, Method, Scene, open_cells
 
 #: Excitation periods that are marched.
 CYCLES = 100
@@ -523,7 +523,7 @@ def run(quick: bool, results: Path) -> dict:
                 for peer in (SolveIvpPeer, HeyokaPeer, CvodePeer)
                 if peer.available()
             },
-            "search of S": bracket.measure(quick),
+            "search of S": search_of_s.measure(quick),
             "steady states": steady_states(quick),
             "scan steps": scan_steps(quick),
             "random cells": random_cells(quick),

@@ -148,7 +148,7 @@ def find_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
 def boundary_variables(found: Curves) -> dict[str, xr.Variable]:
     """beta_lim, beta_lim_modal and beta_stick, dims (mu, r)."""
     return {
-        name: label_variable(name, ("mu", "r"), getattr(found, name))
+        name: label_variable(name, getattr(found, name))
         for name in ("beta_lim", "beta_lim_modal", "beta_stick")
     }
 
@@ -161,7 +161,7 @@ def _padded(rows: list[np.ndarray]) -> np.ndarray:
     return table
 
 
-def _invariants(system: System, r: np.ndarray) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+def _invariants(system: System, r: np.ndarray) -> dict[str, np.ndarray]:
     """Invariant points within the axis; a variable is left out if it would be empty, as NetCDF demands."""
     positive = r[r > 0.0]
     if positive.size < 2:
@@ -170,15 +170,15 @@ def _invariants(system: System, r: np.ndarray) -> dict[str, tuple[tuple[str, ...
     low, high = first * (1.0 - _ON_END), r[-1] * (1.0 + _ON_END)
     end = min(r[-1] * (1.0 + _REACH), checks.LARGEST_RATIO)
     reach = first * (1.0 - _REACH), end, _LISTED_POINTS + system.n
-    found: dict[str, tuple[tuple[str, ...], np.ndarray]] = {}
+    found: dict[str, np.ndarray] = {}
     points = invariant_points(system, *reach)
     points = points[(points >= low) & (points <= high)]
     if points.size:
-        found["invariant_point"] = ("invariant",), points
+        found["invariant_point"] = points
     if system.n <= _LISTED_MASSES and one_phase(system) and not system.modes.zeta.any():
         rows = [row[(row >= low) & (row <= high)] for row in all_mass_invariant_points(system, *reach)]
         if any(row.size for row in rows):
-            found["mass_invariant_point"] = ("dof", "mass_invariant"), _padded(rows)
+            found["mass_invariant_point"] = _padded(rows)
     return found
 
 
@@ -187,18 +187,18 @@ def _feature_variables(system: System, r: np.ndarray, mu: np.ndarray) -> dict[st
     modes = system.modes
     limits = [high_frequency_limits(system, value) for value in mu]
     found = {
-        "natural_frequency": (("mode",), modes.w),
-        "peak_threshold": (("mode",), peak_thresholds(system)),
-        "beta_lim_high": (("mu",), np.array([limit.beta_lim for limit in limits])),
-        "beta_stick_high": (("mu",), np.array([limit.beta_stick for limit in limits])),
+        "natural_frequency": modes.w,
+        "peak_threshold": peak_thresholds(system),
+        "beta_lim_high": np.array([limit.beta_lim for limit in limits]),
+        "beta_stick_high": np.array([limit.beta_stick for limit in limits]),
         **_invariants(system, r),
     }
     if system.n > 1:  # one mass held does not vibrate, and NetCDF has no empty dimension
-        found["held_frequency"] = ("held_mode",), modes.held_frequencies()
-        found["held_response"] = ("dof", "r"), np.abs(modes.held_response(r)).T
+        found["held_frequency"] = modes.held_frequencies()
+        found["held_response"] = np.abs(modes.held_response(r)).T
     else:
-        found["held_response"] = ("dof", "r"), np.full((1, r.size), float(modes.base_motion))
-    return {name: label_variable(name, dims, values) for name, (dims, values) in found.items()}
+        found["held_response"] = np.full((1, r.size), float(modes.base_motion))
+    return {name: label_variable(name, values) for name, values in found.items()}
 
 
 def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
@@ -251,7 +251,7 @@ def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
         "S": found.s,
     }
     variables = boundary_variables(found)
-    variables |= {name: label_variable(name, ("r",), v) for name, v in functions.items()}
+    variables |= {name: label_variable(name, v) for name, v in functions.items()}
     variables |= _feature_variables(system, r, mu)
     axes = {"mu": mu, "r": r, "dof": np.arange(1, system.n + 1)}
     ds = xr.Dataset(variables, coords={name: coordinate(name, axis) for name, axis in axes.items()})

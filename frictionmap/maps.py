@@ -13,7 +13,7 @@ from . import checks, regimes
 from ._kernels.sweep import Outputs
 from .cells import Cells, Job, make_cells
 from .curves import boundary_variables
-from .labels import CELL_VARIABLES, cell_dims, coordinate, label_variable, stamp
+from .labels import CELL_VARIABLES, coordinate, label_variable, stamp
 from .settings import Solver
 from .system import System
 
@@ -223,7 +223,7 @@ def sweep(
     cells = make_cells(system, r, beta, mu, solver)
     out = _allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
     _fill(cells, plan(cells, r, mu, beta, solver), beta.size, out, threads, progress)
-    variables = {name: label_variable(name, cell_dims(name), getattr(out, name)) for name in solver.outputs}
+    variables = {name: label_variable(name, getattr(out, name)) for name in solver.outputs}
     axes = {"mu": mu, "r": r, "beta": beta}
     if "amplitude" in solver.outputs:
         axes["dof"] = np.arange(1, system.n + 1)

@@ -351,23 +351,23 @@ def response(
     }
     times, begins, places = history.events
     variables = {
-        "x": (("dof", "tau"), history.x),
-        "v": (("dof", "tau"), history.v),
-        "z": (("tau",), history.z),
-        "friction": (("tau",), history.friction),
-        "phase": (("tau",), history.phase),
-        "event_tau": (("event",), times),
-        "event_phase": (("event",), begins.astype(np.int8)),
-        "event_z": (("event",), places),
+        "x": history.x,
+        "v": history.v,
+        "z": history.z,
+        "friction": history.friction,
+        "phase": history.phase,
+        "event_tau": times,
+        "event_phase": begins.astype(np.int8),
+        "event_z": places,
     }
     dofs = np.arange(1, system.n + 1)
     ds = xr.Dataset(
-        {name: label_variable(name, dims, values) for name, (dims, values) in variables.items()},
+        {name: label_variable(name, values) for name, values in variables.items()},
         coords={"tau": coordinate("tau", history.tau), "dof": coordinate("dof", dofs)},
     )
     ds = ds.assign({name: v[0, 0] for name, v in boundary_variables(cells.curves).items()})
     ds = ds.assign(
-        {name: label_variable(name, (), CELL_VARIABLES[name].dtype(value)) for name, value in summary.items()}
+        {name: label_variable(name, CELL_VARIABLES[name].dtype(value)) for name, value in summary.items()}
     )
     cell = {"r": r, "beta": beta, "mu": mu}
     ds = ds.assign_coords({name: coordinate(name, value) for name, value in cell.items()})

@@ -334,7 +334,7 @@ def test_files_of_others(folder, capsys):
         for name, word in (
             ("foreign.nc", "its source is 'not given'"),
             ("strange.nc", "must be written by frictionmap"),
-            ("undecodable.nc", "cannot be opened"),
+            ("undecodable.nc", "its source is 'not given'"),
         ):
             assert_refused(capsys, folder, [command, name], f"file {name} must be", word)
 

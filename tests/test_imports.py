@@ -111,6 +111,7 @@ def test_the_layers_do_not_know_those_above():
         "steady.py": {"cli", "config", "storage", "plot"},
         "storage.py": {"cli", "config", "plot", "maps", "steady"},
         "reading.py": {"cli", "plot", "maps", "steady", "summary", "storage"},
+        "schema.py": {"cli", "plot", "maps", "steady", "summary", "storage", "reading", "config"},
         "plot.py": {"cli", "config", "maps", "steady", "_kernels"},
     }
     for name, modules in above.items():

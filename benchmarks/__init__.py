@@ -19,15 +19,17 @@ numbers of the committed results into README.md.
   steady                       solved against marched, one answer for mu = 1, what stays unresolved undamped
   structures                   cost against the number of masses; five masses against the peers
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
-`peers/`                       other ways to do the same job
-  one_mass, chain              general-purpose ODE solvers, for one mass and for chains of masses
-  heyoka_batch                 one of them on many cells at a time
-  cvode                        CVODE of SUNDIALS
+`peers/`                       other ways to do the same job: each for one mass and for chains of masses
+  solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: one on many cells at a time
   fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean
+  body, peer, one_mass, chain  what all of them solve, are asked for, and share
+  check                        they against a table of known steady states
 `references/`                  what is right, with nothing of the package in it; the tests use it too
+  closed_forms                 boundaries and continuous motions in 40 digits, condition numbers
+  steady_states                steady states of one mass in 40 digits
+  periodic_orbit               periodic orbits of any structure in 40 digits
+  settled                      event-exact steady states of one mass in doubles, for many cells
   naive                        any structure from the equations of motion, in doubles
-  orbits                       event-exact steady states: one mass in doubles, structures in 40 digits
-  closed_forms                 40-digit closed forms, condition numbers and steady states
 `report/`                      what is made of the measurements
   record                       machine, versions, medians, tables; results as JSON; one processor
   figures                      drawn without a display, written beside the numbers they show

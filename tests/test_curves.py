@@ -4,12 +4,12 @@ import math
 
 import mpmath as mp
 import numpy as np
-import precise
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import frictionmap as fm
+from benchmarks.references import closed_forms
 from frictionmap._kernels.closed_form import damping_functions, decay, sincos_quarter
 from frictionmap._kernels.maxima import largest_bracket
 
@@ -52,8 +52,9 @@ DAMPINGS = [0.0, 1e-9, 1e-3, 0.05, 0.3, 0.9, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 1.3, 5
 @pytest.mark.parametrize("zeta", DAMPINGS)
 def test_functions_against_40_digits(zeta):
     """U, G, H, S and beta_lim for every kind of damping, resonance and sub-multiple."""
+    body = closed_forms.one_mass(zeta)
     for r in RATIOS:
-        exact = precise.functions(r, zeta, samples=60)
+        exact = closed_forms.functions(body, r)
         ds = fm.boundaries(fm.System(damping_ratios=zeta), [r], [1.0, 1.5])
         # large zeta: g is the difference of two close functions of (zeta +- sqrt(zeta^2 - 1))
         tolerance = TIGHT * max(1.0, 1.0 / r) * (1.0 + zeta**2)
@@ -61,7 +62,7 @@ def test_functions_against_40_digits(zeta):
             value, reference = float(ds[name][0]), getattr(exact, name.lower())
             assert relative(value, reference) < tolerance, (name, r, zeta)
         for m, mu in enumerate((1.0, 1.5)):
-            reference = precise.beta_lim(exact, r, mu)
+            reference = closed_forms.beta_lim(body, r, mu, exact)
             assert relative(float(ds["beta_lim"][m, 0]), reference) < tolerance, (r, zeta)
 
 
@@ -80,10 +81,11 @@ def test_no_digit_is_lost_next_to_sub_multiples(n, distance):
 @pytest.mark.parametrize("r", [1.0 - 1e-3, 1.0 + 1e-6, 1.0 - 1e-9, 1.0 + 1e-12, 1.0 - 2**-53])
 def test_beta_lim_next_to_resonance(r):
     """U/V is a finite ratio of infinite functions there; no digit of it may be lost."""
-    exact = precise.functions(r, 0.0, samples=20)
+    body = closed_forms.one_mass(0.0)
+    exact = closed_forms.functions(body, r)
     for mu in (1.0, 2.0):
         ds = fm.boundaries(fm.System(), [r], mu)
-        assert relative(float(ds.beta_lim[0, 0]), precise.beta_lim(exact, r, mu)) < TIGHT
+        assert relative(float(ds.beta_lim[0, 0]), closed_forms.beta_lim(body, r, mu, exact)) < TIGHT
 
 
 def test_limits():

@@ -4,13 +4,14 @@ Steady states.  Random stick-slip cells in scenes of low and high frequency, bot
 one mass and three.  Every method marches `CYCLES` excitation periods from rest and reports the last, but
 for "frictionmap", the package as it is used, which ends when the steady state is found.  Kept are cells that
 repeat every excitation period and whose Floquet multipliers say that the transient is over by then: what is
-left is the method's error.  They are checked against 40-digit orbits (`orbits.periodic_orbit`).  Peers of one
-mass have the end of a stop in closed form (an arccos), which favours them; fixed-step methods search for it.
+left is the method's error.  They are checked against 40-digit orbits (`references.periodic_orbit`).  Peers
+of one mass have the end of a stop in closed form (an arccos), which favours them; fixed-step methods search
+for it.
 Siconos is not among the peers; its kind of time stepping, Moreau-Jean, is a baseline of ours (`fixed_step`).
 Time is that of the cells alone: our curves at the frequency of a cell are given beside it.
 
 Random cells.  20,000 cells of one mass by the public interface at the default settings, against an
-event-exact code of its own (`orbits.settle`).
+event-exact code of its own (`settled.settle`).
 
 Scan steps.  Time for an open cell against `steps`.
 """
@@ -28,10 +29,13 @@ from frictionmap import regimes
 from frictionmap.curves import find_curves
 from frictionmap.settings import Solver
 
-from ..peers.cvode import CvodePeer
-from ..peers.fixed_step import TWO_PI, Problem, march_rk4
-from ..peers.one_mass import HeyokaPeer, SolveIvpPeer, load_in_contact
-from ..references.orbits import DIGITS, Orbit, periodic_orbit, settle
+from ..peers.body import TWO_PI, load_in_contact
+from ..peers.cvode import OneMassCvode
+from ..peers.fixed_step import Problem, march_rk4
+from ..peers.heyoka import OneMassHeyoka
+from ..peers.solve_ivp import OneMassSolveIvp
+from ..references.periodic_orbit import DIGITS, Orbit, periodic_orbit
+from ..references.settled import settle
 from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, table, timed
 from . import search_of_s
@@ -519,9 +523,9 @@ def run(quick: bool, results: Path) -> dict:
             "periods marched": CYCLES,
             "digits of the references": DIGITS,
             "versions of the peers": {
-                peer.name: peer().version
-                for peer in (SolveIvpPeer, HeyokaPeer, CvodePeer)
-                if peer.available()
+                peer.name: peer.version()
+                for peer in (OneMassSolveIvp, OneMassHeyoka, OneMassCvode)
+                if not peer.why_missing()
             },
             "search of S": search_of_s.measure(quick),
             "steady states": steady_states(quick),

@@ -23,20 +23,17 @@ from frictionmap.cells import OneMassCells, make_cells
 from frictionmap.maps import _allocate
 from frictionmap.settings import Solver
 
-from ..peers import chain as chain_peers
-from ..peers import cvode, one_mass
-from ..peers.chain import Chain
+from ..peers import cvode, heyoka, solve_ivp
+from ..peers.body import SHORTEST_STOP, TWO_PI, Body, Cell
 from ..peers.fixed_step import (
     MOST_STOPS,
-    SHORTEST_STOP,
-    TWO_PI,
     Problem,
-    chain_problem,
     march_moreau,
     march_rk4,
     moreau_inverse,
-    one_mass_problem,
+    problem,
 )
+from ..peers.peer import Peer
 
 #: Each cell is solved so often in one timed call of ours: a call costs as much as a cell.
 COPIES = 40
@@ -53,9 +50,9 @@ class Scene(NamedTuple):
     zeta: float
 
     @property
-    def chain(self) -> Chain:
-        """The structure as peers know it: contact on mass 2, load on mass 1."""
-        return Chain(self.masses, 2, 1, self.zeta)
+    def body(self) -> Body:
+        """The structure as peers know it: contact on mass 2 of several, load on mass 1."""
+        return Body(self.masses, min(2, self.masses), 1, self.zeta, self.contact)
 
     @property
     def system(self) -> fm.System:
@@ -64,15 +61,13 @@ class Scene(NamedTuple):
             return fm.System(contact=self.contact, damping_ratios=self.zeta)
         ones = [1.0] * self.masses
         return fm.System(
-            contact_masses=[self.chain.contact], load_mass=self.chain.load, mass_ratios=ones,
+            contact_masses=[self.body.contact], load_mass=self.body.load, mass_ratios=ones,
             stiffness_ratios=ones, damping_ratios=self.zeta,
         )  # fmt: skip
 
     def problem(self, r: float, beta: float) -> Problem:
         """One of its cells, as the baselines know it."""
-        if self.masses == 1:
-            return one_mass_problem(one_mass.Cell(self.contact, r, beta, self.mu, self.zeta))
-        return chain_problem(self.chain, r, beta, self.mu)
+        return problem(self.body, Cell(r, beta, self.mu))
 
 
 class Answer(NamedTuple):
@@ -286,68 +281,28 @@ def prepare_moreau(scene: Scene, cells: list[tuple[float, float]], setting: floa
 # ---------------------------------------------------------------- general-purpose solvers
 
 
-def _record_stops(peer: chain_peers.StructurePeer) -> list[float]:
-    """A list that the peer adds the start of every stop to, or of what is left of one at a new window."""
-    begins: list[float] = []
-    stop = peer.stop
-
-    def recorded(theta: float, end: float) -> tuple[float, int]:
-        begins.append(theta)
-        return stop(theta, end)
-
-    peer.stop = recorded
-    return begins
-
-
-def _run_one_mass(peer: one_mass.Peer, scene: Scene, cell: tuple[float, float], cycles: int) -> Answer:
+def _run(peer: Peer, cell: Cell, cycles: int) -> Answer:
     begins: list[float] = []
     try:
-        outcome = peer.run(scene.contact, *cell, scene.mu, scene.zeta, cycles=cycles, begins=begins)
+        outcome = peer.run(cell, cycles, begins=begins)
     except RuntimeError:
         return FAILED
-    _, phase = one_mass.load_in_contact(scene.contact, cell[0], scene.zeta)
-    return Answer(outcome.stops, outcome.Z, _within(np.array(begins) - phase))
+    return Answer(outcome.stops, outcome.Z, _within(np.array(begins)))
 
 
-def _run_structure(
-    peer: chain_peers.StructurePeer, begins: list[float], scene: Scene, cell: tuple[float, float],
-    cycles: int,
-) -> Answer:  # fmt: skip
-    begins.clear()
-    try:
-        outcome = peer.run(*cell, scene.mu, cycles, 1)
-    except RuntimeError:
-        return FAILED
-    window = TWO_PI * (cycles - 1)
-    return Answer(outcome.stops, outcome.Z, _within(np.array([t for t in begins if t > window])))
-
-
-def prepare_peer(one_mass: Callable, structure: Callable) -> Callable[..., Prepared]:
-    """A peer made by one of two functions of its setting."""
+def prepare_peer(make: Callable[..., Peer], settings: Callable[[float], dict]) -> Callable[..., Prepared]:
+    """A peer made for a body with what `settings` says of the method's setting."""
 
     def prepare(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
-        if scene.masses == 1:
-            peer = one_mass(setting)
-            return (
-                lambda: [_run_one_mass(peer, scene, cell, cycles) for cell in cells],
-                lambda found: found,
-                len(cells),
-            )
-        peer = structure(scene.chain, setting)
-        begins = _record_stops(peer)
-        return (
-            lambda: [_run_structure(peer, begins, scene, cell, cycles) for cell in cells],
-            lambda found: found,
-            len(cells),
-        )
+        peer = make(scene.body, **settings(setting))
+        of_peer = [Cell(*cell, scene.mu) for cell in cells]
+        return lambda: [_run(peer, cell, cycles) for cell in of_peer], lambda found: found, len(cells)
 
     return prepare
 
 
-def _solve_ivp(chain: Chain, tolerance: float) -> chain_peers.SolveIvpPeer:
-    peer = chain_peers.SolveIvpPeer(chain)
-    peer.rtol, peer.atol = tolerance, absolute(tolerance)
-    return peer
+def _tolerances(relative: float) -> dict:
+    return {"rtol": relative, "atol": absolute(relative)}
 
 
 def absolute(tolerance: float) -> float:
@@ -384,22 +339,17 @@ METHODS = (
     ),
     Method(
         "solve_ivp DOP853", "rtol", _TOLERANCES, _FEW, True,
-        prepare_peer(lambda t: one_mass.SolveIvpPeer("DOP853", t, absolute(t)), _solve_ivp),
-        lambda _: one_mass.SolveIvpPeer.why_missing(),
+        prepare_peer(solve_ivp.peer, lambda t: {"method": "DOP853", **_tolerances(t)}),
+        lambda _: solve_ivp.OneMassSolveIvp.why_missing(),
     ),
     Method(
         "heyoka", "tol", (*_TOLERANCES, _EPS), (1e-6, _EPS), False,
-        prepare_peer(
-            lambda t: one_mass.HeyokaPeer(tol=t), lambda chain, t: chain_peers.HeyokaPeer(chain, tol=t)
-        ),
-        lambda _: one_mass.HeyokaPeer.why_missing(),
+        prepare_peer(heyoka.peer, lambda t: {"tol": t}),
+        lambda _: heyoka.OneMassHeyoka.why_missing(),
     ),
     Method(
         "CVODE", "rtol", _TOLERANCES, _FEW, True,
-        prepare_peer(
-            lambda t: cvode.CvodePeer(t, absolute(t)),
-            lambda chain, t: cvode.StructureCvodePeer(chain, t, absolute(t)),
-        ),
-        lambda _: cvode.CvodePeer.why_missing(),
+        prepare_peer(cvode.peer, _tolerances),
+        lambda _: cvode.OneMassCvode.why_missing(),
     ),
 )  # fmt: skip

@@ -13,9 +13,9 @@ Solved and marched.  Our own kernels with Newton's method on the return map, and
 at all.  One mass, and the chain of T Fig. 6.17.
 
 Settings of the peers.  heyoka runs at what its documentation recommends for speed and what was found fastest
-here (`peers.HeyokaPeer` has the list): one compiled program for all cells with their numbers as parameters,
+here (`peers.heyoka` has the list): one compiled program for all cells with their numbers as parameters,
 fast_math, machine precision, terminal events, propagate_until.  Its batch mode advances several cells in one
-SIMD program; it is a peer of its own here (`batch_peer`), with the logic of stops on whole arrays.  Its
+SIMD program; it is a peer of its own here (`heyoka_batch`), with the logic of stops on whole arrays.  Its
 ensemble mode copies the integrator for each propagation and spreads them over processors: all comparisons
 here are on one, and a propagation ends with each slide.  Five masses against the peers: `structures`.
 """
@@ -43,13 +43,20 @@ from frictionmap.curves import one_mass_curves
 from frictionmap.maps import _allocate
 from frictionmap.settings import Solver
 
-from ..peers.heyoka_batch import FEW_LANES, HeyokaBatchPeer
-from ..peers.one_mass import PEERS, Cell, HeyokaPeer, Outcome, Peer
+from ..peers.body import Body, Cell, Outcome
+from ..peers.heyoka import OneMassHeyoka
+from ..peers.heyoka_batch import FEW_LANES, HeyokaBatch
+from ..peers.peer import Peer
+from ..peers.solve_ivp import OneMassSolveIvp
 from ..report.figures import new_figure, save_figure
 from ..report.quoting import two_digits
 from ..report.record import pinned, save, spread, table, timed
 from .structures import SMALL_Z, equal_chain
 
+PEERS = (OneMassSolveIvp, OneMassHeyoka, HeyokaBatch)
+
+#: What T Fig. 3.12 shows.
+BODY = Body(wall="joined-base-wall")
 CYCLES = 200
 R = np.arange(126) * 2 / 100
 BETA = np.arange(401) / 100
@@ -87,14 +94,14 @@ def solve_cells(load, phase, oscillators, lim, stick, beta, mu, limits):
 
 def prepare(cells: list[Cell]) -> tuple:
     """Arguments of `solve_cells`."""
+    system = fm.System(contact=BODY.wall, damping_ratios=BODY.zeta)
     rows = []
     for cell in cells:
-        system = fm.System(contact=cell.contact, damping_ratios=cell.zeta)
         found = one_mass_curves(system, np.array([cell.r]), np.array([cell.mu]))
         f = found.frequencies
         rows.append(
             (
-                f.load[0], f.phase[0], (cell.r, cell.zeta, f.v_abs[0], f.v_arg[0], f.u[0], f.g[0]),
+                f.load[0], f.phase[0], (cell.r, BODY.zeta, f.v_abs[0], f.v_arg[0], f.u[0], f.g[0]),
                 found.lim[0, 0], found.curves.beta_stick[0, 0], cell.beta, cell.mu,
             )
         )  # fmt: skip
@@ -108,14 +115,14 @@ def sample_cells(count: int, moving: bool, rng: np.random.Generator, mu: float =
     while len(found) < count:
         r, beta = float(rng.choice(R[1:])), float(rng.choice(BETA[1:]))
         if not moving or beta < r * r / mu:
-            found.append(Cell("joined-base-wall", r, beta, mu))
+            found.append(Cell(r, beta, mu))
     return found
 
 
 def _compare(ours: np.ndarray, theirs: list[Outcome], cells: list[Cell]) -> dict:
     """How the answers differ: cells with other stop counts, and the median error of the amplitude."""
     other = [
-        cell._asdict()
+        {"contact": BODY.wall, **cell._asdict(), "zeta": BODY.zeta}
         for (stops, _), (their_stops, _), cell in zip(ours, theirs, cells, strict=True)
         if stops != their_stops and not (math.isnan(stops) and math.isnan(their_stops))
     ]
@@ -134,30 +141,23 @@ def _compare(ours: np.ndarray, theirs: list[Outcome], cells: list[Cell]) -> dict
 # ---------------------------------------------------------------- cells
 
 
-def _by_peer(peer: Peer | HeyokaBatchPeer, cells: list[Cell]) -> list[Outcome]:
-    """All cells by a peer: at once if it can, one by one if not."""
-    if isinstance(peer, HeyokaBatchPeer):
-        return peer.run_all(cells, CYCLES)
-    return [peer.run(*cell[:4], cell.zeta, cycles=CYCLES) for cell in cells]
-
-
-def against(make: Callable[[], Peer | HeyokaBatchPeer], cells: list[Cell], rounds: int) -> dict:
+def against(make: Callable[[Body], Peer], cells: list[Cell], rounds: int) -> dict:
     """One peer on some cells, alternating with ours."""
     began = perf_counter()
-    peer = make()
+    peer = make(BODY)
     set_up = perf_counter() - began
     arguments = prepare(cells)
     solve_cells(*prepare(cells[:1]))  # compiles
-    _by_peer(peer, cells[:1])
+    peer.run_all(cells[:1], CYCLES)
     seconds_theirs, seconds_ours, theirs, ours = [], [], [], np.empty((0, 2))
     for _ in range(rounds):
-        taken, theirs = timed(lambda: _by_peer(peer, cells))
+        taken, theirs = timed(lambda: peer.run_all(cells, CYCLES))
         seconds_theirs.append(taken / len(cells))
         for _ in range(3):
             taken, ours = timed(lambda: solve_cells(*arguments))
             seconds_ours.append(taken / len(cells))
     return {
-        "version": peer.version,
+        "version": peer.version(),
         "set-up seconds": set_up,
         "cells": len(cells),
         "seconds a cell": spread(seconds_theirs),
@@ -192,10 +192,10 @@ class _Clocked:
 
 def share_in_integrator(cells: list[Cell]) -> float:
     """Share of heyoka's time inside its integrator; the rest is the logic of stops around it, in Python."""
-    peer = HeyokaPeer()
-    total = timed(lambda: _by_peer(peer, cells))[0]
+    peer = OneMassHeyoka(BODY)
+    total = timed(lambda: peer.run_all(cells, CYCLES))[0]
     peer.integrator = clocked = _Clocked(peer.integrator)
-    _by_peer(peer, cells)
+    peer.run_all(cells, CYCLES)
     return clocked.seconds / total
 
 
@@ -203,17 +203,17 @@ def single_cells(quick: bool, rng: np.random.Generator) -> dict:
     """Measure and print moving cells by every peer."""
     content: dict = {}
     rows = []
-    for peer_class in (*PEERS, HeyokaBatchPeer):
+    for peer_class in PEERS:
         why = peer_class.why_missing()
         if why:
             print(f"{peer_class.name}: skipped, {why}")
             content[peer_class.name] = {"skipped": why}
             continue
         count, rounds = COUNTS[peer_class.name][quick]
-        few = quick and peer_class is HeyokaBatchPeer
-        make = partial(HeyokaBatchPeer, FEW_LANES) if few else peer_class
+        few = quick and peer_class is HeyokaBatch
+        make = partial(HeyokaBatch, lanes=FEW_LANES) if few else peer_class
         found = against(make, sample_cells(count, True, rng), rounds)
-        if peer_class is HeyokaPeer:
+        if peer_class is OneMassHeyoka:
             found["share of the time in the integrator"] = share_in_integrator(sample_cells(count, True, rng))
         content[peer_class.name] = found
         differences = found["differences"]
@@ -233,10 +233,10 @@ def single_cells(quick: bool, rng: np.random.Generator) -> dict:
 
 def whole_map(quick: bool, rng: np.random.Generator) -> dict:
     """The published map, mu = 1 and 1.5, against heyoka extrapolated from random cells of it."""
-    system = fm.System(contact="joined-base-wall")
+    system = fm.System(contact=BODY.wall)
     found: dict = {}
-    why = HeyokaPeer.why_missing()
-    peer = None if why else HeyokaPeer()
+    why = OneMassHeyoka.why_missing()
+    peer = None if why else OneMassHeyoka(BODY)
     for mu in (1.0, 1.5):
         fm.sweep(system, R[10:12], BETA[5:40], mu, threads=1)  # compiles
         cells = sample_cells(20 if quick else 200, False, rng, mu)
@@ -244,7 +244,7 @@ def whole_map(quick: bool, rng: np.random.Generator) -> dict:
         theirs = np.zeros(len(cells))
         for k, cell in enumerate(cells):  # alternating: a run of ours after every tenth cell of theirs
             if peer is not None:
-                theirs[k] = timed(lambda c=cell, p=peer: p.run(*c[:4], c.zeta, cycles=CYCLES))[0]
+                theirs[k] = timed(lambda c=cell, p=peer: p.run(c, CYCLES))[0]
             if k % 10 == 0:
                 ours.append(timed(lambda m=mu: fm.sweep(system, R, BETA, m, threads=1))[0])
         entry: dict = {"cells": R.size * BETA.size, "seconds": spread(ours)}

@@ -4,13 +4,12 @@
 
 The grid has its points inside (0, pi), all evaluated at once by numpy; the limit at tau -> 0 counts too,
 which public codes leave out (errors without it are given as well).  Modes, u, g and the limit are given to
-the sampler and not timed; the kernel computes them itself, and V.  Reference: every local maximum of a dense
-sampling that comes near the best is polished in 40-digit arithmetic, from the same doubles for w, zeta, chi.
+the sampler and not timed; the kernel computes them itself, and V.  Reference:
+`references.closed_forms`, modes included.
 """
 
 from typing import NamedTuple
 
-import mpmath as mp
 import numpy as np
 
 import frictionmap as fm
@@ -19,15 +18,11 @@ from frictionmap._kernels.curves import response_functions
 from frictionmap._kernels.sums import many_mode_functions
 from frictionmap.curves import find_curves
 
+from ..references import closed_forms
 from ..report.record import spread, timed
 from .structures import equal_chain
 
-DIGITS = 40
 GRIDS = (16, 64, 256, 1024, 4096, 16_384, 100_000)
-DENSE = 200_001
-
-#: Local maxima of the dense sampling within this share of the best are polished.
-NEAR = 0.01
 
 #: Frequencies kept are those at which S lies inside the interval: elsewhere there is nothing to search.
 FREQUENCIES = {"one mass": (0.04, 0.45), "five masses": (0.15, 0.8)}
@@ -66,91 +61,24 @@ def grid(points: int) -> np.ndarray:
     return np.pi * np.arange(1, points + 1) / (points + 1)
 
 
-def _exact_modes(system: fm.System, r: float) -> list[tuple]:
-    """(c, a, zeta, u, g) of every mode in high precision, from doubles w, zeta, chi, r; T(7.11), (7.12)."""
-    found = []
-    for w, zeta, chi in zip(system.modes.w, system.modes.zeta, system.modes.chi, strict=True):
-        w, zeta, chi = (mp.mpf(float(value)) for value in (w, zeta, chi))
-        a = w / mp.mpf(r)
-        s = mp.sqrt(1 - zeta**2)
-        below = mp.cosh(mp.pi * zeta * a) + mp.cos(mp.pi * s * a)
-        u = a * mp.sin(mp.pi * s * a) / (s * below)
-        g = (mp.sinh(mp.pi * zeta * a) - zeta / s * mp.sin(mp.pi * s * a)) / below
-        found.append(((chi / w) ** 2, a, zeta, u, g))
-    return found
+def references(body: closed_forms.Structure, r: float) -> tuple[float, float, float, bool]:
+    """S, beta_lim and beta_lim_modal (mu = 1) to double precision; whether S is inside (0, pi)."""
+    found = closed_forms.functions(body, r)
+    by_modes = found._replace(s=closed_forms.sum_of_maxima(body, r))
+    lims = [closed_forms.beta_lim(body, r, 1.0, one) for one in (found, by_modes)]
+    return float(found.s), float(lims[0]), float(lims[1]), bool(found.tau > 0)
 
 
-def _exact_bracket(modes: list[tuple], tau: mp.mpf) -> mp.mpf:
-    total = mp.mpf(0)
-    for c, a, zeta, u, g in modes:
-        s = mp.sqrt(1 - zeta**2)
-        swing = mp.exp(-zeta * a * tau)
-        q = swing * mp.sin(s * a * tau) / s
-        e = swing * mp.cos(s * a * tau) - zeta * q
-        total += c * (u * mp.cos(tau) + (1 + g) * a * q - u * e)
-    return total / mp.sin(tau)
-
-
-def _polished(modes: list[tuple], low: float, high: float) -> mp.mpf:
-    """The largest value between two times that enclose one maximum, by golden sections."""
-    ratio = (mp.sqrt(5) - 1) / 2
-    low, high = mp.mpf(low), mp.mpf(high)
-    left, right = high - ratio * (high - low), low + ratio * (high - low)
-    f_left, f_right = _exact_bracket(modes, left), _exact_bracket(modes, right)
-    while high - low > mp.mpf(10) ** -11:  # flat there: the value is good to 22 digits
-        if f_left > f_right:
-            high, right, f_right = right, left, f_left
-            left = high - ratio * (high - low)
-            f_left = _exact_bracket(modes, left)
-        else:
-            low, left, f_left = left, right, f_right
-            right = low + ratio * (high - low)
-            f_right = _exact_bracket(modes, right)
-    return max(f_left, f_right)
-
-
-def _largest(modes: list[tuple], dense: Modes, end: mp.mpf) -> mp.mpf:
-    """S of some modes, `end` its limit at tau -> 0."""
-    tau = grid(DENSE)
-    values = bracket(dense, tau)
-    top = max(values.max(), float(end))
-    inside = values[1:-1]
-    tops = np.flatnonzero((inside >= values[:-2]) & (inside >= values[2:]) & (inside >= (1.0 - NEAR) * top))
-    return max([end, *(_polished(modes, float(tau[k]), float(tau[k + 2])) for k in tops)])
-
-
-def _response(system: fm.System, r: float) -> mp.mpc:
-    """V of a contact with a fixed wall."""
-    m, r_exact = system.modes, mp.mpf(r)
-    shares = m.participation(np.array([r]))[0]
-    total = mp.mpc(0)
-    for w, zeta, chi, share in zip(m.w, m.zeta, m.chi, shares, strict=True):
-        w, zeta, chi = (mp.mpf(float(value)) for value in (w, zeta, chi))
-        total += chi * mp.mpmathify(complex(share)) / mp.mpc(w**2 - r_exact**2, 2 * zeta * w * r_exact)
-    return total
-
-
-def references(system: fm.System, r: float, mu: float) -> tuple[float, float, float, bool]:
-    """S, beta_lim and beta_lim_modal to double precision; whether S is inside (0, pi)."""
-    with mp.workdps(DIGITS):
-        modes = _exact_modes(system, r)
-        dense = modes_at(system, r)
-        slopes = [c * (g * a * a + 2 * zeta * a * u) for c, a, zeta, u, g in modes]
-        ends = [c * a * a for c, a, _, _, _ in modes]
-        h, inertia = mp.fsum(slopes), mp.fsum(ends)
-        largest = _largest(modes, dense, h + inertia)
-        by_modes = largest if len(modes) == 1 else mp.fsum(
-            _largest([modes[k]], Modes(*(column[k : k + 1] for column in dense)), slopes[k] + ends[k])
-            for k in range(len(modes))
-        )  # fmt: skip
-        u = mp.fsum(c * u for c, _, _, u, _ in modes)
-        v = _response(system, r)
-        lims = [abs(v) / mp.hypot(u, max(s, h + mu * inertia)) for s in (largest, by_modes)]
-        return float(largest), float(lims[0]), float(lims[1]), bool(largest > h + inertia)
-
-
-def _systems() -> dict[str, fm.System]:
-    return {"one mass": fm.System(damping_ratios=ZETA), "five masses": equal_chain(5, 3, 1, ZETA)}
+def _systems() -> dict[str, tuple[fm.System, closed_forms.Structure]]:
+    """To the package, and in 40 digits."""
+    ones = [1.0] * 5
+    five = closed_forms.structure(
+        *closed_forms.chain_matrices(ones, ones), [0, 0, 1, 0, 0], [1, 0, 0, 0, 0], 0, [ZETA] * 5
+    )
+    return {
+        "one mass": (fm.System(damping_ratios=ZETA), closed_forms.one_mass(ZETA)),
+        "five masses": (equal_chain(5, 3, 1, ZETA), five),
+    }
 
 
 def _worst(found: np.ndarray, exact: np.ndarray) -> dict:
@@ -171,13 +99,15 @@ def _by_kernel(system: fm.System, r: np.ndarray) -> np.ndarray:
     return out[3]
 
 
-def _draw(system: fm.System, count: int, limits: tuple[float, float], rng: np.random.Generator) -> tuple:
+def _draw(
+    body: closed_forms.Structure, count: int, limits: tuple[float, float], rng: np.random.Generator
+) -> tuple:
     """Random frequencies with S inside the interval, and what is exact there: S, beta_lim, beta_lim_modal."""
     chosen: list[float] = []
     exact = []
     while len(chosen) < count:
         r = float(rng.uniform(*limits))
-        *values, inside = references(system, r, 1.0)
+        *values, inside = references(body, r)
         if inside:
             chosen.append(r)
             exact.append(values)
@@ -185,11 +115,12 @@ def _draw(system: fm.System, count: int, limits: tuple[float, float], rng: np.ra
 
 
 def _one_system(
-    system: fm.System, limits: tuple[float, float], quick: bool, rng: np.random.Generator
-) -> dict:
+    system: fm.System, body: closed_forms.Structure, limits: tuple[float, float], quick: bool,
+    rng: np.random.Generator,
+) -> dict:  # fmt: skip
     count = 2 if quick else 25
     repeats = 3 if quick else 9
-    r, exact = _draw(system, count, limits, rng)
+    r, exact = _draw(body, count, limits, rng)
     order = np.argsort(r)
     r, exact = r[order], exact[:, order]
     curves = find_curves(system, r, np.ones(1))
@@ -230,4 +161,7 @@ def _one_system(
 def measure(quick: bool) -> dict:
     """Error of S and seconds a frequency, by system."""
     rng = np.random.default_rng(227)
-    return {name: _one_system(system, FREQUENCIES[name], quick, rng) for name, system in _systems().items()}
+    return {
+        name: _one_system(system, body, FREQUENCIES[name], quick, rng)
+        for name, (system, body) in _systems().items()
+    }

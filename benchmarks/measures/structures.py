@@ -36,8 +36,10 @@ from frictionmap.curves import many_mode_curves, one_mass_curves
 from frictionmap.maps import _allocate
 from frictionmap.settings import Solver
 
-from ..peers.chain import PEERS, Chain, StructurePeer
-from ..peers.one_mass import Outcome
+from ..peers.body import Body, Cell, Outcome
+from ..peers.heyoka import ChainHeyoka
+from ..peers.peer import Peer
+from ..peers.solve_ivp import ChainSolveIvp
 from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, timed
 
@@ -45,7 +47,8 @@ MASSES = (1, 2, 5, 20, 50)
 BETA = 0.5
 STEPS = (24, 72, 216)  # the first is the default
 
-CHAIN = Chain(masses=5, contact=3, load=1, zeta=0.0)
+PEERS = (ChainSolveIvp, ChainHeyoka)
+CHAIN = Body(masses=5, contact=3, load=1)
 DAMPING = (0.0, 0.01, 0.05)
 FREQUENCIES = (0.1, 2.5)
 LARGEST_BETA = 4.0
@@ -295,17 +298,17 @@ def _differences(ours: list[Outcome], theirs: list[Outcome], cells: list[Sampled
     }
 
 
-def against(peer: StructurePeer, system: fm.System, cells: list[Sampled], rounds: int) -> dict:
+def against(peer: Peer, system: fm.System, cells: list[Sampled], rounds: int) -> dict:
     """One peer on the cells of one chain, alternating with ours; rounds of all cells."""
     solve, out = prepare(system, cells)
     solve()  # compiles
-    peer.run(*cells[0][:2], 1.0, 2, 1)
+    peer.run(Cell(*cells[0][:2]), 2)
     theirs: list[Outcome] = []
     seconds_theirs, seconds_ours = [], []
     for _ in range(rounds):
         theirs, total = [], 0.0
         for cell in cells:
-            taken, outcome = timed(lambda c=cell: peer.run(c.r, c.beta, 1.0, c.cycles + c.period, c.period))
+            taken, outcome = timed(lambda c=cell: peer.run(Cell(c.r, c.beta), c.cycles + c.period, c.period))
             theirs.append(outcome)
             total += taken
             seconds_ours.append(timed(solve)[0] / len(cells))
@@ -319,7 +322,7 @@ def against(peer: StructurePeer, system: fm.System, cells: list[Sampled], rounds
     alone = [timed(lambda c=cell: prepare(system, [c])[0]())[0] for cell in cells]
     mean = statistics.median(seconds_theirs)
     return {
-        "version": peer.version,
+        "version": peer.version(),
         "cells": len(cells),
         "periods marched": spread([cell.cycles + cell.period for cell in cells]),
         "seconds a cell": spread(seconds_theirs),

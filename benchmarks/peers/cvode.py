@@ -1,9 +1,9 @@
 """CVODE of SUNDIALS, by scikit-sundae, as a peer: Adams' method with root finding, restarted at every event.
 
 The right-hand side and the events are Python functions, as this interface has them; nonlinear equations are
-solved by the default dense Newton iteration.  Events are offset as in `peers`: the velocity along a slide has
-ended at -1e-13.  A solver object keeps every event it has met, so each cell has new ones; each slide starts
-them anew with `init_step`.
+solved by the default dense Newton iteration.  Events are offset as in `heyoka`: the velocity along a slide
+has ended at -1e-13.  A solver object keeps every event it has met, so each cell has new ones; each slide
+starts them anew with `init_step`.
 """
 
 import math
@@ -11,14 +11,21 @@ from importlib import import_module
 
 import numpy as np
 
-from .chain import Chain, StructurePeer
-from .one_mass import SLIDE_END, Peer
+from .body import SLIDE_END, Body
+from .chain import ChainPeer
+from .one_mass import OneMassPeer
+from .peer import Peer
 
 #: Steps inside one phase, at most: far above what any phase takes.
 MOST_STEPS = 1_000_000
 
 #: Status of an answer that ended at an event.
 EVENT = 2
+
+
+def peer(body: Body, **settings) -> Peer:
+    """The peer for a body."""
+    return (OneMassCvode if body.masses == 1 else ChainCvode)(body, **settings)
 
 
 def _cvode(rhs, events, count, directions, rtol, atol):
@@ -41,14 +48,15 @@ def _to_event(solver, theta, state, end):
     return float(answer.t), answer.y, event
 
 
-class CvodePeer(Peer):
+class OneMassCvode(OneMassPeer):
     """One mass."""
 
     name = "CVODE"
     package = "sksundae"
     distribution = "scikit-sundae"
 
-    def __init__(self, rtol=1e-6, atol=1e-12):
+    def __init__(self, body: Body, rtol=1e-6, atol=1e-12):
+        super().__init__(body)
         self.tolerances = rtol, atol
 
     def solver(self, sign, rtol, atol):
@@ -65,11 +73,11 @@ class CvodePeer(Peer):
 
         return _cvode(rhs, events, 1, [-1], rtol, atol)
 
-    def prepare(self, amplitude, r, beta, zeta):
+    def prepare(self, amplitude, r, beta):
         """Take the numbers of one cell, divided by the inertia."""
         self.drive = amplitude / r**2
         self.stiffness = 1 / r**2
-        self.damping = 2 * zeta / r
+        self.damping = 2 * self.body.zeta / r
         self.friction = beta / r**2
         self.solvers = {sign: self.solver(sign, *self.tolerances) for sign in (1, -1)}
 
@@ -80,15 +88,15 @@ class CvodePeer(Peer):
         return theta, z, (v if event is None else 0.0)
 
 
-class StructureCvodePeer(StructurePeer):
+class ChainCvode(ChainPeer):
     """A chain of masses."""
 
     name = "CVODE"
     package = "sksundae"
     distribution = "scikit-sundae"
 
-    def __init__(self, chain: Chain, rtol=1e-6, atol=1e-12):
-        super().__init__(chain)
+    def __init__(self, body: Body, rtol=1e-6, atol=1e-12):
+        super().__init__(body)
         self.tolerances = rtol, atol
 
     def rates(self, y, theta, rate):

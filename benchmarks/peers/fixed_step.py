@@ -21,16 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from .chain import Chain, matrices
-from .one_mass import Cell, load_in_contact
-
-TWO_PI = 2.0 * math.pi
-
-#: Velocity along a slide at which it has ended: not 0, which is where it begins.
-SLIDE_END = -1e-13
-
-#: A stop shorter than this is what rounding makes of none.
-SHORTEST_STOP = 1e-9
+from .body import SHORTEST_STOP, SLIDE_END, TWO_PI, Body, Cell, load_in_contact, matrices
 
 #: Stops that a period can hold, at most, and parts that a step can be cut into by events.
 MOST_STOPS = 64
@@ -63,20 +54,13 @@ class Marched(NamedTuple):
     velocity: np.ndarray  # (n,)
 
 
-def one_mass_problem(cell: Cell) -> Problem:
-    """One mass, in the displacement of the contact."""
-    amplitude, phase = load_in_contact(cell.contact, cell.r, cell.zeta)
+def problem(body: Body, cell: Cell) -> Problem:
+    """One cell of a body; a single mass in the displacement of its contact."""
+    stiffness, damping = matrices(body)
+    amplitude, phase = load_in_contact(body.wall, cell.r, body.zeta) if body.masses == 1 else (1.0, 0.0)
     return Problem(
-        np.ones((1, 1)), np.full((1, 1), 2.0 * cell.zeta * cell.r), cell.r**2, 0, 0,
+        stiffness, cell.r * damping, cell.r**2, body.contact - 1, body.load - 1,
         amplitude * math.cos(phase), -amplitude * math.sin(phase), cell.beta, cell.mu,
-    )  # fmt: skip
-
-
-def chain_problem(chain: Chain, r: float, beta: float, mu: float) -> Problem:
-    """A chain of equal masses, contact with a wall."""
-    stiffness, damping = matrices(chain)
-    return Problem(
-        stiffness, r * damping, r**2, chain.contact - 1, chain.load - 1, 1.0, 0.0, beta, mu
     )  # fmt: skip
 
 

@@ -1,18 +1,20 @@
 """heyoka's batch mode: many cells of one mass at a time, the logic of stops on whole arrays.
 
-The problem, the offset of the event and what is closed form are as in `peers`.  Each cell has its events at
-its own times.  So the lanes of a batch go one Taylor step at a time, each with its own time; where a slide
+The offset of the event and what is closed form are as in `one_mass`.  Each cell has its events at its own
+times.  So the lanes of a batch go one Taylor step at a time, each with its own time; where a slide
 has ended they are restarted together, and a lane whose run is over takes the next cell.  `propagate_until`
 would leave all lanes at the first event of any.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from importlib import import_module
 from typing import NamedTuple
 
 import numpy as np
 
-from .one_mass import LATE, SLIDE_END, STUCK, TWO_PI, Cell, Installed, Outcome, load_in_contact
+from .body import SLIDE_END, STUCK, TWO_PI, Body, Cell, Outcome, load_in_contact
+from .one_mass import LATE
+from .peer import Peer
 
 #: Lanes of the batch.  Of 64, 128, 256, 512 and 1024 tried, 256 was the fastest together with 512, which
 #: takes twice as long to compile.  `compact_mode` compiles in half the time; what it gains is lost in a run.
@@ -36,7 +38,7 @@ class Runs(NamedTuple):
 def release(
     amplitude: np.ndarray, limit: np.ndarray, theta: np.ndarray, z: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """`peers.release` on arrays: wait until stops at z end, and sign of the slide after; 0: never."""
+    """`one_mass.release` on arrays: wait until stops at z end, and sign of the slide after; 0: never."""
     on = -np.arccos(np.clip((z + limit) / amplitude, -1.0, 1.0)) - theta
     back = np.arccos(np.clip((z - limit) / amplitude, -1.0, 1.0)) - theta
     on, back = (np.where(wait % TWO_PI > LATE, 0.0, wait % TWO_PI) for wait in (on, back))
@@ -48,7 +50,7 @@ def release(
 def restart(
     amplitude: np.ndarray, limit: np.ndarray, theta: np.ndarray, z: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """`peers.restart` on arrays: phase and sign of the slides that follow z' = 0, and the stops between."""
+    """`one_mass.restart` on arrays: phase and sign of the slides after z' = 0, and the stops between."""
     push = amplitude * np.cos(theta) - z
     wait, sign = release(amplitude, limit, theta, z)
     slides = np.abs(push) > limit
@@ -56,13 +58,14 @@ def restart(
     return theta + wait, np.where(slides, np.sign(push), sign), wait
 
 
-class HeyokaBatchPeer(Installed):
-    """heyoka's taylor_adaptive_batch, stepped; settings as of `peers.HeyokaPeer`."""
+class HeyokaBatch(Peer):
+    """heyoka's taylor_adaptive_batch, stepped; settings as of `heyoka.OneMassHeyoka`."""
 
     name = "heyoka, batch"
     package = "heyoka"
 
-    def __init__(self, lanes: int = LANES, **options: object) -> None:
+    def __init__(self, body: Body, lanes: int = LANES, **options: object) -> None:
+        super().__init__(body)
         heyoka = import_module("heyoka")
         z, v = heyoka.make_vars("z", "v")
         stiffness, damping, friction, drive = (heyoka.par[i] for i in range(4))
@@ -77,7 +80,7 @@ class HeyokaBatchPeer(Installed):
         self.motion, self.numbers = self.integrator.state, self.integrator.pars
         self.lanes = lanes
 
-    def run_all(self, cells: list[Cell], cycles: int) -> list[Outcome]:
+    def run_all(self, cells: Sequence[Cell], cycles: int) -> list[Outcome]:
         """Integrate cells from rest; the stops and max |z| of the last of so many periods, cell by cell."""
         lanes = self.lanes
         empty = np.zeros(lanes)
@@ -107,7 +110,7 @@ class HeyokaBatchPeer(Installed):
         self.motion[:, lane] = 0.0
         self.numbers[:, lane] = 0.0
         for index, cell in waiting:
-            amplitude, phase = load_in_contact(cell.contact, cell.r, cell.zeta)
+            amplitude, phase = load_in_contact(self.body.wall, cell.r, self.body.zeta)
             limit = cell.mu * cell.beta
             if amplitude <= limit:
                 continue
@@ -116,7 +119,7 @@ class HeyokaBatchPeer(Installed):
             runs.ends[:, lane] = phase + TWO_PI * (cycles - 1), phase + TWO_PI * cycles
             runs.window[lane], runs.stops[lane], runs.peak[lane] = 0, 0.0, 0.0
             self.theta[lane] = phase
-            self.numbers[:3, lane] = 1 / cell.r**2, 2 * cell.zeta / cell.r, cell.beta / cell.r**2
+            self.numbers[:3, lane] = 1 / cell.r**2, 2 * self.body.zeta / cell.r, cell.beta / cell.r**2
             self._slide_on(np.array([lane]), np.zeros(1), runs)
             return
 

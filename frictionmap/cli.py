@@ -110,7 +110,7 @@ class _Progress:
 
 
 def _save(
-    ds: "xr.Dataset", config: "Config", options: argparse.Namespace, output: Path, summary: str
+    ds: "xr.Dataset", config: "Config", options: argparse.Namespace, output: Path, *summary: str
 ) -> None:
     from .storage import write
 
@@ -118,12 +118,12 @@ def _save(
     ds.attrs["config"] = config.text
     write(ds, output, options.command_line)
     if not options.quiet:
-        print(f"{summary}; wrote {output}")
+        print("\n  ".join((f"{summary[0]}; wrote {output}", *summary[1:])))
 
 
 def _map(options: argparse.Namespace, config: "Config", output: Path) -> None:
     from .maps import sweep
-    from .summary import describe_map
+    from .summary import describe_causes, describe_map
 
     progress = _Progress(options.quiet)
     began = time.perf_counter()
@@ -133,7 +133,7 @@ def _map(options: argparse.Namespace, config: "Config", output: Path) -> None:
     finally:
         progress.end()
     took = time.perf_counter() - began
-    _save(ds, config, options, output, f"{describe_map(ds)} in {took:.2g} s")
+    _save(ds, config, options, output, f"{describe_map(ds)} in {took:.2g} s", *describe_causes(ds))
 
 
 def _boundaries(options: argparse.Namespace, config: "Config", output: Path) -> None:

@@ -70,7 +70,7 @@ def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: 
 
 
 def _allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> Outputs:
-    """Outputs asked for, unresolved until they are filled; the others have no cells."""
+    """Outputs asked for, and status, unresolved until they are filled; the others have no cells."""
     unresolved = {
         "regime": regimes.UNRESOLVED,
         "stops_per_cycle": np.nan,
@@ -91,7 +91,9 @@ def _allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> O
     return Outputs(
         **{
             name: np.full(
-                sizes[name] if name in names else (0,) * len(sizes[name]), value, CELL_VARIABLES[name].dtype
+                sizes[name] if name in (*names, "status") else (0,) * len(sizes[name]),
+                value,
+                CELL_VARIABLES[name].dtype,
             )
             for name, value in unresolved.items()
         }
@@ -196,8 +198,8 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        On (mu, r, beta): the outputs asked for.  On (mu, r): `beta_lim`, `beta_lim_modal`,
-        `beta_stick`.  Unresolved cells have regime -1; `status` says why.
+        On (mu, r, beta): the outputs asked for, and `status` if it has anything to say.  On (mu, r):
+        `beta_lim`, `beta_lim_modal`, `beta_stick`.  Unresolved cells have regime -1; `status` says why.
 
     Raises
     ------
@@ -223,7 +225,10 @@ def sweep(
     cells = make_cells(system, r, beta, mu, solver)
     out = _allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
     _fill(cells, plan(cells, r, mu, beta, solver), beta.size, out, threads, progress)
-    variables = {name: label_variable(name, getattr(out, name)) for name in solver.outputs}
+    names = list(solver.outputs)
+    if "status" not in names and out.status.any():  # no cell is unresolved, or averaged, without a word
+        names.append("status")
+    variables = {name: label_variable(name, getattr(out, name)) for name in names}
     axes = {"mu": mu, "r": r, "beta": beta}
     if "amplitude" in solver.outputs:
         axes["dof"] = np.arange(1, system.n + 1)

@@ -26,6 +26,7 @@ class Code(NamedTuple):
     value: int
     name: str  # as in the file's flag_meanings
     meaning: str  # for people; for a status: the cause and what to do about it
+    advice: str = ""  # of a status, in a few words: the summary of a map has a line of it
 
 
 REGIMES = (
@@ -54,11 +55,13 @@ STATUSES = (
         NOT_REACHED,
         "not_reached",
         "no steady state within `cycles` excitation periods: raise solver.cycles",
+        "raise solver.cycles",
     ),
     Code(
         TOO_MANY_EVENTS,
         "too_many_events",
         "more starts and stops than the solver follows: the motion chatters; change r or beta a little",
+        "the motion chatters; change r or beta a little",
     ),
     Code(
         MARGINAL,
@@ -67,18 +70,21 @@ STATUSES = (
         "two, or at a frequency of the held structure that the load does not drive: a continuum of steady "
         "states, chosen by the start; where the regime is continuous the amplitude given is the symmetric "
         "one's; add a little damping",
+        "no damping at a special frequency: the start decides; add a little damping",
     ),
     Code(
         QUASI_STATIC,
         "quasi_static",
         "r = 0: the regime is certain, but the number of stops has no limit there; ask for r > 0",
+        "r = 0 has a regime but no number of stops; ask for r > 0",
     ),
-    Code(NOT_COMPUTED, "not_computed", "the run ended before this cell: run it again"),
+    Code(NOT_COMPUTED, "not_computed", "the run ended before this cell: run it again", "run it again"),
     Code(
         NOT_PERIODIC,
         "not_periodic",
         "stick-slip that repeats in no 8 periods, as far as it was followed (`cycles`): stops, amplitude and "
         "share stuck are those of the last 100 periods; if it is only slow, raise solver.cycles",
+        "averaged over 100 periods; if the motion is only slow, raise solver.cycles",
     ),
 )
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 from . import checks
 from .errors import InputError
-from .labels import CELL, CELL_VARIABLES, COORDINATES, HISTORY_VARIABLES, LABELS, Label
+from .labels import CELL, COORDINATES, HISTORY_VARIABLES, LABELS, Label
 
 #: Global attributes that are text, if they are there.
 TEXTS = ("title", "system", "source", "history", "references", "config")
@@ -17,7 +17,7 @@ def kind(ds: xr.Dataset) -> str:
     """What a dataset, or a slice of one, holds: "map", "response" or "boundaries"."""
     if any(name in HISTORY_VARIABLES for name in ds.variables):
         return "response"
-    cells = "beta" in ds.dims or any(name in CELL_VARIABLES for name in ds.variables)
+    cells = "beta" in ds.dims or any("beta" in LABELS[name].dims for name in LABELS if name in ds.variables)
     return "map" if cells else "boundaries"
 
 

@@ -138,9 +138,19 @@ def test_a_cell_does_not_depend_on_its_neighbours():
 
 @pytest.mark.parametrize("name", OUTPUTS)
 def test_only_what_is_asked_for_is_there(name):
-    ds = fm.sweep(fm.System(), [0.5, 1.5], [0.2, 0.8], [1.0, 1.5], outputs=[name])
+    ds = fm.sweep(fm.System(), [0.8, 1.5], [0.2, 0.8], [1.0, 1.5], outputs=[name])
     assert set(ds.data_vars) == {name, "beta_lim", "beta_lim_modal", "beta_stick"}
     assert ds[name].dims == ("mu", "r", "beta")
+
+
+@pytest.mark.parametrize("name", OUTPUTS)
+def test_what_is_not_resolved_says_why_whatever_is_asked_for(name):
+    """r = 1/2 undamped is marginal, r = 0 has no number of stops."""
+    axes = [0.0, 0.5, 1.5], [0.2, 0.8], [1.0, 1.5]
+    asked = fm.sweep(fm.System(), *axes, outputs=[name])
+    told = fm.sweep(fm.System(), *axes, outputs=["status"])
+    assert told.status.any()
+    np.testing.assert_array_equal(asked.status, told.status, strict=True)
 
 
 def test_closed_form_cells_are_not_integrated(published):

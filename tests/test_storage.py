@@ -147,7 +147,7 @@ def test_codes_of_the_regime_are_those_promised(files):
 
 def test_only_what_was_asked_for_is_stored(files, tmp_path):
     arguments = ["map", str(files / "tiny.toml"), "-o", str(tmp_path / "out.nc"), "--quiet"]
-    assert main([*arguments, "--set", 'solver.outputs=["period"]']) == 0
+    assert main([*arguments, "--set", 'solver.outputs=["period"]', "--set", "grid.r=[0.3, 2.0]"]) == 0
     with xr.open_dataset(tmp_path / "out.nc") as ds:
         assert set(ds.data_vars) == {"period", "beta_lim", "beta_lim_modal", "beta_stick"}
 

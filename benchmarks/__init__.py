@@ -1,10 +1,11 @@
-"""Benchmarks: what accuracy costs, what is faster than what, how cost grows, where numbers cease to be good.
+"""Benchmarks: what accuracy costs, what is faster than what, how cost grows, where numbers cease to be good,
+what bad input, interrupts and damaged files do.
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
-NAME is accuracy, peers, scaling, startup, stress, steady, structures or bound: each one is a module of that
-name in `measures`.  It prints tables, and writes JSON and a figure.  `python -m benchmarks readme` puts the
-numbers of the committed results into README.md.
+NAME is accuracy, peers, scaling, startup, stress, steady, structures, bound or faults: each one is a module
+of that name in `measures`.  It prints tables, and writes JSON and a figure.  `python -m benchmarks readme`
+puts the numbers of the committed results into README.md.
 
 =============================  ========================================================================
 `measures/`                    one module for each sub-command
@@ -19,6 +20,7 @@ numbers of the committed results into README.md.
   steady                       solved against marched, one answer for mu = 1, what stays unresolved undamped
   structures                   cost against the number of masses; five masses against the peers
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
+  faults                       bad input, interrupts, malformed files, damaged caches: what a user sees
 `peers/`                       other ways to do the same job: each for one mass and for chains of masses
   solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: one on many cells at a time
   fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean
@@ -34,7 +36,7 @@ numbers of the committed results into README.md.
   record                       machine, versions, medians, tables; results as JSON; one processor
   figures                      drawn without a display, written beside the numbers they show
   readme                       the tables of README.md, made from the committed results
-  quoted_errors                of these the ones about errors
+  quoted_errors                of these the ones about errors; `quoted_faults`: about bad input and bad days
   quoting                      how numbers are quoted in them
 `results/`                     the committed results, and `results/local` of runs on this machine
 =============================  ========================================================================

@@ -14,15 +14,15 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
 #: Sub-commands: each has a module of its name in `measures` with a `run`, imported only when it is asked for.
-BENCHMARKS = ("accuracy", "peers", "scaling", "startup", "stress", "steady", "structures", "bound")
+BENCHMARKS = ("accuracy", "peers", "scaling", "startup", "stress", "steady", "structures", "bound", "faults")
 
 
-def _run(name: str, quick: bool, results: Path) -> float:
+def _run(name: str, quick: bool, results: Path, **more: Path) -> float:
     """Run one benchmark; the seconds it took, imports and compilation included."""
     print(f"\n{name}", flush=True)
     began = time.perf_counter()
-    run: Callable[[bool, Path], dict] = import_module(f".measures.{name}", __package__).run
-    run(quick, results)
+    run: Callable[..., dict] = import_module(f".measures.{name}", __package__).run
+    run(quick, results, **more)
     return time.perf_counter() - began
 
 
@@ -36,14 +36,19 @@ def main() -> None:
         type=Path,
         help="folder of the results (default: benchmarks/results/local; readme: benchmarks/results)",
     )
+    parser.add_argument("--package", type=Path, help="faults: the checkout to try (default: this one)")
     options = parser.parse_args()
+    if options.package and options.benchmark != "faults":
+        parser.error("--package goes with faults only")
+    more = {"package": options.package} if options.package else {}
     if options.benchmark == "readme":  # quotes what is there
         from .report.readme import rewrite
 
         rewrite(options.results or RESULTS)
         return
     names = list(BENCHMARKS) if options.benchmark == "all" else [options.benchmark]
-    seconds = {name: _run(name, options.quick, options.results or RESULTS / "local") for name in names}
+    results = options.results or RESULTS / "local"
+    seconds = {name: _run(name, options.quick, results, **more) for name in names}
     print()
     for name, taken in seconds.items():
         print(f"{name:10} took {taken:6.1f} s")

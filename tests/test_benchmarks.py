@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "benchmarks" / "results"
 
 #: Benchmarks without timings.
-UNTIMED = {"stress", "steady"}
+UNTIMED = {"stress", "steady", "faults"}
 
 #: Benchmarks whose figure has another name.
 FIGURES = {"bound": "fig-5-55"}

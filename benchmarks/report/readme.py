@@ -13,6 +13,7 @@ from pathlib import Path
 
 from .. import ROOT
 from .quoted_errors import accuracy_lines, steady_lines, stress_lines
+from .quoted_faults import faults_lines
 from .quoting import duration, markdown, rounded_off, two_digits
 
 README = ROOT / "README.md"
@@ -21,6 +22,9 @@ END = "<!-- end of the results -->"
 
 #: The benchmarks whose results are quoted.
 QUOTED = ("peers", "structures", "accuracy", "stress", "steady", "scaling", "startup")
+
+#: What `faults` found in an earlier state, quoted beside what it finds.
+BEFORE = "faults-before"
 
 
 def _row(what: str, ours: float, theirs: float) -> tuple[str, ...]:
@@ -237,7 +241,7 @@ def block(results: Path) -> str:
     """The part of README.md between the markers."""
     found = {
         name: json.loads((results / f"{name}.json").read_text(encoding="utf-8"))
-        for name in QUOTED
+        for name in (*QUOTED, BEFORE)
         if (results / f"{name}.json").is_file()
     }
     peers, structures = found.get("peers"), found.get("structures")
@@ -247,6 +251,8 @@ def block(results: Path) -> str:
     for name, quote in (("accuracy", accuracy_lines), ("stress", stress_lines), ("steady", steady_lines)):
         if name in found:
             lines += quote(found[name])
+    if "faults" in found:
+        lines += faults_lines(found["faults"], found.get(BEFORE))
     growth = list(_scaling_rows(found["scaling"])) if "scaling" in found else []
     growth += _mass_rows(structures) if structures else []
     if growth or "startup" in found:

@@ -1,0 +1,209 @@
+"""Bad command lines: arguments, overrides, and outputs in places where they must not go."""
+
+from .configurations import Case
+from .verdict import Words
+
+#: The most of a bad argument that a message has to repeat.
+_LONG = 30
+
+
+def _key(text: str) -> str:
+    """What of an override a message has to name: its key, or the part of it that exists."""
+    parts = " ".join(text.partition("=")[0].split())[:_LONG].split(".")
+    return ".".join(parts[:2])
+
+
+def _arguments() -> list[tuple[str, Words]]:
+    """Unknown, missing, misspelt, abbreviated and repeated arguments, words parted by blanks."""
+    return [
+        ("", (("COMMAND", "command"),)),
+        ("frobnicate", (("frobnicate",),)),
+        ("maps c.toml", (("maps",),)),
+        ("Map c.toml", (("Map",),)),
+        ("c.toml", (("c.toml",),)),
+        ("map", (("CONFIG",),)),
+        ("boundaries", (("CONFIG",),)),
+        ("plot", (("FILE",),)),
+        ("info", (("FILE",),)),
+        ("response", (("CONFIG", "--r"),)),
+        ("map c.toml c.toml", (("c.toml",),)),
+        ("info m.nc b.nc", (("b.nc",),)),
+        ("plot m.nc b.nc", (("b.nc",),)),
+        ("map c.toml --frob", (("--frob",),)),
+        ("map c.toml -x", (("-x",),)),
+        ("map c.toml --output x.nc", (("--output",),)),
+        ("map c.toml --over", (("--over",),)),
+        ("map c.toml --overwrit", (("--overwrit",),)),
+        ("map c.toml -o taken.nc --over", (("--over",),)),
+        ("map c.toml -o x.nc --qui", (("--qui",),)),
+        ("map c.toml -o x.nc --thr 1", (("--thr",),)),
+        ("map c.toml -o x.nc --se title=a", (("--se",),)),
+        ("map c.toml -o x.nc --threads=1 --threads=2", (("--threads",),)),
+        ("map c.toml -o x.nc -o y.nc", (("-o",),)),
+        ("map c.toml -o", (("-o",),)),
+        ("map c.toml --set", (("--set",),)),
+        ("map c.toml --threads", (("--threads",),)),
+        ("map c.toml --overwrite=yes", (("--overwrite",),)),
+        ("map c.toml --quiet=1", (("--quiet",),)),
+        ("map c.toml -o x.nc --threads 0", (("threads",), ("0",))),
+        ("map c.toml -o x.nc --threads -1", (("threads",), ("-1",))),
+        ("map c.toml -o x.nc --threads 1.5", (("threads",), ("1.5",))),
+        ("map c.toml -o x.nc --threads two", (("threads",), ("two",))),
+        ("map c.toml -o x.nc --threads 1e1", (("threads",), ("1e1",))),
+        ("map c.toml -o x.nc --threads nan", (("threads",), ("nan",))),
+        ("map c.toml -o x.nc --threads=", (("threads",),)),
+        ("map c.toml --r 0.5", (("--r",),)),
+        ("boundaries c.toml --threads 2", (("--threads",),)),
+        ("boundaries c.toml --mu 2", (("--mu",),)),
+        ("plot m.nc --threads 2", (("--threads",),)),
+        ("plot m.nc --set title=a", (("--set",),)),
+        ("plot m.nc -o x.png -o y.png", (("-o",),)),
+        ("info m.nc -o x.txt", (("-o",),)),
+        ("info m.nc --overwrite", (("--overwrite",),)),
+        ("info --file m.nc", (("--file",),)),
+    ]
+
+
+def _responses() -> list[tuple[str, Words]]:
+    """Bad cells of `response`."""
+    given = "response one.toml -o x.nc"
+    lines: list[tuple[str, Words]] = [
+        (given, (("--r",),)),
+        (f"{given} --r 0.5", (("--beta",),)),
+        (f"{given} --beta 0.5", (("--r",),)),
+        (f"{given} --r 0.5 --r 0.6 --beta 0.5", (("--r",),)),
+        (f"{given} --r 0.5 --beta 0.6 --beta 0.5", (("--beta",),)),
+        (f"{given} --r 0.5 --beta 0.6 --mu 1 --mu 2", (("--mu",),)),
+        (f"{given} --r 0.5 --beta 0.6 --m 1", (("--m",),)),
+        (f"{given} --r 0.5 --bet 0.6", (("--bet",),)),
+        (f"{given} --r 0.5 --beta 0.6 --threads 2", (("--threads",),)),
+        (f"{given} --r 0 --beta 0.5", (("r",), ("0",))),
+        ("response c.toml -o x.nc --r 0.5 --beta 0.5", (("--mu",),)),  # its grid has two
+    ]
+    for name, rest in (("r", "--beta 0.5"), ("beta", "--r 0.5"), ("mu", "--r 0.5 --beta 0.5")):
+        for value in (
+            "x",
+            "nan",
+            "inf",
+            "-inf",
+            "-1",
+            "1e999",
+            "0,5",
+            "1/2",
+            "0.5.1",
+            "1j",
+            "True",
+            "''",
+            "[1]",
+        ):
+            text = "" if value == "''" else value
+            says = ((name,), (text, "inf") if value == "1e999" else (text,))
+            lines.append((f"{given} {rest} --{name}={text}", says))
+    return [*lines, (f"{given} --r 0.5 --beta 0.5 --mu 0.5", (("mu",), ("0.5",)))]
+
+
+def _overrides() -> list[Case]:
+    """--set with what is no KEY=VALUE, or says more than one thing."""
+    texts = (
+        "", "=", "=1", "grid", "grid.r", "grid=", "grid.r=", "grid.=1", ".r=1", "grid..r=1", "grid.r.=1",
+        " =1",
+        "x=1", "system=1", "grid=1", "solver=exact", "grid.r.values=", "grid.r=[0.1", "grid.r={start=0}",
+        'grid.r="[0.1]"', "grid.mu=1.5 2.0", "grid.mu=1,2", "grid.r=0.1..0.5", "grid.r=0.1:0.5", "grid.r=1/2",
+        "grid.r=0,5", "grid.r.step=0", "grid.r.step=-1", "grid.r.step=abc", "grid.r.num=5", "grid.r.first=1",
+        "grid.r[0]=0.5", "grid.r.0=0.5", "system.contact=wall", "system.contact=fixed-wall # comment",
+        "system.contact='fixed-wall", "solver.start=rest moving", "solver.outputs=regime,status",
+        "solver.outputs=[regime]", "solver.outputs=", "grid.r=[0.5]\ngrid.beta=[0.1]", "grid.mu=[1.0]\nx = 2",
+        "title=a\n[solver]\nstart='moving'", "grid.mu=1.0\r\n2.0", "solver.cycles=1_0_", "grid.r=1979-05-27",
+        "title.a=1", "title=1", "system.contact.x=1", "solver.start.x=rest", "\n=1",
+        "grid.r=" + "9" * 5000, "a" * 5000, "grid.r=" + "[" * 3000, "title=\udcff",
+    )  # fmt: skip
+    return [
+        Case(
+            ("map", "c.toml", "-o", "x.nc", "--set", text),
+            ((_key(text), "--set", "UTF-8"),),
+        )
+        for text in texts
+    ]
+
+
+def _outputs() -> list[tuple[str, Words]]:
+    """Outputs that must not be written, for every verb: inputs by any name, folders, taken names."""
+    lines: list[tuple[str, Words]] = []
+    for verb in ("map c.toml", "boundaries c.toml", "response one.toml --r 0.5 --beta 0.5"):
+        config = verb.split()[1]
+        for output in (config, f"./{config}", f"folder/../{config}", "/proc/self/cwd/" + config):
+            lines.append((f"{verb} -o {output} --overwrite", ((config,),)))
+        for output in (
+            "folder",
+            ".",
+            "nothere/x.nc",
+            "c.toml/x.nc",
+            "taken.nc",
+            "-",
+            "/dev/null",
+            "fifo",
+            "dead/x.nc",
+        ):
+            lines.append((f"{verb} -o {output}", ((output,),)))
+        lines.append((f"{verb} -o folder --overwrite", (("folder",),)))
+        lines.append((f"{verb} -o fifo --overwrite", (("fifo",),)))
+        lines.append((f"{verb} -o=", (("-o",),)))
+        lines.append((f"{verb} -o {'x' * 300}.nc", (("xxx",),)))
+    for output in ("link.toml", "hard.toml", "folder/up.toml"):
+        lines.append((f"map c.toml -o {output} --overwrite", ((output.split("/")[-1],),)))
+        lines.append((f"boundaries c.toml -o {output} --overwrite", ((output.split("/")[-1],),)))
+        lines.append((f"map {output} -o c.toml --overwrite", (("c.toml",),)))
+    lines += [
+        ("map frame.toml -o frame.npz --overwrite", (("frame.npz",),)),
+        ("boundaries frame.toml -o ./frame.npz --overwrite", (("frame.npz",),)),
+        ("map c.nc --overwrite", (("c.nc",),)),
+        ("map taken.toml", (("taken.nc",),)),
+        ("plot m.nc -o m.nc --overwrite", (("m.nc",),)),
+        ("plot map.png --overwrite", (("map.png",),)),
+        ("plot m.nc -o maplink.png --overwrite", (("maplink.png", "m.nc"),)),
+        ("plot taken.nc", (("taken",),)),
+        ("plot m.nc -o taken.png", (("taken.png",),)),
+    ]
+    for output in (
+        "p",
+        "p.txt",
+        "p.nc",
+        "p.png.bak",
+        ".png",
+        "p.",
+        "folder",
+        "nothere/p.png",
+        "-",
+        "p.gif",
+        "p.jpgx",
+    ):
+        lines.append((f"plot m.nc -o {output}", ((output,),)))
+    return lines
+
+
+def _inputs() -> list[tuple[str, Words]]:
+    """Files that are not there, or not what they should be."""
+    lines: list[tuple[str, Words]] = []
+    for name in ("nothere.toml", "folder", ".", "m.nc", "dead.toml", "nothere/c.toml", "\udcff.toml"):
+        for verb in ("map", "boundaries"):
+            lines.append((f"{verb} {name} -o x.nc", ((name, "UTF-8"),)))
+        lines.append((f"response {name} --r 0.5 --beta 0.5 -o x.nc", ((name, "UTF-8"),)))
+    names = ("nothere.nc", "folder", ".", "c.toml", "empty.nc", "text.nc", "cut.nc", "foreign.nc",
+    "frame.npz",
+             "taken.nc", "dead.toml", "/dev/null")  # fmt: skip
+    for name in names:
+        lines.append((f"info {name}", ((name,),)))
+        lines.append((f"plot {name} -o x.png", ((name,),)))
+    return [*lines, (f"map {'y' * 5000}.toml -o x.nc", (("yyy",),))]
+
+
+def command_lines() -> list[Case]:
+    """All of them."""
+    split = [*_arguments(), *_responses(), *_outputs(), *_inputs()]
+    cases = [Case(tuple(line.split()), says) for line, says in split]
+    blank = [
+        Case((verb, "", "-o", "x.nc"), ((verb, "CONFIG", "''", "configuration"),))
+        for verb in ("map", "boundaries")
+    ]
+    blank += [Case((verb, ""), (("FILE", "''", "file"),)) for verb in ("info", "plot")]
+    return [*cases, *_overrides(), *blank]

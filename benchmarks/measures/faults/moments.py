@@ -1,0 +1,108 @@
+"""What runs of every verb take, so that they can be interrupted at any moment; what they leave behind."""
+
+import os
+import shutil
+import signal
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.image import imread
+
+from .folders import CONFIG, EVERYTHING
+from .machine import run
+
+#: A map that takes about a second to compute, and some tenths to write.
+_LONG = """\
+[system]
+contact = "joined-base-wall"
+damping_ratios = 0.01
+
+[grid]
+r = { start = 0.2, stop = 2.0, num = 500 }
+beta = { start = 0.01, stop = 2.0, num = 500 }
+mu = [1.0, 1.5]
+
+[solver]
+outputs = ["regime", "stops_per_cycle", "contact_amplitude", "stuck_fraction", "period", "cycles", "status"]
+"""
+_CURVES = _LONG.replace("num = 500 }\nbeta", "num = 200000 }\nbeta")
+_LOW = CONFIG.replace("[1.0, 1.5]", "[1.0]")
+
+#: Verb: arguments without the output, and the output.
+VERBS: dict[str, tuple[tuple[str, ...], str]] = {
+    "map": (("map", "long.toml"), "out.nc"),
+    "boundaries": (("boundaries", "curves.toml"), "out.nc"),
+    "response": (("response", "low.toml", "--r", "0.002", "--beta", "0.5"), "out.nc"),
+    "plot": (("plot", "given.nc"), "out.png"),
+    "info": (("info", "given.nc"), ""),
+}
+
+
+def inputs(folder: Path, env: dict[str, str]) -> Path:
+    """A folder with all that the verbs read."""
+    folder.mkdir()
+    for name, text in (("long", _LONG), ("curves", _CURVES), ("low", _LOW), ("small", CONFIG)):
+        (folder / f"{name}.toml").write_text(text)
+    said = run(["map", "small.toml", "-o", "given.nc", "--set", EVERYTHING, "--quiet"], folder, env)
+    if said.status != 0:
+        raise RuntimeError(f"map: {said}")
+    return folder
+
+
+def same_file(one: Path, other: Path) -> bool:
+    """Whether two outputs say the same, whenever they were written."""
+    try:
+        if one.suffix == ".png":
+            return bool(np.array_equal(imread(one), imread(other)))
+        with xr.open_dataset(one) as first, xr.open_dataset(other) as second:
+            return first.equals(second)
+    except Exception:  # a damaged file is another one
+        return False
+
+
+@dataclass(frozen=True)
+class Run:
+    """One verb: what it takes undisturbed, and what it writes."""
+
+    verb: str
+    arguments: list[str]
+    output: str
+    seconds: float
+    result: Path | None
+
+    @classmethod
+    def measured(cls, verb: str, prepared: Path, env: dict[str, str], folder: Path) -> "Run":
+        """Run it twice in a new folder; the second time counts, with all kernels and caches warm."""
+        given, output = VERBS[verb]
+        arguments = [*given, *(["-o", output, "--overwrite"] if output else [])]
+        shutil.copytree(prepared, folder)
+        for _ in range(2):
+            said = run(arguments, folder, env)
+            if said.status != 0:
+                raise RuntimeError(f"{verb}: {said}")
+        return cls(verb, arguments, output, said.seconds, folder / output if output else None)
+
+    def whole(self, folder: Path) -> bool:
+        """Whether the output in a folder is what an undisturbed run writes."""
+        return self.result is None or same_file(folder / self.output, self.result)
+
+
+def wait_for_new(folder: Path, known: set[str], until: float) -> bool:
+    """Wait until a file appears that was not known; False if none did until then."""
+    while time.perf_counter() < until:
+        if set(os.listdir(folder)) - known:
+            return True
+        time.sleep(0.002)
+    return False
+
+
+#: Names of signals, with those that come twice.
+SIGNALS: dict[str, tuple[signal.Signals, ...]] = {
+    "SIGINT": (signal.SIGINT,),
+    "SIGTERM": (signal.SIGTERM,),
+    "SIGKILL": (signal.SIGKILL,),
+    "SIGINT twice": (signal.SIGINT, signal.SIGINT),
+}

@@ -1,0 +1,155 @@
+"""Full disks, folders that cannot be written to, terminals of few letters, closed standard streams."""
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from .folders import Change, snapshot
+from .machine import prepared as preparation
+from .machine import run as run_once
+from .moments import VERBS
+from .verdict import CHANGED, LEFT, TRACEBACK, Family, Said, wrong_refusal, wrong_success
+
+#: Bytes that the disk still takes.
+_ROOM = (0, 512, 4096, 16384)
+
+_TITLE = 'title="Reibung \u03bc \u2265 1, \u00dcbersicht"'
+
+
+def _outputs() -> Iterator[tuple[list[str], str]]:
+    """Arguments of every verb that writes, and what it is to write."""
+    for given, output in VERBS.values():
+        if output:
+            name = f"wanted{Path(output).suffix}"
+            yield [*given, "-o", name], name
+
+
+def _untouched(
+    said: Said, words: tuple, statuses: tuple[int, ...], before: dict, folder: Path
+) -> tuple[str | None, str]:
+    """A refusal with nothing changed."""
+    change = Change.between(before, snapshot(folder))
+    if change:
+        return (CHANGED if change.lost else LEFT), f"{change}; {said}"
+    return wrong_refusal(said, words, statuses), str(said)
+
+
+def _full(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> Family:
+    """No room for the output: a line that names it, and nothing of it."""
+    family = Family("full disk")
+    for room in _ROOM[:1] if quick else _ROOM:
+        for arguments, name in list(_outputs())[:: 3 if quick else 1]:
+            for overwrite in (False, True):
+                shutil.rmtree(folder, ignore_errors=True)
+                shutil.copytree(prepared, folder)
+                if overwrite:
+                    (folder / name).write_text("somebody's work")
+                before = snapshot(folder)
+                given = [*arguments, *(["--overwrite"] if overwrite else [])]
+                said = run_once(given, folder, env, preexec_fn=preparation(file_size=room))
+                what = f"{' '.join(given)} with room for {room} bytes"
+                family.add(what, *_untouched(said, ((name,),), (1, 2), before, folder))
+    return family
+
+
+def _read_only(prepared: Path, folder: Path, env: dict[str, str]) -> Family:
+    """A folder that takes no files, and files that may not be read."""
+    family = Family("read-only folder, unreadable files")
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(prepared, folder)
+    (folder / "secret.toml").write_text("")
+    (folder / "secret.toml").chmod(0)
+    (folder / "secret.nc").write_bytes((folder / "given.nc").read_bytes())
+    (folder / "secret.nc").chmod(0)
+    cases = list(_outputs())
+    cases += [(["map", "small.toml"], "small.nc"), (["plot", "given.nc"], "given.png")]
+    cases += [(["map", "secret.toml"], "secret.toml"), (["info", "secret.nc"], "secret.nc")]
+    folder.chmod(0o555)
+    try:
+        before = snapshot(folder)
+        for arguments, name in cases:
+            said = run_once(arguments, folder, env, preexec_fn=preparation(ordinary=True))
+            family.add(" ".join(arguments), *_untouched(said, ((name,),), (1, 2), before, folder))
+    finally:
+        folder.chmod(0o755)
+    return family
+
+
+def _shell(command: str, folder: Path, env: dict[str, str]) -> Said:
+    """A line of a shell; {} stands for the program."""
+    line = command.format(f"'{sys.executable}' -m frictionmap")
+    done = subprocess.run(
+        ["bash", "-c", f"set -o pipefail; {line}"],
+        cwd=folder,
+        env=env,
+        capture_output=True,
+        timeout=300,
+        check=False,
+    )
+    return Said(done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace"))
+
+
+def _quiet_end(said: Said) -> str | None:
+    """A run whose reader went away: any status, no traceback, one line at most."""
+    if said.traceback or "Exception ignored" in said.err:
+        return TRACEBACK
+    return None if len(said.lines) <= 1 else wrong_success(said)
+
+
+def _one_line(said: Said) -> str | None:
+    return wrong_refusal(said, (), (1, 2))
+
+
+_ASCII = {"PYTHONIOENCODING": "ascii", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+_LATIN = {"PYTHONIOENCODING": "latin-1"}
+
+#: A line of a shell, what it may do, and what is different about the terminal.
+_LINES: tuple[tuple[str, Callable[[Said], str | None], dict[str, str]], ...] = (
+    ("{} info named.nc", wrong_success, _ASCII),
+    ("{} info named.nc", wrong_success, _LATIN),
+    ("{} plot named.nc -o n.png --overwrite", wrong_success, _ASCII),
+    ("{} map small.toml -o n.nc --overwrite --set 'title=\u03bc'", wrong_success, _ASCII),
+    ("{} map nothere-\u03bc.toml", _one_line, _ASCII),
+    ("{} map small.toml --set '\u03bc=1' -o x.nc", _one_line, _ASCII),
+    ("{} info named.nc | head -1", _quiet_end, {}),
+    ("{} info named.nc | true", _quiet_end, {}),
+    ("{} --help | true", _quiet_end, {}),
+    ("{} map small.toml -o n.nc --overwrite | true", _quiet_end, {}),
+    ("{} info named.nc >/dev/full", _one_line, {}),
+    ("{} --help >/dev/full", _quiet_end, {}),
+    ("{} map small.toml -o full.nc >/dev/full", _quiet_end, {}),
+    ("{} info named.nc >&-", _quiet_end, {}),
+    ("{} map small.toml -o n.nc --overwrite >&-", _quiet_end, {}),
+    ("{} map small.toml -o n.nc --overwrite 2>&-", wrong_success, {}),
+    ("{} map nothere.toml 2>&-", lambda said: None if said.status == 2 else TRACEBACK, {}),
+    ("{} map nothere.toml 2>/dev/full", lambda said: None if said.status == 2 else TRACEBACK, {}),
+    ("{} map small.toml -o n.nc --overwrite <&-", wrong_success, {}),
+    ("mkdir gone && cd gone && rmdir ../gone && {} map small.toml", _one_line, {}),
+    ("mkdir gone && cd gone && rmdir ../gone && {} info nothere.nc", _one_line, {}),
+    ("{}", _one_line, {}),
+    ("{} --version", wrong_success, _ASCII),
+    ("{} map --help", wrong_success, _ASCII),
+)  # fmt: skip
+
+
+def _terminals(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> Family:
+    """Streams that take no letters, few letters, or are closed."""
+    family = Family("terminals and closed streams")
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(prepared, folder)
+    run_once(["map", "small.toml", "-o", "named.nc", "--set", _TITLE], folder, env)
+    for command, judge, more in _LINES[::5] if quick else _LINES:
+        said = _shell(command, folder, env | more)
+        family.add(f"{command.format('frictionmap')} {' '.join(more)}", judge(said), said)
+    return family
+
+
+def run(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> list[Family]:
+    """All three families."""
+    return [
+        _full(prepared, folder / "here", env, quick),
+        _read_only(prepared, folder / "here", env),
+        _terminals(prepared, folder / "here", env, quick),
+    ]

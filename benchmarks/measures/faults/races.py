@@ -1,0 +1,145 @@
+"""Several runs and one name, files that appear during a run, links and permissions of what is replaced."""
+
+import os
+import random
+import shutil
+import stat
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from .machine import prepared as preparation
+from .machine import run as run_once
+from .machine import said_by, start
+from .moments import VERBS, Run
+from .verdict import (
+    ANSWER,
+    CHANGED,
+    HANG,
+    LEFT,
+    STATUS,
+    TRACEBACK,
+    Family,
+    wrong_refusal,
+    wrong_success,
+)  # fmt: skip
+
+_MINE = b"somebody's work"
+_LIMIT = 120.0
+
+#: Trials of each race, in full and quick.
+_ROUNDS = {False: 5, True: 1}
+
+_SMALL = ["map", "small.toml", "-o", "out.nc"]
+
+
+def _copy(prepared: Path, folder: Path) -> Path:
+    shutil.rmtree(folder, ignore_errors=True)
+    return Path(shutil.copytree(prepared, folder))
+
+
+def _left(folder: Path, prepared: Path, *outputs: str) -> list[str]:
+    known = {path.name for path in prepared.iterdir()} | set(outputs)
+    return [path.name for path in folder.iterdir() if path.name not in known]
+
+
+def _four_at_once(
+    of: Run, prepared: Path, folder: Path, env: dict[str, str], overwrite: bool
+) -> tuple[str | None, str]:
+    """Four runs to one name: without --overwrite one of them may write it, with it all."""
+    _copy(prepared, folder)
+    arguments = [word for word in of.arguments if overwrite or word != "--overwrite"]
+    processes: list[subprocess.Popen] = [start(arguments, folder, env) for _ in range(4)]
+    said = [said_by(process, _LIMIT) for process in processes]
+    words = "; ".join(map(str, said))
+    if any(one.status is None for one in said):
+        return HANG, words
+    if any(one.traceback for one in said):
+        return TRACEBACK, words
+    good = sum(one.status == 0 for one in said)
+    if good != (4 if overwrite else 1):
+        return (CHANGED if good > 1 else STATUS), f"{good} of 4 succeeded; {words}"
+    left = _left(folder, prepared, of.output)
+    if left:
+        return LEFT, ", ".join(left)
+    return (None, words) if of.whole(folder) else (ANSWER, words)
+
+
+def _appears(
+    of: Run, delay: float, prepared: Path, folder: Path, env: dict[str, str]
+) -> tuple[str | None, str]:
+    """Somebody writes a file of that name while the run is busy: it stays."""
+    _copy(prepared, folder)
+    process = start([word for word in of.arguments if word != "--overwrite"], folder, env)
+    time.sleep(delay)
+    try:
+        with open(folder / of.output, "xb") as file:
+            file.write(_MINE)
+    except FileExistsError:  # the run has the name already
+        said = said_by(process, _LIMIT)
+        return wrong_success(said, lines=2), str(said)
+    said = said_by(process, _LIMIT)
+    if (folder / of.output).read_bytes() != _MINE:
+        return CHANGED, str(said)
+    left = _left(folder, prepared, of.output)
+    return (LEFT, ", ".join(left)) if left else (wrong_refusal(said, ((of.output,),), (1, 2)), str(said))
+
+
+def _links(prepared: Path, folder: Path, env: dict[str, str]) -> Iterator[tuple[str, str | None, str]]:
+    """Links stay links, what they point at is replaced; permissions stay."""
+    reference = _copy(prepared, folder) / "reference.nc"
+    run_once([*_SMALL[:-1], "reference.nc"], folder, env)
+    whole = Run("map", [], "out.nc", 0.0, shutil.move(reference, folder.parent / "reference.nc"))
+
+    for target in ("kept/target.nc", "kept/new.nc"):
+        _copy(prepared, folder)
+        (folder / "kept").mkdir()
+        (folder / "kept" / "target.nc").write_bytes(_MINE)
+        (folder / "out.nc").symlink_to(target)
+        said = run_once([*_SMALL, "--overwrite"], folder, env)
+        if said.status == 0:
+            stays = (folder / "out.nc").is_symlink() and whole.whole(folder)
+            left = _left(folder / "kept", prepared, "target.nc", "new.nc")
+            yield f"a link to {target}", None if stays and not left else CHANGED, str(said)
+        else:
+            yield f"a link to {target}", wrong_refusal(said, (("out.nc",),)), str(said)
+
+    for mode in (0o600, 0o640, 0o664, 0o444):
+        _copy(prepared, folder)
+        (folder / "out.nc").write_bytes(_MINE)
+        (folder / "out.nc").chmod(mode)
+        said = run_once([*_SMALL, "--overwrite"], folder, env, preexec_fn=preparation(ordinary=True))
+        kept = stat.S_IMODE((folder / "out.nc").stat().st_mode) == mode
+        name = f"permissions {mode:o}"
+        if said.status == 0:
+            yield name, None if kept and whole.whole(folder) else CHANGED, str(said)
+        else:
+            intact = (folder / "out.nc").read_bytes() == _MINE
+            yield name, wrong_refusal(said, (("out.nc",),)) if intact else CHANGED, str(said)
+
+    _copy(prepared, folder)
+    (folder / "out.nc").write_bytes(_MINE)
+    os.link(folder / "out.nc", folder / "other.nc")
+    said = run_once([*_SMALL, "--overwrite"], folder, env)
+    yield "a name of two", None if said.status == 0 and whole.whole(folder) else CHANGED, str(said)
+
+
+def run(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> list[Family]:
+    """Both families."""
+    rng = random.Random(4)
+    several = Family("several runs to one name")
+    appearing = Family("files that appear during a run")
+    for verb in ["map"] if quick else [verb for verb, (_, output) in VERBS.items() if output]:
+        of = Run.measured(verb, prepared, env, folder / f"race-{verb}")
+        for k in range(_ROUNDS[quick]):
+            several.add(f"four {verb}", *_four_at_once(of, prepared, folder / "here", env, overwrite=False))
+            if k == 0:
+                what = f"four {verb} --overwrite"
+                several.add(what, *_four_at_once(of, prepared, folder / "here", env, overwrite=True))
+            delay = rng.uniform(0.2, 0.95) * of.seconds
+            appearing.add(f"{verb} after {delay:.2f} s", *_appears(of, delay, prepared, folder / "here", env))
+    replaced = Family("links and permissions of what is replaced")
+    for what, wrong, said in _links(prepared, folder / "here", env):
+        replaced.add(what, wrong, said)
+    return [several, appearing, replaced]

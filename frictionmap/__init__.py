@@ -19,10 +19,13 @@ regimes       the table of regime, origin and status codes
 labels        names, units and meanings of everything in a dataset
 checks        checks of input
 config        configuration files
-storage       files: written whole or not at all
+outputs       output files: claimed, written beside their place, put there whole or not at all
+storage       datasets as NetCDF files
 reading       files: read with a check, brought into one form
 plot          pictures
+arguments     the arguments of the command line
 cli           the command line
+interrupts    Ctrl-C and termination end the program at once
 _kernels      the only home of jitted code: numbers and arrays in, numbers and codes out
 ============  ==========================================================================
 """

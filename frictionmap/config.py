@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, Decimal
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -66,6 +66,7 @@ class Config:
     solver: Solver
     text: str  # the TOML text used, overrides applied
     name: str  # of the file, without its ending
+    files: tuple[Path, ...] = ()  # that it was read from
 
 
 def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
@@ -92,24 +93,52 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
         tree = tomllib.loads(text)
     except _NOT_TOML as error:
         raise InputError(f"configuration {path} must be TOML; got: {error}") from None
-    for override in overrides:
-        _override(tree, override)
+    _override_all(tree, overrides)
     if overrides:
         text = _to_toml(tree)
     return _check(tree, text, path)
 
 
-def _override(tree: dict, override: str) -> None:
-    """Set one dotted key to a TOML value; a bare word counts as a string."""
-    key, equals, value_text = override.partition("=")
+def _override_all(tree: dict, overrides: Sequence[str]) -> None:
+    """Set the keys of `--set`, in order; none may undo one before it."""
+    done: dict[str, str] = {}
+    for override in overrides:
+        key, value = _key_and_value(override)
+        for before, text in done.items():
+            if _undoes(key, before):
+                raise InputError(f"--set {override} must not undo --set {text}; give one of the two")
+        done[key] = override
+        _override(tree, key.split("."), value, override)
+
+
+def _key_and_value(override: str) -> tuple[str, object]:
+    """A dotted key and a TOML value; a bare word counts as a string."""
+    key, equals, text = override.partition("=")
     parts = [part.strip() for part in key.split(".")]
-    if not equals or not all(parts) or not value_text.strip():
+    text = text.strip()
+    if not equals or not all(parts) or not text:
         raise InputError(f"--set must be KEY=VALUE, such as grid.r.step=0.01; got {override!r}")
-    value_text = value_text.strip()
+    if len(override.splitlines()) > 1:
+        raise InputError(f"--set must be one line; got {override!r}")
     try:
-        value = tomllib.loads(f"value = {value_text}")["value"]
+        # inside braces nothing is dropped in silence: a comment would hide the closing one
+        found = tomllib.loads(f"all = {{ value = {text} }}")
     except _NOT_TOML:
-        value = value_text  # a word such as rest or none
+        found = {}
+    whole = found.get("all", {})
+    only = set(found) == {"all"} and set(whole) == {"value"}
+    return ".".join(parts), whole["value"] if only else text
+
+
+def _undoes(key: str, before: str) -> bool:
+    """Whether setting `key` would drop what `before` has set."""
+    if f"{before}.".startswith(f"{key}."):
+        return True
+    axis, _, last = key.rpartition(".")
+    return axis.startswith("grid.") and before in {f"{axis}.{rival}" for rival in _RIVALS.get(last, ())}
+
+
+def _override(tree: dict, parts: list[str], value: object, override: str) -> None:
     branch = tree
     for depth, part in enumerate(parts[:-1], start=1):
         branch = branch.setdefault(part, {})
@@ -172,7 +201,7 @@ def _build(kind: Callable[..., T], table: Mapping[str, object], section: str) ->
         raise InputError(f"{section}.{error}") from None
 
 
-def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, object]:
+def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]:
     """The table [system], with `matrices` as seen from the folder of the configuration."""
     table = _table(tree, "system")
     if "matrices" not in table:
@@ -193,7 +222,8 @@ def _check(tree: Mapping[str, object], text: str, path: Path) -> Config:
         raise InputError(f"title must be text; got {title!r}")
     if "system" not in tree:
         raise InputError("the configuration must have a table [system]; it has none")
-    system = _build(System, _system_table(tree, path.parent), "system")
+    described = _system_table(tree, path.parent)
+    system = _build(System, described, "system")
     solver = _build(Solver, _table(tree, "solver"), "solver")
     grid = _table(tree, "grid")
     for key in ("r", "beta"):
@@ -209,7 +239,8 @@ def _check(tree: Mapping[str, object], text: str, path: Path) -> Config:
             ("mu", {"least": 1.0}),
         )
     }
-    return Config(title, system, axes["r"], axes["beta"], axes["mu"], solver, text, name)
+    files = (path, *(described[key] for key in ("matrices",) if key in described))
+    return Config(title, system, axes["r"], axes["beta"], axes["mu"], solver, text, name, files)
 
 
 def _is_number(value: object) -> bool:

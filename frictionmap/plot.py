@@ -16,7 +16,6 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from . import regimes
 from .errors import InputError
 from .reading import kind
-from .storage import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -324,15 +323,17 @@ def plot_response(ds: xr.Dataset) -> np.ndarray:
     return axes
 
 
-def save_picture(ds: xr.Dataset, path: Path) -> None:
-    """Draw a dataset of any kind into a file, whole or not at all."""
+def check_picture(path: Path) -> None:
+    """Refuse a name whose ending is not that of a picture."""
     if path.suffix.lower() not in FORMATS:
         raise InputError(f"-o must end in {', '.join(FORMATS)}; got {path}")
+
+
+def save_picture(ds: xr.Dataset, path: Path) -> None:
+    """Draw a dataset of any kind into a file."""
     draw: dict[str, Callable[[xr.Dataset], Any]] = {
         "map": plot_regimes,
         "boundaries": plot_boundaries,
         "response": plot_response,
     }
-    axes = draw[kind(ds)](ds)
-    with whole_file(path) as scratch:
-        axes[0].figure.savefig(scratch, dpi=160)
+    draw[kind(ds)](ds)[0].figure.savefig(path, dpi=160)

@@ -285,7 +285,7 @@ def test_huge_grids_are_refused_at_once_and_without_memory(folder, capsys, grid,
         ("mapp good.toml", ["'mapp'", "'map'", "'boundaries'"]),
         ("map", ["CONFIG.toml", "required"]),
         ("map good.toml more", ["unrecognized", "more"]),
-        ("map good.toml --thread=x", ["--threads", "int", "'x'"]),
+        ("map good.toml --threads=x", ["--threads", "int", "'x'"]),
         ("map good.toml --threads 0", ["threads must be >= 1", "got 0"]),
         ("map good.toml --threads -2", ["threads must be >= 1", "got -2"]),
         ("map good.toml --threads 1.5", ["--threads", "int", "'1.5'"]),
@@ -305,6 +305,26 @@ def test_huge_grids_are_refused_at_once_and_without_memory(folder, capsys, grid,
         ("response good.toml --r 1 --beta -1", ["beta must be >= 0", "got -1"]),
         ("response good.toml --r 1 --beta 1 --mu 0.5", ["mu must be >= 1", "got 0.5"]),
         ("boundaries good.toml --threads 2", ["unrecognized", "--threads"]),
+        ("map good.toml --over", ["unrecognized", "--over"]),
+        ("map good.toml --threads 1 --threads 2", ["--threads: must be given once"]),
+        ("map good.toml -o a.nc -o b.nc", ["-o: must be given once"]),
+        ("plot good.nc -o a.png -o b.png", ["-o: must be given once"]),
+        ("response good.toml --r 1 --r 2 --beta 1", ["--r: must be given once"]),
+        ("response good.toml --r 1 --beta 1 --beta 1", ["--beta: must be given once"]),
+        ("response good.toml --r 1 --beta 1 --mu 1 --mu 2", ["--mu: must be given once"]),
+        ("response good.toml --r 1 --beta 1 --set grid.mu=[1,1.5,2]", ["--mu must be given", "1, 1.5, 2"]),
+        ("map good.toml --set grid.r=1 --set grid.r=2", ["--set grid.r=2 must not undo --set grid.r=1"]),
+        (
+            "map good.toml --set grid.r={start=0,stop=1,num=3} --set grid.r.num=5 --set grid.r=1",
+            ["--set grid.r=1 must not undo --set grid.r={start=0,stop=1,num=3}"],
+        ),
+        (
+            "map good.toml --set grid.r={start=0,stop=1,num=3} --set grid.r.num=5 --set grid.r.step=0.5",
+            ["--set grid.r.step=0.5 must not undo --set grid.r.num=5"],
+        ),
+        ("map good.toml --set 'solver.steps=24 # of old'", ["solver.steps", "'24 # of old'"]),
+        ("map good.toml --set 'solver.steps=24, cycles = 5'", ["solver.steps", "'24, cycles = 5'"]),
+        ("map good.toml --set 'solver.steps=24 }, b = { c = 1'", ["solver.steps", "'24 }, b = { c = 1'"]),
         ("plot", ["FILE.nc", "required"]),
         ("plot missing.nc", ["missing.nc does not exist", "written by frictionmap"]),
         ("info missing.nc", ["missing.nc does not exist", "written by frictionmap"]),
@@ -323,6 +343,11 @@ def test_an_argument_that_no_file_can_record(folder, capsys):
 
 def test_an_argument_with_a_line_break(folder, capsys):
     assert_refused(capsys, folder, ["map", "good.toml", "a\nb"], "unrecognized arguments: a b")
+
+
+@pytest.mark.parametrize("override", ["solver.steps=9\nsolver.cycles=5", "title=one\ntwo", "grid.r\r\n=1"])
+def test_an_override_with_a_line_break(folder, capsys, override):
+    assert_refused(capsys, folder, ["map", "good.toml", "--set", override], "--set must be one line")
 
 
 def test_files_of_others(folder, capsys):
@@ -356,6 +381,9 @@ def test_outputs_that_cannot_be_written(folder, capsys, command):
         ("none/out.png", ["-o must lie in a folder that exists", "none/out.png"]),
         ("good.toml/out.png", ["-o must lie in a folder that exists", "good.toml/out.png"]),
         ("dir.png", ["-o must be a file", "folder dir.png"]),
+        ("-", ["-o: must be the name of a file; got '-'"]),
+        ("", ["-o: must be the name of a file; got ''"]),
+        ("new.png/", ["-o: must be the name of a file; got 'new.png/'"]),
         ("old.png", ["old.png exists already", "--overwrite"]),
         ("x" * 300 + ".png", ["-o must be a place that can be written to", "too long"]),
     ):
@@ -365,6 +393,28 @@ def test_outputs_that_cannot_be_written(folder, capsys, command):
     if hasattr(os, "mkfifo"):  # stands for /dev/null, which a test must not endanger
         os.mkfifo(folder / "pipe.png")
         assert_refused(capsys, folder, f"{command} -o pipe.png --overwrite", "-o must be an ordinary file")
+
+
+@pytest.mark.parametrize("command", OUTPUT_COMMANDS)
+def test_no_output_is_an_input(folder, capsys, command):
+    """Whatever its name: the configuration, its matrices, the file that is drawn."""
+    np.savez(folder / "frame.npz", M=np.eye(1), K=np.eye(1))
+    (folder / "good.toml").write_text(toml(system=f'{SYSTEM}\nmatrices = "frame.npz"'))
+    assert status_of("map good.toml -o ours.nc --quiet") == 0
+    (folder / "ours.png").symlink_to("ours.nc")
+    (folder / "link").symlink_to("good.toml")
+    (folder / "hard").hardlink_to(folder / "frame.npz")
+    names = ["ours.png"] if command.startswith("plot") else ["good.toml", "link", "frame.npz", "hard"]
+    for name in names:
+        for overwrite in ([], ["--overwrite"]):
+            words = ["-o must not be a file that is read", f"got {name}"]
+            assert_refused(capsys, folder, [*command.split(), "-o", name, *overwrite], *words)
+
+
+def test_a_file_named_like_what_is_read(folder, capsys):
+    """The default name of the output of a configuration x.nc is x.nc."""
+    (folder / "x.nc").write_text(toml())
+    assert_refused(capsys, folder, "map x.nc --overwrite", "-o must not be a file that is read; got x.nc")
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write anywhere")
@@ -414,7 +464,7 @@ def test_an_undamped_resonance_has_no_response(folder, capsys):
     [
         (MemoryError(), "MemoryError"),
         (MemoryError("Unable to allocate 8 GiB"), "8 GiB"),
-        (OSError(28, "No space left on device"), "No space left"),
+        (OSError(28, "No space left on device"), "good.nc cannot be written (No space left on device)"),
         (RuntimeError("NetCDF: HDF error"), "is there room on the disk?"),
     ],
 )
@@ -545,6 +595,17 @@ def test_map_and_response_and_library_agree(folder):
     direct = fm.sweep(fm.System(), [0.3, 0.8], [0.1, 0.5, 1.5])
     for name in direct.variables:
         np.testing.assert_array_equal(ds[name], direct[name], strict=True)
+
+
+def test_response_takes_the_mu_of_its_configuration(folder):
+    """One value is it, whatever it is; --mu goes before it."""
+    for grid, option, mu in (("1.5", "", 1.5), ("[2]", "", 2.0), ("[1, 2]", "--mu 1.2", 1.2)):
+        status_of(
+            f"response good.toml --quiet --overwrite --r 0.8 --beta 0.5 --set 'grid.mu={grid}' {option}"
+        )
+        assert float(xr.load_dataset("good-response.nc").mu) == mu
+    status_of("response good.toml --quiet --overwrite --r 0.8 --beta 0.5")
+    assert float(xr.load_dataset("good-response.nc").mu) == 1.0
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["map", "--help"], ["--version"]])

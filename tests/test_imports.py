@@ -88,7 +88,12 @@ def test_imports_are_read_right():
 
 @pytest.mark.parametrize(
     ("module", "home"),
-    [("matplotlib", {"plot.py"}), ("argparse", {"cli.py"}), ("tomllib", {"config.py"}), ("netCDF4", set())],
+    [
+        ("matplotlib", {"plot.py"}),
+        ("argparse", {"arguments.py"}),
+        ("tomllib", {"config.py"}),
+        ("netCDF4", set()),
+    ],
 )
 def test_one_home(module, home):
     users = {path.name for path in SOURCES if any(name.split(".")[0] == module for name in imported(path))}

@@ -1,9 +1,7 @@
-"""Files: what a reader without frictionmap finds in them, and that they are whole or not there."""
+"""NetCDF files: what a reader without frictionmap finds in them."""
 
 import contextlib
-import errno
 import os
-import tempfile
 import tomllib
 from datetime import datetime
 from pathlib import Path
@@ -70,7 +68,10 @@ def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("files")
     (folder / "tiny.toml").write_text(CONFIG)
     names = ", ".join(f'"{name}"' for name in OUTPUTS)
-    more = {"map": ["--set", f"solver.outputs=[{names}]"], "response": ["--r", "0.3", "--beta", "0.05"]}
+    more = {
+        "map": ["--set", f"solver.outputs=[{names}]"],
+        "response": ["--r", "0.3", "--beta", "0.05", "--mu", "1"],
+    }
     for kind in CONTENT:
         arguments = [kind, str(folder / "tiny.toml"), "-o", str(folder / f"{kind}.nc"), "--quiet"]
         assert main(arguments + more.get(kind, [])) == 0
@@ -236,103 +237,9 @@ def test_a_damaged_file_is_refused(tmp_path):
         reading.read(path)
 
 
-# Whole or not at all
-
-
-@pytest.fixture
-def tiny():
-    return fm.boundaries(fm.System(), [0.5, 2.0])
-
-
-def fail_halfway(error):
-    def to_netcdf(self, path, **options):
-        with open(path, "wb") as file:
-            file.write(b"half")
-        raise error
-
-    return to_netcdf
-
-
-@pytest.mark.parametrize(
-    "error", [OSError("disk"), RuntimeError("HDF"), KeyboardInterrupt(), ValueError("x")]
-)
-@pytest.mark.parametrize("existing", [True, False])
-def test_a_failing_write_leaves_what_there_was(tiny, tmp_path, monkeypatch, error, existing):
-    path = tmp_path / "out.nc"
-    if existing:
-        path.write_bytes(b"old")
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", fail_halfway(error))
-    with pytest.raises(OSError if isinstance(error, RuntimeError) else type(error)):
-        storage.write(tiny, path)
-    assert os.listdir(tmp_path) == (["out.nc"] if existing else [])
-    if existing:
-        assert path.read_bytes() == b"old"
-
-
-def test_the_library_s_write_error_is_put_into_words(tiny, tmp_path, monkeypatch):
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", fail_halfway(RuntimeError("NetCDF: HDF error")))
-    with pytest.raises(OSError, match=r"out\.nc cannot be written \(NetCDF: HDF error\); is there room"):
-        storage.write(tiny, tmp_path / "out.nc")
-
-
-def test_the_old_file_is_there_until_the_new_one_is_whole(tiny, tmp_path, monkeypatch):
-    path = tmp_path / "out.nc"
-    path.write_bytes(b"old")
-    original = xr.Dataset.to_netcdf
-    seen = []
-
-    def to_netcdf(self, scratch, **options):
-        original(self, scratch, **options)
-        seen.append((path.read_bytes(), os.path.dirname(scratch), os.path.basename(scratch)))
-
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", to_netcdf)
-    storage.write(tiny, path)
-    ((old, folder, scratch),) = seen
-    assert old == b"old"
-    assert folder == str(tmp_path)  # the same file system, so that the move is one step
-    assert scratch.startswith(".")
-    assert os.listdir(tmp_path) == ["out.nc"]
-    with xr.open_dataset(path) as ds:
-        np.testing.assert_array_equal(ds.r, [0.5, 2.0])
-
-
-@pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
-@pytest.mark.parametrize(
-    ("umask", "expected"), [(0o022, 0o644), (0o027, 0o640), (0o077, 0o600), (0o002, 0o664)]
-)
-def test_permissions_follow_the_umask(tiny, tmp_path, umask, expected):
-    before = os.umask(umask)
-    try:
-        storage.write(tiny, tmp_path / "out.nc")
-        assert os.umask(umask) == umask
-    finally:
-        os.umask(before)
-    assert (tmp_path / "out.nc").stat().st_mode & 0o777 == expected
-
-
-def test_writing_does_not_touch_the_dataset(tiny, tmp_path):
+def test_writing_does_not_touch_the_dataset(tmp_path):
+    tiny = fm.boundaries(fm.System(), [0.5, 2.0])
     before = tiny.copy(deep=True)
     storage.write(tiny, tmp_path / "out.nc", "a command")
     xr.testing.assert_identical(tiny, before)
     assert reading.read(tmp_path / "out.nc").attrs["history"].endswith("Z a command")
-
-
-def test_check_output_leaves_nothing(tmp_path):
-    storage.check_output(tmp_path / "out.nc", overwrite=False)
-    assert os.listdir(tmp_path) == []
-
-
-def test_check_output_tries_to_write(tmp_path, monkeypatch):
-    def mkstemp(**options):
-        raise OSError(errno.EROFS, "Read-only file system")
-
-    monkeypatch.setattr(tempfile, "mkstemp", mkstemp)
-    with pytest.raises(InputError, match=r"^-o must be a place .* got .*out\.nc \(Read-only file system\)$"):
-        storage.check_output(tmp_path / "out.nc", overwrite=False)
-
-
-def test_a_name_of_the_longest_length(tiny, tmp_path):
-    path = tmp_path / ("x" * 252 + ".nc")
-    storage.check_output(path, overwrite=False)
-    storage.write(tiny, path)
-    assert os.listdir(tmp_path) == [path.name]

@@ -1,0 +1,106 @@
+"""The arguments of the command line."""
+
+import argparse
+from argparse import Namespace as Options
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NoReturn
+
+from .version import __version__
+
+__all__ = ["Options", "one_line", "parse"]
+
+_DESCRIPTION = """\
+Exact regime maps of a vibrating structure with one dry-friction contact: does it slide without stopping,
+stick and slip, or stick for good, over frequency ratio r, friction ratio beta and static/kinetic ratio mu?"""
+
+_EPILOG = """\
+example:
+  frictionmap map configs/fig-3-12.toml && frictionmap plot fig-3-12.nc
+
+exit status: 0 done, 2 the input is at fault, 130 interrupted (also by termination), 1 anything else"""
+
+
+def one_line(message: object) -> str:
+    """A message without the line breaks that a name or a key put into it."""
+    return " ".join(str(message).split())
+
+
+class _Parser(argparse.ArgumentParser):
+    """argparse, with errors on one line and no options cut short: --over is not --overwrite."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(allow_abbrev=False, **settings)
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {one_line(message)} (see {self.prog} --help)\n")
+
+
+class _Once(argparse.Action):
+    """An option with one value, which a second one would drop in silence."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: Options, values: object, option: str | None = None
+    ) -> None:
+        if getattr(namespace, self.dest, None) is not None:
+            raise argparse.ArgumentError(self, "must be given once")
+        setattr(namespace, self.dest, values)
+
+
+def _file(text: str) -> Path:
+    """The name of a file to write."""
+    if text in ("", "-") or text.endswith(("/", "\\")):
+        raise argparse.ArgumentTypeError(f"must be the name of a file; got {text!r}")
+    return Path(text)
+
+
+def _takes_output(sub: argparse.ArgumentParser, metavar: str, text: str) -> None:
+    sub.add_argument("-o", dest="output", metavar=metavar, type=_file, action=_Once, help=text)
+    sub.add_argument("--overwrite", action="store_true", help="replace an existing output")
+    sub.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+def _takes_config(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("config", metavar="CONFIG.toml", type=Path, help="what to compute")
+    _takes_output(sub, "OUT.nc", "file to write; default: named after CONFIG, in the current folder")
+    text = "override a key of CONFIG, e.g. --set grid.r.step=0.01; repeatable, each key once"
+    sub.add_argument("--set", dest="overrides", metavar="KEY=VALUE", action="append", default=[], help=text)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="frictionmap",
+        description=_DESCRIPTION,
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"frictionmap {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    def command(name: str, text: str, description: str) -> argparse.ArgumentParser:
+        return commands.add_parser(name, help=text, description=description)
+
+    text = "Classify every cell of a grid and count its stops per cycle; write NetCDF."
+    sub = command("map", "classify every cell of a grid", text)
+    _takes_config(sub)
+    text = "threads to use (default: all processors); the result is the same to the bit"
+    sub.add_argument("--threads", metavar="N", type=int, action=_Once, help=text)
+    text = "Compute the boundaries of the regimes over frequency (no cell is classified); write NetCDF."
+    _takes_config(command("boundaries", "curves only", text))
+    sub = command("response", "one steady state in time", "Compute one steady state in time; write NetCDF.")
+    _takes_config(sub)
+    sub.add_argument("--r", type=float, required=True, action=_Once, help="frequency ratio, > 0")
+    sub.add_argument("--beta", type=float, required=True, action=_Once, help="friction ratio, >= 0")
+    text = "static over kinetic friction, >= 1 (default: grid.mu of CONFIG if that is one value, else needed)"
+    sub.add_argument("--mu", type=float, action=_Once, help=text)
+    sub = command("plot", "a picture of any file", "Draw any file that the other commands wrote.")
+    sub.add_argument("file", metavar="FILE.nc", type=Path, help="what to draw")
+    _takes_output(sub, "PICTURE", ".png, .pdf or .svg; default: FILE.png in the current folder")
+    sub = command("info", "what is in a file", "Print what is in a file, in one screen.")
+    sub.add_argument("file", metavar="FILE.nc", type=Path, help="what to read")
+    return parser
+
+
+def parse(arguments: Sequence[str]) -> Options:
+    """The arguments, checked; help, version and errors end the program."""
+    return _parser().parse_args(arguments)

@@ -18,6 +18,7 @@ from .features import (
     peak_thresholds,
 )
 from .labels import coordinate, label_variable, stamp
+from .modes import angles, modulus
 from .system import System
 
 #: About so many invariant points beyond one a mode are listed, from the highest down: below them hardly any
@@ -69,15 +70,15 @@ def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
     load = system.contact_load(r)
     v_abs, v_arg, u, g, h, s = np.empty((6, r.size))
     response_functions(r, system.zeta, u, g, v_abs, v_arg, h, s)
-    amplitude = np.abs(load)
+    amplitude = modulus(load)
     half = np.divide(0.5, r, out=np.zeros_like(r), where=r > 0.0)
     even = (half >= 1.0) & (half == np.floor(half))
     marginal = even & (system.zeta == 0.0)
-    frequencies = Frequencies(r, amplitude, np.angle(load), v_abs, v_arg, u, g, marginal)
+    frequencies = Frequencies(r, amplitude, angles(load), v_abs, v_arg, u, g, marginal)
     lim = np.empty((mu.size, r.size))
     for row, value in zip(lim, mu, strict=True):
         boundary(r, v_abs, u, h, s, value, row)
-    stiffness = (1.0 - r) * (1.0 + r) + 2j * system.zeta * r
+    stiffness = system.modes.dynamic_stiffness(r)[:, 0]
     resonance = stiffness == 0.0
     found = Curves(
         v=np.where(resonance, np.inf, load / np.where(resonance, 1.0, stiffness)),
@@ -96,7 +97,7 @@ def _lim(v: np.ndarray, u: np.ndarray, bracket: np.ndarray) -> np.ndarray:
     """|V|/sqrt(U^2 + bracket^2); 0 where U or S alone is infinite, or U has no limit (r = 0)."""
     size = np.hypot(np.where(np.isnan(u), np.inf, u), bracket)
     finite = np.isfinite(size)
-    return np.where(finite, np.abs(v) / np.where(finite, size, 1.0), 0.0)
+    return np.where(finite, modulus(v) / np.where(finite, size, 1.0), 0.0)
 
 
 def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
@@ -119,7 +120,7 @@ def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     resonance = np.isinf(v) & np.isinf(u)
     # there |V|/|U| -> (pi/4) |lambda_i/chi_i|, and both outgrow S
     seen = modes.dynamic_stiffness(r) == 0.0  # r is an undamped frequency to the bit: else they are finite
-    ratio = np.abs(modes.participation(r)) / np.where(modes.chi == 0.0, np.inf, np.abs(modes.chi))
+    ratio = modulus(modes.participation(r)) / np.where(modes.chi == 0.0, np.inf, np.abs(modes.chi))
     at_resonance = 0.25 * np.pi * (seen * ratio).sum(axis=1)
     for m, value in enumerate(mu):
         with np.errstate(invalid="ignore"):  # inf - inf at a resonance, replaced below
@@ -134,7 +135,7 @@ def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
         s=s,
         beta_lim=lim,
         beta_lim_modal=lim_modal,
-        beta_stick=np.abs(modes.held_load(r)) / mu[:, np.newaxis],
+        beta_stick=modulus(modes.held_load(r)) / mu[:, np.newaxis],
     )
 
 

@@ -3,10 +3,15 @@
 Everything is dimensionless, as in theory.md 1.
 """
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from ._kernels.balance import Body
 
 _EPS = float(np.finfo(float).eps)
 
@@ -19,12 +24,6 @@ _SAME_FREQUENCY = 8.0
 #: multiple of the most that it could be; this times n eps of it is above the rounding, and nothing that
 #: double precision could tell from zero is lost.
 _ZERO_PRODUCT = 64.0
-
-#: Decimal digits of a double.
-_DIGITS = 16
-
-#: The forces on a mass add up to zero within so many eps of their sizes: it is in balance.
-_BALANCE = 4.0
 
 
 def _made_equal(squares: np.ndarray, rounding: np.ndarray) -> np.ndarray:
@@ -120,9 +119,43 @@ def gather_contact(w: np.ndarray, zeta: np.ndarray, phi: np.ndarray, contact: np
     return phi
 
 
-def _times(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:
-    """Complex rows (n_r, n) times a real matrix, at half the cost of a complex one."""
-    return rows.real @ matrix + 1j * (rows.imag @ matrix)
+def modulus(values: np.ndarray) -> np.ndarray:
+    """Moduli of complex numbers, each as if it were alone, as `times`."""
+    return np.hypot(values.real, values.imag)
+
+
+def angles(values: np.ndarray) -> np.ndarray:
+    """Arguments of complex numbers (n_r,), each as if it were alone, as `times`."""
+    return np.array([math.atan2(value.imag, value.real) for value in values])
+
+
+def times(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """Complex rows (n_r, n) times a real matrix (n, k); every row as if it were alone.
+
+    A matrix product by a library rounds a row by its place among the others, and so may complex arithmetic
+    on arrays; real arithmetic, number by number, does not.
+    """
+    total = np.zeros((rows.shape[0], matrix.shape[1]), dtype=complex)
+    for column, row in zip(rows.T, matrix, strict=True):
+        total.real += column.real[:, np.newaxis] * row
+        total.imag += column.imag[:, np.newaxis] * row
+    return total
+
+
+def _phasors(r: np.ndarray, constant: np.ndarray, rate: np.ndarray, square: np.ndarray) -> np.ndarray:
+    """constant + i r rate + r^2 square, complex (n_r, n); every row as if it were alone, as `times`."""
+    r = np.asarray(r, dtype=float)[:, np.newaxis]
+    found = np.empty((r.size, constant.size), dtype=complex)
+    found.real = constant.real - r * rate.imag + r * r * square.real
+    found.imag = constant.imag + r * rate.real + r * r * square.imag
+    return found
+
+
+def _weighted(parts: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Complex parts (n_r, n) times real weights (n,); every row as if it were alone, as `times`."""
+    found = np.empty_like(parts)
+    found.real, found.imag = parts.real * weights, parts.imag * weights
+    return found
 
 
 def _modal_sum(stiffness: np.ndarray, parts: np.ndarray) -> np.ndarray:
@@ -196,45 +229,6 @@ def _solve_held(
     return held
 
 
-def _solve_arrow(
-    stiffness: np.ndarray, chi: np.ndarray, parts: np.ndarray, gap: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Modes q and force F of stiffness_i q_i + chi_i F = parts_i, chi.q = gap.
-
-    One mode, that with the least stiffness as the contact feels it, is solved for together with F: it may
-    resonate.  The others are eliminated.
-
-    Parameters
-    ----------
-    stiffness, parts : (n_r, n)
-    chi : (n,), none of them 0
-    gap : (n_r,)
-
-    Returns
-    -------
-    q : (n_r, n)
-    F : (n_r,)
-    singular : (n_r,) bool, whether rounding alone keeps the equations from being singular
-    """
-    rows = np.arange(stiffness.shape[0])
-    last = np.argmin(np.abs(stiffness) / chi**2, axis=1)
-    first = stiffness[rows, last]
-    others = stiffness.copy()
-    others[rows, last] = np.inf  # leaves the last mode out of the sums
-    compliances = chi**2 / others
-    compliance = compliances.sum(axis=1)
-    response = (chi * parts / others).sum(axis=1) - gap
-    chi_last, part_last = chi[last], parts[rows, last]
-    below = chi_last**2 + first * compliance
-    size = chi_last**2 + np.abs(first) * np.abs(compliances).sum(axis=1)
-    singular = np.abs(below) <= _ZERO_PRODUCT * chi.size * _EPS * size
-    below = np.where(singular, 1.0, below)
-    force = (chi_last * part_last + first * response) / below
-    q = (parts - chi * force[:, np.newaxis]) / others
-    q[rows, last] = (part_last * compliance - chi_last * response) / below
-    return q, force, singular
-
-
 @dataclass(frozen=True)
 class ModalModel:
     """A structure in its modes; it depends on r through functions of r only (theory.md 1).
@@ -279,15 +273,37 @@ class ModalModel:
         return self._shares(self.contact)
 
     @cached_property
-    def _load_shares(self) -> tuple[np.ndarray, np.ndarray]:
-        """Participation of load and of load_rate."""
-        return self._shares(self.load), self._shares(self.load_rate)
+    def _load_shares(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Participation of load, of load_rate, and of nothing that grows with r^2."""
+        return self._shares(self.load), self._shares(self.load_rate), np.zeros(self.w.size)
 
     @cached_property
-    def _base_shares(self) -> tuple[np.ndarray, np.ndarray]:
-        """Participation of M ones and of load_rate - C1 ones, the loads of `relative_load`."""
+    def _relative(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """`relative_load` in its parts: constant, times i r, times r^2; complex (n,) each."""
+        nothing = np.zeros(self.w.size, dtype=complex)
+        if not self.base_motion:
+            return self.load.astype(complex), self.load_rate.astype(complex), nothing
         ones = np.ones(self.w.size)
-        return self._shares(self.mass @ ones), self._shares(self.load_rate - self.damping @ ones)
+        return nothing, self.load_rate - self.damping @ ones, (self.mass @ ones).astype(complex)
+
+    @cached_property
+    def _relative_shares(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Participation of these parts."""
+        constant, rate, square = (self._shares(part).astype(complex) for part in self._relative)
+        return constant, rate, square
+
+    @cached_property
+    def _body(self) -> "Body":
+        """The structure in the numbers that the kernels take."""
+        from ._kernels.balance import Body  # not loaded where a configuration is only checked
+
+        return Body(
+            self.w, self.zeta, np.ascontiguousarray(self.phi), self.chi, self.contact,
+            np.ascontiguousarray(self.mass), np.ascontiguousarray(self.stiffness),
+            np.empty(0) if self.springs is None else self.springs,
+            np.ascontiguousarray(self.mass @ self.phi), *self._relative, *self._relative_shares,
+            _ZERO_PRODUCT * _EPS,
+        )  # fmt: skip
 
     @cached_property
     def inverse_mass(self) -> float:
@@ -303,8 +319,7 @@ class ModalModel:
 
     def participation(self, r: np.ndarray) -> np.ndarray:
         """Participation of the load, lambda_i = p(r).phi_i, complex (n_r, n)."""
-        load, rate = self._load_shares
-        return load + 1j * np.asarray(r, dtype=float)[:, np.newaxis] * rate
+        return _phasors(r, *self._load_shares)
 
     def relative_load(self, r: np.ndarray) -> np.ndarray:
         """Phasor of the load on x - s, which is x as seen from the contact's other side, (n_r, n).
@@ -312,119 +327,37 @@ class ModalModel:
         With base motion p - (K - r^2 M + i r C1) ones = r^2 M ones + i r (load_rate - C1 ones), without
         the difference of nearly equal numbers that p - K ones would be; else p.
         """
-        r = np.asarray(r, dtype=float)[:, np.newaxis]
-        if not self.base_motion:
-            return self.load + 1j * r * self.load_rate
-        ones = np.ones(self.w.size)
-        return r**2 * (self.mass @ ones) + 1j * r * (self.load_rate - self.damping @ ones)
+        return _phasors(r, *self._relative)
 
     def relative_participation(self, r: np.ndarray) -> np.ndarray:
         """relative_load(r).phi_i, (n_r, n)."""
-        if not self.base_motion:
-            return self.participation(r)
-        base, rate = self._base_shares
-        r = np.asarray(r, dtype=float)[:, np.newaxis]
-        return r**2 * base + 1j * r * rate
+        return _phasors(r, *self._relative_shares)
 
     def dynamic_stiffness(self, r: np.ndarray) -> np.ndarray:
         """w_i^2 - r^2 + 2 i zeta_i w_i r, shape (n_r, n), without cancellation at resonance."""
         r = np.asarray(r, dtype=float)[:, np.newaxis]
-        return (self.w - r) * (self.w + r) + 2j * self.zeta * self.w * r
+        found = np.empty((r.size, self.w.size), dtype=complex)
+        found.real = (self.w - r) * (self.w + r)
+        found.imag = 2.0 * self.zeta * self.w * r
+        return found
 
     def response(self, r: np.ndarray, weights: np.ndarray) -> np.ndarray:
         """sum_i weights_i lambda_i/(w_i^2 - r^2 + 2 i zeta_i w_i r), complex (n_r,).
 
         V_k of a mass with weights phi[k].  Infinite at an undamped resonance that is loaded and weighted.
         """
-        return _modal_sum(self.dynamic_stiffness(r), weights * self.participation(r))
-
-    def _forces(self, r: np.ndarray, x: np.ndarray, tail: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(K - r^2 M + i r C1) (x + tail), all (n_r, n), and the sizes of the single forces on a mass, added.
-
-        A chain's springs pull by their stretch: a stiff one leaves the digits of the others alone.  `tail` is
-        below the rounding of x, and so of all forces but these.
-        """
-        r = r[:, np.newaxis]
-        if self.springs is None:
-            inertia = r**2 * _times(x, self.mass)
-            size = np.abs(x) @ np.abs(self.stiffness) + r**2 * (np.abs(x) @ np.abs(self.mass))
-            forces = _times(x, self.stiffness) - inertia
-        else:
-            inertia = r**2 * np.diag(self.mass) * x
-            pull = self.springs * (np.diff(x, axis=1, prepend=0.0) + np.diff(tail, axis=1, prepend=0.0))
-            back = np.append(pull[:, 1:], np.zeros((r.size, 1)), axis=1)
-            size = np.abs(pull) + np.abs(back) + np.abs(inertia)
-            forces = pull - back - inertia
-        if self.zeta.any():
-            shapes = self.mass @ self.phi
-            rates = 2.0 * r * self.zeta * self.w * _times(x, shapes)
-            forces += 1j * _times(rates, shapes.T)
-            size += np.abs(rates) @ np.abs(shapes.T)
-        return forces, size
-
-    def _refine(
-        self, r: np.ndarray, held: bool, stiffness: np.ndarray, load: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """x (n_r, n), z = c.x and F (n_r,) under `load`, corrected until every mass is in balance.
-
-        The modes' answers are right to the rounding of the largest of them, and a mass far from the load may
-        move by less.  What is left of the balance of its own forces tells; the modes' answer to that corrects
-        it, and masses in balance to rounding are left alone.  x is kept in two parts: a stretch may be below
-        the rounding of x.  With `held` the contact holds z = 0 by F; else F = 0.  The last value says where
-        the held structure resonates.
-        """
-        x = np.zeros(load.shape, dtype=complex)
-        tail = np.zeros_like(x)
-        left = load
-        z, force = np.zeros((2, r.size), dtype=complex)
-        singular = np.zeros(r.size, dtype=bool)
-        last = np.full(r.size, np.inf, dtype=complex)  # the first answer may be zero, as no other
-        rows = np.arange(r.size)
-        # one for every link that the load has to pass; beside a resonance each gains a digit at least
-        for _ in range(self.w.size + _DIGITS):
-            shares = _times(left, self.phi)
-            if held:
-                q, more, singular[rows] = _solve_arrow(stiffness[rows], self.chi, shares, -z[rows])
-                force[rows] += more
-            else:
-                q = shares / stiffness[rows]
-            before, part = x[rows], tail[rows] + _times(q, self.phi.T)
-            whole = before + part
-            x[rows], tail[rows] = whole, part - (whole - before)
-            z[rows] = x[rows] @ self.contact + tail[rows] @ self.contact
-            found = force if held else z
-            moved = np.abs(found[rows] - last[rows]) > _EPS * np.abs(found[rows])
-            last[rows] = found[rows]
-            rows = rows[moved & ~singular[rows]]
-            forces, size = self._forces(r[rows], x[rows], tail[rows])
-            friction = force[rows, np.newaxis] * self.contact
-            rounding = _BALANCE * _EPS * (size + np.abs(load[rows]) + np.abs(friction))
-            left = load[rows] - forces - friction
-            left = np.where(np.abs(left) <= rounding, 0.0, left)
-            uneven = left.any(axis=1) | (z[rows] != 0.0 if held else False)
-            rows, left = rows[uneven], left[uneven]
-            if rows.size == 0:
-                break
-        return x, z, force, singular
+        return _modal_sum(self.dynamic_stiffness(r), _weighted(self.participation(r), weights))
 
     def contact_response(self, r: np.ndarray) -> np.ndarray:
         """V of theory.md 2, the response function of z, complex (n_r,); infinite as `response`.
 
         It is response(r, chi) - s, without the loss of digits that the difference would have at small r.
-        Where the sum over modes cancels by more than what the modes' own frequencies leave uncertain, the
-        balance of forces has the digits that the sum has not.
         """
-        r = np.asarray(r, dtype=float)
-        stiffness = self.dynamic_stiffness(r)
-        parts = self.chi * self.relative_participation(r)
-        v = _modal_sum(stiffness, parts)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            size = np.abs(parts / stiffness).sum(axis=1)
-            near = ((self.w**2 + r[:, np.newaxis] ** 2) / np.abs(stiffness)).max(axis=1)
-            cancels = np.flatnonzero(size > near * np.abs(v))
-        if cancels.size:
-            at = r[cancels]
-            v[cancels] = self._refine(at, False, stiffness[cancels], self.relative_load(at))[1]
+        from ._kernels.balance import contact_responses
+
+        r = np.ascontiguousarray(r, dtype=float)
+        v = np.empty(r.size, dtype=complex)
+        contact_responses(r, self._body, v)
         return v
 
     def held(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -434,30 +367,38 @@ class ModalModel:
         the contact does not see move as if free and leave F alone: taken out of the equations they cannot
         make them singular.
         """
-        r = np.asarray(r, dtype=float)
+        from ._kernels.balance import held_motions
+
+        r = np.ascontiguousarray(r, dtype=float)
         seen = self.chi != 0.0
-        stiffness = self.dynamic_stiffness(r)
+        found = np.empty((r.size, self.w.size), dtype=complex)
+        force = np.empty(r.size, dtype=complex)
+        singular = np.empty(r.size, dtype=bool)
+        held_motions(r, self._body, bool(seen.all()), found, force, singular)
+        at = np.flatnonzero(singular)
         if seen.all():
-            load = self.relative_load(r)
-            motion, _, force, singular = self._refine(r, True, stiffness, load)
-            at = np.flatnonzero(singular)
-            found = _solve_held(self.mass, self.stiffness, self.damping, self.contact, r[at], load[at])
-            motion[at], force[at] = found[:, :-1], found[:, -1]
-            return motion, force
+            load = self.relative_load(r[at])
+            solved = _solve_held(self.mass, self.stiffness, self.damping, self.contact, r[at], load)
+            found[at], force[at] = solved[:, :-1], solved[:, -1]
+            return found, force
         w, zeta, chi = self.w[seen], self.zeta[seen], self.chi[seen]
         parts = self.relative_participation(r)
-        q, force, singular = _solve_arrow(stiffness[:, seen], chi, parts[:, seen], np.zeros(r.size))
-        at = np.flatnonzero(singular)
-        found = _solve_held(
+        solved = _solve_held(
             np.eye(w.size), np.diag(w**2), np.diag(2.0 * zeta * w), chi, r[at], parts[np.ix_(at, seen)]
         )
-        q[at], force[at] = found[:, :-1], found[:, -1]
+        found[np.ix_(at, seen)], force[at] = solved[:, :-1], solved[:, -1]
+        return self._spread(r, parts, found, seen, np.isinf(force)), force
+
+    def _spread(
+        self, r: np.ndarray, parts: np.ndarray, q: np.ndarray, seen: np.ndarray, resonant: np.ndarray
+    ) -> np.ndarray:
+        """Displacements (n_r, n) of seen modes q and of the others, which move freely under `parts`."""
+        stiffness = self.dynamic_stiffness(r)
         free = np.where(seen, 0.0, parts)
-        motion = np.column_stack([_modal_sum(stiffness, row * free) for row in self.phi])
-        resonant = np.isinf(force)
-        motion += np.where(resonant[:, np.newaxis], 0.0, q) @ self.phi[:, seen].T
+        motion = np.column_stack([_modal_sum(stiffness, _weighted(free, row)) for row in self.phi])
+        motion += times(np.where(resonant[:, np.newaxis], 0.0, q)[:, seen], self.phi[:, seen].T)
         motion[resonant] = np.inf
-        return motion, force
+        return motion
 
     def static_response(self) -> np.ndarray:
         """Displacements of the masses without friction at r = 0, complex (n,)."""

@@ -1,5 +1,6 @@
 """A structure in the numbers that the kernels take: modes, held oscillators, loads and starts over r."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from ._kernels.structure_orbit import Continuous
 from ._kernels.structure_sweep import Starts
 from .curves import Curves
 from .held import held_structure
-from .modes import ModalModel
+from .modes import ModalModel, angles, modulus, times
 from .system import System
 
 #: The moving start, in units of the motion that the load alone sustains: energy amplitude, and the cap on
@@ -56,13 +57,13 @@ def _model(modes: ModalModel, seen: np.ndarray) -> Model:
 
 
 def _shares(parts: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """parts @ rows.T, (n_r, m), exactly zero where it is zero but for rounding.
+    """Real parts (n_r, n) @ rows.T, (n_r, m), exactly zero where it is zero but for rounding.
 
     A held oscillator that the load does not drive must not be driven by 1e-17: undamped at its resonance that
     would grow.
     """
-    shares = parts @ rows.T
-    most = np.linalg.norm(parts, axis=1)[:, np.newaxis] * np.linalg.norm(rows, axis=1)
+    shares = times(parts, rows.T).real
+    most = np.sqrt(times(parts * parts, np.ones((parts.shape[1], 1))).real) * np.linalg.norm(rows, axis=1)
     return np.where(np.abs(shares) <= _ZERO_SHARE * rows.shape[1] * np.finfo(float).eps * most, 0.0, shares)
 
 
@@ -79,7 +80,8 @@ def _loads(model: Model, r: np.ndarray, participation: np.ndarray) -> Loads:
     turn = r[:, np.newaxis]
     held_cos = _shares(cosine, on_p) + rate * direct_cos + turn * direct_sin
     held_sin = _shares(sine, on_p) + rate * direct_sin - turn * direct_cos
-    contact_cos, contact_sin = cosine @ chi / model.inverse_mass, sine @ chi / model.inverse_mass
+    in_contact = times(participation, chi[:, np.newaxis])[:, 0]
+    contact_cos, contact_sin = in_contact.real / model.inverse_mass, -in_contact.imag / model.inverse_mass
     arrays = (
         cosine, sine, held_cos, held_sin, direct_cos, direct_sin, contact_cos, contact_sin,
     )  # fmt: skip
@@ -97,8 +99,8 @@ def _orbit(
         for j, value in enumerate(r):
             u[j, k], g[j, k] = damping_functions(modes.w[i], modes.zeta[i], value)
     return Continuous(
-        np.ascontiguousarray(response.real), np.ascontiguousarray(response.imag), u, g, np.abs(curves.v),
-        np.angle(curves.v), curves.u, curves.g,
+        np.ascontiguousarray(response.real), np.ascontiguousarray(response.imag), u, g,
+        modulus(curves.v), angles(curves.v), curves.u, curves.g,
     )  # fmt: skip
 
 
@@ -119,12 +121,13 @@ def _moving(
     most; `force` (n_r,) is the phasor of the held load.
     """
     w = modes.w[seen]
-    stiffness = np.ascontiguousarray(np.abs(modes.dynamic_stiffness(r)[:, seen]))
+    stiffness = np.ascontiguousarray(modulus(modes.dynamic_stiffness(r)[:, seen]))
     with np.errstate(divide="ignore"):
         gain = np.minimum(1.0 / stiffness, _MOVING_CAP / w**2)
-    size = _MOVING * np.abs(participation) * gain * np.maximum(w, r[:, np.newaxis])
-    lead = np.where(np.isfinite(force), np.angle(force), 0.0)
-    return Starts(np.zeros_like(size), size * np.sign(modes.chi[seen]), np.sin(lead), np.cos(lead), True)
+    size = _MOVING * modulus(participation) * gain * np.maximum(w, r[:, np.newaxis])
+    lead = np.where(np.isfinite(force), angles(force), 0.0)
+    sine, cosine = (np.array([function(angle) for angle in lead]) for function in (math.sin, math.cos))
+    return Starts(np.zeros_like(size), size * np.sign(modes.chi[seen]), sine, cosine, True)
 
 
 def _alone(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -134,8 +137,8 @@ def _alone(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     loads = modes.relative_participation(r)[:, unseen]
     resonant = (stiffness == 0.0) & (loads != 0.0)
     parts = np.where(stiffness == 0.0, 0.0, loads / np.where(stiffness == 0.0, 1.0, stiffness))
-    alone = modes.base_motion + parts @ modes.phi[:, unseen].T
-    return alone.astype(complex), (resonant.astype(float) @ np.abs(modes.phi[:, unseen].T)) > 0.0
+    alone = modes.base_motion + times(parts, modes.phi[:, unseen].T)
+    return alone, (resonant.astype(float) @ np.abs(modes.phi[:, unseen].T)) > 0.0
 
 
 def _marginal(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> np.ndarray:

@@ -7,11 +7,14 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from test_systems import chain_matrices, pendants
 
 import frictionmap as fm
 from frictionmap import regimes
 from frictionmap.config import load_config
+from frictionmap.curves import find_curves
 from frictionmap.settings import OUTPUTS as EVERY
+from frictionmap.structures import structures
 
 BASE = fm.System(contact="joined-base-wall")
 
@@ -121,19 +124,95 @@ def test_same_bits_for_any_number_of_threads(start):
                 assert maps[0][name].values.tobytes() == other[name].values.tobytes(), name
 
 
-def test_a_cell_does_not_depend_on_its_neighbours():
-    """To the bit for mu > 1; where the steady state is unique a neighbour only saves the way to it."""
-    r = np.linspace(0.1, 2.0, 15)
-    beta = np.linspace(0.0, 1.1, 12)
-    whole = fm.sweep(fm.System(), r, beta, [1.0, 1.3], outputs=OUTPUTS)
-    for m, i, j in ((0, 3, 5), (1, 0, 2), (1, 9, 4), (0, 14, 11)):
-        alone = fm.sweep(fm.System(), [r[i]], [beta[j]], whole.mu.values[m], outputs=OUTPUTS)
-        for name in OUTPUTS:
-            pair = alone[name].values.item(), whole[name].values[m, i, j]
-            if m == 1 or name not in ("cycles", "contact_amplitude", "stuck_fraction"):
-                np.testing.assert_array_equal(*pair, name)
-            elif name != "cycles":
-                np.testing.assert_allclose(*pair, rtol=1e-13, err_msg=name)
+CHAIN = {"mass_ratios": [1.0, 2.0, 1.5], "stiffness_ratios": [1.0, 0.7, 1.3]}
+FREE = chain_matrices([1.0, 0.7, 1.9, 0.4], [1.0, 1.3, 0.6, 2.0])
+
+#: Every kind of system that has arithmetic of its own.
+KINDS = {
+    "one mass": fm.System(damping_ratios=0.05),
+    "one mass and a moving wall": fm.System(contact="joined-base-wall", damping_ratios=0.1),
+    "one mass, dampers on the base": fm.System(
+        excitation="base", damping_reference="base", damping_ratios=0.2
+    ),
+    "chain": fm.System(**CHAIN, contact_masses=[2], load_mass=3),
+    "damped chain": fm.System(**CHAIN, contact_masses=[3], damping_ratios=[0.01, 0.02, 1.3]),
+    "moving wall": fm.System("joined-base-wall", [2], **CHAIN, damping_ratios=0.03),
+    "between masses": fm.System("between-masses", [1, 3], **CHAIN, load_mass=2),
+    "twenty masses": fm.System(mass_ratios=[1.0] * 20, stiffness_ratios=[1.0] * 20, contact_masses=[17]),
+    "matrices": fm.System(matrices=FREE, contact_masses=[4], load=[1.0, 0.3j, 0.0, -0.7 + 0.1j]),
+    "matrices with C": fm.System(
+        "joined-base-wall", [2], matrices=FREE | {"C": 0.02 * FREE["M"] + 0.01 * FREE["K"]},
+        damping_reference="base",
+    ),
+    "modes that the contact does not see": pendants(4, 2),
+    "the same, damped": pendants(1, 4, damping_ratios=0.04),
+}  # fmt: skip
+
+
+def _numbers(found, r):
+    """All arrays of the tables that the kernels take, those over r with r first."""
+    for name in ("loads", "orbit", "rest", "moving", "marginal", "alone_re", "alone_im", "held"):
+        part = getattr(found, name)
+        for k, array in enumerate(part if isinstance(part, tuple) else (part,)):
+            if isinstance(array, np.ndarray):
+                assert array.shape[0] == r.size
+                yield f"{name} {k}", array
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_depends_on_r_does_not_depend_on_the_other_frequencies(kind):
+    """Curves, loads and starts: alone, in slices at any offset and in the whole, to the bit."""
+    system = KINDS[kind]
+    rng = np.random.default_rng(24)
+    r = np.sort(np.concatenate((rng.uniform(0.05, 3.0, 37), [0.5, 1.0, *system.modes.w])))
+    r = np.unique(r)
+    mu = np.array([1.0, 1.5])
+    whole = find_curves(system, r, mu)
+    tables = dict(_numbers(structures(system, r, whole), r)) if system.n > 1 else {}
+    pieces = [slice(k, k + 1) for k in range(r.size)]
+    pieces += [slice(first, first + length) for first, length in ((0, 2), (1, 7), (3, 16), (6, 33))]
+    for piece in pieces:
+        part = find_curves(system, r[piece].copy(), mu)
+        for name, value in vars(whole).items():
+            assert getattr(part, name).tobytes() == value[..., piece].tobytes(), (name, r[piece])
+        if tables:
+            for name, value in _numbers(structures(system, r[piece].copy(), part), r[piece]):
+                assert value.tobytes() == tables[name][piece].tobytes(), (name, r[piece])
+
+
+@pytest.mark.parametrize("kind", ["one mass", "chain", "damped chain", "moving wall", "matrices"])
+def test_a_cell_does_not_depend_on_the_others(kind):
+    """Alone and in another grid: the same answer, to the bit.
+
+    But for mu = 1, where a neighbour saves the way to the one answer there is, and so may its last digits be.
+    """
+    system = KINDS[kind]
+    rng = np.random.default_rng(5)
+    r = np.sort(rng.uniform(0.1, 2.2, 9))
+    beta = np.append(0.0, np.sort(rng.uniform(0.01, 1.0, 11)))
+    whole = fm.sweep(system, r, beta, [1.0, 1.3], outputs=OUTPUTS)
+    for i, j in zip(rng.integers(0, 9, 6), rng.integers(0, 12, 6), strict=True):
+        for rows, columns in (([i], [j]), (sorted({0, i, 8}), sorted({j, 3, 11}))):
+            part = fm.sweep(system, r[rows], beta[columns], [1.0, 1.3], outputs=OUTPUTS)
+            same = whole.isel(r=rows, beta=columns)
+            for name in part.data_vars:
+                pair = part[name].values, same[name].values
+                np.testing.assert_array_equal(pair[0][1], pair[1][1], name)
+                if name in ("contact_amplitude", "stuck_fraction"):
+                    np.testing.assert_allclose(*pair, rtol=1e-12, atol=1e-14, err_msg=name)
+                elif name not in ("cycles", "origin"):
+                    np.testing.assert_array_equal(*pair, name)
+
+
+def test_a_cell_on_beta_stick_does_not_depend_on_its_grid():
+    """T Fig. 6.24, r = 0.5: beta = 0.2 is beta_stick, or next to it; every grid must say the same."""
+    config = load_config(_configs() / "fig-6-24.toml")
+    alone = fm.sweep(config.system, [0.5], [0.2], 1.0)
+    for r in (config.r, config.r[50:], config.r[43:57], config.r[::2], config.r[::50]):
+        for beta in (config.beta, config.beta[20:21], config.beta[3:22]):
+            part = fm.sweep(config.system, r, beta, 1.0).sel(r=[0.5], beta=[0.2])
+            for name in alone.data_vars:
+                np.testing.assert_array_equal(part[name].values, alone[name].values, name)
 
 
 @pytest.mark.parametrize("name", OUTPUTS)

@@ -99,9 +99,12 @@ class Friction(NamedTuple):
 
 @kernel
 def fitting_memory(st, memory):
-    """The memory, or a longer one where the structure may need it: for four periods of the load."""
+    """The memory, or another where the structure needs another: for four periods of the load.
+
+    Not a longer one either: how far a return is looked for must not depend on what was there before.
+    """
     needed = int(min(max(_MEMORY, math.ceil(2.0 / st.h)), _LONGEST_MEMORY))
-    return memory if memory.shape[1] >= needed else np.empty((STATE + 2 * st.n, needed))
+    return memory if memory.shape[1] == needed else np.empty((STATE + 2 * st.n, needed))
 
 
 @kernel

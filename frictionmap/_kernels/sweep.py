@@ -173,7 +173,7 @@ def fill_integrated(
         fine = step_constants(oscillator.r, zeta, max(steps, FINE_STEPS))
         z, v, c, s = start_state(oscillator, frequencies.phase[i], moving)
         load = frequencies.load[i]
-        if history.shape[1] < history_length(oscillator.r):
+        if history.shape[1] != history_length(oscillator.r):  # no longer either: what it holds decides
             history = np.empty((HISTORY_ROWS, history_length(oscillator.r)))
         until = min(last, ends[k])
         neighbour[COUNT] = 0.0  # the last row's orbits are no neighbours

@@ -269,7 +269,7 @@ def _wrong_error(call: Call, found: dict) -> str | None:
     return VAGUE if unsaid(found["words"], call.says) else None
 
 
-def _wrong(call: Call, found: dict) -> str | None:
+def wrong_outcome(call: Call, found: dict) -> str | None:
     """What is wrong with the outcome of a call."""
     if found["error"]:
         return _wrong_error(call, found)
@@ -280,7 +280,8 @@ def _wrong(call: Call, found: dict) -> str | None:
     return NOISE if found["warned"] or found["said"] else None
 
 
-def _families() -> dict[str, list[Call]]:
+def families() -> dict[str, list[Call]]:
+    """All calls, by name of the family."""
     return {
         "bad Python calls": [*_keywords(), *_functions(), *_others()],
         "good Python calls in unusual dress": [Call(code, plain=plain) for code, plain in _GOOD],
@@ -290,8 +291,8 @@ def _families() -> dict[str, list[Call]]:
 
 def run(child: Child, folder: Path, quick: bool) -> list[Family]:
     """All three families; `folder` holds c.toml."""
-    families = []
-    for name, calls in _families().items():
+    tried = []
+    for name, calls in families().items():
         family = Family(name)
         for call in random.Random(2).sample(calls, min(_QUICK, len(calls))) if quick else calls:
             try:
@@ -299,6 +300,6 @@ def run(child: Child, folder: Path, quick: bool) -> list[Family]:
             except Ended as end:
                 family.add(call, HANG if end.hang else CRASH, end)
                 continue
-            family.add(call, _wrong(call, found), f"{found['error']}: {found['words']}")
-        families.append(family)
-    return families
+            family.add(call, wrong_outcome(call, found), f"{found['error']}: {found['words']}")
+        tried.append(family)
+    return tried

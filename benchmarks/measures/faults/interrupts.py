@@ -57,7 +57,7 @@ class Moment:
         return f"{self.of.verb}: {self.signal} after {self.delay:.3f} s {where}{there}"
 
 
-def _moments(
+def moments_of(
     runs: list[Run], start_up: float, counts: tuple[int, int], rng: random.Random
 ) -> Iterator[Moment]:
     """Spread evenly over the time that a run takes, from where Python itself is through."""
@@ -102,7 +102,7 @@ def _before_the_program(said: Said) -> bool:
     return said.traceback and not any(f"{name}/" in said.err for name in _OURS)
 
 
-def _wrong_end(moment: Moment, said: Said, allowed: float) -> str | None:
+def wrong_end(moment: Moment, said: Said, allowed: float) -> str | None:
     """What is wrong with how a run ended."""
     if said.status is None:
         return HANG
@@ -149,7 +149,7 @@ def _try(
         (folder / moment.of.output).write_text("somebody's work")
     before = snapshot(folder)
     said = _interrupted(moment, folder, env)
-    wrong = _wrong_end(moment, said, allowed)
+    wrong = wrong_end(moment, said, allowed)
     if wrong is not None:
         return wrong, f"{said.seconds:.1f} s, {said}"
     return _wrong_files(moment, said, folder, before, env)
@@ -162,7 +162,7 @@ def run(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> list[
     ]
     rng = random.Random(3)
     families = {name: Family(f"interrupts: {name}") for name in SIGNALS}
-    moments = list(_moments(runs, _start_up(), _MOMENTS[quick], rng))
+    moments = list(moments_of(runs, _start_up(), _MOMENTS[quick], rng))
     for moment in moments:
         allowed = _ALLOWED * slowness()
         families[moment.signal].add(moment, *_try(moment, prepared, folder / "here", env, allowed))

@@ -67,7 +67,7 @@ def _foreign(path: Path) -> None:
     xr.Dataset({"regime": ("x", [1.0])}).to_netcdf(path)
 
 
-def _one(child: Child, case: Case, prepared: Path, folder: Path) -> tuple[str | None, object]:
+def try_case(child: Child, case: Case, prepared: Path, folder: Path) -> tuple[str | None, object]:
     """What is wrong with the answer to one case, and the answer."""
     fresh(prepared, folder)
     for name, content in case.files.items():
@@ -89,18 +89,20 @@ def _one(child: Child, case: Case, prepared: Path, folder: Path) -> tuple[str | 
 def _family(name: str, cases: Sequence[Case], child: Child, prepared: Path, folder: Path) -> Family:
     family = Family(name)
     for case in cases:
-        family.add(case, *_one(child, case, prepared, folder))
+        family.add(case, *try_case(child, case, prepared, folder))
     return family
+
+
+def families(folder: Path) -> dict[str, list[Case]]:
+    """Both families; `folder` to work in."""
+    return {"bad configurations": configurations(folder), "bad command lines": command_lines()}
 
 
 def run(child: Child, folder: Path, quick: bool) -> list[Family]:
     """Both families."""
     prepared = with_outputs(child, template(folder / "prepared"))
     (folder / "made").mkdir()
-    families = {
-        "bad configurations": configurations(folder / "made"),
-        "bad command lines": command_lines(),
-    }
+    tried = families(folder / "made")
     if quick:
-        families = {name: random.Random(1).sample(cases, _QUICK) for name, cases in families.items()}
-    return [_family(name, cases, child, prepared, folder / "here") for name, cases in families.items()]
+        tried = {name: random.Random(1).sample(cases, _QUICK) for name, cases in tried.items()}
+    return [_family(name, cases, child, prepared, folder / "here") for name, cases in tried.items()]

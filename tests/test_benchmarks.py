@@ -24,7 +24,7 @@ UNTIMED = {"stress", "steady", "faults"}
 FIGURES = {"bound": "fig-5-55"}
 
 
-def python(*arguments: str, timeout: float = 900.0) -> str:
+def python(*arguments: str, timeout: float = 7200.0) -> str:
     """What a fresh Python prints."""
     search = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     done = subprocess.run(

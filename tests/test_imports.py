@@ -38,7 +38,7 @@ def run(code):
         env=os.environ | {"PYTHONPATH": search},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=600,
         check=True,
     ).stdout
 

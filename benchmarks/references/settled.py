@@ -34,6 +34,7 @@ class Settled(NamedTuple):
     cycles: int
     shortest: float  # least length of a stop in the steady state
     residual: float
+    stuck_fraction: float  # of the time in the steady state
 
 
 @njit(cache=True, error_model="numpy")
@@ -148,6 +149,7 @@ def settle(r, zeta, load, phase, beta, mu, most_cycles, tolerance):
     counts = np.zeros(LONGEST_PERIOD + 1)  # stops that began, by period
     peaks = np.zeros(LONGEST_PERIOD + 1)
     shorts = np.full(LONGEST_PERIOD + 1, math.inf)
+    stuck = np.zeros(LONGEST_PERIOD + 1)  # time in stops
     before = np.full(LONGEST_PERIOD + 1, math.inf)  # residuals a while ago
     z, w, tau = 0.0, 0.0, 0.0
     sign = 0
@@ -158,17 +160,18 @@ def settle(r, zeta, load, phase, beta, mu, most_cycles, tolerance):
     else:
         wait, sign = _release(load, limit, 0.0, phase, 0.0)
         if sign == 0:
-            return Settled(1, math.nan, 0.0, 0, math.inf, 0.0)
+            return Settled(1, math.nan, 0.0, 0, math.inf, 0.0, 1.0)
     fresh = True
     residual = math.inf
     for cycle in range(1, most_cycles + 1):
         slot = cycle % (LONGEST_PERIOD + 1)
-        counts[slot], peaks[slot], shorts[slot] = 0.0, abs(z), math.inf
+        counts[slot], peaks[slot], shorts[slot], stuck[slot] = 0.0, abs(z), math.inf, 0.0
         events = 0
         while tau < TWO_PI:
             if wait > 0.0:
                 passed = min(wait, TWO_PI - tau)
                 wait -= passed
+                stuck[slot] += passed
                 tau = TWO_PI if wait > 0.0 else tau + passed
                 continue
             # a dip soon after the start is the one to miss: short steps there
@@ -187,7 +190,7 @@ def settle(r, zeta, load, phase, beta, mu, most_cycles, tolerance):
                 continue
             events += 1
             if events > _MOST_EVENTS:
-                return Settled(0, math.nan, math.nan, cycle, 0.0, math.inf)
+                return Settled(0, math.nan, math.nan, cycle, 0.0, math.inf, math.nan)
             z, w = _sum(x, t), 0.0
             tau += t * h
             peaks[slot] = max(peaks[slot], abs(z))
@@ -198,7 +201,7 @@ def settle(r, zeta, load, phase, beta, mu, most_cycles, tolerance):
             else:
                 wait, sign = _release(load, limit, tau, phase, z)
                 if sign == 0:
-                    return Settled(1, math.nan, 0.0, cycle, math.inf, 0.0)
+                    return Settled(1, math.nan, 0.0, cycle, math.inf, 0.0, 1.0)
                 if wait > SHORTEST_STOP:
                     counts[slot] += 1.0
                     shorts[slot] = min(shorts[slot], wait)
@@ -217,11 +220,14 @@ def settle(r, zeta, load, phase, beta, mu, most_cycles, tolerance):
             if not done and rate < 1.0 and cycle % 16 == 0:
                 done = residual * rate / (1.0 - rate) <= tolerance * scale
             if done:
-                stops, peak, short = 0.0, 0.0, math.inf
+                stops, peak, short, still = 0.0, 0.0, math.inf, 0.0
                 for k in range(period):
                     place = (slot - k) % (LONGEST_PERIOD + 1)
                     stops += counts[place]
                     peak = max(peak, peaks[place])
                     short = min(short, shorts[place])
-                return Settled(period, stops / period, peak, cycle, short, residual)
-    return Settled(0, counts[slot], peaks[slot], most_cycles, shorts[slot], residual)
+                    still += stuck[place] / (TWO_PI * period)
+                return Settled(period, stops / period, peak, cycle, short, residual, still)
+    return Settled(
+        0, counts[slot], peaks[slot], most_cycles, shorts[slot], residual, stuck[slot] / TWO_PI
+    )  # fmt: skip

@@ -11,7 +11,7 @@ import xarray as xr
 from . import checks
 from .errors import InputError
 from .labels import CELL, COORDINATES, LABELS, coordinate, label_variable
-from .schema import check_structure, checked_values, kind, standard_dims
+from .schema import check_structure, checked_values, in_brackets, kind, standard_dims
 
 __all__ = ["kind", "read", "standard_form"]
 
@@ -65,8 +65,12 @@ def _load(path: Path) -> xr.Dataset:
             raise InputError(f"file {path} must be written by frictionmap; its source is {source!r}")
         with _naming(path):
             check_structure(opened)
-        others = [name for name in opened.variables if name not in LABELS and name not in COORDINATES]
-        return opened.drop_vars(others).load()
+        return _ours(opened).load()
+
+
+def _ours(ds: xr.Dataset) -> xr.Dataset:
+    """What has a label."""
+    return ds.drop_vars([name for name in ds.variables if name not in LABELS and name not in COORDINATES])
 
 
 def standard_form(ds: xr.Dataset) -> xr.Dataset:
@@ -94,6 +98,7 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
         raise InputError(f"ds must be an xarray.Dataset; got {type(ds).__name__}")
     check_structure(ds)
     what = kind(ds)
+    ds = _ours(ds)
     ds = ds.set_coords([name for name in COORDINATES if name in ds.data_vars])
     if what == "response":
         ds = ds.squeeze([dim for dim in CELL if ds.sizes.get(dim) == 1])
@@ -117,7 +122,9 @@ def _increasing(ds: xr.Dataset) -> xr.Dataset:
         if name not in ds.coords or ds[name].ndim == 0:
             continue
         if ds[name].dims != (name,):
-            raise InputError(f"{name} must be an axis of its own; got the dimensions {_words(ds[name].dims)}")
+            raise InputError(
+                f"{name} must be an axis of its own; got the dimensions {in_brackets(ds[name].dims)}"
+            )
         values = checked_values(name, ds[name].values)
         if values.size == 0:
             raise InputError(f"{name} must have at least one value; got none")
@@ -139,14 +146,17 @@ def _placed(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
     """The values of a variable over exactly these dimensions, in this order."""
     variable = ds.variables[name]
     if not set(variable.dims) <= set(dims):
-        raise InputError(
-            f"{name} must have the dimensions {_words(dims)}, or fewer; got {_words(variable.dims)}"
+        legal = (
+            f"have the dimensions {in_brackets(dims)}, or fewer" if dims else "be one number in a response"
         )
+        raise InputError(f"{name} must {legal}; got {in_brackets(variable.dims)}")
     missing = [dim for dim in dims if dim not in variable.dims]
     for dim in missing:
-        if dim in COORDINATES and (dim not in ds.coords or ds[dim].size != 1):
-            given = f"{ds[dim].size} values" if dim in ds.coords else "none"
-            raise InputError(f"{name} has no dimension {dim}: one value of {dim} must be there; got {given}")
+        given = ds[dim].size if dim in ds.coords else ds.sizes.get(dim, int(dim not in COORDINATES))
+        if given != 1:
+            raise InputError(
+                f"{name} has no dimension {dim}: one value of {dim} must be there; got {given or 'none'}"
+            )
     values = variable.values[(..., *[np.newaxis] * len(missing))]
     return xr.Variable((*variable.dims, *missing), values).transpose(*dims).values
 
@@ -164,7 +174,3 @@ def _axes(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:
         elif name in used or of_the_cell:
             raise InputError(f"{name} must be given as a coordinate; it is missing")
     return axes
-
-
-def _words(dims: tuple) -> str:
-    return f"({', '.join(map(str, dims))})"

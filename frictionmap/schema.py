@@ -1,5 +1,7 @@
 """What a dataset of ours may hold: every variable is checked against its label, before anything uses it."""
 
+from collections.abc import Iterable
+
 import numpy as np
 import xarray as xr
 
@@ -19,6 +21,11 @@ def kind(ds: xr.Dataset) -> str:
         return "response"
     cells = "beta" in ds.dims or any("beta" in LABELS[name].dims for name in LABELS if name in ds.variables)
     return "map" if cells else "boundaries"
+
+
+def in_brackets(dims: Iterable[object]) -> str:
+    """Dimensions in words."""
+    return f"({', '.join(map(str, dims))})"
 
 
 def standard_dims(name: str, what: str) -> tuple[str, ...]:
@@ -50,7 +57,9 @@ def check_structure(ds: xr.Dataset) -> None:
 
 def _check_type(name: str, variable: xr.Variable) -> None:
     if variable.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false, nor times
-        raise InputError(f"{name} must be numbers; got type {variable.dtype}")
+        raise InputError(f"{name} must be numbers; got type {variable.dtype.name}")
+    if len(set(variable.dims)) < len(variable.dims):
+        raise InputError(f"{name} must have every dimension once; got {in_brackets(variable.dims)}")
     if variable.size > checks.MOST_CELLS:
         raise InputError(f"{name} must have at most {checks.MOST_CELLS:.0e} values; got {variable.size:.3g}")
 

@@ -22,7 +22,7 @@ config        configuration files
 outputs       output files: claimed, written beside their place, put there whole or not at all
 storage       datasets as NetCDF files
 reading       files: read with a check, brought into one form
-plot          pictures
+plot          pictures: the door to what is in `pictures`
 arguments     the arguments of the command line
 cli           the command line
 interrupts    Ctrl-C and termination end the program at once
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from .continuous import continuous_motion
     from .curves import boundaries
     from .maps import sweep
-    from .plot import plot_regimes, plot_response
+    from .plot import plot_boundaries, plot_regimes, plot_response
     from .settings import Solver
     from .steady import response
     from .system import System
@@ -55,6 +55,7 @@ __all__ = [
     "boundaries",
     "continuous_motion",
     "load_config",
+    "plot_boundaries",
     "plot_regimes",
     "plot_response",
     "response",
@@ -69,6 +70,7 @@ _HOME = {
     "boundaries": "curves",
     "continuous_motion": "continuous",
     "load_config": "config",
+    "plot_boundaries": "plot",
     "plot_regimes": "plot",
     "plot_response": "plot",
     "response": "steady",

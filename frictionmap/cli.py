@@ -101,12 +101,11 @@ def _compute(options: Options) -> None:
 
 def _plot(options: Options) -> None:
     from .outputs import claimed
+    from .plot import PICTURED, check_picture, save_picture
     from .reading import read
 
-    ds = read(options.file)
+    ds = read(options.file, only=PICTURED)
     path = options.output or Path(f"{options.file.stem}.png")
-    from .plot import check_picture, save_picture
-
     check_picture(path)
     with claimed(path, options.overwrite, [options.file]) as output:
         output.fill(lambda scratch: save_picture(ds, scratch))

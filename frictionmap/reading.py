@@ -2,7 +2,7 @@
 
 import contextlib
 import warnings
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +16,10 @@ from .schema import check_structure, checked_values, in_brackets, kind, standard
 __all__ = ["kind", "read", "standard_form"]
 
 
-def read(path: Path) -> xr.Dataset:
+def read(path: Path, only: Collection[str] | None = None) -> xr.Dataset:
     """Read a file that this package wrote, or a slice of it that xarray wrote (nothing is held open).
+
+    Of our variables those named `only`, if they are there; by default all.
 
     Returns
     -------
@@ -35,7 +37,7 @@ def read(path: Path) -> xr.Dataset:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of a malformed file; what is wrong with it is said below
-            ds = _load(path)
+            ds = _load(path, LABELS if only is None else only)
     except InputError:
         raise
     except Exception as error:  # the libraries raise anything over a file that is not what they expect
@@ -56,8 +58,8 @@ def _naming(path: Path) -> Iterator[None]:
         raise InputError(f"file {path}: {error}") from None
 
 
-def _load(path: Path) -> xr.Dataset:
-    """Our variables of a file; their values are read once all else about them is known to be well."""
+def _load(path: Path, wanted: Collection[str]) -> xr.Dataset:
+    """The wanted variables of a file; their values are read once all else about them is known to be well."""
     # no value of ours is a time, whatever the units say
     with xr.open_dataset(path, engine="netcdf4", decode_times=False) as opened:
         source = opened.attrs.get("source", "not given")
@@ -65,7 +67,10 @@ def _load(path: Path) -> xr.Dataset:
             raise InputError(f"file {path} must be written by frictionmap; its source is {source!r}")
         with _naming(path):
             check_structure(opened)
-        return _ours(opened).load()
+        ours = _ours(opened)
+        return ours.drop_vars(
+            [name for name in ours.variables if name in LABELS and name not in wanted]
+        ).load()
 
 
 def _ours(ds: xr.Dataset) -> xr.Dataset:

@@ -89,7 +89,6 @@ def test_imports_are_read_right():
 @pytest.mark.parametrize(
     ("module", "home"),
     [
-        ("matplotlib", {"plot.py"}),
         ("argparse", {"arguments.py"}),
         ("tomllib", {"config.py"}),
         ("netCDF4", set()),
@@ -100,11 +99,12 @@ def test_one_home(module, home):
     assert users == home
 
 
-def test_jitted_code_is_in_the_kernels_only():
+@pytest.mark.parametrize(("module", "folder"), [("numba", "_kernels"), ("matplotlib", "pictures")])
+def test_one_folder(module, folder):
     users = {
-        path.parent.name for path in SOURCES if any(name.split(".")[0] == "numba" for name in imported(path))
+        path.parent.name for path in SOURCES if any(name.split(".")[0] == module for name in imported(path))
     }
-    assert users == {"_kernels"}
+    assert users == {folder}
 
 
 def test_the_layers_do_not_know_those_above():
@@ -119,6 +119,8 @@ def test_the_layers_do_not_know_those_above():
         "schema.py": {"cli", "plot", "maps", "steady", "summary", "storage", "reading", "config"},
         "plot.py": {"cli", "config", "maps", "steady", "_kernels"},
     }
+    pictures = {"cli", "config", "maps", "steady", "_kernels", "plot", "storage"}
+    above |= {f"pictures/{path.name}": pictures for path in (PACKAGE / "pictures").glob("*.py")}
     for name, modules in above.items():
         used = {part.split(".")[1] for part in imported(PACKAGE / name) if part.startswith("frictionmap.")}
         assert not used & modules, name

@@ -1,20 +1,26 @@
-"""Pictures: made for every kind of file, classes that tell the truth, colours that survive grey printing."""
+"""Pictures: made for every kind of file, true to it, with nothing cut off or covered."""
 
+import os
+import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import frictionmap as fm
 from frictionmap import InputError, plot, regimes
+from frictionmap.pictures.boundary_map import areas
+from frictionmap.pictures.classes import classes
+from frictionmap.pictures.palette import CLASSES, MORE, ONE, colour_table
+from frictionmap.pictures.raster import rasterise
+from frictionmap.pictures.regime_map import CellImage
 from frictionmap.settings import OUTPUTS
 
-LABELS = [label for label, _ in plot._CLASSES]
-COLOURS = dict(plot._CLASSES)
 MAGIC = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
 
 
@@ -66,81 +72,6 @@ def test_wrong_ending(name):
         plot.check_picture(Path(name))
 
 
-# Classes and colours
-
-
-def one_mu(regime=None, stops=None):
-    """A map of one frequency."""
-    given = {"regime": regime, "stops_per_cycle": stops}
-    cells = {
-        name: (("r", "beta"), np.array([values])) for name, values in given.items() if values is not None
-    }
-    return xr.Dataset(cells)
-
-
-def labels(ds):
-    found = plot.classes(ds)
-    assert found.shape == (ds.sizes["r"], ds.sizes["beta"])
-    return [LABELS[index] for index in found[0]]
-
-
-def test_classes_of_whole_numbers_of_stops():
-    stops = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 1000.0]
-    expected = ["1 stop", "2 stops", "3 stops", "4 stops", "more stops", "more stops", "more stops"]
-    assert labels(one_mu([regimes.STICK_SLIP] * 7, stops)) == expected
-    assert labels(one_mu(stops=stops)) == expected
-
-
-def test_classes_of_fractions_of_stops():
-    stops = np.array([0.25, 0.5, 1.5, 7 / 3, 100.02], dtype=np.float32)
-    expected = ["stops per cycle not whole"] * 5
-    assert labels(one_mu([regimes.STICK_SLIP] * 5, stops)) == expected
-    assert labels(one_mu(stops=stops)) == expected
-
-
-def test_the_regime_decides_before_the_stops():
-    regime = [regimes.UNRESOLVED, regimes.PERMANENT_STICKING, regimes.STICK_SLIP, regimes.CONTINUOUS]
-    expected = ["unresolved", "permanent sticking", "stick-slip, not counted", "continuous"]
-    assert labels(one_mu(regime, [np.nan, np.nan, np.nan, 0.0])) == expected
-    assert labels(one_mu(regime)) == expected
-
-
-def test_stops_alone_do_not_tell_stuck_from_unresolved():
-    assert labels(one_mu(stops=[0.0, np.nan])) == ["continuous", "stuck or unresolved"]
-
-
-def test_classes_of_a_map(tiny_map):
-    panel = tiny_map.sel(mu=1.0)
-    found = plot.classes(panel)
-    stuck = panel.regime.values == regimes.PERMANENT_STICKING
-    assert stuck.any()
-    np.testing.assert_array_equal(found == LABELS.index("permanent sticking"), stuck)
-    np.testing.assert_array_equal(found == LABELS.index("continuous"), panel.stops_per_cycle.values == 0.0)
-    uncounted = found == LABELS.index("stick-slip, not counted")
-    assert uncounted[0].any()  # r = 0
-    assert not uncounted[1:].any()
-
-
-def luminance(colour):
-    """Relative luminance of sRGB (WCAG 2)."""
-    channels = np.array(to_rgb(colour))
-    linear = np.where(channels <= 0.04045, channels / 12.92, ((channels + 0.055) / 1.055) ** 2.4)
-    return float(linear @ [0.2126, 0.7152, 0.0722])
-
-
-def test_lightness_falls_with_the_number_of_stops():
-    ordered = ["continuous", "1 stop", "2 stops", "3 stops", "4 stops", "more stops"]
-    assert LABELS[LABELS.index("continuous") :][: len(ordered)] == ordered
-    lightness = np.array([luminance(COLOURS[label]) ** (1 / 2.4) for label in ordered])
-    assert np.all(np.diff(lightness) < -0.07)
-
-
-def test_colours_that_can_meet_are_distinct():
-    colours = [to_rgb(colour) for label, colour in plot._CLASSES if label != "stuck or unresolved"]
-    gaps = [np.linalg.norm(np.subtract(a, b)) for i, a in enumerate(colours) for b in colours[:i]]
-    assert min(gaps) > 0.15
-
-
 # Axes, legends, texts
 
 
@@ -151,14 +82,16 @@ def test_given_axes_are_drawn_into_and_returned(tiny_map):
     assert ax.get_xlim() == (0.0, 2.0)
     assert ax.get_ylim() == (0.0, 1.25)
     assert "1" in ax.get_title()
-    assert "permanent sticking" in [text.get_text() for text in ax.get_legend().get_texts()]
+    assert "permanent sticking (27)" in [text.get_text() for text in ax.get_legend().get_texts()]
     drawn(figure)
     assert fm.plot_regimes(tiny_map.isel(mu=[1]), ax=figure.add_subplot()) is figure.axes[-1]
 
 
 def test_several_mu_do_not_fit_into_given_axes(tiny_map):
-    with pytest.raises(InputError, match=r"^ax must come with a map of one mu; got 2: use ds\.sel"):
+    with pytest.raises(InputError, match=r"^ax must be 2 axes, one for each mu; got 1$"):
         fm.plot_regimes(tiny_map, ax=Figure().subplots())
+    with pytest.raises(InputError, match=r"^ax must be matplotlib axes, or an array of them; got Figure$"):
+        fm.plot_regimes(tiny_map.isel(mu=[0]), ax=Figure())
 
 
 def test_a_map_without_regime_and_stops(tiny_map):
@@ -233,7 +166,7 @@ def test_nothing_overlaps_with_every_class_in_the_legend(title, panels):
     cells = {"regime": (("mu", "r", "beta"), regime), "stops_per_cycle": (("mu", "r", "beta"), stops)}
     axes = {"mu": np.arange(1.0, panels + 1.0), "r": [0.5], "beta": np.arange(10.0)}
     (figure,) = {ax.figure for ax in fm.plot_regimes(xr.Dataset(cells, axes, {"title": title}))}
-    assert len(figure.legends[0].get_texts()) == 10 + 2
+    assert len(figure.legends[0].get_texts()) == 10
     assert_inside_and_apart(figure)
 
 
@@ -261,10 +194,11 @@ def test_names_of_regions_lie_in_their_regions(contact):
 
 def test_the_name_of_a_region_with_room_for_one_name_only():
     regime = np.full((120, 120), regimes.STICK_SLIP)
-    regime[90:113, 100:109] = regimes.CONTINUOUS
-    axes = {"r": np.arange(120.0), "beta": np.arange(120.0)}
+    regime[90:113, 100:112] = regimes.CONTINUOUS
+    axes = {"r": np.arange(120.0), "beta": np.arange(120.0), "mu": 1.0}
     (ax,) = fm.plot_regimes(xr.Dataset({"regime": (("r", "beta"), regime)}, axes))
-    assert [text.get_position() for text in ax.texts] == [(101.0, 104.0)]
+    (text,) = ax.texts
+    np.testing.assert_allclose(text.get_position(), (101.0 / 119.0, 105.5 / 119.0), atol=0.02)
 
 
 def test_small_regions_have_no_names():
@@ -291,33 +225,341 @@ def test_boundaries_of_one_frequency():
 
 
 def test_a_separate_lower_bound_is_drawn(tiny_boundaries):
-    def lines(ds):
-        return [text.get_text() for text in plot.plot_boundaries(ds)[0].figure.legends[0].get_texts()]
-
-    assert "lower bound, sum of modal maxima" not in lines(tiny_boundaries)
+    assert not any("lower bound" in word for word in words_of(fm.plot_boundaries(tiny_boundaries)))
     lower = tiny_boundaries.assign(beta_lim_modal=0.9 * tiny_boundaries.beta_lim)
-    assert "lower bound, sum of modal maxima" in lines(lower)
+    assert any("lower bound" in word for word in words_of(fm.plot_boundaries(lower)))
 
 
 def test_infinite_boundaries_do_not_spoil_the_scale(tiny_boundaries):
     ds = tiny_boundaries.copy(deep=True)
     ds.beta_stick[:, 20] = np.inf
-    axes = plot.plot_boundaries(ds)
+    axes = fm.plot_boundaries(ds)
     assert all(ax.get_ylim()[1] < 10.0 for ax in axes)
     drawn(axes[0].figure)
 
 
-def test_the_response_shows_stops_and_motion(tiny_response):
-    top, bottom = plot.plot_response(tiny_response)
-    names = top.get_legend_handles_labels()[1]
-    assert names == ["motion in the contact, $z$", "mass, $x$", "stop", "stop begins"]
-    assert top.lines[-1].get_xdata().size == int((tiny_response.event_phase == 0).sum()) == 2
-    np.testing.assert_array_equal(bottom.lines[0].get_ydata(), tiny_response.friction)
-    title = top.figure._suptitle.get_text()
-    assert title == r"$r$ = 0.3, $\beta$ = 0.05, $\mu$ = 1: stick slip, 2 stops per cycle"
+def test_boundaries_have_one_axis_of_beta(tiny_boundaries):
+    limits = {ax.get_ylim() for ax in fm.plot_boundaries(tiny_boundaries)}
+    assert len(limits) == 1
+    low, high = limits.pop()
+    assert low == 0.0
+    assert high > tiny_boundaries.beta_lim.max()
+
+
+POSSIBLE = {  # regimes that a cell may have in an area: stick-slip besides, if mu > 1
+    "continuous": regimes.CONTINUOUS,
+    "sticking": regimes.PERMANENT_STICKING,
+    "neither": regimes.STICK_SLIP,
+}
+
+
+@pytest.mark.parametrize("mu", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("start", ["rest", "moving"])
+@pytest.mark.parametrize("contact", ["fixed-wall", "joined-base-wall"])
+def test_fills_of_boundaries_are_true(contact, start, mu):
+    """Every cell of a map has a regime that the fill below it calls possible."""
+    r, beta = np.linspace(0.11, 2.4, 40), np.linspace(0.003, 1.6, 50)
+    ds = fm.sweep(fm.System(contact=contact), r, beta, mu, start=start, outputs=["regime"]).isel(mu=0)
+    bounds = areas(ds.beta_lim.values, ds.beta_stick.values, 10.0)._asdict()
+    fills = {
+        name: (beta > low[:, np.newaxis]) & (beta < high[:, np.newaxis])
+        for name, (low, high) in bounds.items()
+    }
+    assert (sum(fill.astype(int) for fill in fills.values()) == 1).all()  # one fill for each cell
+    seen = ds.regime.values
+    for fill in fills.values():
+        fill[seen == regimes.UNRESOLVED] = False
+    besides = regimes.STICK_SLIP if mu > 1.0 else None
+    for name, regime in POSSIBLE.items():
+        assert set(np.unique(seen[fills[name]])) <= {regime, besides}, name
+    assert set(np.unique(seen[fills["both"]])) <= {POSSIBLE["continuous"], POSSIBLE["sticking"], besides}
+    assert fills["both"].any() == (mu > 1.0)
+    assert all(fills[name].any() for name in POSSIBLE)
+
+
+def test_legends_of_boundaries_say_what_is_certain_and_what_is_possible(tiny_boundaries):
+    certain = words_of(fm.plot_boundaries(tiny_boundaries.sel(mu=[1.0])))
+    assert certain[:3] == ["continuous", "stick-slip", "permanent sticking"]
+    possible = words_of(fm.plot_boundaries(tiny_boundaries))
+    assert possible[:3] == ["continuous motion possible", "stick-slip", "sticking possible"]
+    assert "continuous or stuck: the start decides" in possible
+
+
+def test_boundaries_are_drawn_from_a_map_too(tiny_map):
+    (axes, other) = (fm.plot_boundaries(ds) for ds in (tiny_map, tiny_map[["beta_lim", "beta_stick"]]))
+    np.testing.assert_array_equal(axes[1].lines[0].get_ydata(), tiny_map.beta_lim[1])
+    np.testing.assert_array_equal(other[1].lines[1].get_ydata(), tiny_map.beta_stick[1])
+    with pytest.raises(InputError, match=r"^a dataset must hold beta_stick for its boundaries"):
+        fm.plot_boundaries(tiny_map[["regime", "beta_lim"]])
+
+
+def test_features_are_marked_on_the_axis(tiny_boundaries):
+    (ax, *_) = fm.plot_boundaries(tiny_boundaries)
+    marks = {line.get_label(): line for line in ax.lines if line.get_linestyle() == "None"}
+    np.testing.assert_array_equal(marks["natural frequency"].get_xdata(), [1.0])
+    (name,) = (name for name in marks if name.startswith("invariant point"))
+    assert set(marks[name].get_xdata()) <= set(tiny_boundaries.invariant_point.values)
+    assert set(marks["natural frequency"].get_ydata()) == {1.0}
+
+
+# Slices, and datasets the wrong way round
+
+
+def raster_of(ax, size=(90, 70)):
+    """The classes that a panel shows."""
+    (image,) = (artist for artist in ax.get_children() if isinstance(artist, CellImage))
+    x, y = (
+        n * grid.share(grid.edges) for n, grid in zip(size, (image.cells.r, image.cells.beta), strict=True)
+    )
+    return rasterise(image.cells.found, x, y, size, len(CLASSES))
+
+
+def test_a_transposed_map_is_drawn_as_it_is(tiny_map):
+    (expected,) = fm.plot_regimes(tiny_map.isel(mu=[0]))
+    for turned in (
+        tiny_map.transpose("beta", "r", "mu", ...).isel(mu=[0]),
+        tiny_map.isel(mu=0),
+        tiny_map.isel(mu=[0], beta=slice(None, None, -1)),
+        tiny_map.isel(mu=[0])[["regime", "stops_per_cycle"]],
+    ):
+        (ax,) = fm.plot_regimes(turned)
+        np.testing.assert_array_equal(raster_of(ax), raster_of(expected))
+
+
+def test_the_picture_shows_the_classes_of_the_cells(tiny_map):
+    """Grid point by grid point: the pixel under it has the class of its cell."""
+    panel = tiny_map.isel(mu=0)
+    (ax,) = fm.plot_regimes(panel)
+    expected = classes(panel)
+    shown = raster_of(ax, (360, 400))
+    for i in range(1, 8):
+        for j in range(1, 10):
+            assert shown[round(i / 8 * 360), round(j / 10 * 400)] == expected[i, j]
+
+
+@pytest.mark.parametrize("chosen", [{"r": 2}, {"beta": 3}, {"r": 2, "beta": 3}, {"mu": 1, "r": 4}])
+def test_slices_are_drawn(tiny_map, chosen):
+    axes = fm.plot_regimes(tiny_map.isel(chosen))
+    assert len(axes) == (1 if "mu" in chosen else 2)
+    drawn(axes[0].figure)
+
+
+def test_datasets_the_wrong_way_round(tiny_map, tiny_boundaries, tiny_response):
+    for draw, ds, name in (
+        (fm.plot_regimes, tiny_response, "plot_response"),
+        (fm.plot_regimes, tiny_boundaries, "plot_boundaries"),
+        (fm.plot_response, tiny_map, "plot_regimes"),
+        (fm.plot_response, tiny_boundaries, "plot_boundaries"),
+        (fm.plot_boundaries, tiny_response, "plot_response"),
+    ):
+        with pytest.raises(InputError, match=rf"^{draw.__name__} takes a dataset such as .*: use {name}$"):
+            draw(ds)
+    for draw in (fm.plot_regimes, fm.plot_boundaries, fm.plot_response):
+        for wrong in (tiny_map.beta_lim, "map.nc", None):
+            with pytest.raises(InputError, match=rf"^{draw.__name__} takes .*; got {type(wrong).__name__}$"):
+                draw(wrong)
+
+
+# What a map's picture says besides
+
+
+def words_of(axes):
+    """The entries of the legend of a figure."""
+    return [text.get_text() for text in axes[0].figure.legends[0].get_texts()]
+
+
+def test_the_legend_counts_the_cells(tiny_map):
+    found = np.concatenate([classes(tiny_map.isel(mu=m)).ravel() for m in (0, 1)])
+    counted = [word for word in words_of(fm.plot_regimes(tiny_map)) if word.endswith(")")]
+    numbers = [int(re.search(r"\(([\d,]+)\)$", word)[1].replace(",", "")) for word in counted]
+    assert numbers == np.bincount(found)[np.unique(found)].tolist()
+    assert sum(numbers) == tiny_map.regime.size
+
+
+def synthetic(stops, mu=1.0):
+    """A map of stick-slip with these numbers of stops."""
+    shape = stops.shape
+    cells = {"regime": np.full(shape, regimes.STICK_SLIP, dtype=np.int8), "stops_per_cycle": stops}
+    axes = {"r": np.linspace(0.1, 2.0, shape[0]), "beta": np.linspace(0.1, 1.0, shape[1]), "mu": mu}
+    return xr.Dataset({name: (("r", "beta"), values) for name, values in cells.items()}, axes)
+
+
+def test_a_lone_cell_is_ringed_and_keeps_a_pixel():
+    stops = np.full((500, 400), 2.0)
+    stops[123, 77] = 9.0
+    (ax,) = fm.plot_regimes(synthetic(stops))
+    (ring,) = (line for line in ax.lines if line.get_marker() == "o")
+    np.testing.assert_allclose(ring.get_xydata(), [[123 / 499, 77 / 399]], atol=1e-12)
+    assert {"9 stops (1)", "few cells of their kind: ringed"} <= set(words_of([ax]))
+    for size in ((450, 350), (90, 70)):
+        assert (raster_of(ax, size) == MORE).sum() == 1
+    image = np.asarray(rendered(ax.figure))
+    colour = colour_table()[MORE][:3]
+    assert (image[..., :3] == colour).all(axis=2).sum() >= 1
+
+
+def rendered(figure, dpi=100):
+    canvas = FigureCanvasAgg(figure)
+    figure.set_dpi(dpi)
+    canvas.draw()
+    return canvas.buffer_rgba()
+
+
+@pytest.mark.parametrize("dpi", [60, 100, 233])
+def test_colours_on_the_canvas_are_those_of_the_cells(dpi):
+    """Whatever the resolution, each quarter of the picture has the colour of its class."""
+    stops = np.full((40, 40), 1.0)
+    stops[20:, :20], stops[:20, 20:], stops[20:, 20:] = 2.0, 3.0, 4.0
+    (ax,) = fm.plot_regimes(synthetic(stops))
+    image = np.asarray(rendered(ax.figure, dpi))[::-1]
+    for share, stop in (((0.2, 0.2), 1), ((0.8, 0.2), 2), ((0.2, 0.8), 3), ((0.8, 0.8), 4)):
+        x, y = ax.transAxes.transform(share).astype(int)
+        np.testing.assert_array_equal(image[y, x, :3], colour_table()[ONE - 1 + stop][:3])
+
+
+def test_logarithmic_grids_have_logarithmic_axes():
+    ds = fm.sweep(fm.System(), np.geomspace(0.1, 10.0, 9), np.geomspace(0.01, 2.0, 8))
+    (ax,) = fm.plot_regimes(ds)
+    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
+    np.testing.assert_allclose(ax.get_xlim() + ax.get_ylim(), (0.1, 10.0, 0.01, 2.0))
+    drawn(ax.figure)
+    (ax,) = fm.plot_boundaries(ds)
+    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "linear")
+
+
+def test_the_caption_tells_the_system(tiny_map, tiny_boundaries, tiny_response):
+    for axes, ds in (
+        (fm.plot_regimes(tiny_map), tiny_map),
+        (fm.plot_boundaries(tiny_boundaries), tiny_boundaries),
+        (fm.plot_response(tiny_response), tiny_response),
+    ):
+        heading = axes[0].figure.legends[0].get_title().get_text().replace("\n", " ")
+        assert heading.startswith(ds.attrs["system"])
+    assert "no viscous damping" in heading
+
+
+def test_large_maps_say_how_they_are_reduced():
+    (ax,) = fm.plot_regimes(synthetic(np.full((1500, 10), 2.0)))
+    heading = ax.figure.legends[0].get_title().get_text().replace("\n", " ")
+    assert "a pixel shows the commonest of its cells" in heading
+
+
+def test_arrays_of_axes_are_drawn_into(tiny_map, tiny_boundaries, tiny_response):
+    for draw, ds, number in (
+        (fm.plot_regimes, tiny_map, 2),
+        (fm.plot_boundaries, tiny_boundaries, 3),
+        (fm.plot_response, tiny_response, 4),
+    ):
+        figure = Figure()
+        axes = figure.subplots(number, 1)
+        np.testing.assert_array_equal(draw(ds, axes), axes)
+        assert len(figure.axes) == number
+        assert all(ax.lines for ax in axes)
+        with pytest.raises(InputError, match=rf"^ax must be {number} axes, .*; got {number - 1}$"):
+            draw(ds, list(axes[1:]))
+        drawn(figure)
+
+
+# Responses
+
+
+def lines_of(ax):
+    return [np.asarray(line.get_ydata()) for line in ax.lines]
+
+
+def test_the_response_shows_load_contact_masses_and_friction(tiny_response):
+    ds = tiny_response
+    load, contact, masses, friction = fm.plot_response(ds)
+    np.testing.assert_allclose(lines_of(load)[0], np.cos(ds.tau), atol=1e-12)
+    np.testing.assert_array_equal(lines_of(contact)[0], ds.z)
+    np.testing.assert_array_equal(lines_of(masses)[0], ds.x[0])
+    np.testing.assert_array_equal(lines_of(friction)[0], ds.friction)
+    begins = contact.lines[1]
+    assert begins.get_label() == "stop begins"
+    assert begins.get_xdata().size == int((ds.event_phase == 0).sum()) == 2
+    assert load.get_ylabel() == "base / $Y$"
+    assert load.figure._suptitle.get_text() == "r = 0.3, β = 0.05, μ = 1: stick-slip, 2 stops per cycle"
+    assert words_of([load]) == ["stop", "maximum of the load (of the base's motion)", "stop begins"]
 
 
 def test_the_response_of_a_fixed_wall_has_one_motion():
-    top, _ = plot.plot_response(fm.response(fm.System(), 2.0, 0.1))
-    assert top.get_legend_handles_labels()[1] == ["motion in the contact, $z$"]
-    assert top.figure._suptitle.get_text().endswith(": continuous")
+    load, contact, friction = fm.plot_response(fm.response(fm.System(), 2.0, 0.1))
+    assert load.get_ylabel() == "load / $P$"
+    assert (len(contact.lines), len(friction.lines)) == (1, 3)
+    assert words_of([load]) == ["maximum of the load"]
+    assert load.figure._suptitle.get_text().endswith(": continuous")
+
+
+def test_every_mass_is_drawn_and_numbered():
+    system = fm.System(mass_ratios=[1.0] * 5, stiffness_ratios=[1.0] * 5, contact_masses=[3])
+    ds = fm.response(system, 0.7, 9.0)
+    load, contact, masses, friction = fm.plot_response(ds)
+    np.testing.assert_array_equal(lines_of(masses), ds.x)
+    assert [text.get_text() for text in masses.texts] == [f"$x_{{{k}}}$" for k in range(1, 6)]
+    heights = np.sort([text.xy[1] for text in masses.texts])
+    assert np.diff(heights).min() > 0.08  # x3 = x4 = x5 = 0: their numbers lie apart nevertheless
+    assert words_of([load]) == ["stuck for good", "maximum of the load"]
+    low, high = contact.get_ylim()
+    assert (low, high) == (-0.5, 0.5)
+    assert (friction.get_ylim()[0] < -9.0) & (friction.get_ylim()[1] > 9.0)
+
+
+KINETIC, STATIC = [r"$\beta$", r"$-\beta$"], [r"$\mu\beta$", r"$-\mu\beta$"]
+
+
+@pytest.mark.parametrize(("mu", "names"), [(1.0, KINETIC), (1.5, KINETIC + STATIC)])
+def test_levels_of_friction_are_named(mu, names):
+    *_, friction = fm.plot_response(fm.response(fm.System(), 0.3, 0.4, mu))
+    assert [text.get_text() for text in friction.texts] == names
+    levels = {float(values[0]) for values in lines_of(friction)[1:]}
+    assert levels == {sign * factor * 0.4 for sign in (-1.0, 1.0) for factor in {1.0, mu}}
+
+
+def test_loads_given_mass_by_mass_have_no_one_curve():
+    system = fm.System(mass_ratios=[1.0, 1.0], stiffness_ratios=[1.0, 1.0], load=[1.0, 0.5j])
+    assert len(fm.plot_response(fm.response(system, 0.7, 9.0))) == 3
+
+
+# Where pictures appear
+
+
+def in_a_new_process(code):
+    search = os.pathsep.join([str(Path(fm.__file__).parents[1]), os.environ.get("PYTHONPATH", "")])
+    ready = f"""
+import sys
+import numpy as np
+import frictionmap as fm
+ds = fm.boundaries(fm.System(), [0.5, 1.0, 2.0])
+{code}
+"""
+    environment = os.environ | {"PYTHONPATH": search, "MPLBACKEND": "agg"}
+    command = [sys.executable, "-c", ready]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_figures_are_pyplots_only_where_pyplot_is_in_use():
+    before = "fm.plot_boundaries(ds); print('matplotlib.pyplot' in sys.modules)"
+    assert in_a_new_process(before) == "False\n"
+    after = "import matplotlib.pyplot as plt; axes = fm.plot_boundaries(ds); "
+    assert in_a_new_process(f"{after} print(plt.gcf() is axes[0].figure, plt.get_fignums())") == "True [1]\n"
+
+
+NOTEBOOK = """
+from types import ModuleType, SimpleNamespace
+sys.modules["IPython"] = ipython = ModuleType("IPython")
+ipython.version_info = (9, 0)
+ipython.get_ipython = lambda: {shell}
+fm.plot_boundaries(ds)
+print("matplotlib.pyplot" in sys.modules)
+"""
+
+
+@pytest.mark.parametrize(
+    ("shell", "expected"),
+    [("SimpleNamespace(events=SimpleNamespace(register=lambda *given: None))", "True"), ("None", "False")],
+)
+def test_a_notebook_counts_as_pyplot_in_use(shell, expected):
+    """IPython may be there without a shell that runs."""
+    assert in_a_new_process(NOTEBOOK.format(shell=shell)) == f"{expected}\n"

@@ -1,0 +1,83 @@
+"""The class of every cell, how many cells a class has, and what a legend calls it."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from .. import regimes
+from .palette import BROKEN, CLASSES, CONTINUOUS, MORE, NO_STOPS, ONE, STUCK, UNCOUNTED, UNRESOLVED
+
+#: Cells that are looked at together: a map of any size takes little memory beyond its own.
+_AT_ONCE = 1 << 19
+
+
+def blocks(shape: tuple[int, ...]) -> Iterator[slice]:
+    """Slices of the first axis of an array of cells, each with about `_AT_ONCE` cells."""
+    step = max(1, _AT_ONCE // max(1, int(np.prod(shape[1:]))))
+    for first in range(0, shape[0], step):
+        yield slice(first, first + step)
+
+
+def _of_stops(stops: np.ndarray) -> np.ndarray:
+    """The class of cells that stop; NaN is a motion without a number of stops, as at r = 0."""
+    nearest = np.rint(np.nan_to_num(stops))
+    found = np.clip(ONE - 1 + nearest, ONE, MORE).astype(np.uint8)
+    found[stops != nearest] = BROKEN
+    found[np.isnan(stops)] = UNCOUNTED
+    return found
+
+
+def _of_cells(regime: np.ndarray | None, stops: np.ndarray | None) -> np.ndarray:
+    if regime is None:
+        assert stops is not None
+        found = np.where(stops == 0.0, CONTINUOUS, NO_STOPS).astype(np.uint8)
+        slip = stops > 0.0
+    else:
+        found = np.full(regime.shape, UNRESOLVED, dtype=np.uint8)
+        found[regime == regimes.PERMANENT_STICKING] = STUCK
+        found[regime == regimes.CONTINUOUS] = CONTINUOUS
+        slip = regime == regimes.STICK_SLIP
+    found[slip] = UNCOUNTED if stops is None else _of_stops(stops[slip])
+    return found
+
+
+def classes(ds: xr.Dataset) -> np.ndarray:
+    """The class of every cell of one mu: an index into the palette, uint8, shape (r, beta).
+
+    The regime decides; among stick-slip motions, the number of stops.  A map without regimes tells
+    continuous (no stops) from stick-slip, but not stuck from unresolved.  A map without numbers of stops
+    has one class of stick-slip.
+    """
+    regime, stops = (ds[name].values if name in ds else None for name in ("regime", "stops_per_cycle"))
+    found = np.empty((ds.sizes["r"], ds.sizes["beta"]), dtype=np.uint8)
+    for block in blocks(found.shape):
+        found[block] = _of_cells(
+            None if regime is None else regime[block], None if stops is None else stops[block]
+        )
+    return found
+
+
+def count(found: np.ndarray) -> np.ndarray:
+    """How many cells every class has."""
+    counts = np.zeros(len(CLASSES), dtype=np.int64)
+    for block in blocks(found.shape):
+        counts += np.bincount(found[block].ravel(), minlength=len(CLASSES))
+    return counts
+
+
+def stops_range(found: np.ndarray, stops: np.ndarray, index: int) -> tuple[float, float]:
+    """Least and most stops per cycle of a class; infinities where it has no cells."""
+    low, high = np.inf, -np.inf
+    for block in blocks(found.shape):
+        inside = stops[block][found[block] == index]
+        if inside.size:
+            low, high = min(low, float(inside.min())), max(high, float(inside.max()))
+    return low, high
+
+
+def legend_label(index: int, cells: int, low: float, high: float) -> str:
+    """Name of a class with what its colour does not tell: how many stops, how many cells."""
+    ends = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
+    name = {MORE: f"{ends} stops", BROKEN: f"not whole, {ends} stops"}.get(index, CLASSES[index].label)
+    return f"{name} ({cells:,})"

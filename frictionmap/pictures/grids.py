@@ -1,0 +1,66 @@
+"""Axes of cells: edges between grid points, limits, linear or logarithmic."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+#: A grid is logarithmic if its steps have ratios that are this close to each other, and lengths that are not.
+_EVEN = 0.02
+
+
+def _is_even(steps: np.ndarray) -> bool:
+    return bool(np.ptp(steps) <= _EVEN * steps.mean())
+
+
+def is_logarithmic(values: np.ndarray) -> bool:
+    """Whether grid points have a constant ratio rather than a constant distance."""
+    if values.size < 3 or values[0] <= 0.0:
+        return False
+    return _is_even(np.diff(np.log(values))) and not _is_even(np.diff(values))
+
+
+@dataclass(frozen=True)
+class Grid:
+    """One axis of a map: grid points, and the cells around them."""
+
+    values: np.ndarray  # increasing
+
+    @cached_property
+    def logarithmic(self) -> bool:
+        """Whether it is drawn on a logarithmic axis."""
+        return is_logarithmic(self.values)
+
+    def _warp(self, values: np.ndarray) -> np.ndarray:
+        if not self.logarithmic:
+            return values
+        with np.errstate(divide="ignore"):
+            return np.log(np.maximum(values, 0.0))
+
+    @cached_property
+    def edges(self) -> np.ndarray:
+        """Edges of the cells, half-way between grid points as the axis is drawn; shape (n + 1,)."""
+        if self.values.size == 1:
+            half = 0.5 * abs(self.values[0]) or 0.5
+            return np.array([self.values[0] - half, self.values[0] + half])
+        at = self._warp(self.values)
+        ends = 1.5 * at[[0, -1]] - 0.5 * at[[1, -2]]
+        edges = np.concatenate((ends[:1], 0.5 * (at[1:] + at[:-1]), ends[1:]))
+        return np.exp(edges) if self.logarithmic else edges
+
+    @cached_property
+    def limits(self) -> tuple[float, float]:
+        """Limits of the plotted axis: its ends, or the edges of its only cell."""
+        first, last = (self.values if self.values.size > 1 else self.edges)[[0, -1]]
+        return float(first), float(last)
+
+    def share(self, values: np.ndarray) -> np.ndarray:
+        """Where on the plotted axis values lie: 0 at its beginning, 1 at its end."""
+        low, high = self._warp(np.array(self.limits))
+        return (self._warp(np.asarray(values, dtype=float)) - low) / (high - low)
+
+    def at(self, share: float) -> float:
+        """The value at a share of the plotted axis."""
+        low, high = self._warp(np.array(self.limits))
+        place = low + share * (high - low)
+        return float(np.exp(place) if self.logarithmic else place)

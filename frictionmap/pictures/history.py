@@ -1,0 +1,207 @@
+"""Pictures of one steady state in time."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, TypedDict
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from .. import regimes
+from .marks import spread
+from .palette import CLASSES, LINES, STUCK
+from .panels import Handle, given_axes, legend_below, new_figure, title_figure
+from .shapes import to_draw
+from .words import caption, load_of, moves_base
+
+if TYPE_CHECKING:
+    from .panels import AxesArray
+
+
+class _Shade(TypedDict):
+    color: str
+    alpha: float
+    linewidth: float
+
+
+#: Height of the panels: load, motion in the contact, masses, friction.
+_HEIGHTS = {"load": 1.0, "z": 2.4, "masses": 3.0, "friction": 2.2}
+
+#: Labels beside lines: least distance as a share of a panel's height, and how many fit.
+_GAP, _MOST_LABELS = 0.09, 11
+
+#: A motion smaller than this is none.
+_ROUNDING = 1e-9
+
+_SHADE: _Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.55, "linewidth": 0.0}
+_LOAD_COLOUR = "#cc1f03"
+
+_REGIME_WORDS = {
+    regimes.UNRESOLVED: "unresolved",
+    regimes.PERMANENT_STICKING: "permanent sticking",
+    regimes.STICK_SLIP: "stick-slip",
+    regimes.CONTINUOUS: "continuous",
+}
+
+
+def _label_beside(ax: Axes, places: np.ndarray, texts: Sequence[str], colours: Sequence[str]) -> None:
+    """Write labels right of a panel, beside `places` on its vertical axis, so that they lie apart."""
+    low, high = ax.get_ylim()
+    beside = spread((places - low) / (high - low), _GAP)
+    for height, text, colour in zip(beside, texts, colours, strict=True):
+        ax.annotate(
+            text, (1.0, height), xycoords="axes fraction", xytext=(4, 0), textcoords="offset points",
+            va="center", fontsize=8, color=colour,
+        )  # fmt: skip
+
+
+def _in_sight(ax: Axes, values: np.ndarray) -> None:
+    """Limits of a vertical axis around values; a constant shows as a level line, not as its rounding."""
+    low, high = float(values.min()), float(values.max())
+    half = 0.56 * (high - low)
+    if half <= _ROUNDING * max(1.0, abs(low), abs(high)):
+        half = 0.5
+    ax.set_ylim(0.5 * (low + high) - half, 0.5 * (low + high) + half)
+
+
+def _draw_load(ax: Axes, turns: np.ndarray, name: str) -> None:
+    ax.plot(turns, np.cos(np.pi * turns), color="black", linewidth=1.0)
+    tops = np.arange(0.0, turns[-1] + 1e-9, 2.0)
+    ax.plot(tops, np.ones(tops.size), "v", color=_LOAD_COLOUR, markersize=5.0, clip_on=False)
+    ax.set_ylim(-1.25, 1.25)
+    ax.set_ylabel(name)
+
+
+def _draw_contact(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> list[Handle]:
+    z = ds["z"].values
+    ax.plot(turns, z, color=LINES[0])
+    _in_sight(ax, z)
+    ax.set_ylabel("contact\n" r"$z$ / $(P/k_1)$")
+    begins = ds["event_phase"].values == 0 if "event_phase" in ds else np.zeros(0, dtype=bool)
+    if not begins.any():
+        return []
+    times, places = ds["event_tau"].values[begins] / np.pi, ds["event_z"].values[begins]
+    marks = ax.plot(times, places, "o", color="black", markersize=4.5, clip_on=False, label="stop begins")
+    return [*marks]
+
+
+def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
+    """Every mass, its number beside its line's end; of many masses some are numbered."""
+    x = ds["x"].values
+    numbers = ds["dof"].values
+    colours = [LINES[k % len(LINES)] for k in range(len(x))]
+    for place, colour in zip(x, colours, strict=True):
+        ax.plot(turns, place, color=colour, linewidth=1.2)
+    _in_sight(ax, x)
+    ax.set_ylabel("masses\n" r"$x$ / $(P/k_1)$")
+    labelled = np.unique(np.linspace(0, len(x) - 1, min(len(x), _MOST_LABELS)).round().astype(int))
+    _label_beside(
+        ax, x[labelled, -1], [rf"$x_{{{numbers[k]}}}$" for k in labelled], [colours[k] for k in labelled]
+    )
+
+
+def _draw_friction(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
+    """The friction force between its kinetic and static levels."""
+    friction, beta, mu = ds["friction"].values, float(ds["beta"]), float(ds["mu"])
+    ax.plot(turns, friction, color="black", linewidth=1.2)
+    names = {beta: r"\beta", mu * beta: r"\mu\beta"} if mu > 1.0 else {beta: r"\beta"}
+    levels = np.array([sign * level for level in names for sign in (1.0, -1.0)])
+    texts = [f"${sign}{name}$" for name in names.values() for sign in ("", "-")]
+    for level in np.unique(levels):
+        ax.axhline(level, color="#606060", linewidth=0.9, linestyle=":")
+    _in_sight(ax, np.concatenate((friction, levels)))
+    _label_beside(ax, levels, texts, ["black"] * len(texts))
+    ax.set_ylabel("friction / $P$")
+
+
+def _mark_phases(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray) -> list[Handle]:
+    """Stops shaded, maxima of the load within the axis dotted, in all panels."""
+    stopped = ds["phase"].values == 0
+    for ax in axes:
+        transform = ax.get_xaxis_transform()
+        ax.fill_between(turns, 0, 1, where=stopped.tolist(), transform=transform, zorder=0.5, **_SHADE)
+        for turn in np.arange(2.0, turns[-1] - 1e-9, 2.0):
+            ax.axvline(turn, color=_LOAD_COLOUR, linewidth=1.0, linestyle=(0, (1, 2)), zorder=0.7)
+    stuck = int(ds["regime"]) == regimes.PERMANENT_STICKING if "regime" in ds else bool(stopped.all())
+    handles: list[Handle] = []
+    if stopped.any():
+        handles.append(Patch(**_SHADE, label="stuck for good" if stuck else "stop"))
+    load = "maximum of the load (of the base's motion)" if moves_base(ds) else "maximum of the load"
+    handles.append(
+        Line2D([], [], color=_LOAD_COLOUR, label=load, marker="v", markersize=5.0, linestyle=(0, (1, 2)))
+    )
+    return handles
+
+
+def _title(ds: xr.Dataset) -> str:
+    """The cell and its answer."""
+    symbols = {"r": "r", "beta": "β", "mu": "μ"}
+    cell = ", ".join(f"{symbol} = {float(ds[name]):.6g}" for name, symbol in symbols.items())
+    if "regime" not in ds:
+        return cell
+    words = _REGIME_WORDS[int(ds["regime"])]
+    stops = float(ds["stops_per_cycle"]) if "stops_per_cycle" in ds else 0.0
+    counted = f", {stops:.4g} stops per cycle" if stops > 0 else ""
+    period = int(ds["period"]) if "period" in ds else 1
+    return f"{cell}: {words}{counted}" + (f", period {period}" if period > 1 else "")
+
+
+def _panels(ds: xr.Dataset) -> list[str]:
+    """Which panels a steady state needs: one mass on a fixed wall moves as its contact does."""
+    same = ds.sizes["dof"] == 1 and np.allclose(ds["x"].values[0], ds["z"].values, rtol=0.0, atol=1e-12)
+    loaded = load_of(ds) is not None
+    return [
+        name
+        for name, there in (("load", loaded), ("z", True), ("masses", not same), ("friction", True))
+        if there
+    ]
+
+
+def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":
+    """Picture of one steady state: load, motion in the contact, every mass, friction force over time.
+
+    Stops are shaded and their beginnings marked; masses are numbered; the levels of kinetic and static
+    friction are named.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        As `response` returns it.
+    ax : array of matplotlib axes, optional
+        Axes to draw into, from top to bottom: load (unless loads are given mass by mass), motion in the
+        contact, masses (unless there is one that moves as the contact does), friction force.
+
+    Returns
+    -------
+    An array of the axes.
+
+    Raises
+    ------
+    InputError
+        The dataset is no response, or there are more or fewer axes than panels.
+    """
+    ds = to_draw(ds, "plot_response", "response")
+    names = _panels(ds)
+    if ax is None:
+        heights = [_HEIGHTS[name] for name in names]
+        figure = new_figure(7.2, 0.78 * sum(heights) + 0.9)
+        axes = figure.subplots(len(names), 1, sharex=True, height_ratios=heights)
+    else:
+        axes = given_axes(ax, len(names), f"for {', '.join(names)}")
+    turns = ds["tau"].values / np.pi
+    handles = _mark_phases(axes, ds, turns)
+    by_name = dict(zip(names, axes, strict=True))
+    if "load" in by_name:
+        _draw_load(by_name["load"], turns, load_of(ds) or "")
+    handles += _draw_contact(by_name["z"], ds, turns)
+    if "masses" in by_name:
+        _draw_masses(by_name["masses"], ds, turns)
+    _draw_friction(by_name["friction"], ds, turns)
+    axes[-1].set_xlabel(r"$\tau/\pi$")
+    axes[-1].set_xlim(turns[0], turns[-1])
+    if ax is None:
+        title_figure(axes[0].figure, _title(ds))
+        legend_below(axes[0].figure, handles, caption(ds))
+    return axes

@@ -1,0 +1,100 @@
+"""Where to write names, draw rings and put labels, so that they lie apart and cover nothing.
+
+Positions are shares of an axis: 0 at its beginning, 1 at its end.
+"""
+
+import numpy as np
+
+#: Names of regions are placed on a raster of so many pixels each way.
+COARSE = 120
+
+#: A letter and a line of text of names [inch].
+_LETTER, _LINE = 0.075, 0.18
+
+#: Rings: as many side by side would fill a panel; a patch of rare cells that reaches over more than a few of
+#: them is seen without.
+RINGS = (44, 32)
+_SMALL = 3
+
+#: A class is rare if it has fewer than this share of the cells.
+_RARE = 1e-3
+
+
+def trace(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Raster pixels that a curve passes through, shape (COARSE, COARSE); `x`, `y` are shares."""
+    passed = np.zeros((COARSE, COARSE), dtype=bool)
+    places = np.linspace(0.0, 1.0, 8 * COARSE + 1)
+    curve = COARSE * np.interp(places, x, np.clip(np.nan_to_num(y, nan=2.0), -1.0, 2.0))
+    for column in range(COARSE):
+        part = curve[8 * column : 8 * column + 9]
+        low, high = np.clip([np.floor(part.min()), np.floor(part.max()) + 1], 0, COARSE).astype(int)
+        passed[column, low:high] = True
+    return passed
+
+
+def room_for(free: np.ndarray, text: str, size: tuple[float, float]) -> tuple[float, float] | None:
+    """Middle of the widest place for a text, as shares of the axes; None where there is none.
+
+    Parameters
+    ----------
+    free : array of bool, shape (COARSE, COARSE)
+        Where the text may lie.
+    size : (width, height) of the axes [inch]
+    """
+    from scipy.ndimage import binary_erosion, distance_transform_edt
+
+    wide = int(np.ceil(COARSE * (len(text) + 1.0) * _LETTER / size[0]))
+    tall = int(np.ceil(COARSE * 1.4 * _LINE / size[1]))
+    if max(wide, tall) >= COARSE:
+        return None
+    fits = binary_erosion(free, np.ones((wide, tall)))
+    if not fits.any():
+        return None
+    room = distance_transform_edt(np.pad(fits, 1))[1:-1, 1:-1]
+    best = np.argwhere(room > room.max() - 1.0)
+    i, j = best[np.argmin(np.square(best - best.mean(axis=0)).sum(axis=1))]  # in the middle of a strip
+    return (i + 0.5) / COARSE, (j + 0.5) / COARSE
+
+
+def rare_classes(counts: np.ndarray) -> np.ndarray:
+    """Classes that have cells, but so few that a reader would look for them in vain."""
+    return np.flatnonzero((counts > 0) & (counts < _RARE * counts.sum()))
+
+
+def rings(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Centres of rings around the small ones among patches of cells at `x`, `y` (shares); shape (n, 2)."""
+    from scipy.ndimage import find_objects, label
+
+    inside = (x >= 0.0) & (x <= 1.0) & (y >= 0.0) & (y <= 1.0)
+    places = np.column_stack((x[inside], y[inside]))
+    bins = np.minimum((places * RINGS).astype(int), np.array(RINGS) - 1)
+    filled = np.zeros(RINGS, dtype=bool)
+    filled[tuple(bins.T)] = True
+    patches, _ = label(filled, np.ones((3, 3)))
+    small = [0] + [max(s.stop - s.start for s in box) <= _SMALL for box in find_objects(patches)]
+    ringed = np.array(small, dtype=bool)[patches[tuple(bins.T)]]
+    homes, member = np.unique(bins[ringed], axis=0, return_inverse=True)
+    sums = np.zeros((len(homes), 2))
+    np.add.at(sums, member.ravel(), places[ringed])
+    return sums / np.maximum(np.bincount(member.ravel(), minlength=len(homes)), 1)[:, np.newaxis]
+
+
+def spread(places: np.ndarray, gap: float) -> np.ndarray:
+    """Places of labels beside `places`, in the same order: at least `gap` apart, within 0 to 1 if they fit.
+
+    Labels that come too close are moved as one, to where they lie nearest their places.
+    """
+    order = np.argsort(places, kind="stable")
+    groups: list[tuple[float, int]] = []  # centre and number of labels of each
+    for place in np.asarray(places, dtype=float)[order]:
+        centre, size = float(place), 1
+        while groups and centre - groups[-1][0] < 0.5 * gap * (size + groups[-1][1]):
+            before, many = groups.pop()
+            centre, size = (before * many + centre * size) / (many + size), many + size
+        groups.append((centre, size))
+    moved = np.concatenate([c + gap * (np.arange(n) - 0.5 * (n - 1)) for c, n in groups] or [np.empty(0)])
+    moved = np.maximum.accumulate(np.maximum(moved, gap * np.arange(moved.size)))
+    moved = np.minimum(moved[::-1], 1.0 - gap * np.arange(moved.size))[::-1]
+    result = np.empty_like(moved)
+    result[order] = moved
+    return result

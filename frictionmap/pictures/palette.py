@@ -1,0 +1,70 @@
+"""One colour for each class of answers in all pictures, one style for each curve.
+
+Any two classes differ in lightness, so that they survive grey printing; from continuous on, lightness falls
+with the number of stops.  They also stay apart for readers who do not see red or green.
+"""
+
+from typing import Literal, NamedTuple, TypedDict
+
+import numpy as np
+
+
+class Look(NamedTuple):
+    """Name and colour of a class."""
+
+    label: str
+    colour: str
+
+
+class LineStyle(TypedDict, total=False):
+    """What matplotlib draws a curve with."""
+
+    color: str
+    linewidth: float
+    linestyle: Literal[":"] | tuple[int, tuple[int, int]]
+    label: str
+
+
+CLASSES = (
+    Look("unresolved", "#cc1f03"),
+    Look("permanent sticking", "#c4c4c4"),
+    Look("continuous", "#ffffff"),
+    Look("1 stop", "#ffdd7c"),
+    Look("2 stops", "#48b2d1"),
+    Look("3 stops", "#2880b8"),
+    Look("4 stops", "#2b4fa6"),
+    Look("more stops", "#00162c"),
+    Look("stops per cycle not whole", "#55285e"),
+    Look("stick-slip, stops not counted", "#bd7f50"),
+    Look("stuck or unresolved", "#c4c4c4"),  # never beside permanent sticking: nothing tells them apart
+)
+UNRESOLVED, STUCK, CONTINUOUS, ONE, MORE, BROKEN, UNCOUNTED, NO_STOPS = 0, 1, 2, 3, 7, 8, 9, 10
+
+#: Hatching says that two answers are possible, in all pictures.
+HATCH = "////"
+HATCH_COLOUR = "#404040"
+
+LIM: LineStyle = {"color": "black", "linewidth": 1.3, "label": r"$\beta_\mathrm{lim}$"}
+STICK: LineStyle = {
+    "color": "black",
+    "linewidth": 1.3,
+    "linestyle": (0, (4, 2)),
+    "label": r"$\beta_\mathrm{stick}$",
+}
+MODAL: LineStyle = {
+    "color": "#cc1f03",
+    "linewidth": 1.2,
+    "linestyle": ":",
+    "label": r"lower bound of $\beta_\mathrm{lim}$, sum of modal maxima",
+}
+
+#: Lines of masses, in turn; numbers beside the lines say which is which.
+LINES = ("#2b4fa6", "#bd7f50", "#00162c", "#48b2d1", "#cc1f03", "#2880b8")
+
+
+def colour_table() -> np.ndarray:
+    """Red, green, blue and opacity of the classes, 0 to 255; one more row, transparent, for no cell."""
+    table = np.zeros((len(CLASSES) + 1, 4), dtype=np.uint8)
+    for row, look in zip(table, CLASSES, strict=False):
+        row[:] = [int(look.colour[k : k + 2], 16) for k in (1, 3, 5)] + [255]
+    return table

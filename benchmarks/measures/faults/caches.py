@@ -167,9 +167,10 @@ class _Trials:
     def damaged(self, ending: str, act: Callable, rng: random.Random) -> tuple[str | None, str]:
         """Damage the cache wherever it lies; then two runs."""
         trial = self.restored()
-        files = sorted(path for place in (trial, self.home) for path in place.rglob(f"*.{ending}"))
-        if not files:
-            raise RuntimeError(f"no cache with *.{ending} was found")
+        found = sorted(path for place in (trial, self.home) for path in place.rglob("*.nb?"))
+        files = [path for path in found if path.suffix == f".{ending}"]
+        if not found:
+            raise RuntimeError("no cache was found")
         act(files, rng)
         for _ in range(2):
             said = self.run(trial)

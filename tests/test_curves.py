@@ -13,6 +13,8 @@ from benchmarks.references import closed_forms
 from frictionmap._kernels.closed_form import damping_functions, decay, sincos_quarter
 from frictionmap._kernels.maxima import largest_bracket
 
+pytestmark = pytest.mark.plain
+
 CONTACT = {"sdof-wall": "fixed-wall", "sdof-base": "joined-base-wall"}
 
 #: Rounding of a dozen operations; the functions themselves lose no digit.

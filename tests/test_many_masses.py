@@ -57,6 +57,7 @@ def test_reference_rows(all_boundaries):
             assert float(ds.beta_stick[m, 0]) == pytest.approx(exact, rel=1e-11), (mu, row)
 
 
+@pytest.mark.plain
 def test_the_modal_sum_is_only_a_bound():
     """5-mass chain, contact on mass 3, T Fig. 6.17: 0.0174 against 0.0128 at r1 = 0.6."""
     system = fm.System(
@@ -67,6 +68,7 @@ def test_the_modal_sum_is_only_a_bound():
     assert np.round(ds.beta_lim_modal[0].values * [1.0, 10.0], 4).tolist() == [0.0809, 0.1281]
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("zeta", [0.0, 0.02, 1.0, 1.5])
 def test_modal_sum_is_never_above(zeta):
     system = fm.System(
@@ -78,6 +80,7 @@ def test_modal_sum_is_never_above(zeta):
     assert np.all(np.isfinite(ds.beta_lim))
 
 
+@pytest.mark.plain
 def test_one_mass_by_many():
     """The code for many modes with one mode equals that for one mass."""
     for contact in ("fixed-wall", "joined-base-wall"):
@@ -110,6 +113,7 @@ def test_a_stiff_link_acts_as_one_mass():
     np.testing.assert_allclose(linked.beta_stick, one.beta_stick, rtol=1e-6)
 
 
+@pytest.mark.plain
 def test_renumbering_changes_nothing():
     """A chain is held at one end only; but masses of equal chains swapped by symmetry give equal curves."""
     # contact and load swapped: V, U of the contact by reciprocity (|V| is symmetric in load and contact)
@@ -144,6 +148,7 @@ def test_global_maximum_of_random_sums():
         assert max(values.max(), end) >= s - 1e-3 * size
 
 
+@pytest.mark.plain
 def test_limits_of_many_masses():
     """r -> 0 and r -> infinity; undamped resonances; a mode that the contact does not see."""
     two = fm.System(mass_ratios=[1.0, 1.0], stiffness_ratios=[1.0, 1.0])

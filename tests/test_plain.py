@@ -7,6 +7,8 @@ import frictionmap as fm
 from frictionmap import regimes
 from frictionmap.settings import OUTPUTS as EVERY
 
+pytestmark = pytest.mark.plain
+
 OUTPUTS = EVERY[: EVERY.index("multiplier")]  # that of the masses would take the code for structures
 
 

@@ -63,6 +63,7 @@ def compare(found, stops, amplitude, stuck, masses):
     assert found["amplitude"] == pytest.approx(masses, abs=1e-7 * max(masses))
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("row", TABLE)
 @pytest.mark.parametrize("settings", [{}, {"skip": "none"}, {"steady": "marched"}, {"steps": 7}])
 def test_table(row, settings):
@@ -102,6 +103,7 @@ def change_over_a_period(entry, zeta, system, r, beta, mu):
     return np.abs(motion.state() - np.concatenate((x, v))).max() / np.abs(x).max()
 
 
+@pytest.mark.slow
 def test_unconverged_reference_rows(all_steady):
     """Rows that marching in 40-digit arithmetic left unfinished are solved: the state returns to 1e-12.
 
@@ -172,6 +174,7 @@ def random_chain(rng, zeta):
     return chain(entry, zeta), entry
 
 
+@pytest.mark.slow
 def test_random_cells_against_the_slow_reference():
     """100 random damped cells: nothing in common with the reference but the equations of motion."""
     rng = np.random.default_rng(11)
@@ -488,6 +491,7 @@ def test_unseen_modes():
     assert found["contact_amplitude"] == pytest.approx(alone["contact_amplitude"], rel=1e-9)
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("zeta", [0.0, 0.3, 1.0, 2.0])
 def test_decay_is_what_the_oscillators_do(zeta):
     """The step's map against the closed form T(B.8)."""

@@ -79,7 +79,7 @@ def test_share_stuck_of_reference_rows(steady_rows):
         assert float(ds.contact_amplitude) == pytest.approx(float(row["Z"]), rel=1e-10), row
 
 
-# fixed wall and joined base-wall, computed with tests/naive.py at tolerance 1e-13 to ten digits
+# fixed wall and joined base-wall, computed with references/naive.py at tolerance 1e-13 to ten digits
 SMALL_TABLE = [
     ("wall", 0.3, 0.5, 1.0, 0.0, 2, 0.8256157755),
     ("wall", 0.303, 0.76, 1.5, 0.0, None, 0.0),

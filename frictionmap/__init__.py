@@ -22,6 +22,7 @@ config        configuration files
 outputs       output files: claimed, written beside their place, put there whole or not at all
 storage       datasets as NetCDF files
 reading       files: read with a check, brought into one form
+stored        what a dataset remembers of how it was made
 plot          pictures: the door to what is in `pictures`
 arguments     the arguments of the command line
 cli           the command line

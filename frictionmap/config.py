@@ -90,13 +90,21 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
             f"configuration {path} cannot be read ({error.strerror or error}); give the path of a TOML file"
         ) from None
     try:
-        tree = tomllib.loads(text)
-    except _NOT_TOML as error:
-        raise InputError(f"configuration {path} must be TOML; got: {error}") from None
+        tree = parse(text)
+    except InputError as error:
+        raise InputError(f"configuration {path} {error}") from None
     _override_all(tree, overrides)
     if overrides:
         text = _to_toml(tree)
     return _check(tree, text, path)
+
+
+def parse(text: str) -> dict:
+    """The tables of a configuration's text, not checked further."""
+    try:
+        return tomllib.loads(text)
+    except _NOT_TOML as error:
+        raise InputError(f"must be TOML; got: {error}") from None
 
 
 def _override_all(tree: dict, overrides: Sequence[str]) -> None:

@@ -19,7 +19,9 @@ from frictionmap.pictures.classes import classes
 from frictionmap.pictures.palette import CLASSES, MORE, ONE, colour_table
 from frictionmap.pictures.raster import rasterise
 from frictionmap.pictures.regime_map import CellImage
+from frictionmap.reading import read
 from frictionmap.settings import OUTPUTS
+from frictionmap.storage import write
 
 MAGIC = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
 
@@ -438,6 +440,19 @@ def test_the_caption_tells_the_system(tiny_map, tiny_boundaries, tiny_response):
     assert "no viscous damping" in heading
 
 
+def test_the_caption_tells_the_start_and_the_axis_the_features(tiny_map):
+    """As far as the configuration in the file tells them."""
+    configured = tiny_map.assign_attrs(config='[system]\n[solver]\nstart = "moving"')
+    axes = fm.plot_regimes(configured)
+    assert "start: moving" in axes[0].figure.legends[0].get_title().get_text()
+    marks = {line.get_label(): line.get_xdata() for line in axes[1].lines if line.get_linestyle() == "None"}
+    np.testing.assert_array_equal(marks["natural frequency"], [1.0])
+    np.testing.assert_allclose(1.0 / marks["natural frequency / n"], [9, 8, 7, 6, 5, 4, 3, 2])
+    axes = fm.plot_regimes(tiny_map)
+    assert "start" not in axes[0].figure.legends[0].get_title().get_text()
+    assert not [line for line in axes[1].lines if line.get_linestyle() == "None"]
+
+
 def test_large_maps_say_how_they_are_reduced():
     (ax,) = fm.plot_regimes(synthetic(np.full((1500, 10), 2.0)))
     heading = ax.figure.legends[0].get_title().get_text().replace("\n", " ")
@@ -518,6 +533,45 @@ def test_levels_of_friction_are_named(mu, names):
 def test_loads_given_mass_by_mass_have_no_one_curve():
     system = fm.System(mass_ratios=[1.0, 1.0], stiffness_ratios=[1.0, 1.0], load=[1.0, 0.5j])
     assert len(fm.plot_response(fm.response(system, 0.7, 9.0))) == 3
+
+
+# Reading no more than is drawn
+
+
+@pytest.mark.parametrize("kind", ["map", "boundaries", "response"])
+def test_what_is_not_drawn_need_not_be_read(request, tmp_path, kind):
+    """A picture of a file of which only what is drawn was read is the same to the pixel."""
+    ds = request.getfixturevalue(f"tiny_{kind}")
+    write(ds, tmp_path / "ds.nc")
+    part = read(tmp_path / "ds.nc", only=plot.PICTURED)
+    assert set(part.variables) < set(ds.variables)
+    draw = {"map": fm.plot_regimes, "boundaries": fm.plot_boundaries, "response": fm.plot_response}[kind]
+    whole, drawn_part = (np.asarray(rendered(draw(given)[0].figure)) for given in (ds, part))
+    np.testing.assert_array_equal(drawn_part, whole)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="peak memory is told by Linux only")
+def test_a_large_map_is_drawn_in_little_memory(tmp_path):
+    """4096 by 4096 cells in less than 500 MB, Python and all libraries included."""
+    n = 4096
+    regime = np.full((1, n, n), regimes.STICK_SLIP, dtype=np.int8)
+    stops = np.full((1, n, n), 2.0, dtype=np.float32)
+    stops[0, 1000, 2000] = 7.0
+    cells = {"regime": regime, "stops_per_cycle": stops, "contact_amplitude": np.ones((1, n, n))}
+    axes = {"mu": [1.0], "r": np.linspace(0.1, 2.0, n), "beta": np.linspace(0.1, 1.0, n)}
+    ds = xr.Dataset({name: (("mu", "r", "beta"), values) for name, values in cells.items()}, axes)
+    write(ds.assign_attrs(source="frictionmap test"), tmp_path / "large.nc")
+    code = "import sys; from frictionmap.cli import main; main(sys.argv[1:]); "
+    code += "print(*(line for line in open('/proc/self/status') if line.startswith('VmHWM')))"
+    command = [sys.executable, "-c", code, "plot", "large.nc"]
+    environment = os.environ | {"PYTHONPATH": str(Path(fm.__file__).parents[1])}
+    done = subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=600, check=True
+    )
+    said, peak = done.stdout.split("\n", 1)
+    assert said == "wrote large.png"
+    assert int(peak.split()[1]) < 500_000  # kB
 
 
 # Where pictures appear

@@ -7,10 +7,15 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from ..stored import stored_system
 from .grids import Grid
 
 #: Least distance of two marks, as a share of the axis.
 _GAP = 0.015
+
+
+#: Parts of the natural frequency of one mass that are marked: those below lie too close.
+_MOST_PARTS = 9
 
 
 class Feature(NamedTuple):
@@ -21,14 +26,28 @@ class Feature(NamedTuple):
     places: np.ndarray
 
 
+#: Label and marker of what a dataset may know.
+_KINDS = {
+    "natural_frequency": ("natural frequency", "v"),
+    "held_frequency": ("natural frequency, contact held", "x"),
+    "invariant_point": ("invariant point", "d"),
+}
+
+
 def features_of(ds: xr.Dataset) -> list[Feature]:
-    """What a dataset knows of its system's frequencies."""
-    known = (
-        ("natural_frequency", "natural frequency", "v"),
-        ("held_frequency", "natural frequency, contact held", "x"),
-        ("invariant_point", "invariant point", "d"),
-    )
-    return [Feature(text, marker, ds[name].values) for name, text, marker in known if name in ds]
+    """What a dataset knows of its system's frequencies, by its variables or by its configuration."""
+    known = {name: ds[name].values for name in _KINDS if name in ds}
+    system = stored_system(ds) if "natural_frequency" not in ds else None
+    if system is not None:
+        known["natural_frequency"] = system.modes.w
+        if system.n > 1:
+            known["held_frequency"] = system.modes.held_frequencies()
+    found = [Feature(*_KINDS[name], known[name]) for name in _KINDS if name in known]
+    natural = known.get("natural_frequency", np.empty(0))
+    # parts of the frequencies of more masses would fill the axis; of one, they are the invariant points
+    if natural.size == 1 and "invariant_point" not in known:
+        found.append(Feature("natural frequency / n", "|", natural[0] / np.arange(_MOST_PARTS, 1, -1)))
+    return found
 
 
 def apart(shares: np.ndarray) -> np.ndarray:

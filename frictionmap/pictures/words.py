@@ -5,6 +5,8 @@ import textwrap
 
 import xarray as xr
 
+from ..stored import stored_start
+
 
 def balanced(text: str, width: int) -> str:
     """Text in as few lines as fit into `width` characters, all about equally long."""
@@ -41,10 +43,14 @@ def load_of(ds: xr.Dataset) -> str | None:
 _MANY = 640
 
 
+_STARTS: dict[str | None, str] = {"rest": "start: at rest", "moving": "start: moving"}
+
+
 def caption(ds: xr.Dataset, *, cells_counted: bool = False) -> str:
     """What a picture's legend is headed by: system, damping, and how to read the numbers."""
     parts = [system_words(ds)]
     if cells_counted:
+        parts.append(_STARTS.get(stored_start(ds), ""))
         parts.append("in brackets: numbers of cells")
         if max(ds.sizes["r"], ds.sizes["beta"]) > _MANY:
             parts.append("a pixel shows the commonest of its cells; what is thin keeps a pixel")

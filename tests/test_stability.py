@@ -194,6 +194,35 @@ def test_asymmetric_motion():
 
 
 @pytest.mark.parametrize(
+    ("r", "beta", "mu", "period", "mirrored"),
+    [
+        (0.3, 0.5, 1.5, 1, True),
+        (0.662, 0.3, 2.5, 1, False),
+        (0.462, 0.1941, 2.5, 2, False),
+        (0.262, 0.1563, 2.5, 3, True),
+        (0.45, 0.179, 2.5, 3, False),
+        (0.475, 0.2017, 2.0, 4, False),
+    ],
+)
+def test_asymmetry_is_that_of_the_response(r, beta, mu, period, mirrored):
+    """Least over odd m of max |z(tau + m pi) + z(tau)|, over the amplitude, by 4,000 samples a period.
+
+    A motion of period 3 that is its own mirror image is so after three half periods, not after one.
+    """
+    system = fm.System(damping_ratios=0.03)
+    ds = fm.sweep(system, [r], [beta], mu, outputs=OUTPUTS)
+    history = fm.response(system, r, beta, mu, points=4000)
+    assert ds.period.item() == history.period.item() == period
+    z = history.z.values[:-1]
+    differences = [np.abs(z + np.roll(z, 2000 * m)).max() for m in range(1, 2 * period, 2)]
+    exact = min(differences) / float(history.contact_amplitude)
+    assert (exact < 1e-9) == mirrored
+    assert ds.asymmetry.item() == pytest.approx(exact, rel=1e-3, abs=1e-9)
+    if period == 3:  # what m = 1 alone says is another number
+        assert differences[0] / float(history.contact_amplitude) > max(0.05, exact)
+
+
+@pytest.mark.parametrize(
     ("system", "r", "beta", "flags"),
     [
         (fm.System(), 0.9, 0.7, 1 | 4),

@@ -72,8 +72,25 @@ def continuous_multiplier(st, orbit, i, beta, mu_beta, work, scratch):
 
 
 @kernel
+def _least_difference(z, halves):
+    """Least over odd m of the largest |z(tau + m pi) + z(tau)|; `z` has _SAMPLES in each of `halves` pi."""
+    least = math.inf
+    # m and halves - m make the same pairs
+    for m in range(1, halves // 2 + 1, 2):
+        most = 0.0
+        for j in range(z.size):
+            most = max(most, abs(z[j] + z[(j + m * _SAMPLES) % z.size]))
+        least = min(least, most)
+    return least
+
+
+@kernel
 def asymmetry(st, beta, rows, count, amplitude, work, scratch):
-    """max |z(tau + pi) + z(tau)| over the amplitude, of a table of phases; 0 if it is of odd half periods."""
+    """How far the motion in a table of phases is from a mirror image of itself, over the amplitude.
+
+    The least over odd m of the largest |z(tau + m pi) + z(tau)|; 0 if it returns mirrored, that is after an
+    odd number of half periods.
+    """
     total = 0.0
     for k in range(count):
         total += rows[k, 0]
@@ -89,7 +106,4 @@ def asymmetry(st, beta, rows, count, amplitude, work, scratch):
         st, beta, rows, count, tau, np.empty((st.n, size)), np.empty((st.n, size)), z, np.empty(size),
         np.empty(size, dtype=np.int8), work, scratch,
     )  # fmt: skip
-    most = 0.0
-    for j in range(size):
-        most = max(most, abs(z[j] + z[(j + _SAMPLES) % size]))
-    return most / amplitude
+    return _least_difference(z, halves) / amplitude

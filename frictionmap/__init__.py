@@ -38,6 +38,7 @@ from .errors import InputError, NoSteadyState
 from .version import __version__
 
 if TYPE_CHECKING:
+    from . import features
     from .config import load_config
     from .continuous import continuous_motion
     from .curves import boundaries
@@ -55,6 +56,7 @@ __all__ = [
     "__version__",
     "boundaries",
     "continuous_motion",
+    "features",
     "load_config",
     "plot_boundaries",
     "plot_regimes",
@@ -79,7 +81,13 @@ _HOME = {
 }
 
 
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
 def __getattr__(name: str) -> object:
+    if name == "features":
+        return import_module(".features", __name__)
     if name in _HOME:
         value = getattr(import_module(f".{_HOME[name]}", __name__), name)
         globals()[name] = value

@@ -3,7 +3,7 @@
 import difflib
 import math
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -19,18 +19,66 @@ LARGEST_RATIO = 1e8
 LARGEST_DAMPING = 100.0
 
 
+#: Characters that an error message quotes of a value; of a longer one its beginning and end.
+_LONGEST_REPR = 160
+
+T = TypeVar("T")
+
+
 def nearest(word: str, legal: Iterable[str]) -> str:
     """' (did you mean ...?)' if a legal word is near, else ''."""
     found = difflib.get_close_matches(word, list(legal), n=1, cutoff=0.5)
     return f" (did you mean {found[0]}?)" if found else ""
 
 
+def one_line(value: object) -> str:
+    """repr, short, and without the line breaks that arrays have in theirs."""
+    text = " ".join(repr(value).split())
+    half = _LONGEST_REPR // 2
+    return text if len(text) <= _LONGEST_REPR else f"{text[:half]} ... {text[-half:]}"
+
+
+def instance(value: object, name: str, kind: type[T]) -> T:
+    """`value`, if it is one of ours of that kind."""
+    if not isinstance(value, kind):
+        raise InputError(f"{name} must be a frictionmap.{kind.__name__}; got {one_line(value)}")
+    return value
+
+
 def choice(value: object, name: str, legal: tuple[str, ...]) -> str:
     """`value`, if it is one of the legal words."""
     if not isinstance(value, str) or value not in legal:
         hint = nearest(value, legal) if isinstance(value, str) else ""
-        raise InputError(f"{name} must be one of {', '.join(legal)}; got {value!r}{hint}")
+        raise InputError(f"{name} must be one of {', '.join(legal)}; got {one_line(value)}{hint}")
     return value
+
+
+def unmasked(values: object, name: str) -> None:
+    """Refuse an array with masked values: under a mask there is a number, but nobody means it."""
+    if np.ma.is_masked(values):
+        raise InputError(f"{name} must have no masked values; got {one_line(values)}")
+
+
+def is_array(value: object) -> bool:
+    """Whether it is an array, also one of xarray or pandas, of any size."""
+    return hasattr(value, "__array__") and not isinstance(value, type)
+
+
+def array(values: Any, name: str) -> np.ndarray:
+    """`values` as an array; one of no known type if they are none."""
+    unmasked(values, name)
+    try:
+        return np.asarray(values)
+    except (TypeError, ValueError):  # rows of different lengths, a dataset
+        return np.empty(0, dtype=object)
+
+
+def _single(value: Any, name: str) -> Any:
+    """The number in an array without dimensions, such as one of an axis of a dataset; else `value`."""
+    if isinstance(value, (int, float, np.generic)) or not is_array(value):
+        return value
+    given = array(value, name)
+    return given[()] if given.shape == () and given.dtype.kind in "iuf" else value
 
 
 def _as_float(value: Any) -> float:
@@ -49,9 +97,10 @@ def number(
     most: float = math.inf,
 ) -> float:
     """`value` as a float, if it is a finite number with least <= value <= most and value > above."""
+    value = _single(value, name)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
-        raise InputError(f"{name} must be a number; got {value!r}")
-    result = _as_float(value)
+        raise InputError(f"{name} must be a number; got {one_line(value)}")
+    result = _as_float(value) + 0.0  # not -0.0
     if not math.isfinite(result):
         raise InputError(f"{name} must be finite; got {result}")
     if result <= above:
@@ -65,26 +114,19 @@ def number(
 
 def whole(value: object, name: str, *, least: int, most: int | None = None) -> int:
     """`value` as an int, if it is a whole number in range."""
+    value = _single(value, name)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
-        raise InputError(f"{name} must be a whole number; got {value!r}")
+        raise InputError(f"{name} must be a whole number; got {one_line(value)}")
     number(int(value), name, least=least, most=math.inf if most is None else most)
     return int(value)
 
 
-def one_line(value: object) -> str:
-    """repr, without the line breaks that arrays have in theirs."""
-    return " ".join(repr(value).split())
-
-
 def axis(values: object, name: str, *, least: float, most: float = math.inf) -> np.ndarray:
     """`values` as a 1-D float64 array, if it is not empty, finite, increasing and in range."""
-    try:
-        given = np.atleast_1d(np.asarray(values))
-    except ValueError:  # rows of different lengths
-        given = np.empty(0, dtype=object)
+    given = np.atleast_1d(array(values, name))
     if given.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false
         raise InputError(f"{name} must be numbers; got {one_line(values)}")
-    result = given.astype(np.float64)
+    result = given.astype(np.float64) + 0.0  # not -0.0
     if result.ndim != 1:
         raise InputError(f"{name} must be one-dimensional; got {result.ndim} dimensions")
     if result.size == 0:

@@ -1,6 +1,7 @@
 """Configuration files (TOML): read, overridden, checked key by key."""
 
 import json
+import os
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -80,14 +81,21 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
         The file cannot be read or is not TOML; a key is unknown, missing, of the wrong type or out of
         range.  The message names the key.
     """
+    if not isinstance(path, (str, os.PathLike)):
+        raise InputError(f"configuration must be the path of a TOML file; got {checks.one_line(path)}")
+    if isinstance(overrides, str) or not isinstance(overrides, Sequence):
+        raise InputError(
+            f"overrides must be a list such as ['grid.r.step=0.01']; got {checks.one_line(overrides)}"
+        )
     path = Path(path)
     try:
         text = path.read_bytes().decode("utf-8-sig")  # some editors put a mark at the beginning
     except UnicodeDecodeError:
         raise InputError(f"configuration {path} must be text in UTF-8; it is not") from None
-    except OSError as error:
+    except (OSError, ValueError) as error:  # a name with a null character is a ValueError
+        reason = getattr(error, "strerror", None) or error
         raise InputError(
-            f"configuration {path} cannot be read ({error.strerror or error}); give the path of a TOML file"
+            f"configuration {path} cannot be read ({reason}); give the path of a TOML file"
         ) from None
     try:
         tree = parse(text)
@@ -111,6 +119,10 @@ def _override_all(tree: dict, overrides: Sequence[str]) -> None:
     """Set the keys of `--set`, in order; none may undo one before it."""
     done: dict[str, str] = {}
     for override in overrides:
+        if not isinstance(override, str):
+            raise InputError(
+                f"overrides must be text such as 'grid.r.step=0.01'; got {checks.one_line(override)}"
+            )
         key, value = _key_and_value(override)
         for before, text in done.items():
             if _undoes(key, before):
@@ -272,8 +284,8 @@ def _axis_table(axis: Mapping[str, object], name: str) -> None:
         raise InputError(f"{name}.stop must be >= start ({start:g}); got {stop:g}")
     if "step" in axis:
         checks.number(axis["step"], f"{name}.step", above=0.0)
-    else:
-        checks.whole(axis["num"], f"{name}.num", least=1, most=_MOST_VALUES)
+    elif checks.whole(axis["num"], f"{name}.num", least=1, most=_MOST_VALUES) == 1 and stop > start:
+        raise InputError(f"{name}.num must be >= 2 to hold both {start:g} and {stop:g}; got 1")
 
 
 def _steps(axis: Mapping[str, object], name: str) -> int:

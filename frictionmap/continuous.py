@@ -8,6 +8,7 @@ harmonic part only: their u may be infinite, and is not asked for.
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import SupportsFloat
 
 import numpy as np
 
@@ -246,7 +247,7 @@ def _dynamic_compliance(modes: ModalModel, r: float, seen: np.ndarray) -> np.nda
     )
 
 
-def continuous_motion(system: System, r: float, beta: float) -> ContinuousMotion:
+def continuous_motion(system: System, r: SupportsFloat, beta: SupportsFloat) -> ContinuousMotion:
     """The continuous steady state, in closed form.
 
     Parameters
@@ -279,6 +280,7 @@ def continuous_motion(system: System, r: float, beta: float) -> ContinuousMotion
     >>> round(float(motion.amplitude[0]), 4)
     0.665
     """
+    checks.instance(system, "system", System)
     r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
     beta = checks.number(beta, "beta", least=0.0)
     modes = system.modes

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from . import checks
 from ._kernels.curves import boundary, response_functions
@@ -202,7 +203,7 @@ def _feature_variables(system: System, r: np.ndarray, mu: np.ndarray) -> dict[st
     return {name: label_variable(name, values) for name, values in found.items()}
 
 
-def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
+def boundaries(system: System, r: ArrayLike, mu: ArrayLike = 1.0) -> xr.Dataset:
     """Boundaries of the motion regimes over frequency.
 
     Parameters
@@ -240,6 +241,7 @@ def boundaries(system: System, r: object, mu: object = 1.0) -> xr.Dataset:
     >>> ds.beta_stick.values
     array([[0.25, 4.  ]])
     """
+    checks.instance(system, "system", System)
     r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
     mu = checks.axis(mu, "mu", least=1.0)
     found = find_curves(system, r, mu)

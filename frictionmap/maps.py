@@ -5,16 +5,19 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from itertools import islice
+from typing import Unpack
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from . import checks, regimes
 from ._kernels.sweep import Outputs
 from .cells import Cells, Job, make_cells
 from .curves import boundary_variables
+from .errors import InputError
 from .labels import CELL_VARIABLES, coordinate, label_variable, stamp
-from .settings import Solver
+from .settings import Solver, SolverSettings, merged
 from .system import System
 
 #: Cells a thread takes at a time: some milliseconds of work, so that the threads finish together, progress
@@ -167,14 +170,14 @@ def _fill(
 
 def sweep(
     system: System,
-    r: object,
-    beta: object,
-    mu: object = 1.0,
+    r: ArrayLike,
+    beta: ArrayLike,
+    mu: ArrayLike = 1.0,
     *,
     solver: Solver | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
-    **settings: object,
+    **settings: Unpack[SolverSettings],
 ) -> xr.Dataset:
     """Classify the steady state on a mu-r-beta grid and count its stops per cycle.
 
@@ -189,7 +192,7 @@ def sweep(
         Static over kinetic friction [-], >= 1, increasing.
     solver : Solver, optional
         Settings; or give them one by one as keywords: start, cycles, tolerance, steps, skip, steady,
-        outputs (see `Solver`).
+        outputs (see `Solver`).  If both are given, a keyword takes the place of the solver's setting.
     threads : int, optional
         Threads to use; default: all processors of the process.  The result is the same to the bit.
     progress : callable, optional
@@ -204,7 +207,7 @@ def sweep(
     Raises
     ------
     InputError
-        An axis or a setting is out of range.
+        An argument or a setting is of the wrong kind or out of range.
 
     Examples
     --------
@@ -213,15 +216,15 @@ def sweep(
     >>> ds.stops_per_cycle.values
     array([[[ 0.,  2., nan]]], dtype=float32)
     """
-    solver = solver or Solver(**settings)  # type: ignore[arg-type]
+    checks.instance(system, "system", System)
+    solver = merged(solver, settings)
     r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
     beta = checks.axis(beta, "beta", least=0.0)
     mu = checks.axis(mu, "mu", least=1.0)
     checks.cells(mu.size, r.size, beta.size * (system.n if "amplitude" in solver.outputs else 1))
-    if threads is None:
-        threads = default_threads()
-    else:
-        checks.whole(threads, "threads", least=1)
+    threads = default_threads() if threads is None else checks.whole(threads, "threads", least=1)
+    if progress is not None and not callable(progress):
+        raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
     cells = make_cells(system, r, beta, mu, solver)
     out = _allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
     _fill(cells, plan(cells, r, mu, beta, solver), beta.size, out, threads, progress)

@@ -147,10 +147,7 @@ def _in_range(array: np.ndarray, name: str) -> bool:
 
 def _square(given: object, name: str) -> np.ndarray:
     """`given` as a new float64 array, if it is a square matrix of finite real numbers."""
-    try:
-        array = np.asarray(given)
-    except ValueError:  # rows of different lengths
-        array = np.empty(0, dtype=object)
+    array = checks.array(given, f"matrices: {name}")
     if array.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false
         kind = f"numbers of type {array.dtype}" if array.dtype.kind == "c" else f"type {array.dtype}"
         raise InputError(f"matrices: {name} must be an array of real numbers; got {kind}")

@@ -1,13 +1,14 @@
 """Settings of the steady-state solver."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Literal, TypedDict, get_args
 
 from . import checks
 from .errors import InputError
 
 #: Outputs a map can hold, in the order of the file.
-OUTPUTS = (
+Output = Literal[
     "regime",
     "stops_per_cycle",
     "contact_amplitude",
@@ -21,7 +22,12 @@ OUTPUTS = (
     "also_reachable",
     "sliding_limit",
     "amplitude",
-)
+]
+OUTPUTS: tuple[str, ...] = get_args(Output)
+
+Start = Literal["rest", "moving"]
+Skip = Literal["exact", "none"]
+Steady = Literal["solved", "marched"]
 
 #: Those that take the code for structures, whatever the number of masses: of the steady state that a cell
 #: has, and of what else it could end in.
@@ -57,25 +63,49 @@ class Solver:
         A setting is out of range.
     """
 
-    start: str = "rest"
+    start: Start = "rest"
     cycles: int = 2000
     tolerance: float = 1e-12
     steps: int = 24
-    skip: str = "exact"
-    steady: str = "solved"
-    outputs: Sequence[str] = ("regime", "stops_per_cycle", "contact_amplitude")
+    skip: Skip = "exact"
+    steady: Steady = "solved"
+    outputs: Sequence[Output] = ("regime", "stops_per_cycle", "contact_amplitude")
 
     def __post_init__(self) -> None:
-        checks.choice(self.start, "start", ("rest", "moving"))
+        checks.choice(self.start, "start", get_args(Start))
         checks.whole(self.cycles, "cycles", least=1, most=10**9)
         checks.number(self.tolerance, "tolerance", least=1e-15, most=1e-3)
         checks.whole(self.steps, "steps", least=2, most=1000)
-        checks.choice(self.skip, "skip", ("exact", "none"))
-        checks.choice(self.steady, "steady", ("solved", "marched"))
+        checks.choice(self.skip, "skip", get_args(Skip))
+        checks.choice(self.steady, "steady", get_args(Steady))
         if isinstance(self.outputs, str) or not isinstance(self.outputs, Sequence):
-            raise InputError(f"outputs must be a list of names; got {self.outputs!r}")
+            raise InputError(f"outputs must be a list of names; got {checks.one_line(self.outputs)}")
         for name in self.outputs:
             checks.choice(name, "outputs", OUTPUTS)
         if not self.outputs:
             raise InputError(f"outputs must name at least one of {', '.join(OUTPUTS)}; got none")
         object.__setattr__(self, "outputs", tuple(dict.fromkeys(self.outputs)))
+
+
+class SolverSettings(TypedDict, total=False):
+    """The settings of `Solver`, one by one; what a type checker knows of the keywords of `sweep`."""
+
+    start: Start
+    cycles: int
+    tolerance: float
+    steps: int
+    skip: Skip
+    steady: Steady
+    outputs: Sequence[Output]
+
+
+def merged(solver: Solver | None, settings: Mapping[str, object]) -> Solver:
+    """The solver given, or the default one, with the settings given beside it in place of its own."""
+    if solver is not None:
+        checks.instance(solver, "solver", Solver)
+    names = [field.name for field in fields(Solver)]
+    for name in settings:
+        if name not in names:
+            hint = checks.nearest(name, names)
+            raise InputError(f"settings must be some of {', '.join(names)}; got {name}{hint}")
+    return replace(solver or Solver(), **settings)  # type: ignore[arg-type]

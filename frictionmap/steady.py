@@ -1,7 +1,8 @@
 """One steady state in time: motion of the masses and of the contact, friction force, starts and stops."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import SupportsFloat, Unpack
 
 import numpy as np
 import xarray as xr
@@ -28,12 +29,13 @@ from .cells import Cells, OneMassCells, StructureCells, limits, make_cells
 from .curves import boundary_variables
 from .errors import InputError, NoSteadyState
 from .labels import CELL_VARIABLES, coordinate, label_variable, stamp
-from .maps import plan
-from .settings import Solver
+from .maps import plan, sweep
+from .settings import Output, Solver, SolverSettings, merged
 from .system import System
 
 #: Samples of a time history per excitation period.
 POINTS = 2000
+_MOST_POINTS = 10**6
 
 _TURN = 2.0 * math.pi
 
@@ -282,15 +284,25 @@ def _structure_history(question: Question, cells: StructureCells) -> History:
     )  # fmt: skip
 
 
+def _further(question: Question, names: list[Output]) -> dict[str, xr.Variable]:
+    """Outputs of a map's cell that the motion in time does not show."""
+    if not names:
+        return {}
+    solver = replace(question.solver, outputs=names)
+    ds = sweep(question.system, question.r, question.beta, question.mu, solver=solver, threads=1)
+    cell = ds.isel(mu=0, r=0, beta=0, missing_dims="ignore")
+    return {name: cell[name].variable for name in names}
+
+
 def response(
     system: System,
-    r: float,
-    beta: float,
-    mu: float = 1.0,
+    r: SupportsFloat,
+    beta: SupportsFloat,
+    mu: SupportsFloat = 1.0,
     *,
     solver: Solver | None = None,
     points: int = POINTS,
-    **settings: object,
+    **settings: Unpack[SolverSettings],
 ) -> xr.Dataset:
     """One steady state in time.
 
@@ -300,17 +312,18 @@ def response(
     r, beta, mu : float
         Frequency ratio (> 0), friction ratio (>= 0), static over kinetic friction (>= 1) [-].
     solver : Solver, optional
-        Settings; or give them one by one as keywords.
+        Settings; or give them one by one as keywords, each in place of the solver's own.
     points : int
-        Samples per excitation period.
+        Samples per excitation period, up to 10^6.
 
     Returns
     -------
     xarray.Dataset
         Over `tau` (0 to 2 pi times the period): `x(dof, tau)`, `v(dof, tau)`, `z`, `friction` (over P)
         and `phase` (-1, 0, 1).  Over `event`: `event_tau`, `event_phase` (the phase that begins) and
-        `event_z`.  Scalars: `regime`, `stops_per_cycle`, `contact_amplitude`, `stuck_fraction`, `period`
-        and the boundaries.  tau = 0 is a maximum of the load (of the base's displacement).
+        `event_z`.  Scalars: `regime`, `stops_per_cycle`, `contact_amplitude`, `stuck_fraction`, `period`,
+        the boundaries and what else `outputs` asks for.  tau = 0 is a maximum of the load (of the base's
+        displacement).
 
     Raises
     ------
@@ -326,11 +339,12 @@ def response(
     >>> int((ds.event_phase == 0).sum())
     2
     """
-    solver = solver or Solver(**settings)  # type: ignore[arg-type]
+    checks.instance(system, "system", System)
+    solver = merged(solver, settings)
     r = checks.number(r, "r", least=0.0, most=checks.LARGEST_RATIO)
     beta = checks.number(beta, "beta", least=0.0)
     mu = checks.number(mu, "mu", least=1.0)
-    checks.whole(points, "points", least=2)
+    points = checks.whole(points, "points", least=2, most=_MOST_POINTS)
     if r == 0.0:
         raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
     question = Question(system, r, beta, mu, solver, points)
@@ -369,6 +383,7 @@ def response(
     ds = ds.assign(
         {name: label_variable(name, CELL_VARIABLES[name].dtype(value)) for name, value in summary.items()}
     )
+    ds = ds.assign(_further(question, [name for name in solver.outputs if name not in ds]))
     cell = {"r": r, "beta": beta, "mu": mu}
     ds = ds.assign_coords({name: coordinate(name, value) for name, value in cell.items()})
     return stamp(ds, "Steady state in time", system)

@@ -5,7 +5,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -27,9 +27,13 @@ _EPS = float(np.finfo(float).eps)
 
 def _sequence(values: Any, name: str, what: str) -> Sequence:
     """`values`, if it is a list, a tuple or an array."""
-    if isinstance(values, (str, bytes)) or not isinstance(values, (Sequence, np.ndarray)):
-        raise InputError(f"{name} must be a list of {what}; got {values!r}")
-    return list(values)
+    if checks.is_array(values):
+        given = checks.array(values, name)
+        if given.ndim == 1:
+            return list(given)
+    elif isinstance(values, Sequence) and not isinstance(values, (str, bytes)):
+        return list(values)
+    raise InputError(f"{name} must be a list of {what}; got {checks.one_line(values)}")
 
 
 def _ratios(values: object, name: str) -> tuple[float, ...]:
@@ -58,8 +62,10 @@ def _contact_masses(values: object, contact: str, n: int) -> tuple[int, ...]:
 
 def _damping(values: object, n: int) -> tuple[float, ...]:
     bounds = {"least": 0.0, "most": checks.LARGEST_DAMPING}
-    if isinstance(values, (str, bytes)) or not isinstance(values, (Sequence, np.ndarray)):
+    listed = isinstance(values, Sequence) and not isinstance(values, (str, bytes))
+    if not listed and not (checks.is_array(values) and checks.array(values, "damping_ratios").ndim):
         return (checks.number(values, "damping_ratios", **bounds),) * n
+    values = _sequence(values, "damping_ratios", "numbers")
     if len(values) != n:
         raise InputError(f"damping_ratios must be one number or one a mode ({n}); got {len(values)}")
     return tuple(
@@ -119,10 +125,10 @@ class System:
         frequency.  A chain's is sqrt(k_1/m_1).
     stiffness_scale : float
         With matrices: displacements are in P/stiffness_scale, in the units of K.  A chain's is k_1.
-    excitation : {"force", "base"}
-        "base": the structure stands on a base that moves by Y cos(tau), and P = stiffness_scale Y (k_1 Y of
-        a chain); of a structure given by matrices all degrees of freedom are displacements along the base's.
-        Always so with a joined base-wall.
+    excitation : {"force", "base"}, optional
+        Default: "base" with a joined base-wall, which can have no other, else "force".  "base": the structure
+        stands on a base that moves by Y cos(tau), and P = stiffness_scale Y (k_1 Y of a chain); of one given
+        by matrices all degrees of freedom are displacements along the base's.
     damping_reference : {"ground", "base"}
         Whether the damping acts on velocities in space or relative to the base, which must move for that.
     load : sequence of complex, optional
@@ -140,7 +146,7 @@ class System:
     i r C1 ones is added, so that p = 1 + 2 i zeta r for one mass.
     """
 
-    contact: str = "fixed-wall"
+    contact: Literal["fixed-wall", "joined-base-wall", "between-masses"] = "fixed-wall"
     contact_masses: Sequence[int] = (1,)
     load_mass: int | None = None
     mass_ratios: Sequence[float] | None = None
@@ -150,8 +156,8 @@ class System:
     matrices: str | os.PathLike | Mapping[str, Any] | Matrices | None = None
     frequency_scale: float | None = None
     stiffness_scale: float = 1.0
-    excitation: str = "force"
-    damping_reference: str = "ground"
+    excitation: Literal["force", "base"] | None = None
+    damping_reference: Literal["ground", "base"] = "ground"
     load: Sequence[complex] | None = None
 
     def __post_init__(self) -> None:
@@ -173,7 +179,7 @@ class System:
             if getattr(self, name) != default:
                 raise InputError(
                     f"{name} must be left out without matrices: a chain has the units of its first mass and "
-                    f"spring; got {getattr(self, name)!r}"
+                    f"spring; got {checks.one_line(getattr(self, name))}"
                 )
         masses = _ratios((1.0,) if self.mass_ratios is None else self.mass_ratios, "mass_ratios")
         springs = _ratios(
@@ -189,9 +195,10 @@ class System:
 
     def _check_matrices(self) -> None:
         for name in ("mass_ratios", "stiffness_ratios"):
-            if getattr(self, name) is not None:
+            given = getattr(self, name)
+            if given is not None:
                 raise InputError(
-                    f"{name} must be left out if matrices are given; got {getattr(self, name)!r}"
+                    f"{name} must be left out if matrices are given; got {checks.one_line(given)}"
                 )
         self._set("matrices", read_matrices(self.matrices))
         if self.frequency_scale is not None:
@@ -202,7 +209,9 @@ class System:
         given = self.damping_ratios
         if isinstance(self.matrices, Matrices) and self.matrices.damping is not None:
             if given is not None:
-                raise InputError(f"damping_ratios must be left out if matrices has C; got {given!r}")
+                raise InputError(
+                    f"damping_ratios must be left out if matrices has C; got {checks.one_line(given)}"
+                )
         else:
             self._set("damping_ratios", _damping(0.0 if given is None else given, self.n))
 
@@ -215,10 +224,15 @@ class System:
         self._set("contact_masses", _contact_masses(self.contact_masses, self.contact, self.n))
 
     def _check_load(self) -> None:
+        if self.excitation is None:
+            self._set("excitation", "base" if self.base_motion else "force")
         checks.choice(self.excitation, "excitation", EXCITATIONS)
         checks.choice(self.damping_reference, "damping_reference", DAMPING_REFERENCES)
-        if self.base_motion:
-            self._set("excitation", "base")
+        if self.base_motion and self.excitation != "base":
+            raise InputError(
+                "excitation must be base, or left out, for a joined-base-wall: the wall moves with the base "
+                f"that loads the structure; got {self.excitation!r}"
+            )
         base = self.excitation == "base"
         if self.damping_reference == "base" and not base:
             raise InputError(

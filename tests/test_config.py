@@ -334,3 +334,24 @@ def test_axes_given_to_python_are_checked_alike(values, message):
     with pytest.raises(InputError, match=message) as caught:
         fm.boundaries(System(), values)
     assert "\n" not in str(caught.value)
+
+
+def test_one_value_cannot_hold_two_ends(base):
+    with pytest.raises(InputError, match=r"grid.r.num must be >= 2 to hold both 0.1 and 1; got 1"):
+        load_config(base, ["grid.r={ start = 0.1, stop = 1.0, num = 1 }"])
+    assert load_config(base, ["grid.r={ start = 0.1, stop = 0.1, num = 1 }"]).r.tolist() == [0.1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((1,), "configuration must be the path of a TOML file; got 1"),
+        (("a\0b",), "configuration .* cannot be read"),
+        (("x.toml", "grid.r=1"), "overrides must be a list"),
+        (("x.toml", [1]), "overrides must be text"),
+    ],
+)
+def test_bad_arguments(base, arguments, message):
+    path, *rest = arguments
+    with pytest.raises(InputError, match=message):
+        load_config(base if path == "x.toml" else path, *rest)

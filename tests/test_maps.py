@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+import xarray as xr
 from test_systems import chain_matrices, pendants
 
 import frictionmap as fm
@@ -326,6 +327,84 @@ def test_bad_settings():
         fm.sweep(fm.System(), [1.0], [0.5], threads=0)
     with pytest.raises(fm.InputError, match="at most 1e"):
         fm.sweep(fm.System(), np.linspace(0, 1, 40000), np.linspace(0, 1, 40000))
+
+
+MASKED = np.ma.masked_array([0.4, 0.5], [True, False])
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (
+            lambda: fm.sweep("fixed-wall", [1.0], [0.5]),
+            "system must be a frictionmap.System; got 'fixed-wall'",
+        ),
+        (lambda: fm.response(fm.System, 1.0, 0.5), "system must be a frictionmap.System; got <class"),
+        (lambda: fm.boundaries(xr.Dataset(), [1.0]), "system must be a frictionmap.System; got <xarray"),
+        (lambda: fm.continuous_motion(None, 1.0, 0.1), "system must be a frictionmap.System; got None"),
+        (lambda: fm.sweep(fm.System(), [1.0], [0.5], solver="moving"), "solver must be a frictionmap.Solver"),
+        (
+            lambda: fm.response(fm.System(), 1.0, 0.5, solver={}),
+            "solver must be a frictionmap.Solver; got {}",
+        ),
+        (
+            lambda: fm.sweep(fm.System(), [1.0], [0.5], output=["regime"]),
+            r"got output \(did you mean outputs",
+        ),
+        (lambda: fm.sweep(fm.System(), [1.0], [0.5], progress=1), "progress must be a function"),
+        (lambda: fm.sweep(fm.System(), MASKED, [0.5]), "r must have no masked values"),
+        (lambda: fm.sweep(fm.System(), [0.5], MASKED), "beta must have no masked values"),
+        (lambda: fm.boundaries(fm.System(), [0.5], 2.0 + MASKED), "mu must have no masked values"),
+        (lambda: fm.response(fm.System(), np.ma.masked, 0.5), "r must have no masked values"),
+        (lambda: fm.sweep(fm.System(), xr.Dataset({"r": 1.0}), [0.5]), "r must be numbers"),
+        (lambda: fm.response(fm.System(), xr.DataArray([0.5]), 0.5), "r must be a number"),
+        (lambda: fm.response(fm.System(), 0.5, 0.5, points=10**9), r"points must be <= 1e\+06"),
+    ],
+)
+def test_bad_arguments(call, message):
+    with pytest.raises(fm.InputError, match=message) as error:
+        call()
+    assert "\n" not in str(error.value)
+
+
+def test_numbers_in_any_dress():
+    """Scalars of a dataset and arrays without dimensions are numbers; axes may be any arrays; no -0.0."""
+    system = fm.System()
+    ds = fm.sweep(system, xr.DataArray([0.4, 0.9]), np.array([0.2, 0.5], dtype=">f4"), range(1, 3))
+    one = fm.response(system, ds.r[1], np.array(0.5), mu=ds.mu[0])
+    assert one.identical(fm.response(system, 0.9, 0.5, 1.0))
+    minus = fm.sweep(system, np.array([-0.0, 0.5]), [-0.0, 0.5])
+    assert minus.identical(fm.sweep(system, [0.0, 0.5], [0.0, 0.5]))
+    assert not np.signbit(minus.r.values).any()
+
+
+def test_settings_beside_a_solver_take_the_place_of_its_own():
+    solver = fm.Solver(cycles=50, outputs=["regime", "cycles"])
+    cell = ([0.9], [0.7], 1.5)
+    assert set(fm.sweep(fm.System(), *cell, solver=solver).data_vars) >= {"regime", "cycles"}
+    ds = fm.sweep(fm.System(), *cell, solver=solver, start="moving", outputs=["regime"])
+    assert "cycles" not in ds
+    assert ds.regime.item() == regimes.CONTINUOUS  # from rest it sticks
+    assert solver.start == "rest"
+
+
+def test_response_holds_what_outputs_ask_for():
+    system, cell = fm.System(damping_ratios=0.03), (0.662, 0.3, 2.5)
+    names = ["cycles", "multiplier", "asymmetry", "amplitude", "also_reachable", "sliding_limit"]
+    expected = fm.sweep(system, [cell[0]], [cell[1]], cell[2], outputs=names)
+    for found in (
+        fm.response(system, *cell, outputs=names),
+        fm.response(system, *cell, solver=fm.Solver(outputs=names)),
+    ):
+        for name in names:
+            np.testing.assert_array_equal(found[name].values, expected[name].values.ravel().squeeze(), name)
+        assert float(found.amplitude.max()) == pytest.approx(float(np.abs(found.x).max()), rel=1e-4)
+
+
+def test_public_names_are_listed():
+    assert set(fm.__all__) <= set(dir(fm))
+    assert "features" in dir(fm)
+    assert fm.features.high_frequency_limits(fm.System()).beta_lim == pytest.approx(0.537, abs=1e-3)
 
 
 def test_kernels_are_cached_between_processes(tmp_path):

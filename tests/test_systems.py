@@ -898,3 +898,36 @@ def test_a_good_file(tmp_path, capsys, monkeypatch):
         )
         system = fm.System(matrices=CHAIN, frequency_scale=2.0, excitation="base", damping_ratios=0.02)
         np.testing.assert_array_equal(ds.beta_lim, fm.boundaries(system, [0.5]).beta_lim)
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        (
+            {"contact": "joined-base-wall", "excitation": "force"},
+            "excitation must be base, or left out, for a",
+        ),
+        ({"mass_ratios": np.ma.masked_array([1.0], [True])}, "mass_ratios must have no masked values"),
+        ({"damping_ratios": np.ma.masked_array([0.1], [True])}, "damping_ratios must have no masked values"),
+        ({"mass_ratios": np.array(1.0)}, "mass_ratios must be a list of numbers; got array"),
+        ({"mass_ratios": xr.DataArray([[1.0]])}, "mass_ratios must be a list of numbers; got <xarray"),
+        ({"damping_ratios": [[0.1]]}, r"damping_ratios\[0\] must be a number"),
+        (
+            {"matrices": {"M": np.eye(2), "K": np.ma.masked_array(np.eye(2), np.eye(2))}},
+            "matrices: K must have no masked values",
+        ),
+    ],
+)
+def test_nothing_is_dropped_in_silence(settings, message):
+    with pytest.raises(fm.InputError, match=message) as error:
+        fm.System(**settings)
+    assert "\n" not in str(error.value)
+
+
+def test_arrays_of_any_kind_are_lists():
+    ratios = xr.DataArray([1.0, 2.0])
+    system = fm.System(mass_ratios=ratios, stiffness_ratios=ratios.values, damping_ratios=0.1 * ratios)
+    assert system == fm.System(mass_ratios=[1, 2], stiffness_ratios=[1, 2], damping_ratios=[0.1, 0.2])
+    assert fm.System(damping_ratios=xr.DataArray(0.1)) == fm.System(damping_ratios=0.1)
+    assert fm.System("joined-base-wall").excitation == "base"
+    assert fm.System().excitation == "force"

@@ -74,7 +74,7 @@ _SYSTEM = {
                  "'a\\0b.npz'"),
     "frequency_scale": ("2.0", "'1'", "nan"),
     "stiffness_scale": ("2.0", "'1'", "0.0", "None"),
-    "excitation": _NOT_TEXT,
+    "excitation": tuple(value for value in _NOT_TEXT if value != "None"),  # which is the default
     "damping_reference": (*_NOT_TEXT, "'base'"),
     "load": ("[]", "[1.0, 1.0]", "[0.0]", "'1'", "[nan]", "['1']", "1.0", "[None]", "[[1.0]]", "{1.0}",
     "[inf * 1j]"),

@@ -21,8 +21,11 @@ checks        checks of input
 config        configuration files
 outputs       output files: claimed, written beside their place, put there whole or not at all
 storage       datasets as NetCDF files
+provenance    history and configuration of a dataset
+schema        what a dataset may hold, checked against `labels`
 reading       files: read with a check, brought into one form
 stored        what a dataset remembers of how it was made
+summary       what a dataset holds, in words
 plot          pictures: the door to what is in `pictures`
 arguments     the arguments of the command line
 cli           the command line

@@ -1,6 +1,5 @@
 """Configuration files (TOML): read, overridden, checked key by key."""
 
-import json
 import os
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
@@ -13,6 +12,7 @@ import numpy as np
 
 from . import checks
 from .errors import InputError
+from .provenance import to_toml
 from .settings import Solver
 from .system import System
 
@@ -23,6 +23,7 @@ _SYSTEM_KEYS = (
     "contact",
     "contact_masses",
     "load_mass",
+    "load",
     "mass_ratios",
     "stiffness_ratios",
     "damping_ratios",
@@ -103,7 +104,7 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
         raise InputError(f"configuration {path} {error}") from None
     _override_all(tree, overrides)
     if overrides:
-        text = _to_toml(tree)
+        text = to_toml(tree)
     return _check(tree, text, path)
 
 
@@ -171,33 +172,6 @@ def _override(tree: dict, parts: list[str], value: object, override: str) -> Non
     branch[parts[-1]] = value
 
 
-def _quoted(text: str) -> str:
-    """Text as a TOML basic string: JSON has the same escapes, but leaves the delete character."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
-def _to_toml(tree: Mapping[str, object]) -> str:
-    """A checked-to-be configuration tree as TOML text."""
-
-    def value(item: object) -> str:
-        if isinstance(item, bool):
-            return "true" if item else "false"
-        if isinstance(item, str):
-            return _quoted(item)
-        if isinstance(item, list):
-            return "[" + ", ".join(value(element) for element in item) + "]"
-        if isinstance(item, dict):
-            return "{ " + ", ".join(f"{key} = {value(v)}" for key, v in item.items()) + " }"
-        return repr(item)
-
-    lines = [f"{key} = {value(v)}" for key, v in tree.items() if not isinstance(v, dict)]
-    for name, table in tree.items():
-        if isinstance(table, dict):
-            lines += ["", f"[{name}]"]
-            lines += [f"{key} = {value(v)}" for key, v in table.items()]
-    return "\n".join(lines) + "\n"
-
-
 def _unknown(key: str, section: str, legal: Sequence[str]) -> InputError:
     name = f"{section}.{key}" if section else key
     where = f"the keys of [{section}]" if section else "the keys"
@@ -223,13 +197,42 @@ def _build(kind: Callable[..., T], table: Mapping[str, object], section: str) ->
 
 def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]:
     """The table [system], with `matrices` as seen from the folder of the configuration."""
-    table = _table(tree, "system")
-    if "matrices" not in table:
-        return table
-    matrices = table["matrices"]
-    if not isinstance(matrices, str) or not matrices:
-        raise InputError(f"system.matrices must be the path of an .npz file; got {matrices!r}")
-    return {**table, "matrices": folder / matrices}
+    table: dict[str, Any] = dict(_table(tree, "system"))
+    if isinstance(table.get("load"), list):
+        table["load"] = [_load(value, f"system.load[{index}]") for index, value in enumerate(table["load"])]
+    matrices = table.get("matrices", {})
+    if isinstance(matrices, str) and matrices:
+        table["matrices"] = folder / matrices
+    elif not isinstance(matrices, Mapping):
+        raise InputError(
+            f"system.matrices must be the path of an .npz file, or a table of arrays M, K and optionally C; "
+            f"got {matrices!r}"
+        )
+    return table
+
+
+def _load(value: object, name: str) -> object:
+    """One load: a number, or [real part, imaginary part]."""
+    if not isinstance(value, list):
+        return value
+    if len(value) != 2:
+        raise InputError(f"{name} must be a number or [real part, imaginary part]; got {value}")
+    return complex(*(checks.number(part, name) for part in value))
+
+
+def system_in(text: str) -> System | None:
+    """The system of a configuration that is at hand as text only; None if the text does not hold all of it.
+
+    Matrices in a file of their own are not looked for.
+    """
+    try:
+        tree = parse(text)
+        table = _system_table(tree, Path())
+        if "system" not in tree or isinstance(table.get("matrices"), Path):
+            return None
+        return _build(System, table, "system")
+    except InputError:
+        return None
 
 
 def _check(tree: Mapping[str, object], text: str, path: Path) -> Config:
@@ -259,7 +262,8 @@ def _check(tree: Mapping[str, object], text: str, path: Path) -> Config:
             ("mu", {"least": 1.0}),
         )
     }
-    files = (path, *(described[key] for key in ("matrices",) if key in described))
+    matrices = described.get("matrices")
+    files = (path, matrices) if isinstance(matrices, Path) else (path,)
     return Config(title, system, axes["r"], axes["beta"], axes["mu"], solver, text, name, files)
 
 

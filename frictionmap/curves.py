@@ -258,4 +258,4 @@ def boundaries(system: System, r: ArrayLike, mu: ArrayLike = 1.0) -> xr.Dataset:
     variables |= _feature_variables(system, r, mu)
     axes = {"mu": mu, "r": r, "dof": np.arange(1, system.n + 1)}
     ds = xr.Dataset(variables, coords={name: coordinate(name, axis) for name, axis in axes.items()})
-    return stamp(ds, "Boundaries of the motion regimes", system)
+    return stamp(ds, "boundaries", "Boundaries of the motion regimes", system, {"r": r, "mu": mu})

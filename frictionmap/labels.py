@@ -1,11 +1,14 @@
 """Names, units and meanings of everything that is put into a dataset (CF conventions)."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from . import checks, regimes
+from .provenance import made_by
+from .settings import Solver
 from .system import System
 from .version import __version__
 
@@ -251,13 +254,21 @@ def label_variable(name: str, values: np.ndarray | float) -> xr.Variable:
     return xr.Variable(dims, values, attributes(name))
 
 
-def stamp(ds: xr.Dataset, title: str, system: System) -> xr.Dataset:
-    """Add the global attributes."""
+def stamp(
+    ds: xr.Dataset,
+    function: str,
+    title: str,
+    system: System,
+    axes: Mapping[str, np.ndarray | float],
+    solver: Solver | None = None,
+) -> xr.Dataset:
+    """Add the global attributes to what a function of the package computed on these axes."""
     ds.attrs = {
         "Conventions": "CF-1.11",
         "title": title,
         "source": f"frictionmap {__version__}",
         "references": REFERENCES,
         "system": system.describe(),
+        **made_by(function, title, system, axes, solver),
     }
     return ds

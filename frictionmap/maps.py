@@ -239,4 +239,5 @@ def sweep(
         variables | boundary_variables(cells.curves),
         coords={name: coordinate(name, values) for name, values in axes.items()},
     )
-    return stamp(ds, "Motion regimes and stops per cycle", system)
+    grid = {"r": r, "beta": beta, "mu": mu}
+    return stamp(ds, "sweep", "Motion regimes and stops per cycle", system, grid, solver)

@@ -386,4 +386,4 @@ def response(
     ds = ds.assign(_further(question, [name for name in solver.outputs if name not in ds]))
     cell = {"r": r, "beta": beta, "mu": mu}
     ds = ds.assign_coords({name: coordinate(name, value) for name, value in cell.items()})
-    return stamp(ds, "Steady state in time", system)
+    return stamp(ds, "response", "Steady state in time", system, cell, solver)

@@ -1,11 +1,11 @@
 """Datasets as NetCDF files."""
 
-from datetime import UTC, datetime
 from pathlib import Path
 
 import xarray as xr
 
 from .outputs import claimed
+from .provenance import now
 
 #: A regime map of 10^6 cells takes 32 kB at this level; higher ones only take longer.
 _COMPRESSION = {"zlib": True, "complevel": 4, "shuffle": True}
@@ -21,9 +21,9 @@ def write(ds: xr.Dataset, path: Path, command: str = "") -> None:
 
 
 def write_netcdf(ds: xr.Dataset, path: Path, command: str = "") -> None:
-    """Write a dataset as NetCDF-4, with the command that made it in its history."""
-    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
-    ds = ds.assign_attrs(history=f"{now} {command}".strip())
+    """Write a dataset as NetCDF-4, with the command that made it, if there was one, as its history."""
+    if command or "history" not in ds.attrs:
+        ds = ds.assign_attrs(history=f"{now()} {command}".strip())
     # no fill value: it would turn integer codes into floats on reading, and CF forbids it on axes
     encoding: dict = {name: {"_FillValue": None} for name in ds.variables}
     for name, variable in ds.variables.items():

@@ -2,21 +2,18 @@
 
 import xarray as xr
 
-from .config import parse
+from .config import parse, system_in
 from .errors import InputError
 from .settings import Solver
 from .system import System
 
 
 def stored_system(ds: xr.Dataset) -> System | None:
-    """The system of a dataset; None if it has no configuration, or one that needs a file of matrices."""
-    table = _table(ds, "system")
-    if table is None or "matrices" in table:
-        return None
-    try:
-        return System(**table)
-    except (InputError, TypeError):
-        return None
+    """The system that a dataset was computed for, from its attribute `config`; None if that does not say.
+
+    Then the matrices are in a file of their own or too large to be stored, or there is no configuration.
+    """
+    return system_in(str(ds.attrs.get("config", "")))
 
 
 def stored_start(ds: xr.Dataset) -> str | None:

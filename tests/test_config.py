@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from frictionmap import InputError, Solver, System, load_config
-from frictionmap.config import _decimal_steps, _to_toml
+from frictionmap.config import _decimal_steps
+from frictionmap.provenance import to_toml
 
 CONFIGS = sorted((Path(__file__).parent.parent / "configs").glob("*.toml"))
 
@@ -264,7 +265,7 @@ def test_the_text_with_overrides_gives_the_same_problem(base, tmp_path):
 )
 def test_any_title_survives(base, tmp_path, title):
     tree = tomllib.loads(BASE) | {"title": title}
-    again = load_config(written(tmp_path, _to_toml(tree)), ["grid.mu=2"])
+    again = load_config(written(tmp_path, to_toml(tree)), ["grid.mu=2"])
     assert again.title == title
     assert tomllib.loads(again.text)["title"] == title
 

@@ -5,18 +5,19 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
+from kernels import callable_kernel
 
 import frictionmap as fm
-from frictionmap._kernels.closed_form import decay
-from frictionmap._kernels.continuous import (
-    Oscillator,
-    continuous_amplitude,
-    orbit_phase,
-    stop_free_radius,
-)
-from frictionmap._kernels.events import first_root, slide
+from frictionmap._kernels import closed_form, continuous, events
+from frictionmap._kernels.continuous import Oscillator, orbit_phase
 from frictionmap._kernels.phases import MAX_TERMS, step_constants
 from frictionmap.curves import one_mass_curves
+
+decay = callable_kernel(closed_form.decay)
+continuous_amplitude = callable_kernel(continuous.continuous_amplitude)
+stop_free_radius = callable_kernel(continuous.stop_free_radius)
+first_root = callable_kernel(events.first_root)
+slide = callable_kernel(events.slide)
 
 
 @pytest.mark.parametrize("value", [0.0, 1e-40, 1e-22, 1e-17, 1e-9, 1e-3])

@@ -17,7 +17,7 @@ import pytest
 import frictionmap as fm
 from benchmarks.measures.faults.machine import prepared
 from frictionmap._kernels import cache, cache_folders
-from frictionmap._kernels.jit import kernel
+from frictionmap._kernels.jit import entry
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
 POSIX = pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
@@ -57,7 +57,7 @@ def place(tmp_path, monkeypatch):
 def hits(function=twice):
     """Call the function as a new process would; whether it was found on disk."""
     forget()
-    compiled = kernel(function)
+    compiled = entry(function)
     assert compiled(1.5) == function(1.5)
     return len(compiled.stats.cache_hits)
 
@@ -76,7 +76,7 @@ def test_found_again(place, tmp_path):
 
 def test_each_type_and_each_function_has_a_file_of_its_own(place):
     assert [hits(), hits(thrice), hits(), hits(thrice)] == [0, 0, 1, 1]
-    assert kernel(twice)(3) == 6
+    assert entry(twice)(3) == 6
     assert len(list(place.rglob("*.nbc"))) == 3
 
 
@@ -146,7 +146,7 @@ def test_what_is_damaged_is_compiled_anew_and_that_is_said_once(place, caplog, d
     file = only_file(place)
     damage(file)
     forget()
-    one, two = kernel(twice), kernel(twice)
+    one, two = entry(twice), entry(twice)
     assert one(1.5) == two(1.5) == 3.0
     assert len(one.stats.cache_hits) == 0
     message = f"frictionmap: the compiled kernels in {file.parent} are damaged and compiled anew"

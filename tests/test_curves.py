@@ -7,11 +7,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from kernels import callable_kernel
 
 import frictionmap as fm
 from benchmarks.references import closed_forms
-from frictionmap._kernels.closed_form import damping_functions, decay, sincos_quarter
-from frictionmap._kernels.maxima import largest_bracket
+from frictionmap._kernels import closed_form, maxima
+from frictionmap._kernels.closed_form import damping_functions
+
+decay = callable_kernel(closed_form.decay)
+sincos_quarter = callable_kernel(closed_form.sincos_quarter)
+largest_bracket = callable_kernel(maxima.largest_bracket)
 
 pytestmark = pytest.mark.plain
 

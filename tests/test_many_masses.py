@@ -6,10 +6,15 @@ import mpmath as mp
 import numpy as np
 import pytest
 from conftest import ROOT
+from kernels import callable_kernel
 
 import frictionmap as fm
-from frictionmap._kernels.closed_form import decay
-from frictionmap._kernels.sums import ROWS, largest_sum, mode_sums
+from frictionmap._kernels import closed_form, sums
+from frictionmap._kernels.sums import ROWS
+
+decay = callable_kernel(closed_form.decay)
+largest_sum = callable_kernel(sums.largest_sum)
+mode_sums = callable_kernel(sums.mode_sums)
 
 KINDS = {"wall": "fixed-wall", "base": "joined-base-wall", "masses": "between-masses"}
 

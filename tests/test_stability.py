@@ -4,15 +4,22 @@ import math
 
 import numpy as np
 import pytest
+from kernels import callable_kernel
 from test_structures import random_chain
 
 import frictionmap as fm
+from frictionmap._kernels import follow, returns
 from frictionmap._kernels.events import REVERSE
-from frictionmap._kernels.follow import MOVING, after_slide, slide_on
+from frictionmap._kernels.follow import MOVING
 from frictionmap._kernels.oscillators import make_scratch
-from frictionmap._kernels.returns import make_workspace, return_map, spectral_radius
+from frictionmap._kernels.returns import make_workspace
 from frictionmap._kernels.structure import make_structure
 from frictionmap.cells import StructureCells
+
+after_slide = callable_kernel(follow.after_slide)
+slide_on = callable_kernel(follow.slide_on)
+return_map = callable_kernel(returns.return_map)
+spectral_radius = callable_kernel(returns.spectral_radius)
 
 OUTPUTS = ("regime", "status", "multiplier", "asymmetry", "stops_per_cycle", "period")
 BASE = fm.System(contact="joined-base-wall")

@@ -5,20 +5,24 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from kernels import callable_kernel
 from test_many_masses import chain
 
 import frictionmap as fm
 from benchmarks.references.naive import Motion, Structure, naive_steady_state
 from frictionmap import regimes
+from frictionmap._kernels import closed_form, oscillators
 from frictionmap._kernels import structure_history as history
-from frictionmap._kernels.closed_form import decay
-from frictionmap._kernels.oscillators import ROWS, WW, WZ, ZW, ZZ, D, K, fill_steps, make_scratch
+from frictionmap._kernels.oscillators import ROWS, WW, WZ, ZW, ZZ, D, K, make_scratch
 from frictionmap._kernels.returns import make_workspace
 from frictionmap._kernels.structure import make_structure
 from frictionmap.cells import StructureCells
 from frictionmap.held import held_structure
 from frictionmap.settings import OUTPUTS as EVERY
 from frictionmap.steady import Question, _structure_phases
+
+decay = callable_kernel(closed_form.decay)
+fill_steps = callable_kernel(oscillators.fill_steps)
 
 PLAIN = EVERY[: EVERY.index("multiplier")]
 OUTPUTS = (*PLAIN, "multiplier", "asymmetry", "amplitude")

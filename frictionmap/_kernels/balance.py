@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .jit import kernel
+from .jit import entry, kernel
 
 _EPS = float(np.finfo(np.float64).eps)
 
@@ -58,7 +58,7 @@ class Motion(NamedTuple):
     spread: np.ndarray
 
 
-@kernel
+@entry
 def make_motion(n):
     """Arrays for n masses."""
     one = np.zeros((8, n), dtype=np.complex128)
@@ -265,7 +265,7 @@ def _modal_sum(body, r, motion):
     return total, size > near * abs(total)
 
 
-@kernel
+@entry
 def contact_responses(r, body, out):
     """V of theory.md 2 at frequencies r, complex (n_r,); infinite at a loaded undamped resonance.
 
@@ -282,7 +282,7 @@ def contact_responses(r, body, out):
             out[j], _, _ = _balanced(body, r[j], False, damped, motion)
 
 
-@kernel
+@entry
 def held_motions(r, body, seen, out, force, singular):
     """With the contact held: displacements relative to the base, or modal coordinates, and the force F.
 

@@ -7,7 +7,7 @@ continuation (sin -> sinh); every form below stays accurate through ``zeta = 1``
 
 import math
 
-from .jit import kernel
+from .jit import entry, kernel
 
 HALF_PI = 0.5 * math.pi
 _SPLIT = 134217729.0  # 2**27 + 1, Dekker's constant for splitting a double in two halves
@@ -136,7 +136,7 @@ def _over_damped_rise(x, zeta):
         n += 2.0
 
 
-@kernel
+@entry
 def damping_functions(w, zeta, r):
     """The damping functions ``u`` and ``g`` of a mode, T(7.11), (7.12).
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..regimes import CONTINUOUS, NOT_COMPUTED, PERMANENT_STICKING, STICK_SLIP
 from .continuous import orbit_phase
-from .jit import kernel
+from .jit import entry, kernel
 from .oscillators import make_scratch
 from .returns import HALVES, copy_state, make_workspace
 from .structure import make_structure
@@ -52,7 +52,7 @@ def _keep(st, orbit, i, beta, found, state, held):
     return False, 0.0, 0.0
 
 
-@kernel
+@entry
 def fill_reachable(
     first, last, beta, mu, lim, stick, r, model, loads, orbit, marginal, rest, moving, steps, limits,
     reachable, sliding_limit, stop,

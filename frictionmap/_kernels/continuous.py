@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from .closed_form import decay
-from .jit import kernel
+from .jit import entry, kernel
 
 
 class Oscillator(NamedTuple):
@@ -30,7 +30,7 @@ def continuous_amplitude(v_abs, u, g, b):
     return math.sqrt((v_abs - swing) * (v_abs + swing)) - b * g
 
 
-@kernel
+@entry
 def orbit_phase(v_abs, v_arg, u, b):
     """Load phase phi_z at a maximum of z of the continuous orbit, theory.md 2."""
     swing = b * u

@@ -3,11 +3,11 @@
 import math
 
 from .closed_form import damping_functions
-from .jit import kernel
+from .jit import entry
 from .maxima import largest_bracket
 
 
-@kernel
+@entry
 def response_functions(r, zeta, u, g, v_abs, v_arg, h, s):
     """Fill the functions of theory 2 and 3 for one mode with w = chi = lambda = 1.
 
@@ -44,7 +44,7 @@ def response_functions(r, zeta, u, g, v_abs, v_arg, h, s):
         s[i] = largest_bracket(1.0 / x, zeta, u[i], g[i], h[i] + inverse)
 
 
-@kernel
+@entry
 def boundary(r, v_abs, u, h, s, mu, out):
     """beta_lim of theory 3 over the load amplitude in the contact, for one mode; `out` has shape (n,)."""
     for i in range(r.size):

@@ -7,7 +7,7 @@ import numpy as np
 from .continuous import orbit_phase
 from .events import REVERSE
 from .follow import after_slide, slide_on
-from .jit import kernel
+from .jit import entry, kernel
 from .orbits import half_periods, longest_slide
 from .oscillators import FELL
 from .returns import copy_state, return_map, spectral_radius
@@ -21,14 +21,13 @@ _SAMPLES = 256
 @kernel
 def _around(st, beta, mu_beta, c, s, codes, count, halves, work, scratch):
     """Largest modulus over the steady period from work.middle in a slide; nan if it does not fit."""
-    first = np.int64(0)  # not a literal, which would be compiled for itself
-    if not return_map(st, beta, mu_beta, work.middle, c, s, codes, first, count, halves, True, work, scratch):
+    if not return_map(st, beta, mu_beta, work.middle, c, s, codes, 0, count, halves, True, work, scratch):
         return math.nan
     radius = spectral_radius(work.flow, 2 * st.n, work.square)
     return radius * radius if halves % 2 == 1 else radius
 
 
-@kernel
+@entry
 def orbit_multiplier(st, beta, mu_beta, net, state, c, s, count, work, scratch):
     """Largest modulus of the multipliers of the orbit that returns to an anchor after `count` slides."""
     copy_state(state, work.moved, st.n)
@@ -67,8 +66,7 @@ def continuous_multiplier(st, orbit, i, beta, mu_beta, work, scratch):
     c, s = math.sin(phase), -math.cos(phase)
     orbit_state(st, orbit, i, beta, phase, c, s, work.middle)
     work.codes[0] = REVERSE
-    once = np.int64(1)
-    return _around(st, beta, mu_beta, c, s, work.codes, once, once, work, scratch)
+    return _around(st, beta, mu_beta, c, s, work.codes, 1, 1, work, scratch)
 
 
 @kernel
@@ -84,7 +82,7 @@ def _least_difference(z, halves):
     return least
 
 
-@kernel
+@entry
 def asymmetry(st, beta, rows, count, amplitude, work, scratch):
     """How far the motion in a table of phases is from a mirror image of itself, over the amplitude.
 

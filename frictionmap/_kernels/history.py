@@ -4,7 +4,7 @@ import math
 
 from .continuous import continuous_amplitude, orbit_phase
 from .events import NO_END, REVERSE, STOP_THEN_BACK, after_slide, slide
-from .jit import kernel
+from .jit import entry, kernel
 from .orbits import first_push, longest_slide
 from .phases import expand
 
@@ -41,7 +41,7 @@ def _record(step, r, b, mu_b, z, c, s, push, sign, rows, work):
     return True
 
 
-@kernel
+@entry
 def continuous_slides(step, oscillator, b, rows, work):
     """The slides of the continuous orbit, from its minimum on; `rows` has shape (2, COLUMNS)."""
     z = -continuous_amplitude(oscillator.v_abs, oscillator.u, oscillator.g, b)
@@ -50,13 +50,13 @@ def continuous_slides(step, oscillator, b, rows, work):
     return _record(step, oscillator.r, b, b, z, c, -math.sin(phase), c - z - b, 1.0, rows, work)
 
 
-@kernel
+@entry
 def orbit_slides(step, r, b, mu_b, z, c, s, sign, rows, work):
     """The slides of a steady state from its anchor on; `rows` has shape (events, COLUMNS)."""
     return _record(step, r, b, mu_b, z, c, s, first_push(b, mu_b, z, c), sign, rows, work)
 
 
-@kernel
+@entry
 def sample_slides(step, b, rows, tau, z, v, friction, phase, work):
     """z, z', friction and sense of motion at times `tau` >= 0, increasing, from the start of `rows`.
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .events import first_root
-from .jit import inner_kernel, kernel
+from .jit import entry, inner_kernel, kernel
 from .phases import MAX_TERMS
 
 # Rows of a table of oscillators, one a column: the equation, the sum that is watched, ...
@@ -44,7 +44,7 @@ class Scratch(NamedTuple):
     next: np.ndarray  # (2, n) state after a step
 
 
-@kernel
+@entry
 def make_scratch(n):
     """Scratch for up to n oscillators."""
     return Scratch(np.zeros((MAX_TERMS + 1, n)), np.zeros(MAX_TERMS), np.zeros(MAX_TERMS), np.zeros((2, n)))

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .closed_form import fastest_rate
-from .jit import kernel
+from .jit import entry, kernel
 
 #: Terms of the Taylor series that any legal number of scan steps per period may need.
 MAX_TERMS = 44
@@ -112,7 +112,7 @@ def series_terms(steps):
     return turn, terms
 
 
-@kernel
+@entry
 def step_constants(r, zeta, steps):
     """The `Step` of frequency ratio r > 0 for `steps` scan steps per period of the fastest part."""
     a = 1.0 / r

@@ -14,7 +14,7 @@ import numpy as np
 from .closed_form import decay
 from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
 from .follow import MOVING, NO_RELEASE, after_slide, slide_on
-from .jit import kernel
+from .jit import entry, kernel
 from .oscillators import AT_LIMIT, FELL, OMEGA, OW, OZ, ROWS, ZETA
 from .structure import CHI, LIFT, energy
 
@@ -55,7 +55,7 @@ class Workspace(NamedTuple):
     anchored: np.ndarray  # (4,) half periods to its return (0: there is none), cos, sin, sign
 
 
-@kernel
+@entry
 def make_workspace(n):
     """Workspace for n free modes."""
     m = n - 1

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .closed_form import fastest_rate
-from .jit import kernel
+from .jit import entry, kernel
 from .oscillators import (
     F1,
     FC,
@@ -89,7 +89,7 @@ class Loads(NamedTuple):
     contact_sin: np.ndarray
 
 
-@kernel
+@entry
 def make_structure(model, loads, i, r, steps):
     """The `Structure` at the i-th frequency, r > 0, for `steps` scan steps per period of the fastest part."""
     n = model.modes.shape[1]

@@ -32,7 +32,7 @@ from .cycle import (
 )
 from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
 from .follow import MOVING, NO_RELEASE, after_slide, slide_on
-from .jit import kernel
+from .jit import entry, kernel
 from .orbits import full_period, half_periods, longest_slide
 from .oscillators import FELL
 from .returns import (
@@ -97,7 +97,7 @@ class Friction(NamedTuple):
     b_lim: float  # boundary of beta to continuous motion
 
 
-@kernel
+@entry
 def fitting_memory(st, memory):
     """The memory, or another where the structure needs another: for four periods of the load.
 
@@ -240,7 +240,6 @@ def _from_neighbour(st, orbit, i, friction, limits, work, scratch):
         halves, c, s, sign = 1, math.sin(phase), -math.cos(phase), 1.0
         orbit_state(st, orbit, i, beta, phase, c, s, work.middle)
     work.anchored[HALVES] = 0.0
-    zero = np.int64(0)
     for _ in range(_MOST_ORDERS):
         copy_state(work.middle, work.moved, st.n)
         count = order_of_events(st, beta, mu_beta, work.moved, c, s, halves, work.codes, work, scratch)
@@ -248,13 +247,13 @@ def _from_neighbour(st, orbit, i, friction, limits, work, scratch):
             break
         copy_state(work.middle, work.near, st.n)
         found, c1, s1 = _converge(
-            st, friction, True, work.anchor, c, s, work.codes, zero, count, 0.0, halves, limits, work, scratch
+            st, friction, True, work.anchor, c, s, work.codes, 0, count, 0.0, halves, limits, work, scratch
         )
         if found:
             return True, c1, s1, sign, count
         # the order changes on the way: a step with this one, then on with what follows there
         copy_state(work.near, work.middle, st.n)
-        move = newton_step(st, beta, mu_beta, c, s, work.codes, zero, count, halves, work, scratch)
+        move = newton_step(st, beta, mu_beta, c, s, work.codes, 0, count, halves, work, scratch)
         if not move < math.inf:
             break
         for j in range(st.n):

@@ -7,7 +7,7 @@ import numpy as np
 
 from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from .follow import after_slide, slide_on
-from .jit import kernel
+from .jit import entry, kernel
 from .orbits import longest_slide
 from .oscillators import advance, expand
 from .returns import copy_state
@@ -55,7 +55,7 @@ def _write(st, rows, k, length, sense, sign, c, s, at, z_end, state, n):
         rows[k, STATE + n + i] = state[1, i] * st.rate
 
 
-@kernel
+@entry
 def orbit_phases(st, beta, mu_beta, state, c, s, sign, net, count, rows, work, scratch):
     """The phases of a steady state from an anchor on, `count` slides and their stops; how many there are.
 
@@ -84,7 +84,7 @@ def orbit_phases(st, beta, mu_beta, state, c, s, sign, net, count, rows, work, s
     return k
 
 
-@kernel
+@entry
 def continuous_phase(st, orbit, i, beta, phase, rows, work):
     """The rising half of the continuous orbit, a table of one phase."""
     c, s = -math.cos(phase), -math.sin(phase)
@@ -95,17 +95,17 @@ def continuous_phase(st, orbit, i, beta, phase, rows, work):
 
 @kernel
 def _begin(st, row, work):
-    """The state at the start of a phase, and the number of its oscillators."""
+    """Whether a phase slides, and the number of its oscillators; into work.moved (or held) their state."""
     slides = row[SENSE] > 0.0
     n = st.n if slides else st.m
     target = work.moved if slides else work.held
     for i in range(n):
         target[0, i] = row[STATE + i]
         target[1, i] = row[STATE + n + i] / st.rate
-    return slides, n, target
+    return slides, n
 
 
-@kernel
+@entry
 def sample_phases(st, beta, rows, count, tau, coordinates, velocities, z, friction, sense, work, scratch):
     """The motion at times `tau` >= 0, increasing, from the start of the table's first phase.
 
@@ -117,7 +117,8 @@ def sample_phases(st, beta, rows, count, tau, coordinates, velocities, z, fricti
     for k in range(count):
         row = rows[k]
         end = begin + row[LENGTH]
-        slides, n, current = _begin(st, row, work)
+        slides, n = _begin(st, row, work)
+        current = work.moved if slides else work.held
         table = st.free if slides else st.held
         force = beta if slides else 0.0
         angle = math.atan2(row[SIN], row[COS])
@@ -174,7 +175,8 @@ def largest_displacements(st, beta, shapes, re, im, rows, count, out, work, scra
     watched = scratch.watched
     for k in range(count):
         row = rows[k]
-        slides, n, current = _begin(st, row, work)
+        slides, n = _begin(st, row, work)
+        current = work.moved if slides else work.held
         table = st.free if slides else st.held
         force = beta if slides else 0.0
         level = 0.0 if slides else row[PLACE]

@@ -8,7 +8,7 @@ import numpy as np
 from ..regimes import CONTINUOUS, PERMANENT_STICKING
 from .continuous import orbit_phase
 from .floquet import asymmetry, continuous_multiplier, orbit_multiplier
-from .jit import kernel
+from .jit import entry, kernel
 from .oscillators import make_scratch
 from .returns import HALVES, make_workspace
 from .structure import make_structure
@@ -44,7 +44,7 @@ def put_start(st, starts, i, state):
     return starts.cos[i], starts.sin[i]
 
 
-@kernel
+@entry
 def _continuous(fine, orbit, i, friction, shapes, re, im, out, m, j, work, scratch):
     """What was asked for beyond `sweep.store`, of the continuous orbit."""
     if out.asymmetry.size:
@@ -81,7 +81,7 @@ def _note(st, found, state, row):
         row[ANCHOR + st.n + j] = state[1, j]
 
 
-@kernel
+@entry
 def fill_details(
     first, last, rows, ends, low, beta, mu, lim, r, model, loads, orbit, shapes, re, im, held, steps, out,
     anchors
@@ -141,7 +141,7 @@ def fill_details(
                     )
 
 
-@kernel
+@entry
 def fill_closed_details(
     first, last, low, high, beta, mu, lim, r, model, loads, orbit, shapes, re, im, held, steps, out
 ):  # fmt: skip
@@ -163,7 +163,7 @@ def fill_closed_details(
                 out.amplitude[m, i, j, k] = abs(held[i, k])
 
 
-@kernel
+@entry
 def fill_structures(
     first, last, rows, ends, low, beta, mu, lim, r, model, loads, orbit, marginal, starts, steps, limits, out,
     anchors, stop,
@@ -208,7 +208,7 @@ def fill_structures(
         k += 1
 
 
-@kernel
+@entry
 def one_structure(
     beta, mu, lim, r, model, loads, orbit, marginal, starts, steps, limits, state
 ):  # fmt: skip

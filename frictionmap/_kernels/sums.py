@@ -20,7 +20,7 @@ import math
 import numpy as np
 
 from .closed_form import damping_functions, decay, fastest_rate
-from .jit import kernel
+from .jit import entry, kernel
 from .maxima import ANGLE_TOLERANCE, MAX_ITERATIONS, largest_bracket, narrow
 
 #: First intervals per period of the fastest mode; fewer make more halvings, more are wasted.
@@ -277,7 +277,7 @@ def largest_sum(floor, table, n, stack):
     return best
 
 
-@kernel
+@entry
 def many_mode_functions(r, w, zeta, chi, inverse_mass, u, g, h, s, by_modes):
     """Fill U, G, H, S of theory.md 2 and 3 and the bound of T(5.55) over frequencies r, shape (n_r,).
 

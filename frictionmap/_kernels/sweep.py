@@ -17,7 +17,7 @@ from .cycle import (
     solve_cell,
     stuck_cell,
 )
-from .jit import kernel
+from .jit import entry, kernel
 from .phases import MAX_TERMS, step_constants
 
 
@@ -106,7 +106,7 @@ def start_state(oscillator, phase, moving):
     return 0.0, size / oscillator.r, 0.0, 1.0
 
 
-@kernel
+@entry
 def normalised_friction(beta, load, mu, stick):
     """(b, mu b) of a cell.
 
@@ -121,7 +121,7 @@ def normalised_friction(beta, load, mu, stick):
     return mu_b / mu, mu_b
 
 
-@kernel
+@entry
 def fill_closed_form(first, last, low, high, beta, frequencies, zeta, out):
     """Cells below `low` are continuous and those from `high` on stuck, in (mu, r) rows first..last-1.
 
@@ -142,7 +142,7 @@ def fill_closed_form(first, last, low, high, beta, frequencies, zeta, out):
             store(out, m, i, j, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
 
 
-@kernel
+@entry
 def fill_integrated(
     first, last, rows, ends, low, beta, mu, lim, stick, frequencies, zeta, steps, limits, moving,
     out, stop,
@@ -190,7 +190,7 @@ def fill_integrated(
         k += 1
 
 
-@kernel
+@entry
 def integrate_one(beta, mu, lim, stick, load, phase, oscillator, step, fine, limits, moving):
     """The steady state of one open cell; arguments as in `fill_integrated`, for this cell."""
     z, v, c, s = start_state(oscillator, phase, moving)

@@ -32,6 +32,9 @@ cli           the command line
 interrupts    Ctrl-C and termination end the program at once
 _kernels      the only home of jitted code: numbers and arrays in, numbers and codes out
 ============  ==========================================================================
+
+The names in `__all__`, and what is written into files, may grow and not change: people have scripts and
+files.  What begins with an underscore, `_kernels` first, may change at any time.
 """
 
 from importlib import import_module

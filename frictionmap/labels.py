@@ -1,4 +1,7 @@
-"""Names, units and meanings of everything that is put into a dataset (CF conventions)."""
+"""Names, units and meanings of everything that is put into a dataset (CF conventions).
+
+Files have them: they may grow, not change.
+"""
 
 from collections.abc import Mapping
 from typing import NamedTuple

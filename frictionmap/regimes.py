@@ -1,4 +1,7 @@
-"""The one table of regime, origin and status codes: name, meaning, colour, advice."""
+"""The one table of regime, origin and status codes: name, meaning, colour, advice.
+
+Files have the numbers and names: they may grow, not change.  Meanings, colours and advice may.
+"""
 
 from typing import NamedTuple
 

@@ -29,6 +29,7 @@ def multiplier(system, r, beta, mu=1.0, **settings):
     return fm.sweep(system, [r], [beta], [mu], outputs=OUTPUTS, **settings).multiplier.item()
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize(
     ("r", "beta", "half"),
     [
@@ -43,6 +44,7 @@ def test_published_multipliers(r, beta, half):
     assert multiplier(fm.System(), r, beta) == pytest.approx(abs(half) ** 2, abs=1.5e-6)
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("r", [0.75, 0.9, 2.0, 3.0])
 def test_closed_form_of_one_mass(r):
     """Two turns a period: det of the half-period map is the ratio of the accelerations at a turn.
@@ -68,6 +70,7 @@ def set_moving(system, r, beta, mu):
     return n, st, state, moving.cos[0], moving.sin[0], make_workspace(n), make_scratch(n)
 
 
+@pytest.mark.plain
 def test_determinant_is_the_product_of_acceleration_ratios():
     """Volume in the space of states shrinks at turns, by (load - beta)/(load + beta), and by damping only.
 

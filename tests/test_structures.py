@@ -205,6 +205,7 @@ def test_random_cells_against_the_slow_reference():
     assert compared > 70
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("contact", ["fixed-wall", "joined-base-wall"])
 @pytest.mark.parametrize("zeta", [0.0, 0.03, 1.0, 2.0])
 @pytest.mark.parametrize("start", ["rest", "moving"])
@@ -303,6 +304,7 @@ def gauss_samples(system, r, beta, mu):
     return (0.5 * width * weight).ravel(), tau, relative, friction
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("case", range(20))
 def test_energy_over_a_period(case):
     """Work of the load = friction work + damping work, to 1e-10.

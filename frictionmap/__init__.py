@@ -27,6 +27,8 @@ reading       files: read with a check, brought into one form
 stored        what a dataset remembers of how it was made
 summary       what a dataset holds, in words
 plot          pictures: the door to what is in `pictures`
+cost          memory and time that a map will take
+progress      what a long run is at
 arguments     the arguments of the command line
 cli           the command line
 interrupts    Ctrl-C and termination end the program at once

@@ -54,6 +54,15 @@ def _file(text: str) -> Path:
     return Path(text)
 
 
+def _threads(text: str) -> int:
+    if (number := int(text)) < 1:
+        raise argparse.ArgumentTypeError(f"must be >= 1; got {text}")
+    return number
+
+
+_threads.__name__ = "whole number"  # what argparse calls it
+
+
 def _takes_output(sub: argparse.ArgumentParser, metavar: str, text: str) -> None:
     sub.add_argument("-o", dest="output", metavar=metavar, type=_file, action=_Once, help=text)
     sub.add_argument("--overwrite", action="store_true", help="replace an existing output")
@@ -84,7 +93,9 @@ def _parser() -> argparse.ArgumentParser:
     sub = command("map", "classify every cell of a grid", text)
     _takes_config(sub)
     text = "threads to use (default: all processors); the result is the same to the bit"
-    sub.add_argument("--threads", metavar="N", type=int, action=_Once, help=text)
+    sub.add_argument("--threads", metavar="N", type=_threads, action=_Once, help=text)
+    text = "compute a map for which this machine seems to have too little memory"
+    sub.add_argument("--yes", action="store_true", help=text)
     text = "Compute the boundaries of the regimes over frequency (no cell is classified); write NetCDF."
     _takes_config(command("boundaries", "curves only", text))
     sub = command("response", "one steady state in time", "Compute one steady state in time; write NetCDF.")

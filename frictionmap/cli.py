@@ -4,7 +4,7 @@ import contextlib
 import shlex
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,56 +18,60 @@ if TYPE_CHECKING:
     from .outputs import Output
 
 
-class _Progress:
-    """A line on standard error, if that is a terminal and the work takes long."""
-
-    def __init__(self, quiet: bool) -> None:
-        self.shown = False
-        self.active = sys.stderr.isatty() and not quiet
-        self.next = time.monotonic() + 0.5
-
-    def __call__(self, done: int, total: int) -> None:
-        if self.active and time.monotonic() >= self.next:
-            self.shown = True
-            self.next = time.monotonic() + 0.1
-            share = 100.0 * done / max(total, 1)
-            print(f"\r{share:5.1f} %  {done:,} of {total:,} cells", end="", file=sys.stderr, flush=True)
-
-    def end(self) -> None:
-        if self.shown:
-            print("\r" + " " * 60 + "\r", end="", file=sys.stderr, flush=True)
+#: Cells of a map from which on its cost is told before it is taken.
+_MANY = 3_000_000
 
 
-def _save(ds: "xr.Dataset", config: "Config", options: Options, output: "Output", *summary: str) -> None:
+def _finish(ds: "xr.Dataset", config: "Config", options: Options) -> Callable[[Path], None]:
+    """What writes the dataset, once it is told where."""
     from .storage import write_netcdf
 
     ds.attrs["title"] = config.title
     ds.attrs["config"] = config.text
-    output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
+    return lambda scratch: write_netcdf(ds, scratch, options.command_line)
+
+
+def _tell(options: Options, output: "Output", *summary: str) -> None:
     if not options.quiet:
-        print("\n  ".join((f"{summary[0]}; wrote {output.path}", *summary[1:])))
+        _print("\n  ".join((f"{summary[0]}; wrote {output.path}", *summary[1:])))
 
 
 def _map(options: Options, config: "Config", output: "Output") -> None:
+    from ._kernels.cache import listeners
     from .maps import sweep
+    from .progress import Progress
     from .summary import describe_causes, describe_map
 
-    progress = _Progress(options.quiet)
-    began = time.perf_counter()
-    try:
+    cells = config.mu.size * config.r.size * config.beta.size
+    with Progress(f"map of {cells:,} cells", options.quiet) as progress:
+        listeners.append(progress.compiling)
+        if cells >= _MANY and not options.quiet:
+            progress.say(f"{cells:,} cells take about {_cost(options, config)}", always=True)
+        began = time.perf_counter()
         ds = sweep(config.system, config.r, config.beta, config.mu, solver=config.solver,
                    threads=options.threads, progress=progress)  # fmt: skip
-    finally:
-        progress.end()
-    took = time.perf_counter() - began
-    _save(ds, config, options, output, f"{describe_map(ds)} in {took:.2g} s", *describe_causes(ds))
+        took = time.perf_counter() - began
+        output.fill(_finish(ds, config, options), lambda size: progress.writing(output.path, size))
+        listeners.remove(progress.compiling)
+    _tell(options, output, f"{describe_map(ds)} in {took:.2g} s", *describe_causes(ds))
+
+
+def _cost(options: Options, config: "Config") -> str:
+    from .cost import in_bytes, in_time, memory_of_map, seconds_of_map
+
+    axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
+    counts = {name: axis.size for name, axis in axes.items()}
+    memory = memory_of_map(counts, config.system.n, tuple(config.solver.outputs))
+    seconds = seconds_of_map(config.system, **axes, solver=config.solver, threads=options.threads)
+    return f"{in_bytes(memory)} of memory and {in_time(seconds)}"
 
 
 def _boundaries(options: Options, config: "Config", output: "Output") -> None:
     from .curves import boundaries
 
     ds = boundaries(config.system, config.r, config.mu)
-    _save(ds, config, options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu")
+    output.fill(_finish(ds, config, options))
+    _tell(options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu")
 
 
 def _response(options: Options, config: "Config", output: "Output") -> None:
@@ -76,7 +80,8 @@ def _response(options: Options, config: "Config", output: "Output") -> None:
 
     mu = _one_mu(config) if options.mu is None else options.mu
     ds = response(config.system, options.r, options.beta, mu, solver=config.solver)
-    _save(ds, config, options, output, describe_response(ds))
+    output.fill(_finish(ds, config, options))
+    _tell(options, output, describe_response(ds))
 
 
 def _one_mu(config: "Config") -> float:
@@ -89,9 +94,11 @@ def _one_mu(config: "Config") -> float:
 
 def _compute(options: Options) -> None:
     from .config import load_config
+    from .cost import refuse_without_memory
     from .outputs import claimed
 
-    config = load_config(options.config, options.overrides)
+    room = refuse_without_memory if options.command == "map" and not options.yes else None
+    config = load_config(options.config, options.overrides, room)
     ending = "" if options.command == "map" else f"-{options.command}"
     path = options.output or Path(f"{config.name}{ending}.nc")
     command = {"map": _map, "boundaries": _boundaries, "response": _response}[options.command]
@@ -110,14 +117,24 @@ def _plot(options: Options) -> None:
     with claimed(path, options.overwrite, [options.file]) as output:
         output.fill(lambda scratch: save_picture(ds, scratch))
     if not options.quiet:
-        print(f"wrote {path}")
+        _print(f"wrote {path}")
 
 
 def _info(options: Options) -> None:
     from .reading import read
     from .summary import describe_file
 
-    print(describe_file(read(options.file)))
+    _print(describe_file(read(options.file)))
+
+
+def _print(text: str) -> None:
+    """Print, so that it has arrived."""
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:  # whoever reads it has had enough
+        raise
+    except OSError as error:
+        raise OSError(f"what was to be printed is lost ({error.strerror}): {text}") from error
 
 
 def _complain(error: Exception) -> None:
@@ -131,7 +148,8 @@ def _check_text(arguments: Sequence[str]) -> None:
         try:
             argument.encode()
         except UnicodeEncodeError:
-            raise InputError(f"arguments must be text in UTF-8; got {argument!r}") from None
+            encoding = sys.getfilesystemencoding().upper()
+            raise InputError(f"arguments must be text in {encoding}; got {argument!r}") from None
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -71,10 +71,15 @@ class Config:
     files: tuple[Path, ...] = ()  # that it was read from
 
 
-def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
+#: Called with the numbers of values of mu, r and beta, the system and the solver, before the axes are made.
+Room = Callable[[Mapping[str, int], System, Solver], None]
+
+
+def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | None = None) -> Config:
     """Read a configuration file and apply overrides such as ``grid.r.step=0.01``.
 
-    A path in it, also one of an override, is relative to the folder of the file.
+    A path in it, also one of an override, is relative to the folder of the file.  `room` may refuse a grid
+    before any memory is taken for it.
 
     Raises
     ------
@@ -105,7 +110,7 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
     _override_all(tree, overrides)
     if overrides:
         text = to_toml(tree)
-    return _check(tree, text, path)
+    return _check(tree, text, path, room)
 
 
 def parse(text: str) -> dict:
@@ -235,7 +240,7 @@ def system_in(text: str) -> System | None:
         return None
 
 
-def _check(tree: Mapping[str, object], text: str, path: Path) -> Config:
+def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None) -> Config:
     name = path.stem
     for key in tree:
         if key not in _SECTIONS:
@@ -254,6 +259,8 @@ def _check(tree: Mapping[str, object], text: str, path: Path) -> Config:
             raise InputError(f"grid.{key} must be given; it is missing")
     counts = {key: _count(grid.get(key, [1.0]), f"grid.{key}") for key in ("mu", "r", "beta")}
     checks.cells(counts["mu"], counts["r"], counts["beta"])
+    if room is not None:
+        room(counts, system, solver)
     axes = {
         key: checks.axis(_values(grid.get(key, [1.0]), f"grid.{key}"), f"grid.{key}", **bounds)
         for key, bounds in (

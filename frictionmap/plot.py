@@ -1,6 +1,7 @@
 """Pictures: regime maps, boundaries, one response in time."""
 
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -48,10 +49,12 @@ def check_picture(path: Path) -> None:
 
 
 def save_picture(ds: xr.Dataset, path: Path) -> None:
-    """Draw a dataset of any kind into a file."""
+    """Draw a dataset of any kind into a file; drawn first, as on a full disk matplotlib fails in odd ways."""
     draw: dict[str, Callable[[xr.Dataset], AxesArray]] = {
         "map": plot_regimes,
         "boundaries": plot_boundaries,
         "response": plot_response,
     }
-    draw[kind(ds)](ds)[0].figure.savefig(path, dpi=_DPI)
+    drawn = BytesIO()
+    draw[kind(ds)](ds)[0].figure.savefig(drawn, format=path.suffix[1:].lower(), dpi=_DPI)
+    path.write_bytes(drawn.getbuffer())

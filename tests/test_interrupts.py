@@ -61,12 +61,12 @@ def listing(folder):
 
 
 COMMANDS = {
-    "map": ["map", "large.toml", "-o", "new.nc"],
+    "map": ["map", "large.toml", "--quiet", "-o", "new.nc"],
     "boundaries": ["boundaries", "large.toml", "-o", "new.nc"],
     "response": ["response", "large.toml", "--r", "0.3", "--beta", "0.5", "-o", "new.nc"],
     "plot": ["plot", "small.nc", "-o", "new.png"],
     "info": ["info", "small.nc"],
-    "replacing": ["map", "large.toml", "-o", "small.nc", "--overwrite"],
+    "replacing": ["map", "large.toml", "--quiet", "--overwrite", "-o", "small.nc"],
 }
 
 

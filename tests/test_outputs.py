@@ -14,6 +14,7 @@ import pytest
 import xarray as xr
 
 import frictionmap as fm
+from benchmarks.measures.faults.machine import prepared
 from frictionmap import InputError, outputs, storage
 from frictionmap.outputs import claimed
 
@@ -216,6 +217,81 @@ def test_without_hard_links(tmp_path, monkeypatch):
     assert sorted(os.listdir(tmp_path)) == ["more-1.nc", "more.nc", "out.nc"]
 
 
+# Trouble with what is printed, in the program itself
+
+
+def program(folder, arguments, **streams):
+    environment = os.environ | {"PYTHONPATH": str(Path(fm.__file__).parent.parent)}
+    return subprocess.run(
+        [sys.executable, "-m", "frictionmap", *arguments],
+        cwd=folder, env=environment, text=True, timeout=600, **streams,
+    )  # fmt: skip
+
+
+@pytest.fixture
+def folder(tmp_path, tiny):
+    """A file whose title is not in ASCII, and a configuration."""
+    storage.write(tiny.assign_attrs(title="Größe µ"), tmp_path / "file.nc")
+    (tmp_path / "c.toml").write_text("[system]\n[grid]\nr = 0.5\nbeta = 1\n")
+    return tmp_path
+
+
+def test_an_ascii_terminal(folder, monkeypatch):
+    monkeypatch.setenv("PYTHONIOENCODING", "ascii")
+    done = program(folder, ["info", "file.nc"], capture_output=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith(r"Gr\xf6\xdfe \xb5 [boundaries]")
+
+
+@POSIX
+@pytest.mark.parametrize("arguments", [["info", "file.nc"], ["--help"], ["boundaries", "c.toml"]])
+def test_whoever_reads_has_had_enough(folder, arguments):
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = program(folder, arguments, stdout=writing, stderr=subprocess.PIPE)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
+@pytest.mark.parametrize("arguments", [["info", "file.nc"], ["boundaries", "c.toml"]])
+def test_what_is_printed_finds_a_full_disk(folder, arguments):
+    with open("/dev/full", "w") as full:
+        done = program(folder, arguments, stdout=full, stderr=subprocess.PIPE)
+    assert done.returncode == 1
+    assert done.stderr.startswith("frictionmap: what was to be printed is lost (No space left on device)")
+    assert done.stderr.count("\n") == 1
+
+
+@POSIX
+def test_without_any_streams(folder):
+    """No file of ours gets the number of a stream, and messages with it."""
+    done = program(folder, ["boundaries", "c.toml"], preexec_fn=lambda: os.closerange(0, 3))
+    assert done.returncode == 0
+    assert storage_of(folder / "c-boundaries.nc").sizes["r"] == 1
+
+
+def storage_of(path):
+    with xr.open_dataset(path) as ds:
+        return ds.load()
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="limits of POSIX")
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [(["boundaries", "c.toml", "--set", "grid.r={start=0,stop=1,num=20000}"], "c-boundaries.nc")]
+    + [(["plot", "file.nc", "-o", f"new.{ending}"], f"new.{ending}") for ending in ("png", "pdf", "svg")],
+)
+def test_a_full_disk(folder, arguments, name):
+    """Stands for it: no file may be larger than 8 kB."""
+    before = sorted(os.listdir(folder))
+    done = program(folder, arguments, capture_output=True, preexec_fn=prepared(file_size=8192))
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith(f"frictionmap: {name} cannot be written (")
+    assert done.stderr.count("\n") == 1
+    assert sorted(os.listdir(folder)) == before
+
+
 # What the user pointed at
 
 
@@ -317,6 +393,8 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 from frictionmap.outputs import claimed
+
+from benchmarks.measures.faults.machine import prepared
 
 def die(scratch):
     scratch.write_text("half")

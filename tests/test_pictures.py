@@ -355,11 +355,13 @@ def test_rare_classes():
 
 
 def test_rings_are_drawn_around_small_patches_only():
-    """A single cell, two cells beside each other, and a long strip that is seen without a ring."""
+    """A single cell, two cells beside each other, a short strip; a long one is seen without rings."""
     strip = np.column_stack((np.linspace(0.0, 1.0, 200), np.full(200, 0.9)))
     cells = np.concatenate(([[0.1, 0.1]], [[0.5, 0.5], [0.502, 0.5]], strip))
     found = marks.rings(*cells.T)
     np.testing.assert_allclose(found[np.argsort(found[:, 0])], [[0.1, 0.1], [0.501, 0.5]], atol=1e-12)
+    short = marks.rings(np.linspace(0.2, 0.32, 30), np.full(30, 0.01))
+    assert 4 <= len(short) <= 8
     assert marks.rings(np.array([1.5]), np.array([0.5])).shape == (0, 2)
 
 

@@ -11,10 +11,10 @@ COARSE = 120
 #: A letter and a line of text of names [inch].
 _LETTER, _LINE = 0.075, 0.18
 
-#: Rings: as many side by side would fill a panel; a patch of rare cells that reaches over more than a few of
-#: them is seen without.
+#: Rings: as many side by side would fill a panel; a patch of rare cells that needs more than a few of them is
+#: seen without.
 RINGS = (44, 32)
-_SMALL = 3
+_FEW = 8
 
 #: A class is rare if it has fewer than this share of the cells.
 _RARE = 1e-3
@@ -63,7 +63,7 @@ def rare_classes(counts: np.ndarray) -> np.ndarray:
 
 def rings(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Centres of rings around the small ones among patches of cells at `x`, `y` (shares); shape (n, 2)."""
-    from scipy.ndimage import find_objects, label
+    from scipy.ndimage import label
 
     inside = (x >= 0.0) & (x <= 1.0) & (y >= 0.0) & (y <= 1.0)
     places = np.column_stack((x[inside], y[inside]))
@@ -71,8 +71,7 @@ def rings(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     filled = np.zeros(RINGS, dtype=bool)
     filled[tuple(bins.T)] = True
     patches, _ = label(filled, np.ones((3, 3)))
-    small = [0] + [max(s.stop - s.start for s in box) <= _SMALL for box in find_objects(patches)]
-    ringed = np.array(small, dtype=bool)[patches[tuple(bins.T)]]
+    ringed = (np.bincount(patches.ravel()) <= _FEW)[patches[tuple(bins.T)]]
     homes, member = np.unique(bins[ringed], axis=0, return_inverse=True)
     sums = np.zeros((len(homes), 2))
     np.add.at(sums, member.ravel(), places[ringed])

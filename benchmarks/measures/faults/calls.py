@@ -24,6 +24,10 @@ from .verdict import (
 #: Calls of the quick form, of each family.
 _QUICK = 40
 
+#: A call that compiles what the others need, and the seconds that it may take.
+_EVERY_KERNEL = "fm.sweep(s, [0.5], [0.5], outputs=['regime', 'also_reachable', 'multiplier', 'amplitude'])"
+_COMPILES = 1800.0
+
 _NOT_TEXT = (
     "1",
     "None",
@@ -292,6 +296,7 @@ def families() -> dict[str, list[Call]]:
 def run(child: Child, folder: Path, quick: bool) -> list[Family]:
     """All three families; `folder` holds c.toml."""
     tried = []
+    child.ask(limit=_COMPILES, do="call", code=_EVERY_KERNEL, folder=str(folder))
     for name, calls in families().items():
         family = Family(name)
         for call in random.Random(2).sample(calls, min(_QUICK, len(calls))) if quick else calls:

@@ -8,6 +8,9 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 
+#: What numpy, xarray and netCDF4 raise where a change cannot be made, or a file not be written.
+CANNOT = (ValueError, TypeError, RuntimeError, LookupError, AttributeError, OverflowError, OSError)
+
 
 @dataclass
 class Variable:

@@ -7,13 +7,10 @@ import numpy as np
 import xarray as xr
 
 from . import other_structure, other_values
-from .contents import Content, Mutation
+from .contents import CANNOT, Content, Mutation
 from .slices import write_slice
 
 STRUCTURE, VALUES, BYTES, SLICES = "other structure", "other values", "damaged bytes", "slices"
-
-#: What is raised where a change cannot be made, or a file not be written.
-_REFUSED = (ValueError, TypeError, RuntimeError, LookupError, AttributeError, OverflowError, OSError)
 
 
 def _changed(base: Path, mutations: tuple[Mutation, ...], rng: random.Random, path: Path) -> str:
@@ -25,7 +22,7 @@ def _changed(base: Path, mutations: tuple[Mutation, ...], rng: random.Random, pa
         try:
             said = [rng.choice(mutations)(content, rng) for _ in range(rng.choice([1, 1, 2, 3]))]
             content.write(path, kind)
-        except _REFUSED:
+        except CANNOT:
             continue  # no file that could be met: nothing can write it
         return "; ".join([*said, *([kind] if kind != "NETCDF4" else [])])
     raise RuntimeError("no malformed file could be written")

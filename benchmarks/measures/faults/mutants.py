@@ -37,7 +37,7 @@ def bases(child: Child, folder: Path) -> list[Path]:
     for name, config, (verb, *rest) in _BASES:
         (folder / "c.toml").write_text(config)
         path = folder / f"{name}.nc"
-        said = child.main([verb, "c.toml", "-o", path.name, "--quiet", *rest], folder, limit=900.0)
+        said = child.main([verb, "c.toml", "-o", path.name, "--quiet", *rest], folder, limit=1800.0)
         if said.status != 0:
             raise RuntimeError(f"{verb} of {name}: {said}")
         found.append(path)

@@ -51,7 +51,7 @@ def template(folder: Path) -> Path:
 def with_outputs(child: Child, folder: Path) -> Path:
     """The same with a map, boundaries and damaged ones."""
     for arguments in (["map", "c.toml", "-o", "m.nc"], ["boundaries", "c.toml", "-o", "b.nc"]):
-        said = child.main(arguments, folder, limit=600.0)
+        said = child.main(arguments, folder, limit=1800.0)
         if said.status != 0:
             raise RuntimeError(f"{' '.join(arguments)}: {said}")
     content = (folder / "m.nc").read_bytes()

@@ -10,7 +10,7 @@ from .folders import Change, snapshot
 from .machine import prepared as preparation
 from .machine import run as run_once
 from .moments import VERBS
-from .verdict import CHANGED, LEFT, TRACEBACK, Family, Said, wrong_refusal, wrong_success
+from .verdict import CHANGED, LEFT, TRACEBACK, Family, Said, wrong_answer_or_refusal, wrong_refusal, wrong_success
 
 #: Bytes that the disk still takes.
 _ROOM = (0, 512, 4096, 16384)
@@ -110,7 +110,7 @@ _LINES: tuple[tuple[str, Callable[[Said], str | None], dict[str, str]], ...] = (
     ("{} info named.nc", wrong_success, _ASCII),
     ("{} info named.nc", wrong_success, _LATIN),
     ("{} plot named.nc -o n.png --overwrite", wrong_success, _ASCII),
-    ("{} map small.toml -o n.nc --overwrite --set 'title=\u03bc'", wrong_success, _ASCII),
+    ("{} map small.toml -o n.nc --overwrite --set 'title=\u03bc'", wrong_answer_or_refusal, _ASCII),
     ("{} map nothere-\u03bc.toml", _one_line, _ASCII),
     ("{} map small.toml --set '\u03bc=1' -o x.nc", _one_line, _ASCII),
     ("{} info named.nc | head -1", _quiet_end, {}),

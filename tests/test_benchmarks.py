@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from benchmarks.__main__ import BENCHMARKS
+from benchmarks.measures.faults.verdict import SLOW as TOO_SLOW
 from benchmarks.report import quoting, readme, record
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -117,6 +118,16 @@ def test_our_quick_answers_are_right(quick):
     steady = json.loads((folder / "steady.json").read_text())
     for name in ("T Fig. 3.12", "five damped chains", "mu = 1, any start"):
         assert "unexplained" not in steady[name]["differences by cause"]
+
+
+@pytest.mark.slow
+def test_nothing_goes_wrong_in_careless_hands(quick):
+    folder, _ = quick
+    families = json.loads((folder / "faults.json").read_text())["families"]
+    assert sum(entry["tried"] for entry in families.values()) > 250
+    for name, entry in families.items():
+        wrong = set(entry["wrong by kind"]) - {TOO_SLOW}  # a busy machine is
+        assert not wrong, (name, entry["examples"])
 
 
 def test_what_is_no_number_is_saved_as_none(tmp_path):

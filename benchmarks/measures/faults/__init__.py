@@ -18,6 +18,7 @@ interrupts      SIGINT, SIGTERM and SIGKILL at random moments of every verb
 races           several runs to one name, files that appear during a run, links, permissions
 places          full disks, read-only folders, terminals of few letters, closed streams
 caches          damaged caches of kernels, machines on which none can be written
+damages         ways to damage them
 malformed       makes the malformed files: of `contents`, by `other_structure`, `other_values`, `slices`
 calling         makes the calls; both in the child
 worker          the child's side

@@ -1,13 +1,12 @@
 """Damaged caches of kernels, and machines on which none can be written: an answer all the same."""
 
-import pickle
 import random
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 
 import xarray as xr
 
+from .damages import DAMAGES, Damage
 from .folders import CONFIG
 from .machine import environment
 from .machine import prepared as preparation
@@ -19,96 +18,8 @@ _LIMIT = 900.0
 
 _ARGUMENTS = ["boundaries", "c.toml", "-o", "out.nc", "--overwrite", "--quiet"]
 
-
-def _each(what: Callable[[Path, random.Random], object]) -> Callable[[list[Path], random.Random], None]:
-    def act(files: list[Path], rng: random.Random) -> None:
-        for path in files:
-            what(path, rng)
-
-    return act
-
-
-def _cut(path: Path, rng: random.Random) -> None:
-    content = path.read_bytes()
-    path.write_bytes(content[: rng.randrange(1, len(content))])
-
-
-def _empty(path: Path, rng: random.Random) -> None:
-    path.write_bytes(b"")
-
-
-def _garbage(path: Path, rng: random.Random) -> None:
-    path.write_bytes(rng.randbytes(path.stat().st_size))
-
-
-def _zeros(path: Path, rng: random.Random) -> None:
-    path.write_bytes(bytes(path.stat().st_size))
-
-
-def _wrong_pickle(path: Path, rng: random.Random) -> None:
-    path.write_bytes(pickle.dumps(rng.choice([None, [1, 2], {"a": 1}, "text", 1.5])))
-
-
-class _Elsewhere:
-    """Pickles as a name of a module that does not exist."""
-
-    def __reduce__(self) -> tuple:
-        return (_nowhere, ())
-
-
-def _nowhere() -> None:
-    """Stands for a name that the reader does not have."""
-
-
-def _lost_module(path: Path, rng: random.Random) -> None:
-    path.write_bytes(pickle.dumps(_Elsewhere()).replace(b"faults.caches", b"faults.nowher"))
-
-
-def _folder(path: Path, rng: random.Random) -> None:
-    path.unlink()
-    path.mkdir()
-
-
-def _unreadable(path: Path, rng: random.Random) -> None:
-    path.chmod(0)
-
-
-def _gone(path: Path, rng: random.Random) -> None:
-    path.unlink()
-
-
-def _flipped(path: Path, rng: random.Random) -> None:
-    content = bytearray(path.read_bytes())
-    for _ in range(8):
-        content[rng.randrange(len(content))] ^= 0xFF
-    path.write_bytes(content)
-
-
-def _swapped(files: list[Path], rng: random.Random) -> None:
-    contents = [path.read_bytes() for path in files]
-    for path, content in zip(files, contents[1:] + contents[:1], strict=True):
-        path.write_bytes(content)
-
-
-#: What is done to the index files, or to the data files.
-_DAMAGES: dict[str, tuple[str, Callable[[list[Path], random.Random], None]]] = {
-    f"{words}: {how}": (ending, act)
-    for ending, words in (("nbi", "index"), ("nbc", "data"))
-    for how, act in {
-        "cut off": _each(_cut),
-        "empty": _each(_empty),
-        "garbage": _each(_garbage),
-        "zeros": _each(_zeros),
-        "another pickle": _each(_wrong_pickle),
-        "a pickle of a lost module": _each(_lost_module),
-        "a folder in its place": _each(_folder),
-        "not readable": _each(_unreadable),
-        "gone": _each(_gone),
-        "bytes flipped": _each(_flipped),
-        "swapped": _swapped,
-    }.items()
-}
-_QUICK = ("index: empty",)
+#: Damages of the quick form.
+_QUICK = ("data: cut off",)
 
 
 def _installed(package: Path, folder: Path) -> Path:
@@ -143,6 +54,8 @@ class _Trials:
         self.work = folder / "work"
         self.work.mkdir()
         (self.work / "c.toml").write_text(CONFIG)
+        self.temporary = folder / "temporary"
+        self.temporary.mkdir()
         said = self.run(self.warm)
         if said.status != 0:
             raise RuntimeError(f"boundaries: {said}")
@@ -152,26 +65,35 @@ class _Trials:
     def run(self, package: Path, **more: str | None) -> Said:
         """One run, for which permissions hold."""
         (self.work / "out.nc").unlink(missing_ok=True)
-        given = {"HOME": str(self.home), "XDG_CACHE_HOME": None, "NUMBA_CACHE_DIR": None, **more}
-        env = environment(package, **given)
+        usual = {"HOME": str(self.home), "TMPDIR": str(self.temporary)}
+        env = environment(package, **{"XDG_CACHE_HOME": None, "NUMBA_CACHE_DIR": None, **usual, **more})
         return run_once(_ARGUMENTS, self.work, env, _LIMIT, preexec_fn=preparation(ordinary=True))
 
     def restored(self) -> Path:
-        """The package and the home folder as they were when the cache was warm."""
+        """The package, the home folder and that of temporary files as they were when the cache was warm."""
         trial = self.folder / "trial"
+        _unsealed(trial, self.home)
+        shutil.rmtree(self.temporary)
+        self.temporary.mkdir()
         for path, source in ((trial, self.warm), (self.home, self.folder / "warm home")):
             shutil.rmtree(path, ignore_errors=True)
             shutil.copytree(source, path)
         return trial
 
-    def damaged(self, ending: str, act: Callable, rng: random.Random) -> tuple[str | None, str]:
-        """Damage the cache wherever it lies; then two runs."""
-        trial = self.restored()
-        found = sorted(path for place in (trial, self.home) for path in place.rglob("*.nb?"))
-        files = [path for path in found if path.suffix == f".{ending}"]
+    def cache(self, package: Path) -> list[Path]:
+        """The files of kernels, wherever they lie."""
+        found = sorted(path for place in (package, self.home) for path in place.rglob("*.nb?"))
         if not found:
             raise RuntimeError("no cache was found")
-        act(files, rng)
+        return found
+
+    def damaged(self, damage: Damage, rng: random.Random) -> tuple[str | None, str] | None:
+        """Damage the cache, then two runs; None if there is nothing to damage."""
+        trial = self.restored()
+        targets = damage.of(self.cache(trial))
+        if not targets:
+            return None
+        damage.act(targets, rng)
         for _ in range(2):
             said = self.run(trial)
             wrong = _judge(said, self.work, self.right)
@@ -189,6 +111,7 @@ def _sealed(*folders: Path) -> None:
 
 
 def _unsealed(*folders: Path) -> None:
+    """They can be written to again."""
     for folder in folders:
         for path in [folder, *folder.rglob("*")]:
             if path.is_dir():
@@ -213,8 +136,8 @@ def _unwritable(trials: _Trials, quick: bool) -> Family:
                 continue
             trial = trials.restored()
             if not warm:
-                for cache in [path for place in (trial, trials.home) for path in place.rglob("*.nb?")]:
-                    cache.unlink()
+                for path in trials.cache(trial):
+                    path.unlink()
             _sealed(trial, trials.home)
             try:
                 said = trials.run(trial, **more)
@@ -231,7 +154,9 @@ def run(package: Path, folder: Path, quick: bool) -> list[Family]:
     trials = _Trials(package, folder)
     family = Family("damaged caches of kernels")
     rng = random.Random(5)
-    for name, (ending, act) in _DAMAGES.items():
-        if not quick or name in _QUICK:
-            family.add(name, *trials.damaged(ending, act, rng))
+    for damage in DAMAGES:
+        if not quick or damage.name in _QUICK:
+            found = trials.damaged(damage, rng)
+            if found is not None:
+                family.add(damage.name, *found)
     return [family, _unwritable(trials, quick)]

@@ -20,8 +20,8 @@ from .verdict import ANSWER, CHANGED, HANG, LEFT, LINES, SLOW, STATUS, TRACEBACK
 #: Seconds that a run may take to end, on a machine of its own.
 _ALLOWED = 2.0
 
-#: Seconds after which a run that has not ended hangs.
-_HANGS = 30.0
+#: Times that until a run that has not ended hangs.
+_HANGS = 15.0
 
 #: By quick: moments of each verb and signal, and so many more while the output is being written.
 _MOMENTS = {False: (8, 3), True: (1, 0)}
@@ -81,7 +81,7 @@ def _start_up() -> float:
     return 1.5 * max(taken)
 
 
-def _interrupted(moment: Moment, folder: Path, env: dict[str, str]) -> Said:
+def _interrupted(moment: Moment, folder: Path, env: dict[str, str], limit: float) -> Said:
     """Start the run and interrupt it; the seconds are those from the interrupt on."""
     known = {path.name for path in folder.iterdir()}
     process = start(moment.of.arguments, folder, env)
@@ -94,7 +94,7 @@ def _interrupted(moment: Moment, folder: Path, env: dict[str, str]) -> Said:
             process.send_signal(one)  # nothing, if it has ended
             with contextlib.suppress(subprocess.TimeoutExpired):
                 process.wait(0.05 if moment.signal.endswith("twice") else 0.0)
-        return said_by(process, _HANGS)
+        return said_by(process, limit)
 
 
 def _before_the_program(said: Said) -> bool:
@@ -148,7 +148,7 @@ def _try(
     if moment.existing:
         (folder / moment.of.output).write_text("somebody's work")
     before = snapshot(folder)
-    said = _interrupted(moment, folder, env)
+    said = _interrupted(moment, folder, env, _HANGS * allowed)
     wrong = wrong_end(moment, said, allowed)
     if wrong is not None:
         return wrong, f"{said.seconds:.1f} s, {said}"

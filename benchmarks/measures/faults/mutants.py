@@ -13,8 +13,8 @@ _COUNTS = {STRUCTURE: (2000, 30), VALUES: (1000, 15), BYTES: (1600, 30), SLICES:
 #: One mutant in so many is drawn, too; all of the slices, which are meant to be drawn.
 _DRAWN = 5
 
-#: Seconds that reading or drawing one may take on a machine of its own.
-_LIMIT = 30.0
+#: Seconds after which reading and drawing one hangs, also on a busy machine.
+_LIMIT = 90.0
 
 _CELL = ["--r", "0.4", "--beta", "0.2", "--mu", "1.5"]
 

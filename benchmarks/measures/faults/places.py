@@ -10,7 +10,16 @@ from .folders import Change, snapshot
 from .machine import prepared as preparation
 from .machine import run as run_once
 from .moments import VERBS
-from .verdict import CHANGED, LEFT, TRACEBACK, Family, Said, wrong_answer_or_refusal, wrong_refusal, wrong_success
+from .verdict import (
+    CHANGED,
+    LEFT,
+    TRACEBACK,
+    Family,
+    Said,
+    wrong_answer_or_refusal,
+    wrong_refusal,
+    wrong_success,
+)
 
 #: Bytes that the disk still takes.
 _ROOM = (0, 512, 4096, 16384)

@@ -26,7 +26,7 @@ from .verdict import (
 )  # fmt: skip
 
 _MINE = b"somebody's work"
-_LIMIT = 120.0
+_LIMIT = 300.0
 
 #: Trials of each race, in full and quick.
 _ROUNDS = {False: 5, True: 1}

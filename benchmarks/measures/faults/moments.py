@@ -31,12 +31,12 @@ outputs = ["regime", "stops_per_cycle", "contact_amplitude", "stuck_fraction", "
 _CURVES = _LONG.replace("num = 500 }\nbeta", "num = 200000 }\nbeta")
 _LOW = CONFIG.replace("[1.0, 1.5]", "[1.0]")
 
-#: Verb: arguments without the output, and the output.
+#: Verb: arguments without the output, and the output; quiet, so that every line is an error.
 VERBS: dict[str, tuple[tuple[str, ...], str]] = {
-    "map": (("map", "long.toml"), "out.nc"),
-    "boundaries": (("boundaries", "curves.toml"), "out.nc"),
-    "response": (("response", "low.toml", "--r", "0.002", "--beta", "0.5"), "out.nc"),
-    "plot": (("plot", "given.nc"), "out.png"),
+    "map": (("map", "long.toml", "--quiet"), "out.nc"),
+    "boundaries": (("boundaries", "curves.toml", "--quiet"), "out.nc"),
+    "response": (("response", "low.toml", "--r", "0.002", "--beta", "0.5", "--quiet"), "out.nc"),
+    "plot": (("plot", "given.nc", "--quiet"), "out.png"),
     "info": (("info", "given.nc"), ""),
 }
 

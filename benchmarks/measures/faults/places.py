@@ -13,6 +13,7 @@ from .moments import VERBS
 from .verdict import (
     CHANGED,
     LEFT,
+    LINES,
     TRACEBACK,
     Family,
     Said,
@@ -73,7 +74,7 @@ def _read_only(prepared: Path, folder: Path, env: dict[str, str]) -> Family:
     (folder / "secret.nc").write_bytes((folder / "given.nc").read_bytes())
     (folder / "secret.nc").chmod(0)
     cases = list(_outputs())
-    cases += [(["map", "small.toml"], "small.nc"), (["plot", "given.nc"], "given.png")]
+    cases += [(["map", "small.toml", "--quiet"], "small.nc"), (["plot", "given.nc", "--quiet"], "given.png")]
     cases += [(["map", "secret.toml"], "secret.toml"), (["info", "secret.nc"], "secret.nc")]
     folder.chmod(0o555)
     try:
@@ -100,11 +101,14 @@ def _shell(command: str, folder: Path, env: dict[str, str]) -> Said:
     return Said(done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace"))
 
 
+def _no_traceback(said: Said) -> str | None:
+    """A run whose reader went away: any status, and none of Python's own words."""
+    return TRACEBACK if said.traceback or "Exception ignored" in said.err else None
+
+
 def _quiet_end(said: Said) -> str | None:
-    """A run whose reader went away: any status, no traceback, one line at most."""
-    if said.traceback or "Exception ignored" in said.err:
-        return TRACEBACK
-    return None if len(said.lines) <= 1 else wrong_success(said)
+    """The same, in one line at most."""
+    return _no_traceback(said) or (LINES if len(said.lines) > 1 else None)
 
 
 def _one_line(said: Said) -> str | None:
@@ -118,23 +122,23 @@ _LATIN = {"PYTHONIOENCODING": "latin-1"}
 _LINES: tuple[tuple[str, Callable[[Said], str | None], dict[str, str]], ...] = (
     ("{} info named.nc", wrong_success, _ASCII),
     ("{} info named.nc", wrong_success, _LATIN),
-    ("{} plot named.nc -o n.png --overwrite", wrong_success, _ASCII),
-    ("{} map small.toml -o n.nc --overwrite --set 'title=\u03bc'", wrong_answer_or_refusal, _ASCII),
+    ("{} plot named.nc --quiet -o n.png --overwrite", wrong_success, _ASCII),
+    ("{} map small.toml --quiet -o n.nc --overwrite --set 'title=\u03bc'", wrong_answer_or_refusal, _ASCII),
     ("{} map nothere-\u03bc.toml", _one_line, _ASCII),
-    ("{} map small.toml --set '\u03bc=1' -o x.nc", _one_line, _ASCII),
+    ("{} map small.toml --quiet --set '\u03bc=1' -o x.nc", _one_line, _ASCII),
     ("{} info named.nc | head -1", _quiet_end, {}),
     ("{} info named.nc | true", _quiet_end, {}),
     ("{} --help | true", _quiet_end, {}),
-    ("{} map small.toml -o n.nc --overwrite | true", _quiet_end, {}),
+    ("{} map small.toml -o n.nc --overwrite | true", _no_traceback, {}),
     ("{} info named.nc >/dev/full", _one_line, {}),
     ("{} --help >/dev/full", _quiet_end, {}),
-    ("{} map small.toml -o full.nc >/dev/full", _quiet_end, {}),
+    ("{} map small.toml -o full.nc >/dev/full", _no_traceback, {}),
     ("{} info named.nc >&-", _quiet_end, {}),
-    ("{} map small.toml -o n.nc --overwrite >&-", _quiet_end, {}),
-    ("{} map small.toml -o n.nc --overwrite 2>&-", wrong_success, {}),
+    ("{} map small.toml -o n.nc --overwrite >&-", _no_traceback, {}),
+    ("{} map small.toml --quiet -o n.nc --overwrite 2>&-", wrong_success, {}),
     ("{} map nothere.toml 2>&-", lambda said: None if said.status == 2 else TRACEBACK, {}),
     ("{} map nothere.toml 2>/dev/full", lambda said: None if said.status == 2 else TRACEBACK, {}),
-    ("{} map small.toml -o n.nc --overwrite <&-", wrong_success, {}),
+    ("{} map small.toml --quiet -o n.nc --overwrite <&-", wrong_success, {}),
     ("mkdir gone && cd gone && rmdir ../gone && {} map small.toml", _one_line, {}),
     ("mkdir gone && cd gone && rmdir ../gone && {} info nothere.nc", _one_line, {}),
     ("{}", _one_line, {}),

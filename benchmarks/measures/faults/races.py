@@ -31,7 +31,7 @@ _LIMIT = 300.0
 #: Trials of each race, in full and quick.
 _ROUNDS = {False: 5, True: 1}
 
-_SMALL = ["map", "small.toml", "-o", "out.nc"]
+_SMALL = ["map", "small.toml", "--quiet", "-o", "out.nc"]
 
 
 def _copy(prepared: Path, folder: Path) -> Path:
@@ -47,7 +47,7 @@ def _left(folder: Path, prepared: Path, *outputs: str) -> list[str]:
 def _four_at_once(
     of: Run, prepared: Path, folder: Path, env: dict[str, str], overwrite: bool
 ) -> tuple[str | None, str]:
-    """Four runs to one name: without --overwrite one of them may write it, with it all."""
+    """Four runs to one name: one of them writes it, with --overwrite more may; the others say why not."""
     _copy(prepared, folder)
     arguments = [word for word in of.arguments if overwrite or word != "--overwrite"]
     processes: list[subprocess.Popen] = [start(arguments, folder, env) for _ in range(4)]
@@ -58,9 +58,12 @@ def _four_at_once(
     if any(one.traceback for one in said):
         return TRACEBACK, words
     good = sum(one.status == 0 for one in said)
-    if good != (4 if overwrite else 1):
-        return (CHANGED if good > 1 else STATUS), f"{good} of 4 succeeded; {words}"
-    left = _left(folder, prepared, of.output)
+    if good == 0 or (good > 1 and not overwrite):
+        return (CHANGED if good else STATUS), f"{good} of 4 succeeded; {words}"
+    for one in said:
+        if one.status != 0 and wrong_refusal(one, ((of.output,),), (1, 2)):
+            return wrong_refusal(one, ((of.output,),), (1, 2)), words
+    left = [name for name in _left(folder, prepared, of.output) if name not in words]
     if left:
         return LEFT, ", ".join(left)
     return (None, words) if of.whole(folder) else (ANSWER, words)
@@ -78,11 +81,11 @@ def _appears(
             file.write(_MINE)
     except FileExistsError:  # the run has the name already
         said = said_by(process, _LIMIT)
-        return wrong_success(said, lines=2), str(said)
+        return wrong_success(said), str(said)
     said = said_by(process, _LIMIT)
     if (folder / of.output).read_bytes() != _MINE:
         return CHANGED, str(said)
-    left = _left(folder, prepared, of.output)
+    left = [name for name in _left(folder, prepared, of.output) if name not in said.err]
     return (LEFT, ", ".join(left)) if left else (wrong_refusal(said, ((of.output,),), (1, 2)), str(said))
 
 

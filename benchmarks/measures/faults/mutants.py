@@ -10,8 +10,8 @@ from .verdict import CRASH, HANG, UNSEEN, Family, Said, wrong_answer_or_refusal
 #: Files of each family, in full and quick.
 _COUNTS = {STRUCTURE: (2000, 30), VALUES: (1000, 15), BYTES: (1600, 30), SLICES: (800, 20)}
 
-#: One mutant in so many is drawn, too; all of the slices, which are meant to be drawn.
-_DRAWN = 5
+#: One file in so many is drawn, too: more of the slices, which are meant to be drawn.
+_DRAWN = {STRUCTURE: 12, VALUES: 12, BYTES: 20, SLICES: 3}
 
 #: Seconds after which reading and drawing one hangs, also on a busy machine.
 _LIMIT = 90.0
@@ -63,7 +63,7 @@ def _try(name: str, count: int, child: Child, good: list[Path], folder: Path) ->
     family = Family(f"malformed files: {name}")
     for seed in range(count):
         base = good[seed % len(good)]
-        plot = name == SLICES or seed % _DRAWN == 0
+        plot = seed // len(good) % _DRAWN[name] == 0
         request = {"base": str(base), "family": name, "seed": seed, "folder": str(folder), "plot": plot}
         try:
             _judge(family, child.ask(limit=_LIMIT, do="mutant", **request))

@@ -194,6 +194,25 @@ def test_names_of_regions_lie_in_their_regions(contact):
         assert (inside == code).all()
 
 
+@pytest.mark.parametrize("level", [0.3, 0.5, 0.75])
+def test_names_of_regions_lie_off_the_curves(level):
+    """A curve that runs through one region, as beta_lim does for mu > 1."""
+    r = np.linspace(0.1, 2.0, 50)
+    cells = {"regime": (("r", "beta"), np.full((50, 40), regimes.CONTINUOUS, dtype=np.int8))}
+    lim = level + 0.1 * np.sin(6.0 * r)
+    axes = {"r": r, "beta": np.linspace(0.0, 1.0, 40), "mu": 2.0}
+    (ax,) = fm.plot_regimes(xr.Dataset(cells | {"beta_lim": ("r", lim)}, axes))
+    (text,) = ax.texts
+    drawn(ax.figure)
+    box = text.get_window_extent()
+    curve = ax.transData.transform(np.column_stack((r, lim)))
+    fine = np.column_stack([np.interp(np.linspace(0, 49, 5000), np.arange(50), part) for part in curve.T])
+    assert not any(box.contains(x, y) for x, y in fine)
+    frame = ax.get_window_extent()
+    assert frame.x0 < box.x0 < box.x1 < frame.x1
+    assert frame.y0 < box.y0 < box.y1 < frame.y1
+
+
 def test_the_name_of_a_region_with_room_for_one_name_only():
     regime = np.full((120, 120), regimes.STICK_SLIP)
     regime[90:113, 100:112] = regimes.CONTINUOUS

@@ -145,7 +145,8 @@ def plot_boundaries(
     ds : xarray.Dataset
         As `boundaries` returns it, or a map: what holds `beta_lim` and `beta_stick`.
     ax : matplotlib axes, or an array of them, optional
-        Axes to draw into, one for each mu; without it a figure is made.
+        Axes to draw into, one for each mu; the legend goes under the last of them (save the figure with
+        ``bbox_inches="tight"``).  Without it a figure is made.
 
     Returns
     -------

@@ -231,7 +231,8 @@ def plot_regimes(ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" 
     ds : xarray.Dataset
         As `sweep` returns it, or a part of it, with `regime` or `stops_per_cycle`; dimensions in any order.
     ax : matplotlib axes, or an array of them, optional
-        Axes to draw into, one for each mu; without it a figure with a panel for each mu is made.
+        Axes to draw into, one for each mu; the legend goes under the last of them (save the figure with
+        ``bbox_inches="tight"``).  Without it a figure with a panel for each mu is made.
 
     Returns
     -------

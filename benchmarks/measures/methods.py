@@ -135,7 +135,7 @@ def prepare_solved(scene: Scene, cells: list[tuple[float, float]], setting: floa
     solve, values = open_cells(scene.system, *_sorted_copies(cells), scene.mu, Solver(steps=int(setting)))
 
     def read(_result: object) -> list[Answer]:
-        stops, amplitudes = (column[::COPIES] for column in values())
+        stops, amplitudes = (column[::COPIES] for column in values()[:2])
         return [
             Answer(float(s), float(z), _stop_times(scene, *cell, int(setting)))
             for s, z, cell in zip(stops, amplitudes, cells, strict=True)

@@ -94,6 +94,8 @@ def test_several_mu_do_not_fit_into_given_axes(tiny_map):
         fm.plot_regimes(tiny_map, ax=Figure().subplots())
     with pytest.raises(InputError, match=r"^ax must be matplotlib axes, or an array of them; got Figure$"):
         fm.plot_regimes(tiny_map.isel(mu=[0]), ax=Figure())
+    with pytest.raises(InputError, match=r"^ax must be matplotlib axes, or an array of them; got Dataset$"):
+        fm.plot_regimes(tiny_map.isel(mu=[0]), ax=tiny_map)
 
 
 def test_a_map_without_regime_and_stops(tiny_map):
@@ -514,6 +516,18 @@ def test_the_response_shows_load_contact_masses_and_friction(tiny_response):
     assert load.get_ylabel() == "base / $Y$"
     assert load.figure._suptitle.get_text() == "r = 0.3, β = 0.05, μ = 1: stick-slip, 2 stops per cycle"
     assert words_of([load]) == ["stop", "maximum of the load (of the base's motion)", "stop begins"]
+
+
+@pytest.mark.parametrize("name", ["z", "x", "friction", "phase"])
+def test_a_response_without_a_motion_to_draw(name, tiny_response):
+    with pytest.raises(InputError, match=rf"^a dataset must hold {name} for its motion to be drawn"):
+        fm.plot_response(tiny_response.drop_vars(name))
+
+
+@pytest.mark.parametrize("name", ["event_tau", "event_phase", "event_z"])
+def test_a_response_without_its_events(name, tiny_response):
+    whole = sum(len(ax.lines) for ax in fm.plot_response(tiny_response))
+    assert sum(len(ax.lines) for ax in fm.plot_response(tiny_response.drop_vars(name))) == whole - 1
 
 
 def test_the_response_of_a_fixed_wall_has_one_motion():

@@ -8,7 +8,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..errors import InputError
 from .features import features_of, mark_features
 from .grids import Grid
 from .palette import CLASSES, CONTINUOUS, HATCH, HATCH_COLOUR, LIM, MODAL, STICK, STUCK, UNCOUNTED
@@ -23,7 +22,7 @@ from .panels import (
     panel_grid,
     patch,
 )
-from .shapes import panels_of, to_draw
+from .shapes import check_holds, panels_of, to_draw
 from .words import caption
 
 if TYPE_CHECKING:
@@ -158,9 +157,7 @@ def plot_boundaries(
         The dataset holds no boundaries, or there are more or fewer axes than mu.
     """
     ds = to_draw(ds, "plot_boundaries", "boundaries", "map")
-    for name in ("beta_lim", "beta_stick"):
-        if name not in ds:
-            raise InputError(f"a dataset must hold {name} for its boundaries to be drawn; it does not")
+    check_holds(ds, ("beta_lim", "beta_stick"), "its boundaries")
     r, panels = Grid(ds["r"].values), panels_of(ds)
     title = str(ds.attrs.get("title", ""))
     axes = panel_grid(len(panels), title) if ax is None else given_axes(ax, len(panels), "one for each mu")

@@ -13,7 +13,7 @@ from .. import regimes
 from .marks import spread
 from .palette import CLASSES, LINES, STUCK
 from .panels import Handle, given_axes, legend_below, new_figure, title_figure
-from .shapes import to_draw
+from .shapes import check_holds, to_draw
 from .words import caption, load_of, moves_base
 
 if TYPE_CHECKING:
@@ -34,6 +34,9 @@ _GAP, _MOST_LABELS = 0.09, 11
 
 #: A motion smaller than this is none.
 _ROUNDING = 1e-9
+
+#: Where stops begin; without one of these they are not marked.
+_EVENTS = ("event_tau", "event_phase", "event_z")
 
 _SHADE: _Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.55, "linewidth": 0.0}
 _LOAD_COLOUR = "#cc1f03"
@@ -79,7 +82,7 @@ def _draw_contact(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> list[Handle]:
     ax.plot(turns, z, color=LINES[0])
     _in_sight(ax, z)
     ax.set_ylabel("contact\n" r"$z$ / $(P/k_1)$")
-    begins = ds["event_phase"].values == 0 if "event_phase" in ds else np.zeros(0, dtype=bool)
+    begins = ds["event_phase"].values == 0 if set(_EVENTS) <= set(ds) else np.zeros(0, dtype=bool)
     if not begins.any():
         return []
     times, places = ds["event_tau"].values[begins] / np.pi, ds["event_z"].values[begins]
@@ -180,9 +183,10 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
     Raises
     ------
     InputError
-        The dataset is no response, or there are more or fewer axes than panels.
+        The dataset is no response, or lacks a variable to draw, or there are more or fewer axes than panels.
     """
     ds = to_draw(ds, "plot_response", "response")
+    check_holds(ds, ("z", "x", "friction", "phase"), "its motion")
     names = _panels(ds)
     if ax is None:
         heights = [_HEIGHTS[name] for name in names]

@@ -77,13 +77,13 @@ def panel_grid(panels: int, title: str) -> "AxesArray":
 
 def given_axes(ax: "Axes | Sequence[Axes] | AxesArray", panels: int, what: str) -> "AxesArray":
     """Axes that a caller gave, as many as there are panels."""
-    axes = np.atleast_1d(np.array(ax, dtype=object)).ravel()
-    for item in axes:
+    items = list(ax.ravel() if isinstance(ax, np.ndarray) else ax if isinstance(ax, Sequence) else [ax])
+    for item in items:
         if not isinstance(item, Axes):
             raise InputError(f"ax must be matplotlib axes, or an array of them; got {type(item).__name__}")
-    if axes.size != panels:
-        raise InputError(f"ax must be {panels} axes, {what}; got {axes.size}")
-    return axes
+    if len(items) != panels:
+        raise InputError(f"ax must be {panels} axes, {what}; got {len(items)}")
+    return np.array(items, dtype=object)
 
 
 def size_of(ax: Axes) -> tuple[float, float]:

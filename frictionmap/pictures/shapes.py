@@ -1,5 +1,7 @@
 """Datasets in the one form that pictures are made of."""
 
+from collections.abc import Iterable
+
 import xarray as xr
 
 from ..errors import InputError
@@ -22,6 +24,13 @@ def to_draw(ds: object, function: str, *legal: str) -> xr.Dataset:
     if found not in legal:
         raise InputError(f"{wanted}; got one such as {_MAKERS[found]}: use {_DRAWN_BY[found]}")
     return standard_form(ds)
+
+
+def check_holds(ds: xr.Dataset, names: Iterable[str], what: str) -> None:
+    """Refuse a dataset without a variable that a picture needs."""
+    for name in names:
+        if name not in ds:
+            raise InputError(f"a dataset must hold {name} for {what} to be drawn; it does not")
 
 
 def panels_of(ds: xr.Dataset) -> list[xr.Dataset]:

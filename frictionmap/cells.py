@@ -1,18 +1,24 @@
-"""What the cells of a map need, and the jobs that fill them: for one mass, and for any structure.
+"""What the cells of a map need, and the jobs that fill them.
 
-One mass is the structure with one mode, but its cells know more: a stop forgets all but one number.  They
-have kernels of their own, an order of magnitude faster.
+One mass is the structure with one mode, but its cells know more: a stop forgets all but one number.  It is a
+kind of motion of its own (`_kernels.engine`), an order of magnitude faster.
 """
 
 from collections.abc import Callable
-from typing import Protocol
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from ._kernels.cycle import Limits
-from ._kernels.sweep import Frequencies, Outputs, fill_closed_form, fill_integrated
-from .curves import Curves, many_mode_curves, one_mass_curves
-from .settings import COEXISTENCE, DETAILS, Solver
+from ._kernels.engine.answers import Limits
+from ._kernels.engine.details import Details, Displacements, Nothing
+from ._kernels.engine.fill import Axes, ClosedForm, OpenCells, fill_closed, fill_open
+from ._kernels.engine.many_masses import ManyMassSystem
+from ._kernels.engine.one_mass import OneMassSystem
+from .curves import OneMass, many_mode_curves, one_mass_curves
+from .labels import CELL_VARIABLES
+from .settings import Solver
+from .structures import Structures, structures
 from .system import System
 
 Job = tuple[Callable[..., None], tuple]
@@ -23,159 +29,116 @@ def limits(solver: Solver) -> Limits:
     return Limits(float(solver.cycles), solver.tolerance, solver.steady == "solved")
 
 
-class Cells(Protocol):
-    """The cells of a system over (mu, r)."""
+class Cells:
+    """The cells of a system over checked axes."""
 
-    curves: Curves
-    no_load: np.ndarray  # (n_r,) where nothing loads the contact, so that nothing moves
-    rest_sticks: bool  # a start from rest with beta >= beta_stick never begins to move
+    def __init__(
+        self, system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver
+    ) -> None:
+        self._system, self._solver = system, solver
+        self._axes = Axes(mu, r, beta)
+        self._one: OneMass | None = None
+        if system.normalised:
+            self._one = one_mass_curves(system, r, mu)
+            self.curves = self._one.curves
+            #: (n_r,) where nothing loads the contact, so that nothing moves
+            self.no_load = self._one.frequencies.load == 0.0
+        else:
+            self.curves = many_mode_curves(system, r, mu)
+            self.no_load = (r == 0.0) & bool(system.base_motion)
 
-    def closed(self, first: int, last: int, low: np.ndarray, high: np.ndarray, out: Outputs) -> list[Job]:
-        """Jobs for the cells of rows first..last-1 that formulas decide."""
+    @property
+    def _needs(self) -> set[str]:
+        return {CELL_VARIABLES[name].needs for name in self._solver.outputs}
+
+    @property
+    def rest_sticks(self) -> bool:
+        """Whether from beta_stick on a start from rest never begins to move; what is not held may swing."""
+        return self._one is not None
+
+    @cached_property
+    def structures(self) -> Structures:
+        """The system in the numbers of a structure."""
+        return structures(self._system, self._axes.r, self.curves)
+
+    @cached_property
+    def motion(self) -> OneMassSystem | ManyMassSystem:
+        """The system as a kind of motion."""
+        steps = float(self._solver.steps)
+        if self._one is not None:
+            system = self._system
+            return OneMassSystem(
+                self._one.frequencies, system.zeta, steps, self._one.lim, self.curves.beta_stick, 1,
+                float(system.modes.chi[0]),
+            )  # fmt: skip
+        f = self.structures
+        return ManyMassSystem(
+            self._axes.r, f.model, f.loads, f.orbit, f.marginal, f.rest, f.moving, steps,
+            self.curves.beta_lim, f.seen.size,
+        )  # fmt: skip
+
+    @cached_property
+    def _closed_form(self) -> ClosedForm:
+        if self._one is not None:
+            f = self._one.frequencies
+            return ClosedForm(f.load, f.v_abs, f.u, f.g, f.marginal)
+        orbit = self.structures.orbit
+        return ClosedForm(np.ones(self._axes.r.size), orbit.v_abs, orbit.u, orbit.g, self.structures.marginal)
+
+    @property
+    def unit(self) -> float:
+        """Unit of forces and displacements of the motion at the only frequency."""
+        return float(self._closed_form.load[0])
+
+    @cached_property
+    def _wanted(self) -> Details | Nothing:
+        if "details" not in self._needs:
+            return Nothing(0)
+        f = self.structures
+        parts = Displacements(f.shapes, f.alone_re, f.alone_im, f.held)
+        return Details(self._axes.r, f.model, f.loads, f.orbit, float(self._solver.steps), parts)
+
+    def closed(self, first: int, last: int, cells: OpenCells, out: Any) -> Job:
+        """A job for the cells of rows first..last-1 that formulas decide."""
+        return fill_closed, (first, last, cells, self._axes, self._closed_form, out, self._wanted)
 
     def opened(
-        self, first: int, last: int, rows: np.ndarray, ends: np.ndarray, low: np.ndarray, out: Outputs,
-        stop: np.ndarray,
+        self, first: int, last: int, cells: OpenCells, out: Any, cancel: np.ndarray
     ) -> Job:  # fmt: skip
         """A job for cells first..last-1 of the list of open cells."""
-
-    def reachable(self, out: Outputs, stop: np.ndarray) -> list[Job]:
-        """Jobs for what else a cell could end in, if that was asked for."""
-
-    def finish(self, out: Outputs) -> None:
-        """What is left to do when all jobs are done."""
-
-
-class OneMassCells:
-    """Cells of a system with one mode of unit frequency."""
-
-    rest_sticks = True
-
-    def __init__(
-        self, system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver
-    ) -> None:
-        self.found = one_mass_curves(system, r, mu)
-        self.curves = self.found.curves
-        self.no_load = self.found.frequencies.load == 0.0
-        self._zeta, self._mu, self._beta, self._solver = system.zeta, mu, beta, solver
-
-    def closed(self, first: int, last: int, low: np.ndarray, high: np.ndarray, out: Outputs) -> list[Job]:
-        """See `Cells`."""
-        found = self.found.frequencies
-        return [(fill_closed_form, (first, last, low, high, self._beta, found, self._zeta, out))]
-
-    def opened(
-        self, first: int, last: int, rows: np.ndarray, ends: np.ndarray, low: np.ndarray, out: Outputs,
-        stop: np.ndarray,
-    ) -> Job:  # fmt: skip
-        """See `Cells`."""
-        solver = self._solver
-        arguments = (
-            first, last, rows, ends, low, self._beta, self._mu, self.found.lim, self.curves.beta_stick,
-            self.found.frequencies, self._zeta, float(solver.steps), limits(solver),
-            solver.start == "moving", out, stop,
+        moving = self._solver.start == "moving"
+        return fill_open, (
+            first, last, cells, self._axes, self.motion, limits(self._solver), moving, out, self._wanted,
+            cancel,
         )  # fmt: skip
-        return fill_integrated, arguments
 
-    def reachable(self, out: Outputs, stop: np.ndarray) -> list[Job]:
-        """See `Cells`."""
-        return []
-
-    def finish(self, out: Outputs) -> None:
-        """See `Cells`."""
-
-
-class StructureCells:
-    """Cells of any structure."""
-
-    rest_sticks = False  # what is not held may swing until the contact lets go
-
-    def __init__(
-        self, system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver
-    ) -> None:
-        from .structures import structures  # compiled for structures only
-
-        self.curves = many_mode_curves(system, r, mu)
-        self.no_load = (r == 0.0) & bool(system.base_motion)
-        self.found = structures(system, r, self.curves)
-        self.starts = self.found.moving if solver.start == "moving" else self.found.rest
-        self._static = np.abs(system.modes.static_response())
-        self._r, self._mu, self._beta, self._solver = r, mu, beta, solver
-
-    def closed(self, first: int, last: int, low: np.ndarray, high: np.ndarray, out: Outputs) -> list[Job]:
-        """See `Cells`."""
-        from ._kernels.structure_sweep import fill_closed_details
-
-        orbit = self.found.orbit
-        ones = np.ones(self._r.size)
-        found = Frequencies(
-            self._r, ones, 0.0 * ones, orbit.v_abs, orbit.v_arg, orbit.u, orbit.g, self.found.marginal
-        )
-        jobs: list[Job] = [(fill_closed_form, (first, last, low, high, self._beta, found, 0.0, out))]
-        if DETAILS & set(self._solver.outputs):
-            f = self.found
-            arguments = (
-                first, last, low, high, self._beta, self._mu, self.curves.beta_lim, self._r, f.model, f.loads,
-                orbit, f.shapes, f.alone_re, f.alone_im, f.held, float(self._solver.steps), out,
-            )  # fmt: skip
-            jobs.append((fill_closed_details, arguments))
-        return jobs
-
-    def reachable(self, out: Outputs, stop: np.ndarray) -> list[Job]:
-        """See `Cells`."""
-        if not COEXISTENCE & set(self._solver.outputs):
+    def reachable(self, out: Any, cancel: np.ndarray) -> list[Job]:
+        """Jobs for what else a cell could end in, if that was asked for."""
+        if "coexistence" not in self._needs:
             return []
-        from ._kernels.coexistence import fill_reachable
+        from ._kernels.engine.coexistence import fill_reachable
 
-        f = self.found
-        shape = (self._mu.size, self._r.size, self._beta.size)
+        axes = self._axes
+        shape = (axes.mu.size, axes.r.size, axes.beta.size)
         flags = out.also_reachable if out.also_reachable.size else np.zeros(shape, dtype=np.int8)
         far = out.sliding_limit if out.sliding_limit.size else np.empty(shape[:2])
         shared = (
-            self._beta, self._mu, self.curves.beta_lim, self.curves.beta_stick, self._r, f.model, f.loads,
-            f.orbit, f.marginal, f.rest, f.moving, float(self._solver.steps), limits(self._solver), flags,
-            far, stop,
+            axes, self.curves.beta_lim, self.curves.beta_stick, self.motion, limits(self._solver), flags, far,
+            cancel,
         )  # fmt: skip
         return [(fill_reachable, (row, row + 1, *shared)) for row in range(shape[0] * shape[1])]
 
-    def opened(
-        self, first: int, last: int, rows: np.ndarray, ends: np.ndarray, low: np.ndarray, out: Outputs,
-        stop: np.ndarray,
-    ) -> Job:  # fmt: skip
-        """See `Cells`."""
-        return self._follow, (first, last, rows, ends, low, out, stop)
-
-    def _follow(
-        self, first: int, last: int, rows: np.ndarray, ends: np.ndarray, low: np.ndarray, out: Outputs,
-        stop: np.ndarray,
-    ) -> None:  # fmt: skip
-        from ._kernels.structure_sweep import ANCHOR, fill_details, fill_structures
-
-        f = self.found
-        where = (
-            first, last, rows, ends, low, self._beta, self._mu, self.curves.beta_lim, self._r, f.model,
-            f.loads,
-        )  # fmt: skip
-        steps = float(self._solver.steps)
-        detailed = DETAILS & set(self._solver.outputs)
-        shape = (last - first, ANCHOR + 2 * f.seen.size) if detailed else (0, 0)
-        anchors = np.zeros(shape)
-        fill_structures(
-            *where, f.orbit, f.marginal, self.starts, steps, limits(self._solver), out, anchors, stop
-        )
-        if detailed and not stop[0]:
-            fill_details(*where, f.orbit, f.shapes, f.alone_re, f.alone_im, f.held, steps, out, anchors)
-
-    def finish(self, out: Outputs) -> None:
+    def finish(self, out: Any) -> None:
         """The limit r = 0 without friction; and modes that the contact does not see may resonate."""
         if out.amplitude.size:
-            if self._beta[0] == 0.0:
-                out.amplitude[:, self._r == 0.0, 0, :] = self._static
-            where = np.broadcast_to(self.found.resonant[:, np.newaxis, :], out.amplitude.shape)
+            axes = self._axes
+            if axes.beta[0] == 0.0:
+                static = np.abs(self._system.modes.static_response())
+                out.amplitude[:, axes.r == 0.0, 0, :] = static
+            where = np.broadcast_to(self.structures.resonant[:, np.newaxis, :], out.amplitude.shape)
             out.amplitude[where & ~np.isnan(out.amplitude)] = np.inf
 
 
 def make_cells(system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver) -> Cells:
     """The cells of a map; r, beta and mu are checked axes."""
-    one = system.normalised and not (DETAILS | COEXISTENCE) & set(solver.outputs)
-    return (OneMassCells if one else StructureCells)(system, r, beta, mu, solver)
+    return Cells(system, r, beta, mu, solver)

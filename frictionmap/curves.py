@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 
 from . import checks
 from ._kernels.curves import boundary, response_functions
+from ._kernels.engine.one_mass import Frequencies
 from ._kernels.sums import many_mode_functions
-from ._kernels.sweep import Frequencies
 from .errors import InputError
 from .features import (
     all_mass_invariant_points,

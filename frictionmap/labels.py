@@ -40,6 +40,8 @@ class Label(NamedTuple):
     most: float = np.inf
     nan: bool = False  # whether NaN is legal
     inf: bool = False
+    unresolved: float = np.nan  # of a cell of a map, before it is decided
+    needs: str = ""  # beyond the steady state of a cell: its "details", or "coexistence" with others
 
 
 #: Axes; strictly increasing and finite.
@@ -58,7 +60,13 @@ COORDINATES = {
 }
 
 CELL_VARIABLES = {
-    "regime": Label(np.int8, "motion regime of the steady state", CELL, regimes.REGIMES),
+    "regime": Label(
+        np.int8,
+        "motion regime of the steady state",
+        CELL,
+        regimes.REGIMES,
+        unresolved=regimes.UNRESOLVED,
+    ),
     "stops_per_cycle": Label(
         np.float32,
         "stops that begin per excitation period",
@@ -85,10 +93,19 @@ CELL_VARIABLES = {
         CELL,
         comment="0 where no steady state was found",
         least=0,
+        unresolved=0,
     ),
-    "origin": Label(np.int8, "how the cell was decided", CELL, regimes.ORIGINS),
-    "cycles": Label(np.int32, "excitation periods integrated for the cell", CELL, least=0),
-    "status": Label(np.int8, "whether the steady state was found, and if not, why", CELL, regimes.STATUSES),
+    "origin": Label(
+        np.int8, "how the cell was decided", CELL, regimes.ORIGINS, unresolved=regimes.CLOSED_FORM
+    ),
+    "cycles": Label(np.int32, "excitation periods integrated for the cell", CELL, least=0, unresolved=0),
+    "status": Label(
+        np.int8,
+        "whether the steady state was found, and if not, why",
+        CELL,
+        regimes.STATUSES,
+        unresolved=regimes.NOT_COMPUTED,
+    ),
     "multiplier": Label(
         np.float64,
         "largest modulus of the Floquet multipliers over the steady period",
@@ -97,6 +114,7 @@ CELL_VARIABLES = {
         least=0.0,
         nan=True,
         inf=True,
+        needs="details",
     ),
     "asymmetry": Label(
         np.float32,
@@ -105,6 +123,7 @@ CELL_VARIABLES = {
         comment="0 where the motion is antiperiodic; NaN where stuck or unresolved",
         least=0.0,
         nan=True,
+        needs="details",
     ),
     "also_reachable": Label(
         np.int8,
@@ -112,6 +131,8 @@ CELL_VARIABLES = {
         CELL,
         regimes.REACHABLE,
         flags="flag_masks",
+        unresolved=0,
+        needs="coexistence",
     ),
     "sliding_limit": Label(
         np.float64,
@@ -121,6 +142,7 @@ CELL_VARIABLES = {
         least=0.0,
         nan=True,
         inf=True,
+        needs="coexistence",
     ),
     "amplitude": Label(
         np.float64,
@@ -130,6 +152,7 @@ CELL_VARIABLES = {
         least=0.0,
         nan=True,
         inf=True,
+        needs="details",
     ),
 }
 

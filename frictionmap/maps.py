@@ -1,22 +1,23 @@
 """Regime maps: plan which cells need integration, run them in parallel, label the result."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections import namedtuple
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from itertools import islice
-from typing import Unpack
+from typing import Any, Unpack
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from . import checks, regimes
-from ._kernels.sweep import Outputs
+from . import checks
+from ._kernels.engine.fill import RESTART, OpenCells
 from .cells import Cells, Job, make_cells
 from .curves import boundary_variables
 from .errors import InputError
-from .labels import CELL_VARIABLES, coordinate, label_variable, stamp
+from .labels import CELL, CELL_VARIABLES, coordinate, label_variable, stamp
 from .settings import Solver, SolverSettings, merged
 from .system import System
 
@@ -29,7 +30,10 @@ ROW_CELLS = 262144
 
 #: What a cell costs, about, in hundredths of one that is followed: decided by a formula; followed; looked at
 #: for what else it could end in, with mu = 1 and above.
-_DECIDED, _FOLLOWED, _LOOKED_AT_SMOOTH, _LOOKED_AT = 2, 100, 25, 5000
+_DECIDED, _FOLLOWED, _LOOKED_AT_SMOOTH, _LOOKED_AT = 2, 100, 25, 800
+
+#: The arrays of a map, one for every output.
+Arrays = namedtuple("Arrays", CELL_VARIABLES)  # type: ignore[misc]
 
 Progress = Callable[[int, int], None]
 
@@ -47,6 +51,21 @@ class Plan:
     def cells(self) -> int:
         """Number of open cells."""
         return int(self.ends[-1]) if self.ends.size else 0
+
+    def tiles(self) -> Iterator[tuple[int, int]]:
+        """First cell and the one after the last of every tile of the list of open cells.
+
+        Cut at the ends of rows and where the search from neighbours starts anew, and nowhere else.
+        """
+        begin = first = 0
+        for end in self.ends.tolist():
+            for cut in (*range(begin + RESTART, end, RESTART), end):
+                if cut - first >= TILE:
+                    yield first, cut
+                    first = cut
+            begin = end
+        if first < begin:
+            yield first, begin
 
 
 def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Plan:
@@ -76,35 +95,14 @@ def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: 
     return Plan(low.ravel(), high.ravel(), rows, np.cumsum(open_cells[rows]))
 
 
-def _allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> Outputs:
+def _allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> Any:
     """Outputs asked for, and status, unresolved until they are filled; the others have no cells."""
-    unresolved = {
-        "regime": regimes.UNRESOLVED,
-        "stops_per_cycle": np.nan,
-        "contact_amplitude": np.nan,
-        "stuck_fraction": np.nan,
-        "period": 0,
-        "origin": regimes.CLOSED_FORM,
-        "cycles": 0,
-        "status": regimes.NOT_COMPUTED,
-        "multiplier": np.nan,
-        "asymmetry": np.nan,
-        "also_reachable": 0,
-        "sliding_limit": np.nan,
-        "amplitude": np.nan,
-    }
-    sizes: dict[str, tuple[int, ...]] = dict.fromkeys(unresolved, shape)
-    sizes |= {"amplitude": (*shape, dofs), "sliding_limit": shape[:2]}
-    return Outputs(
-        **{
-            name: np.full(
-                sizes[name] if name in (*names, "status") else (0,) * len(sizes[name]),
-                value,
-                CELL_VARIABLES[name].dtype,
-            )
-            for name, value in unresolved.items()
-        }
-    )
+    sizes = dict(zip((*CELL, "dof"), (*shape, dofs), strict=True))
+    arrays: list[np.ndarray] = []
+    for name, label in CELL_VARIABLES.items():
+        kept = name in (*names, "status")
+        arrays.append(np.full([kept * sizes[dim] for dim in label.dims], label.unresolved, label.dtype))
+    return Arrays(*arrays)
 
 
 def default_threads() -> int:
@@ -136,25 +134,25 @@ def _run(jobs: Sequence[Job], threads: int, done: Callable) -> None:
 
 
 def _fill(
-    cells: Cells, work: Plan, shape: tuple[int, int, int], smooth: np.ndarray, out: Outputs, threads: int,
+    cells: Cells, work: Plan, shape: tuple[int, int, int], smooth: np.ndarray, out: Any, threads: int,
     progress: Progress | None,
 ) -> None:  # fmt: skip
     """`smooth` (n_mu,): where mu = 1."""
     n_rows, columns = work.low.size, shape[2]
     rows_at_once = max(1, ROW_CELLS // columns)
-    stop = np.zeros(1, dtype=np.uint8)
+    opened = OpenCells(work.rows, work.ends, work.low, work.high)
+    cancel = np.zeros(1, dtype=np.uint8)
     jobs: list[Job] = []
     costs: list[int] = []
     for first in range(0, n_rows, rows_at_once):
         last = min(first + rows_at_once, n_rows)
-        jobs += cells.closed(first, last, work.low, work.high, out)
-        costs += [_DECIDED * (last - first) * columns] * (len(jobs) - len(costs))
-    for first in range(0, work.cells, TILE):
-        last = min(first + TILE, work.cells)
-        jobs.append(cells.opened(first, last, work.rows, work.ends, work.low, out, stop))
+        jobs.append(cells.closed(first, last, opened, out))
+        costs.append(_DECIDED * (last - first) * columns)
+    for first, last in work.tiles():
+        jobs.append(cells.opened(first, last, opened, out, cancel))
         costs.append(_FOLLOWED * (last - first))
 
-    others = cells.reachable(out, stop)
+    others = cells.reachable(out, cancel)
     jobs += others
     per_row = columns * np.repeat(np.where(smooth, _LOOKED_AT_SMOOTH, _LOOKED_AT), shape[1])
     costs += per_row.tolist()[: len(others)]
@@ -170,7 +168,7 @@ def _fill(
     try:
         _run(jobs, threads, done)
     except BaseException:
-        stop[0] = 1  # the kernels look at it at every event
+        cancel[0] = 1  # the kernels look at it at every event
         raise
     cells.finish(out)
 

@@ -7,7 +7,7 @@ from typing import Literal, TypedDict, get_args
 from . import checks
 from .errors import InputError
 
-#: Outputs a map can hold, in the order of the file.
+#: Outputs a map can hold, in the order of the file; what each is, `labels.CELL_VARIABLES` says.
 Output = Literal[
     "regime",
     "stops_per_cycle",
@@ -28,11 +28,6 @@ OUTPUTS: tuple[str, ...] = get_args(Output)
 Start = Literal["rest", "moving"]
 Skip = Literal["exact", "none"]
 Steady = Literal["solved", "marched"]
-
-#: Those that take the code for structures, whatever the number of masses: of the steady state that a cell
-#: has, and of what else it could end in.
-DETAILS = frozenset(("multiplier", "asymmetry", "amplitude"))
-COEXISTENCE = frozenset(("also_reachable", "sliding_limit"))
 
 
 @dataclass(frozen=True)

@@ -8,24 +8,14 @@ import numpy as np
 import xarray as xr
 
 from . import checks, regimes
-from ._kernels.continuous import Oscillator, orbit_phase
-from ._kernels.history import (
-    COLUMNS,
-    COS,
-    LENGTH,
-    SIGN,
-    SIN,
-    WAIT,
-    Z_END,
-    Z,
-    continuous_slides,
-    orbit_slides,
-    sample_slides,
-)
-from ._kernels.orbits import SHORTEST_STOP
-from ._kernels.phases import MAX_TERMS, Step, step_constants
-from ._kernels.sweep import FINE_STEPS, integrate_one, normalised_friction
-from .cells import Cells, OneMassCells, StructureCells, limits, make_cells
+from ._kernels.continuous import orbit_phase
+from ._kernels.engine import phase_table
+from ._kernels.engine.fill import one_cell
+from ._kernels.engine.time_history import sample_phases
+from ._kernels.oscillators import make_scratch
+from ._kernels.returns import make_workspace
+from ._kernels.structure import make_structure
+from .cells import Cells, limits, make_cells
 from .curves import boundary_variables
 from .errors import InputError, NoSteadyState
 from .labels import CELL_VARIABLES, coordinate, label_variable, stamp
@@ -96,191 +86,102 @@ def _decided(cells: Cells, question: Question) -> int:
     return regimes.CONTINUOUS if work.low[0] else regimes.PERMANENT_STICKING
 
 
-def _slides(question: Question, cells: OneMassCells) -> tuple[Step, float, np.ndarray, float]:
-    """(step, b, rows, rest): the slides of the steady state over one period; none where stuck at `rest`."""
-    r, beta, mu, solver, zeta = (
-        question.r, question.beta, question.mu, question.solver, question.system.zeta
-    )  # fmt: skip
-    found, f = cells.found, cells.found.frequencies
-    load, phase = f.load[0], f.phase[0]
-    step = step_constants(r, zeta, float(solver.steps))
-    oscillator = Oscillator(r, zeta, f.v_abs[0], f.v_arg[0], f.u[0], f.g[0], f.marginal[0])
-    b, mu_b = normalised_friction(beta, load, mu, found.curves.beta_stick[0, 0])
-    scratch = np.empty(MAX_TERMS)
-    rest = 0.0
-    rows = np.empty((0, COLUMNS))
-    regime = _decided(cells, question)
+def _with_mirror_image(table: np.ndarray) -> np.ndarray:
+    """The table of phases over one steady period: twice as long where the motion returns mirrored."""
+    length = float(table[:, phase_table.LENGTH].sum())
+    if round(length / math.pi) % 2 == 0:
+        return table
+    mirrored = table.copy()
+    mirrored[:, phase_table.SIGN] *= -1.0
+    mirrored[:, phase_table.BEGIN] += length
+    return np.concatenate((table, mirrored))
+
+
+def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
+    """The table of phases of the continuous orbit, one phase."""
+    found = cells.structures
+    orbit, n = found.orbit, found.seen.size
+    st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
+    table = np.empty((1, phase_table.phase_columns(n)))
+    phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], question.beta)
+    phase_table.continuous_phase(st, orbit, 0, question.beta, phase, table[0], make_workspace(n))
+    return table
+
+
+def _phases(question: Question, cells: Cells) -> tuple[np.ndarray | None, float]:
+    """(table, rest): the phases of the steady state over one period; None where it sticks, at `rest`."""
+    regime, rest = _decided(cells, question), 0.0
+    table = np.empty((0, 0))
     if regime == regimes.UNRESOLVED:
-        cell = integrate_one(
-            beta, mu, found.lim[0, 0], found.curves.beta_stick[0, 0], load, phase, oscillator, step,
-            step_constants(r, zeta, max(float(solver.steps), FINE_STEPS)), limits(solver),
-            solver.start == "moving",
-        )  # fmt: skip
+        solver = question.solver
+        moving = solver.start == "moving"
+        cell, table = one_cell(cells.motion, question.beta, question.mu, limits(solver), moving)
         if cell.period == 0:
             raise _no_steady_state(question, regimes.status_meaning(cell.status))
-        regime, rest = cell.regime, cell.sign * cell.z
-        rows = np.empty((cell.events, COLUMNS))
+        regime, rest = cell.regime, cells.unit * cell.sign * cell.at.z
     if regime == regimes.PERMANENT_STICKING:
-        return step, b, np.empty((0, COLUMNS)), rest
-    if rows.size:
-        orbit_slides(step, r, b, mu_b, cell.z, cell.cos, cell.sin, cell.sign, rows, scratch)
-    elif math.isinf(oscillator.v_abs):
-        raise _no_steady_state(question, _UNBOUNDED)
-    else:
-        rows = np.empty((2, COLUMNS))
-        continuous_slides(step, oscillator, b, rows, scratch)
-    halves = round(float(rows[:, LENGTH].sum() + rows[:, WAIT].sum()) / math.pi)
-    if halves % 2:  # it returned as its mirror image
-        mirrored = rows.copy()
-        mirrored[:, SIGN] *= -1.0
-        rows = np.concatenate((rows, mirrored))
-    return step, b, rows, 0.0
+        return None, rest
+    if table.shape[0] == 0:
+        if math.isinf(cells.structures.orbit.v_abs[0]):
+            raise _no_steady_state(question, _UNBOUNDED)
+        table = _continuous_table(question, cells)
+    return _with_mirror_image(table), 0.0
 
 
-def _events(rows: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times from the first slide, phases that begin and z there, of all slides and stops."""
-    stops = rows[:, WAIT] > 0.0
-    times = np.concatenate((begin, (begin + rows[:, LENGTH])[stops]))
-    phases = np.concatenate((rows[:, SIGN], np.zeros(int(stops.sum()))))
-    places = np.concatenate((rows[:, SIGN] * rows[:, Z], (rows[:, SIGN] * rows[:, Z_END])[stops]))
-    return times, phases, places
-
-
-def _one_mass_history(question: Question, cells: OneMassCells) -> History:
-    f = cells.found.frequencies
-    load, lead = f.load[0], f.phase[0]
-    step, b, rows, rest = _slides(question, cells)
-    durations = rows[:, LENGTH] + rows[:, WAIT]
-    total = float(durations.sum())
-    period = max(1, round(total / _TURN))
-    tau = _times(period, question.points)
-    z = np.full(tau.size, rest)
-    v = np.zeros(tau.size)
-    friction = np.cos(tau + lead) - rest
-    phase = np.zeros(tau.size, dtype=np.int8)
-    events = (np.empty(0), np.empty(0), np.empty(0))
-    if rows.size:
-        begin = np.concatenate(([0.0], np.cumsum(durations)[:-1]))
-        start = math.atan2(rows[0, SIGN] * rows[0, SIN], rows[0, SIGN] * rows[0, COS]) - lead
-        since = _since(tau, start, total)
-        order = np.argsort(since, kind="stable")
-        places, speeds, forces = np.empty((3, tau.size))
-        senses = np.empty(tau.size, dtype=np.int8)
-        sample_slides(step, b, rows, since[order], places, speeds, forces, senses, np.empty(MAX_TERMS))
-        z[order], v[order], friction[order] = places, speeds, forces
-        phase[order] = senses
-        times, begins, at = _events(rows, begin)
-        times = np.mod(times + start, total)
-        order = np.argsort(times, kind="stable")
-        events = (times[order], begins[order], load * at[order])
-    base = question.system.base_motion
-    z, v = load * z, load * v
+def _stuck_history(question: Question, cells: Cells, rest: float) -> History:
+    """The contact held at `rest` for good."""
+    found = cells.structures
+    tau = _times(1, question.points)
+    turn = np.exp(1j * tau)
+    held = found.held[0][:, np.newaxis] * turn
+    force = question.system.modes.held_load(np.array([question.r]))[0] * turn
     return History(
-        period, tau, (z + base * np.cos(tau))[np.newaxis], (v - base * np.sin(tau))[np.newaxis], z,
-        load * friction, phase, events, rows[:, WAIT][rows[:, WAIT] > SHORTEST_STOP],
-        load * np.abs(rows[:, Z_END]).max(initial=0.0), not rows.size,
+        1, tau, held.real + found.shapes.lift[:, np.newaxis] * rest, -held.imag, np.full(tau.size, rest),
+        force.real - found.model.stiffness * rest, np.zeros(tau.size, np.int8),
+        (np.empty(0), np.empty(0), np.empty(0)), np.empty(0), 0.0, True,
     )  # fmt: skip
 
 
-def _structure_phases(question: Question, cells: StructureCells) -> tuple[np.ndarray, float]:
-    """(rows, rest): the phases of the steady state over one period; none where stuck at `rest`."""
-    from ._kernels import structure_history as history
-    from ._kernels.oscillators import make_scratch
-    from ._kernels.returns import make_workspace
-    from ._kernels.structure import make_structure
-    from ._kernels.structure_sweep import one_structure
-
-    found, solver, beta = cells.found, question.solver, question.beta
-    n = found.seen.size
-    steps = float(solver.steps)
-    columns = history.STATE + 2 * n
-    regime = _decided(cells, question)
-    events = 0
-    rest = 0.0
-    state = np.empty((2, n))
-    if regime == regimes.UNRESOLVED:
-        cell = one_structure(
-            beta, question.mu, cells.curves.beta_lim[0, 0], question.r, found.model, found.loads, found.orbit,
-            bool(found.marginal[0]), cells.starts, steps, limits(solver), state,
-        )  # fmt: skip
-        if cell.period == 0:
-            raise _no_steady_state(question, regimes.status_meaning(cell.status))
-        regime, events, rest = cell.regime, cell.events, cell.sign * cell.z
-    if regime == regimes.PERMANENT_STICKING:
-        return np.empty((0, columns)), rest
-    st = make_structure(found.model, found.loads, 0, question.r, steps)
-    work = make_workspace(n)
-    if events:
-        rows = np.empty((2 * events, columns))
-        state[1] /= st.rate
-        count = history.orbit_phases(
-            st, beta, question.mu * beta, state, cell.cos, cell.sin, cell.sign, cell.net, events, rows, work,
-            make_scratch(n),
-        )  # fmt: skip
-        rows = rows[:count]
-    elif math.isinf(found.orbit.v_abs[0]):
-        raise _no_steady_state(question, _UNBOUNDED)
-    else:
-        rows = np.empty((1, columns))
-        orbit = found.orbit
-        phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], beta)
-        history.continuous_phase(st, orbit, 0, beta, phase, rows, work)
-    if round(float(rows[:, history.LENGTH].sum()) / math.pi) % 2:  # it returned as its mirror image
-        mirrored = rows.copy()
-        mirrored[:, history.SIGN] *= -1.0
-        rows = np.concatenate((rows, mirrored))
-    return rows, 0.0
+def _events(table: np.ndarray, start: float, total: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times from tau = 0 on, phases that begin and z there."""
+    sign = table[:, phase_table.SIGN]
+    times = np.mod(table[:, phase_table.BEGIN] + start, total)
+    # a slide starts where the phase before it ended
+    places = np.roll(sign * table[:, phase_table.Z_END], 1)
+    order = np.argsort(times, kind="stable")
+    return times[order], (sign * table[:, phase_table.SENSE])[order], places[order]
 
 
-def _structure_history(question: Question, cells: StructureCells) -> History:
-    from ._kernels import structure_history as history
-    from ._kernels.oscillators import make_scratch
-    from ._kernels.returns import make_workspace
-    from ._kernels.structure import make_structure
-
-    found = cells.found
+def _moving_history(question: Question, cells: Cells, table: np.ndarray) -> History:
+    """A steady state that slides, sampled along its phases."""
+    found = cells.structures
     if found.resonant.any():
         raise _no_steady_state(question, _UNBOUNDED)
-    rows, rest = _structure_phases(question, cells)
     n = found.seen.size
-    total = float(rows[:, history.LENGTH].sum())
+    lengths = table[:, phase_table.LENGTH]
+    total = float(lengths.sum())
     period = max(1, round(total / _TURN))
     tau = _times(period, question.points)
-    turn = np.exp(1j * tau)
-    if not rows.size:
-        held = found.held[0][:, np.newaxis] * turn
-        force = question.system.modes.held_load(np.array([question.r]))[0] * turn
-        return History(
-            period, tau, held.real + found.shapes.lift[:, np.newaxis] * rest, -held.imag,
-            np.full(tau.size, rest), force.real - found.model.stiffness * rest, np.zeros(tau.size, np.int8),
-            (np.empty(0), np.empty(0), np.empty(0)), np.empty(0), 0.0, True,
-        )  # fmt: skip
-    sign = rows[0, history.SIGN]
-    start = math.atan2(sign * rows[0, history.SIN], sign * rows[0, history.COS])
+    sign = table[0, phase_table.SIGN]
+    start = math.atan2(sign * table[0, phase_table.SIN], sign * table[0, phase_table.COS])
     since = _since(tau, start, total)
     order = np.argsort(since, kind="stable")
     st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
     coordinates, velocities = np.empty((2, n, tau.size))
     z, friction = np.empty((2, tau.size))
     sense = np.empty(tau.size, dtype=np.int8)
-    history.sample_phases(
-        st, question.beta, rows, rows.shape[0], since[order], coordinates, velocities, z, friction, sense,
+    sample_phases(
+        st, question.beta, table, since[order], coordinates, velocities, z, friction, sense,
         make_workspace(n), make_scratch(n),
     )  # fmt: skip
     back = np.empty_like(order)
     back[order] = np.arange(order.size)
-    alone = (found.alone_re[0] + 1j * found.alone_im[0])[:, np.newaxis] * turn
-    begin = np.concatenate(([0.0], np.cumsum(rows[:, history.LENGTH])[:-1]))
-    times = np.mod(begin + start, total)
-    # a slide starts where the phase before it ended
-    places = np.roll(rows[:, history.SIGN] * rows[:, history.Z_END], 1)
-    chosen = np.argsort(times, kind="stable")
-    stops = rows[:, history.SENSE] == 0.0
+    alone = (found.alone_re[0] + 1j * found.alone_im[0])[:, np.newaxis] * np.exp(1j * tau)
     return History(
         period, tau, (found.shapes.free @ coordinates)[:, back] + alone.real,
         (found.shapes.free @ velocities)[:, back] - alone.imag, z[back], friction[back], sense[back],
-        (times[chosen], (rows[:, history.SIGN] * rows[:, history.SENSE])[chosen], places[chosen]),
-        rows[stops, history.LENGTH], float(np.abs(rows[:, history.Z_END]).max()), False,
+        _events(table, start, total), lengths[table[:, phase_table.SENSE] == 0.0],
+        float(np.abs(table[:, phase_table.Z_END]).max()), False,
     )  # fmt: skip
 
 
@@ -292,6 +193,13 @@ def _further(question: Question, names: list[Output]) -> dict[str, xr.Variable]:
     ds = sweep(question.system, question.r, question.beta, question.mu, solver=solver, threads=1)
     cell = ds.isel(mu=0, r=0, beta=0, missing_dims="ignore")
     return {name: cell[name].variable for name in names}
+
+
+def _history(question: Question, cells: Cells) -> History:
+    table, rest = _phases(question, cells)
+    if table is None:
+        return _stuck_history(question, cells, rest)
+    return _moving_history(question, cells, table)
 
 
 def response(
@@ -349,11 +257,7 @@ def response(
         raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
     question = Question(system, r, beta, mu, solver, points)
     cells = make_cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
-    if isinstance(cells, OneMassCells):
-        history = _one_mass_history(question, cells)
-    else:
-        assert isinstance(cells, StructureCells)
-        history = _structure_history(question, cells)
+    history = _history(question, cells)
     stops = history.durations.size
     regime = regimes.STICK_SLIP if stops else regimes.CONTINUOUS
     summary = {

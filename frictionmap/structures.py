@@ -6,19 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ._kernels.closed_form import damping_functions
+from ._kernels.engine.displacements import Shapes
+from ._kernels.engine.many_masses import Starts
+from ._kernels.engine.policies import MOVING, MOVING_CAP
 from ._kernels.structure import CHI, LIFT, MODE_ROWS, Loads, Model
-from ._kernels.structure_history import Shapes
 from ._kernels.structure_orbit import Continuous
-from ._kernels.structure_sweep import Starts
 from .curves import Curves
 from .held import held_structure
 from .modes import ModalModel, angles, modulus, times
 from .system import System
-
-#: The moving start, in units of the motion that the load alone sustains: energy amplitude, and the cap on
-#: that motion near resonance; as `_kernels.sweep.start_state` has it for one mass.
-_MOVING = 1.5
-_MOVING_CAP = 10.0
 
 #: A share of the load smaller than this times n eps of the most that it could be is rounding; as in `modes`.
 _ZERO_SHARE = 64.0
@@ -109,7 +105,7 @@ def _rest(modes: ModalModel, seen: np.ndarray, n_r: int) -> Starts:
     c = modes.contact
     x = modes.base_motion * (c / (c @ c) - 1.0)  # relative to the base
     place = (modes.phi[:, seen].T @ modes.mass @ x)[np.newaxis].repeat(n_r, axis=0)
-    return Starts(place, np.zeros_like(place), np.ones(n_r), np.zeros(n_r), False)
+    return Starts(place, np.zeros_like(place), np.ones(n_r), np.zeros(n_r))
 
 
 def _moving(
@@ -123,11 +119,11 @@ def _moving(
     w = modes.w[seen]
     stiffness = np.ascontiguousarray(modulus(modes.dynamic_stiffness(r)[:, seen]))
     with np.errstate(divide="ignore"):
-        gain = np.minimum(1.0 / stiffness, _MOVING_CAP / w**2)
-    size = _MOVING * modulus(participation) * gain * np.maximum(w, r[:, np.newaxis])
+        gain = np.minimum(1.0 / stiffness, MOVING_CAP / w**2)
+    size = MOVING * modulus(participation) * gain * np.maximum(w, r[:, np.newaxis])
     lead = np.where(np.isfinite(force), angles(force), 0.0)
     sine, cosine = (np.array([function(angle) for angle in lead]) for function in (math.sin, math.cos))
-    return Starts(np.zeros_like(size), size * np.sign(modes.chi[seen]), sine, cosine, True)
+    return Starts(np.zeros_like(size), size * np.sign(modes.chi[seen]), sine, cosine)
 
 
 def _alone(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

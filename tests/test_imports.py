@@ -15,7 +15,7 @@ import frictionmap as fm
 
 PACKAGE = Path(fm.__file__).parent
 #: How kernels are compiled and kept on disk is no kernel.
-PLUMBING = ("jit.py", "cache.py", "cache_folders.py")
+PLUMBING = ("jit.py", "kinds.py", "cache.py", "cache_folders.py")
 KERNELS = sorted(path for path in (PACKAGE / "_kernels").rglob("*.py") if path.name not in PLUMBING)
 SOURCES = sorted(PACKAGE.rglob("*.py"))
 HEAVY = ("numba", "xarray", "matplotlib", "scipy", "netCDF4", "pandas")
@@ -91,7 +91,7 @@ def test_kernels_know_numbers_and_codes_only(path):
 
 def test_imports_are_read_right():
     """The check above sees relative imports as what they are."""
-    names = set(imported(PACKAGE / "_kernels" / "sweep.py"))
+    names = set(imported(PACKAGE / "_kernels" / "engine" / "fill.py"))
     assert "frictionmap._kernels.jit.entry" in names
     assert any(name.startswith("frictionmap.regimes") for path in KERNELS for name in imported(path))
 

@@ -412,7 +412,7 @@ def test_kernels_are_cached_between_processes(tmp_path):
     code = (
         "import frictionmap as fm, numba\n"
         "fm.sweep(fm.System(), [0.3], [0.5], 1.0)\n"
-        "from frictionmap._kernels.sweep import fill_integrated as f, fill_closed_form as g\n"
+        "from frictionmap._kernels.engine.fill import fill_open as f, fill_closed as g\n"
         "print(sum(len(k.stats.cache_hits) for k in (f, g)), sum(len(k.stats.cache_misses) for k in (f, g)))"
     )
     import os

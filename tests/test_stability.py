@@ -14,7 +14,7 @@ from frictionmap._kernels.follow import MOVING
 from frictionmap._kernels.oscillators import make_scratch
 from frictionmap._kernels.returns import make_workspace
 from frictionmap._kernels.structure import make_structure
-from frictionmap.cells import StructureCells
+from frictionmap.cells import make_cells
 
 after_slide = callable_kernel(follow.after_slide)
 slide_on = callable_kernel(follow.slide_on)
@@ -62,7 +62,8 @@ def test_closed_form_of_one_mass(r):
 
 def set_moving(system, r, beta, mu):
     """(n, structure, its moving start with cos and sin of the load's phase, workspace, scratch)."""
-    found = StructureCells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver()).found
+    cells = make_cells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver())
+    found = cells.structures
     n = found.seen.size
     st = make_structure(found.model, found.loads, 0, r, 24.0)
     moving = found.moving

@@ -12,14 +12,15 @@ import frictionmap as fm
 from benchmarks.references.naive import Motion, Structure, naive_steady_state
 from frictionmap import regimes
 from frictionmap._kernels import closed_form, oscillators
-from frictionmap._kernels import structure_history as history
+from frictionmap._kernels.engine import phase_table
+from frictionmap._kernels.engine.time_history import sample_phases
 from frictionmap._kernels.oscillators import ROWS, WW, WZ, ZW, ZZ, D, K, make_scratch
 from frictionmap._kernels.returns import make_workspace
 from frictionmap._kernels.structure import make_structure
-from frictionmap.cells import StructureCells
+from frictionmap.cells import make_cells
 from frictionmap.held import held_structure
 from frictionmap.settings import OUTPUTS as EVERY
-from frictionmap.steady import Question, _structure_phases
+from frictionmap.steady import Question, _phases
 
 decay = callable_kernel(closed_form.decay)
 fill_steps = callable_kernel(oscillators.fill_steps)
@@ -280,12 +281,12 @@ def test_held_structure(case):
 def gauss_samples(system, r, beta, mu):
     """Weights, times, velocities of the masses and of the contact, friction: Gauss points in every phase."""
     solver = fm.Solver()
-    cells = StructureCells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
+    cells = make_cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
     question = Question(system, r, beta, mu, solver, 2)
-    rows, _ = _structure_phases(question, cells)
-    found = cells.found
+    rows, _ = _phases(question, cells)
+    found = cells.structures
     x, weight = np.polynomial.legendre.leggauss(12)
-    begins = np.concatenate(([0.0], np.cumsum(rows[:, history.LENGTH])))
+    begins = np.concatenate(([0.0], np.cumsum(rows[:, phase_table.LENGTH])))
     panels = [np.linspace(left, right, 41) for left, right in pairwise(begins)]
     left = np.concatenate([edges[:-1] for edges in panels])[:, np.newaxis]
     width = np.concatenate([np.diff(edges) for edges in panels])[:, np.newaxis]
@@ -294,12 +295,12 @@ def gauss_samples(system, r, beta, mu):
     st = make_structure(found.model, found.loads, 0, r, 24.0)
     coordinates, velocities = np.empty((2, n, since.size))
     z, friction = np.empty((2, since.size))
-    history.sample_phases(
-        st, beta, rows, rows.shape[0], since, coordinates, velocities, z, friction,
+    sample_phases(
+        st, beta, rows, since, coordinates, velocities, z, friction,
         np.empty(since.size, dtype=np.int8), make_workspace(n), make_scratch(n),
     )  # fmt: skip
-    sign = rows[0, history.SIGN]
-    tau = since + math.atan2(sign * rows[0, history.SIN], sign * rows[0, history.COS])
+    sign = rows[0, phase_table.SIGN]
+    tau = since + math.atan2(sign * rows[0, phase_table.SIN], sign * rows[0, phase_table.COS])
     relative = found.shapes.free @ velocities  # to the base, if it moves
     return (0.5 * width * weight).ravel(), tau, relative, friction
 

@@ -14,12 +14,13 @@ from numba import njit
 
 import frictionmap as fm
 from frictionmap._kernels import events
+from frictionmap._kernels.engine.one_mass import OneMassSystem
 from frictionmap._kernels.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from frictionmap._kernels.follow import after_slide, slide_on
 from frictionmap._kernels.oscillators import make_scratch
 from frictionmap._kernels.phases import MAX_TERMS, step_constants
 from frictionmap._kernels.structure import make_structure, place
-from frictionmap.cells import OneMassCells, make_cells
+from frictionmap.cells import make_cells
 from frictionmap.maps import _allocate
 from frictionmap.settings import Solver
 
@@ -218,15 +219,15 @@ def prepare_marched(scene: Scene, cells: list[tuple[float, float]], setting: flo
     r, beta = np.array(cells).T
     found = make_cells(scene.system, r, beta, np.array([scene.mu]), Solver())
     out, begins = np.empty((r.size, 2)), np.empty((r.size, MOST_STOPS))
-    if isinstance(found, OneMassCells):
-        f = found.found.frequencies
+    if isinstance(found.motion, OneMassSystem):
+        f = found.motion.frequencies
         arguments = (
             r, beta, scene.zeta, f.load, f.phase, scene.mu, float(setting), cycles, out, begins
         )  # fmt: skip
         function = _march_one_mass
     else:
         arguments = (
-            found.found.model, found.found.loads, r, beta, scene.mu, float(setting), cycles, out, begins
+            found.motion.model, found.motion.loads, r, beta, scene.mu, float(setting), cycles, out, begins
         )  # fmt: skip
         function = _march_structure
 

@@ -34,13 +34,14 @@ from numba import njit
 
 import frictionmap as fm
 from frictionmap import regimes
-from frictionmap._kernels.continuous import Oscillator
-from frictionmap._kernels.cycle import HISTORY_ROWS, NEIGHBOUR, Limits, history_length, steady_cell
-from frictionmap._kernels.phases import MAX_TERMS, step_constants
-from frictionmap._kernels.sweep import FINE_STEPS, Outputs, normalised_friction
+from frictionmap._kernels.engine.answers import Limits
+from frictionmap._kernels.engine.fill import OpenCells
+from frictionmap._kernels.engine.march import steady_state
+from frictionmap._kernels.engine.motion import at_frequency, contact_at, start
+from frictionmap._kernels.engine.one_mass import Frequencies, OneMassSystem
 from frictionmap.cells import make_cells
 from frictionmap.curves import one_mass_curves
-from frictionmap.maps import _allocate
+from frictionmap.maps import Arrays, _allocate
 from frictionmap.settings import Solver
 
 from ..peers.body import Body, Cell, Outcome
@@ -70,43 +71,32 @@ COUNTS = {
 
 
 @njit
-def solve_cells(load, phase, oscillators, lim, stick, beta, mu, limits):
-    """Stops and amplitude of single cells, each with all its constants computed anew."""
-    history = np.empty((HISTORY_ROWS, history_length(np.min(oscillators[:, 0]))))
-    neighbour = np.zeros(NEIGHBOUR)
-    work = np.empty(MAX_TERMS)
-    stop = np.zeros(1, dtype=np.uint8)
+def solve_cells(system, beta, mu, limits):
+    """Stops and amplitude of single cells, one a frequency, each with all its constants computed anew."""
+    cancel = np.zeros(1, dtype=np.uint8)
     out = np.empty((beta.size, 2))
     for k in range(beta.size):
-        r, zeta, v_abs, v_arg, u, g = oscillators[k]
-        oscillator = Oscillator(r, zeta, v_abs, v_arg, u, g, False)
-        step = step_constants(r, zeta, 24.0)
-        fine = step_constants(r, zeta, FINE_STEPS)
-        b, mu_b = normalised_friction(beta[k], load[k], mu[k], stick[k])
-        cell = steady_cell(
-            step, fine, oscillator, b, mu_b, lim[k], 0.0, 0.0, math.cos(phase[k]), math.sin(phase[k]),
-            limits, stop, history, neighbour, work,
-        )  # fmt: skip
+        motion = at_frequency(system, k)
+        contact = contact_at(system, 0, k, beta[k], mu[k])
+        at = start(motion, system, k, contact, False)
+        cell = steady_state(motion, contact, at, False, limits, cancel)
         out[k, 0] = cell.stops
-        out[k, 1] = cell.amplitude * load[k]
+        out[k, 1] = cell.amplitude * motion.load
     return out
 
 
 def prepare(cells: list[Cell]) -> tuple:
     """Arguments of `solve_cells`."""
     system = fm.System(contact=BODY.wall, damping_ratios=BODY.zeta)
-    rows = []
-    for cell in cells:
-        found = one_mass_curves(system, np.array([cell.r]), np.array([cell.mu]))
-        f = found.frequencies
-        rows.append(
-            (
-                f.load[0], f.phase[0], (cell.r, BODY.zeta, f.v_abs[0], f.v_arg[0], f.u[0], f.g[0]),
-                found.lim[0, 0], found.curves.beta_stick[0, 0], cell.beta, cell.mu,
-            )
-        )  # fmt: skip
-    columns = [np.array(column) for column in zip(*rows, strict=True)]
-    return (*columns, Limits(2000.0, 1e-12, True))
+    found = [one_mass_curves(system, np.array([cell.r]), np.array([cell.mu])) for cell in cells]
+    columns = zip(*(one.frequencies for one in found), strict=True)
+    frequencies = Frequencies(*(np.concatenate(column) for column in columns))
+    lim = np.hstack([one.lim for one in found])
+    stick = np.hstack([one.curves.beta_stick for one in found])
+    beta, mu = (np.array([getattr(cell, name) for cell in cells]) for name in ("beta", "mu"))
+    return (
+        OneMassSystem(frequencies, BODY.zeta, 24.0, lim, stick, 1, 1.0), beta, mu, Limits(2000.0, 1e-12, True)
+    )  # fmt: skip
 
 
 def sample_cells(count: int, moving: bool, rng: np.random.Generator, mu: float = 1.0) -> list[Cell]:
@@ -311,7 +301,7 @@ def _near_cells(system: fm.System, quick: bool) -> tuple[np.ndarray, np.ndarray]
 
 def cells_by_kernel(
     system: fm.System, r: np.ndarray, beta: np.ndarray, steady: str, cycles: int
-) -> Callable[[], Outputs]:
+) -> Callable[[], Arrays]:
     """A function that solves cells (r[k], beta[k]), mu = 1, by the kernel of maps; k is out[0, k, k]."""
     solver = Solver(
         steady=steady,
@@ -323,10 +313,14 @@ def cells_by_kernel(
     one_a_row = np.arange(r.size)
     cells = make_cells(system, r, beta, np.ones(1), solver)
     function, arguments = cells.opened(
-        0, r.size, one_a_row, one_a_row + 1, one_a_row, out, np.zeros(1, dtype=np.uint8)
+        0,
+        r.size,
+        OpenCells(one_a_row, one_a_row + 1, one_a_row, one_a_row + 1),
+        out,
+        np.zeros(1, dtype=np.uint8),
     )
 
-    def solve() -> Outputs:
+    def solve() -> Arrays:
         function(*arguments)
         return out
 
@@ -348,7 +342,7 @@ def solved_and_marched(
     r, beta = r[resolved], beta[resolved]
     ways = {steady: cells_by_kernel(system, r, beta, steady, cycles) for steady in ("solved", "marched")}
     seconds: dict[str, list[float]] = {name: [] for name in ways}
-    answers: dict[str, Outputs] = {}
+    answers: dict[str, Arrays] = {}
     spent, runs = 0.0, 0
     while runs < LEAST_RUNS or (spent < budget and runs < MOST_RUNS):
         runs += 1

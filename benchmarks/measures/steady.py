@@ -184,6 +184,34 @@ def one_answer(quick: bool) -> dict:
     return {"resolved by all three": resolved} | _summary(cells, resolved, found, off)
 
 
+def headings(quick: bool) -> dict:
+    """One mass, mu > 1, where steady states coexist: is the one solved for the one that marching reaches?
+
+    Alone and in maps of other outputs the answer must be the same, so no details are asked for.
+    """
+    rng = np.random.default_rng(100000)
+    maps = 2 if quick else 25
+    cells = both = 0
+    found: list[dict] = []
+    off = []
+    for _ in range(maps):
+        contact = str(rng.choice(["fixed-wall", "joined-base-wall"]))
+        zeta = float(rng.choice([0.0, 0.001, 0.01, 0.1]))
+        system = fm.System(contact=contact, damping_ratios=zeta)
+        r = np.sort(np.exp(rng.uniform(np.log(0.12), np.log(2.2), 60)))
+        beta = np.sort(np.exp(rng.uniform(np.log(0.005), np.log(0.9), 40)))
+        grid = (system, r, beta, np.sort(rng.uniform(1.05, 3.0, 2)))
+        for start in ("rest", "moving"):
+            solved = fm.sweep(*grid, outputs=OUTPUTS, start=start)
+            marched = fm.sweep(*grid, outputs=OUTPUTS, start=start, steady="marched", cycles=CYCLES)
+            resolved, rows, difference = compare(solved, marched)
+            cells += solved.regime.size
+            both += resolved
+            found += [{"contact": contact, "zeta": zeta, "start": start} | row for row in rows]
+            off.append(difference)
+    return _summary(cells, both, found, off)
+
+
 def undamped(quick: bool) -> dict:
     """T Fig. 6.7 and 6.14, undamped: cells by status."""
     content: dict = {}
@@ -230,6 +258,7 @@ def run(quick: bool, results: Path) -> dict:
         "T Fig. 3.12": published_map(quick),
         "five damped chains": random_cells(quick),
         "mu = 1, any start": one_answer(quick),
+        "one mass, mu > 1": headings(quick),
     }
 
     def causes(row: dict) -> str:

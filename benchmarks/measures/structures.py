@@ -26,14 +26,14 @@ from numba import njit
 import frictionmap as fm
 from frictionmap import regimes
 from frictionmap._kernels import events, phases
+from frictionmap._kernels.engine.fill import OpenCells
 from frictionmap._kernels.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, TOUCH
 from frictionmap._kernels.follow import after_slide, slide_on
 from frictionmap._kernels.oscillators import FELL, make_scratch
 from frictionmap._kernels.structure import make_structure
-from frictionmap._kernels.sweep import Outputs
-from frictionmap.cells import StructureCells
+from frictionmap.cells import make_cells
 from frictionmap.curves import many_mode_curves, one_mass_curves
-from frictionmap.maps import _allocate
+from frictionmap.maps import Arrays, _allocate
 from frictionmap.settings import Solver
 
 from ..peers.body import Body, Cell, Outcome
@@ -119,7 +119,7 @@ def _motion(system: fm.System, r: float, steps: int, special: bool) -> Callable[
         step = phases.step_constants(r, system.zeta, float(steps))
         work = np.empty(phases.MAX_TERMS)
         return lambda slides: follow_one(step, BETA, BETA, slides, work)
-    found = StructureCells(system, np.array([r]), np.array([BETA]), np.ones(1), Solver()).found
+    found = make_cells(system, np.array([r]), np.array([BETA]), np.ones(1), Solver()).found
     n = found.seen.size
     st = make_structure(found.model, found.loads, 0, r, float(steps))
     state, held, scratch = np.zeros((2, n)), np.zeros((2, n - 1)), make_scratch(n)
@@ -269,16 +269,20 @@ def sample_cells(
     return sorted(found), left_out
 
 
-def prepare(system: fm.System, sampled: list[Sampled]) -> tuple[Callable[[], None], Outputs]:
+def prepare(system: fm.System, sampled: list[Sampled]) -> tuple[Callable[[], None], Arrays]:
     """(solve, out): the cells by the kernel of maps, constants made anew for each; cell k is out[0, k, k]."""
     r, beta = (np.array([getattr(cell, name) for cell in sampled]) for name in ("r", "beta"))
     mu = np.ones(1)
     solver = Solver()
     out = _allocate((1, r.size, r.size), system.n, solver.outputs)
     one_a_row = np.arange(r.size)
-    cells = StructureCells(system, r, beta, mu, solver)
+    cells = make_cells(system, r, beta, mu, solver)
     function, arguments = cells.opened(
-        0, r.size, one_a_row, one_a_row + 1, one_a_row, out, np.zeros(1, dtype=np.uint8)
+        0,
+        r.size,
+        OpenCells(one_a_row, one_a_row + 1, one_a_row, one_a_row + 1),
+        out,
+        np.zeros(1, dtype=np.uint8),
     )
     return lambda: function(*arguments), out
 

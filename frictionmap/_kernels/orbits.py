@@ -14,16 +14,10 @@ from .closed_form import decay
 from .events import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, slide
 from .jit import kernel
 
-#: A stop shorter than this is a touch of no duration, seen through rounding of the load's phase.
-SHORTEST_STOP = 1e-14
-
 _MAX_NEWTON = 16
 
 #: Newton steps below this share of the displacement have to shrink fast.
 _NEAR_END = 1e-6
-
-#: Anchors this close are one: Newton's method may have gone round a short orbit more than once.
-_SAME = 1e-9
 
 #: Longest slide of an orbit, in periods of its slower part: one that was followed once has none so long.
 _LONGEST_SLIDE = 100.0
@@ -162,33 +156,3 @@ def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, codes, first, co
             return True, z, c, s, contraction
         last = size
     return False, z, c, s, 1.0
-
-
-@kernel
-def measure_orbit(step, r, b, mu_b, z, c, s, code, count, work):
-    """The orbit that returns to an anchor reached by an event `code` after `count` slides, or sooner.
-
-    Returns (slides, half periods of the excitation, stops, amplitude, share of time stuck).
-    """
-    z0, c0, s0 = z, c, s
-    push = first_push(b, mu_b, z, c)
-    max_steps = longest_slide(step, r)
-    amplitude = 0.0
-    time = 0.0
-    stuck = 0.0
-    stops = 0
-    slides = 0
-    for _ in range(count):
-        n, z, c, s = slide(step, b, z, 0.0, step.stiffness * push, c, s, max_steps, work)
-        amplitude = max(amplitude, abs(z))
-        time += n * step.h
-        event, z, c, s, push, wait = after_slide(b, mu_b, z, c, s)
-        if (event == STOP_THEN_BACK or event == STOP_THEN_ON) and wait > SHORTEST_STOP:
-            stops += 1
-            stuck += wait
-            time += wait
-        slides += 1
-        if event == code and abs(z - z0) <= _SAME * abs(z0) and abs(c - c0) <= _SAME and abs(s - s0) <= _SAME:
-            break
-    halves = half_periods(time)
-    return slides, halves, stops, amplitude, stuck / time

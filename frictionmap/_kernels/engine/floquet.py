@@ -4,15 +4,15 @@ import math
 
 import numpy as np
 
-from .continuous import orbit_phase
-from .events import REVERSE
-from .follow import after_slide, slide_on
-from .jit import entry, kernel
-from .orbits import half_periods, longest_slide
-from .oscillators import FELL
-from .returns import copy_state, return_map, spectral_radius
-from .structure_history import sample_phases
-from .structure_orbit import orbit_state
+from ..continuous import orbit_phase
+from ..events import REVERSE
+from ..follow import slide_on
+from ..jit import entry, kernel
+from ..orbits import half_periods
+from ..returns import copy_state, return_map, spectral_radius
+from ..structure_orbit import orbit_state
+from .phase_table import COS, EVENT, LENGTH, NET, SENSE, SIN, take_start
+from .time_history import sample_phases
 
 #: Samples of z in half a period of the excitation for its asymmetry.
 _SAMPLES = 256
@@ -21,38 +21,31 @@ _SAMPLES = 256
 @kernel
 def _around(st, beta, mu_beta, c, s, codes, count, halves, work, scratch):
     """Largest modulus over the steady period from work.middle in a slide; nan if it does not fit."""
-    if not return_map(st, beta, mu_beta, work.middle, c, s, codes, 0, count, halves, True, work, scratch):
+    first = np.int64(0)  # not a literal, which would be compiled for itself
+    if not return_map(st, beta, mu_beta, work.middle, c, s, codes, first, count, halves, True, work, scratch):
         return math.nan
     radius = spectral_radius(work.flow, 2 * st.n, work.square)
     return radius * radius if halves % 2 == 1 else radius
 
 
 @entry
-def orbit_multiplier(st, beta, mu_beta, net, state, c, s, count, work, scratch):
-    """Largest modulus of the multipliers of the orbit that returns to an anchor after `count` slides."""
-    copy_state(state, work.moved, st.n)
-    codes = np.empty(count)
-    limit = longest_slide(st, st.r)
+def orbit_multiplier(st, beta, mu_beta, table, work, scratch):
+    """Largest modulus of the multipliers of the periodic orbit of a table of phases."""
+    codes = np.empty(table.shape[0])
+    slides = 0
     time = 0.0
-    first = 0.0
-    c1, s1, push = c, s, net
-    for k in range(count):
-        steps, end, c1, s1, _ = slide_on(st, beta, push, work.moved, c1, s1, limit, scratch)
-        if end != FELL:
-            return math.nan
-        if k == 0:
-            first = steps
-        code, c1, s1, push, wait, _, _ = after_slide(
-            st, beta, mu_beta, work.moved, work.held, c1, s1, limit * st.h, scratch
-        )
-        codes[k] = code
-        time += steps * st.h + wait
-    if not time < math.inf:
-        return math.nan
-    copy_state(state, work.middle, st.n)
-    _, _, c, s, _ = slide_on(st, beta, net, work.middle, c, s, 0.5 * first, scratch)
-    halves = half_periods(time)
-    return _around(st, beta, mu_beta, c, s, codes, count, halves, work, scratch)
+    for k in range(table.shape[0]):
+        time += table[k, LENGTH]
+        if table[k, SENSE] > 0.0:
+            codes[slides] = table[k, EVENT]
+            slides += 1
+    take_start(st, table[0], work)
+    copy_state(work.moved, work.middle, st.n)
+    # from the middle of the first slide
+    c, s = table[0, COS], table[0, SIN]
+    half = 0.5 * table[0, LENGTH] / st.h
+    _, _, c, s, _ = slide_on(st, beta, table[0, NET], work.middle, c, s, half, scratch)
+    return _around(st, beta, mu_beta, c, s, codes, slides, half_periods(time), work, scratch)
 
 
 @kernel
@@ -66,7 +59,8 @@ def continuous_multiplier(st, orbit, i, beta, mu_beta, work, scratch):
     c, s = math.sin(phase), -math.cos(phase)
     orbit_state(st, orbit, i, beta, phase, c, s, work.middle)
     work.codes[0] = REVERSE
-    return _around(st, beta, mu_beta, c, s, work.codes, 1, 1, work, scratch)
+    once = np.int64(1)
+    return _around(st, beta, mu_beta, c, s, work.codes, once, once, work, scratch)
 
 
 @kernel
@@ -83,15 +77,15 @@ def _least_difference(z, halves):
 
 
 @entry
-def asymmetry(st, beta, rows, count, amplitude, work, scratch):
+def asymmetry(st, beta, table, amplitude, work, scratch):
     """How far the motion in a table of phases is from a mirror image of itself, over the amplitude.
 
     The least over odd m of the largest |z(tau + m pi) + z(tau)|; 0 if it returns mirrored, that is after an
     odd number of half periods.
     """
     total = 0.0
-    for k in range(count):
-        total += rows[k, 0]
+    for k in range(table.shape[0]):
+        total += table[k, LENGTH]
     halves = half_periods(total)
     if halves % 2 == 1:
         return 0.0
@@ -101,7 +95,7 @@ def asymmetry(st, beta, rows, count, amplitude, work, scratch):
         tau[j] = total * j / size
     z = np.zeros(size)
     sample_phases(
-        st, beta, rows, count, tau, np.empty((st.n, size)), np.empty((st.n, size)), z, np.empty(size),
+        st, beta, table, tau, np.empty((st.n, size)), np.empty((st.n, size)), z, np.empty(size),
         np.empty(size, dtype=np.int8), work, scratch,
     )  # fmt: skip
     return _least_difference(z, halves) / amplitude

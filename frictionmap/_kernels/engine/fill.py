@@ -1,0 +1,167 @@
+"""The cells of a map: whole runs of them by closed form, the open ones one by one."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ...regimes import CLOSED_FORM, CONTINUOUS, PERMANENT_STICKING, RESOLVED
+from ..continuous import continuous_amplitude
+from ..jit import entry, kernel
+from .answers import continuous_cell, known_orbit, quasi_static_cell, stuck_cell
+from .details import details_at, note_continuous, note_orbit, note_stuck
+from .march import steady_state
+from .measure import measure
+from .motion import at_frequency, contact_at, forget_neighbour, start
+from .phase_table import phase_columns
+
+#: Open cells of a row after which the search from the neighbour's orbit starts anew.  Work is cut only there
+#: and at the ends of rows, so that no answer depends on how it is cut.
+RESTART = 256
+
+
+class Axes(NamedTuple):
+    """The axes of a map."""
+
+    mu: np.ndarray
+    r: np.ndarray
+    beta: np.ndarray
+
+
+class OpenCells(NamedTuple):
+    """The cells that no formula decides."""
+
+    rows: np.ndarray  # (k,) the (mu, r) rows that have any
+    ends: np.ndarray  # (k,) number of open cells up to and with each of them
+    low: np.ndarray  # (n_mu n_r,) first open cell in beta, by row
+    high: np.ndarray  # (n_mu n_r,) and the one after the last
+
+
+class ClosedForm(NamedTuple):
+    """What the closed forms need at every r."""
+
+    load: np.ndarray  # unit of force and displacement
+    v_abs: np.ndarray
+    u: np.ndarray
+    g: np.ndarray
+    marginal: np.ndarray  # bool
+
+
+@kernel
+def store(out, m, i, j, cell, load):
+    """Write what was asked for of a cell; outputs that were not asked for have no size."""
+    if out.regime.size:
+        out.regime[m, i, j] = cell.regime
+    if out.stops_per_cycle.size:
+        out.stops_per_cycle[m, i, j] = cell.stops
+    if out.contact_amplitude.size:
+        out.contact_amplitude[m, i, j] = cell.amplitude * load
+    if out.stuck_fraction.size:
+        out.stuck_fraction[m, i, j] = cell.stuck
+    if out.period.size:
+        out.period[m, i, j] = cell.period
+    if out.origin.size:
+        out.origin[m, i, j] = cell.origin
+    if out.cycles.size:
+        out.cycles[m, i, j] = math.ceil(cell.cycles)
+    if out.status.size:
+        out.status[m, i, j] = cell.status
+
+
+@entry
+def fill_closed(first, last, cells, axes, closed, out, wanted):
+    """Rows first..last-1 of (mu, r): below the open cells all is continuous, above them it sticks.
+
+    At r = 0, where no motion can be followed, the open cells are filled too.
+    """
+    n_r = axes.r.size
+    for row in range(first, last):
+        m = row // n_r
+        i = row % n_r
+        load = closed.load[i]
+        details = details_at(wanted, i)
+        for j in range(cells.low[row]):
+            b = axes.beta[j] / load
+            amplitude = continuous_amplitude(closed.v_abs[i], closed.u[i], closed.g[i], b)
+            marginal = closed.marginal[i] and b > 0.0
+            store(out, m, i, j, continuous_cell(amplitude, marginal, CLOSED_FORM, 0.0), load)
+            if axes.r[i] > 0.0:
+                note_continuous(details, out, m, i, j, axes.beta[j], axes.mu[m] * axes.beta[j])
+        if axes.r[i] == 0.0:
+            for j in range(cells.low[row], cells.high[row]):
+                store(out, m, i, j, quasi_static_cell(), load)
+        for j in range(cells.high[row], axes.beta.size):
+            store(out, m, i, j, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
+            note_stuck(details, out, m, i, j, 0.0)
+
+
+@kernel
+def _note(details, motion, contact, found, out, m, i, j, beta, mu_beta):
+    """Write the details that were asked for of an open cell."""
+    if found.regime == PERMANENT_STICKING:
+        note_stuck(details, out, m, i, j, motion.load * found.at.z)
+    elif found.slides > 0:
+        amplitude = motion.load * found.amplitude
+        note_orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude)
+    elif found.regime == CONTINUOUS:
+        note_continuous(details, out, m, i, j, beta, mu_beta)
+
+
+@entry
+def fill_open(first, last, cells, axes, system, limits, moving, out, wanted, cancel):
+    """Cells first..last-1 of the list of open cells; ends soon after cancel[0] is set.
+
+    Parameters
+    ----------
+    first : a cell at which the search from neighbours starts anew: see RESTART
+    cells, axes : OpenCells, Axes
+    system : a system over the map, see `motion`
+    limits : Limits
+    moving : which start
+    out : named tuple of arrays, one for every output
+    wanted : details that are asked for, see `details`
+    cancel : (1,) set by another thread to end the work
+    """
+    n_r = axes.r.size
+    k = np.searchsorted(cells.ends, first, side="right")
+    cell = first
+    while cell < last:
+        row = cells.rows[k]
+        m = row // n_r
+        i = row % n_r
+        begin = cells.ends[k - 1] if k > 0 else 0
+        motion = at_frequency(system, i)
+        details = details_at(wanted, i)
+        for place in range(cell - begin, min(last, cells.ends[k]) - begin):
+            if cancel[0] != 0:
+                return
+            if place % RESTART == 0:
+                forget_neighbour(motion)
+            j = cells.low[row] + place
+            beta, mu = axes.beta[j], axes.mu[m]
+            contact = contact_at(system, m, i, beta, mu)
+            at = start(motion, system, i, contact, moving)
+            found = steady_state(motion, contact, at, moving, limits, cancel)
+            store(out, m, i, j, found, motion.load)
+            _note(details, motion, contact, found, out, m, i, j, beta, mu * beta)
+        cell = cells.ends[k]
+        k += 1
+
+
+@entry
+def one_cell(system, beta, mu, limits, moving):
+    """The steady state of one open cell of a system at one frequency, and its table of phases.
+
+    Returns (cell, table); the table has no rows where the contact sticks or a closed form tells the motion.
+    """
+    motion = at_frequency(system, 0)
+    forget_neighbour(motion)
+    contact = contact_at(system, 0, 0, beta, mu)
+    at = start(motion, system, 0, contact, moving)
+    found = steady_state(motion, contact, at, moving, limits, np.zeros(1, dtype=np.uint8))
+    table = np.empty((2 * found.slides, phase_columns(system.modes)))
+    phases = 0
+    if found.slides > 0:
+        orbit = known_orbit(found.at, found.event, found.sign, found.slides)
+        phases = measure(motion, contact, orbit, table).phases
+    return found, table[:phases]

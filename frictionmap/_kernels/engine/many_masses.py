@@ -1,0 +1,422 @@
+"""A structure as a kind of motion: all its modes, free and held.
+
+Where one mass forgets all but its displacement in a stop, the rest of a structure remembers, so anchors are
+compared, and solved for, with the whole state (`returns`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..continuous import continuous_amplitude, orbit_phase
+from ..events import NO_END, STOP_THEN_BACK
+from ..follow import MOVING, after_slide, slide_on
+from ..jit import entry, inner_kernel, kernel
+from ..oscillators import FELL, Scratch, make_scratch
+from ..returns import (
+    HALVES,
+    PHASE_COS,
+    PHASE_SIN,
+    SIDE,
+    Workspace,
+    copy_state,
+    make_workspace,
+    newton_step,
+    order_of_events,
+    return_map,
+    solve_return,
+    spectral_radius,
+)
+from ..structure import (
+    Loads,
+    Model,
+    Structure,
+    W,
+    energy,
+    hold,
+    make_structure,
+    place,
+    release_steady,
+    vibrates_in_step,
+)
+from ..structure_orbit import Continuous, orbit_state, stop_free_radius
+from .answers import TURN, Contact, Moment, Orbit, no_orbit, nowhere, turns_at
+from .memory import STATE, Memory, Near, make_memory, turned
+from .phase_table import put_state
+from .policies import FINE_STEPS, SLOTS
+
+#: The load's phase at a return has to be this close even where any state will do to start from.
+_NEAR_PHASE = 0.3
+
+#: An orbit with a slide longer than this (in tau) is not solved for, but waited for.
+_LONGEST_SLIDE = 8.0 * math.pi
+
+#: Orders of events that are tried on the way from a neighbour's orbit.
+_MOST_ORDERS = 8
+
+#: Anchors this close are one: ten times the one mass's, for the rounding of sums over many modes.
+_SAME = 1e-8
+
+
+class Starts(NamedTuple):
+    """Starting states at every r: of the free modes, velocities in t = tau/r, and the load's phase."""
+
+    place: np.ndarray  # (n_r, n)
+    velocity: np.ndarray  # (n_r, n)
+    cos: np.ndarray  # (n_r,)
+    sin: np.ndarray
+
+
+class ManyMassSystem(NamedTuple):
+    """A structure over a map."""
+
+    r: np.ndarray
+    model: Model
+    loads: Loads
+    orbit: Continuous
+    marginal: np.ndarray  # (n_r,) bool
+    rest: Starts
+    moving: Starts
+    steps: float  # scan steps per period of the fastest part of the motion
+    lim: np.ndarray  # (n_mu, n_r) boundary of beta to continuous motion
+    modes: int  # n
+
+
+class ManyMasses(NamedTuple):
+    """A structure at one frequency."""
+
+    h: float  # scan step in tau
+    r: float
+    load: float  # unit of force and displacement: 1, that of the system
+    v_abs: float
+    marginal: bool  # where continuous motions are a continuum
+    i: int  # the frequency's place
+    st: Structure
+    fine: Structure  # with steps at least as short, for bounds over a whole orbit
+    orbit: Continuous
+    state: np.ndarray  # (2, n) where the motion is, with its `Moment`
+    kept: np.ndarray  # (SLOTS, 2, n) states to come back to
+    memory: Memory
+    work: Workspace
+    scratch: Scratch
+    no_table: np.ndarray  # (0, 0)
+
+
+@entry
+def at_frequency(system, i):
+    """The structure at the i-th frequency, r > 0."""
+    r = system.r[i]
+    st = make_structure(system.model, system.loads, i, r, system.steps)
+    fine = make_structure(system.model, system.loads, i, r, max(system.steps, FINE_STEPS))
+    n = st.n
+    return ManyMasses(
+        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], i, st, fine, system.orbit,
+        np.empty((2, n)), np.empty((SLOTS, 2, n)), make_memory(st.h, 2 * n), make_workspace(n),
+        make_scratch(n), np.empty((0, 0)),
+    )  # fmt: skip
+
+
+@kernel
+def contact_at(system, m, i, beta, mu):
+    """The contact of a cell."""
+    return Contact(beta, mu * beta, system.lim[m, i], mu == 1.0)
+
+
+@kernel
+def start(motion, system, i, contact, moving):
+    """Where the motion starts; see `structures`."""
+    st, state = motion.st, motion.state
+    starts = system.moving if moving else system.rest
+    for j in range(st.n):
+        state[0, j] = starts.place[i, j]
+        state[1, j] = starts.velocity[i, j] / st.rate
+    return Moment(place(st, state), 0.0, starts.cos[i], starts.sin[i], MOVING)
+
+
+@inner_kernel
+def slide_to_turn(motion, contact, at, allowed):
+    """See `motion.slide_to_turn`."""
+    steps, end, c, s, _ = slide_on(
+        motion.st, contact.b, at.net, motion.state, at.cos, at.sin, allowed, motion.scratch
+    )
+    done = steps if end == FELL else float(NO_END)
+    return done, Moment(place(motion.st, motion.state), 0.0, c, s, 0.0)
+
+
+@inner_kernel
+def after_turn(motion, contact, at, allowed):
+    """See `motion.after_turn`."""
+    event, c, s, net, wait, _, _ = after_slide(
+        motion.st, contact.b, contact.mu_b, motion.state, motion.work.held, at.cos, at.sin, allowed,
+        motion.scratch,
+    )  # fmt: skip
+    z = -at.z if turns_at(event) else at.z
+    return event, Moment(z, 0.0, c, s, net), wait
+
+
+@kernel
+def lasting_vibration(motion):
+    """See `motion.lasting_vibration`."""
+    return vibrates_in_step(motion.st)
+
+
+@kernel
+def stop_free(motion, contact):
+    """See `motion.stop_free`."""
+    orbit, i, work = motion.orbit, motion.i, motion.work
+    v_abs, u, b = orbit.v_abs[i], orbit.u[i], contact.b
+    amplitude = continuous_amplitude(v_abs, u, orbit.g[i], b)
+    phase = orbit_phase(v_abs, orbit.v_arg[i], u, b)
+    radius = stop_free_radius(
+        motion.fine, orbit, i, b, contact.mu_b, phase, work.table, work.middle, work.moved
+    )
+    return amplitude, phase, radius
+
+
+@kernel
+def off_continuous(motion, contact, amplitude, phase, at):
+    """See `motion.off_continuous`."""
+    st, state, moved = motion.st, motion.state, motion.work.moved
+    orbit_state(st, motion.orbit, motion.i, contact.b, phase, at.cos, at.sin, moved)
+    for j in range(st.n):
+        moved[0, j] -= state[0, j]
+        moved[1, j] -= state[1, j]
+    return energy(st, moved), energy(st, state)
+
+
+@kernel
+def note_state(motion, at, column):
+    """See `motion.note_state`."""
+    n = motion.st.n
+    row = motion.memory.anchors[column]
+    for i in range(n):
+        row[STATE + i] = motion.state[0, i]
+        row[STATE + n + i] = motion.state[1, i]
+
+
+@kernel
+def size_now(motion, at):
+    """See `motion.size_now`."""
+    return energy(motion.st, motion.state)
+
+
+@kernel
+def return_distance(motion, now, then, size):
+    """See `motion.return_distance`."""
+    turn = turned(motion.memory, now, then)
+    if turn > _NEAR_PHASE:
+        return math.inf
+    st = motion.st
+    one, other = motion.memory.anchors[now], motion.memory.anchors[then]
+    total = 0.0
+    for i in range(st.n):
+        z = one[STATE + i] - other[STATE + i]
+        v = one[STATE + st.n + i] - other[STATE + st.n + i]
+        total += (st.modes[W, i] * z) ** 2 + (st.rate * v) ** 2
+    return turn + math.sqrt(total) / size
+
+
+@kernel
+def creeps(motion, contact, events):
+    """See `motion.creeps`: `follow.pause` sees it itself."""
+    return False, 0.0
+
+
+@kernel
+def _converge(motion, contact, anchored, sign, codes, first, slides, near, limits):
+    """A periodic orbit by Newton's method, with its anchor.
+
+    The unknown, work.middle, is the state in a slide at the load's phase of the moment `anchored`; `sign`
+    says of that slide whether it is a mirror image.  The orbit returns after near.halves half periods and
+    `slides` slides, which end in codes[first], ...  The state becomes the orbit's at the anchor that follows.
+    """
+    st, work = motion.st, motion.work
+    b, mu_b, halves = contact.b, contact.mu_b, near.halves
+    copy_state(work.middle, work.start, st.n)
+    if not solve_return(
+        st, b, mu_b, anchored.cos, anchored.sin, codes, first, slides, halves, limits.tolerance, work,
+        motion.scratch,
+    ):  # fmt: skip
+        return no_orbit()
+    contraction = 0.0
+    if not contact.unique:
+        contraction = _contraction(motion, contact, anchored, codes, first, slides, halves)
+        if not contraction < 1.0:
+            return no_orbit()
+    copy_state(work.middle, motion.state, st.n)
+    steps, at = slide_to_turn(motion, contact, anchored, _LONGEST_SLIDE / st.h)
+    if steps == NO_END:
+        return no_orbit()
+    event, at, _ = after_turn(motion, contact, at, TURN * limits.cycles)
+    copy_state(work.middle, work.solved, st.n)
+    work.anchored[HALVES], work.anchored[SIDE] = halves, sign
+    work.anchored[PHASE_COS], work.anchored[PHASE_SIN] = anchored.cos, anchored.sin
+    return Orbit(True, at, event, -sign if turns_at(event) else sign, slides, 1, contraction)
+
+
+@kernel
+def _contraction(motion, contact, anchored, codes, first, slides, halves):
+    """Largest modulus of the multipliers of a return of the orbit in work.middle; infinite if it fails."""
+    st, work = motion.st, motion.work
+    copy_state(work.middle, work.moved, st.n)
+    if not return_map(
+        st, contact.b, contact.mu_b, work.moved, anchored.cos, anchored.sin, codes, first, slides, halves,
+        True, work, motion.scratch,
+    ):  # fmt: skip
+        return math.inf
+    return spectral_radius(work.flow, 2 * st.n, work.square)
+
+
+@kernel
+def _from_anchor(motion, contact, at, sign, codes, first, slides, near, limits):
+    """`_converge` from the middle of the slide that starts at an anchor, the state there."""
+    st, work, b = motion.st, motion.work, contact.b
+    copy_state(motion.state, work.middle, st.n)
+    most = _LONGEST_SLIDE / st.h
+    steps, end, _, _, _ = slide_on(st, b, at.net, motion.state, at.cos, at.sin, most, motion.scratch)
+    if end != FELL:
+        return no_orbit()
+    _, _, c, s, _ = slide_on(st, b, at.net, work.middle, at.cos, at.sin, 0.5 * steps, motion.scratch)
+    middle = Moment(0.0, 0.0, c, s, MOVING)
+    return _converge(motion, contact, middle, sign, codes, first, slides, near, limits)
+
+
+@kernel
+def seek(motion, contact, at, event, sign, events, near, tries, limits):
+    """See `motion.seek`.
+
+    Just below beta_stick the motion creeps for thousands of periods to where it slides, by little, from its
+    held motion; where the steady state is unique that is tried too.
+    """
+    st, work = motion.st, motion.work
+    copy_state(motion.state, work.anchor, st.n)
+    codes, first, slides = motion.memory.codes, np.int64(events - near.lag), near.lag
+    if near.lag == 0 or (contact.unique and tries % 3 == 2):
+        starts, c, s = release_steady(st, contact.mu_b, work.held, motion.state)
+        at = Moment(0.0, 0.0, c, s, contact.mu_b - contact.b)
+        codes, first, slides = work.codes, np.int64(0), 1 if starts else 0
+        codes[0] = STOP_THEN_BACK
+        near, sign = Near(0, near.gap, 1), 1.0
+    orbit = no_orbit()
+    if slides > 0:
+        orbit = _from_anchor(motion, contact, at, sign, codes, first, slides, near, limits)
+    if not orbit.found:
+        copy_state(work.anchor, motion.state, st.n)
+    return orbit
+
+
+@kernel
+def forget_neighbour(motion):
+    """See `motion.forget_neighbour`."""
+    motion.work.anchored[HALVES] = 0.0
+
+
+@kernel
+def _nearest(motion, contact):
+    """(found, moment, sign, half periods): the orbit to start from, its state into work.middle.
+
+    That of the last cell, if that was solved for, or the motion without stops whose velocity touches zero
+    where the strip of the open cells begins.
+    """
+    work, orbit, i, b = motion.work, motion.orbit, motion.i, contact.b
+    halves = int(work.anchored[HALVES])
+    if halves > 0:
+        copy_state(work.solved, work.middle, motion.st.n)
+        at = Moment(0.0, 0.0, work.anchored[PHASE_COS], work.anchored[PHASE_SIN], MOVING)
+        return True, at, work.anchored[SIDE], halves
+    if math.isinf(motion.v_abs) or not b * abs(orbit.u[i]) < motion.v_abs:
+        return False, nowhere(), 1.0, 0
+    phase = orbit_phase(motion.v_abs, orbit.v_arg[i], orbit.u[i], b)
+    # in the middle of the rising half
+    at = Moment(0.0, 0.0, math.sin(phase), -math.cos(phase), MOVING)
+    orbit_state(motion.st, orbit, i, b, phase, at.cos, at.sin, work.middle)
+    return True, at, 1.0, 1
+
+
+@kernel
+def seek_nearby(motion, contact, limits):
+    """See `motion.seek_nearby`: `_converge` with the events that follow, as they change on the way."""
+    st, work, scratch = motion.st, motion.work, motion.scratch
+    b, mu_b = contact.b, contact.mu_b
+    found, at, sign, halves = _nearest(motion, contact)
+    work.anchored[HALVES] = 0.0
+    if not found:
+        return no_orbit()
+    copy_state(motion.state, work.anchor, st.n)
+    zero = np.int64(0)  # not a literal, which would be compiled for itself
+    for _ in range(_MOST_ORDERS):
+        copy_state(work.middle, work.moved, st.n)
+        slides = order_of_events(
+            st, b, mu_b, work.moved, at.cos, at.sin, halves, work.codes, work, scratch
+        )  # fmt: skip
+        if slides == 0:
+            break
+        copy_state(work.middle, work.near, st.n)
+        orbit = _converge(
+            motion, contact, at, sign, work.codes, zero, slides, Near(0, 0.0, halves), limits
+        )  # fmt: skip
+        if orbit.found:
+            return orbit
+        # the order changes on the way: a step with this one, then on with what follows there
+        copy_state(work.near, work.middle, st.n)
+        move = newton_step(st, b, mu_b, at.cos, at.sin, work.codes, zero, slides, halves, work, scratch)
+        if not move < math.inf:
+            break
+        for j in range(st.n):
+            work.middle[0, j] += work.moved[0, j]
+            work.middle[1, j] += work.moved[1, j]
+    copy_state(work.anchor, motion.state, st.n)
+    return no_orbit()
+
+
+@kernel
+def keep_state(motion, slot):
+    """See `motion.keep_state`."""
+    copy_state(motion.state, motion.kept[slot], motion.st.n)
+
+
+@kernel
+def bring_back(motion, slot):
+    """See `motion.bring_back`."""
+    copy_state(motion.kept[slot], motion.state, motion.st.n)
+
+
+@kernel
+def distance_from(motion, slot, then, at, stopped):
+    """See `motion.distance_from`."""
+    st, state, moved, kept = motion.st, motion.state, motion.work.moved, motion.kept[slot]
+    for i in range(st.n):
+        moved[0, i] = state[0, i] - kept[0, i]
+        moved[1, i] = state[1, i] - kept[1, i]
+    return abs(at.cos - then.cos) + abs(at.sin - then.sin) + energy(st, moved) / energy(st, kept)
+
+
+@kernel
+def back_at(motion, slot, then, at):
+    """See `motion.back_at`."""
+    return distance_from(motion, slot, then, at, False) <= _SAME
+
+
+@kernel
+def on_continuous(motion, contact):
+    """See `motion.on_continuous`."""
+    orbit, i = motion.orbit, motion.i
+    phase = orbit_phase(motion.v_abs, orbit.v_arg[i], orbit.u[i], contact.b)
+    c, s = -math.cos(phase), -math.sin(phase)
+    orbit_state(motion.st, orbit, i, contact.b, phase, c, s, motion.state)
+    return Moment(place(motion.st, motion.state), 0.0, c, s, MOVING)
+
+
+@kernel
+def put_slide(motion, at, row):
+    """See `motion.put_slide`."""
+    put_state(motion.state, motion.st.n, motion.st.rate, at.cos, at.sin, row)
+
+
+@kernel
+def put_stop(motion, at, row):
+    """See `motion.put_stop`."""
+    st, held = motion.st, motion.work.held
+    hold(st, motion.state, at.z, at.cos, at.sin, held)
+    put_state(held, st.m, st.rate, at.cos, at.sin, row)

@@ -1,0 +1,346 @@
+"""One mass as a kind of motion: the normalised oscillator of `phases`.
+
+A stop forgets all but its displacement, so the return map of a motion with stops has one unknown (`orbits`).
+Forces are in units of the load in the contact, whose phase is counted from its maximum.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..continuous import (
+    Oscillator,
+    continuous_amplitude,
+    distance_to_orbit,
+    orbit_phase,
+    stop_free_radius,
+)
+from ..events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, slide
+from ..jit import entry, inner_kernel, kernel
+from ..orbits import first_push, solve_orbit
+from ..phases import MAX_TERMS, Step, step_constants
+from .answers import Contact, Moment, Orbit, known_orbit, no_orbit, stops_at
+from .memory import STATE, Memory, make_memory, turned
+from .phase_table import put_mass
+from .policies import FINE_STEPS, MOVING, MOVING_CAP
+
+#: The orbit solved for last, from which the next cell's may be found: slides until it returns (0: there is
+#: none), displacement and sign at the end of a stop, and from there on the events, at most MOST_EVENTS.
+COUNT, PLACE, SIDE, FIRST = 0, 1, 2, 3
+MOST_EVENTS = 32
+NEIGHBOUR = FIRST + MOST_EVENTS
+
+#: Anchors this close are one: Newton's method may have gone round a short orbit more than once.
+_SAME = 1e-9
+
+#: Distance to an end of the places of rest, over r^2, below which a slide takes less than a tenth of it.
+_CREEPING = 0.02
+
+_BELOW_ONE = 0.9999999999999999  # the double before 1
+
+
+class Frequencies(NamedTuple):
+    """What depends on r only; arrays of shape (n_r,)."""
+
+    r: np.ndarray
+    load: np.ndarray  # amplitude A of the load in the contact
+    phase: np.ndarray  # its phase ahead of cos(tau)
+    v_abs: np.ndarray
+    v_arg: np.ndarray
+    u: np.ndarray
+    g: np.ndarray
+    marginal: np.ndarray  # bool; see Oscillator
+
+
+class OneMassSystem(NamedTuple):
+    """A system of one mass over a map."""
+
+    frequencies: Frequencies
+    zeta: float
+    steps: float  # scan steps per period of the fastest part of the motion
+    lim: np.ndarray  # (n_mu, n_r) boundary of b to continuous motion
+    stick: np.ndarray  # (n_mu, n_r) boundary of beta to permanent sticking
+    modes: int  # 1
+    chi: float  # displacement in the contact of its mode, 1 or -1
+
+
+class OneMass(NamedTuple):
+    """One mass at one frequency."""
+
+    h: float  # scan step in tau
+    r: float
+    load: float  # amplitude of the load in the contact
+    lead: float  # its phase ahead of cos(tau)
+    chi: float
+    v_abs: float
+    marginal: bool  # where continuous motions are a continuum
+    oscillator: Oscillator
+    step: Step
+    fine: Step  # a step at least as short, for bounds over a whole orbit
+    memory: Memory
+    work: np.ndarray  # (MAX_TERMS,)
+    neighbour: np.ndarray  # (NEIGHBOUR,)
+    no_table: np.ndarray  # (0, 0)
+
+
+@entry
+def at_frequency(system, i):
+    """The mass at the i-th frequency, r > 0."""
+    f = system.frequencies
+    r = f.r[i]
+    oscillator = Oscillator(r, system.zeta, f.v_abs[i], f.v_arg[i], f.u[i], f.g[i], f.marginal[i])
+    step = step_constants(r, system.zeta, system.steps)
+    return OneMass(
+        step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], oscillator, step,
+        step_constants(r, system.zeta, max(system.steps, FINE_STEPS)), make_memory(step.h, 1),
+        np.empty(MAX_TERMS), np.zeros(NEIGHBOUR), np.empty((0, 0)),
+    )  # fmt: skip
+
+
+@kernel
+def contact_at(system, m, i, beta, mu):
+    """The contact of a cell.
+
+    The division by the load rounds, so where beta ties with beta_stick it could decide against the comparison
+    that the closed form makes; the comparison is made once, on beta, and holds here too.
+    """
+    b = beta / system.frequencies.load[i]
+    mu_b = mu * b
+    sticks = beta >= system.stick[m, i]
+    if (mu_b >= 1.0) != sticks:
+        mu_b = 1.0 if sticks else _BELOW_ONE
+        b = mu_b / mu
+    return Contact(b, mu_b, system.lim[m, i], mu == 1.0)
+
+
+@kernel
+def start(motion, system, i, contact, moving):
+    """Where the motion starts.
+
+    At rest: z = z' = 0 at tau = 0.  Moving: z = 0 at 1.5 times the speed that gives the amplitude (in energy)
+    of the motion without friction, that amplitude taken as 10 at most, while the load falls through zero.
+    """
+    if not moving:
+        c, s = math.cos(motion.lead), math.sin(motion.lead)
+        return Moment(0.0, 0.0, c, s, c - contact.b)
+    oscillator = motion.oscillator
+    size = MOVING * min(oscillator.v_abs, MOVING_CAP) * max(1.0, oscillator.r)
+    speed = size / oscillator.r
+    net = -contact.b - 2.0 * oscillator.zeta * oscillator.r * speed
+    return Moment(0.0, speed * motion.h, 0.0, 1.0, net)
+
+
+@inner_kernel
+def slide_to_turn(motion, contact, at, allowed):
+    """See `motion.slide_to_turn`."""
+    step = motion.step
+    steps, z, c, s = slide(
+        step, contact.b, at.z, at.w, step.stiffness * at.net, at.cos, at.sin, allowed, motion.work
+    )
+    return steps, Moment(z, 0.0, c, s, 0.0)
+
+
+@inner_kernel
+def after_turn(motion, contact, at, allowed):
+    """See `motion.after_turn`."""
+    event, z, c, s, net, wait = after_slide(contact.b, contact.mu_b, at.z, at.cos, at.sin)
+    return event, Moment(z, 0.0, c, s, net), wait
+
+
+@kernel
+def lasting_vibration(motion):
+    """See `motion.lasting_vibration`: a stop forgets all."""
+    return False
+
+
+@kernel
+def stop_free(motion, contact):
+    """See `motion.stop_free`."""
+    f = motion.oscillator
+    amplitude = continuous_amplitude(f.v_abs, f.u, f.g, contact.b)
+    phase = orbit_phase(f.v_abs, f.v_arg, f.u, contact.b)
+    return amplitude, phase, stop_free_radius(motion.fine, f, contact.b, contact.mu_b, amplitude, phase)
+
+
+@kernel
+def off_continuous(motion, contact, amplitude, phase, at):
+    """See `motion.off_continuous`."""
+    gap = distance_to_orbit(motion.oscillator, contact.b, amplitude, phase, at.z, at.cos, at.sin)
+    return gap, amplitude
+
+
+@inner_kernel
+def note_state(motion, at, column):
+    """See `motion.note_state`."""
+    motion.memory.anchors[column, STATE] = at.z
+
+
+@kernel
+def size_now(motion, at):
+    """See `motion.size_now`."""
+    return abs(at.z)
+
+
+@kernel
+def return_distance(motion, now, then, size):
+    """See `motion.return_distance`; at a stop the load's phase is a function of the place."""
+    memory = motion.memory
+    gap = abs(memory.anchors[now, STATE] - memory.anchors[then, STATE])
+    turn = turned(memory, now, then) if memory.codes[now] == REVERSE else 0.0
+    return turn + gap / size if size > 0.0 else math.inf
+
+
+@kernel
+def creeps(motion, contact, events):
+    """See `motion.creeps`: stops may creep to an end of |z| <= mu b - 1, where the contact sticks for good.
+
+    At a small distance y from it a slide takes some 4.5 y^2/r^2 off y: the end is never passed, and never
+    reached in a finite time.
+    """
+    memory = motion.memory
+    length = memory.codes.size
+    if not contact.mu_b >= 1.0 or events < 2:
+        return False, 0.0
+    now, then = (events - 1) % length, (events - 2) % length
+    if memory.codes[now] != STOP_THEN_ON or memory.codes[then] != STOP_THEN_ON:
+        return False, 0.0
+    place = memory.anchors[now, STATE]
+    end = contact.mu_b - 1.0
+    far = abs(place) - end
+    taken = abs(memory.anchors[then, STATE]) - abs(place)
+    found = far < _CREEPING * motion.r * motion.r and 0.0 <= taken < 0.5 * far
+    return found, math.copysign(end, place)
+
+
+@kernel
+def _middle(memory, events):
+    """Displacement between the last stop and the one before; nan if there is none before."""
+    length = memory.codes.size
+    now = events - 1
+    for lag in range(1, min(events, length)):
+        then = (now - lag) % length
+        if stops_at(memory.codes[then]):
+            return 0.5 * (memory.anchors[now % length, STATE] + memory.anchors[then, STATE])
+    return math.nan
+
+
+@kernel
+def seek(motion, contact, at, event, sign, events, near, tries, limits):
+    """See `motion.seek`.
+
+    First the order of events of the last return is tried, from where the motion is now.  Next to a multiplier
+    of -1 a motion stays asymmetric for thousands of periods, with an order of events that the symmetric orbit
+    between its two halves does not have.  So, where the steady state is unique and an orbit found is the one
+    however it was found, the symmetric orbits with one or two stops a half period are tried too.
+    """
+    if near.lag == 0:
+        return no_orbit()
+    stopped = stops_at(event)
+    guesses = 3 if contact.unique and event == STOP_THEN_BACK else 1
+    start = at.z
+    for guess in range(guesses):
+        slides = near.lag
+        if guess > 0:
+            start = _middle(motion.memory, events)
+            slides = guess
+        found, z, c, s, contraction = solve_orbit(
+            motion.step, motion.oscillator, contact.b, contact.mu_b, start, at.cos, at.sin, stopped,
+            motion.memory.codes, events - slides, slides, limits.tolerance, motion.work,
+        )  # fmt: skip
+        if found:
+            if stopped:
+                _keep(motion, z, sign, events, slides)
+            net = first_push(contact.b, contact.mu_b, z, c)
+            return Orbit(True, Moment(z, 0.0, c, s, net), event, sign, slides, 0, contraction)
+    return no_orbit()
+
+
+@kernel
+def _keep(motion, z, sign, events, slides):
+    """Keep an orbit that starts at the end of a stop for the next cell."""
+    neighbour, codes = motion.neighbour, motion.memory.codes
+    if slides > MOST_EVENTS:
+        return
+    neighbour[COUNT], neighbour[PLACE], neighbour[SIDE] = slides, z, sign
+    for m in range(slides):
+        neighbour[FIRST + m] = codes[(events - slides + m) % codes.size]
+
+
+@kernel
+def forget_neighbour(motion):
+    """See `motion.forget_neighbour`."""
+    motion.neighbour[COUNT] = 0.0
+
+
+@kernel
+def seek_nearby(motion, contact, limits):
+    """See `motion.seek_nearby`; the motion without stops begins to stop where it turns."""
+    neighbour = motion.neighbour
+    slides = int(neighbour[COUNT])
+    if slides == 0:
+        f = motion.oscillator
+        if math.isinf(f.v_abs) or not contact.b_lim > 0.0:
+            return no_orbit()
+        slides = 1
+        neighbour[PLACE] = -continuous_amplitude(f.v_abs, f.u, f.g, contact.b_lim)
+        neighbour[SIDE] = 1.0
+        neighbour[FIRST] = STOP_THEN_BACK
+    neighbour[COUNT] = 0.0
+    found, z, c, s, _ = solve_orbit(
+        motion.step, motion.oscillator, contact.b, contact.mu_b, neighbour[PLACE], 1.0, 0.0, True,
+        neighbour[FIRST:], 0, slides, limits.tolerance, motion.work,
+    )  # fmt: skip
+    if not found:
+        return no_orbit()
+    neighbour[COUNT] = slides
+    neighbour[PLACE] = z
+    net = first_push(contact.b, contact.mu_b, z, c)
+    event = int(neighbour[FIRST + slides - 1])
+    return known_orbit(Moment(z, 0.0, c, s, net), event, neighbour[SIDE], slides)
+
+
+@kernel
+def keep_state(motion, slot):
+    """See `motion.keep_state`: the moment tells all."""
+
+
+@kernel
+def bring_back(motion, slot):
+    """See `motion.bring_back`."""
+
+
+@kernel
+def distance_from(motion, slot, then, at, stopped):
+    """See `motion.distance_from`; after a stop the load's phase is a function of the place."""
+    turn = 0.0 if stopped else abs(at.cos - then.cos) + abs(at.sin - then.sin)
+    return turn + abs(at.z - then.z) / abs(then.z)
+
+
+@kernel
+def back_at(motion, slot, then, at):
+    """See `motion.back_at`."""
+    return distance_from(motion, slot, then, at, False) <= _SAME
+
+
+@kernel
+def on_continuous(motion, contact):
+    """See `motion.on_continuous`."""
+    f = motion.oscillator
+    z = -continuous_amplitude(f.v_abs, f.u, f.g, contact.b)
+    phase = orbit_phase(f.v_abs, f.v_arg, f.u, contact.b)
+    c, s = -math.cos(phase), -math.sin(phase)
+    return Moment(z, 0.0, c, s, c - z - contact.b)
+
+
+@kernel
+def put_slide(motion, at, row):
+    """See `motion.put_slide`."""
+    c, s = math.cos(motion.lead), math.sin(motion.lead)
+    put_mass(motion.chi * motion.load * at.z, at.cos * c + at.sin * s, at.sin * c - at.cos * s, row)
+
+
+@kernel
+def put_stop(motion, at, row):
+    """See `motion.put_stop`: nothing else moves."""
+    put_slide(motion, at, row)

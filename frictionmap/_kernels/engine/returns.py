@@ -1,0 +1,50 @@
+"""The recogniser of returns."""
+
+import math
+
+from ..jit import kernel
+from .memory import TIME, Near, could_return, halves_between
+from .motion import return_distance, size_now
+
+#: Anchors looked back over for a return: symmetric motions need one or a few, sub-harmonic ones more.
+_MAX_RETURN = 64
+
+#: Half periods of the longest return.
+_LONGEST_RETURN = 16
+
+#: A return this close (relative to the motion) is worth a Newton iteration.
+_NEAR_RETURN = 0.1
+
+
+@kernel
+def near_return(motion, at, events, any_will_do, shortest):
+    """When the motion was nearly where it is now, a `Near`.
+
+    The shortest return, or the one beyond which a longer one is not closer by far: a sub-harmonic motion may
+    be nearly symmetric.  Where there is one steady state any start will do to look for it.
+    """
+    memory = motion.memory
+    length = memory.codes.size
+    now = (events - 1) % length
+    size = size_now(motion, at)
+    best = Near(0, math.inf, 0)
+    near = math.inf if any_will_do else _NEAR_RETURN
+    seen = 0
+    for lag in range(1, min(events, length)):
+        then = (events - 1 - lag) % length
+        if memory.anchors[now, TIME] - memory.anchors[then, TIME] > (_LONGEST_RETURN + 0.5) * math.pi:
+            break
+        if memory.codes[then] != memory.codes[now]:
+            continue
+        halves = halves_between(memory, now, then)
+        if not could_return(halves):
+            continue
+        gap = return_distance(motion, now, then, size)
+        if gap < math.inf:
+            seen += 1
+            if gap <= near:
+                best = Near(lag, gap, halves)
+                near = 0.25 * gap
+        if (shortest and best.lag > 0) or seen == _MAX_RETURN:
+            break
+    return best

@@ -1,0 +1,53 @@
+"""A steady state in time: samples of its table of phases."""
+
+import math
+
+from ..jit import entry
+from ..oscillators import advance, expand
+from ..returns import copy_state
+from ..structure import held_load, place, release
+from .phase_table import BEGIN, COS, LENGTH, PLACE, SENSE, SIGN, SIN, take_start
+
+
+@entry
+def sample_phases(st, beta, table, tau, coordinates, velocities, z, friction, sense, work, scratch):
+    """The motion at times `tau` >= 0, increasing, from the start of the table's first phase.
+
+    coordinates, velocities: (n, tau.size) of the free modes, velocities in tau; z, friction, sense:
+    (tau.size,).
+    """
+    j = 0
+    for k in range(table.shape[0]):
+        row = table[k]
+        begin = row[BEGIN]
+        end = begin + row[LENGTH]
+        slides, n, current = take_start(st, row, work)
+        oscillators = st.free if slides else st.held
+        force = beta if slides else 0.0
+        angle = math.atan2(row[SIN], row[COS])
+        node = 0.0
+        expand(oscillators, n, force, current, row[COS], row[SIN], st.h, st.terms, scratch.series)
+        while j < tau.size and tau[j] < end:
+            while tau[j] - begin > node + st.h:
+                advance(scratch.series, n, st.terms, 1.0, current)
+                node += st.h
+                expand(
+                    oscillators, n, force, current, math.cos(angle + node), math.sin(angle + node), st.h,
+                    st.terms, scratch.series,
+                )  # fmt: skip
+            x = (tau[j] - begin - node) / st.h
+            advance(scratch.series, n, st.terms, x, scratch.next)
+            c, s = math.cos(angle + tau[j] - begin), math.sin(angle + tau[j] - begin)
+            if slides:
+                copy_state(scratch.next, work.start, n)
+                z[j] = row[SIGN] * place(st, work.start)
+                friction[j] = row[SIGN] * beta
+            else:
+                release(st, scratch.next, row[PLACE], c, s, work.start)
+                z[j] = row[SIGN] * row[PLACE]
+                friction[j] = -row[SIGN] * held_load(st, scratch.next, row[PLACE], c, s)
+            sense[j] = int(row[SIGN] * row[SENSE])
+            for i in range(st.n):
+                coordinates[i, j] = row[SIGN] * work.start[0, i]
+                velocities[i, j] = row[SIGN] * work.start[1, i] / st.h
+            j += 1

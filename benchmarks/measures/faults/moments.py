@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.image import imread
 
-from .folders import CONFIG, EVERYTHING
+from .folders import CONFIG
 from .machine import run
 
 #: A map that takes about a second to compute, and some tenths to write.
@@ -46,7 +46,7 @@ def inputs(folder: Path, env: dict[str, str]) -> Path:
     folder.mkdir()
     for name, text in (("long", _LONG), ("curves", _CURVES), ("low", _LOW), ("small", CONFIG)):
         (folder / f"{name}.toml").write_text(text)
-    said = run(["map", "small.toml", "-o", "given.nc", "--set", EVERYTHING, "--quiet"], folder, env)
+    said = run(["map", "small.toml", "-o", "given.nc", "--quiet"], folder, env)
     if said.status != 0:
         raise RuntimeError(f"map: {said}")
     return folder

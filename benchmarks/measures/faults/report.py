@@ -37,7 +37,7 @@ def draw(results: Path, path: Path) -> None:
         if (results / f"{name}.json").is_file()
     }
     families = list(found[NAME])
-    figure = new_figure(8.0, 0.42 * len(families) + 1.4)
+    figure = new_figure(8.0, 0.33 * len(families) + 1.0)
     axes = figure.subplots()
     height = 0.8 / len(found)
     for k, (name, entries) in enumerate(found.items()):
@@ -51,6 +51,7 @@ def draw(results: Path, path: Path) -> None:
                 axes.text(share + 1.0, place, text, va="center", fontsize=7)
     axes.set_yticks(range(len(families)), families, fontsize=8)
     axes.invert_yaxis()
+    axes.margins(y=0.01)
     axes.set_xlim(0.0, 119.0)
     axes.set_xlabel("trials that went wrong [%]")
     axes.legend(fontsize=8, loc="lower right")

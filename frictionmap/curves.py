@@ -7,7 +7,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from . import checks
-from ._kernels.curves import boundary, response_functions
+from ._kernels.curves import response_functions
 from ._kernels.engine.one_mass import Frequencies
 from ._kernels.sums import many_mode_functions
 from .errors import InputError
@@ -63,6 +63,43 @@ class OneMass:
     lim: np.ndarray
 
 
+def find_beta_lim(
+    v_abs: np.ndarray, u: np.ndarray, h: np.ndarray, s: np.ndarray, inertia: np.ndarray, mu: np.ndarray,
+    at_resonance: np.ndarray,
+) -> np.ndarray:  # fmt: skip
+    """The boundary of continuous motion, |V|/sqrt(U^2 + max(S, H + mu/(m_eff r^2))^2), theory.md 3.
+
+    T(2.26), (3.21), (5.65) and (7.46) are cases of it.  0 where U or S alone is infinite, or U has no limit
+    (r = 0).
+
+    Parameters
+    ----------
+    v_abs, u, h, s : (n_r,) |V|, U, H, S; V and U are infinite at an undamped resonance
+    inertia : (n_r,) 1/(m_eff r^2), 0 at r = 0
+    mu : (n_mu,)
+    at_resonance : (n_r,) or (), the limit there: |V|/|U| is finite, and both outgrow S
+
+    Returns
+    -------
+    beta_lim : (n_mu, n_r)
+    """
+    resonance = np.isinf(v_abs) & np.isinf(u)
+    with np.errstate(invalid="ignore"):  # inf - inf at a resonance, replaced below
+        bracket = np.maximum(s, h + mu[:, np.newaxis] * inertia)
+    size = np.hypot(np.where(np.isnan(u), np.inf, u), bracket)
+    finite = np.isfinite(size)
+    found = np.where(finite, v_abs / np.where(finite, size, 1.0), 0.0)
+    return np.where(resonance, at_resonance, found)
+
+
+def find_beta_stick(force: np.ndarray, mu: np.ndarray) -> np.ndarray:
+    """The boundary to permanent sticking, |F|/mu, (n_mu, n_r), theory.md 4; F (n_r,), complex, holds z.
+
+    T(2.29), (3.24), (6.11), (6.27) and (6.33) are cases of it.
+    """
+    return modulus(force) / mu[:, np.newaxis]
+
+
 def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
     """All curves of a normalised system, whose one mode has w = 1; `r` and `mu` are checked axes.
 
@@ -76,9 +113,7 @@ def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
     even = (half >= 1.0) & (half == np.floor(half))
     marginal = even & (system.zeta == 0.0)
     frequencies = Frequencies(r, amplitude, angles(load), v_abs, v_arg, u, g, marginal)
-    lim = np.empty((mu.size, r.size))
-    for row, value in zip(lim, mu, strict=True):
-        boundary(r, v_abs, u, h, s, value, row)
+    lim = find_beta_lim(v_abs, u, h, s, _over_square(1.0, r), mu, np.array(0.25 * np.pi))
     stiffness = system.modes.dynamic_stiffness(r)[:, 0]
     resonance = stiffness == 0.0
     found = Curves(
@@ -89,16 +124,14 @@ def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
         s=s,
         beta_lim=lim * amplitude,
         beta_lim_modal=lim * amplitude,  # of one mode the maximum of the sum is the sum of the maxima
-        beta_stick=amplitude / mu[:, np.newaxis],
+        beta_stick=find_beta_stick(load, mu),
     )
     return OneMass(found, frequencies, lim)
 
 
-def _lim(v: np.ndarray, u: np.ndarray, bracket: np.ndarray) -> np.ndarray:
-    """|V|/sqrt(U^2 + bracket^2); 0 where U or S alone is infinite, or U has no limit (r = 0)."""
-    size = np.hypot(np.where(np.isnan(u), np.inf, u), bracket)
-    finite = np.isfinite(size)
-    return np.where(finite, modulus(v) / np.where(finite, size, 1.0), 0.0)
+def _over_square(number: float, r: np.ndarray) -> np.ndarray:
+    """number/r^2; 0 at r = 0, where S is infinite anyway."""
+    return np.divide(number, r * r, out=np.zeros_like(r), where=r > 0.0)
 
 
 def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
@@ -115,28 +148,21 @@ def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     v = modes.contact_response(r)
     u, g, h, s, by_modes = np.empty((5, r.size))
     many_mode_functions(r, modes.w, modes.zeta, modes.chi, modes.inverse_mass, u, g, h, s, by_modes)
-    end = np.zeros(r.size)
-    np.divide(modes.inverse_mass, r**2, out=end, where=r > 0.0)
-    lim, lim_modal = np.empty((2, mu.size, r.size))
-    resonance = np.isinf(v) & np.isinf(u)
-    # there |V|/|U| -> (pi/4) |lambda_i/chi_i|, and both outgrow S
+    v_abs = modulus(v)
+    inertia = _over_square(modes.inverse_mass, r)
+    # at a resonance |V|/|U| -> (pi/4) |lambda_i/chi_i|, T(6.2), (6.26)
     seen = modes.dynamic_stiffness(r) == 0.0  # r is an undamped frequency to the bit: else they are finite
     ratio = modulus(modes.participation(r)) / np.where(modes.chi == 0.0, np.inf, np.abs(modes.chi))
     at_resonance = 0.25 * np.pi * (seen * ratio).sum(axis=1)
-    for m, value in enumerate(mu):
-        with np.errstate(invalid="ignore"):  # inf - inf at a resonance, replaced below
-            static = h + value * end
-            lim[m] = np.where(resonance, at_resonance, _lim(v, u, np.maximum(s, static)))
-            lim_modal[m] = np.where(resonance, at_resonance, _lim(v, u, np.maximum(by_modes, static)))
     return Curves(
         v=v,
         u=u,
         g=g,
         h=h,
         s=s,
-        beta_lim=lim,
-        beta_lim_modal=lim_modal,
-        beta_stick=modulus(modes.held_load(r)) / mu[:, np.newaxis],
+        beta_lim=find_beta_lim(v_abs, u, h, s, inertia, mu, at_resonance),
+        beta_lim_modal=find_beta_lim(v_abs, u, h, by_modes, inertia, mu, at_resonance),
+        beta_stick=find_beta_stick(modes.held_load(r), mu),
     )
 
 

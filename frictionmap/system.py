@@ -383,8 +383,8 @@ class System:
         """Phasor F of the load in the contact when it is held, over P (complex, shape of r).
 
         One mass: p(r) for a fixed wall; p(r) - (w^2 - r^2 + 2 i zeta w r)/phi^2 for a joined base-wall, which
-        is r^2 - 2 i zeta r, T(3.24) with damping, or r^2 if it acts relative to the base.  More masses:
-        theory.md 4.
+        is r^2 - 2 i zeta r, T(3.24), (3.32) with damping, or r^2 if it acts relative to the base.  More
+        masses: theory.md 4.
         """
         r = np.asarray(r, dtype=float)
         flat = r.ravel()

@@ -1,4 +1,4 @@
-"""Response functions and boundaries over frequency: once per r, however many beta a map has."""
+"""Response functions over frequency of one mass: once per r, however many beta a map has."""
 
 import math
 
@@ -42,15 +42,3 @@ def response_functions(r, zeta, u, g, v_abs, v_arg, h, s):
         inverse = 1.0 / (x * x)
         h[i] = 0.0 if zeta == 0.0 else inverse * (g[i] + 2.0 * zeta * x * u[i])
         s[i] = largest_bracket(1.0 / x, zeta, u[i], g[i], h[i] + inverse)
-
-
-@entry
-def boundary(r, v_abs, u, h, s, mu, out):
-    """beta_lim of theory 3 over the load amplitude in the contact, for one mode; `out` has shape (n,)."""
-    for i in range(r.size):
-        if r[i] == 0.0:
-            out[i] = 0.0
-        elif math.isinf(v_abs[i]):
-            out[i] = 0.25 * math.pi  # |V|/U -> pi/4, and both outgrow S
-        else:
-            out[i] = v_abs[i] / math.hypot(u[i], max(s[i], h[i] + mu / (r[i] * r[i])))

@@ -37,6 +37,10 @@ _SAME = 1e-9
 #: Distance to an end of the places of rest, over r^2, below which a slide takes less than a tenth of it.
 _CREEPING = 0.02
 
+#: A radius without stops beyond this share of the amplitude is not looked for with fine steps: what the
+#: scan's own steps leave out of it is a sixth of that.
+_WIDE = 0.1
+
 _BELOW_ONE = 0.9999999999999999  # the double before 1
 
 
@@ -160,7 +164,10 @@ def stop_free(motion, contact):
     f = motion.oscillator
     amplitude = continuous_amplitude(f.v_abs, f.u, f.g, contact.b)
     phase = orbit_phase(f.v_abs, f.v_arg, f.u, contact.b)
-    return amplitude, phase, stop_free_radius(motion.fine, f, contact.b, contact.mu_b, amplitude, phase)
+    radius = stop_free_radius(motion.step, f, contact.b, contact.mu_b, amplitude, phase)
+    if not radius > _WIDE * amplitude:
+        radius = stop_free_radius(motion.fine, f, contact.b, contact.mu_b, amplitude, phase)
+    return amplitude, phase, radius
 
 
 @kernel

@@ -14,7 +14,7 @@ from frictionmap import regimes
 from frictionmap._kernels import closed_form, oscillators
 from frictionmap._kernels.engine import phase_table
 from frictionmap._kernels.engine.time_history import sample_phases
-from frictionmap._kernels.oscillators import ROWS, WW, WZ, ZW, ZZ, D, K, make_scratch
+from frictionmap._kernels.oscillators import COLUMNS, WW, WZ, ZW, ZZ, D, K, make_scratch
 from frictionmap._kernels.returns import make_workspace
 from frictionmap._kernels.structure import make_structure
 from frictionmap.cells import make_cells
@@ -502,13 +502,13 @@ def test_unseen_modes():
 @pytest.mark.parametrize("zeta", [0.0, 0.3, 1.0, 2.0])
 def test_decay_is_what_the_oscillators_do(zeta):
     """The step's map against the closed form T(B.8)."""
-    table = np.zeros((ROWS, 1))
+    table = np.zeros((2, COLUMNS))
     turn = 0.2
-    table[K, 0], table[D, 0] = turn**2, 2.0 * zeta * turn
-    fill_steps(table, 1, 0.1, 20)
+    table[0, K], table[0, D] = turn**2, 2.0 * zeta * turn
+    fill_steps(table, 0.1, 20)
     q, e = decay(zeta, turn)
     expected = [e + 2.0 * zeta * q, q / turn, -q * turn, e]
-    assert [table[row, 0] for row in (ZZ, ZW, WZ, WW)] == pytest.approx(expected, rel=1e-14)
+    assert [table[0, column] for column in (ZZ, ZW, WZ, WW)] == pytest.approx(expected, rel=1e-14)
 
 
 def test_special_frequencies():

@@ -25,12 +25,12 @@ NO_END = -1
 _INVERSE = np.array([1.0 / (k + 1.0) for k in range(MAX_TERMS)])
 
 #: A guess of an event further off than this, in scan steps, lies where the velocity only touches zero.
-_NEARLY = 0.25
+NEARLY = 0.25
 
 #: A Newton step of fourth order shorter than this, in scan steps, ends at rounding.
-_ONE_STEP = 2e-4
+ONE_STEP = 2e-4
 
-_MAX_POLISH = 8
+MAX_POLISH = 8
 
 #: Certified steps to a root converge quadratically; past a grazing dip they crawl, at a rate that is the
 #: square root of the dip's curvature over the bound, thousands of them for a dip of rounding depth.
@@ -77,7 +77,7 @@ def first_root(p, first, terms):
 
 
 @kernel
-def _cubic_root(w, slope, w1, slope1):
+def cubic_root(w, slope, w1, slope1):
     """Root in [0, 1] of the cubic with these values and slopes at 0 and 1, falling from w > 0 to w1 <= 0."""
     third = 2.0 * (w - w1) + slope + slope1
     second = 3.0 * (w1 - w) - 2.0 * slope - slope1
@@ -108,13 +108,22 @@ def _sum_at(p, terms, x):
 
 
 @kernel
+def reversion(value, slope, bend, third):
+    """The root m of value + slope m + bend m^2/2 + third m^3/6, up to the fourth power of value/slope."""
+    inverse = 1.0 / slope
+    first = -value * inverse
+    second = 0.5 * bend * inverse
+    return first * (1.0 - first * (second - first * (2.0 * second * second - third * inverse * (1.0 / 6.0))))
+
+
+@kernel
 def _at_root(step, b, z, c, s, x, work):
     """(x, z, cos, sin) at the zero of the velocity next to x, from the series in `work`.
 
     Newton steps of fourth order, with the derivatives from the equation of motion: one takes a guess that
     is off by 1e-4 to rounding.
     """
-    for _ in range(_MAX_POLISH):
+    for _ in range(MAX_POLISH):
         velocity, rise = _sum_at(work, step.terms, x)
         place = z + rise
         angle = step.h * x
@@ -125,19 +134,14 @@ def _at_root(step, b, z, c, s, x, work):
         acceleration = step.stiffness * (c1 - b - place) - step.damping * velocity
         jerk = -step.stiffness * (s1 * step.h + velocity) - step.damping * acceleration
         if (
-            not abs(velocity) < _NEARLY * abs(acceleration)
-            or not abs(velocity * jerk) < _NEARLY * acceleration * acceleration
+            not abs(velocity) < NEARLY * abs(acceleration)
+            or not abs(velocity * jerk) < NEARLY * acceleration * acceleration
         ):
             break  # the velocity only touches zero; the reversion diverges, and x is as good as can be
         snap = -step.stiffness * (c1 * step.h * step.h + acceleration) - step.damping * jerk
-        # reversion of velocity + acceleration m + jerk m^2/2 + snap m^3/6 = 0
-        inverse = 1.0 / acceleration
-        first = -velocity * inverse
-        second = 0.5 * jerk * inverse
-        third = snap * inverse * (1.0 / 6.0)
-        move = first * (1.0 - first * (second - first * (2.0 * second * second - third)))
+        move = reversion(velocity, acceleration, jerk, snap)
         x += move
-        if abs(first) < _ONE_STEP:
+        if abs(move) < ONE_STEP:
             place += move * (
                 velocity
                 + move * (0.5 * acceleration + move * (jerk * (1.0 / 6.0) + move * snap * (1.0 / 24.0)))
@@ -212,7 +216,7 @@ def slide(step, b, z, w, acceleration, c, s, max_steps, work):
         if not sure:
             expand(step, b, z, w, acceleration, c, s, work)
             if w > 0.0 and w1 <= 0.0 and max(acceleration, acceleration1) + 0.125 * fourth < 0.0:
-                x = _cubic_root(w, acceleration, w1, acceleration1)  # w falls: one root
+                x = cubic_root(w, acceleration, w1, acceleration1)  # w falls: one root
             else:
                 first = 0
                 if n == 0.0 and w == 0.0:

@@ -36,10 +36,7 @@ def slide_on(st, beta, net, state, c, s, limit, scratch):
     It starts with no velocity under the force `net` >= 0 in the contact, friction taken off; or net = MOVING.
     """
     push = net * st.inverse_mass / (st.rate * st.rate) if net >= 0.0 else ELSEWHERE
-    return scan(
-        st.free, st.n, beta, 0.0, 0.0, 0.0, 0.0, math.inf, push, state, c, s, st.h,
-        st.terms, limit, scratch,
-    )  # fmt: skip
+    return scan(st.free, beta, 0.0, math.inf, push, state, c, s, limit, scratch)
 
 
 @kernel
@@ -49,6 +46,7 @@ def pause(st, mu_beta, z, held, c, s, allowed, scratch):
     `end` is FELL or ROSE (the load left through -mu beta or mu beta), AT_LIMIT (never) or FAILED (not in
     `allowed` tau).
     """
+    level = st.stiffness * z
     wait = 0.0
     period = _TURN / st.h
     repeat = 0.0
@@ -58,9 +56,8 @@ def pause(st, mu_beta, z, held, c, s, allowed, scratch):
         if largest_load_to_come(st, held, z, c, s) <= most:
             return AT_LIMIT, c, s, wait, 0.0
         n, end, c, s, slope = scan(
-            st.held, st.m, 0.0, st.held_cos, st.held_sin, st.stiffness * z, -mu_beta, mu_beta, ELSEWHERE,
-            held, c, s, st.h, st.terms, period, scratch,
-        )  # fmt: skip
+            st.held, 0.0, -mu_beta - level, mu_beta - level, ELSEWHERE, held, c, s, period, scratch
+        )
         wait += n * st.h
         if end != AT_LIMIT:
             return end, c, s, wait, slope

@@ -15,7 +15,7 @@ from .closed_form import decay
 from .events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
 from .follow import MOVING, NO_RELEASE, after_slide, slide_on
 from .jit import entry, kernel
-from .oscillators import AT_LIMIT, FELL, OMEGA, OW, OZ, ROWS, ZETA
+from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA
 from .structure import CHI, LIFT, energy
 
 _MAX_NEWTON = 16
@@ -48,7 +48,7 @@ class Workspace(NamedTuple):
     row: np.ndarray  # (2n,)
     start: np.ndarray  # (2, n) where Newton's method started
     anchor: np.ndarray  # (2, n)
-    table: np.ndarray  # (ROWS, n)
+    table: np.ndarray  # (n + 1, COLUMNS)
     codes: np.ndarray  # (MOST_CODES,) an order of events
     near: np.ndarray  # (2, n)
     solved: np.ndarray  # (2, n) middle of a slide of the orbit solved for last, and how it is anchored:
@@ -62,8 +62,8 @@ def make_workspace(n):
     return Workspace(
         np.zeros((2, m)), np.zeros((2, n)), np.zeros((2, n)), np.zeros((2 * n, 2 * n)),
         np.zeros((2 * m + 1, 2 * n)), np.zeros((2 * n, 2 * n)), np.zeros(2 * n), np.zeros(2 * n),
-        np.zeros((2, n)), np.zeros((2, n)), np.zeros((ROWS, n)), np.zeros(MOST_CODES), np.zeros((2, n)),
-        np.zeros((2, n)), np.zeros(4),
+        np.zeros((2, n)), np.zeros((2, n)), np.zeros((n + 1, COLUMNS)), np.zeros(MOST_CODES),
+        np.zeros((2, n)), np.zeros((2, n)), np.zeros(4),
     )  # fmt: skip
 
 
@@ -79,9 +79,9 @@ def copy_state(source, target, n):
 def _carry(table, n, time, rows, columns):
     """Free motion of n oscillators over `time` in t = tau/r: row i a coordinate, n + i its velocity in t."""
     for i in range(n):
-        omega = table[OMEGA, i]
-        q, e = decay(table[ZETA, i], omega * time)
-        d = e + 2.0 * table[ZETA, i] * q
+        omega = table[i, OMEGA]
+        q, e = decay(table[i, ZETA], omega * time)
+        d = e + 2.0 * table[i, ZETA] * q
         q_over = q / omega
         q_times = q * omega
         for j in range(columns):
@@ -130,7 +130,7 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
             row[j] = st.stiffness * stopped[2 * m, j]
         for k in range(m):
             for j in range(size):
-                row[j] += st.held[OZ, k] * stopped[k, j] + st.held[OW, k] * stopped[m + k, j] / st.rate
+                row[j] += st.held[k, OZ] * stopped[k, j] + st.held[k, OW] * stopped[m + k, j] / st.rate
         for i in range(size):
             lift = st.modes[LIFT, i] if i < n else 0.0
             for j in range(size):

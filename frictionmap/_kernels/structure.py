@@ -16,18 +16,21 @@ import numpy as np
 from .closed_form import fastest_rate
 from .jit import entry, kernel
 from .oscillators import (
+    COLUMNS,
     F1,
     FC,
     FS,
     OMEGA,
     OW,
     OZ,
-    ROWS,
+    YC,
+    YS,
     ZETA,
     D,
     K,
     fill_steps,
     value,
+    watch_load,
 )
 from .phases import series_terms
 
@@ -53,11 +56,9 @@ class Structure(NamedTuple):
     stiffness: float  # static stiffness at the contact
     free_cos: float  # the load in the contact while it slides, less its modal part
     free_sin: float
-    held_cos: float  # and while it is held
-    held_sin: float
     modes: np.ndarray  # (MODE_ROWS, n)
-    free: np.ndarray  # (ROWS, n) tables of `oscillators`
-    held: np.ndarray  # (ROWS, m)
+    free: np.ndarray  # (n + 1, COLUMNS) tables of `oscillators`
+    held: np.ndarray  # (m + 1, COLUMNS)
     direct: np.ndarray  # (2, m) cos and sin part of the load in y' of the held oscillators
     to_free: np.ndarray  # (2n, 2m), see `held.HeldStructure`
     to_held: np.ndarray  # (2m, 2n)
@@ -103,42 +104,43 @@ def make_structure(model, loads, i, r, steps):
     h = turn / max(1.0, fastest / r)
     scale = h / r
     square = scale * scale
-    free = np.zeros((ROWS, n))
+    free = np.zeros((n + 1, COLUMNS))
     for j in range(n):
         w = model.modes[W, j]
         zeta = model.modes[DAMPING, j]
-        free[K, j] = (w * scale) * (w * scale)
-        free[D, j] = 2.0 * zeta * (w * scale)
-        free[FC, j] = loads.free_cos[i, j] * square
-        free[FS, j] = loads.free_sin[i, j] * square
-        free[F1, j] = -model.modes[CHI, j] * square
-        free[OW, j] = model.modes[CHI, j]
-        free[OMEGA, j] = w
-        free[ZETA, j] = zeta
-    fill_steps(free, n, h, terms)
-    held = np.zeros((ROWS, m))
+        free[j, K] = (w * scale) * (w * scale)
+        free[j, D] = 2.0 * zeta * (w * scale)
+        free[j, FC] = loads.free_cos[i, j] * square
+        free[j, FS] = loads.free_sin[i, j] * square
+        free[j, F1] = -model.modes[CHI, j] * square
+        free[j, OW] = model.modes[CHI, j]
+        free[j, OMEGA] = w
+        free[j, ZETA] = zeta
+    fill_steps(free, h, terms)
+    held = np.zeros((m + 1, COLUMNS))
     direct = np.empty((2, m))
     contact_cos = -loads.contact_cos[i]
     contact_sin = -loads.contact_sin[i]
     for j in range(m):
         omega = model.omega[j]
-        held[K, j] = (omega * scale) * (omega * scale)
-        held[D, j] = 2.0 * model.ratio[j] * (omega * scale)
-        held[FC, j] = loads.held_cos[i, j] * square
-        held[FS, j] = loads.held_sin[i, j] * square
-        held[OZ, j] = model.watch[j]
-        held[OW, j] = model.watch[m + j] / scale
-        held[OMEGA, j] = omega
-        held[ZETA, j] = model.ratio[j]
+        held[j, K] = (omega * scale) * (omega * scale)
+        held[j, D] = 2.0 * model.ratio[j] * (omega * scale)
+        held[j, FC] = loads.held_cos[i, j] * square
+        held[j, FS] = loads.held_sin[i, j] * square
+        held[j, OZ] = model.watch[j]
+        held[j, OW] = model.watch[m + j] / scale
+        held[j, OMEGA] = omega
+        held[j, ZETA] = model.ratio[j]
         direct[0, j] = loads.direct_cos[i, j]
         direct[1, j] = loads.direct_sin[i, j]
         contact_cos -= model.watch[m + j] * direct[0, j]
         contact_sin -= model.watch[m + j] * direct[1, j]
-    fill_steps(held, m, h, terms)
+    fill_steps(held, h, terms)
+    watch_load(held, contact_cos, contact_sin)
     return Structure(
         n, m, r, h, r / h, terms, model.inverse_mass, model.stiffness,
-        -loads.contact_cos[i], -loads.contact_sin[i], contact_cos, contact_sin,
-        model.modes, free, held, direct, model.to_free, model.to_held,
+        -loads.contact_cos[i], -loads.contact_sin[i], model.modes, free, held, direct, model.to_free,
+        model.to_held,
     )  # fmt: skip
 
 
@@ -163,7 +165,7 @@ def contact_load(st, state, c, s):
 @kernel
 def held_load(st, held, z, c, s):
     """The load in the contact while it is held at z."""
-    return value(st.held, st.m, st.held_cos, st.held_sin, st.stiffness * z, held, c, s)
+    return value(st.held, held, c, s) + st.stiffness * z
 
 
 @kernel
@@ -217,9 +219,9 @@ def energy(st, state):
 @kernel
 def _in_step(table, k, h):
     """Whether an undamped oscillator that the load does not drive vibrates in step with the load for good."""
-    still = table[D, k] == 0.0 and table[FC, k] == 0.0 and table[FS, k] == 0.0
+    still = table[k, D] == 0.0 and table[k, FC] == 0.0 and table[k, FS] == 0.0
     # its frequency differs from r by no more than the rounding of either
-    return still and abs(table[K, k] - h * h) <= 1e-15 * h * h
+    return still and abs(table[k, K] - h * h) <= 1e-15 * h * h
 
 
 @kernel
@@ -239,12 +241,12 @@ def held_period(st):
     which adds up the oscillators as if they met sooner or later, cannot tell.
     """
     for k in range(st.m):
-        if st.held[D, k] != 0.0 or math.isinf(_steady(st.held, k, st.h)[0]):
+        if st.held[k, D] != 0.0 or math.isinf(_steady(st.held, k, st.h)[0]):
             return math.inf
     for periods in range(1, _LONGEST_REPEAT + 1):
         repeats = True
         for k in range(st.m):
-            turns = periods * math.sqrt(st.held[K, k]) / st.h
+            turns = periods * math.sqrt(st.held[k, K]) / st.h
             # what it differs from a whole number by no more than the rounding of either frequency
             repeats = repeats and abs(turns - math.floor(turns + 0.5)) <= 1e-15 * turns
         if repeats:
@@ -255,11 +257,11 @@ def held_period(st):
 @kernel
 def _steady(table, k, h):
     """Phasor a of the steady answer Re(a e^{i tau}) of an oscillator; infinite at an undamped resonance."""
-    f_re, f_im = table[FC, k], -table[FS, k]
+    f_re, f_im = table[k, FC], -table[k, FS]
     if f_re == 0.0 and f_im == 0.0:
         return 0.0, 0.0
-    d_re = table[K, k] - h * h
-    d_im = h * table[D, k]
+    d_re = table[k, K] - h * h
+    d_im = h * table[k, D]
     size = d_re * d_re + d_im * d_im
     if size == 0.0:
         return math.inf, 0.0
@@ -269,8 +271,7 @@ def _steady(table, k, h):
 @kernel
 def largest_load_to_come(st, held, z, c, s):
     """A bound on the load in the contact for as long as it stays held; infinite at an undamped resonance."""
-    y_re = st.held_cos
-    y_im = -st.held_sin
+    y_re, y_im = st.held[st.m, YC], -st.held[st.m, YS]
     free = 0.0
     h = st.h
     table = st.held
@@ -284,11 +285,11 @@ def largest_load_to_come(st, held, z, c, s):
             a_im = -held[0, k] * s - held[1, k] / h * c
         z_off = held[0, k] - (a_re * c - a_im * s)
         w_off = held[1, k] + h * (a_re * s + a_im * c)
-        y_re += table[OZ, k] * a_re - table[OW, k] * h * a_im
-        y_im += table[OZ, k] * a_im + table[OW, k] * h * a_re
+        y_re += table[k, OZ] * a_re - table[k, OW] * h * a_im
+        y_im += table[k, OZ] * a_im + table[k, OW] * h * a_re
         # the energy of free motion never grows
-        reach = math.sqrt(table[OZ, k] * table[OZ, k] / table[K, k] + table[OW, k] * table[OW, k])
-        free += reach * math.sqrt(table[K, k] * z_off * z_off + w_off * w_off)
+        reach = math.sqrt(table[k, OZ] * table[k, OZ] / table[k, K] + table[k, OW] * table[k, OW])
+        free += reach * math.sqrt(table[k, K] * z_off * z_off + w_off * w_off)
     return math.hypot(y_re, y_im) + abs(st.stiffness * z) + free
 
 
@@ -300,13 +301,13 @@ def release_steady(st, mu_beta, held, state):
     """
     h = st.h
     table = st.held
-    y_re, y_im = st.held_cos, -st.held_sin
+    y_re, y_im = st.held[st.m, YC], -st.held[st.m, YS]
     for k in range(st.m):
         a_re, a_im = _steady(table, k, h)
         if math.isinf(a_re):
             return False, 1.0, 0.0
-        y_re += table[OZ, k] * a_re - table[OW, k] * h * a_im
-        y_im += table[OZ, k] * a_im + table[OW, k] * h * a_re
+        y_re += table[k, OZ] * a_re - table[k, OW] * h * a_im
+        y_im += table[k, OZ] * a_im + table[k, OW] * h * a_re
     most = math.hypot(y_re, y_im)
     if not most > mu_beta:
         return False, 1.0, 0.0

@@ -8,7 +8,7 @@ import numpy as np
 from .closed_form import decay
 from .continuous import since_maximum
 from .jit import kernel
-from .oscillators import OW, OZ, ROWS, bounds, step_on, value
+from .oscillators import OW, OZ, bounds, step_on, watch_load
 from .structure import CHI, DAMPING, LOAD, LOAD_RATE, W, contact_load
 
 
@@ -46,7 +46,7 @@ def orbit_state(st, orbit, i, beta, phase, c, s, out):
 
 
 @kernel
-def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, following):
+def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, before):
     """A distance (energy norm) from the continuous orbit within which no motion can stop.
 
     A stop at distance eps needs |z'| <= a eps and |load| <= mu beta + b eps of the orbit, by Cauchy and
@@ -56,28 +56,25 @@ def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, followin
     s = -math.sin(phase)
     orbit_state(st, orbit, i, beta, phase, c, s, state)
     reach = 0.0
-    for row in range(ROWS):
-        for j in range(st.n):
-            loaded[row, j] = st.free[row, j]
+    for j in range(st.n + 1):
+        for column in range(loaded.shape[1]):
+            loaded[j, column] = st.free[j, column]
+    watch_load(loaded, st.free_cos, st.free_sin)
     for j in range(st.n):
-        loaded[OZ, j] = st.modes[LOAD, j]
-        loaded[OW, j] = st.modes[LOAD_RATE, j] * st.rate
+        loaded[j, OZ] = st.modes[LOAD, j]
+        loaded[j, OW] = st.modes[LOAD_RATE, j] * st.rate
         reach += (st.modes[LOAD, j] / st.modes[W, j]) ** 2 + st.modes[LOAD_RATE, j] ** 2
     reach = math.sqrt(reach)
     fast_per = st.rate / math.sqrt(st.inverse_mass)
-    curve, _, _, curve_growth, _ = bounds(st.free, st.n, beta, 0.0, 0.0, state, c, s, st.h)
-    bend, _, _, bend_growth, _ = bounds(loaded, st.n, beta, st.free_cos, st.free_sin, state, c, s, st.h)
+    curve, _, _, curve_growth, _, _ = bounds(st.free, beta, state, c, s)
+    bend, _, _, bend_growth, _, _ = bounds(loaded, beta, state, c, s)
     turn_c, turn_s = math.cos(st.h), math.sin(st.h)
     speed = 0.0
     load = contact_load(st, state, c, s)
     radius = math.inf
     for _ in range(int(math.ceil(math.pi / st.h))):
-        step_on(st.free, st.n, beta, state, c, s, following)
-        for j in range(st.n):
-            state[0, j] = following[0, j]
-            state[1, j] = following[1, j]
+        speed1 = step_on(st.free, st.n, beta, state, before, c, s)
         c, s = turn_c * c - turn_s * s, turn_c * s + turn_s * c
-        speed1 = value(st.free, st.n, 0.0, 0.0, 0.0, state, c, s)
         load1 = contact_load(st, state, c, s)
         fast = fast_per * (min(speed, speed1) - 0.125 * curve)
         # a load that changes its sign inside the step passes zero there

@@ -45,15 +45,15 @@ def fill_exponentials(st, beta, row, out):
     table = st.free if slides else st.held
     phase = complex(row[COS], row[SIN])
     for i in range(n):
-        stiffness = complex(table[K, i] - st.h * st.h, st.h * table[D, i])
-        force = complex(table[FC, i], -table[FS, i])
+        stiffness = complex(table[i, K] - st.h * st.h, st.h * table[i, D])
+        force = complex(table[i, FC], -table[i, FS])
         load = 0j
         if force != 0j:
             load = force / stiffness * phase if stiffness != 0j else complex(math.inf, 0.0)
-        rest = table[F1, i] * beta / table[K, i] if slides else 0.0
+        rest = table[i, F1] * beta / table[i, K] if slides else 0.0
         out[i, LOAD] = load
         out[i, REST] = rest
         place = row[STATE + i] - rest - load.real
         speed = row[STATE + n + i] / st.r + load.imag
-        _fill_free(table[ZETA, i], table[OMEGA, i] / st.r, place, speed, out[i])
+        _fill_free(table[i, ZETA], table[i, OMEGA] / st.r, place, speed, out[i])
     return n

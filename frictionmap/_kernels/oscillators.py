@@ -339,8 +339,8 @@ def _exit(table, friction, low, high, push, ends, errors, done, start, now, stat
     """Where y leaves [low, high] from scratch.next to `state`: (x, end, dy/dx); x = 2 if it does not.
 
     So many arguments: this is the seldom part of `scan`, whose arguments they are.  push : as there, of
-    the first step; ends : y at both ends; errors : bounds on its derivatives 2 to 4; now : the load's phase at
-    the start of this step.  If y leaves, `state` becomes that at x.
+    the first step; ends : y at both ends; errors : bounds on its derivatives 2 to 4; now : the load's phase
+    at the start of this step.  If y leaves, `state` becomes that at x.
     """
     n = table.shape[0] - 1
     c, s = now

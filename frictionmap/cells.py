@@ -119,14 +119,11 @@ class Cells:
         from ._kernels.engine.coexistence import fill_reachable
 
         axes = self._axes
-        shape = (axes.mu.size, axes.r.size, axes.beta.size)
-        flags = out.also_reachable if out.also_reachable.size else np.zeros(shape, dtype=np.int8)
-        far = out.sliding_limit if out.sliding_limit.size else np.empty(shape[:2])
         shared = (
-            axes, self.curves.beta_lim, self.curves.beta_stick, self.motion, limits(self._solver), flags, far,
-            cancel,
+            axes, self.curves.beta_lim, self.curves.beta_stick, self.no_load, self.motion,
+            limits(self._solver), out.also_reachable, out.sliding_limit, cancel,
         )  # fmt: skip
-        return [(fill_reachable, (row, row + 1, *shared)) for row in range(shape[0] * shape[1])]
+        return [(fill_reachable, (row, row + 1, *shared)) for row in range(axes.mu.size * axes.r.size)]
 
     def finish(self, out: Any) -> None:
         """The limit r = 0 without friction; and modes that the contact does not see may resonate."""

@@ -275,9 +275,9 @@ def attributes(name: str) -> dict[str, object]:
 
 
 def label_variable(name: str, values: np.ndarray | float) -> xr.Variable:
-    """A labelled variable, or a labelled scalar; the values are taken as they are, not copied."""
-    dims = LABELS[name].dims if np.ndim(values) else ()
-    return xr.Variable(dims, values, attributes(name))
+    """A labelled variable, of one cell without the cell's dimensions; the values are not copied."""
+    dims = LABELS[name].dims
+    return xr.Variable(dims[len(dims) - np.ndim(values) :], values, attributes(name))
 
 
 def stamp(

@@ -10,8 +10,10 @@ import xarray as xr
 from . import checks, regimes
 from ._kernels.continuous import orbit_phase
 from ._kernels.engine import phase_table
+from ._kernels.engine.answers import Cell
 from ._kernels.engine.fill import one_cell
 from ._kernels.engine.time_history import sample_phases
+from ._kernels.engine.window import window_table
 from ._kernels.oscillators import make_scratch
 from ._kernels.returns import make_workspace
 from ._kernels.structure import make_structure
@@ -26,6 +28,14 @@ from .system import System
 #: Samples of a time history per excitation period.
 POINTS = 2000
 _MOST_POINTS = 10**6
+
+#: Excitation periods shown of a motion that does not repeat: the longest steady state is as long.
+WINDOW = 8
+
+_WINDOWED = (
+    f"the motion repeats in no 8 periods: x, v, z, friction and the events are those of {WINDOW} periods at "
+    "the end of the {} that were followed, the scalars averages over the last 100"
+)
 
 _TURN = 2.0 * math.pi
 
@@ -57,6 +67,16 @@ class History:
     durations: np.ndarray  # of the stops
     amplitude: float
     stuck: bool  # for good
+
+
+@dataclass(frozen=True)
+class Found:
+    """The steady state of a cell, or a window of a motion that does not repeat."""
+
+    table: np.ndarray | None  # phases of one period, or of the window; none where it sticks for good
+    status: int
+    rest: float = 0.0  # where it sticks
+    averages: Cell | None = None  # of the motion that does not repeat
 
 
 def _times(period: int, points: int) -> np.ndarray:
@@ -108,24 +128,40 @@ def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
     return table
 
 
-def _phases(question: Question, cells: Cells) -> tuple[np.ndarray | None, float]:
-    """(table, rest): the phases of the steady state over one period; None where it sticks, at `rest`."""
+def _window(question: Question, cells: Cells, cell: Cell) -> Found:
+    """The last periods that the solver followed, of a motion that does not repeat."""
+    before = _TURN * max(0.0, question.solver.cycles - WINDOW - 2.0)
+    moving = question.solver.start == "moving"
+    table = window_table(
+        cells.motion, question.beta, question.mu, moving, before, _TURN * (WINDOW + 2.0)
+    )  # fmt: skip
+    averages = cell._replace(amplitude=cells.unit * cell.amplitude)
+    return Found(table, cell.status, averages=averages)
+
+
+def _find(question: Question, cells: Cells) -> Found:
     regime, rest = _decided(cells, question), 0.0
+    status = regimes.RESOLVED
     table = np.empty((0, 0))
     if regime == regimes.UNRESOLVED:
         solver = question.solver
         moving = solver.start == "moving"
         cell, table = one_cell(cells.motion, question.beta, question.mu, limits(solver), moving)
+        status = cell.status
+        if status == regimes.NOT_PERIODIC:
+            return _window(question, cells, cell)
         if cell.period == 0:
-            raise _no_steady_state(question, regimes.status_meaning(cell.status))
+            raise _no_steady_state(question, regimes.status_meaning(status))
         regime, rest = cell.regime, cells.unit * cell.sign * cell.at.z
     if regime == regimes.PERMANENT_STICKING:
-        return None, rest
+        return Found(None, status, rest)
     if table.shape[0] == 0:
         if math.isinf(cells.structures.orbit.v_abs[0]):
             raise _no_steady_state(question, _UNBOUNDED)
         table = _continuous_table(question, cells)
-    return _with_mirror_image(table), 0.0
+        marginal = bool(cells.structures.marginal[0]) and question.beta > 0.0
+        status = regimes.MARGINAL if marginal else status
+    return Found(_with_mirror_image(table), status)
 
 
 def _stuck_history(question: Question, cells: Cells, rest: float) -> History:
@@ -142,31 +178,45 @@ def _stuck_history(question: Question, cells: Cells, rest: float) -> History:
     )  # fmt: skip
 
 
-def _events(table: np.ndarray, start: float, total: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times from tau = 0 on, phases that begin and z there."""
+def _phase_starts(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Phases that begin, and z there."""
     sign = table[:, phase_table.SIGN]
-    times = np.mod(table[:, phase_table.BEGIN] + start, total)
     # a slide starts where the phase before it ended
-    places = np.roll(sign * table[:, phase_table.Z_END], 1)
-    order = np.argsort(times, kind="stable")
-    return times[order], (sign * table[:, phase_table.SENSE])[order], places[order]
+    return sign * table[:, phase_table.SENSE], np.roll(sign * table[:, phase_table.Z_END], 1)
 
 
-def _moving_history(question: Question, cells: Cells, table: np.ndarray) -> History:
-    """A steady state that slides, sampled along its phases."""
-    found = cells.structures
-    if found.resonant.any():
-        raise _no_steady_state(question, _UNBOUNDED)
-    n = found.seen.size
-    lengths = table[:, phase_table.LENGTH]
-    total = float(lengths.sum())
-    period = max(1, round(total / _TURN))
-    tau = _times(period, question.points)
+def _place(found: Found, tau: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where in time the table of phases lies, whose phases begin `begin` after the first one.
+
+    Returns the times of samples since its first phase; which phases begin among them, in order; and when.
+    """
+    table = found.table
+    assert table is not None
     sign = table[0, phase_table.SIGN]
     start = math.atan2(sign * table[0, phase_table.SIN], sign * table[0, phase_table.COS])
-    since = _since(tau, start, total)
+    if found.averages is None:
+        total = float(table[:, phase_table.LENGTH].sum())
+        times = np.mod(begin + start, total)
+        order = np.argsort(times, kind="stable")
+        return _since(tau, start, total), order, times[order]
+    skipped = -start % _TURN  # to the first maximum of the load
+    inside = np.flatnonzero((begin >= skipped) & (begin <= skipped + tau[-1]))
+    return tau + skipped, inside, begin[inside] - skipped
+
+
+def _moving_history(question: Question, cells: Cells, found: Found) -> History:
+    """A motion that slides, sampled along its phases."""
+    numbers, table = cells.structures, found.table
+    assert table is not None
+    if numbers.resonant.any():
+        raise _no_steady_state(question, _UNBOUNDED)
+    n = numbers.seen.size
+    lengths = table[:, phase_table.LENGTH]
+    period = WINDOW if found.averages else max(1, round(float(lengths.sum()) / _TURN))
+    tau = _times(period, question.points)
+    since, shown, times = _place(found, tau, table[:, phase_table.BEGIN])
     order = np.argsort(since, kind="stable")
-    st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
+    st = make_structure(numbers.model, numbers.loads, 0, question.r, float(question.solver.steps))
     coordinates, velocities = np.empty((2, n, tau.size))
     z, friction = np.empty((2, tau.size))
     sense = np.empty(tau.size, dtype=np.int8)
@@ -176,13 +226,38 @@ def _moving_history(question: Question, cells: Cells, table: np.ndarray) -> Hist
     )  # fmt: skip
     back = np.empty_like(order)
     back[order] = np.arange(order.size)
-    alone = (found.alone_re[0] + 1j * found.alone_im[0])[:, np.newaxis] * np.exp(1j * tau)
+    alone = (numbers.alone_re[0] + 1j * numbers.alone_im[0])[:, np.newaxis] * np.exp(1j * tau)
+    begins, places = _phase_starts(table)
     return History(
-        period, tau, (found.shapes.free @ coordinates)[:, back] + alone.real,
-        (found.shapes.free @ velocities)[:, back] - alone.imag, z[back], friction[back], sense[back],
-        _events(table, start, total), lengths[table[:, phase_table.SENSE] == 0.0],
+        period, tau, (numbers.shapes.free @ coordinates)[:, back] + alone.real,
+        (numbers.shapes.free @ velocities)[:, back] - alone.imag, z[back], friction[back], sense[back],
+        (times, begins[shown], places[shown]), lengths[table[:, phase_table.SENSE] == 0.0],
         float(np.abs(table[:, phase_table.Z_END]).max()), False,
     )  # fmt: skip
+
+
+def _summary(history: History, found: Found) -> dict[str, float]:
+    """The cell's numbers; those of a motion that does not repeat are averages, and it has no period."""
+    averages = found.averages
+    if averages is not None:
+        return {
+            "regime": averages.regime,
+            "stops_per_cycle": averages.stops,
+            "contact_amplitude": averages.amplitude,
+            "stuck_fraction": averages.stuck,
+            "period": 0,
+            "status": found.status,
+        }
+    stops = history.durations.size
+    regime = regimes.STICK_SLIP if stops else regimes.CONTINUOUS
+    return {
+        "regime": regimes.PERMANENT_STICKING if history.stuck else regime,
+        "stops_per_cycle": math.nan if history.stuck else stops / history.period,
+        "contact_amplitude": history.amplitude,
+        "stuck_fraction": 1.0 if history.stuck else history.durations.sum() / (_TURN * history.period),
+        "period": history.period,
+        "status": found.status,
+    }
 
 
 def _further(question: Question, names: list[Output]) -> dict[str, xr.Variable]:
@@ -195,11 +270,10 @@ def _further(question: Question, names: list[Output]) -> dict[str, xr.Variable]:
     return {name: cell[name].variable for name in names}
 
 
-def _history(question: Question, cells: Cells) -> History:
-    table, rest = _phases(question, cells)
-    if table is None:
-        return _stuck_history(question, cells, rest)
-    return _moving_history(question, cells, table)
+def _history(question: Question, cells: Cells, found: Found) -> History:
+    if found.table is None:
+        return _stuck_history(question, cells, found.rest)
+    return _moving_history(question, cells, found)
 
 
 def response(
@@ -230,13 +304,16 @@ def response(
         Over `tau` (0 to 2 pi times the period): `x(dof, tau)`, `v(dof, tau)`, `z`, `friction` (over P)
         and `phase` (-1, 0, 1).  Over `event`: `event_tau`, `event_phase` (the phase that begins) and
         `event_z`.  Scalars: `regime`, `stops_per_cycle`, `contact_amplitude`, `stuck_fraction`, `period`,
-        the boundaries and what else `outputs` asks for.  tau = 0 is a maximum of the load (of the base's
-        displacement).
+        `status`, the boundaries and what else `outputs` asks for.  tau = 0 is a maximum of the load (of the
+        base's displacement).
+
+        Of stick-slip that does not repeat (`status` not_periodic, `period` 0) tau goes over 8 periods at the
+        end of those that were followed, and the scalars are those of the map: averages.
 
     Raises
     ------
     InputError
-        An argument is out of range.
+        An argument is of the wrong kind or out of range.
     NoSteadyState
         There is none, or none was found.
 
@@ -257,16 +334,9 @@ def response(
         raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
     question = Question(system, r, beta, mu, solver, points)
     cells = make_cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
-    history = _history(question, cells)
-    stops = history.durations.size
-    regime = regimes.STICK_SLIP if stops else regimes.CONTINUOUS
-    summary = {
-        "regime": regimes.PERMANENT_STICKING if history.stuck else regime,
-        "stops_per_cycle": math.nan if history.stuck else stops / history.period,
-        "contact_amplitude": history.amplitude,
-        "stuck_fraction": 1.0 if history.stuck else history.durations.sum() / (_TURN * history.period),
-        "period": history.period,
-    }
+    found = _find(question, cells)
+    history = _history(question, cells, found)
+    summary = _summary(history, found)
     times, begins, places = history.events
     variables = {
         "x": history.x,
@@ -290,4 +360,7 @@ def response(
     ds = ds.assign(_further(question, [name for name in solver.outputs if name not in ds]))
     cell = {"r": r, "beta": beta, "mu": mu}
     ds = ds.assign_coords({name: coordinate(name, value) for name, value in cell.items()})
-    return stamp(ds, "response", "Steady state in time", system, cell, solver)
+    ds = stamp(ds, "response", "Steady state in time", system, cell, solver)
+    if found.averages is not None:
+        ds.attrs |= {"title": "Motion in time, a part of it", "comment": _WINDOWED.format(solver.cycles)}
+    return ds

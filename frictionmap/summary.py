@@ -67,6 +67,8 @@ def describe_response(ds: xr.Dataset) -> str:
         words.append(f"amplitude {float(ds['contact_amplitude']):.6g}")
     if "period" in ds and int(ds["period"]) > 1:
         words.append(f"period {int(ds['period'])}")
+    if "status" in ds and int(ds["status"]) == regimes.NOT_PERIODIC:
+        words.append("not periodic: a part of the motion is shown, and its averages")
     return ", ".join(words)
 
 

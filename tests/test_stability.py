@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from kernels import callable_kernel
 from test_structures import random_chain
 
@@ -246,6 +247,63 @@ def test_coexistence(system, r, beta, flags):
     ds = fm.sweep(system, [r], [beta], 1.5, outputs=("also_reachable", "sliding_limit"))
     assert ds.also_reachable.item() == flags
     assert ds.sliding_limit.item() >= beta * (1.0 - 1e-12) or flags == 2 | 4
+
+
+TWO = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.02)
+COEXISTENCE = ("also_reachable", "sliding_limit")
+
+
+@pytest.mark.parametrize(
+    ("system", "r", "mu"),
+    [
+        (fm.System(), [0.31, 1.0218979168366544], [1.0, 1.3601607109057832]),
+        (BASE, [0.0, 0.52, 0.9], [1.5]),
+        (TWO, [0.45, 0.7, 1.3], [1.0, 1.4]),
+    ],
+)
+def test_what_is_reachable_does_not_depend_on_the_grid(system, r, mu):
+    """Alone, in rows of two and in the whole, beta_lim and beta_stick themselves among the cells."""
+    edges = fm.boundaries(system, r, mu)
+    beta = np.unique(np.concatenate((edges.beta_lim.values.ravel(), edges.beta_stick.values.ravel(),
+                                     [0.0, 0.05, 0.4, 0.7, 0.8, 1.5])))  # fmt: skip
+    whole = fm.sweep(system, r, beta, mu, outputs=COEXISTENCE)
+    for j in range(beta.size):
+        for columns in ([j], sorted({j, (3 * j) % beta.size}), range(max(0, j - 1), j + 1)):
+            for i in range(len(r)):
+                part = fm.sweep(system, [r[i]], beta[list(columns)], mu, outputs=COEXISTENCE)
+                same = whole.isel(r=[i], beta=list(columns))
+                for name in COEXISTENCE:
+                    np.testing.assert_array_equal(part[name].values, same[name].values, name)
+
+
+@pytest.mark.parametrize("system", [fm.System(), BASE, fm.System(damping_ratios=0.3), TWO])
+def test_what_is_proved_is_listed(system):
+    """theory.md 6: continuous below beta_lim, stuck from beta_stick on, nothing else beyond mu beta_stick."""
+    rng = np.random.default_rng(9)
+    r, mu = np.sort(rng.uniform(0.2, 2.0, 4)), [1.0, 1.7]
+    edges = fm.boundaries(system, r, mu)
+    beta = np.unique(np.concatenate((rng.uniform(0.0, 1.2, 9), [0.0], edges.beta_stick.values.ravel())))
+    ds = fm.sweep(system, r, beta, mu, outputs=(*COEXISTENCE, "regime", "status"))
+    found, lim, stick = xr.broadcast(ds.also_reachable, ds.beta_lim, ds.beta_stick)[:3]
+    b = ds.beta.broadcast_like(found)
+    np.testing.assert_array_equal((found & 4).where(b < lim, 4), 4)
+    np.testing.assert_array_equal((found & 1).where((b >= stick) & (b > 0.0), 1), 1)
+    np.testing.assert_array_equal((found & 1).where(b < stick, 0), 0)
+    np.testing.assert_array_equal(found.where(b > 1.001 * ds.mu * stick, 1), 1)
+    own = 2 ** ds.regime.clip(0).astype(int)
+    assert bool(((found & own) > 0).where(ds.status == 0, True).all())
+    assert bool((ds.sliding_limit >= np.maximum(ds.beta_stick, ds.beta_lim)).all())
+    assert bool((ds.sliding_limit <= ds.mu * ds.beta_stick * (1.0 + 1e-12)).all())
+
+
+def test_what_is_reachable_where_nothing_moves():
+    """r = 0: a wall that moves with the base loads nothing; a fixed one is quasi-static between its edges."""
+    assert fm.sweep(BASE, [0.0], [0.0, 0.5], 1.5, outputs=COEXISTENCE).also_reachable.values.tolist() == [
+        [[1, 1]]
+    ]
+    ds = fm.sweep(fm.System(), [0.0], [0.0, 0.3, 0.9], 1.5, outputs=COEXISTENCE)
+    assert ds.also_reachable.values.tolist() == [[[4, 2, 1]]]
+    assert ds.sliding_limit.item() == ds.beta_stick.item()
 
 
 def test_one_answer_where_it_is_unique():

@@ -13,6 +13,7 @@ from benchmarks.references.settled import settle
 from frictionmap import regimes
 from frictionmap._kernels.events import after_slide, slide
 from frictionmap._kernels.phases import MAX_TERMS, step_constants
+from frictionmap.summary import describe_response
 
 
 @njit
@@ -359,3 +360,53 @@ def test_no_response_where_the_motion_is_unbounded(case):
 def test_response_refuses_rest_of_time():
     with pytest.raises(fm.InputError, match="r must be > 0"):
         fm.response(fm.System(), 0.0, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("contact", "r", "beta", "mu", "start", "outputs"),
+    [
+        ("joined-base-wall", 0.39, 0.0225, 1.5, "rest", ["regime"]),
+        ("joined-base-wall", 0.39, 0.0225, 1.5, "moving", ["regime"]),
+        ("joined-base-wall", 0.39, 0.0225, 1.5, "moving", ["amplitude"]),
+    ],
+)
+def test_a_window_of_a_motion_that_does_not_repeat(contact, r, beta, mu, start, outputs):
+    """Eight periods that obey the equation of motion, said to be a part; the scalars are the map's."""
+    system = fm.System(contact)
+    settings = {"start": start, "cycles": 300, "outputs": outputs}
+    ds = fm.response(system, r, beta, mu, points=8000, **settings)
+    assert int(ds.status) == regimes.NOT_PERIODIC
+    assert int(ds.period) == 0
+    assert "repeats in no 8 periods" in ds.attrs["comment"]
+    assert "not periodic" in describe_response(ds)
+    assert "not periodic" in fm.plot_response(ds)[0].figure.get_suptitle()
+    tau, x, v = ds.tau.values, ds.x.values[0], ds.v.values[0]
+    assert tau[-1] == pytest.approx(16.0 * np.pi)
+    assert abs(x[-1] - x[0]) > 1e-6  # it does not come back
+    acceleration = (v[2:] - v[:-2]) / (2.0 * tau[1])
+    same = (ds.phase.values[2:] == ds.phase.values[1:-1]) & (ds.phase.values[1:-1] == ds.phase.values[:-2])
+    off = r**2 * acceleration + x[1:-1] + ds.friction.values[1:-1] - np.cos(tau[1:-1])
+    assert np.abs(off[same]).max() < 1e-4
+    inside = ds.event_tau.values
+    assert np.all(np.diff(inside) >= 0.0)
+    assert 0.0 <= inside[0] < inside[-1] <= tau[-1]
+    for at, sense in zip(inside, ds.event_phase.values, strict=True):
+        k = np.searchsorted(tau, at)
+        assert sense in ds.phase.values[k : k + 2]
+    cell = fm.sweep(
+        system,
+        [r],
+        [beta],
+        mu,
+        **(settings | {"outputs": [*outputs, "stops_per_cycle", "contact_amplitude"]}),
+    )
+    for name in ("stops_per_cycle", "contact_amplitude"):
+        assert float(ds[name]) == cell[name].item()
+    assert np.abs(ds.z.values).max() <= cell.contact_amplitude.item() * (1.0 + 1e-12)
+
+
+def test_response_tells_its_status():
+    assert int(fm.response(fm.System(), 0.3, 0.5).status) == regimes.RESOLVED
+    assert int(fm.response(fm.System(), 0.5, 0.1).status) == regimes.MARGINAL
+    assert int(fm.response(fm.System(), 0.5, 0.1, outputs=["amplitude"]).status) == regimes.MARGINAL
+    assert int(fm.response(fm.System(), 0.5, 2.0).status) == regimes.RESOLVED

@@ -20,7 +20,7 @@ from frictionmap._kernels.structure import make_structure
 from frictionmap.cells import make_cells
 from frictionmap.held import held_structure
 from frictionmap.settings import OUTPUTS as EVERY
-from frictionmap.steady import Question, _phases
+from frictionmap.steady import Question, _find
 
 decay = callable_kernel(closed_form.decay)
 fill_steps = callable_kernel(oscillators.fill_steps)
@@ -283,7 +283,7 @@ def gauss_samples(system, r, beta, mu):
     solver = fm.Solver()
     cells = make_cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
     question = Question(system, r, beta, mu, solver, 2)
-    rows, _ = _phases(question, cells)
+    rows = _find(question, cells).table
     found = cells.structures
     x, weight = np.polynomial.legendre.leggauss(12)
     begins = np.concatenate(([0.0], np.cumsum(rows[:, phase_table.LENGTH])))

@@ -14,6 +14,7 @@
 | `displacements`, `exponentials`, `floquet`, `time_history` | what is read from it |
 | `details` | those of them that a map was asked for |
 | `coexistence` | what else a cell could end in |
+| `window` | a part of a motion that does not repeat |
 | `fill` | the cells of a map |
 | `policies` | starts and thresholds that both kinds of motion share |
 """

@@ -21,10 +21,10 @@ from .verdict import ANSWER, CHANGED, HANG, LEFT, LINES, SLOW, STATUS, TRACEBACK
 _ALLOWED = 2.0
 
 #: Times that until a run that has not ended hangs.
-_HANGS = 15.0
+_HANGS = 5.0
 
 #: By quick: moments of each verb and signal, and so many more while the output is being written.
-_MOMENTS = {False: (8, 3), True: (1, 0)}
+_MOMENTS = {False: (5, 3), True: (1, 0)}
 
 #: Verbs of the quick form.
 _QUICK = ("map", "plot")

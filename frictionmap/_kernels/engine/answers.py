@@ -62,10 +62,8 @@ class Orbit(NamedTuple):
     event: int  # which ended the slide before
     sign: float  # -1.0 where that is the mirror image of the true motion
     slides: int  # until it returns, or a multiple of that
-    ahead: int  # slides from the anchor of the motion that it was looked for from to its own
-    contraction: (
-        float  # largest modulus of the multipliers of a return, < 1; not told where it is the only one
-    )
+    certain: bool  # whether the motion that it was looked for from goes there; else that is to be seen
+    contraction: float  # largest modulus of the multipliers of a return, < 1; not told where it is certain
 
 
 class Cell(NamedTuple):
@@ -95,13 +93,13 @@ def nowhere():
 @kernel
 def no_orbit():
     """A search that failed."""
-    return Orbit(False, nowhere(), REVERSE, 1.0, 0, 0, math.nan)
+    return Orbit(False, nowhere(), REVERSE, 1.0, 0, True, math.nan)
 
 
 @kernel
 def known_orbit(at, event, sign, slides):
     """The orbit of an anchor that the motion is at already."""
-    return Orbit(True, at, event, sign, slides, 0, math.nan)
+    return Orbit(True, at, event, sign, slides, True, math.nan)
 
 
 @kernel

@@ -41,7 +41,7 @@ from ..structure import (
     vibrates_in_step,
 )
 from ..structure_orbit import Continuous, orbit_state, stop_free_radius
-from .answers import TURN, Contact, Moment, Orbit, no_orbit, nowhere, turns_at
+from .answers import TURN, Contact, Moment, known_orbit, no_orbit, nowhere, turns_at
 from .memory import STATE, Memory, Near, make_memory, turned
 from .phase_table import put_state
 from .policies import FINE_STEPS, SLOTS
@@ -54,6 +54,14 @@ _LONGEST_SLIDE = 8.0 * math.pi
 
 #: Orders of events that are tried on the way from a neighbour's orbit.
 _MOST_ORDERS = 8
+
+#: A return this close (relative to the motion) is worth a Newton iteration: one that is 0.1 off says too
+#: little of where a structure is heading.
+_NEAR_RETURN = 0.01
+
+#: With several steady states the one solved for must be where the motion is heading: no further off than
+#: this many times what the last return and the contraction there make one expect.
+_HEADING = 4.0
 
 #: Anchors this close are one: ten times the one mass's, for the rounding of sums over many modes.
 _SAME = 1e-8
@@ -91,6 +99,7 @@ class ManyMasses(NamedTuple):
     load: float  # unit of force and displacement: 1, that of the system
     v_abs: float
     marginal: bool  # where continuous motions are a continuum
+    near_return: float
     i: int  # the frequency's place
     st: Structure
     fine: Structure  # with steps at least as short, for bounds over a whole orbit
@@ -111,7 +120,7 @@ def at_frequency(system, i):
     fine = make_structure(system.model, system.loads, i, r, max(system.steps, FINE_STEPS))
     n = st.n
     return ManyMasses(
-        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], i, st, fine, system.orbit,
+        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _NEAR_RETURN, i, st, fine, system.orbit,
         np.empty((2, n)), np.empty((SLOTS, 2, n)), make_memory(st.h, 2 * n), make_workspace(n),
         make_scratch(n), np.empty((0, 0)),
     )  # fmt: skip
@@ -239,11 +248,8 @@ def _converge(motion, contact, anchored, sign, codes, first, slides, near, limit
         motion.scratch,
     ):  # fmt: skip
         return no_orbit()
-    contraction = 0.0
-    if not contact.unique:
-        contraction = _contraction(motion, contact, anchored, codes, first, slides, halves)
-        if not contraction < 1.0:
-            return no_orbit()
+    if not contact.unique and not _attracts(motion, contact, anchored, codes, first, slides, near):
+        return no_orbit()
     copy_state(work.middle, motion.state, st.n)
     steps, at = slide_to_turn(motion, contact, anchored, _LONGEST_SLIDE / st.h)
     if steps == NO_END:
@@ -252,20 +258,28 @@ def _converge(motion, contact, anchored, sign, codes, first, slides, near, limit
     copy_state(work.middle, work.solved, st.n)
     work.anchored[HALVES], work.anchored[SIDE] = halves, sign
     work.anchored[PHASE_COS], work.anchored[PHASE_SIN] = anchored.cos, anchored.sin
-    return Orbit(True, at, event, -sign if turns_at(event) else sign, slides, 1, contraction)
+    return known_orbit(at, event, -sign if turns_at(event) else sign, slides)
 
 
 @kernel
-def _contraction(motion, contact, anchored, codes, first, slides, halves):
-    """Largest modulus of the multipliers of a return of the orbit in work.middle; infinite if it fails."""
-    st, work = motion.st, motion.work
-    copy_state(work.middle, work.moved, st.n)
+def _attracts(motion, contact, anchored, codes, first, slides, near):
+    """Whether the orbit in work.middle attracts, and is where the motion is heading from work.start.
+
+    Unlike one mass, an undamped structure comes nearer to its orbit in no simple way: returns tell nothing.
+    """
+    st, work, n = motion.st, motion.work, motion.st.n
+    copy_state(work.middle, work.moved, n)
     if not return_map(
-        st, contact.b, contact.mu_b, work.moved, anchored.cos, anchored.sin, codes, first, slides, halves,
-        True, work, motion.scratch,
+        st, contact.b, contact.mu_b, work.moved, anchored.cos, anchored.sin, codes, first, slides,
+        near.halves, True, work, motion.scratch,
     ):  # fmt: skip
-        return math.inf
-    return spectral_radius(work.flow, 2 * st.n, work.square)
+        return False
+    contraction = spectral_radius(work.flow, 2 * n, work.square)
+    for i in range(n):
+        work.moved[0, i] = work.middle[0, i] - work.start[0, i]
+        work.moved[1, i] = work.middle[1, i] - work.start[1, i]
+    expected = near.gap * energy(st, work.middle) / (1.0 - contraction)
+    return contraction < 1.0 and energy(st, work.moved) <= _HEADING * expected
 
 
 @kernel

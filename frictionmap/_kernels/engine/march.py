@@ -203,7 +203,7 @@ def _goes_there(motion, contact, at, orbit, allowed):
     closer = 0.5 * (1.0 + orbit.contraction)
     before = math.inf
     slide = 0
-    for last in range(orbit.ahead, orbit.ahead + 2 * orbit.slides + 1, orbit.slides):
+    for last in range(0, 2 * orbit.slides + 1, orbit.slides):
         event = orbit.event
         while slide < last:
             steps, at = slide_to_turn(motion, contact, at, allowed / motion.h)
@@ -225,7 +225,7 @@ def _seek(motion, contact, at, event, trail, near, tries, limits):
     """The periodic orbit that a motion goes to; if there is none, the motion stays where it is."""
     keep_state(motion, NOW)
     orbit = seek(motion, contact, at, event, trail.sign, trail.events, near, tries.made, limits)
-    if not orbit.found or contact.unique:
+    if orbit.certain:
         return orbit
     keep_state(motion, GOAL)
     if _goes_there(motion, contact, at, orbit, TURN * limits.cycles):

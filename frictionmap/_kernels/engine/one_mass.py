@@ -34,6 +34,10 @@ NEIGHBOUR = FIRST + MOST_EVENTS
 #: Anchors this close are one: Newton's method may have gone round a short orbit more than once.
 _SAME = 1e-9
 
+#: A return this close (relative to the motion) is worth a Newton iteration; whether the motion goes to the
+#: orbit found is seen from two returns (`march`).
+_NEAR_RETURN = 0.1
+
 #: Distance to an end of the places of rest, over r^2, below which a slide takes less than a tenth of it.
 _CREEPING = 0.02
 
@@ -79,6 +83,7 @@ class OneMass(NamedTuple):
     chi: float
     v_abs: float
     marginal: bool  # where continuous motions are a continuum
+    near_return: float
     oscillator: Oscillator
     step: Step
     fine: Step  # a step at least as short, for bounds over a whole orbit
@@ -96,9 +101,9 @@ def at_frequency(system, i):
     oscillator = Oscillator(r, system.zeta, f.v_abs[i], f.v_arg[i], f.u[i], f.g[i], f.marginal[i])
     step = step_constants(r, system.zeta, system.steps)
     return OneMass(
-        step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], oscillator, step,
-        step_constants(r, system.zeta, max(system.steps, FINE_STEPS)), make_memory(step.h, 1),
-        np.empty(MAX_TERMS), np.zeros(NEIGHBOUR), np.empty((0, 0)),
+        step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _NEAR_RETURN,
+        oscillator, step, step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
+        make_memory(step.h, 1), np.empty(MAX_TERMS), np.zeros(NEIGHBOUR), np.empty((0, 0)),
     )  # fmt: skip
 
 
@@ -259,7 +264,7 @@ def seek(motion, contact, at, event, sign, events, near, tries, limits):
             if stopped:
                 _keep(motion, z, sign, events, slides)
             net = first_push(contact.b, contact.mu_b, z, c)
-            return Orbit(True, Moment(z, 0.0, c, s, net), event, sign, slides, 0, contraction)
+            return Orbit(True, Moment(z, 0.0, c, s, net), event, sign, slides, contact.unique, contraction)
     return no_orbit()
 
 

@@ -12,9 +12,6 @@ _MAX_RETURN = 64
 #: Half periods of the longest return.
 _LONGEST_RETURN = 16
 
-#: A return this close (relative to the motion) is worth a Newton iteration.
-_NEAR_RETURN = 0.1
-
 
 @kernel
 def near_return(motion, at, events, any_will_do, shortest):
@@ -28,7 +25,7 @@ def near_return(motion, at, events, any_will_do, shortest):
     now = (events - 1) % length
     size = size_now(motion, at)
     best = Near(0, math.inf, 0)
-    near = math.inf if any_will_do else _NEAR_RETURN
+    near = math.inf if any_will_do else motion.near_return
     seen = 0
     for lag in range(1, min(events, length)):
         then = (events - 1 - lag) % length

@@ -1,39 +1,21 @@
 """Exact regime maps of vibrating structures with one dry-friction contact.
 
-============  ==========================================================================
-module        what is in it
-============  ==========================================================================
-system        what is simulated: masses, springs, damping, load, contact
-continuous    `continuous_motion`: the motion that never sticks, in closed form
-curves        `boundaries`: beta_lim, beta_stick and the response functions over frequency
-features      limits, peak thresholds, invariant points, quasi-static displacement
-matrices      M, K and C from a file or from arrays, checked
-modes         modes, participation of contact and load, the structure held at its contact
-held          the held structure as a set of oscillators
-structures    a structure in the numbers that the kernels take
-cells         what the cells of a map need: one mass, or any structure
-maps          `sweep`: regime maps; plan, run in parallel, label
-steady        `response`: one steady state in time
-settings      settings of the steady-state solver
-regimes       the table of regime, origin and status codes
-labels        names, units and meanings of everything in a dataset
-checks        checks of input
-config        configuration files
-outputs       output files: claimed, written beside their place, put there whole or not at all
-storage       datasets as NetCDF files
-provenance    history and configuration of a dataset
-schema        what a dataset may hold, checked against `labels`
-reading       files: read with a check, brought into one form
-stored        what a dataset remembers of how it was made
-summary       what a dataset holds, in words
-plot          pictures: the door to what is in `pictures`
-cost          memory and time that a map will take
-progress      what a long run is at
-arguments     the arguments of the command line
-cli           the command line
-interrupts    Ctrl-C and termination end the program at once
-_kernels      the only home of jitted code: numbers and arrays in, numbers and codes out
-============  ==========================================================================
+=============  =========================================================================
+room           what is in it, in the order in which data flows
+=============  =========================================================================
+regimes        the table of regime, origin and status codes
+checks         checks of input, whose messages name what is legal; `errors`
+_kernels       the only home of jitted code: numbers and arrays in, numbers and codes out
+model          what is simulated: system, matrices, modes, the structure held at its
+               contact, settings of the solver
+datasets       what a dataset holds: labels, schema, provenance
+features       limits, peak thresholds, invariant points, quasi-static displacement
+theory         closed forms over frequency: `boundaries`, `continuous_motion`
+steady         steady states: cells, `sweep` (plan, run, label), `response`; what a map costs
+files          configurations; places of output, storage, reading; files in words
+pictures       palette, panels, and a module for each kind of picture; `plot` is the door
+cli            the command line; `arguments`, `progress`, `interrupts`
+=============  =========================================================================
 
 The names in `__all__`, and what is written into files, may grow and not change: people have scripts and
 files.  What begins with an underscore, `_kernels` first, may change at any time.
@@ -47,14 +29,14 @@ from .version import __version__
 
 if TYPE_CHECKING:
     from . import features
-    from .config import load_config
-    from .continuous import continuous_motion
-    from .curves import boundaries
-    from .maps import sweep
+    from .files.config import load_config
+    from .model.settings import Solver
+    from .model.system import System
     from .plot import plot_boundaries, plot_regimes, plot_response
-    from .settings import Solver
-    from .steady import response
-    from .system import System
+    from .steady.response import response
+    from .steady.sweep import sweep
+    from .theory.boundaries import boundaries
+    from .theory.continuous_motion import continuous_motion
 
 __all__ = [
     "InputError",
@@ -76,16 +58,16 @@ __all__ = [
 # Loaded when first used: numba, xarray and matplotlib together take most of a second to import, and
 # `frictionmap --help` needs none of them.
 _HOME = {
-    "Solver": "settings",
-    "System": "system",
-    "boundaries": "curves",
-    "continuous_motion": "continuous",
-    "load_config": "config",
+    "Solver": "model.settings",
+    "System": "model.system",
+    "boundaries": "theory.boundaries",
+    "continuous_motion": "theory.continuous_motion",
+    "load_config": "files.config",
     "plot_boundaries": "plot",
     "plot_regimes": "plot",
     "plot_response": "plot",
-    "response": "steady",
-    "sweep": "maps",
+    "response": "steady.response",
+    "sweep": "steady.sweep",
 }
 
 

@@ -14,8 +14,8 @@ from .errors import InputError, NoSteadyState
 if TYPE_CHECKING:
     import xarray as xr
 
-    from .config import Config
-    from .outputs import Output
+    from .files.config import Config
+    from .files.places import Output
 
 
 #: Cells of a map from which on its cost is told before it is taken.
@@ -24,7 +24,7 @@ _MANY = 3_000_000
 
 def _finish(ds: "xr.Dataset", config: "Config", options: Options) -> Callable[[Path], None]:
     """What writes the dataset, once it is told where."""
-    from .storage import write_netcdf
+    from .files.storage import write_netcdf
 
     ds.attrs["title"] = config.title
     ds.attrs["config"] = config.text
@@ -38,9 +38,9 @@ def _tell(options: Options, output: "Output", *summary: str) -> None:
 
 def _map(options: Options, config: "Config", output: "Output") -> None:
     from ._kernels.cache import listeners
-    from .maps import sweep
+    from .files.summary import describe_causes, describe_map
     from .progress import Progress
-    from .summary import describe_causes, describe_map
+    from .steady.sweep import sweep
 
     cells = config.mu.size * config.r.size * config.beta.size
     with Progress(f"map of {cells:,} cells", options.quiet) as progress:
@@ -57,7 +57,7 @@ def _map(options: Options, config: "Config", output: "Output") -> None:
 
 
 def _cost(options: Options, config: "Config") -> str:
-    from .cost import in_bytes, in_time, memory_of_map, seconds_of_map
+    from .steady.cost import in_bytes, in_time, memory_of_map, seconds_of_map
 
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
     counts = {name: axis.size for name, axis in axes.items()}
@@ -67,7 +67,7 @@ def _cost(options: Options, config: "Config") -> str:
 
 
 def _boundaries(options: Options, config: "Config", output: "Output") -> None:
-    from .curves import boundaries
+    from .theory.boundaries import boundaries
 
     ds = boundaries(config.system, config.r, config.mu)
     output.fill(_finish(ds, config, options))
@@ -75,8 +75,8 @@ def _boundaries(options: Options, config: "Config", output: "Output") -> None:
 
 
 def _response(options: Options, config: "Config", output: "Output") -> None:
-    from .steady import response
-    from .summary import describe_response
+    from .files.summary import describe_response
+    from .steady.response import response
 
     mu = _one_mu(config) if options.mu is None else options.mu
     ds = response(config.system, options.r, options.beta, mu, solver=config.solver)
@@ -93,9 +93,9 @@ def _one_mu(config: "Config") -> float:
 
 
 def _compute(options: Options) -> None:
-    from .config import load_config
-    from .cost import refuse_without_memory
-    from .outputs import claimed
+    from .files.config import load_config
+    from .files.places import claimed
+    from .steady.cost import refuse_without_memory
 
     room = refuse_without_memory if options.command == "map" and not options.yes else None
     config = load_config(options.config, options.overrides, room)
@@ -107,9 +107,9 @@ def _compute(options: Options) -> None:
 
 
 def _plot(options: Options) -> None:
-    from .outputs import claimed
+    from .files.places import claimed
+    from .files.reading import read
     from .plot import PICTURED, check_picture, save_picture
-    from .reading import read
 
     ds = read(options.file, only=PICTURED)
     path = options.output or Path(f"{options.file.stem}.png")
@@ -121,8 +121,8 @@ def _plot(options: Options) -> None:
 
 
 def _info(options: Options) -> None:
-    from .reading import read
-    from .summary import describe_file
+    from .files.reading import read
+    from .files.summary import describe_file
 
     _print(describe_file(read(options.file)))
 

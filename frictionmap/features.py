@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from . import checks
-from ._kernels.damping import first_damping_functions
+from ._kernels.boundary.damping import first_damping_functions
 from .errors import InputError
-from .modes import ModalModel
-from .system import System
+from .model.modes import ModalModel
+from .model.system import System
 
 #: Invariant points crowd towards r = 0, where hardly any motion is continuous: no more than so many are
 #: looked for, from the highest down.

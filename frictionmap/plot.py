@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from .datasets.labels import HISTORY_VARIABLES
 from .errors import InputError
-from .labels import HISTORY_VARIABLES
+from .files.reading import kind
 from .pictures.boundary_map import plot_boundaries
 from .pictures.history import plot_response
 from .pictures.regime_map import plot_regimes
-from .reading import kind
 
 if TYPE_CHECKING:
     from .pictures.panels import AxesArray

@@ -17,7 +17,7 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap.cli import main
-from frictionmap.settings import OUTPUTS
+from frictionmap.model.settings import OUTPUTS
 
 ROOT = Path(__file__).resolve().parent.parent
 ENVIRONMENT = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}

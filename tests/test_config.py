@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from frictionmap import InputError, Solver, System, load_config
-from frictionmap.config import _decimal_steps
-from frictionmap.provenance import to_toml
+from frictionmap.datasets.provenance import to_toml
+from frictionmap.files.config import _decimal_steps
 
 CONFIGS = sorted((Path(__file__).parent.parent / "configs").glob("*.toml"))
 

@@ -8,7 +8,7 @@ import pytest
 
 import frictionmap as fm
 from benchmarks.references.naive import naive_steady_state
-from frictionmap.continuous import _answers, inversion_points
+from frictionmap.theory.continuous_motion import _answers, inversion_points
 
 KINDS = {"wall": "fixed-wall", "base": "joined-base-wall", "masses": "between-masses"}
 

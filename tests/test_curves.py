@@ -11,7 +11,8 @@ from kernels import callable_kernel
 
 import frictionmap as fm
 from benchmarks.references import closed_forms
-from frictionmap._kernels import closed_form, maxima
+from frictionmap._kernels import closed_form
+from frictionmap._kernels.boundary import one_mass as maxima
 from frictionmap._kernels.closed_form import damping_functions
 
 decay = callable_kernel(closed_form.decay)

@@ -9,11 +9,11 @@ import pytest
 import frictionmap as fm
 from frictionmap._kernels.engine import exponentials, phase_table
 from frictionmap._kernels.engine.fill import RESTART, one_cell
-from frictionmap._kernels.structure import CHI, make_structure
-from frictionmap.cells import limits, make_cells
-from frictionmap.labels import CELL_VARIABLES
-from frictionmap.maps import TILE, plan
-from frictionmap.settings import OUTPUTS, Solver
+from frictionmap._kernels.structure.state import CHI, make_structure
+from frictionmap.datasets.labels import CELL_VARIABLES
+from frictionmap.model.settings import OUTPUTS, Solver
+from frictionmap.steady.cells import limits, make_cells
+from frictionmap.steady.sweep import TILE, plan
 
 ONE = fm.System("joined-base-wall", damping_ratios=0.001)
 FIVE = fm.System(contact_masses=[2], mass_ratios=[1.0] * 5, stiffness_ratios=[1.0] * 5, damping_ratios=0.02)

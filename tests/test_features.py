@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import frictionmap as fm
 from frictionmap import features
-from frictionmap.continuous import inversion_points
+from frictionmap.theory.continuous_motion import inversion_points
 
 #: T 6.5.1: two masses, contact between them, load on the first.
 BETWEEN = {

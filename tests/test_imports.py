@@ -62,7 +62,7 @@ def test_a_configuration_is_checked_without_anything_heavy(tmp_path):
     (tmp_path / "bad.toml").write_text("[sistem]")
     code = f"""
 import contextlib, io, sys
-import frictionmap.config
+import frictionmap.files.config
 try:
     frictionmap.load_config({str(tmp_path / "bad.toml")!r})
 except frictionmap.InputError as error:
@@ -117,23 +117,23 @@ def test_one_folder(module, folder):
     assert users == {folder}
 
 
-def test_the_layers_do_not_know_those_above():
-    above = {
-        "checks.py": {"system", "settings", "maps", "cli", "config", "storage", "plot"},
-        "system.py": {"maps", "curves", "cli", "config", "storage", "plot"},
-        "maps.py": {"cli", "config", "storage", "plot"},
-        "curves.py": {"maps", "steady", "cli", "config", "storage", "plot"},
-        "steady.py": {"cli", "config", "storage", "plot"},
-        "storage.py": {"cli", "config", "plot", "maps", "steady"},
-        "reading.py": {"cli", "plot", "maps", "steady", "summary", "storage"},
-        "schema.py": {"cli", "plot", "maps", "steady", "summary", "storage", "reading", "config"},
-        "plot.py": {"cli", "config", "maps", "steady", "_kernels"},
-    }
-    pictures = {"cli", "config", "maps", "steady", "_kernels", "plot", "storage"}
-    above |= {f"pictures/{path.name}": pictures for path in (PACKAGE / "pictures").glob("*.py")}
-    for name, modules in above.items():
-        used = {part.split(".")[1] for part in imported(PACKAGE / name) if part.startswith("frictionmap.")}
-        assert not used & modules, name
+#: Rooms, and modules that stand alone, in the order in which data flows: none knows a later one.
+ORDER = (
+    "errors", "version", "regimes", "checks", "interrupts", "_kernels", "model", "datasets", "features",
+    "theory", "steady", "files", "pictures", "plot", "progress", "arguments", "cli", "__main__",
+)  # fmt: skip
+
+
+def test_data_flows_one_way():
+    places = {path.relative_to(PACKAGE).parts[0].removesuffix(".py") for path in SOURCES}
+    assert places == {*ORDER, "__init__"}
+    for path in SOURCES:
+        own = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+        if own == "__init__":  # the door: it loads what is asked for
+            continue
+        used = {name.split(".")[1] for name in imported(path) if name.startswith("frictionmap.")}
+        later = {name for name in used if ORDER.index(name) > ORDER.index(own)}
+        assert not later, path
 
 
 # Public names
@@ -155,7 +155,7 @@ def test_public_names_stay_what_they_are_whatever_is_imported():
 def test_public_names_with_a_module_imported_first():
     names = set(fm.__all__) - {"features"}  # a module by intent
     types = f"import frictionmap as fm; print(*(type(getattr(fm, name)) for name in {names!r}))"
-    assert "module" not in run(f"import frictionmap.maps; {types}")
+    assert "module" not in run(f"import frictionmap.steady.sweep; {types}")
 
 
 def test_lazy_names_are_public_and_listed_once():

@@ -97,12 +97,12 @@ def test_at_a_random_moment(folder, command, name):
 #: A write that takes as long as it likes and holds the interpreter's lock of no file, as netCDF's does.
 WRITING = """
 import sys, time
-import frictionmap.storage
+import frictionmap.files.storage
 def write_netcdf(ds, path, command=""):
     path.write_text("half")
     print("writing", flush=True)
     time.sleep({seconds})
-frictionmap.storage.write_netcdf = write_netcdf
+frictionmap.files.storage.write_netcdf = write_netcdf
 from frictionmap.__main__ import run
 sys.argv = ["frictionmap", "boundaries", "large.toml", "-o", "new.nc"]
 sys.exit(run())

@@ -9,8 +9,9 @@ from conftest import ROOT
 from kernels import callable_kernel
 
 import frictionmap as fm
-from frictionmap._kernels import closed_form, sums
-from frictionmap._kernels.sums import ROWS
+from frictionmap._kernels import closed_form
+from frictionmap._kernels.boundary import structure as sums
+from frictionmap._kernels.boundary.structure import ROWS
 
 decay = callable_kernel(closed_form.decay)
 largest_sum = callable_kernel(sums.largest_sum)
@@ -94,7 +95,7 @@ def test_one_mass_by_many():
             r = np.concatenate((np.linspace(0.04, 2.5, 200), [0.25, 1 / 3, 0.5, 1.0 - 1e-9]))
             r = np.unique(r[r != 1.0])
             mu = np.array([1.0, 1.4])
-            from frictionmap.curves import many_mode_curves, one_mass_curves
+            from frictionmap.theory.boundaries import many_mode_curves, one_mass_curves
 
             one = one_mass_curves(system, r, mu).curves
             many = many_mode_curves(system, r, mu)

@@ -12,10 +12,10 @@ from test_systems import chain_matrices, pendants
 
 import frictionmap as fm
 from frictionmap import regimes
-from frictionmap.config import load_config
-from frictionmap.curves import find_curves
-from frictionmap.settings import OUTPUTS as EVERY
-from frictionmap.structures import structures
+from frictionmap.files.config import load_config
+from frictionmap.model.settings import OUTPUTS as EVERY
+from frictionmap.steady.kernel_data import structures
+from frictionmap.theory.boundaries import find_curves
 
 BASE = fm.System(contact="joined-base-wall")
 
@@ -433,7 +433,7 @@ def test_memory_of_a_large_map():
     """A 4096 x 4096 map with the three default outputs stays below 1 GiB."""
     code = (
         "import frictionmap as fm, numpy as np\n"
-        "from frictionmap.storage import write\n"
+        "from frictionmap.files.storage import write\n"
         "import pathlib, tempfile\n"
         "ds = fm.sweep(fm.System(), np.linspace(0.3, 3, 4096), np.linspace(0.9, 4, 4096))\n"
         "with tempfile.TemporaryDirectory() as folder:\n"

@@ -15,8 +15,10 @@ import xarray as xr
 
 import frictionmap as fm
 from benchmarks.measures.faults.machine import prepared
-from frictionmap import InputError, outputs, storage
-from frictionmap.outputs import claimed
+from frictionmap import InputError
+from frictionmap.files import places as outputs
+from frictionmap.files import storage
+from frictionmap.files.places import claimed
 
 POSIX = pytest.mark.skipif(os.name == "nt", reason="permissions, links and locks of POSIX")
 
@@ -392,7 +394,7 @@ def test_an_interrupt_while_a_file_is_written(tmp_path):
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from frictionmap.outputs import claimed
+from frictionmap.files.places import claimed
 
 from benchmarks.measures.faults.machine import prepared
 

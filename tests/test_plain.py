@@ -5,7 +5,7 @@ import pytest
 
 import frictionmap as fm
 from frictionmap import regimes
-from frictionmap.settings import OUTPUTS as EVERY
+from frictionmap.model.settings import OUTPUTS as EVERY
 
 pytestmark = pytest.mark.plain
 

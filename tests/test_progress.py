@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 import frictionmap as fm
-from frictionmap import cost, progress
+from frictionmap import progress
 from frictionmap.cli import main
 from frictionmap.progress import Progress
+from frictionmap.steady import cost
 
 
 class Terminal(io.StringIO):

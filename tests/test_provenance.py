@@ -9,9 +9,9 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.reading import read
-from frictionmap.storage import write
-from frictionmap.stored import stored_system
+from frictionmap.files.reading import read
+from frictionmap.files.storage import write
+from frictionmap.files.stored import stored_system
 
 M = np.array([[2.0, 0.1], [0.1, 1.0 / 3.0]])
 K = np.array([[3.0, -1.0], [-1.0, 1.1]])

@@ -10,11 +10,11 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.labels import COORDINATES, LABELS
-from frictionmap.reading import read, standard_form
-from frictionmap.settings import OUTPUTS
-from frictionmap.storage import write
-from frictionmap.summary import describe_file
+from frictionmap.datasets.labels import COORDINATES, LABELS
+from frictionmap.files.reading import read, standard_form
+from frictionmap.files.storage import write
+from frictionmap.files.summary import describe_file
+from frictionmap.model.settings import OUTPUTS
 
 TWO = fm.System(mass_ratios=[1.0, 0.5], stiffness_ratios=[1.0, 2.0], damping_ratios=0.02)
 KINDS = ("map", "boundaries", "response")

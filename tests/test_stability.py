@@ -9,13 +9,14 @@ from kernels import callable_kernel
 from test_structures import random_chain
 
 import frictionmap as fm
-from frictionmap._kernels import follow, returns
-from frictionmap._kernels.events import REVERSE
-from frictionmap._kernels.follow import MOVING
-from frictionmap._kernels.oscillators import make_scratch
-from frictionmap._kernels.returns import make_workspace
-from frictionmap._kernels.structure import make_structure
-from frictionmap.cells import make_cells
+from frictionmap._kernels.one_mass.events import REVERSE
+from frictionmap._kernels.structure import events as follow
+from frictionmap._kernels.structure import newton as returns
+from frictionmap._kernels.structure.events import MOVING
+from frictionmap._kernels.structure.newton import make_workspace
+from frictionmap._kernels.structure.oscillators import make_scratch
+from frictionmap._kernels.structure.state import make_structure
+from frictionmap.steady.cells import make_cells
 
 after_slide = callable_kernel(follow.after_slide)
 slide_on = callable_kernel(follow.slide_on)

@@ -11,9 +11,9 @@ from benchmarks.peers.body import load_in_contact
 from benchmarks.references.naive import naive_steady_state
 from benchmarks.references.settled import settle
 from frictionmap import regimes
-from frictionmap._kernels.events import after_slide, slide
-from frictionmap._kernels.phases import MAX_TERMS, step_constants
-from frictionmap.summary import describe_response
+from frictionmap._kernels.one_mass.events import after_slide, slide
+from frictionmap._kernels.one_mass.scan_step import MAX_TERMS, step_constants
+from frictionmap.files.summary import describe_response
 
 
 @njit

@@ -12,9 +12,10 @@ import pytest
 import xarray as xr
 
 import frictionmap as fm
-from frictionmap import InputError, reading, storage
+from frictionmap import InputError
 from frictionmap.cli import main
-from frictionmap.settings import OUTPUTS
+from frictionmap.files import reading, storage
+from frictionmap.model.settings import OUTPUTS
 
 CONFIG = """\
 title = "Tiny"

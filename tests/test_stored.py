@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import frictionmap as fm
-from frictionmap.stored import stored_start, stored_system
+from frictionmap.files.stored import stored_start, stored_system
 
 CHAIN = """
 title = "start = 'moving'"  # a title is not a setting

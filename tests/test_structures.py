@@ -11,16 +11,17 @@ from test_many_masses import chain
 import frictionmap as fm
 from benchmarks.references.naive import Motion, Structure, naive_steady_state
 from frictionmap import regimes
-from frictionmap._kernels import closed_form, oscillators
+from frictionmap._kernels import closed_form
 from frictionmap._kernels.engine import phase_table
 from frictionmap._kernels.engine.time_history import sample_phases
-from frictionmap._kernels.oscillators import COLUMNS, WW, WZ, ZW, ZZ, D, K, make_scratch
-from frictionmap._kernels.returns import make_workspace
-from frictionmap._kernels.structure import make_structure
-from frictionmap.cells import make_cells
-from frictionmap.held import held_structure
-from frictionmap.settings import OUTPUTS as EVERY
-from frictionmap.steady import Question, _find
+from frictionmap._kernels.structure import oscillators
+from frictionmap._kernels.structure.newton import make_workspace
+from frictionmap._kernels.structure.oscillators import COLUMNS, WW, WZ, ZW, ZZ, D, K, make_scratch
+from frictionmap._kernels.structure.state import make_structure
+from frictionmap.model.held_structure import held_structure
+from frictionmap.model.settings import OUTPUTS as EVERY
+from frictionmap.steady.cells import make_cells
+from frictionmap.steady.response import Question, _find
 
 decay = callable_kernel(closed_form.decay)
 fill_steps = callable_kernel(oscillators.fill_steps)

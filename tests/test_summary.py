@@ -7,8 +7,8 @@ import xarray as xr
 import frictionmap as fm
 from frictionmap import regimes
 from frictionmap.cli import main
-from frictionmap.settings import OUTPUTS
-from frictionmap.summary import describe_causes, describe_file, describe_map, describe_response
+from frictionmap.files.summary import describe_causes, describe_file, describe_map, describe_response
+from frictionmap.model.settings import OUTPUTS
 
 TWO = fm.System(mass_ratios=[1.0, 0.5], stiffness_ratios=[1.0, 2.0], damping_ratios=0.02)
 WIDTH, HEIGHT = 100, 40

@@ -12,9 +12,9 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap.cli import main
-from frictionmap.curves import many_mode_curves, one_mass_curves
+from frictionmap.datasets.provenance import to_toml
 from frictionmap.features import high_frequency_limits, peak_thresholds
-from frictionmap.provenance import to_toml
+from frictionmap.theory.boundaries import many_mode_curves, one_mass_curves
 
 MU = [1.0, 1.4]
 R = np.linspace(0.13, 2.9, 61)

@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from frictionmap._kernels.events import _sum_at, after_slide, slide
-from frictionmap._kernels.phases import MAX_TERMS, expand, step_constants
+from frictionmap._kernels.one_mass.events import _sum_at, after_slide, slide
+from frictionmap._kernels.one_mass.scan_step import MAX_TERMS, expand, step_constants
 
 from ..report.record import pinned, spread, table, timed
 

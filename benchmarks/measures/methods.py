@@ -13,16 +13,16 @@ import numpy as np
 from numba import njit
 
 import frictionmap as fm
-from frictionmap._kernels import events
 from frictionmap._kernels.engine.one_mass import OneMassSystem
-from frictionmap._kernels.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
-from frictionmap._kernels.follow import after_slide, slide_on
-from frictionmap._kernels.oscillators import make_scratch
-from frictionmap._kernels.phases import MAX_TERMS, step_constants
-from frictionmap._kernels.structure import make_structure, place
-from frictionmap.cells import make_cells
-from frictionmap.maps import _allocate
-from frictionmap.settings import Solver
+from frictionmap._kernels.one_mass import events
+from frictionmap._kernels.one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
+from frictionmap._kernels.one_mass.scan_step import MAX_TERMS, step_constants
+from frictionmap._kernels.structure.events import after_slide, slide_on
+from frictionmap._kernels.structure.oscillators import make_scratch
+from frictionmap._kernels.structure.state import make_structure, place
+from frictionmap.model.settings import Solver
+from frictionmap.steady.cells import make_cells
+from frictionmap.steady.sweep import _allocate
 
 from ..peers import cvode, heyoka, solve_ivp
 from ..peers.body import SHORTEST_STOP, TWO_PI, Body, Cell

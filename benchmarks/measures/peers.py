@@ -39,10 +39,10 @@ from frictionmap._kernels.engine.fill import OpenCells
 from frictionmap._kernels.engine.march import steady_state
 from frictionmap._kernels.engine.motion import at_frequency, contact_at, start
 from frictionmap._kernels.engine.one_mass import Frequencies, OneMassSystem
-from frictionmap.cells import make_cells
-from frictionmap.curves import one_mass_curves
-from frictionmap.maps import Arrays, _allocate
-from frictionmap.settings import Solver
+from frictionmap.model.settings import Solver
+from frictionmap.steady.cells import make_cells
+from frictionmap.steady.sweep import Arrays, _allocate
+from frictionmap.theory.boundaries import one_mass_curves
 
 from ..peers.body import Body, Cell, Outcome
 from ..peers.heyoka import OneMassHeyoka

@@ -25,16 +25,17 @@ from numba import njit
 
 import frictionmap as fm
 from frictionmap import regimes
-from frictionmap._kernels import events, phases
 from frictionmap._kernels.engine.fill import OpenCells
-from frictionmap._kernels.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, TOUCH
-from frictionmap._kernels.follow import after_slide, slide_on
-from frictionmap._kernels.oscillators import FELL, make_scratch
-from frictionmap._kernels.structure import make_structure
-from frictionmap.cells import make_cells
-from frictionmap.curves import many_mode_curves, one_mass_curves
-from frictionmap.maps import Arrays, _allocate
-from frictionmap.settings import Solver
+from frictionmap._kernels.one_mass import events
+from frictionmap._kernels.one_mass import scan_step as phases
+from frictionmap._kernels.one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, TOUCH
+from frictionmap._kernels.structure.events import after_slide, slide_on
+from frictionmap._kernels.structure.oscillators import FELL, make_scratch
+from frictionmap._kernels.structure.state import make_structure
+from frictionmap.model.settings import Solver
+from frictionmap.steady.cells import make_cells
+from frictionmap.steady.sweep import Arrays, _allocate
+from frictionmap.theory.boundaries import many_mode_curves, one_mass_curves
 
 from ..peers.body import Body, Cell, Outcome
 from ..peers.heyoka import ChainHeyoka

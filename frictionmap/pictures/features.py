@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ..stored import stored_system
+from ..files.stored import stored_system
 from .grids import Grid
 
 #: Least distance of two marks, as a share of the axis.

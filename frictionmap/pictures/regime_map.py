@@ -18,7 +18,7 @@ from .classes import classes, count, legend_label, stops_range
 from .features import features_of, mark_features
 from .grids import Grid
 from .marks import COARSE, rare_classes, rings, room_for, trace
-from .palette import (
+from .palette import (  # fmt: skip
     BROKEN,
     CLASSES,
     CONTINUOUS,
@@ -29,8 +29,8 @@ from .palette import (
     STICK,
     STUCK,
     colour_table,
-)  # fmt: skip
-from .panels import (
+)
+from .panels import (  # fmt: skip
     Handle,
     distinct,
     given_axes,
@@ -41,7 +41,7 @@ from .panels import (
     panel_grid,
     patch,
     size_of,
-)  # fmt: skip
+)
 from .raster import paint, rasterise, shade, stripes
 from .shapes import panels_of, to_draw
 from .words import caption

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import xarray as xr
 
 from ..errors import InputError
-from ..reading import kind, standard_form
+from ..files.reading import kind, standard_form
 
 _MAKERS = {
     "map": "sweep returns, over mu, r and beta",

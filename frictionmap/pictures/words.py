@@ -5,7 +5,7 @@ import textwrap
 
 import xarray as xr
 
-from ..stored import stored_start
+from ..files.stored import stored_start
 
 
 def balanced(text: str, width: int) -> str:

@@ -16,9 +16,9 @@ from ...regimes import (
     STICK_SLIP,
     UNRESOLVED,
 )
-from ..events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from ..jit import kernel
-from ..orbits import full_period
+from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
+from ..one_mass.newton import full_period
 
 #: A stop shorter than this (in tau) is a touch of no duration, seen through rounding: that of one mass's load
 #: phase is some 1e-15, of the sum over many modes up to 1e-13.

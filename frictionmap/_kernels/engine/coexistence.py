@@ -17,15 +17,7 @@ from ...regimes import CONTINUOUS, PERMANENT_STICKING, STICK_SLIP
 from ..jit import entry, kernel
 from .answers import Moment
 from .march import steady_state
-from .motion import (
-    at_frequency,
-    bring_back,
-    contact_at,
-    forget_neighbour,
-    keep_state,
-    on_continuous,
-    start,
-)
+from .motion import at_frequency, bring_back, contact_at, forget_neighbour, keep_state, on_continuous, start
 from .policies import ABOVE, AROUND, EIGHTHS, RUNGS
 
 #: Halvings of the step of the ladder in which a sliding motion ends.

@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..continuous import orbit_phase
 from ..jit import entry, kernel
 from ..kinds import by_class
-from ..oscillators import Scratch, make_scratch
-from ..returns import Workspace, make_workspace
-from ..structure import Loads, Model, Structure, make_structure
-from ..structure_orbit import Continuous
+from ..one_mass.sliding_orbit import orbit_phase
+from ..structure.newton import Workspace, make_workspace
+from ..structure.oscillators import Scratch, make_scratch
+from ..structure.sliding_orbit import Continuous
+from ..structure.state import Loads, Model, Structure, make_structure
 from .answers import known_orbit
 from .displacements import Shapes, largest_displacements
 from .floquet import asymmetry, continuous_multiplier, orbit_multiplier

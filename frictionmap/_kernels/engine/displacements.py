@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import entry, kernel
-from ..oscillators import advance, expand
+from ..structure.oscillators import advance, expand
 from .phase_table import COS, LENGTH, PLACE, SIN, take_start
 
 

@@ -3,7 +3,7 @@
 import math
 
 from ..jit import entry, kernel
-from ..oscillators import F1, FC, FS, OMEGA, ZETA, D, K
+from ..structure.oscillators import F1, FC, FS, OMEGA, ZETA, D, K
 from .phase_table import COS, SENSE, SIN, STATE
 
 #: Columns of the sums, complex, one row an oscillator.  With theta = tau since the start of the phase its

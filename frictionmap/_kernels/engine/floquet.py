@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 
-from ..continuous import orbit_phase
-from ..events import REVERSE
-from ..follow import slide_on
 from ..jit import entry, kernel
-from ..orbits import half_periods
-from ..returns import copy_state, return_map, spectral_radius
-from ..structure_orbit import orbit_state
+from ..one_mass.events import REVERSE
+from ..one_mass.newton import half_periods
+from ..one_mass.sliding_orbit import orbit_phase
+from ..structure.events import slide_on
+from ..structure.newton import copy_state, return_map, spectral_radius
+from ..structure.sliding_orbit import orbit_state
 from .phase_table import COS, EVENT, LENGTH, NET, SENSE, SIN, take_start
 from .time_history import sample_phases
 

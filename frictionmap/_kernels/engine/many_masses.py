@@ -1,7 +1,7 @@
 """A structure as a kind of motion: all its modes, free and held.
 
 Where one mass forgets all but its displacement in a stop, the rest of a structure remembers, so anchors are
-compared, and solved for, with the whole state (`returns`).
+compared, and solved for, with the whole state (`structure.newton`).
 """
 
 import math
@@ -9,12 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..continuous import continuous_amplitude, orbit_phase
-from ..events import NO_END, STOP_THEN_BACK
-from ..follow import MOVING, after_slide, slide_on
 from ..jit import entry, inner_kernel, kernel
-from ..oscillators import FELL, Scratch, make_scratch
-from ..returns import (
+from ..one_mass.events import NO_END, STOP_THEN_BACK
+from ..one_mass.sliding_orbit import continuous_amplitude, orbit_phase
+from ..structure.events import MOVING, after_slide, slide_on
+from ..structure.newton import (
     HALVES,
     PHASE_COS,
     PHASE_SIN,
@@ -28,7 +27,9 @@ from ..returns import (
     solve_return,
     spectral_radius,
 )
-from ..structure import (
+from ..structure.oscillators import FELL, Scratch, make_scratch
+from ..structure.sliding_orbit import Continuous, orbit_state, stop_free_radius
+from ..structure.state import (
     Loads,
     Model,
     Structure,
@@ -40,7 +41,6 @@ from ..structure import (
     release_steady,
     vibrates_in_step,
 )
-from ..structure_orbit import Continuous, orbit_state, stop_free_radius
 from .answers import TURN, Contact, Moment, known_orbit, no_orbit, nowhere, turns_at
 from .memory import STATE, Memory, Near, make_memory, turned
 from .phase_table import put_state
@@ -134,7 +134,7 @@ def contact_at(system, m, i, beta, mu):
 
 @kernel
 def start(motion, system, i, contact, moving):
-    """Where the motion starts; see `structures`."""
+    """Where the motion starts; see `steady/kernel_data`."""
     st, state = motion.st, motion.state
     starts = system.moving if moving else system.rest
     for j in range(st.n):

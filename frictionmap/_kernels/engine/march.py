@@ -9,18 +9,10 @@ distance is less than that at which a stop is possible at all (`motion.stop_free
 import math
 from typing import NamedTuple
 
-from ...regimes import (
-    INTEGRATED,
-    MARGINAL,
-    NOT_COMPUTED,
-    RESOLVED,
-    SOLVED,
-    TOO_MANY_EVENTS,
-    UNRESOLVED,
-)
-from ..events import NO_END, STUCK, TOUCH
-from ..follow import NO_RELEASE
+from ...regimes import INTEGRATED, MARGINAL, NOT_COMPUTED, RESOLVED, SOLVED, TOO_MANY_EVENTS, UNRESOLVED
 from ..jit import inner_kernel, kernel
+from ..one_mass.events import NO_END, STUCK, TOUCH
+from ..structure.events import NO_RELEASE
 from .answers import (
     TURN,
     averaged_cell,

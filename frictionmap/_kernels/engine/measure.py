@@ -2,19 +2,11 @@
 
 from typing import NamedTuple
 
-from ..events import NO_END
 from ..jit import kernel
-from ..orbits import half_periods
+from ..one_mass.events import NO_END
+from ..one_mass.newton import half_periods
 from .answers import SHORTEST_STOP, TURN, stops_at, turns_at
-from .motion import (
-    after_turn,
-    back_at,
-    bring_back,
-    keep_state,
-    put_slide,
-    put_stop,
-    slide_to_turn,
-)
+from .motion import after_turn, back_at, bring_back, keep_state, put_slide, put_stop, slide_to_turn
 from .phase_table import EVENT, NET, put_phase
 from .policies import ANCHOR
 

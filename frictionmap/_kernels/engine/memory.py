@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import entry, inner_kernel, kernel
-from ..orbits import full_period, half_periods
+from ..one_mass.newton import full_period, half_periods
 
 #: Anchors remembered, at least and at most: a steady period with more is not recognised.
 _SHORTEST = 2048

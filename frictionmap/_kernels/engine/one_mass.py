@@ -1,7 +1,7 @@
-"""One mass as a kind of motion: the normalised oscillator of `phases`.
+"""One mass as a kind of motion: the normalised oscillator of `one_mass.scan_step`.
 
-A stop forgets all but its displacement, so the return map of a motion with stops has one unknown (`orbits`).
-Forces are in units of the load in the contact, whose phase is counted from its maximum.
+A stop forgets all but its displacement, so the return map of a motion with stops has one unknown
+(`one_mass.newton`).  Forces are in units of the load in the contact, whose phase is counted from its maximum.
 """
 
 import math
@@ -9,17 +9,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..continuous import (
+from ..jit import entry, inner_kernel, kernel
+from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, slide
+from ..one_mass.newton import first_push, solve_orbit
+from ..one_mass.scan_step import MAX_TERMS, Step, step_constants
+from ..one_mass.sliding_orbit import (
     Oscillator,
     continuous_amplitude,
     distance_to_orbit,
     orbit_phase,
     stop_free_radius,
 )
-from ..events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, slide
-from ..jit import entry, inner_kernel, kernel
-from ..orbits import first_push, solve_orbit
-from ..phases import MAX_TERMS, Step, step_constants
 from .answers import Contact, Moment, Orbit, known_orbit, no_orbit, stops_at
 from .memory import STATE, Memory, make_memory, turned
 from .phase_table import put_mass

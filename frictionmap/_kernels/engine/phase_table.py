@@ -8,8 +8,8 @@ motion was followed.  All that is asked of a steady state beyond its regime is r
 import math
 
 from ..jit import entry, kernel
-from ..structure import place
-from ..structure_orbit import orbit_state
+from ..structure.sliding_orbit import orbit_state
+from ..structure.state import place
 
 BEGIN = 0  # in tau, since the first phase
 LENGTH = 1  # in tau
@@ -20,7 +20,7 @@ SIN = 5
 PLACE = 6  # z of a stop
 Z_END = 7  # z at the end
 NET = 8  # force in the contact at the start of a slide, friction taken off
-EVENT = 9  # which ended a slide, see `events`
+EVENT = 9  # which ended a slide, see `one_mass.events`
 STATE = 10  # 2n of a slide, or 2m of a stop: coordinates, and velocities in t = tau/r
 
 

@@ -3,9 +3,9 @@
 import math
 
 from ..jit import entry
-from ..oscillators import advance, expand
-from ..returns import copy_state
-from ..structure import held_load, place, release
+from ..structure.newton import copy_state
+from ..structure.oscillators import advance, expand
+from ..structure.state import held_load, place, release
 from .phase_table import BEGIN, COS, LENGTH, PLACE, SENSE, SIGN, SIN, take_start
 
 

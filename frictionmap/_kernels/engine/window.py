@@ -4,20 +4,12 @@ import math
 
 import numpy as np
 
-from ..events import NO_END, STUCK
-from ..follow import NO_RELEASE
 from ..jit import entry, kernel
+from ..one_mass.events import NO_END, STUCK
+from ..structure.events import NO_RELEASE
 from .answers import known_orbit, stops_at, turns_at
 from .measure import measure
-from .motion import (
-    after_turn,
-    at_frequency,
-    bring_back,
-    contact_at,
-    keep_state,
-    slide_to_turn,
-    start,
-)
+from .motion import after_turn, at_frequency, bring_back, contact_at, keep_state, slide_to_turn, start
 from .phase_table import phase_columns
 from .policies import NOW
 

@@ -1,0 +1,1 @@
+"""V, U, G, H, S and the boundaries of the regimes."""

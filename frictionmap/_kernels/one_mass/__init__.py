@@ -1,0 +1,1 @@
+"""One mass: scan step, events, return map, sliding orbit."""

@@ -1,0 +1,275 @@
+"""Events of the normalised oscillator: where a slide ends, and what follows.
+
+The equation keeps its form when (z, z', cos, sin) all change sign.  Every slide is therefore followed
+as an upward one: a state that is about to move down is *mirrored* first.
+"""
+
+import math
+
+import numpy as np
+
+from ..jit import kernel
+from .scan_step import MAX_TERMS, expand
+
+#: What follows the end of a slide.
+REVERSE = 0  # slides back at once
+STOP_THEN_BACK = 1  # stops, then moves the other way
+STOP_THEN_ON = 2  # stops, then moves on the same way
+TOUCH = 3  # velocity touches zero and the slide goes on: the load pushes on beyond mu b
+STUCK = 4  # stops and never moves again
+
+#: A slide's end was not found within the scan steps allowed.
+NO_END = -1
+
+#: 1/(k+1): from the series of the velocity to that of the displacement.
+_INVERSE = np.array([1.0 / (k + 1.0) for k in range(MAX_TERMS)])
+
+#: A guess of an event further off than this, in scan steps, lies where the velocity only touches zero.
+NEARLY = 0.25
+
+#: A Newton step of fourth order shorter than this, in scan steps, ends at rounding.
+ONE_STEP = 2e-4
+
+MAX_POLISH = 8
+
+#: Certified steps to a root converge quadratically; past a grazing dip they crawl, at a rate that is the
+#: square root of the dip's curvature over the bound, thousands of them for a dip of rounding depth.
+_MAX_APPROACH = 20000
+
+
+@kernel
+def first_root(p, first, terms):
+    """The first root in (0, 1] of p[first] + p[first+1] x + ...; 2.0 if there is none.
+
+    The value at 0 must be >= 0.  From x the polynomial stays above the parabola
+    p(x) + p'(x) d - B d^2/2, where B bounds |p''|; the step d to the parabola's root passes no root
+    of p, and where p has a simple root the steps are Newton's from one side.  Nothing can be missed.
+    """
+    bound = 0.0
+    for k in range(first + 2, terms):
+        bound += (k - first) * (k - first - 1.0) * abs(p[k])
+    x = 0.0
+    for _ in range(_MAX_APPROACH):
+        value = 0.0
+        slope = 0.0
+        for k in range(terms - 1, first - 1, -1):
+            slope = slope * x + value
+            value = value * x + p[k]
+        if value <= 0.0 and (x > 0.0 or slope <= 0.0):
+            return x  # at the start a value of zero with a rising slope is not the root looked for
+        value = max(value, 0.0)
+        root = math.sqrt(slope * slope + 2.0 * bound * value)
+        # the parabola's root, in the form that does not cancel
+        if slope > 0.0:
+            if bound == 0.0:
+                return 2.0  # rises for good
+            new = x + (slope + root) / bound
+        elif root > slope:
+            new = x + 2.0 * value / (root - slope)
+        else:
+            return 2.0  # constant
+        if new > 1.0:
+            return 2.0
+        if new == x:
+            return x
+        x = new
+    return x
+
+
+@kernel
+def cubic_root(w, slope, w1, slope1):
+    """Root in [0, 1] of the cubic with these values and slopes at 0 and 1, falling from w > 0 to w1 <= 0."""
+    third = 2.0 * (w - w1) + slope + slope1
+    second = 3.0 * (w1 - w) - 2.0 * slope - slope1
+    x = w / (w - w1)
+    for _ in range(2):
+        value = w + x * (slope + x * (second + x * third))
+        x -= value / (slope + x * (2.0 * second + 3.0 * x * third))
+    return min(max(x, 0.0), 1.0)
+
+
+@kernel
+def _sum_at(p, terms, x):
+    """The polynomial p at x and its integral from 0; even and odd powers apart, side by side."""
+    square = x * x
+    even = odd = even_rise = odd_rise = 0.0
+    top = terms - 1 - (terms - 1) % 2  # the highest even power
+    if top + 1 < terms:
+        odd = p[top + 1]
+        odd_rise = p[top + 1] * _INVERSE[top + 1]
+    even = p[top]
+    even_rise = p[top] * _INVERSE[top]
+    for k in range(top - 2, -1, -2):
+        even = even * square + p[k]
+        odd = odd * square + p[k + 1]
+        even_rise = even_rise * square + p[k] * _INVERSE[k]
+        odd_rise = odd_rise * square + p[k + 1] * _INVERSE[k + 1]
+    return even + odd * x, (even_rise + odd_rise * x) * x
+
+
+@kernel
+def reversion(value, slope, bend, third):
+    """The root m of value + slope m + bend m^2/2 + third m^3/6, up to the fourth power of value/slope."""
+    inverse = 1.0 / slope
+    first = -value * inverse
+    second = 0.5 * bend * inverse
+    return first * (1.0 - first * (second - first * (2.0 * second * second - third * inverse * (1.0 / 6.0))))
+
+
+@kernel
+def _at_root(step, b, z, c, s, x, work):
+    """(x, z, cos, sin) at the zero of the velocity next to x, from the series in `work`.
+
+    Newton steps of fourth order, with the derivatives from the equation of motion: one takes a guess that
+    is off by 1e-4 to rounding.
+    """
+    for _ in range(MAX_POLISH):
+        velocity, rise = _sum_at(work, step.terms, x)
+        place = z + rise
+        angle = step.h * x
+        cosine = math.cos(angle)
+        sine = math.sin(angle)
+        c1 = cosine * c - sine * s
+        s1 = cosine * s + sine * c
+        acceleration = step.stiffness * (c1 - b - place) - step.damping * velocity
+        jerk = -step.stiffness * (s1 * step.h + velocity) - step.damping * acceleration
+        if (
+            not abs(velocity) < NEARLY * abs(acceleration)
+            or not abs(velocity * jerk) < NEARLY * acceleration * acceleration
+        ):
+            break  # the velocity only touches zero; the reversion diverges, and x is as good as can be
+        snap = -step.stiffness * (c1 * step.h * step.h + acceleration) - step.damping * jerk
+        move = reversion(velocity, acceleration, jerk, snap)
+        x += move
+        if abs(move) < ONE_STEP:
+            place += move * (
+                velocity
+                + move * (0.5 * acceleration + move * (jerk * (1.0 / 6.0) + move * snap * (1.0 / 24.0)))
+            )
+            angle = step.h * move
+            less = 0.5 * angle * angle
+            more = angle - angle * less * (1.0 / 3.0)
+            c2 = c1 - more * s1 - less * c1
+            s1 = s1 + more * c1 - less * s1
+            c1 = c2
+            break
+    norm = 1.5 - 0.5 * (c1 * c1 + s1 * s1)  # back to the unit circle
+    return x, place, norm * c1, norm * s1
+
+
+@kernel
+def slide(step, b, z, w, acceleration, c, s, max_steps, work):
+    """Follow an upward slide from (z, w >= 0) to the first zero of the velocity.
+
+    Parameters
+    ----------
+    step : Step
+    b : kinetic friction over load amplitude
+    z, w, acceleration, c, s : state; `acceleration` = h^2 z'' exactly, > 0 or 0 with a rising load
+        where w = 0
+    max_steps : scan steps allowed
+    work : scratch, MAX_TERMS long
+
+    Returns
+    -------
+    (steps, z, c, s) with `steps` the scan steps taken, a fraction included; NO_END if not found.
+
+    Notes
+    -----
+    A step is passed without a closer look when the cubic through the velocities and accelerations at
+    its ends has Bernstein coefficients above the cubic's largest error, max|w''''|/384, which follows
+    from the energy of the motion of z'': no dip of the velocity can hide.
+    """
+    stiffness = step.stiffness
+    damping = step.damping
+    h = step.h
+    omega = math.sqrt(stiffness)
+    square = h * h
+    # |z3| + omega |z2| can grow by the load only: by stiffness h^2 a step.  (zk: k-th x-derivative)
+    jerk = -stiffness * (s * h + w) - damping * acceleration
+    energy = omega * abs(acceleration) + abs(jerk)
+    growth = stiffness * square
+    fourth = (damping + omega) * (energy + growth) + growth  # bound on |z4| in the step
+    # |w''''| = |z5| <= stiffness (h^3 + |z3|) + damping |z4|, |z4| <= (damping + omega) energy + growth
+    per_energy = (stiffness + damping * (damping + omega)) / 384.0
+    error = per_energy * (energy + growth) + (stiffness * square * h + damping * growth) / 384.0
+    error_growth = per_energy * growth
+    curve = (damping + omega) * growth
+    z_pull = step.z_one * b
+    w_pull = step.w_one * b
+    n = 0.0
+    sure = w == 0.0 and acceleration >= 0.0 and acceleration + jerk - 0.5 * fourth > 0.0
+    while n < max_steps and w >= 0.0:  # a velocity that is not a number ends it too
+        # in this order the load's part does not wait for the state
+        z1 = (step.z_cos * c + step.z_sin * s - z_pull) + (step.zz * z + step.zw * w)
+        w1 = (step.w_cos * c + step.w_sin * s - w_pull) + (step.wz * z + step.ww * w)
+        c1 = step.cos * c - step.sin * s
+        s1 = step.cos * s + step.sin * c
+        acceleration1 = stiffness * (c1 - b - z1) - damping * w1
+        if not sure:
+            sure = (
+                w > error
+                and w1 > error
+                and w + acceleration * (1.0 / 3.0) > error
+                and w1 - acceleration1 * (1.0 / 3.0) > error
+            )
+        if not sure:
+            expand(step, b, z, w, acceleration, c, s, work)
+            if w > 0.0 and w1 <= 0.0 and max(acceleration, acceleration1) + 0.125 * fourth < 0.0:
+                x = cubic_root(w, acceleration, w1, acceleration1)  # w falls: one root
+            else:
+                first = 0
+                if n == 0.0 and w == 0.0:
+                    first = 1 if acceleration != 0.0 else 2  # the start is not the root looked for
+                x = first_root(work, first, step.terms)
+            if x <= 1.0:
+                x, z, c, s = _at_root(step, b, z, c, s, x, work)
+                return n + x, z, c, s
+        n += 1.0
+        error += error_growth
+        fourth += curve
+        z = z1
+        w = w1
+        c = c1
+        s = s1
+        acceleration = acceleration1
+        sure = False
+    return float(NO_END), z, c, s
+
+
+@kernel
+def after_slide(b, mu_b, z, c, s):
+    """What follows an upward slide that ended at displacement z and load phase (c, s).
+
+    Returns (code, z, c, s, push, wait): the state from which the next upward slide starts, mirrored if
+    the motion turns back; push = r^2 z'' at its start; wait = duration of the stop in tau.
+
+    Sticks if |load| <= mu b (a tie sticks); a stop ends when |load| exceeds mu b.
+    """
+    load = z - c
+    if load > mu_b:
+        return REVERSE, -z, -c, -s, load - b, 0.0
+    if load < -mu_b:
+        return TOUCH, z, c, s, -load - b, 0.0
+    c_back = z - mu_b  # the load leaves upwards where cos falls through this ...
+    c_on = z + mu_b  # ... and downwards where cos rises through that
+    falls = c_back > -1.0
+    rises = c_on < 1.0
+    if not (falls or rises):
+        return STUCK, z, c, s, 0.0, math.inf
+    falling = s > 0.0 or (s == 0.0 and c > 0.0)
+    back = falls and (falling or not rises)
+    at_once = falling if back else not falling  # leaves on the half turn that it is on
+    c_end = c_back if back else c_on
+    s_end = math.sqrt(max(0.0, (1.0 - c_end) * (1.0 + c_end)))
+    if not back:
+        s_end = -s_end
+    wait = math.atan2(s_end * c - c_end * s, c_end * c + s_end * s)
+    if at_once:
+        wait = max(wait, 0.0)  # rounding: the load can be past its end by a bit already
+    elif wait <= 0.0:
+        wait += 2.0 * math.pi
+    push = mu_b - b
+    if back:
+        return STOP_THEN_BACK, -z, -c_end, -s_end, push, wait
+    return STOP_THEN_ON, z, c_end, s_end, push, wait

@@ -1,0 +1,158 @@
+"""Periodic orbits as fixed points of the return map, by Newton's method with the exact derivative.
+
+An orbit is followed from one anchor, the start of an upward slide, until it returns there.  Where the
+anchor ends a stop, its displacement z is the one unknown: the load phase at which the stop ends follows
+from z.  Where it is a turn without a stop, z and the load phase theta are two.
+
+Derivatives are those of the state at a fixed phase: free motion between events, and at each event the
+shift of its phase (saltation).
+"""
+
+import math
+
+from ..closed_form import decay
+from ..jit import kernel
+from .events import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, slide
+
+_MAX_NEWTON = 16
+
+#: Newton steps below this share of the displacement have to shrink fast.
+_NEAR_END = 1e-6
+
+#: Longest slide of an orbit, in periods of its slower part: one that was followed once has none so long.
+_LONGEST_SLIDE = 100.0
+
+
+@kernel
+def half_periods(time):
+    """Half periods of the excitation nearest to a time in tau."""
+    return int(math.floor(time / math.pi + 0.5))
+
+
+@kernel
+def full_period(halves):
+    """Excitation periods of a motion that returns after `halves` half periods, as its mirror image if odd."""
+    return halves if halves % 2 == 1 else halves // 2
+
+
+@kernel
+def stop_ends(mu_b, z):
+    """Load phase (cos, sin) at which a stop at z ends, the motion that follows being upwards."""
+    c = z + mu_b
+    return c, -math.sqrt(max(0.0, (1.0 - c) * (1.0 + c)))
+
+
+@kernel
+def first_push(b, mu_b, z, c):
+    """r^2 z'' at an anchor; exact where a stop ends there, which `stop_ends` makes c tell."""
+    return mu_b - b if c == z + mu_b else c - z - b
+
+
+@kernel
+def longest_slide(step, r):
+    """The longest slide of an orbit, in scan steps."""
+    return _LONGEST_SLIDE * 2.0 * math.pi * max(1.0, r) / step.h
+
+
+@kernel
+def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, codes, first, count, work):
+    """One return through the given order of events.
+
+    Returns (fits, z, c, s, z_z, z_t, t_z, t_t): the state, and the derivatives of its displacement z and
+    phase t with respect to those at the anchor; after a stop, z_z is the only one.
+    """
+    a = 1.0 / oscillator.r
+    size = codes.size
+    max_steps = longest_slide(step, oscillator.r)
+    push = mu_b - b if after_stop else c - z - b
+    # what a neighbour started with another z (first) or another phase (second) differs by
+    z_z, t_z = 1.0, -1.0 / s if after_stop else 0.0
+    z_t, t_t = 0.0, 0.0 if after_stop else 1.0
+    for m in range(count):
+        n, z, c, s = slide(step, b, z, 0.0, step.stiffness * push, c, s, max_steps, work)
+        if n == NO_END:
+            return False, z, c, s, 0.0, 0.0, 0.0, 0.0
+        q, e = decay(oscillator.zeta, a * n * step.h)
+        d = e + 2.0 * oscillator.zeta * q
+        # a later start is a velocity that lags at a fixed phase
+        lag_z = -push * a * a * t_z
+        lag_t = -push * a * a * t_t
+        v_z = e * lag_z - a * q * z_z
+        v_t = e * lag_t - a * q * z_t
+        z_z = d * z_z + oscillator.r * q * lag_z
+        z_t = d * z_t + oscillator.r * q * lag_t
+        pull = (z - c + b) * a * a  # -z'' at the end of the slide
+        code, z, c, s, push, _ = after_slide(b, mu_b, z, c, s)
+        if code != int(codes[(first + m) % size]):
+            return False, z, c, s, 0.0, 0.0, 0.0, 0.0
+        if code == REVERSE or code == STOP_THEN_BACK:
+            z_z = -z_z
+            z_t = -z_t
+        if code == REVERSE:
+            t_z = v_z / pull
+            t_t = v_t / pull
+        elif code == STOP_THEN_BACK or code == STOP_THEN_ON:
+            t_z = -z_z / s
+            t_t = -z_t / s
+        else:
+            return False, z, c, s, 0.0, 0.0, 0.0, 0.0
+    return True, z, c, s, z_z, z_t, t_z, t_t
+
+
+@kernel
+def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, codes, first, count, tolerance, work):
+    """Newton's method on the return map: (found, z, c, s, contraction).
+
+    `found` also says that the orbit is stable; `contraction` is the largest modulus of the multipliers
+    of one return.
+    """
+    last = math.inf
+    for _ in range(_MAX_NEWTON):
+        if after_stop:
+            c, s = stop_ends(mu_b, z)
+            if not s < 0.0:
+                break
+        fits, z1, c1, s1, z_z, z_t, t_z, t_t = _return_map(
+            step, oscillator, b, mu_b, z, c, s, after_stop, codes, first, count, work
+        )
+        if not fits:
+            break
+        miss = z1 - z
+        if after_stop:
+            contraction = abs(z_z)
+            if not contraction < 1.0:
+                break
+            move = miss / (1.0 - z_z)
+            turn = 0.0
+        else:
+            late = math.atan2(s1 * c - c1 * s, c1 * c + s1 * s)
+            trace = z_z + t_t
+            det = z_z * t_t - z_t * t_z
+            root = trace * trace - 4.0 * det
+            if root >= 0.0:
+                contraction = 0.5 * (abs(trace) + math.sqrt(root))
+            else:
+                contraction = math.sqrt(det)
+            if not contraction < 1.0:
+                break
+            whole = 1.0 - trace + det
+            move = (miss * (1.0 - t_t) + late * z_t) / whole
+            turn = (late * (1.0 - z_z) + miss * t_z) / whole
+        size = abs(move) + abs(turn) * abs(z)
+        if not size < math.inf:
+            break
+        if size <= tolerance * abs(z) and size >= 0.5 * last:
+            return True, z, c, s, contraction  # as good as rounding allows
+        if size > 0.25 * last and tolerance * abs(z) < size < _NEAR_END * abs(z):
+            break  # not quadratic: the map only touches the identity there (marginal continua, R = 1/(2n))
+        z += move
+        if turn != 0.0:
+            cosine = math.cos(turn)
+            sine = math.sin(turn)
+            c, s = c * cosine - s * sine, s * cosine + c * sine
+        if size <= 1e-16 * abs(z):
+            if after_stop:
+                c, s = stop_ends(mu_b, z)
+            return True, z, c, s, contraction
+        last = size
+    return False, z, c, s, 1.0

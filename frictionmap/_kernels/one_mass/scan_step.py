@@ -1,0 +1,137 @@
+"""Motion between events of the oscillator ``r^2 z'' + 2 zeta r z' + z + b sgn(z') = cos(theta)``.
+
+Every SDOF system is this one: divide theory's ``z`` and ``beta`` by the amplitude A of the load in the
+contact (1 for a fixed wall, |r^2 - 2 i zeta r| for a joined base-wall), and count theta from a maximum
+of that load.  The state is (z, z', cos theta, sin theta): no time accumulates.
+
+All motion is counted in scan steps of length h: ``w = h z'``, and x in [0, 1] inside a step.  One step is
+a fixed affine map (`step_constants`), so that the scan calls no function; inside a step the solution is
+its Taylor series in x (`expand`), which needs no case for resonance, for zeta = 1 or for r -> inf and
+is exact to rounding because h is a small part of the fastest period.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..closed_form import fastest_rate
+from ..jit import entry, kernel
+
+#: Terms of the Taylor series that any legal number of scan steps per period may need.
+MAX_TERMS = 44
+
+#: Terms below this size relative to the first are rounding.
+_NEGLIGIBLE = 1e-18
+
+
+class Step(NamedTuple):
+    """What one scan step of length h does; everything here depends on (r, zeta, steps) only."""
+
+    h: float  # length in tau
+    stiffness: float  # (h/r)^2
+    damping: float  # 2 zeta h/r
+    terms: int  # terms of the Taylor series
+    series: np.ndarray  # (5, terms) series of w for unit z, w, cos, sin and constant load
+    zz: float  # free motion: z <- zz z + zw w,  w <- wz z + ww w
+    zw: float
+    wz: float
+    ww: float
+    z_cos: float  # answer from rest to cos(theta), sin(theta) and 1
+    w_cos: float
+    z_sin: float
+    w_sin: float
+    z_one: float
+    w_one: float
+    cos: float
+    sin: float
+
+
+@kernel
+def _unit_series(h, stiffness, damping, terms, z, w, c, s, constant, out):
+    """Taylor coefficients in x of w from (z, w) under c cos(h x) - s sin(h x) + constant.
+
+    The recurrence is the equation of motion; the coefficients of z follow as z_k = out[k-1]/k.
+    """
+    z_k = z
+    next_z = w
+    square = h * h
+    f_this = c + constant
+    f_next = -s * h
+    out[0] = w
+    for k in range(terms - 1):
+        factor = 1.0 / ((k + 1.0) * (k + 2.0))
+        new = (stiffness * (f_this - z_k) - damping * (k + 1.0) * next_z) * factor
+        z_k = next_z
+        next_z = new
+        out[k + 1] = (k + 2.0) * new
+        f_k = f_this if k > 0 else c  # a constant has no further coefficients
+        f_this = f_next
+        f_next = -square * factor * f_k
+
+
+@kernel
+def _sum_series(series, z):
+    """(z, w) at the end of the step."""
+    velocity = 0.0
+    rise = 0.0
+    for k in range(series.size - 1, -1, -1):
+        velocity += series[k]
+        rise += series[k] / (k + 1.0)
+    return z + rise, velocity
+
+
+@kernel
+def expand(step, b, z, w, acceleration, c, s, out):
+    """Taylor coefficients in x of the upward velocity w from a state.
+
+    `acceleration` is h^2 z'' at x = 0; it is known exactly where a stop ends, and used as given.
+    """
+    series = step.series
+    for k in range(step.terms):
+        out[k] = (
+            z * series[0, k] + w * series[1, k] + c * series[2, k] + s * series[3, k]
+            - b * series[4, k]
+        )  # fmt: skip
+    out[1] = acceleration
+
+
+@kernel
+def series_terms(steps):
+    """(turn, terms): what the fastest part turns in one step, and the terms of the Taylor series in it.
+
+    The steps of a period are made odd in number, so that a slide of half a period (every one of a
+    continuous motion) ends inside a step, not next to a node.
+    """
+    turn = 2.0 * math.pi / (2.0 * math.floor(0.5 * steps) + 1.0)
+    terms = 4
+    size = turn * turn * turn * turn / 24.0
+    while size > _NEGLIGIBLE and terms < MAX_TERMS:
+        terms += 1
+        size *= turn / terms
+    return turn, terms
+
+
+@entry
+def step_constants(r, zeta, steps):
+    """The `Step` of frequency ratio r > 0 for `steps` scan steps per period of the fastest part."""
+    a = 1.0 / r
+    turn, terms = series_terms(steps)
+    h = turn / max(1.0, fastest_rate(a, zeta))
+    stiffness = (a * h) * (a * h)
+    damping = 2.0 * zeta * a * h
+    series = np.empty((5, terms))
+    _unit_series(h, stiffness, damping, terms, 1.0, 0.0, 0.0, 0.0, 0.0, series[0])
+    _unit_series(h, stiffness, damping, terms, 0.0, 1.0, 0.0, 0.0, 0.0, series[1])
+    _unit_series(h, stiffness, damping, terms, 0.0, 0.0, 1.0, 0.0, 0.0, series[2])
+    _unit_series(h, stiffness, damping, terms, 0.0, 0.0, 0.0, 1.0, 0.0, series[3])
+    _unit_series(h, stiffness, damping, terms, 0.0, 0.0, 0.0, 0.0, 1.0, series[4])
+    zz, wz = _sum_series(series[0], 1.0)
+    zw, ww = _sum_series(series[1], 0.0)
+    z_cos, w_cos = _sum_series(series[2], 0.0)
+    z_sin, w_sin = _sum_series(series[3], 0.0)
+    z_one, w_one = _sum_series(series[4], 0.0)
+    return Step(
+        h, stiffness, damping, terms, series, zz, zw, wz, ww,
+        z_cos, w_cos, z_sin, w_sin, z_one, w_one, math.cos(h), math.sin(h),
+    )  # fmt: skip

@@ -1,0 +1,103 @@
+"""The continuous orbit of theory 2 for the normalised oscillator, and how near to it nothing can stop."""
+
+import math
+from typing import NamedTuple
+
+from ..closed_form import decay
+from ..jit import entry, kernel
+
+
+class Oscillator(NamedTuple):
+    """The normalised oscillator at one r; everything here depends on (r, zeta) only."""
+
+    r: float
+    zeta: float
+    v_abs: float  # |V|, infinite at an undamped resonance
+    v_arg: float
+    u: float
+    g: float
+    marginal: bool  # undamped at r = 1/(2n), where the continuous motions are a continuum
+
+
+@kernel
+def continuous_amplitude(v_abs, u, g, b):
+    """Z of T(2.34), (7.20) for chi^2/w^2 = 1; infinite at an undamped resonance."""
+    if math.isinf(v_abs):
+        return math.inf
+    if b == 0.0:
+        return v_abs  # u may have no limit (r = 0)
+    swing = b * u
+    return math.sqrt((v_abs - swing) * (v_abs + swing)) - b * g
+
+
+@entry
+def orbit_phase(v_abs, v_arg, u, b):
+    """Load phase phi_z at a maximum of z of the continuous orbit, theory.md 2."""
+    swing = b * u
+    return math.atan2(-swing, math.sqrt((v_abs - swing) * (v_abs + swing))) - v_arg
+
+
+@kernel
+def since_maximum(c, s, phase):
+    """(tau, sign): time since the orbit's last maximum, or minimum; there the orbit is the mirror image."""
+    tau = math.atan2(s, c) - phase
+    tau -= 2.0 * math.pi * math.floor(tau / (2.0 * math.pi))
+    if tau > math.pi:
+        return tau - math.pi, -1.0
+    return tau, 1.0
+
+
+@kernel
+def distance_to_orbit(oscillator, b, amplitude, phase, z, c, s):
+    """Energy norm sqrt(z^2 + r^2 z'^2) of the distance from the continuous orbit of a state at rest."""
+    a = 1.0 / oscillator.r
+    tau, sign = since_maximum(c, s, phase)
+    q, e = decay(oscillator.zeta, a * tau)
+    g1 = 1.0 + oscillator.g
+    d = e + 2.0 * oscillator.zeta * q
+    from_cos = amplitude + b * oscillator.g
+    swing = b * oscillator.u
+    cosine = math.cos(tau)
+    sine = math.sin(tau)
+    orbit_z = from_cos * cosine + swing * sine + b * (1.0 - g1 * d) - swing * oscillator.r * q
+    orbit_v = swing * (cosine - e) - from_cos * sine + b * g1 * a * q
+    return math.hypot(z - sign * orbit_z, oscillator.r * orbit_v)
+
+
+@kernel
+def stop_free_radius(step, oscillator, b, mu_b, amplitude, phase):
+    """A distance (energy norm) from the continuous orbit within which no motion can stop.
+
+    A stop at distance eps needs r |z'| <= eps and |load| <= mu b + eps of the orbit; the least
+    max(r |z'|, |load| - mu b) over half a period is bounded below from scan steps and their curvature.
+    """
+    c = -math.cos(phase)
+    s = -math.sin(phase)
+    z = -amplitude
+    w = 0.0
+    stiffness = step.stiffness
+    omega = math.sqrt(stiffness)
+    square = step.h * step.h
+    acceleration = stiffness * (c - b - z)
+    energy = omega * abs(acceleration) + abs(stiffness * s * step.h + step.damping * acceleration)
+    to_velocity = oscillator.r / step.h
+    radius = math.inf
+    load = z - c
+    n = int(math.ceil(math.pi / step.h))
+    for _ in range(n):
+        energy += stiffness * square
+        z1 = step.zz * z + step.zw * w + step.z_cos * c + step.z_sin * s - step.z_one * b
+        w1 = step.wz * z + step.ww * w + step.w_cos * c + step.w_sin * s - step.w_one * b
+        c1 = step.cos * c - step.sin * s
+        s = step.cos * s + step.sin * c
+        c = c1
+        load1 = z1 - c
+        fast = to_velocity * (min(w, w1) - 0.125 * energy)
+        # a load that changes its sign inside the step passes zero there
+        least = min(abs(load), abs(load1)) if load * load1 > 0.0 else 0.0
+        loaded = least - 0.125 * (energy / omega + square) - mu_b
+        radius = min(radius, max(fast, loaded))
+        z = z1
+        w = w1
+        load = load1
+    return radius

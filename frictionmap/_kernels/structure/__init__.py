@@ -1,0 +1,1 @@
+"""Any structure: scan step, events, return map, sliding orbit."""

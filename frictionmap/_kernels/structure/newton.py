@@ -1,0 +1,338 @@
+"""Periodic orbits of a structure: Newton's method on its return map, with the exact derivative.
+
+The map takes the state in the middle of an upward slide to the state at the same phase of the load some half
+periods later (mirrored after an odd number).  Its derivative is linear flow between events, and at each
+event a jump (saltation): a stop takes the contact's share out of the velocities, a turn or the end of a stop
+adds the jump of the friction force times the shift of the event.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..closed_form import decay
+from ..jit import entry, kernel
+from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
+from .events import MOVING, NO_RELEASE, after_slide, slide_on
+from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA
+from .state import CHI, LIFT, energy
+
+_MAX_NEWTON = 16
+
+#: Events of an order of events found by `order_of_events`.
+MOST_CODES = 64
+
+#: Columns of `Workspace.anchored`.
+HALVES, PHASE_COS, PHASE_SIN, SIDE = 0, 1, 2, 3
+
+#: Newton steps below this share of the motion have to shrink fast.
+_NEAR_END = 1e-6
+
+#: Squarings of the derivative for its spectral radius: the root of so high a power is right to rounding.
+_SQUARINGS = 40
+
+_TURN = 2.0 * math.pi
+
+
+class Workspace(NamedTuple):
+    """Arrays that kernels write into; n free modes, m held oscillators."""
+
+    held: np.ndarray  # (2, m) state in a stop
+    middle: np.ndarray  # (2, n) unknown of Newton's method
+    moved: np.ndarray  # (2, n) where the map takes it
+    flow: np.ndarray  # (2n, 2n) derivative of the state with respect to the unknown
+    stopped: np.ndarray  # (2m + 1, 2n) the same in a stop; last row: of z
+    square: np.ndarray  # (2n, 2n)
+    step: np.ndarray  # (2n,)
+    row: np.ndarray  # (2n,)
+    start: np.ndarray  # (2, n) where Newton's method started
+    anchor: np.ndarray  # (2, n)
+    table: np.ndarray  # (n + 1, COLUMNS)
+    codes: np.ndarray  # (MOST_CODES,) an order of events
+    near: np.ndarray  # (2, n)
+    solved: np.ndarray  # (2, n) middle of a slide of the orbit solved for last, and how it is anchored:
+    anchored: np.ndarray  # (4,) half periods to its return (0: there is none), cos, sin, sign
+
+
+@entry
+def make_workspace(n):
+    """Workspace for n free modes."""
+    m = n - 1
+    return Workspace(
+        np.zeros((2, m)), np.zeros((2, n)), np.zeros((2, n)), np.zeros((2 * n, 2 * n)),
+        np.zeros((2 * m + 1, 2 * n)), np.zeros((2 * n, 2 * n)), np.zeros(2 * n), np.zeros(2 * n),
+        np.zeros((2, n)), np.zeros((2, n)), np.zeros((n + 1, COLUMNS)), np.zeros(MOST_CODES),
+        np.zeros((2, n)), np.zeros((2, n)), np.zeros(4),
+    )  # fmt: skip
+
+
+@kernel
+def copy_state(source, target, n):
+    """Copy a (2, n) state."""
+    for i in range(n):
+        target[0, i] = source[0, i]
+        target[1, i] = source[1, i]
+
+
+@kernel
+def _carry(table, n, time, rows, columns):
+    """Free motion of n oscillators over `time` in t = tau/r: row i a coordinate, n + i its velocity in t."""
+    for i in range(n):
+        omega = table[i, OMEGA]
+        q, e = decay(table[i, ZETA], omega * time)
+        d = e + 2.0 * table[i, ZETA] * q
+        q_over = q / omega
+        q_times = q * omega
+        for j in range(columns):
+            z = rows[i, j]
+            v = rows[n + i, j]
+            rows[i, j] = d * z + q_over * v
+            rows[n + i, j] = e * v - q_times * z
+
+
+@kernel
+def _contact_row(st, rows, first, columns, out):
+    """chi times the n rows from `first` on: what the contact has of them."""
+    for j in range(columns):
+        out[j] = 0.0
+    for i in range(st.n):
+        chi = st.modes[CHI, i]
+        for j in range(columns):
+            out[j] += chi * rows[first + i, j]
+
+
+@kernel
+def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, row):
+    """The derivative after an event that ended an upward slide; see `follow.after_slide`."""
+    n, m = st.n, st.m
+    size = 2 * n
+    _contact_row(st, flow, n, size, row)
+    # a stop takes all of the contact's velocity, a turn 2 beta/(load + beta) of it
+    share = (2.0 * beta / (load + beta) if code == REVERSE else 1.0) / st.inverse_mass
+    for i in range(n):
+        part = st.modes[CHI, i] * share
+        for j in range(size):
+            flow[n + i, j] -= part * row[j]
+    if code != REVERSE:
+        _contact_row(st, flow, 0, size, stopped[2 * m])
+        for k in range(2 * m):
+            for j in range(size):
+                stopped[k, j] = 0.0
+            for i in range(n):
+                a = st.to_held[k, i]
+                b = st.to_held[k, n + i]
+                shift = a * st.modes[LIFT, i]
+                for j in range(size):
+                    stopped[k, j] += a * flow[i, j] + b * flow[n + i, j] - shift * stopped[2 * m, j]
+        _carry(st.held, m, wait / st.r, stopped, size)
+        for j in range(size):
+            row[j] = st.stiffness * stopped[2 * m, j]
+        for k in range(m):
+            for j in range(size):
+                row[j] += st.held[k, OZ] * stopped[k, j] + st.held[k, OW] * stopped[m + k, j] / st.rate
+        for i in range(size):
+            lift = st.modes[LIFT, i] if i < n else 0.0
+            for j in range(size):
+                flow[i, j] = lift * stopped[2 * m, j]
+            for k in range(2 * m):
+                a = st.to_free[i, k]
+                for j in range(size):
+                    flow[i, j] += a * stopped[k, j]
+        # the stop ends where the load reaches mu beta: sooner by the load's excess over its rate
+        jump = (mu_beta - beta) / (slope * st.rate)
+        if code == STOP_THEN_BACK:
+            jump = -jump
+        for i in range(n):
+            part = st.modes[CHI, i] * jump
+            for j in range(size):
+                flow[n + i, j] += part * row[j]
+    if code == REVERSE or code == STOP_THEN_BACK:
+        for i in range(size):
+            for j in range(size):
+                flow[i, j] = -flow[i, j]
+
+
+@kernel
+def return_map(st, beta, mu_beta, state, c, s, codes, first, count, halves, derive, work, scratch):
+    """The state `halves` half periods on, through the events codes[first], ...; in place.
+
+    Returns whether the events fit; `work.flow` becomes the derivative if `derive`.
+    """
+    size = 2 * st.n
+    if derive:
+        for i in range(size):
+            for j in range(size):
+                work.flow[i, j] = 1.0 if i == j else 0.0
+    whole = math.pi * halves
+    limit = whole / st.h + 1.0
+    c0, s0 = c, s
+    odd = halves % 2 == 1
+    mirrored = False
+    time = 0.0
+    net = MOVING
+    for m in range(count):
+        n, end, c, s, _ = slide_on(st, beta, net, state, c, s, limit, scratch)
+        if end != FELL:
+            return False
+        time += n * st.h
+        if derive:
+            _carry(st.free, st.n, n * st.h / st.r, work.flow, size)
+        code, c, s, net, wait, load, slope = after_slide(
+            st, beta, mu_beta, state, work.held, c, s, whole, scratch
+        )
+        if code != int(codes[(first + m) % codes.size]):
+            return False
+        if not (code == REVERSE or code == STOP_THEN_BACK or code == STOP_THEN_ON):
+            return False
+        time += wait
+        if code != STOP_THEN_ON:
+            mirrored = not mirrored
+        if derive:
+            _through_event(st, beta, mu_beta, code, load, wait, slope, work.flow, work.stopped, work.row)
+    if mirrored != odd:
+        return False
+    # what is left, as exactly as the load's phase says it
+    rest = math.atan2(s0 * c - c0 * s, c0 * c + s0 * s)
+    rest += _TURN * math.floor((whole - time - rest) / _TURN + 0.5)
+    if not rest > 0.0:
+        return False
+    n, end, c, s, _ = slide_on(st, beta, net, state, c, s, rest / st.h, scratch)
+    if end != AT_LIMIT:
+        return False
+    if derive:
+        _carry(st.free, st.n, rest / st.r, work.flow, size)
+    return True
+
+
+@kernel
+def order_of_events(st, beta, mu_beta, state, c, s, halves, codes, work, scratch):
+    """Number of events in the `halves` half periods from a state in a slide, and what they are, into `codes`.
+
+    0 if they are too many, or do not lead back into a slide in the same direction, mirrored if odd.
+    """
+    whole = math.pi * halves
+    mirrored = False
+    time = 0.0
+    net = MOVING
+    count = 0
+    while True:
+        n, end, c, s, _ = slide_on(st, beta, net, state, c, s, (whole - time) / st.h, scratch)
+        time += n * st.h
+        if end == AT_LIMIT:
+            return count if mirrored == (halves % 2 == 1) else 0
+        if end != FELL or count == codes.size:
+            return 0
+        code, c, s, net, wait, _, _ = after_slide(st, beta, mu_beta, state, work.held, c, s, whole, scratch)
+        time += wait
+        if code == TOUCH or code == STUCK or code == NO_RELEASE or not time < whole:
+            return 0
+        if code != STOP_THEN_ON:
+            mirrored = not mirrored
+        codes[count] = code
+        count += 1
+
+
+@kernel
+def solve_linear(matrix, right, n):
+    """Solve matrix x = right in place, x in `right`; False if it is singular."""
+    for k in range(n):
+        pivot = k
+        for i in range(k + 1, n):
+            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
+                pivot = i
+        if matrix[pivot, k] == 0.0 or matrix[pivot, k] != matrix[pivot, k]:
+            return False
+        if pivot != k:
+            for j in range(n):
+                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
+            right[k], right[pivot] = right[pivot], right[k]
+        for i in range(k + 1, n):
+            factor = matrix[i, k] / matrix[k, k]
+            if factor != 0.0:
+                for j in range(k, n):
+                    matrix[i, j] -= factor * matrix[k, j]
+                right[i] -= factor * right[k]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            right[k] -= matrix[k, j] * right[j]
+        right[k] /= matrix[k, k]
+    return True
+
+
+@kernel
+def _largest_entry(matrix, n):
+    norm = 0.0
+    for i in range(n):
+        for j in range(n):
+            norm = max(norm, abs(matrix[i, j]))
+    return norm
+
+
+@kernel
+def spectral_radius(matrix, n, a):
+    """Largest modulus of the eigenvalues, from the root of a high power; `matrix` is lost, `a` is scratch."""
+    log = 0.0
+    for _ in range(_SQUARINGS):
+        norm = _largest_entry(matrix, n)
+        if norm == 0.0:
+            return 0.0
+        log = 2.0 * (log + math.log(norm))
+        for i in range(n):
+            for j in range(n):
+                a[i, j] = matrix[i, j] / norm
+        for i in range(n):
+            for j in range(n):
+                matrix[i, j] = 0.0
+            for k in range(n):
+                for j in range(n):
+                    matrix[i, j] += a[i, k] * a[k, j]
+    norm = _largest_entry(matrix, n)
+    if norm == 0.0:
+        return 0.0
+    return math.exp((log + math.log(norm)) / 2.0**_SQUARINGS)
+
+
+@kernel
+def newton_step(st, beta, mu_beta, c, s, codes, first, count, halves, work, scratch):
+    """A step of Newton's method from work.middle, into work.moved; its size, infinite if there is none."""
+    n = st.n
+    size = 2 * n
+    copy_state(work.middle, work.moved, n)
+    if not return_map(st, beta, mu_beta, work.moved, c, s, codes, first, count, halves, True, work, scratch):
+        return math.inf
+    for i in range(n):
+        work.step[i] = work.moved[0, i] - work.middle[0, i]
+        work.step[n + i] = (work.moved[1, i] - work.middle[1, i]) * st.rate
+    for i in range(size):
+        for j in range(size):
+            work.square[i, j] = (1.0 if i == j else 0.0) - work.flow[i, j]
+    if not solve_linear(work.square, work.step, size):
+        return math.inf
+    for i in range(n):
+        work.moved[0, i] = work.step[i]
+        work.moved[1, i] = work.step[n + i] / st.rate
+    return energy(st, work.moved)
+
+
+@kernel
+def solve_return(st, beta, mu_beta, c, s, codes, first, count, halves, tolerance, work, scratch):
+    """Newton's method on the return map from work.middle, which becomes the solution; whether it is one."""
+    n = st.n
+    last = math.inf
+    for _ in range(_MAX_NEWTON):
+        move = newton_step(st, beta, mu_beta, c, s, codes, first, count, halves, work, scratch)
+        if not move < math.inf:
+            return False
+        scale = energy(st, work.middle)
+        if move <= tolerance * scale and move >= 0.5 * last:
+            return True  # as good as rounding allows
+        if move > 0.25 * last and tolerance * scale < move < _NEAR_END * scale:
+            return False  # not quadratic: the map only touches the identity there
+        for i in range(n):
+            work.middle[0, i] += work.moved[0, i]
+            work.middle[1, i] += work.moved[1, i]
+        if move <= 1e-15 * scale:
+            return True
+        last = move
+    return False

@@ -1,0 +1,462 @@
+"""Oscillators side by side under one load, and the first time that a sum of them leaves a range.
+
+Sliding structures are sets of free modes and sticking ones sets of held modes (`state`): in units of one
+scan step, x in [0, 1] inside it, with ``w = dz/dx``,
+
+    z_i'' + D_i z_i' + K_i z_i = FC_i cos(tau) + FS_i sin(tau) + F1_i friction .
+
+A scan step is a fixed affine map of each oscillator, so that the scan calls no function.  What is watched
+is one number, ``y = sum OZ_i z_i + OW_i w_i + YC cos(tau) + YS sin(tau)``: the velocity in the contact, or
+what changes of the load in it.  Cost is linear in the number of oscillators.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..jit import entry, inner_kernel, kernel
+from ..one_mass.events import MAX_POLISH, NEARLY, ONE_STEP, cubic_root, first_root, reversion
+from ..one_mass.scan_step import MAX_TERMS
+
+# Columns of a table of oscillators, one a row: the equation, the sum that is watched, ...
+K, D, FC, FS, F1, OZ, OW = 0, 1, 2, 3, 4, 5, 6
+# ... frequency and damping ratio in time t = tau/r, sqrt(K), amplitude of the load's second derivative, ...
+OMEGA, ZETA, ROOT, GROWTH = 7, 8, 9, 10
+# ... and the map of one step: z <- ZZ z + ZW w + ZC cos + ZS sin + Z1 friction, and so w.
+ZZ, ZW, WZ, WW, ZC, WC, ZS, WS, Z1, W1 = 11, 12, 13, 14, 15, 16, 17, 18, 19, 20
+COLUMNS = 21
+# One more row, the last, has what all share: length of a step in tau, its cos and sin, terms of the Taylor
+# series in it, the load's part of y, and the amplitude of the second derivative of that.
+H, TURN_COS, TURN_SIN, TERMS, YC, YS, SWING = 0, 1, 2, 3, 4, 5, 6
+
+#: Ends of a scan: the time allowed is over, y fell through the lower end of its range, rose through the
+#: upper one, or is not a number.
+AT_LIMIT, FELL, ROSE, FAILED = 0, 1, 2, 3
+
+#: In place of a slope at the start: y starts inside its range.
+ELSEWHERE = -1.0
+
+
+class Scratch(NamedTuple):
+    """Arrays that kernels write into."""
+
+    series: np.ndarray  # (MAX_TERMS + 1, n) Taylor coefficients of every z
+    watched: np.ndarray  # (MAX_TERMS + 1,) of y
+    below: np.ndarray  # (MAX_TERMS,) of the distance to an end of the range
+    next: np.ndarray  # (2, n) state at the other end of a step
+
+
+@entry
+def make_scratch(n):
+    """Scratch for up to n oscillators."""
+    return Scratch(
+        np.zeros((MAX_TERMS + 1, n)), np.zeros(MAX_TERMS + 1), np.zeros(MAX_TERMS), np.zeros((2, n))
+    )
+
+
+@kernel
+def _answer(k, d, h, terms, z, w, cosine, sine, constant):
+    """(z, w) after one step from (z, w) under cosine cos(h x) + sine sin(h x) + constant."""
+    z_k = z
+    z_next = w
+    f_k = cosine
+    f_next = sine * h
+    z_end = z + w
+    w_end = w
+    pull = constant  # has no further coefficients
+    for j in range(terms):
+        factor = 1.0 / ((j + 1.0) * (j + 2.0))
+        new = (f_k + pull - k * z_k - d * (j + 1.0) * z_next) * factor
+        z_k = z_next
+        z_next = new
+        f_new = -h * h * factor * f_k
+        f_k = f_next
+        f_next = f_new
+        pull = 0.0
+        z_end += new
+        w_end += (j + 2.0) * new
+    return z_end, w_end
+
+
+@kernel
+def fill_steps(table, h, terms):
+    """Fill the columns of the step's map from those of the equation, and the last row but for y."""
+    n = table.shape[0] - 1
+    for i in range(n):
+        k = table[i, K]
+        d = table[i, D]
+        table[i, ROOT] = math.sqrt(k)
+        table[i, GROWTH] = h * h * math.hypot(table[i, FC], table[i, FS])
+        table[i, ZZ], table[i, WZ] = _answer(k, d, h, terms, 1.0, 0.0, 0.0, 0.0, 0.0)
+        table[i, ZW], table[i, WW] = _answer(k, d, h, terms, 0.0, 1.0, 0.0, 0.0, 0.0)
+        table[i, ZC], table[i, WC] = _answer(k, d, h, terms, 0.0, 0.0, table[i, FC], table[i, FS], 0.0)
+        table[i, ZS], table[i, WS] = _answer(k, d, h, terms, 0.0, 0.0, table[i, FS], -table[i, FC], 0.0)
+        table[i, Z1], table[i, W1] = _answer(k, d, h, terms, 0.0, 0.0, 0.0, 0.0, table[i, F1])
+    table[n, H] = h
+    table[n, TURN_COS], table[n, TURN_SIN] = math.cos(h), math.sin(h)
+    table[n, TERMS] = terms
+
+
+@kernel
+def watch_load(table, yc, ys):
+    """Let y have yc cos(tau) + ys sin(tau)."""
+    n = table.shape[0] - 1
+    h = table[n, H]
+    table[n, YC], table[n, YS] = yc, ys
+    table[n, SWING] = h * h * math.hypot(yc, ys)
+
+
+@kernel
+def expand(table, n, friction, state, c, s, h, terms, series):
+    """Taylor coefficients in x of every z, from a state; `terms` + 1 of them."""
+    for i in range(n):
+        series[0, i] = state[0, i]
+        series[1, i] = state[1, i]
+    c_k, s_k = c, s  # coefficients of cos(tau + h x) and sin(tau + h x)
+    c_next, s_next = -s * h, c * h
+    for j in range(terms - 1):
+        factor = 1.0 / ((j + 1.0) * (j + 2.0))
+        pull = friction if j == 0 else 0.0
+        for i in range(n):
+            force = table[i, FC] * c_k + table[i, FS] * s_k + table[i, F1] * pull
+            series[j + 2, i] = (
+                force - table[i, K] * series[j, i] - table[i, D] * ((j + 1.0) * series[j + 1, i])
+            ) * factor
+        fall = -h * h * factor
+        c_k, c_next = c_next, fall * c_k
+        s_k, s_next = s_next, fall * s_k
+
+
+@kernel
+def advance(series, n, terms, x, state):
+    """The state at x inside the step whose series this is."""
+    for i in range(n):
+        state[0, i] = series[terms, i]
+        state[1, i] = terms * series[terms, i]
+    for j in range(terms - 1, 0, -1):
+        for i in range(n):
+            state[0, i] = state[0, i] * x + series[j, i]
+            state[1, i] = state[1, i] * x + j * series[j, i]
+    for i in range(n):
+        state[0, i] = state[0, i] * x + series[0, i]
+
+
+@kernel
+def _watch(table, c, s, series, watched):
+    """Taylor coefficients of y from those of every z."""
+    n = table.shape[0] - 1
+    h = table[n, H]
+    c_k, s_k = c, s
+    c_next, s_next = -s * h, c * h
+    for j in range(int(table[n, TERMS])):
+        total = table[n, YC] * c_k + table[n, YS] * s_k
+        for i in range(n):
+            total += table[i, OZ] * series[j, i] + table[i, OW] * ((j + 1.0) * series[j + 1, i])
+        watched[j] = total
+        fall = -h * h / ((j + 1.0) * (j + 2.0))
+        c_k, c_next = c_next, fall * c_k
+        s_k, s_next = s_next, fall * s_k
+
+
+@inner_kernel
+def step_on(table, n, friction, state, before, c, s):
+    """The state one scan step on, in place, and what the oscillators have of y there; the old one: `before`.
+
+    One pass over rows in one piece: with few oscillators, passes over columns cost more than the work.
+    """
+    y = 0.0
+    for i in range(n):
+        z = state[0, i]
+        w = state[1, i]
+        before[0, i] = z
+        before[1, i] = w
+        forced_z = table[i, ZC] * c + table[i, ZS] * s + table[i, Z1] * friction
+        forced_w = table[i, WC] * c + table[i, WS] * s + table[i, W1] * friction
+        z_new = forced_z + (table[i, ZZ] * z + table[i, ZW] * w)
+        w_new = forced_w + (table[i, WZ] * z + table[i, WW] * w)
+        state[0, i] = z_new
+        state[1, i] = w_new
+        y += table[i, OZ] * z_new + table[i, OW] * w_new
+    return y
+
+
+@kernel
+def value(table, state, c, s):
+    """y of a state."""
+    n = table.shape[0] - 1
+    total = 0.0
+    for i in range(n):
+        total += table[i, OZ] * state[0, i] + table[i, OW] * state[1, i]
+    return total + (table[n, YC] * c + table[n, YS] * s)
+
+
+@kernel
+def _derivatives(table, friction, state, c, s):
+    """y of a state and its first three derivatives in x."""
+    n = table.shape[0] - 1
+    h = table[n, H]
+    y = table[n, YC] * c + table[n, YS] * s
+    slope = h * (table[n, YS] * c - table[n, YC] * s)
+    bend = -h * h * y
+    third = -h * h * slope
+    for i in range(n):
+        k, d = table[i, K], table[i, D]
+        oz, ow = table[i, OZ], table[i, OW]
+        load = table[i, FC] * c + table[i, FS] * s
+        push = load + table[i, F1] * friction - k * state[0, i] - d * state[1, i]
+        jerk = h * (table[i, FS] * c - table[i, FC] * s) - k * state[1, i] - d * push
+        snap = -h * h * load - k * push - d * jerk
+        y += oz * state[0, i] + ow * state[1, i]
+        slope += oz * state[1, i] + ow * push
+        bend += oz * push + ow * jerk
+        third += oz * jerk + ow * snap
+    return y, slope, bend, third
+
+
+@kernel
+def bounds(table, friction, state, c, s):
+    """Bounds over the next step on the derivatives 2 to 4 of y, and by how much each grows with every step.
+
+    The energy sqrt(K) |z''| + |z'''| of the motion of z'' can grow by the load only, by |F''| a step.
+    """
+    n = table.shape[0] - 1
+    h = table[n, H]
+    second = table[n, SWING]
+    third, fourth = h * second, h * h * second
+    second_growth = third_growth = fourth_growth = 0.0
+    for i in range(n):
+        k = table[i, K]
+        d = table[i, D]
+        root = table[i, ROOT]
+        growth = table[i, GROWTH]
+        force = table[i, FC] * c + table[i, FS] * s + table[i, F1] * friction
+        push = force - k * state[0, i] - d * state[1, i]
+        jerk = h * (table[i, FS] * c - table[i, FC] * s) - k * state[1, i] - d * push
+        energy = root * abs(push) + abs(jerk) + growth
+        oz = abs(table[i, OZ])
+        ow = abs(table[i, OW])
+        per_second = oz / root + ow
+        per_third = oz + ow * (d + root)
+        per_fourth = oz * (d + root) + ow * (d * (d + root) + k)
+        second += per_second * energy
+        third += per_third * energy + ow * growth
+        fourth += per_fourth * energy + (oz + ow * (d + h)) * growth
+        second_growth += per_second * growth
+        third_growth += per_third * growth
+        fourth_growth += per_fourth * growth
+    return second, third, fourth, second_growth, third_growth, fourth_growth
+
+
+@kernel
+def _inside(y0, dy0, y1, dy1, low, high, error):
+    """Whether the cubic through these values and slopes keeps `error` away from both ends of the range."""
+    left = y0 + dy0 * (1.0 / 3.0)
+    right = y1 - dy1 * (1.0 / 3.0)
+    least = min(min(y0, y1), min(left, right))
+    most = max(max(y0, y1), max(left, right))
+    return least - error > low and most + error < high
+
+
+@kernel
+def _turned(c, s, angle):
+    """The load's phase (cos, sin) turned by an angle, on the unit circle."""
+    turn_c, turn_s = math.cos(angle), math.sin(angle)
+    c1 = turn_c * c - turn_s * s
+    s1 = turn_c * s + turn_s * c
+    norm = 1.5 - 0.5 * (c1 * c1 + s1 * s1)
+    return norm * c1, norm * s1
+
+
+@kernel
+def _move(table, friction, before, c, s, x, powers, state):
+    """The state at x inside the step that starts from `before`, by the derivatives of every z there."""
+    n = table.shape[0] - 1
+    h = table[n, H]
+    terms = int(table[n, TERMS])
+    powers[0] = 1.0  # x^j/j!
+    for j in range(terms):
+        powers[j + 1] = powers[j] * x / (j + 1.0)
+    for i in range(n):
+        k, d = table[i, K], table[i, D]
+        load = table[i, FC] * c + table[i, FS] * s
+        load_next = h * (table[i, FS] * c - table[i, FC] * s)
+        last = before[0, i]
+        this = before[1, i]
+        new = load + table[i, F1] * friction - k * last - d * this
+        z = last + this * x
+        w = this
+        for j in range(1, terms):
+            z += new * powers[j + 1]
+            w += new * powers[j]
+            last, this = this, new
+            new = load_next - k * last - d * this
+            load, load_next = load_next, -h * h * load
+        state[0, i] = z
+        state[1, i] = w
+
+
+@kernel
+def _nudge(table, friction, state, c, s, x):
+    """Move the state on by a small part x of a step."""
+    n = table.shape[0] - 1
+    h = table[n, H]
+    for i in range(n):
+        k, d = table[i, K], table[i, D]
+        load = table[i, FC] * c + table[i, FS] * s
+        push = load + table[i, F1] * friction - k * state[0, i] - d * state[1, i]
+        jerk = h * (table[i, FS] * c - table[i, FC] * s) - k * state[1, i] - d * push
+        snap = -h * h * load - k * push - d * jerk
+        state[0, i] += x * (state[1, i] + x * (0.5 * push + x * (1.0 / 6.0) * jerk))
+        state[1, i] += x * (push + x * (0.5 * jerk + x * (1.0 / 6.0) * snap))
+
+
+@kernel
+def _at_crossing(table, friction, level, x, done, start, now, state, scratch):
+    """Where y passes `level` next to x, in the step from scratch.next, after `done`: (found, x, slope).
+
+    start, now : the load's phase (cos, sin) when the scan and this step began.  Newton steps of fourth order
+    on the state itself, which becomes that at the crossing.  Not found: y only touches the level.
+    """
+    h = table[table.shape[0] - 1, H]
+    for _ in range(MAX_POLISH):
+        _move(table, friction, scratch.next, now[0], now[1], x, scratch.watched, state)
+        c, s = _turned(start[0], start[1], (done + x) * h)
+        y, slope, bend, third = _derivatives(table, friction, state, c, s)
+        y -= level
+        if not abs(y) < NEARLY * abs(slope) or not abs(y * bend) < NEARLY * slope * slope:
+            break
+        move = reversion(y, slope, bend, third)
+        x += move
+        if abs(move) < ONE_STEP:
+            _nudge(table, friction, state, c, s, move)
+            return True, x, slope + move * (bend + 0.5 * move * third)
+    return False, x, 0.0
+
+
+@kernel
+def _exit(table, friction, low, high, push, ends, errors, done, start, now, state, scratch):
+    """Where y leaves [low, high] from scratch.next to `state`: (x, end, dy/dx); x = 2 if it does not.
+
+    So many arguments: this is the seldom part of `scan`, whose arguments they are.  push : as there, of
+    the first step; ends : y at both ends; errors : bounds on its derivatives 2 to 4; now : the load's phase
+    at the start of this step.  If y leaves, `state` becomes that at x.
+    """
+    n = table.shape[0] - 1
+    c, s = now
+    y, y1 = ends
+    second, third, fourth = errors
+    _, dy, bend, _ = _derivatives(table, friction, scratch.next, c, s)
+    if push >= 0.0:
+        # y/x is above a concave parabola that is positive at both ends
+        if push + 0.5 * bend - third * (1.0 / 6.0) > 0.0 and y1 + 0.125 * second < high:
+            return 2.0, AT_LIMIT, 0.0
+    else:
+        turn_c, turn_s = table[n, TURN_COS], table[n, TURN_SIN]
+        _, dy1, _, _ = _derivatives(table, friction, state, turn_c * c - turn_s * s, turn_c * s + turn_s * c)
+        if _inside(y, dy, y1, dy1, low, high, fourth * (1.0 / 384.0)):
+            return 2.0, AT_LIMIT, 0.0
+        # a slope that differs from the straight line by so little keeps its sign: there is one root
+        falls = y > low and y1 <= low and max(dy, dy1) + 0.125 * third < 0.0
+        rises = y < high and y1 >= high and min(dy, dy1) - 0.125 * third > 0.0
+        if falls or rises:
+            sign, level = (1.0, low) if falls else (-1.0, high)
+            x = cubic_root(sign * (y - level), sign * dy, sign * (y1 - level), sign * dy1)
+            found, x, slope = _at_crossing(table, friction, level, x, done, start, now, state, scratch)
+            if found:
+                return x, FELL if falls else ROSE, slope
+            _move(table, friction, scratch.next, c, s, 1.0, scratch.watched, state)
+    terms = int(table[n, TERMS])
+    expand(table, n, friction, scratch.next, c, s, table[n, H], terms, scratch.series)
+    _watch(table, c, s, scratch.series, scratch.watched)
+    x, end = _leaves(scratch.watched, scratch.below, terms, low, high, push)
+    if end == AT_LIMIT:
+        return 2.0, end, 0.0
+    advance(scratch.series, n, terms, x, state)
+    c, s = _turned(start[0], start[1], (done + x) * table[n, H])
+    return x, end, _derivatives(table, friction, state, c, s)[1]
+
+
+@kernel
+def scan(table, friction, low, high, push, state, c, s, limit, scratch):
+    """Follow the motion until y leaves [low, high], or for `limit` steps.
+
+    Parameters
+    ----------
+    table, friction : the oscillators and the friction force on them
+    low, high : range of y; one may be infinite
+    push : if >= 0, y starts at `low` exactly with this slope, and that root is not looked for; else ELSEWHERE
+    state : (2, n) z and w; replaced by the state at the end
+    c, s : cos(tau), sin(tau)
+    limit : steps allowed, a fraction included
+
+    Returns
+    -------
+    (steps, end, cos, sin, slope) : steps taken, one of AT_LIMIT, FELL, ROSE, FAILED, the load's phase, and
+        dy/dx where y leaves its range.
+
+    Notes
+    -----
+    A step is passed where y cannot come to an end of the range inside it: by the bound on y'', or by the
+    cubic through its ends and the bound on y''''.  Any other step is looked into (`_exit`).
+    """
+    n = table.shape[0] - 1
+    turn_c, turn_s, yc, ys = table[n, TURN_COS], table[n, TURN_SIN], table[n, YC], table[n, YS]
+    start = (c, s)
+    second, third, fourth, second_growth, third_growth, fourth_growth = bounds(table, friction, state, c, s)
+    y = low if push >= 0.0 else value(table, state, c, s)
+    done = 0.0
+    while y == y:  # a number
+        c1 = turn_c * c - turn_s * s
+        s1 = turn_c * s + turn_s * c
+        y1 = step_on(table, n, friction, state, scratch.next, c, s) + (yc * c1 + ys * s1)
+        margin = 0.125 * second
+        sure = min(y, y1) - margin > low and max(y, y1) + margin < high
+        whole = done + 1.0 <= limit
+        if not (sure and whole):
+            x, end, slope = 2.0, AT_LIMIT, 0.0
+            if not sure:
+                x, end, slope = _exit(
+                    table, friction, low, high, push if done == 0.0 else ELSEWHERE, (y, y1),
+                    (second, third, fourth), done, start, (c, s), state, scratch,
+                )  # fmt: skip
+            rest = 1.0 if whole else limit - done
+            if x > rest and not whole:
+                x, end = rest, AT_LIMIT
+                _move(table, friction, scratch.next, c, s, x, scratch.watched, state)
+            if x <= rest:
+                c, s = _turned(start[0], start[1], (done + x) * table[n, H])
+                return done + x, end, c, s, slope
+        done += 1.0
+        second += second_growth
+        third += third_growth
+        fourth += fourth_growth
+        y, c, s = y1, c1, s1
+    return done, FAILED, c, s, 0.0
+
+
+@kernel
+def _leaves(watched, below, terms, low, high, push):
+    """(x, end): where y first leaves [low, high] in the step whose series this is; x = 2 if it does not."""
+    x = 2.0
+    end = AT_LIMIT
+    if low > -math.inf:
+        for j in range(terms):
+            below[j] = watched[j]
+        below[0] -= low
+        first = 0
+        if push >= 0.0:
+            below[0] = 0.0
+            below[1] = push
+            first = 1 if push != 0.0 else 2
+        x = first_root(below, first, terms)
+        if x <= 1.0:
+            end = FELL
+    if high < math.inf:
+        for j in range(terms):
+            below[j] = -watched[j]
+        below[0] += high
+        other = first_root(below, 0, terms)
+        if other <= 1.0 and other < x:
+            return other, ROSE
+    return x, end

@@ -1,0 +1,87 @@
+"""The continuous orbit of theory 2 for a structure, and how near to it nothing can stop."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..closed_form import decay
+from ..jit import kernel
+from ..one_mass.sliding_orbit import since_maximum
+from .oscillators import OW, OZ, bounds, step_on, watch_load
+from .state import CHI, DAMPING, LOAD, LOAD_RATE, W, contact_load
+
+
+class Continuous(NamedTuple):
+    """Response functions at every r; arrays (n_r, n) of the seen modes, and (n_r,) of the contact."""
+
+    re: np.ndarray  # modal response lambda_i/(w_i^2 - r^2 + 2 i zeta_i w_i r)
+    im: np.ndarray
+    u_modes: np.ndarray
+    g_modes: np.ndarray
+    v_abs: np.ndarray
+    v_arg: np.ndarray
+    u: np.ndarray
+    g: np.ndarray
+
+
+@kernel
+def orbit_state(st, orbit, i, beta, phase, c, s, out):
+    """State (2, n) of the continuous orbit at the load's phase (c, s); `phase` is that of its maximum."""
+    tau, sign = since_maximum(c, s, phase)
+    cosine = math.cos(tau + phase)
+    sine = math.sin(tau + phase)
+    for j in range(st.n):
+        w = st.modes[W, j]
+        zeta = st.modes[DAMPING, j]
+        q, e = decay(zeta, w / st.r * tau)
+        d = e + 2.0 * zeta * q
+        g1 = 1.0 + orbit.g_modes[i, j]
+        turn = orbit.u_modes[i, j] * st.r / w  # u R
+        pull = beta * st.modes[CHI, j] / (w * w)
+        z = orbit.re[i, j] * cosine - orbit.im[i, j] * sine + pull * (1.0 - g1 * d - turn * q)
+        v = -st.r * (orbit.re[i, j] * sine + orbit.im[i, j] * cosine) + pull * w * (g1 * q - turn * e)
+        out[0, j] = sign * z
+        out[1, j] = sign * v / st.rate
+
+
+@kernel
+def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, before):
+    """A distance (energy norm) from the continuous orbit within which no motion can stop.
+
+    A stop at distance eps needs |z'| <= a eps and |load| <= mu beta + b eps of the orbit, by Cauchy and
+    Schwarz; the least max of both over half a period is bounded below from scan steps and curvature.
+    """
+    c = -math.cos(phase)
+    s = -math.sin(phase)
+    orbit_state(st, orbit, i, beta, phase, c, s, state)
+    reach = 0.0
+    for j in range(st.n + 1):
+        for column in range(loaded.shape[1]):
+            loaded[j, column] = st.free[j, column]
+    watch_load(loaded, st.free_cos, st.free_sin)
+    for j in range(st.n):
+        loaded[j, OZ] = st.modes[LOAD, j]
+        loaded[j, OW] = st.modes[LOAD_RATE, j] * st.rate
+        reach += (st.modes[LOAD, j] / st.modes[W, j]) ** 2 + st.modes[LOAD_RATE, j] ** 2
+    reach = math.sqrt(reach)
+    fast_per = st.rate / math.sqrt(st.inverse_mass)
+    curve, _, _, curve_growth, _, _ = bounds(st.free, beta, state, c, s)
+    bend, _, _, bend_growth, _, _ = bounds(loaded, beta, state, c, s)
+    turn_c, turn_s = math.cos(st.h), math.sin(st.h)
+    speed = 0.0
+    load = contact_load(st, state, c, s)
+    radius = math.inf
+    for _ in range(int(math.ceil(math.pi / st.h))):
+        speed1 = step_on(st.free, st.n, beta, state, before, c, s)
+        c, s = turn_c * c - turn_s * s, turn_c * s + turn_s * c
+        load1 = contact_load(st, state, c, s)
+        fast = fast_per * (min(speed, speed1) - 0.125 * curve)
+        # a load that changes its sign inside the step passes zero there
+        least = min(abs(load), abs(load1)) if load * load1 > 0.0 else 0.0
+        radius = min(radius, max(fast, (least - 0.125 * bend - mu_beta) / reach))
+        curve += curve_growth
+        bend += bend_growth
+        speed = speed1
+        load = load1
+    return radius

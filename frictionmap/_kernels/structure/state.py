@@ -1,0 +1,322 @@
+"""One structure at one frequency, ready to be followed: free and held oscillators, and the way between them.
+
+While it slides, its state is that of the free modes; a stop leaves the contact where it is, and the rest
+moves as the held oscillators do, about the static shape (`lift`) that the contact's place gives it.  Both
+are in units of one scan step: row 0 the coordinates, row 1 their change per step.
+
+With a joined base-wall all displacements are taken relative to the base: then its contact is that with a
+fixed wall, under another load (`modes.relative_load`), and no kernel knows of a moving base.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..closed_form import fastest_rate
+from ..jit import entry, kernel
+from ..one_mass.scan_step import series_terms
+from .oscillators import (
+    COLUMNS,
+    F1,
+    FC,
+    FS,
+    OMEGA,
+    OW,
+    OZ,
+    YC,
+    YS,
+    ZETA,
+    D,
+    K,
+    fill_steps,
+    value,
+    watch_load,
+)
+
+# Rows of the table of free modes: frequency, damping ratio, participation, static lift, and what the load in
+# the contact has of the coordinate and of its velocity in t = tau/r.
+W, DAMPING, CHI, LIFT, LOAD, LOAD_RATE = 0, 1, 2, 3, 4, 5
+MODE_ROWS = 6
+
+#: Load periods beyond which `held_period` does not look for a repetition.
+_LONGEST_REPEAT = 256
+
+
+class Structure(NamedTuple):
+    """Everything here depends on (system, r, steps) only."""
+
+    n: int  # free modes that the contact sees
+    m: int  # held oscillators, n - 1
+    r: float
+    h: float  # scan step in tau
+    rate: float  # r/h: velocities in t per change in a step
+    terms: int
+    inverse_mass: float  # 1/m_eff
+    stiffness: float  # static stiffness at the contact
+    free_cos: float  # the load in the contact while it slides, less its modal part
+    free_sin: float
+    modes: np.ndarray  # (MODE_ROWS, n)
+    free: np.ndarray  # (n + 1, COLUMNS) tables of `oscillators`
+    held: np.ndarray  # (m + 1, COLUMNS)
+    direct: np.ndarray  # (2, m) cos and sin part of the load in y' of the held oscillators
+    to_free: np.ndarray  # (2n, 2m), see `held.HeldStructure`
+    to_held: np.ndarray  # (2m, 2n)
+
+
+class Model(NamedTuple):
+    """A system in numbers; nothing here depends on r."""
+
+    modes: np.ndarray  # (MODE_ROWS, n)
+    omega: np.ndarray  # (m,) held oscillators
+    ratio: np.ndarray
+    watch: np.ndarray  # (2m,) the load in the contact of (y, p)
+    to_free: np.ndarray
+    to_held: np.ndarray
+    inverse_mass: float
+    stiffness: float
+
+
+class Loads(NamedTuple):
+    """The load at every r; arrays (n_r, n), (n_r, m) and (n_r,)."""
+
+    free_cos: np.ndarray  # (n_r, n) load on the free modes
+    free_sin: np.ndarray
+    held_cos: np.ndarray  # (n_r, m) load on the held oscillators
+    held_sin: np.ndarray
+    direct_cos: np.ndarray  # (n_r, m)
+    direct_sin: np.ndarray
+    contact_cos: np.ndarray  # (n_r,) load on the contact's mass alone
+    contact_sin: np.ndarray
+
+
+@entry
+def make_structure(model, loads, i, r, steps):
+    """The `Structure` at the i-th frequency, r > 0, for `steps` scan steps per period of the fastest part."""
+    n = model.modes.shape[1]
+    m = model.omega.size
+    fastest = 0.0
+    for j in range(n):
+        fastest = max(fastest, fastest_rate(model.modes[W, j], model.modes[DAMPING, j]))
+    for j in range(m):
+        fastest = max(fastest, fastest_rate(model.omega[j], model.ratio[j]))
+    turn, terms = series_terms(steps)
+    h = turn / max(1.0, fastest / r)
+    scale = h / r
+    square = scale * scale
+    free = np.zeros((n + 1, COLUMNS))
+    for j in range(n):
+        w = model.modes[W, j]
+        zeta = model.modes[DAMPING, j]
+        free[j, K] = (w * scale) * (w * scale)
+        free[j, D] = 2.0 * zeta * (w * scale)
+        free[j, FC] = loads.free_cos[i, j] * square
+        free[j, FS] = loads.free_sin[i, j] * square
+        free[j, F1] = -model.modes[CHI, j] * square
+        free[j, OW] = model.modes[CHI, j]
+        free[j, OMEGA] = w
+        free[j, ZETA] = zeta
+    fill_steps(free, h, terms)
+    held = np.zeros((m + 1, COLUMNS))
+    direct = np.empty((2, m))
+    contact_cos = -loads.contact_cos[i]
+    contact_sin = -loads.contact_sin[i]
+    for j in range(m):
+        omega = model.omega[j]
+        held[j, K] = (omega * scale) * (omega * scale)
+        held[j, D] = 2.0 * model.ratio[j] * (omega * scale)
+        held[j, FC] = loads.held_cos[i, j] * square
+        held[j, FS] = loads.held_sin[i, j] * square
+        held[j, OZ] = model.watch[j]
+        held[j, OW] = model.watch[m + j] / scale
+        held[j, OMEGA] = omega
+        held[j, ZETA] = model.ratio[j]
+        direct[0, j] = loads.direct_cos[i, j]
+        direct[1, j] = loads.direct_sin[i, j]
+        contact_cos -= model.watch[m + j] * direct[0, j]
+        contact_sin -= model.watch[m + j] * direct[1, j]
+    fill_steps(held, h, terms)
+    watch_load(held, contact_cos, contact_sin)
+    return Structure(
+        n, m, r, h, r / h, terms, model.inverse_mass, model.stiffness,
+        -loads.contact_cos[i], -loads.contact_sin[i], model.modes, free, held, direct, model.to_free,
+        model.to_held,
+    )  # fmt: skip
+
+
+@kernel
+def place(st, state):
+    """z of a free state."""
+    total = 0.0
+    for i in range(st.n):
+        total += st.modes[CHI, i] * state[0, i]
+    return total
+
+
+@kernel
+def contact_load(st, state, c, s):
+    """The load in the contact while it slides, theory.md 5."""
+    total = st.free_cos * c + st.free_sin * s
+    for i in range(st.n):
+        total += st.modes[LOAD, i] * state[0, i] + st.modes[LOAD_RATE, i] * (st.rate * state[1, i])
+    return total
+
+
+@kernel
+def held_load(st, held, z, c, s):
+    """The load in the contact while it is held at z."""
+    return value(st.held, held, c, s) + st.stiffness * z
+
+
+@kernel
+def hold(st, state, z, c, s, held):
+    """The held state that a free state with z' = 0 is."""
+    n, m = st.n, st.m
+    for k in range(m):
+        y = 0.0
+        p = 0.0
+        for i in range(n):
+            u = state[0, i] - st.modes[LIFT, i] * z
+            v = st.rate * state[1, i]
+            y += st.to_held[k, i] * u + st.to_held[k, n + i] * v
+            p += st.to_held[m + k, i] * u + st.to_held[m + k, n + i] * v
+        held[0, k] = y
+        held[1, k] = (p + st.direct[0, k] * c + st.direct[1, k] * s) / st.rate
+
+
+@kernel
+def release(st, held, z, c, s, state):
+    """The free state that a held state is."""
+    n, m = st.n, st.m
+    for i in range(n):
+        u = st.modes[LIFT, i] * z
+        v = 0.0
+        for k in range(m):
+            p = st.rate * held[1, k] - st.direct[0, k] * c - st.direct[1, k] * s
+            u += st.to_free[i, k] * held[0, k] + st.to_free[i, m + k] * p
+            v += st.to_free[n + i, k] * held[0, k] + st.to_free[n + i, m + k] * p
+        state[0, i] = u
+        state[1, i] = v / st.rate
+
+
+@kernel
+def mirror(st, state):
+    """Change the sign of a free state."""
+    for i in range(st.n):
+        state[0, i] = -state[0, i]
+        state[1, i] = -state[1, i]
+
+
+@kernel
+def energy(st, state):
+    """sqrt(sum w_i^2 z_i^2 + z_i'^2) of a free state, the derivative in t: the energy norm of theory.md 6."""
+    total = 0.0
+    for i in range(st.n):
+        total += (st.modes[W, i] * state[0, i]) ** 2 + (st.rate * state[1, i]) ** 2
+    return math.sqrt(total)
+
+
+@kernel
+def _in_step(table, k, h):
+    """Whether an undamped oscillator that the load does not drive vibrates in step with the load for good."""
+    still = table[k, D] == 0.0 and table[k, FC] == 0.0 and table[k, FS] == 0.0
+    # its frequency differs from r by no more than the rounding of either
+    return still and abs(table[k, K] - h * h) <= 1e-15 * h * h
+
+
+@kernel
+def vibrates_in_step(st):
+    """Whether a held oscillator does: then the load in a stop depends on the start for good."""
+    found = False
+    for k in range(st.m):
+        found = found or _in_step(st.held, k, st.h)
+    return found
+
+
+@kernel
+def held_period(st):
+    """Load periods after which the load and all the held oscillators repeat; infinite if they do not.
+
+    Then a load that has not let go of the contact within them never will, though `largest_load_to_come`,
+    which adds up the oscillators as if they met sooner or later, cannot tell.
+    """
+    for k in range(st.m):
+        if st.held[k, D] != 0.0 or math.isinf(_steady(st.held, k, st.h)[0]):
+            return math.inf
+    for periods in range(1, _LONGEST_REPEAT + 1):
+        repeats = True
+        for k in range(st.m):
+            turns = periods * math.sqrt(st.held[k, K]) / st.h
+            # what it differs from a whole number by no more than the rounding of either frequency
+            repeats = repeats and abs(turns - math.floor(turns + 0.5)) <= 1e-15 * turns
+        if repeats:
+            return float(periods)
+    return math.inf
+
+
+@kernel
+def _steady(table, k, h):
+    """Phasor a of the steady answer Re(a e^{i tau}) of an oscillator; infinite at an undamped resonance."""
+    f_re, f_im = table[k, FC], -table[k, FS]
+    if f_re == 0.0 and f_im == 0.0:
+        return 0.0, 0.0
+    d_re = table[k, K] - h * h
+    d_im = h * table[k, D]
+    size = d_re * d_re + d_im * d_im
+    if size == 0.0:
+        return math.inf, 0.0
+    return (f_re * d_re + f_im * d_im) / size, (f_im * d_re - f_re * d_im) / size
+
+
+@kernel
+def largest_load_to_come(st, held, z, c, s):
+    """A bound on the load in the contact for as long as it stays held; infinite at an undamped resonance."""
+    y_re, y_im = st.held[st.m, YC], -st.held[st.m, YS]
+    free = 0.0
+    h = st.h
+    table = st.held
+    for k in range(st.m):
+        # the steady answer of the oscillator, and what of the motion is not it
+        a_re, a_im = _steady(table, k, h)
+        if math.isinf(a_re):
+            return math.inf
+        if _in_step(table, k, h):
+            a_re = held[0, k] * c - held[1, k] / h * s
+            a_im = -held[0, k] * s - held[1, k] / h * c
+        z_off = held[0, k] - (a_re * c - a_im * s)
+        w_off = held[1, k] + h * (a_re * s + a_im * c)
+        y_re += table[k, OZ] * a_re - table[k, OW] * h * a_im
+        y_im += table[k, OZ] * a_im + table[k, OW] * h * a_re
+        # the energy of free motion never grows
+        reach = math.sqrt(table[k, OZ] * table[k, OZ] / table[k, K] + table[k, OW] * table[k, OW])
+        free += reach * math.sqrt(table[k, K] * z_off * z_off + w_off * w_off)
+    return math.hypot(y_re, y_im) + abs(st.stiffness * z) + free
+
+
+@kernel
+def release_steady(st, mu_beta, held, state):
+    """Where the contact, held at z = 0 in the steady motion of the rest, is let go upwards.
+
+    Returns (whether it is, cos, sin of the load's phase); `state` becomes the free state there.
+    """
+    h = st.h
+    table = st.held
+    y_re, y_im = st.held[st.m, YC], -st.held[st.m, YS]
+    for k in range(st.m):
+        a_re, a_im = _steady(table, k, h)
+        if math.isinf(a_re):
+            return False, 1.0, 0.0
+        y_re += table[k, OZ] * a_re - table[k, OW] * h * a_im
+        y_im += table[k, OZ] * a_im + table[k, OW] * h * a_re
+    most = math.hypot(y_re, y_im)
+    if not most > mu_beta:
+        return False, 1.0, 0.0
+    # the load |Y| cos(tau + arg Y) falls through -mu beta
+    tau = math.acos(-mu_beta / most) - math.atan2(y_im, y_re)
+    c, s = math.cos(tau), math.sin(tau)
+    for k in range(st.m):
+        a_re, a_im = _steady(table, k, h)
+        held[0, k] = a_re * c - a_im * s
+        held[1, k] = -h * (a_re * s + a_im * c)
+    release(st, held, 0.0, c, s, state)
+    return True, c, s

@@ -1,0 +1,1 @@
+"""What a dataset holds: labels, legal values, and how it was made."""

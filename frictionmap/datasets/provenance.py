@@ -1,0 +1,126 @@
+"""How a dataset came to be: its history, and the configuration that makes it again."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..model.matrices import Matrices
+
+if TYPE_CHECKING:
+    from ..model.settings import Solver
+    from ..model.system import System
+
+#: What is larger is not put into text, but named in a comment.
+_MOST_VALUES = 10_000
+_MOST_MASSES = 64
+
+#: Keys of [system] and the values that they have if they are left out.
+_SYSTEM = {
+    "contact": None,
+    "contact_masses": (1,),
+    "load_mass": 1,
+    "load": None,
+    "mass_ratios": (1.0,),
+    "stiffness_ratios": (1.0,),
+    "damping_ratios": None,
+    "frequency_scale": None,
+    "stiffness_scale": 1.0,
+    "excitation": "force",
+    "damping_reference": "ground",
+}
+
+
+def now() -> str:
+    """The time, as a history has it."""
+    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def made_by(
+    function: str,
+    title: str,
+    system: "System",
+    axes: Mapping[str, np.ndarray | float],
+    solver: "Solver | None" = None,
+) -> dict[str, str]:
+    """Global attributes `history` and `config` of what a function of the package computed.
+
+    `config` is TOML: read by `load_config` it gives the same system, axes and settings, to the bit.  What is
+    too large for text, and what the function does not need, is a comment.
+    """
+    call = ", ".join(f"{name} = {_in_words(np.atleast_1d(values))}" for name, values in axes.items())
+    lines = [f"title = {quoted(title)}", "", "[system]", *_system_lines(system), "", "[grid]"]
+    lines += [_axis_line(name, np.atleast_1d(values)) for name, values in axes.items()]
+    if "beta" not in axes:
+        lines.append("beta = 1.0  # boundaries need none")
+    if solver is not None:
+        lines += ["", "[solver]", *(f"{key} = {value_text(value)}" for key, value in asdict(solver).items())]
+    return {
+        "history": f"{now()} frictionmap.{function} of {system.contact}, {call}",
+        "config": "\n".join(lines) + "\n",
+    }
+
+
+def _in_words(values: np.ndarray) -> str:
+    if values.size <= 3:
+        return ", ".join(f"{value:g}" for value in values)
+    return f"{values[0]:g} to {values[-1]:g} ({values.size} values)"
+
+
+def _axis_line(name: str, values: np.ndarray) -> str:
+    start, stop, num = float(values[0]), float(values[-1]), values.size
+    if num > 3 and np.array_equal(np.linspace(start, stop, num), values):
+        return f"{name} = {{ start = {start!r}, stop = {stop!r}, num = {num} }}"
+    if num > _MOST_VALUES:
+        return f"# {name} = {num} values from {start!r} to {stop!r}, those of the axis {name}"
+    return f"{name} = {value_text(values.tolist())}"
+
+
+def _system_lines(system: "System") -> list[str]:
+    matrices = system.matrices
+    own = {key: getattr(system, key) for key in _SYSTEM}
+    lines = [
+        f"{key} = {value_text(value)}" for key, value in own.items() if value not in (None, _SYSTEM[key])
+    ]
+    if not isinstance(matrices, Matrices):
+        return lines
+    if matrices.n > _MOST_MASSES:
+        return [*lines, f"# matrices = {matrices.n} by {matrices.n}, too large to be put here"]
+    arrays = {"M": matrices.mass, "K": matrices.stiffness, "C": matrices.damping}
+    table = {name: array.tolist() for name, array in arrays.items() if array is not None}
+    return [*lines, f"matrices = {value_text(table)}"]
+
+
+def quoted(text: str) -> str:
+    """Text as a TOML basic string: JSON has the same escapes, but leaves the delete character."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def value_text(item: object) -> str:
+    """A value as TOML; a complex number is [real part, imaginary part]."""
+    if isinstance(item, bool):
+        return "true" if item else "false"
+    if isinstance(item, str):
+        return quoted(item)
+    if isinstance(item, complex):
+        real = item.imag == 0.0 and math.copysign(1.0, item.imag) > 0.0  # -1 - 0i has another angle
+        return value_text(item.real if real else [item.real, item.imag])
+    if isinstance(item, (list, tuple)):
+        return "[" + ", ".join(value_text(element) for element in item) + "]"
+    if isinstance(item, Mapping):
+        return "{ " + ", ".join(f"{key} = {value_text(v)}" for key, v in item.items()) + " }"
+    return repr(item)
+
+
+def to_toml(tree: Mapping[str, object]) -> str:
+    """A configuration tree as TOML text."""
+    lines = [f"{key} = {value_text(v)}" for key, v in tree.items() if not isinstance(v, Mapping)]
+    for name, table in tree.items():
+        if isinstance(table, Mapping):
+            lines += ["", f"[{name}]"]
+            lines += [f"{key} = {value_text(v)}" for key, v in table.items()]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,130 @@
+"""What a dataset of ours may hold: every variable is checked against its label, before anything uses it."""
+
+from collections.abc import Iterable
+
+import numpy as np
+import xarray as xr
+
+from .. import checks
+from ..errors import InputError
+from .labels import CELL, COORDINATES, HISTORY_VARIABLES, LABELS, Label
+
+#: Global attributes that are text, if they are there.
+TEXTS = ("title", "system", "source", "history", "references", "config")
+
+_KNOWN = {**COORDINATES, **LABELS}
+
+
+def kind(ds: xr.Dataset) -> str:
+    """What a dataset, or a slice of one, holds: "map", "response" or "boundaries"."""
+    if any(name in HISTORY_VARIABLES for name in ds.variables):
+        return "response"
+    cells = "beta" in ds.dims or any("beta" in LABELS[name].dims for name in LABELS if name in ds.variables)
+    return "map" if cells else "boundaries"
+
+
+def in_brackets(dims: Iterable[object]) -> str:
+    """Dimensions in words."""
+    return f"({', '.join(map(str, dims))})"
+
+
+def standard_dims(name: str, what: str) -> tuple[str, ...]:
+    """Dimensions of a variable in a dataset of a kind; a response is of one cell."""
+    dims = LABELS[name].dims
+    return tuple(dim for dim in dims if dim not in CELL) if what == "response" else dims
+
+
+def check_structure(ds: xr.Dataset) -> None:
+    """Names, types, sizes, units and codes; no value but the axes' is read.
+
+    Raises
+    ------
+    InputError
+        Something is not what the labels say; one line that names it.
+    """
+    for key in TEXTS:
+        text = ds.attrs.get(key, "")
+        if not isinstance(text, str):
+            raise InputError(f"the attribute {key} must be text; got {checks.one_line(text)}")
+    if not any(name in LABELS for name in ds.variables):
+        names = ", ".join(map(str, ds.variables)) or "none"
+        raise InputError(f"a variable of frictionmap must be there, such as regime or beta_lim; got {names}")
+    for name, variable in ds.variables.items():
+        if name in _KNOWN:
+            _check_type(str(name), variable)
+            _check_attributes(str(name), variable)
+
+
+def _check_type(name: str, variable: xr.Variable) -> None:
+    if variable.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false, nor times
+        raise InputError(f"{name} must be numbers; got type {variable.dtype.name}")
+    if len(set(variable.dims)) < len(variable.dims):
+        raise InputError(f"{name} must have every dimension once; got {in_brackets(variable.dims)}")
+    if variable.size > checks.MOST_CELLS:
+        raise InputError(f"{name} must have at most {checks.MOST_CELLS:.0e} values; got {variable.size:.3g}")
+
+
+def _check_attributes(name: str, variable: xr.Variable) -> None:
+    """Units and codes, where they are still there, must be those that the values are read by."""
+    label = _KNOWN[name]
+    if not label.codes:
+        units = variable.attrs.get("units", "1")
+        if not isinstance(units, str) or units != "1":
+            raise InputError(f"{name} must have the units '1'; got {checks.one_line(units)}")
+    elif label.flags in variable.attrs and "flag_meanings" in variable.attrs:
+        values: list = np.atleast_1d(variable.attrs[label.flags]).tolist()
+        meanings = str(variable.attrs["flag_meanings"]).split()
+        legal = {code.value: code.name for code in label.codes}
+        if len(values) != len(meanings) or any(
+            legal.get(value) != meaning for value, meaning in zip(values, meanings, strict=False)
+        ):
+            words = ", ".join(f"{value} {meaning}" for value, meaning in legal.items())
+            raise InputError(f"{name} must have the codes {words}; got {values} {' '.join(meanings)}")
+
+
+def checked_values(name: str, given: np.ndarray) -> np.ndarray:
+    """The values of a variable or an axis as its type, if all are legal.
+
+    Whole numbers may come as floats: other programs make them so, to have a fill value.
+    """
+    label = _KNOWN[name]
+    with np.errstate(invalid="ignore", over="ignore"):
+        values: np.ndarray = given.astype(label.dtype, copy=False)
+    wrong = _wrong(values, label)
+    if np.issubdtype(label.dtype, np.integer) and given.dtype != values.dtype:
+        wrong |= values != given
+    if wrong.any():
+        index = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
+        at = f" at [{', '.join(map(str, index))}]" if index else ""
+        raise InputError(f"{name} must be {_legal(label)}; got {given[index]}{at}")
+    return values
+
+
+def _range(label: Label) -> tuple[float, float]:
+    if not label.codes:
+        return label.least, label.most
+    values = [code.value for code in label.codes]
+    return (0, sum(values)) if label.flags == "flag_masks" else (min(values), max(values))
+
+
+def _wrong(values: np.ndarray, label: Label) -> np.ndarray:
+    """Where values are not legal; codes are whole numbers without gaps."""
+    least, most = _range(label)
+    wrong = (values < least) | (values > most)
+    if values.dtype.kind == "f":
+        if not label.nan:
+            wrong |= np.isnan(values)
+        if not label.inf:
+            wrong |= np.isinf(values)
+    return wrong
+
+
+def _legal(label: Label) -> str:
+    """The legal values in words."""
+    if label.codes:
+        how = "a sum of" if label.flags == "flag_masks" else "one of"
+        return f"{how} {', '.join(str(code.value) for code in label.codes)}"
+    words = ["whole" if np.issubdtype(label.dtype, np.integer) else "a number" if label.inf else "finite"]
+    words += [f">= {label.least:g}"] if label.least > -np.inf else []
+    words += [f"<= {label.most:g}"] if label.most < np.inf else []
+    return ", ".join(words) + (" or NaN" if label.nan else "")

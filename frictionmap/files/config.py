@@ -1,0 +1,361 @@
+"""Configuration files (TOML): read, overridden, checked key by key."""
+
+import os
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, Decimal
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from .. import checks
+from ..datasets.provenance import to_toml
+from ..errors import InputError
+from ..model.settings import Solver
+from ..model.system import System
+
+#: Values of one axis; more are surely a slip of the keyboard, and would not fit in memory with the others.
+_MOST_VALUES = checks.MOST_CELLS
+
+_SYSTEM_KEYS = (
+    "contact",
+    "contact_masses",
+    "load_mass",
+    "load",
+    "mass_ratios",
+    "stiffness_ratios",
+    "damping_ratios",
+    "matrices",
+    "frequency_scale",
+    "stiffness_scale",
+    "excitation",
+    "damping_reference",
+)
+_SOLVER_KEYS = ("start", "cycles", "tolerance", "steps", "skip", "steady", "outputs")
+_SECTIONS = {
+    "title": (),
+    "system": _SYSTEM_KEYS,
+    "grid": ("r", "beta", "mu"),
+    "solver": _SOLVER_KEYS,
+}
+_AXIS_KEYS = ("start", "stop", "step", "num", "values")
+#: Ways to give an axis exclude each other: on the command line, a key takes the place of these.
+_RIVALS = {
+    "start": ("values",),
+    "stop": ("values",),
+    "step": ("num", "values"),
+    "num": ("step", "values"),
+    "values": ("start", "stop", "step", "num"),
+}
+#: What tomllib raises; its own error is a ValueError, and so is that of a number with thousands of digits.
+_NOT_TOML = (ValueError, RecursionError)
+
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Config:
+    """A checked configuration."""
+
+    title: str
+    system: System
+    r: np.ndarray
+    beta: np.ndarray
+    mu: np.ndarray
+    solver: Solver
+    text: str  # the TOML text used, overrides applied
+    name: str  # of the file, without its ending
+    files: tuple[Path, ...] = ()  # that it was read from
+
+
+#: Called with the numbers of values of mu, r and beta, the system and the solver, before the axes are made.
+Room = Callable[[Mapping[str, int], System, Solver], None]
+
+
+def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | None = None) -> Config:
+    """Read a configuration file and apply overrides such as ``grid.r.step=0.01``.
+
+    A path in it, also one of an override, is relative to the folder of the file.  `room` may refuse a grid
+    before any memory is taken for it.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or is not TOML; a key is unknown, missing, of the wrong type or out of
+        range.  The message names the key.
+    """
+    if not isinstance(path, (str, os.PathLike)):
+        raise InputError(f"configuration must be the path of a TOML file; got {checks.one_line(path)}")
+    if isinstance(overrides, str) or not isinstance(overrides, Sequence):
+        raise InputError(
+            f"overrides must be a list such as ['grid.r.step=0.01']; got {checks.one_line(overrides)}"
+        )
+    path = Path(path)
+    try:
+        text = path.read_bytes().decode("utf-8-sig")  # some editors put a mark at the beginning
+    except UnicodeDecodeError:
+        raise InputError(f"configuration {path} must be text in UTF-8; it is not") from None
+    except (OSError, ValueError) as error:  # a name with a null character is a ValueError
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(
+            f"configuration {path} cannot be read ({reason}); give the path of a TOML file"
+        ) from None
+    try:
+        tree = parse(text)
+    except InputError as error:
+        raise InputError(f"configuration {path} {error}") from None
+    _override_all(tree, overrides)
+    if overrides:
+        text = to_toml(tree)
+    return _check(tree, text, path, room)
+
+
+def parse(text: str) -> dict:
+    """The tables of a configuration's text, not checked further."""
+    try:
+        return tomllib.loads(text)
+    except _NOT_TOML as error:
+        raise InputError(f"must be TOML; got: {error}") from None
+
+
+def _override_all(tree: dict, overrides: Sequence[str]) -> None:
+    """Set the keys of `--set`, in order; none may undo one before it."""
+    done: dict[str, str] = {}
+    for override in overrides:
+        if not isinstance(override, str):
+            raise InputError(
+                f"overrides must be text such as 'grid.r.step=0.01'; got {checks.one_line(override)}"
+            )
+        key, value = _key_and_value(override)
+        for before, text in done.items():
+            if _undoes(key, before):
+                raise InputError(f"--set {override} must not undo --set {text}; give one of the two")
+        done[key] = override
+        _override(tree, key.split("."), value, override)
+
+
+def _key_and_value(override: str) -> tuple[str, object]:
+    """A dotted key and a TOML value; a bare word counts as a string."""
+    key, equals, text = override.partition("=")
+    parts = [part.strip() for part in key.split(".")]
+    text = text.strip()
+    if not equals or not all(parts) or not text:
+        raise InputError(f"--set must be KEY=VALUE, such as grid.r.step=0.01; got {override!r}")
+    if len(override.splitlines()) > 1:
+        raise InputError(f"--set must be one line; got {override!r}")
+    try:
+        # inside braces nothing is dropped in silence: a comment would hide the closing one
+        found = tomllib.loads(f"all = {{ value = {text} }}")
+    except _NOT_TOML:
+        found = {}
+    whole = found.get("all", {})
+    only = set(found) == {"all"} and set(whole) == {"value"}
+    return ".".join(parts), whole["value"] if only else text
+
+
+def _undoes(key: str, before: str) -> bool:
+    """Whether setting `key` would drop what `before` has set."""
+    if f"{before}.".startswith(f"{key}."):
+        return True
+    axis, _, last = key.rpartition(".")
+    return axis.startswith("grid.") and before in {f"{axis}.{rival}" for rival in _RIVALS.get(last, ())}
+
+
+def _override(tree: dict, parts: list[str], value: object, override: str) -> None:
+    branch = tree
+    for depth, part in enumerate(parts[:-1], start=1):
+        branch = branch.setdefault(part, {})
+        if not isinstance(branch, dict):
+            name = ".".join(parts[:depth])
+            raise InputError(f"--set {override}: {name} must be a table to have keys; it is {branch!r}")
+    if parts[0] == "grid" and len(parts) == 3:
+        for rival in _RIVALS.get(parts[-1], ()):
+            branch.pop(rival, None)
+    branch[parts[-1]] = value
+
+
+def _unknown(key: str, section: str, legal: Sequence[str]) -> InputError:
+    name = f"{section}.{key}" if section else key
+    where = f"the keys of [{section}]" if section else "the keys"
+    return InputError(f"unknown key {name}{checks.nearest(key, legal)}; {where} are {', '.join(legal)}")
+
+
+def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
+    table = tree.get(name, {})
+    if not isinstance(table, Mapping):
+        raise InputError(f"{name} must be a table [{name}]; got {table!r}")
+    for key in table:
+        if key not in _SECTIONS[name]:
+            raise _unknown(key, name, _SECTIONS[name])
+    return table
+
+
+def _build(kind: Callable[..., T], table: Mapping[str, object], section: str) -> T:
+    try:
+        return kind(**table)
+    except InputError as error:
+        raise InputError(f"{section}.{error}") from None
+
+
+def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]:
+    """The table [system], with `matrices` as seen from the folder of the configuration."""
+    table: dict[str, Any] = dict(_table(tree, "system"))
+    if isinstance(table.get("load"), list):
+        table["load"] = [_load(value, f"system.load[{index}]") for index, value in enumerate(table["load"])]
+    matrices = table.get("matrices", {})
+    if isinstance(matrices, str) and matrices:
+        table["matrices"] = folder / matrices
+    elif not isinstance(matrices, Mapping):
+        raise InputError(
+            f"system.matrices must be the path of an .npz file, or a table of arrays M, K and optionally C; "
+            f"got {matrices!r}"
+        )
+    return table
+
+
+def _load(value: object, name: str) -> object:
+    """One load: a number, or [real part, imaginary part]."""
+    if not isinstance(value, list):
+        return value
+    if len(value) != 2:
+        raise InputError(f"{name} must be a number or [real part, imaginary part]; got {value}")
+    return complex(*(checks.number(part, name) for part in value))
+
+
+def system_in(text: str) -> System | None:
+    """The system of a configuration that is at hand as text only; None if the text does not hold all of it.
+
+    Matrices in a file of their own are not looked for.
+    """
+    try:
+        tree = parse(text)
+        table = _system_table(tree, Path())
+        if "system" not in tree or isinstance(table.get("matrices"), Path):
+            return None
+        return _build(System, table, "system")
+    except InputError:
+        return None
+
+
+def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None) -> Config:
+    name = path.stem
+    for key in tree:
+        if key not in _SECTIONS:
+            raise _unknown(key, "", tuple(_SECTIONS))
+    title = tree.get("title", name)
+    if not isinstance(title, str):
+        raise InputError(f"title must be text; got {title!r}")
+    if "system" not in tree:
+        raise InputError("the configuration must have a table [system]; it has none")
+    described = _system_table(tree, path.parent)
+    system = _build(System, described, "system")
+    solver = _build(Solver, _table(tree, "solver"), "solver")
+    grid = _table(tree, "grid")
+    for key in ("r", "beta"):
+        if key not in grid:
+            raise InputError(f"grid.{key} must be given; it is missing")
+    counts = {key: _count(grid.get(key, [1.0]), f"grid.{key}") for key in ("mu", "r", "beta")}
+    checks.cells(counts["mu"], counts["r"], counts["beta"])
+    if room is not None:
+        room(counts, system, solver)
+    axes = {
+        key: checks.axis(_values(grid.get(key, [1.0]), f"grid.{key}"), f"grid.{key}", **bounds)
+        for key, bounds in (
+            ("r", {"least": 0.0, "most": checks.LARGEST_RATIO}),
+            ("beta", {"least": 0.0}),
+            ("mu", {"least": 1.0}),
+        )
+    }
+    matrices = described.get("matrices")
+    files = (path, matrices) if isinstance(matrices, Path) else (path,)
+    return Config(title, system, axes["r"], axes["beta"], axes["mu"], solver, text, name, files)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _axis_table(axis: Mapping[str, object], name: str) -> None:
+    """Refuse an axis table that does not say one thing."""
+    for key in axis:
+        if key not in _AXIS_KEYS:
+            raise _unknown(key, name, _AXIS_KEYS)
+    legal = "{ start, stop, step }, { start, stop, num } or { values }"
+    keys = set(axis)
+    if keys not in ({"values"}, {"start", "stop", "step"}, {"start", "stop", "num"}):
+        raise InputError(f"{name} must be {legal}; got {', '.join(axis) or 'nothing'}")
+    if "values" in axis:
+        return
+    start = checks.number(axis["start"], f"{name}.start")
+    stop = checks.number(axis["stop"], f"{name}.stop")
+    if stop < start:
+        raise InputError(f"{name}.stop must be >= start ({start:g}); got {stop:g}")
+    if "step" in axis:
+        checks.number(axis["step"], f"{name}.step", above=0.0)
+    elif checks.whole(axis["num"], f"{name}.num", least=1, most=_MOST_VALUES) == 1 and stop > start:
+        raise InputError(f"{name}.num must be >= 2 to hold both {start:g} and {stop:g}; got 1")
+
+
+def _steps(axis: Mapping[str, object], name: str) -> int:
+    """Number of steps from start to stop, the last one shorter if need be; in decimal, as typed."""
+    start, stop, step = (Decimal(repr(axis[key])) for key in ("start", "stop", "step"))
+    count = (stop - start) / step
+    if count >= _MOST_VALUES:
+        raise InputError(
+            f"{name}.step must leave at most {_MOST_VALUES:.0e} values; "
+            f"got {axis['step']!r}, which makes {float(count) + 1:.3g}"
+        )
+    return int(count.to_integral_value(ROUND_CEILING))
+
+
+def _count(axis: object, name: str) -> int:
+    """How many values an axis will have, before any memory is taken for them."""
+    if isinstance(axis, Mapping):
+        _axis_table(axis, name)
+        if "values" in axis:
+            return _count_list(axis["values"], f"{name}.values")
+        return _steps(axis, name) + 1 if "step" in axis else int(axis["num"])
+    if isinstance(axis, list):
+        return _count_list(axis, name)
+    if _is_number(axis):
+        checks.number(axis, name)
+        return 1
+    raise InputError(f"{name} must be a number, a list of numbers or a table; got {axis!r}")
+
+
+def _count_list(values: object, name: str) -> int:
+    if not isinstance(values, list):
+        raise InputError(f"{name} must be a list of numbers; got {values!r}")
+    for index, value in enumerate(values):
+        checks.number(value, f"{name}[{index}]")
+    return len(values)
+
+
+def _values(axis: object, name: str) -> object:
+    """The values of an axis that `_count` has accepted."""
+    if not isinstance(axis, Mapping):
+        return axis
+    if "values" in axis:
+        return axis["values"]
+    if "num" in axis:
+        return np.linspace(float(axis["start"]), float(axis["stop"]), int(axis["num"]))
+    start, step = (Decimal(repr(axis[key])) for key in ("start", "step"))
+    values = _decimal_steps(start, step, _steps(axis, name))
+    values[-1] = axis["stop"]  # both ends are included
+    return values
+
+
+def _decimal_steps(start: Decimal, step: Decimal, count: int) -> np.ndarray:
+    """start + k step, k = 0..count, as the doubles next to the decimal numbers.
+
+    So 35 steps of 0.02 are 0.7, and a tie with a boundary is the one that was meant.
+    """
+    places = max(0, *(-int(number.as_tuple().exponent) for number in (start, step)))
+    unit = 10**places
+    first, increment = int(start * unit), int(step * unit)
+    if places <= 22 and abs(first) + increment * count < 2**53:  # then the division rounds once
+        return (first + increment * np.arange(count + 1)) / float(unit)
+    return np.array([float(start + k * step) for k in range(count + 1)])

@@ -1,0 +1,293 @@
+"""Output files: claimed before the work begins, written beside their place, put there whole or not at all.
+
+A claim is a hidden folder beside the file, one for each name and user.  A lock in it lasts as long as the
+process: who finds the folder without its lock may clear it away.  What is written in it appears under the
+file's own name in one step.
+"""
+
+import contextlib
+import errno
+import hashlib
+import os
+import stat
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from .. import interrupts
+from ..errors import InputError
+
+if sys.platform != "win32":
+    import fcntl
+
+_PREFIX = ".frictionmap-"
+_LOCK, _FILE = "lock", "new"
+_FOLDERS = _PREFIX + 16 * "[0-9a-f]"
+
+#: What a file system without locks says.
+_NO_LOCKS = (errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP, errno.EINVAL)
+
+#: Held while claims are made and files put in their place, so that an interrupt finds one or the other.
+_guard = threading.Lock()
+_claims: set["Output"] = set()
+_written: list[Path] = []
+
+
+class _Taken(Exception):
+    """Another process has the lock."""
+
+
+class Output:
+    """A place for one file, claimed."""
+
+    def __init__(self, path: Path, overwrite: bool) -> None:
+        self.path = path  # as the user named it
+        self._overwrite = overwrite
+        self._target = Path(os.path.realpath(path))
+        user = os.getuid() if hasattr(os, "getuid") else 0
+        name = hashlib.sha256(f"{user} {self._target.name}".encode(errors="surrogateescape")).hexdigest()
+        self._folder = self._target.parent / f"{_PREFIX}{name[:16]}"
+        self._scratch = self._folder / f"{_FILE}-{os.getpid()}{path.suffix[:16]}"
+        self._lock = -1
+
+    def fill(
+        self, write: Callable[[Path], None], progress: Callable[[int], None] = lambda size: None
+    ) -> None:
+        """Call `write` with a path to write to, and put what it wrote in its place.
+
+        `progress` hears now and then how many bytes there are.  An interrupt waits for `write` to end: the
+        libraries that write files keep their locks for good if they are cut off.
+
+        Raises
+        ------
+        OSError
+            The file cannot be written, or one of its name has appeared in the meantime.
+        """
+        try:
+            _aside(lambda: write(self._scratch), lambda: progress(_size(self._scratch)))
+            _flush(self._scratch)
+            with _guard:
+                self._place()
+        except FileExistsError:
+            raise OSError(self._keep_elsewhere()) from None
+        except OSError as error:
+            raise OSError(f"{self.path} cannot be written ({error.strerror or error})") from error
+        except RuntimeError as error:  # netCDF's word for any trouble, a full disk above all
+            raise OSError(f"{self.path} cannot be written ({error}); is there room on the disk?") from error
+
+    def _place(self) -> None:
+        if self._overwrite and self._target.exists():
+            _take_after(self._scratch, self._target)
+            os.replace(self._scratch, self._target)
+        else:
+            _create(self._scratch, self._target)
+        _written.append(self.path)
+
+    def _keep_elsewhere(self) -> str:
+        """Put the result beside a file that appeared during the work; what happened, in words."""
+        number = 1
+        while True:
+            beside = self.path.with_name(f"{self.path.stem}-{number}{self.path.suffix}")
+            with contextlib.suppress(FileExistsError), _guard:
+                _create(self._scratch, self._target.with_name(beside.name))
+                _written.append(beside)
+                return f"{self.path} appeared during the work and was left alone; the result is in {beside}"
+            number += 1
+
+    def claim(self) -> None:
+        """Take the name, clear away what killed runs have left in the folder."""
+        try:
+            _sweep(self._target.parent)
+            with _guard:
+                _claims.add(self)
+                self._lock = _enter(self._folder)
+        except _Taken:
+            raise InputError(f"output {self.path} is being written by another run; use another -o") from None
+        except OSError as error:
+            raise InputError(
+                f"-o must be a place that can be written to; got {self.path} ({error.strerror})"
+            ) from None
+
+    def release(self) -> None:
+        """Give the name back; nothing is left but the file itself, if it was put in its place."""
+        if self._lock >= 0:
+            _remove(self._folder, self._scratch.name)
+            os.close(self._lock)
+        _claims.discard(self)
+
+
+@contextlib.contextmanager
+def claimed(path: Path, overwrite: bool = False, inputs: Sequence[Path] = ()) -> Iterator[Output]:
+    """A place for a file, refused now if it cannot be had, and kept until the end of the context.
+
+    Raises
+    ------
+    InputError
+        `path` is one of the `inputs`, exists (without `overwrite`), is no ordinary file, cannot be written
+        to, or another run is writing it.
+    """
+    _check(path, overwrite, inputs)
+    output = Output(path, overwrite)
+    try:
+        output.claim()
+        yield output
+    finally:
+        output.release()
+
+
+def _check(path: Path, overwrite: bool, inputs: Sequence[Path]) -> None:
+    try:
+        target = Path(os.path.realpath(path))
+        if not target.parent.is_dir():
+            raise InputError(f"-o must lie in a folder that exists; got {path}")
+        try:
+            mode = os.lstat(target).st_mode
+        except FileNotFoundError:
+            return
+        if stat.S_ISDIR(mode):
+            raise InputError(f"-o must be a file; got the folder {path}")
+        if not stat.S_ISREG(mode):  # /dev/null, say: it would be replaced by a file
+            raise InputError(f"-o must be an ordinary file; got {path}")
+        for given in inputs:
+            if os.path.samefile(given, target):
+                raise InputError(f"-o must not be a file that is read; got {path}, which is {given}")
+        if not overwrite:
+            raise InputError(f"output {path} exists already; use --overwrite or another -o")
+        if not os.access(target, os.W_OK):
+            raise InputError(f"output {path} is protected from writing; use another -o")
+    except OSError as error:
+        raise InputError(
+            f"-o must be a place that can be written to; got {path} ({error.strerror})"
+        ) from None
+
+
+def _abandon() -> str:
+    """Clear away every claim, for good: nothing can be claimed or put in its place after it."""
+    known = _guard.acquire(timeout=1.0)
+    for output in list(_claims):
+        _remove(output._folder, output._scratch.name)
+    if not known:  # a file system that has stopped answering
+        return "the output may have been written"
+    return f"{', '.join(map(str, _written))} had been written" if _written else ""
+
+
+interrupts.before_exit(_abandon)
+
+
+def _enter(folder: Path) -> int:
+    """The lock of a folder, taken; the folder is made if need be."""
+    while True:
+        with contextlib.suppress(FileExistsError):
+            folder.mkdir()
+        with contextlib.suppress(FileNotFoundError):  # another process is clearing it away
+            return _lock(folder, os.O_RDWR | os.O_CREAT)
+
+
+def _flock(handle: int) -> None:
+    if sys.platform == "win32":
+        raise OSError(errno.ENOSYS, "no locks")
+    fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def _lock(folder: Path, flags: int) -> int:
+    """The lock of a folder as an open file: taken until that is closed or the process ends."""
+    path = folder / _LOCK
+    handle = os.open(path, flags, 0o600)
+    try:
+        _flock(handle)
+        if not os.path.samestat(os.fstat(handle), os.stat(path)):
+            raise FileNotFoundError(path)
+    except BlockingIOError:
+        os.close(handle)
+        raise _Taken from None
+    except OSError as error:
+        if error.errno in _NO_LOCKS and flags & os.O_CREAT:
+            return handle  # all that is lost is that leftovers stay
+        os.close(handle)
+        raise
+    return handle
+
+
+def _sweep(parent: Path) -> None:
+    """Remove the folders of runs that were killed."""
+    for folder in parent.glob(_FOLDERS):
+        with contextlib.suppress(OSError, _Taken):
+            lock = _lock(folder, os.O_RDWR)
+            _remove(folder)
+            os.close(lock)
+
+
+def _remove(folder: Path, files: str = f"{_FILE}*") -> None:
+    """Remove what a claim may have left, and nothing else."""
+    for _ in range(3):  # a library may make its file just now
+        for file in (*folder.glob(files), folder / _LOCK):
+            with contextlib.suppress(OSError):
+                file.unlink()
+        with contextlib.suppress(OSError):
+            folder.rmdir()
+            return
+
+
+def _aside(work: Callable[[], None], waiting: Callable[[], None]) -> None:
+    """Do the work in a thread of its own, where no interrupt is raised, and wait for its end."""
+    failures: list[BaseException] = []
+    wanted, begin, done = threading.Event(), threading.Event(), threading.Event()
+
+    def run() -> None:
+        begin.wait()
+        try:
+            if wanted.is_set():
+                work()
+        except BaseException as error:
+            failures.append(error)
+        finally:
+            done.set()
+
+    try:
+        threading.Thread(target=run, daemon=True).start()
+        wanted.set()  # from here on it is waited for; an interrupt before finds the work not begun
+        begin.set()
+        while not done.wait(0.2):
+            waiting()
+    finally:
+        begin.set()
+        if wanted.is_set():
+            done.wait()
+    if failures:
+        raise failures[0]
+
+
+def _size(path: Path) -> int:
+    return path.stat().st_size if path.exists() else 0
+
+
+def _flush(path: Path) -> None:
+    """What was written is on the disk, or there is an error now: some file systems tell it no earlier."""
+    handle = os.open(path, os.O_RDWR)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def _take_after(new: Path, old: Path) -> None:
+    """Owner, group and permissions of the file that is replaced, as far as we may."""
+    before = old.stat()
+    if hasattr(os, "chown"):
+        for owner, group in ((before.st_uid, -1), (-1, before.st_gid)):
+            with contextlib.suppress(OSError):
+                os.chown(new, owner, group)
+    with contextlib.suppress(OSError):
+        new.chmod(stat.S_IMODE(before.st_mode))
+
+
+def _create(new: Path, target: Path) -> None:
+    """`new` becomes `target`, which must not exist, in one step."""
+    try:
+        os.link(new, target)
+    except FileExistsError:
+        raise
+    except OSError:  # a file system without hard links
+        os.close(os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
+        os.replace(new, target)

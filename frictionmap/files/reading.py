@@ -1,0 +1,181 @@
+"""Files that are read: checked against the schema, and brought into the form that they were written in."""
+
+import contextlib
+import warnings
+from collections.abc import Collection, Iterator
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from .. import checks
+from ..datasets.labels import CELL, COORDINATES, LABELS, coordinate, label_variable
+from ..datasets.schema import check_structure, checked_values, in_brackets, kind, standard_dims
+from ..errors import InputError
+
+__all__ = ["kind", "read", "standard_form"]
+
+
+def read(path: Path, only: Collection[str] | None = None) -> xr.Dataset:
+    """Read a file that this package wrote, or a slice of it that xarray wrote (nothing is held open).
+
+    Of our variables those named `only`, if they are there; by default all.
+
+    Returns
+    -------
+    xarray.Dataset
+        In `standard_form`.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not ours, or holds what it must not; one line that names the file.
+    """
+    if not path.is_file():
+        wrong = "is not a file" if path.exists() else "does not exist"
+        raise InputError(f"file {path} {wrong}; give a file written by frictionmap")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a malformed file; what is wrong with it is said below
+            ds = _load(path, LABELS if only is None else only)
+    except InputError:
+        raise
+    except Exception as error:  # the libraries raise anything over a file that is not what they expect
+        raise InputError(
+            f"file {path} must be NetCDF written by frictionmap; it cannot be opened "
+            f"({checks.one_line(error) if not str(error) else error})"
+        ) from None
+    with _naming(path):
+        return standard_form(ds)
+
+
+@contextlib.contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """The name of the file, put before what is wrong with it."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"file {path}: {error}") from None
+
+
+def _load(path: Path, wanted: Collection[str]) -> xr.Dataset:
+    """The wanted variables of a file; their values are read once all else about them is known to be well."""
+    # no value of ours is a time, whatever the units say
+    with xr.open_dataset(path, engine="netcdf4", decode_times=False) as opened:
+        source = opened.attrs.get("source", "not given")
+        if not str(source).startswith("frictionmap") or not LABELS.keys() & opened.variables.keys():
+            raise InputError(f"file {path} must be written by frictionmap; its source is {source!r}")
+        with _naming(path):
+            check_structure(opened)
+        ours = _ours(opened)
+        return ours.drop_vars(
+            [name for name in ours.variables if name in LABELS and name not in wanted]
+        ).load()
+
+
+def _ours(ds: xr.Dataset) -> xr.Dataset:
+    """What has a label."""
+    return ds.drop_vars([name for name in ds.variables if name not in LABELS and name not in COORDINATES])
+
+
+def standard_form(ds: xr.Dataset) -> xr.Dataset:
+    """A map, response or boundaries, or any slice of one, in the form that it has when it is computed.
+
+    Works by names.  A value of mu, r, beta or of a mass that was chosen (`isel`, `sel`) becomes an axis of
+    one value again; dimensions come in their order (mu, r, beta, dof), axes increase, types and attributes
+    are those of `labels`.  A response is of one cell: its mu, r and beta are numbers.  Variables may be
+    missing; those that are not ours are left out.  Values are not copied where they are well as they are.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    InputError
+        What is left makes no sense, or a value is illegal; one line that names the variable.
+    """
+    if not isinstance(ds, xr.Dataset):
+        raise InputError(f"ds must be an xarray.Dataset; got {type(ds).__name__}")
+    check_structure(ds)
+    what = kind(ds)
+    ds = _ours(ds)
+    ds = ds.set_coords([name for name in COORDINATES if name in ds.data_vars])
+    if what == "response":
+        ds = ds.squeeze([dim for dim in CELL if ds.sizes.get(dim) == 1])
+    ds = _increasing(ds)
+    variables: dict[str, xr.Variable] = {}
+    used: set[str] = set()
+    for name in LABELS:
+        if name in ds.variables:
+            dims = standard_dims(name, what)
+            variables[name] = label_variable(name, checked_values(name, _placed(ds, name, dims)))
+            used.update(dims)
+    if what == "map":
+        used.update(CELL)  # also if what there is depends on frequency only
+    return xr.Dataset(variables, coords=_axes(ds, what, used), attrs=ds.attrs)
+
+
+def _increasing(ds: xr.Dataset) -> xr.Dataset:
+    """The dataset with every axis increasing; one that decreases is turned round."""
+    turned = {}
+    for name in COORDINATES:
+        if name not in ds.coords or ds[name].ndim == 0:
+            continue
+        if ds[name].dims != (name,):
+            raise InputError(
+                f"{name} must be an axis of its own; got the dimensions {in_brackets(ds[name].dims)}"
+            )
+        values = checked_values(name, ds[name].values)
+        if values.size == 0:
+            raise InputError(f"{name} must have at least one value; got none")
+        if values[0] > values[-1]:
+            turned[name] = slice(None, None, -1)
+            values = values[::-1]
+        _check_increasing(name, values)
+    return ds.isel(turned)
+
+
+def _check_increasing(name: str, values: np.ndarray) -> None:
+    wrong = np.flatnonzero(np.diff(values) <= 0)
+    if wrong.size:
+        first, second = values[wrong[0]], values[wrong[0] + 1]
+        raise InputError(f"{name} must be strictly increasing; got {second} after {first}")
+
+
+def _placed(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
+    """The values of a variable over exactly these dimensions, in this order."""
+    variable = ds.variables[name]
+    if not set(variable.dims) <= set(dims):
+        legal = (
+            f"have the dimensions {in_brackets(dims)}, or fewer" if dims else "be one number in a response"
+        )
+        raise InputError(f"{name} must {legal}; got {in_brackets(variable.dims)}")
+    missing = [dim for dim in dims if dim not in variable.dims]
+    for dim in missing:
+        given = ds[dim].size if dim in ds.coords else ds.sizes.get(dim, int(dim not in COORDINATES))
+        if given != 1:
+            raise InputError(
+                f"{name} has no dimension {dim}: one value of {dim} must be there; got {given or 'none'}"
+            )
+    values = variable.values[(..., *[np.newaxis] * len(missing))]
+    return xr.Variable((*variable.dims, *missing), values).transpose(*dims).values
+
+
+def _axes(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:
+    """The axes: those that are used, and what else there is."""
+    axes = {}
+    for name in COORDINATES:
+        of_the_cell = what == "response" and name in CELL
+        if name in ds.coords:
+            values = checked_values(name, ds[name].values)
+            if of_the_cell and values.ndim:
+                raise InputError(f"a response must have one {name}; got {values.size}")
+            axes[name] = coordinate(name, np.atleast_1d(values) if name in used else values)
+        elif name in used or of_the_cell:
+            raise InputError(f"{name} must be given as a coordinate; it is missing")
+    return axes

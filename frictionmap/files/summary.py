@@ -1,0 +1,182 @@
+"""What a dataset holds, in words: plain ASCII but for what the file itself says."""
+
+import textwrap
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from .. import regimes
+from ..datasets.labels import LABELS
+from ..datasets.schema import TEXTS, kind
+from .reading import standard_form
+
+_WIDTH = 99
+_INDENT = 24
+
+#: Values of a list that are shown.
+_SHOWN = 6
+
+#: Dimensions of lists short enough to be printed; what has others is only named.
+_LISTS = frozenset(("mu", "mode", "held_mode", "invariant", "dof", "mass_invariant"))
+
+
+def describe_map(ds: xr.Dataset) -> str:
+    """One line: how many cells of each regime."""
+    words = f"{int(np.prod([ds.sizes[name] for name in ('mu', 'r', 'beta')])):,} cells"
+    if "regime" in ds:
+        counts = _counts(ds["regime"], regimes.REGIMES)
+        words += f" ({', '.join(f'{count:,} {_plain(code)}' for code, count in counts)})"
+    return words
+
+
+def describe_causes(ds: xr.Dataset) -> list[str]:
+    """A line for every cause why cells are unresolved or not all that they seem, and what to do about it."""
+    if "status" not in ds:
+        return []
+    return [
+        f"{count:,} cell{'s' * (count != 1)} {code.name}: {code.advice}"
+        for code, count in _counts(ds["status"], regimes.STATUSES)
+        if code.value != regimes.RESOLVED
+    ]
+
+
+def _counts(variable: xr.DataArray, codes: tuple[regimes.Code, ...]) -> list[tuple[regimes.Code, int]]:
+    """Codes that occur, and how often."""
+    counts = ((code, int(np.count_nonzero(variable.values == code.value))) for code in codes)
+    return [(code, count) for code, count in counts if count]
+
+
+def _plain(code: regimes.Code) -> str:
+    return code.name.replace("_", " ")
+
+
+def describe_response(ds: xr.Dataset) -> str:
+    """One line: regime, stops, amplitude, period; a slice may lack some."""
+    regime = next(
+        (code for code in regimes.REGIMES if "regime" in ds and code.value == int(ds["regime"])), None
+    )
+    words = [_plain(regime)] if regime else []
+    moving = regime is None or regime.value != regimes.PERMANENT_STICKING
+    if regime is None or regime.value == regimes.STICK_SLIP:
+        if "stops_per_cycle" in ds:
+            words.append(f"{float(ds['stops_per_cycle']):.4g} stops per cycle")
+        if "stuck_fraction" in ds:
+            words.append(f"stuck {100.0 * float(ds['stuck_fraction']):.3g} % of the time")
+    if moving and "contact_amplitude" in ds:
+        words.append(f"amplitude {float(ds['contact_amplitude']):.6g}")
+    if "period" in ds and int(ds["period"]) > 1:
+        words.append(f"period {int(ds['period'])}")
+    if "status" in ds and int(ds["status"]) == regimes.NOT_PERIODIC:
+        words.append("not periodic: a part of the motion is shown, and its averages")
+    return ", ".join(words)
+
+
+def describe_file(ds: xr.Dataset) -> str:
+    """One screen: title, system, axes, variables, values, regimes and causes of unresolved cells.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A map, a response or boundaries, or a slice of one.
+
+    Raises
+    ------
+    InputError
+        It is none of these; see `standard_form`.
+    """
+    ds = standard_form(ds)
+    what = kind(ds)
+    texts = {name: _printable(ds.attrs.get(name, "")) for name in TEXTS}
+    lines = [textwrap.shorten(texts["title"], _WIDTH - len(what) - 3, placeholder="...") + f" [{what}]"]
+    for name in ("system", "source", "history"):
+        if texts[name]:
+            lines += _entry(name, texts[name])
+    lines += ["axes", *(line for name in ds.coords for line in _entry(str(name), _axis(ds[name].values)))]
+    listed = [name for name in ds.data_vars if _is_list(ds[name])]
+    lines += ["variables", *(_named(ds[name]) for name in ds.data_vars if name not in listed)]
+    if listed:
+        lines += ["values", *(line for name in listed for line in _entry(str(name), _values(ds[name])))]
+    lines += list(_in_short(ds, what))
+    return "\n".join(lines)
+
+
+def _printable(text: str) -> str:
+    """Text on one line, without characters that would do something to a terminal."""
+    return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
+
+
+def _entry(name: str, text: str) -> list[str]:
+    """A name and what belongs to it, wrapped; never more than three lines."""
+    return textwrap.wrap(
+        f"  {name:<{_INDENT - 3}} {text}",
+        _WIDTH,
+        subsequent_indent=" " * _INDENT,
+        max_lines=3,
+        placeholder=" ...",
+    )
+
+
+def _named(variable: xr.DataArray) -> str:
+    dims = f"({', '.join(map(str, variable.dims))})"
+    room = _WIDTH - _INDENT - 17
+    meaning = textwrap.shorten(LABELS[str(variable.name)].long_name, room, placeholder="...")
+    return f"  {variable.name!s:<{_INDENT - 3}} {dims:<16} {meaning}"
+
+
+def _axis(values: np.ndarray) -> str:
+    if values.size <= _SHOWN:
+        return _numbers(values)
+    return f"{values[0]:g} to {values[-1]:g}, {values.size:,} values"
+
+
+def _numbers(values: np.ndarray) -> str:
+    """The first values of a list; NaN only fills it up."""
+    flat = np.ravel(values)
+    flat = flat[~np.isnan(flat)]
+    more = f", ... ({flat.size:,})" if flat.size > _SHOWN else ""
+    return ", ".join(f"{value:.6g}" for value in flat[:_SHOWN]) + more
+
+
+def _is_list(variable: xr.DataArray) -> bool:
+    return set(variable.dims) <= _LISTS
+
+
+def _values(variable: xr.DataArray) -> str:
+    """The values of a short variable: codes by their names, others row by row."""
+    label = LABELS[str(variable.name)]
+    if label.codes and variable.ndim == 0:
+        return next(code.name for code in label.codes if code.value == int(variable))
+    if variable.ndim < 2:
+        return _numbers(variable.values) or "none"
+    return "; ".join(
+        f"{variable.dims[0]} {k}: {_numbers(row) or 'none'}" for k, row in enumerate(variable.values, 1)
+    )
+
+
+def _in_short(ds: xr.Dataset, what: str) -> Iterator[str]:
+    """The last lines: what came out, and what to mind."""
+    if what == "map":
+        yield describe_map(ds)
+    elif what == "response":
+        yield describe_response(ds)
+        yield from _motion(ds)
+    yield from (f"  {line}" for line in describe_causes(ds))
+    if what == "map" and "stops_per_cycle" in ds:
+        yield from _stops(ds["stops_per_cycle"].values)
+
+
+def _motion(ds: xr.Dataset) -> Iterator[str]:
+    """Numbers of a motion in time: how far the masses go, and when the contact stops."""
+    if "x" in ds:
+        yield f"largest |x|, mass by mass  {_numbers(np.abs(ds['x'].values).max(axis=1))}"
+    if "event_tau" in ds and "event_phase" in ds and (ds["event_phase"] == 0).any():
+        begins = ds["event_tau"].values[ds["event_phase"].values == 0]
+        yield f"stops begin at tau/pi =  {_numbers(begins / np.pi)}"
+
+
+def _stops(stops: np.ndarray) -> Iterator[str]:
+    if (stops > 0).any():
+        values, counts = np.unique(stops[stops > 0], return_counts=True)
+        shown = ", ".join(f"{v:.4g}: {c:,}" for v, c in zip(values[:12], counts[:12], strict=True))
+        yield f"cells by stops per cycle  {shown}{' ...' if values.size > 12 else ''}"

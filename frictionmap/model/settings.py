@@ -1,0 +1,106 @@
+"""Settings of the steady-state solver."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Literal, TypedDict, get_args
+
+from .. import checks
+from ..errors import InputError
+
+#: Outputs a map can hold, in the order of the file; what each is, `labels.CELL_VARIABLES` says.
+Output = Literal[
+    "regime",
+    "stops_per_cycle",
+    "contact_amplitude",
+    "stuck_fraction",
+    "period",
+    "origin",
+    "cycles",
+    "status",
+    "multiplier",
+    "asymmetry",
+    "also_reachable",
+    "sliding_limit",
+    "amplitude",
+]
+OUTPUTS: tuple[str, ...] = get_args(Output)
+
+Start = Literal["rest", "moving"]
+Skip = Literal["exact", "none"]
+Steady = Literal["solved", "marched"]
+
+
+@dataclass(frozen=True)
+class Solver:
+    """How steady states are found, and what is kept of them.
+
+    Parameters
+    ----------
+    start : {"rest", "moving"}
+        The starting state: z = z' = 0 at tau = 0, or a large sliding motion.
+    cycles : int
+        Give up after so many excitation periods.
+    tolerance : float
+        On the state after one return, relative to the amplitude.
+    steps : int
+        Scan steps per period of the fastest part of the motion, 2 to 1000; events are found and computed
+        exactly whatever it is, so it is a matter of speed only.
+    skip : {"exact", "none"}
+        Integrate only the cells that no proof decides, or every cell with friction.
+    steady : {"solved", "marched"}
+        Finish by solving for the periodic orbit, or wait until the motion returns by itself.
+    outputs : sequence of str
+        Cell variables to compute and keep.
+
+    Raises
+    ------
+    InputError
+        A setting is out of range.
+    """
+
+    start: Start = "rest"
+    cycles: int = 2000
+    tolerance: float = 1e-12
+    steps: int = 24
+    skip: Skip = "exact"
+    steady: Steady = "solved"
+    outputs: Sequence[Output] = ("regime", "stops_per_cycle", "contact_amplitude")
+
+    def __post_init__(self) -> None:
+        checks.choice(self.start, "start", get_args(Start))
+        checks.whole(self.cycles, "cycles", least=1, most=10**9)
+        checks.number(self.tolerance, "tolerance", least=1e-15, most=1e-3)
+        checks.whole(self.steps, "steps", least=2, most=1000)
+        checks.choice(self.skip, "skip", get_args(Skip))
+        checks.choice(self.steady, "steady", get_args(Steady))
+        if isinstance(self.outputs, str) or not isinstance(self.outputs, Sequence):
+            raise InputError(f"outputs must be a list of names; got {checks.one_line(self.outputs)}")
+        for name in self.outputs:
+            checks.choice(name, "outputs", OUTPUTS)
+        if not self.outputs:
+            raise InputError(f"outputs must name at least one of {', '.join(OUTPUTS)}; got none")
+        object.__setattr__(self, "outputs", tuple(dict.fromkeys(self.outputs)))
+
+
+class SolverSettings(TypedDict, total=False):
+    """The settings of `Solver`, one by one; what a type checker knows of the keywords of `sweep`."""
+
+    start: Start
+    cycles: int
+    tolerance: float
+    steps: int
+    skip: Skip
+    steady: Steady
+    outputs: Sequence[Output]
+
+
+def merged(solver: Solver | None, settings: Mapping[str, object]) -> Solver:
+    """The solver given, or the default one, with the settings given beside it in place of its own."""
+    if solver is not None:
+        checks.instance(solver, "solver", Solver)
+    names = [field.name for field in fields(Solver)]
+    for name in settings:
+        if name not in names:
+            hint = checks.nearest(name, names)
+            raise InputError(f"settings must be some of {', '.join(names)}; got {name}{hint}")
+    return replace(solver or Solver(), **settings)  # type: ignore[arg-type]

@@ -1,0 +1,447 @@
+"""What is simulated: a structure, its damping, its load and the one contact."""
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from .. import checks
+from ..errors import InputError
+from .matrices import Matrices, read_matrices
+from .modes import ModalModel, damped_modes, gather_contact, modal_damping, solve_chain_modes, solve_modes
+
+CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
+EXCITATIONS = ("force", "base")
+DAMPING_REFERENCES = ("ground", "base")
+
+#: Coupling of the modes by C, relative to their own damping: what the digits of a matrix in a file may make,
+#: and far below what damping is known to.
+_MOST_COUPLING = 1e-9
+
+_EPS = float(np.finfo(float).eps)
+
+
+def _sequence(values: Any, name: str, what: str) -> Sequence:
+    """`values`, if it is a list, a tuple or an array."""
+    if checks.is_array(values):
+        given = checks.array(values, name)
+        if given.ndim == 1:
+            return list(given)
+    elif isinstance(values, Sequence) and not isinstance(values, (str, bytes)):
+        return list(values)
+    raise InputError(f"{name} must be a list of {what}; got {checks.one_line(values)}")
+
+
+def _ratios(values: object, name: str) -> tuple[float, ...]:
+    values = _sequence(values, name, "numbers")
+    if len(values) == 0:
+        raise InputError(f"{name} must have at least one value; got none")
+    ratios = tuple(checks.number(value, f"{name}[{index}]", above=0.0) for index, value in enumerate(values))
+    if ratios[0] != 1.0:
+        raise InputError(f"{name}[0] must be 1, the unit of the others; got {ratios[0]:g}")
+    return ratios
+
+
+def _contact_masses(values: object, contact: str, n: int) -> tuple[int, ...]:
+    values = _sequence(values, "contact_masses", "whole numbers")
+    count = 2 if contact == "between-masses" else 1
+    if len(values) != count:
+        wanted = "two masses [A, B]" if count == 2 else "one mass"
+        raise InputError(f"contact_masses must name {wanted} for {contact}; got {list(values)}")
+    masses = tuple(
+        checks.whole(value, f"contact_masses[{index}]", least=1, most=n) for index, value in enumerate(values)
+    )
+    if count == 2 and masses[0] >= masses[1]:
+        raise InputError(f"contact_masses must be [A, B] with A < B; got {list(masses)}")
+    return masses
+
+
+def _damping(values: object, n: int) -> tuple[float, ...]:
+    bounds = {"least": 0.0, "most": checks.LARGEST_DAMPING}
+    listed = isinstance(values, Sequence) and not isinstance(values, (str, bytes))
+    if not listed and not (checks.is_array(values) and checks.array(values, "damping_ratios").ndim):
+        return (checks.number(values, "damping_ratios", **bounds),) * n
+    values = _sequence(values, "damping_ratios", "numbers")
+    if len(values) != n:
+        raise InputError(f"damping_ratios must be one number or one a mode ({n}); got {len(values)}")
+    return tuple(
+        checks.number(value, f"damping_ratios[{index}]", **bounds) for index, value in enumerate(values)
+    )
+
+
+def _complex(value: object, name: str) -> complex:
+    """`value` as a complex number with finite parts."""
+    if isinstance(value, (complex, np.complexfloating)):
+        return complex(checks.number(value.real, name), checks.number(value.imag, name))
+    return complex(checks.number(value, name))
+
+
+def _load(values: object, n: int) -> tuple[complex, ...]:
+    values = _sequence(values, "load", "numbers")
+    if len(values) != n:
+        raise InputError(f"load must have one number a mass ({n}); got {len(values)}")
+    load = tuple(_complex(value, f"load[{index}]") for index, value in enumerate(values))
+    if not any(load):
+        raise InputError("load must have a value that is not zero; got none")
+    return load
+
+
+def _in_words(values: Sequence[complex]) -> str:
+    """Numbers with a comma between them; real ones without their imaginary part."""
+    return ", ".join(f"{value.real if value.imag == 0.0 else value:g}" for value in values)
+
+
+@dataclass(frozen=True)
+class System:
+    """A linear structure with one dry-friction contact, shaken at one frequency.
+
+    The structure is a chain of masses and springs, given by ratios, or any other, given by matrices.  In a
+    chain spring 1 ties mass 1 to the ground (or to the base), spring i mass i to mass i - 1.
+
+    Parameters
+    ----------
+    contact : {"fixed-wall", "joined-base-wall", "between-masses"}
+        Where the friction acts: between a mass and the ground, between a mass and a wall that moves with
+        the shaken base, or between two masses.
+    contact_masses : sequence of int
+        The mass in contact, or the two, A < B; counted from 1.  Masses are degrees of freedom.
+    load_mass : int, optional
+        The mass the harmonic load acts on, counted from 1; default 1.  Always 1 with base excitation.
+    mass_ratios, stiffness_ratios : sequence of float, optional
+        gamma_i = m_i/m_1 and kappa_i = k_i/k_1 [-] of a chain, > 0, the first one 1; default one mass.
+    damping_ratios : float or sequence of float, optional
+        Damping ratio zeta [-] of every mode, or one a mode in the order of the natural frequencies, 0 to
+        100; 1 and more is legal.  Default 0.
+    matrices : path or mapping, optional
+        Instead of the ratios: the path of an .npz file, or a mapping, with arrays M and K and optionally C,
+        shape (n, n), in consistent units.  Real and symmetric; M and K positive definite.  C takes the
+        place of damping_ratios: it is positive semi-definite and diagonal in the undamped modes.
+    frequency_scale : float, optional
+        With matrices: r = omega/frequency_scale, in the units of sqrt(K/M); default the first natural
+        frequency.  A chain's is sqrt(k_1/m_1).
+    stiffness_scale : float
+        With matrices: displacements are in P/stiffness_scale, in the units of K.  A chain's is k_1.
+    excitation : {"force", "base"}, optional
+        Default: "base" with a joined base-wall, which can have no other, else "force".  "base": the structure
+        stands on a base that moves by Y cos(tau), and P = stiffness_scale Y (k_1 Y of a chain); of one given
+        by matrices all degrees of freedom are displacements along the base's.
+    damping_reference : {"ground", "base"}
+        Whether the damping acts on velocities in space or relative to the base, which must move for that.
+    load : sequence of complex, optional
+        Instead of load_mass: the phasors p_k [P] of loads Re(p_k e^{i tau}) on all n masses.
+
+    Raises
+    ------
+    InputError
+        A value is out of range, or does not go together with another; a file cannot be read.
+
+    Notes
+    -----
+    Dimensionless equations of motion: theory.md 1; T(5.4), (5.8) for chains, T(2.12), (3.3) for one mass.
+    With base excitation the load is p = K ones, of a chain e_1; with damping relative to the base
+    i r C1 ones is added, so that p = 1 + 2 i zeta r for one mass.
+    """
+
+    contact: Literal["fixed-wall", "joined-base-wall", "between-masses"] = "fixed-wall"
+    contact_masses: Sequence[int] = (1,)
+    load_mass: int | None = None
+    mass_ratios: Sequence[float] | None = None
+    stiffness_ratios: Sequence[float] | None = None
+    damping_ratios: float | Sequence[float] | None = None
+    _: KW_ONLY
+    matrices: str | os.PathLike | Mapping[str, Any] | Matrices | None = None
+    frequency_scale: float | None = None
+    stiffness_scale: float = 1.0
+    excitation: Literal["force", "base"] | None = None
+    damping_reference: Literal["ground", "base"] = "ground"
+    load: Sequence[complex] | None = None
+
+    def __post_init__(self) -> None:
+        if self.matrices is None:
+            self._check_chain()
+        else:
+            self._check_matrices()
+        self._check_damping()
+        self._check_contact()
+        self._check_load()
+        if self.n > 1 or self.matrices is not None:
+            _ = self.modes  # what only they can tell is told at the door, too
+
+    def _set(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
+
+    def _check_chain(self) -> None:
+        for name, default in (("frequency_scale", None), ("stiffness_scale", 1.0)):
+            if getattr(self, name) != default:
+                raise InputError(
+                    f"{name} must be left out without matrices: a chain has the units of its first mass and "
+                    f"spring; got {checks.one_line(getattr(self, name))}"
+                )
+        masses = _ratios((1.0,) if self.mass_ratios is None else self.mass_ratios, "mass_ratios")
+        springs = _ratios(
+            (1.0,) if self.stiffness_ratios is None else self.stiffness_ratios, "stiffness_ratios"
+        )
+        if len(springs) != len(masses):
+            raise InputError(
+                f"stiffness_ratios must have as many values as mass_ratios ({len(masses)}); "
+                f"got {len(springs)}"
+            )
+        self._set("mass_ratios", masses)
+        self._set("stiffness_ratios", springs)
+
+    def _check_matrices(self) -> None:
+        for name in ("mass_ratios", "stiffness_ratios"):
+            given = getattr(self, name)
+            if given is not None:
+                raise InputError(
+                    f"{name} must be left out if matrices are given; got {checks.one_line(given)}"
+                )
+        self._set("matrices", read_matrices(self.matrices))
+        if self.frequency_scale is not None:
+            self._set("frequency_scale", checks.number(self.frequency_scale, "frequency_scale", above=0.0))
+        self._set("stiffness_scale", checks.number(self.stiffness_scale, "stiffness_scale", above=0.0))
+
+    def _check_damping(self) -> None:
+        given = self.damping_ratios
+        if isinstance(self.matrices, Matrices) and self.matrices.damping is not None:
+            if given is not None:
+                raise InputError(
+                    f"damping_ratios must be left out if matrices has C; got {checks.one_line(given)}"
+                )
+        else:
+            self._set("damping_ratios", _damping(0.0 if given is None else given, self.n))
+
+    def _check_contact(self) -> None:
+        checks.choice(self.contact, "contact", CONTACTS)
+        if self.contact == "between-masses" and self.n == 1:
+            raise InputError(
+                "contact must be fixed-wall or joined-base-wall for one mass; got 'between-masses'"
+            )
+        self._set("contact_masses", _contact_masses(self.contact_masses, self.contact, self.n))
+
+    def _check_load(self) -> None:
+        if self.excitation is None:
+            self._set("excitation", "base" if self.base_motion else "force")
+        checks.choice(self.excitation, "excitation", EXCITATIONS)
+        checks.choice(self.damping_reference, "damping_reference", DAMPING_REFERENCES)
+        if self.base_motion and self.excitation != "base":
+            raise InputError(
+                "excitation must be base, or left out, for a joined-base-wall: the wall moves with the base "
+                f"that loads the structure; got {self.excitation!r}"
+            )
+        base = self.excitation == "base"
+        if self.damping_reference == "base" and not base:
+            raise InputError(
+                "damping_reference must be ground unless the base moves (excitation base or a joined "
+                "base-wall); got 'base'"
+            )
+        if self.load is not None:
+            for wrong, reason in (
+                (base, "with base excitation or a joined base-wall: the base loads all masses"),
+                (self.load_mass is not None, f"if load_mass is given, which is {self.load_mass!r}"),
+            ):
+                if wrong:
+                    raise InputError(f"load must be left out {reason}; got {checks.one_line(self.load)}")
+            self._set("load", _load(self.load, self.n))
+            return
+        mass = 1 if self.load_mass is None else self.load_mass
+        self._set("load_mass", checks.whole(mass, "load_mass", least=1, most=self.n))
+        if base and self.load_mass != 1:
+            cause = "joined-base-wall" if self.base_motion else "base excitation"
+            raise InputError(
+                f"load_mass must be 1 for {cause}: the base loads the structure through its springs to the "
+                f"ground; got {self.load_mass}"
+            )
+
+    @property
+    def n(self) -> int:
+        """Number of masses (degrees of freedom)."""
+        if isinstance(self.matrices, Matrices):
+            return self.matrices.n
+        return len(self.mass_ratios)  # type: ignore[arg-type]
+
+    @property
+    def zeta(self) -> float:
+        """Damping ratio of the first mode, the only one of one mass."""
+        return float(self.modes.zeta[0])
+
+    @property
+    def base_motion(self) -> int:
+        """s: 1 if the contact moves with the base, else 0."""
+        return int(self.contact == "joined-base-wall")
+
+    @property
+    def contact_vector(self) -> np.ndarray:
+        """c, shape (n,): z = c.x - s cos(tau)."""
+        c = np.zeros(self.n)
+        c[self.contact_masses[-1] - 1] = 1.0
+        if self.contact == "between-masses":
+            c[self.contact_masses[0] - 1] = -1.0
+        return c
+
+    @property
+    def normalised(self) -> bool:
+        """Whether this is one mass of 1 on a spring of 1, the units of the formulas for one mass."""
+        return self.n == 1 and self.modes.mass[0, 0] == 1.0 == self.modes.stiffness[0, 0]
+
+    @cached_property
+    def _frequency_scale(self) -> float:
+        """omega/r of a structure given by matrices."""
+        if self.frequency_scale is not None:
+            return self.frequency_scale
+        assert isinstance(self.matrices, Matrices)
+        w, _ = self._solve(self.matrices.mass, self.matrices.stiffness)
+        return float(w[0])
+
+    def _solve(self, mass: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies and modes, if double precision holds the lowest beside the highest."""
+        if self.matrices is None and self.n > 1:
+            w, phi = solve_chain_modes(np.array(self.mass_ratios), np.array(self.stiffness_ratios))
+        else:
+            w, phi = solve_modes(mass, stiffness)
+        if not w[0] > math.sqrt(w.size * _EPS) * w[-1]:
+            name = "mass_ratios and stiffness_ratios" if self.matrices is None else "matrices"
+            raise InputError(
+                f"{name} must make natural frequencies that double precision can hold together; the highest, "
+                f"{w[-1]:.3g}, drowns the lowest"
+            )
+        return w, phi
+
+    def _structure(self) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+        """Dimensionless M, K and, where it was given, C1."""
+        if isinstance(self.matrices, Matrices):
+            mass, stiffness, damping = self.matrices.scaled(self._frequency_scale, self.stiffness_scale)
+            if self.n == 1 and self.frequency_scale is None:
+                mass = stiffness.copy()  # w = 1 by definition; scaling misses it by a rounding
+            return mass, stiffness, damping
+        springs = np.array(self.stiffness_ratios)
+        stiffness = np.diag(springs) + np.diag(np.append(springs[1:], 0.0))
+        stiffness -= np.diag(springs[1:], 1) + np.diag(springs[1:], -1)
+        return np.diag(np.array(self.mass_ratios)), stiffness, None
+
+    def _load_vector(self, stiffness: np.ndarray) -> np.ndarray:
+        """The part of p that does not depend on r, complex (n,)."""
+        if self.load is not None:
+            return np.array(self.load)
+        if self.excitation == "base" and self.matrices is not None:
+            return stiffness.sum(axis=1).astype(complex)
+        load = np.zeros(self.n, dtype=complex)  # of a chain's springs the first only ends at the base
+        load[self.load_mass - 1] = 1.0  # type: ignore[operator]
+        return load
+
+    def _checked_damping(
+        self, damping: np.ndarray, w: np.ndarray, phi: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Damping ratios by a matrix C1, and the modes that it leaves apart."""
+        zeta, phi, coupling = damped_modes(damping, w, phi)
+        if coupling > _MOST_COUPLING:
+            raise InputError(
+                f"matrices: C must be diagonal in the undamped modes, such as modal or Rayleigh damping, "
+                f"a M + b K (or leave C out and give damping_ratios); it couples modes by {coupling:.1e} of "
+                f"their own damping"
+            )
+        worst = int(np.argmax(zeta))
+        if zeta[worst] > checks.LARGEST_DAMPING:
+            raise InputError(
+                f"matrices: C must make damping ratios <= {checks.LARGEST_DAMPING:g}; got "
+                f"{zeta[worst]:.3g} of mode {worst + 1}"
+            )
+        return zeta, phi
+
+    @cached_property
+    def modes(self) -> ModalModel:
+        """Modes and participation factors; they do not depend on r."""
+        mass, stiffness, given = self._structure()
+        w, phi = self._solve(mass, stiffness)
+        if given is None:
+            zeta = np.array(self.damping_ratios)
+        else:
+            zeta, phi = self._checked_damping(given, w, phi)
+        contact = self.contact_vector
+        phi = gather_contact(w, zeta, phi, contact)
+        damping = modal_damping(mass, w, phi, zeta)
+        rate = damping.sum(axis=1) if self.damping_reference == "base" else np.zeros(self.n)
+        return ModalModel(
+            w=w,
+            phi=phi,
+            zeta=zeta,
+            contact=contact,
+            load=self._load_vector(stiffness),
+            load_rate=rate.astype(complex),
+            base_motion=self.base_motion,
+            mass=mass,
+            stiffness=stiffness,
+            damping=damping,
+            springs=np.array(self.stiffness_ratios) if self.matrices is None else None,
+        )
+
+    def contact_load(self, r: np.ndarray) -> np.ndarray:
+        """Phasor F of the load in the contact when it is held, over P (complex, shape of r).
+
+        One mass: p(r) for a fixed wall; p(r) - (w^2 - r^2 + 2 i zeta w r)/phi^2 for a joined base-wall, which
+        is r^2 - 2 i zeta r, T(3.24), (3.32) with damping, or r^2 if it acts relative to the base.  More
+        masses: theory.md 4.
+        """
+        r = np.asarray(r, dtype=float)
+        flat = r.ravel()
+        found = self.modes.held_load(flat) if self.n > 1 else self.modes.relative_load(flat)[:, 0]
+        return found.reshape(r.shape)
+
+    def describe(self) -> str:
+        """The system in words."""
+        if self.n == 1 and self.matrices is None:
+            return (
+                f"one mass; {self._contact_in_words()}, {self._load_in_words()}; {self._damping_in_words()}"
+            )
+        words = (self._contact_in_words(), self._load_in_words(), self._damping_in_words())
+        return "; ".join((self._structure_in_words(), *words))
+
+    def _structure_in_words(self) -> str:
+        if isinstance(self.matrices, Matrices):
+            plural = "s" if self.n > 1 else ""
+            source = f" from {self.matrices.source}" if self.matrices.source else ""
+            first = " (the first natural frequency)" if self.frequency_scale is None else ""
+            return (
+                f"structure of {self.n} degree{plural} of freedom{source}, r = omega/"
+                f"{self._frequency_scale:g}{first}, displacements in P/{self.stiffness_scale:g}"
+            )
+        masses = _in_words(self.mass_ratios)  # type: ignore[arg-type]
+        springs = _in_words(self.stiffness_ratios)  # type: ignore[arg-type]
+        return f"chain of {self.n} masses ({masses}), springs ({springs})"
+
+    def _contact_in_words(self) -> str:
+        a, b = self.contact_masses[0], self.contact_masses[-1]
+        mass = "the mass" if self.n == 1 else f"mass {b}"
+        return {
+            "fixed-wall": f"friction between {mass} and a fixed wall",
+            "joined-base-wall": f"friction between {mass} and a wall that moves with the base",
+            "between-masses": f"friction between masses {a} and {b}",
+        }[self.contact]
+
+    def _load_in_words(self) -> str:
+        one = self.n == 1
+        if self.excitation == "base":
+            through = "the spring" if one else "the springs"
+            if self.damping_reference == "base":
+                through += " and dashpot" if one else " and dashpots"
+            elif not one:
+                return "base motion"
+            return f"harmonic base motion through {through}"
+        if self.load is not None:
+            where = "the mass" if one else "the masses"
+            return f"harmonic load ({_in_words(self.load)}) on {where}"
+        return "harmonic load on the mass" if one else f"harmonic load on mass {self.load_mass}"
+
+    def _damping_in_words(self) -> str:
+        if not self.modes.zeta.any():
+            return "no viscous damping"
+        if self.n == 1:
+            return f"damping ratio {self.zeta:g}"
+        if self.damping_ratios is None:
+            zeta = self.modes.zeta
+            return f"modal damping ratios {zeta.min():g} to {zeta.max():g}, from C"
+        return f"modal damping ratios {_in_words(tuple(dict.fromkeys(self.damping_ratios)))}"  # type: ignore[arg-type]

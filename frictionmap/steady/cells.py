@@ -1,0 +1,141 @@
+"""What the cells of a map need, and the jobs that fill them.
+
+One mass is the structure with one mode, but its cells know more: a stop forgets all but one number.  It is a
+kind of motion of its own (`_kernels.engine`), an order of magnitude faster.
+"""
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from .._kernels.engine.answers import Limits
+from .._kernels.engine.details import Details, Displacements, Nothing
+from .._kernels.engine.fill import Axes, ClosedForm, OpenCells, fill_closed, fill_open
+from .._kernels.engine.many_masses import ManyMassSystem
+from .._kernels.engine.one_mass import OneMassSystem
+from ..datasets.labels import CELL_VARIABLES
+from ..model.settings import Solver
+from ..model.system import System
+from ..theory.boundaries import OneMass, many_mode_curves, one_mass_curves
+from .kernel_data import Structures, structures
+
+Job = tuple[Callable[..., None], tuple]
+
+
+def limits(solver: Solver) -> Limits:
+    """When the kernels stop."""
+    return Limits(float(solver.cycles), solver.tolerance, solver.steady == "solved")
+
+
+class Cells:
+    """The cells of a system over checked axes."""
+
+    def __init__(
+        self, system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver
+    ) -> None:
+        self._system, self._solver = system, solver
+        self._axes = Axes(mu, r, beta)
+        self._one: OneMass | None = None
+        if system.normalised:
+            self._one = one_mass_curves(system, r, mu)
+            self.curves = self._one.curves
+            #: (n_r,) where nothing loads the contact, so that nothing moves
+            self.no_load = self._one.frequencies.load == 0.0
+        else:
+            self.curves = many_mode_curves(system, r, mu)
+            self.no_load = (r == 0.0) & bool(system.base_motion)
+
+    @property
+    def _needs(self) -> set[str]:
+        return {CELL_VARIABLES[name].needs for name in self._solver.outputs}
+
+    @property
+    def rest_sticks(self) -> bool:
+        """Whether from beta_stick on a start from rest never begins to move; what is not held may swing."""
+        return self._one is not None
+
+    @cached_property
+    def structures(self) -> Structures:
+        """The system in the numbers of a structure."""
+        return structures(self._system, self._axes.r, self.curves)
+
+    @cached_property
+    def motion(self) -> OneMassSystem | ManyMassSystem:
+        """The system as a kind of motion."""
+        steps = float(self._solver.steps)
+        if self._one is not None:
+            system = self._system
+            return OneMassSystem(
+                self._one.frequencies, system.zeta, steps, self._one.lim, self.curves.beta_stick, 1,
+                float(system.modes.chi[0]),
+            )  # fmt: skip
+        f = self.structures
+        return ManyMassSystem(
+            self._axes.r, f.model, f.loads, f.orbit, f.marginal, f.rest, f.moving, steps,
+            self.curves.beta_lim, f.seen.size,
+        )  # fmt: skip
+
+    @cached_property
+    def _closed_form(self) -> ClosedForm:
+        if self._one is not None:
+            f = self._one.frequencies
+            return ClosedForm(f.load, f.v_abs, f.u, f.g, f.marginal)
+        orbit = self.structures.orbit
+        return ClosedForm(np.ones(self._axes.r.size), orbit.v_abs, orbit.u, orbit.g, self.structures.marginal)
+
+    @property
+    def unit(self) -> float:
+        """Unit of forces and displacements of the motion at the only frequency."""
+        return float(self._closed_form.load[0])
+
+    @cached_property
+    def _wanted(self) -> Details | Nothing:
+        if "details" not in self._needs:
+            return Nothing(0)
+        f = self.structures
+        parts = Displacements(f.shapes, f.alone_re, f.alone_im, f.held)
+        return Details(self._axes.r, f.model, f.loads, f.orbit, float(self._solver.steps), parts)
+
+    def closed(self, first: int, last: int, cells: OpenCells, out: Any) -> Job:
+        """A job for the cells of rows first..last-1 that formulas decide."""
+        return fill_closed, (first, last, cells, self._axes, self._closed_form, out, self._wanted)
+
+    def opened(
+        self, first: int, last: int, cells: OpenCells, out: Any, cancel: np.ndarray
+    ) -> Job:  # fmt: skip
+        """A job for cells first..last-1 of the list of open cells."""
+        moving = self._solver.start == "moving"
+        return fill_open, (
+            first, last, cells, self._axes, self.motion, limits(self._solver), moving, out, self._wanted,
+            cancel,
+        )  # fmt: skip
+
+    def reachable(self, out: Any, cancel: np.ndarray) -> list[Job]:
+        """Jobs for what else a cell could end in, if that was asked for."""
+        if "coexistence" not in self._needs:
+            return []
+        from .._kernels.engine.coexistence import fill_reachable
+
+        axes = self._axes
+        shared = (
+            axes, self.curves.beta_lim, self.curves.beta_stick, self.no_load, self.motion,
+            limits(self._solver), out.also_reachable, out.sliding_limit, cancel,
+        )  # fmt: skip
+        return [(fill_reachable, (row, row + 1, *shared)) for row in range(axes.mu.size * axes.r.size)]
+
+    def finish(self, out: Any) -> None:
+        """The limit r = 0 without friction; and modes that the contact does not see may resonate."""
+        if out.amplitude.size:
+            axes = self._axes
+            if axes.beta[0] == 0.0:
+                static = np.abs(self._system.modes.static_response())
+                out.amplitude[:, axes.r == 0.0, 0, :] = static
+            where = np.broadcast_to(self.structures.resonant[:, np.newaxis, :], out.amplitude.shape)
+            out.amplitude[where & ~np.isnan(out.amplitude)] = np.inf
+
+
+def make_cells(system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver) -> Cells:
+    """The cells of a map; r, beta and mu are checked axes."""
+    return Cells(system, r, beta, mu, solver)

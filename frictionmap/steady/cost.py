@@ -1,0 +1,118 @@
+"""What a map will cost: memory, compared with what the machine has, and time, from a small part of it."""
+
+import contextlib
+import math
+import os
+import time
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from ..model.settings import Solver
+from ..model.system import System
+
+#: Bytes that a process takes before it has any cells.
+_BASE = 400e6
+
+#: Bytes, beside the cells, for each value of beta, for each (mu, r), and for each (mu, r) and mass; measured.
+_PER_BETA, _PER_FREQUENCY, _PER_MASS = 40.0, 200.0, 300.0
+
+#: Where a container says what it may take and what it has taken, in both versions of control groups.
+_GROUP = Path("/sys/fs/cgroup")
+_LIMITS = (
+    ("memory.max", "memory.current"),
+    ("memory/memory.limit_in_bytes", "memory/memory.usage_in_bytes"),
+)
+
+#: What cells take while they are written, over what they take in memory; measured: 1.05.
+_WRITING = 1.1
+
+#: A part of the map that takes so long (s) tells what the rest will take.
+_SAMPLE = 0.5
+
+#: Values of an axis in that part, to begin with and at most.
+_FEWEST, _MOST = 8, 256
+
+
+def memory_of_map(counts: Mapping[str, int], masses: int, outputs: tuple[str, ...]) -> float:
+    """Bytes that a map with so many values of mu, r and beta takes at its peak."""
+    from ..datasets.labels import CELL_VARIABLES
+
+    sizes = {**counts, "dof": masses}
+    cells = 0.0
+    for name in {*outputs, "status"}:
+        label = CELL_VARIABLES[name]
+        cells += np.dtype(label.dtype).itemsize * math.prod(float(sizes[dim]) for dim in label.dims)
+    frequency = _PER_FREQUENCY + (_PER_MASS * masses if masses > 1 else 0.0)
+    return _BASE + _WRITING * cells + counts["mu"] * counts["r"] * frequency + counts["beta"] * _PER_BETA
+
+
+def available_memory() -> float:
+    """Bytes that this process may still take; infinite where the machine does not tell."""
+    found = [_of_machine()]
+    for most, used in _LIMITS:
+        with contextlib.suppress(OSError, ValueError):
+            found.append(float((_GROUP / most).read_text()) - float((_GROUP / used).read_text()))
+    return min(found)
+
+
+def _of_machine() -> float:
+    with contextlib.suppress(OSError, ValueError, IndexError):
+        for line in Path("/proc/meminfo").read_text().splitlines():
+            if line.startswith("MemAvailable:"):
+                return 1024.0 * float(line.split()[1])
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        return float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES"))
+    return float("inf")
+
+
+def refuse_without_memory(counts: Mapping[str, int], system: System, solver: Solver) -> None:
+    """Refuse a map that this machine has no memory for, before any is taken.
+
+    Raises
+    ------
+    InputError
+        With what is needed and what there is.
+    """
+    needed, there = memory_of_map(counts, system.n, tuple(solver.outputs)), available_memory()
+    if needed > there:
+        cells = counts["mu"] * counts["r"] * counts["beta"]
+        raise InputError(
+            f"grid must fit in memory: its {cells:,} cells need about {in_bytes(needed)}, available are "
+            f"{in_bytes(there)}; make it coarser, ask for fewer outputs, or insist with --yes"
+        )
+
+
+def seconds_of_map(
+    system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver, threads: int | None
+) -> float:
+    """About how long a map takes, from one with fewer frequencies and friction ratios."""
+    from .sweep import sweep
+
+    values = _FEWEST
+    while True:
+        some_r, some_beta = (axis[:: max(1, axis.size // values)] for axis in (r, beta))
+        began = time.perf_counter()
+        sweep(system, some_r, some_beta, mu, solver=solver, threads=threads)
+        took = time.perf_counter() - began
+        if values > _FEWEST and (took > _SAMPLE or values >= _MOST):  # the first one compiles
+            return took * (r.size * beta.size) / (some_r.size * some_beta.size)
+        values *= 2
+
+
+def in_bytes(size: float) -> str:
+    """As in 1.5 GB."""
+    for unit in ("MB", "GB"):
+        size /= 1000.0 if unit == "GB" else 1e6
+        if size < 1000.0 or unit == "GB":
+            break
+    return f"{size:.2g} {unit}" if size < 100.0 else f"{size:,.0f} {unit}"
+
+
+def in_time(seconds: float) -> str:
+    """As in 40 s, 3 min, 2.5 h."""
+    if seconds < 100.0:
+        return f"{max(seconds, 1.0):.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 6000.0 else f"{seconds / 3600.0:.1f} h"

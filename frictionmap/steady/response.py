@@ -1,0 +1,366 @@
+"""One steady state in time: motion of the masses and of the contact, friction force, starts and stops."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import SupportsFloat, Unpack
+
+import numpy as np
+import xarray as xr
+
+from .. import checks, regimes
+from .._kernels.engine import phase_table
+from .._kernels.engine.answers import Cell
+from .._kernels.engine.fill import one_cell
+from .._kernels.engine.time_history import sample_phases
+from .._kernels.engine.window import window_table
+from .._kernels.one_mass.sliding_orbit import orbit_phase
+from .._kernels.structure.newton import make_workspace
+from .._kernels.structure.oscillators import make_scratch
+from .._kernels.structure.state import make_structure
+from ..datasets.labels import CELL_VARIABLES, coordinate, label_variable, stamp
+from ..errors import InputError, NoSteadyState
+from ..model.settings import Output, Solver, SolverSettings, merged
+from ..model.system import System
+from ..theory.boundaries import boundary_variables
+from .cells import Cells, limits, make_cells
+from .sweep import plan, sweep
+
+#: Samples of a time history per excitation period.
+POINTS = 2000
+_MOST_POINTS = 10**6
+
+#: Excitation periods shown of a motion that does not repeat: the longest steady state is as long.
+WINDOW = 8
+
+_WINDOWED = (
+    f"the motion repeats in no 8 periods: x, v, z, friction and the events are those of {WINDOW} periods at "
+    "the end of the {} that were followed, the scalars averages over the last 100"
+)
+
+_TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True)
+class Question:
+    """One steady state that is asked for."""
+
+    system: System
+    r: float
+    beta: float
+    mu: float
+    solver: Solver
+    points: int
+
+
+@dataclass(frozen=True)
+class History:
+    """A steady state in time; events are the starts of slides and stops, in order."""
+
+    period: int
+    tau: np.ndarray
+    x: np.ndarray  # (n, tau.size)
+    v: np.ndarray
+    z: np.ndarray  # (tau.size,)
+    friction: np.ndarray
+    phase: np.ndarray
+    events: tuple[np.ndarray, np.ndarray, np.ndarray]  # tau, phase that begins, z
+    durations: np.ndarray  # of the stops
+    amplitude: float
+    stuck: bool  # for good
+
+
+@dataclass(frozen=True)
+class Found:
+    """The steady state of a cell, or a window of a motion that does not repeat."""
+
+    table: np.ndarray | None  # phases of one period, or of the window; none where it sticks for good
+    status: int
+    rest: float = 0.0  # where it sticks
+    averages: Cell | None = None  # of the motion that does not repeat
+
+
+def _times(period: int, points: int) -> np.ndarray:
+    return np.linspace(0.0, _TURN * period, points * period + 1)
+
+
+def _since(tau: np.ndarray, start: float, total: float) -> np.ndarray:
+    """Times from `start` on, within one steady period."""
+    since = np.mod(tau - start, total)
+    since[since > total * (1.0 - 1e-15)] = 0.0  # rounding must not place a sample past the end
+    return since
+
+
+def _no_steady_state(question: Question, why: str) -> NoSteadyState:
+    return NoSteadyState(f"r = {question.r:g}, beta = {question.beta:g}, mu = {question.mu:g}: {why}")
+
+
+_UNBOUNDED = "an undamped resonance; the motion grows without bound"
+
+
+def _decided(cells: Cells, question: Question) -> int:
+    """The regime that a formula gives; unresolved where the cell is open."""
+    beta, mu = np.array([question.beta]), np.array([question.mu])
+    work = plan(cells, np.array([question.r]), mu, beta, question.solver)
+    if work.cells:
+        return regimes.UNRESOLVED
+    return regimes.CONTINUOUS if work.low[0] else regimes.PERMANENT_STICKING
+
+
+def _with_mirror_image(table: np.ndarray) -> np.ndarray:
+    """The table of phases over one steady period: twice as long where the motion returns mirrored."""
+    length = float(table[:, phase_table.LENGTH].sum())
+    if round(length / math.pi) % 2 == 0:
+        return table
+    mirrored = table.copy()
+    mirrored[:, phase_table.SIGN] *= -1.0
+    mirrored[:, phase_table.BEGIN] += length
+    return np.concatenate((table, mirrored))
+
+
+def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
+    """The table of phases of the continuous orbit, one phase."""
+    found = cells.structures
+    orbit, n = found.orbit, found.seen.size
+    st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
+    table = np.empty((1, phase_table.phase_columns(n)))
+    phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], question.beta)
+    phase_table.continuous_phase(st, orbit, 0, question.beta, phase, table[0], make_workspace(n))
+    return table
+
+
+def _window(question: Question, cells: Cells, cell: Cell) -> Found:
+    """The last periods that the solver followed, of a motion that does not repeat."""
+    before = _TURN * max(0.0, question.solver.cycles - WINDOW - 2.0)
+    moving = question.solver.start == "moving"
+    table = window_table(
+        cells.motion, question.beta, question.mu, moving, before, _TURN * (WINDOW + 2.0)
+    )  # fmt: skip
+    averages = cell._replace(amplitude=cells.unit * cell.amplitude)
+    return Found(table, cell.status, averages=averages)
+
+
+def _find(question: Question, cells: Cells) -> Found:
+    regime, rest = _decided(cells, question), 0.0
+    status = regimes.RESOLVED
+    table = np.empty((0, 0))
+    if regime == regimes.UNRESOLVED:
+        solver = question.solver
+        moving = solver.start == "moving"
+        cell, table = one_cell(cells.motion, question.beta, question.mu, limits(solver), moving)
+        status = cell.status
+        if status == regimes.NOT_PERIODIC:
+            return _window(question, cells, cell)
+        if cell.period == 0:
+            raise _no_steady_state(question, regimes.status_meaning(status))
+        regime, rest = cell.regime, cells.unit * cell.sign * cell.at.z
+    if regime == regimes.PERMANENT_STICKING:
+        return Found(None, status, rest)
+    if table.shape[0] == 0:
+        if math.isinf(cells.structures.orbit.v_abs[0]):
+            raise _no_steady_state(question, _UNBOUNDED)
+        table = _continuous_table(question, cells)
+        marginal = bool(cells.structures.marginal[0]) and question.beta > 0.0
+        status = regimes.MARGINAL if marginal else status
+    return Found(_with_mirror_image(table), status)
+
+
+def _stuck_history(question: Question, cells: Cells, rest: float) -> History:
+    """The contact held at `rest` for good."""
+    found = cells.structures
+    tau = _times(1, question.points)
+    turn = np.exp(1j * tau)
+    held = found.held[0][:, np.newaxis] * turn
+    force = question.system.modes.held_load(np.array([question.r]))[0] * turn
+    return History(
+        1, tau, held.real + found.shapes.lift[:, np.newaxis] * rest, -held.imag, np.full(tau.size, rest),
+        force.real - found.model.stiffness * rest, np.zeros(tau.size, np.int8),
+        (np.empty(0), np.empty(0), np.empty(0)), np.empty(0), 0.0, True,
+    )  # fmt: skip
+
+
+def _phase_starts(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Phases that begin, and z there."""
+    sign = table[:, phase_table.SIGN]
+    # a slide starts where the phase before it ended
+    return sign * table[:, phase_table.SENSE], np.roll(sign * table[:, phase_table.Z_END], 1)
+
+
+def _place(found: Found, tau: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where in time the table of phases lies, whose phases begin `begin` after the first one.
+
+    Returns the times of samples since its first phase; which phases begin among them, in order; and when.
+    """
+    table = found.table
+    assert table is not None
+    sign = table[0, phase_table.SIGN]
+    start = math.atan2(sign * table[0, phase_table.SIN], sign * table[0, phase_table.COS])
+    if found.averages is None:
+        total = float(table[:, phase_table.LENGTH].sum())
+        times = np.mod(begin + start, total)
+        order = np.argsort(times, kind="stable")
+        return _since(tau, start, total), order, times[order]
+    skipped = -start % _TURN  # to the first maximum of the load
+    inside = np.flatnonzero((begin >= skipped) & (begin <= skipped + tau[-1]))
+    return tau + skipped, inside, begin[inside] - skipped
+
+
+def _moving_history(question: Question, cells: Cells, found: Found) -> History:
+    """A motion that slides, sampled along its phases."""
+    numbers, table = cells.structures, found.table
+    assert table is not None
+    if numbers.resonant.any():
+        raise _no_steady_state(question, _UNBOUNDED)
+    n = numbers.seen.size
+    lengths = table[:, phase_table.LENGTH]
+    period = WINDOW if found.averages else max(1, round(float(lengths.sum()) / _TURN))
+    tau = _times(period, question.points)
+    since, shown, times = _place(found, tau, table[:, phase_table.BEGIN])
+    order = np.argsort(since, kind="stable")
+    st = make_structure(numbers.model, numbers.loads, 0, question.r, float(question.solver.steps))
+    coordinates, velocities = np.empty((2, n, tau.size))
+    z, friction = np.empty((2, tau.size))
+    sense = np.empty(tau.size, dtype=np.int8)
+    sample_phases(
+        st, question.beta, table, since[order], coordinates, velocities, z, friction, sense,
+        make_workspace(n), make_scratch(n),
+    )  # fmt: skip
+    back = np.empty_like(order)
+    back[order] = np.arange(order.size)
+    alone = (numbers.alone_re[0] + 1j * numbers.alone_im[0])[:, np.newaxis] * np.exp(1j * tau)
+    begins, places = _phase_starts(table)
+    return History(
+        period, tau, (numbers.shapes.free @ coordinates)[:, back] + alone.real,
+        (numbers.shapes.free @ velocities)[:, back] - alone.imag, z[back], friction[back], sense[back],
+        (times, begins[shown], places[shown]), lengths[table[:, phase_table.SENSE] == 0.0],
+        float(np.abs(table[:, phase_table.Z_END]).max()), False,
+    )  # fmt: skip
+
+
+def _summary(history: History, found: Found) -> dict[str, float]:
+    """The cell's numbers; those of a motion that does not repeat are averages, and it has no period."""
+    averages = found.averages
+    if averages is not None:
+        return {
+            "regime": averages.regime,
+            "stops_per_cycle": averages.stops,
+            "contact_amplitude": averages.amplitude,
+            "stuck_fraction": averages.stuck,
+            "period": 0,
+            "status": found.status,
+        }
+    stops = history.durations.size
+    regime = regimes.STICK_SLIP if stops else regimes.CONTINUOUS
+    return {
+        "regime": regimes.PERMANENT_STICKING if history.stuck else regime,
+        "stops_per_cycle": math.nan if history.stuck else stops / history.period,
+        "contact_amplitude": history.amplitude,
+        "stuck_fraction": 1.0 if history.stuck else history.durations.sum() / (_TURN * history.period),
+        "period": history.period,
+        "status": found.status,
+    }
+
+
+def _further(question: Question, names: list[Output]) -> dict[str, xr.Variable]:
+    """Outputs of a map's cell that the motion in time does not show."""
+    if not names:
+        return {}
+    solver = replace(question.solver, outputs=names)
+    ds = sweep(question.system, question.r, question.beta, question.mu, solver=solver, threads=1)
+    cell = ds.isel(mu=0, r=0, beta=0, missing_dims="ignore")
+    return {name: cell[name].variable for name in names}
+
+
+def _history(question: Question, cells: Cells, found: Found) -> History:
+    if found.table is None:
+        return _stuck_history(question, cells, found.rest)
+    return _moving_history(question, cells, found)
+
+
+def response(
+    system: System,
+    r: SupportsFloat,
+    beta: SupportsFloat,
+    mu: SupportsFloat = 1.0,
+    *,
+    solver: Solver | None = None,
+    points: int = POINTS,
+    **settings: Unpack[SolverSettings],
+) -> xr.Dataset:
+    """One steady state in time.
+
+    Parameters
+    ----------
+    system : System
+    r, beta, mu : float
+        Frequency ratio (> 0), friction ratio (>= 0), static over kinetic friction (>= 1) [-].
+    solver : Solver, optional
+        Settings; or give them one by one as keywords, each in place of the solver's own.
+    points : int
+        Samples per excitation period, up to 10^6.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `tau` (0 to 2 pi times the period): `x(dof, tau)`, `v(dof, tau)`, `z`, `friction` (over P)
+        and `phase` (-1, 0, 1).  Over `event`: `event_tau`, `event_phase` (the phase that begins) and
+        `event_z`.  Scalars: `regime`, `stops_per_cycle`, `contact_amplitude`, `stuck_fraction`, `period`,
+        `status`, the boundaries and what else `outputs` asks for.  tau = 0 is a maximum of the load (of the
+        base's displacement).
+
+        Of stick-slip that does not repeat (`status` not_periodic, `period` 0) tau goes over 8 periods at the
+        end of those that were followed, and the scalars are those of the map: averages.
+
+    Raises
+    ------
+    InputError
+        An argument is of the wrong kind or out of range.
+    NoSteadyState
+        There is none, or none was found.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.response(fm.System(), r=0.3, beta=0.5)
+    >>> int((ds.event_phase == 0).sum())
+    2
+    """
+    checks.instance(system, "system", System)
+    solver = merged(solver, settings)
+    r = checks.number(r, "r", least=0.0, most=checks.LARGEST_RATIO)
+    beta = checks.number(beta, "beta", least=0.0)
+    mu = checks.number(mu, "mu", least=1.0)
+    points = checks.whole(points, "points", least=2, most=_MOST_POINTS)
+    if r == 0.0:
+        raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
+    question = Question(system, r, beta, mu, solver, points)
+    cells = make_cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
+    found = _find(question, cells)
+    history = _history(question, cells, found)
+    summary = _summary(history, found)
+    times, begins, places = history.events
+    variables = {
+        "x": history.x,
+        "v": history.v,
+        "z": history.z,
+        "friction": history.friction,
+        "phase": history.phase,
+        "event_tau": times,
+        "event_phase": begins.astype(np.int8),
+        "event_z": places,
+    }
+    dofs = np.arange(1, system.n + 1)
+    ds = xr.Dataset(
+        {name: label_variable(name, values) for name, values in variables.items()},
+        coords={"tau": coordinate("tau", history.tau), "dof": coordinate("dof", dofs)},
+    )
+    ds = ds.assign({name: v[0, 0] for name, v in boundary_variables(cells.curves).items()})
+    ds = ds.assign(
+        {name: label_variable(name, CELL_VARIABLES[name].dtype(value)) for name, value in summary.items()}
+    )
+    ds = ds.assign(_further(question, [name for name in solver.outputs if name not in ds]))
+    cell = {"r": r, "beta": beta, "mu": mu}
+    ds = ds.assign_coords({name: coordinate(name, value) for name, value in cell.items()})
+    ds = stamp(ds, "response", "Steady state in time", system, cell, solver)
+    if found.averages is not None:
+        ds.attrs |= {"title": "Motion in time, a part of it", "comment": _WINDOWED.format(solver.cycles)}
+    return ds

@@ -1,0 +1,249 @@
+"""Regime maps: plan which cells need integration, run them in parallel, label the result."""
+
+import os
+from collections import namedtuple
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any, Unpack
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from .. import checks
+from .._kernels.engine.fill import RESTART, OpenCells
+from ..datasets.labels import CELL, CELL_VARIABLES, coordinate, label_variable, stamp
+from ..errors import InputError
+from ..model.settings import Solver, SolverSettings, merged
+from ..model.system import System
+from ..theory.boundaries import boundary_variables
+from .cells import Cells, Job, make_cells
+
+#: Cells a thread takes at a time: some milliseconds of work, so that the threads finish together, progress
+#: is seen and an interrupt is obeyed; and enough for the start of a tile not to count.
+TILE = 1024
+
+#: Rows of the map a thread fills by closed form at a time.
+ROW_CELLS = 262144
+
+#: What a cell costs, about, in hundredths of one that is followed: decided by a formula; followed; looked at
+#: for what else it could end in, with mu = 1 and above.
+_DECIDED, _FOLLOWED, _LOOKED_AT_SMOOTH, _LOOKED_AT = 2, 100, 25, 800
+
+#: The arrays of a map, one for every output.
+Arrays = namedtuple("Arrays", CELL_VARIABLES)  # type: ignore[misc]
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Which cells are open: in each row (mu, r), those from `low` to before `high` in beta."""
+
+    low: np.ndarray  # (n_mu * n_r,)
+    high: np.ndarray
+    rows: np.ndarray  # the rows that have open cells
+    ends: np.ndarray  # number of open cells up to and with each of them
+
+    @property
+    def cells(self) -> int:
+        """Number of open cells."""
+        return int(self.ends[-1]) if self.ends.size else 0
+
+    def tiles(self) -> Iterator[tuple[int, int]]:
+        """First cell and the one after the last of every tile of the list of open cells.
+
+        Cut at the ends of rows and where the search from neighbours starts anew, and nowhere else.
+        """
+        begin = first = 0
+        for end in self.ends.tolist():
+            for cut in (*range(begin + RESTART, end, RESTART), end):
+                if cut - first >= TILE:
+                    yield first, cut
+                    first = cut
+            begin = end
+        if first < begin:
+            yield first, begin
+
+
+def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Plan:
+    """Sort the cells into those that a formula decides and those that are open (theory.md 6).
+
+    - beta = 0 is linear; where nothing loads the contact (joined base-wall, r = 0), nothing moves.
+    - skip = "exact", mu = 1: continuous below beta_lim, stuck from beta_stick on, whatever the start.
+    - skip = "exact", start from rest: one mass with beta >= beta_stick never begins to move.
+    - r = 0 has no motion to integrate; a regime, but no number of stops, follows from the boundaries.
+    """
+    beta_lim, beta_stick = cells.curves.beta_lim, cells.curves.beta_stick
+    shape = beta_lim.shape
+    no_load = np.broadcast_to(cells.no_load, shape)
+    no_motion = np.broadcast_to(r == 0.0, shape)
+    low = np.full(shape, int(beta[0] == 0.0))
+    high = np.full(shape, beta.size)
+    stuck_from = np.searchsorted(beta, beta_stick)
+    if solver.skip == "exact":
+        smooth = (mu == 1.0)[:, np.newaxis]
+        proved = smooth | (solver.start == "rest" and cells.rest_sticks)
+        high = np.where(proved, stuck_from, high)
+        low = np.where(smooth, np.maximum(low, np.searchsorted(beta, beta_lim)), low)
+    high = np.where(no_motion, stuck_from, high)
+    low = np.where(no_load, 0, np.minimum(low, high))
+    open_cells = np.where(no_motion, 0, high - low).ravel()
+    rows = np.flatnonzero(open_cells)
+    return Plan(low.ravel(), high.ravel(), rows, np.cumsum(open_cells[rows]))
+
+
+def _allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> Any:
+    """Outputs asked for, and status, unresolved until they are filled; the others have no cells."""
+    sizes = dict(zip((*CELL, "dof"), (*shape, dofs), strict=True))
+    arrays: list[np.ndarray] = []
+    for name, label in CELL_VARIABLES.items():
+        kept = name in (*names, "status")
+        arrays.append(np.full([kept * sizes[dim] for dim in label.dims], label.unresolved, label.dtype))
+    return Arrays(*arrays)
+
+
+def default_threads() -> int:
+    """Processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _run(jobs: Sequence[Job], threads: int, done: Callable) -> None:
+    """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
+
+    This thread only waits, so that an interrupt reaches it at once.
+    """
+    pool = ThreadPoolExecutor(threads)
+    running: dict[Future, int] = {}
+    waiting = iter(enumerate(jobs))
+    try:
+        while True:
+            for index, (function, arguments) in islice(waiting, 2 * threads - len(running)):
+                running[pool.submit(function, *arguments)] = index
+            if not running:
+                return
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                future.result()
+                done(running.pop(future))
+    finally:
+        pool.shutdown(wait=not running, cancel_futures=True)
+
+
+def _fill(
+    cells: Cells, work: Plan, shape: tuple[int, int, int], smooth: np.ndarray, out: Any, threads: int,
+    progress: Progress | None,
+) -> None:  # fmt: skip
+    """`smooth` (n_mu,): where mu = 1."""
+    n_rows, columns = work.low.size, shape[2]
+    rows_at_once = max(1, ROW_CELLS // columns)
+    opened = OpenCells(work.rows, work.ends, work.low, work.high)
+    cancel = np.zeros(1, dtype=np.uint8)
+    jobs: list[Job] = []
+    costs: list[int] = []
+    for first in range(0, n_rows, rows_at_once):
+        last = min(first + rows_at_once, n_rows)
+        jobs.append(cells.closed(first, last, opened, out))
+        costs.append(_DECIDED * (last - first) * columns)
+    for first, last in work.tiles():
+        jobs.append(cells.opened(first, last, opened, out, cancel))
+        costs.append(_FOLLOWED * (last - first))
+
+    others = cells.reachable(out, cancel)
+    jobs += others
+    per_row = columns * np.repeat(np.where(smooth, _LOOKED_AT_SMOOTH, _LOOKED_AT), shape[1])
+    costs += per_row.tolist()[: len(others)]
+
+    spent, total = 0, sum(costs)
+
+    def done(index: int) -> None:
+        nonlocal spent
+        spent += costs[index]
+        if progress is not None:
+            progress(spent, total)
+
+    try:
+        _run(jobs, threads, done)
+    except BaseException:
+        cancel[0] = 1  # the kernels look at it at every event
+        raise
+    cells.finish(out)
+
+
+def sweep(
+    system: System,
+    r: ArrayLike,
+    beta: ArrayLike,
+    mu: ArrayLike = 1.0,
+    *,
+    solver: Solver | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    **settings: Unpack[SolverSettings],
+) -> xr.Dataset:
+    """Classify the steady state on a mu-r-beta grid and count its stops per cycle.
+
+    Parameters
+    ----------
+    system : System
+    r : array_like, shape (n_r,)
+        Frequency ratios omega/omega_1 [-], >= 0, increasing.
+    beta : array_like, shape (n_beta,)
+        Kinetic friction force over load amplitude F/P (F/(k1 Y)) [-], >= 0, increasing.
+    mu : array_like, shape (n_mu,)
+        Static over kinetic friction [-], >= 1, increasing.
+    solver : Solver, optional
+        Settings; or give them one by one as keywords: start, cycles, tolerance, steps, skip, steady,
+        outputs (see `Solver`).  If both are given, a keyword takes the place of the solver's setting.
+    threads : int, optional
+        Threads to use; default: all processors of the process.  The result is the same to the bit.
+    progress : callable, optional
+        Called as progress(done, all) with numbers that tell the share of the work.
+
+    Returns
+    -------
+    xarray.Dataset
+        On (mu, r, beta): the outputs asked for, and `status` if it has anything to say.  On (mu, r):
+        `beta_lim`, `beta_lim_modal`, `beta_stick`.  Unresolved cells have regime -1; `status` says why.
+
+    Raises
+    ------
+    InputError
+        An argument or a setting is of the wrong kind or out of range.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.sweep(fm.System(), r=[0.3], beta=[0.01, 0.5, 1.0])
+    >>> ds.stops_per_cycle.values
+    array([[[ 0.,  2., nan]]], dtype=float32)
+    """
+    checks.instance(system, "system", System)
+    solver = merged(solver, settings)
+    r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
+    beta = checks.axis(beta, "beta", least=0.0)
+    mu = checks.axis(mu, "mu", least=1.0)
+    checks.cells(mu.size, r.size, beta.size * (system.n if "amplitude" in solver.outputs else 1))
+    threads = default_threads() if threads is None else checks.whole(threads, "threads", least=1)
+    if progress is not None and not callable(progress):
+        raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
+    cells = make_cells(system, r, beta, mu, solver)
+    out = _allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
+    work = plan(cells, r, mu, beta, solver)
+    _fill(cells, work, (mu.size, r.size, beta.size), mu == 1.0, out, threads, progress)
+    names = list(solver.outputs)
+    if "status" not in names and out.status.any():  # no cell is unresolved, or averaged, without a word
+        names.append("status")
+    variables = {name: label_variable(name, getattr(out, name)) for name in names}
+    axes = {"mu": mu, "r": r, "beta": beta}
+    if "amplitude" in solver.outputs:
+        axes["dof"] = np.arange(1, system.n + 1)
+    ds = xr.Dataset(
+        variables | boundary_variables(cells.curves),
+        coords={name: coordinate(name, values) for name, values in axes.items()},
+    )
+    grid = {"r": r, "beta": beta, "mu": mu}
+    return stamp(ds, "sweep", "Motion regimes and stops per cycle", system, grid, solver)

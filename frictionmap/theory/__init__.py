@@ -1,0 +1,1 @@
+"""Closed forms over frequency: boundaries, and the motion that never sticks."""

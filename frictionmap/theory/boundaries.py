@@ -1,0 +1,287 @@
+"""Boundaries of the motion regimes over frequency, and the response functions they come from."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from .. import checks
+from .._kernels.boundary.functions import response_functions
+from .._kernels.boundary.structure import many_mode_functions
+from .._kernels.engine.one_mass import Frequencies
+from ..datasets.labels import coordinate, label_variable, stamp
+from ..errors import InputError
+from ..features import (
+    all_mass_invariant_points,
+    high_frequency_limits,
+    invariant_points,
+    one_phase,
+    peak_thresholds,
+)
+from ..model.modes import angles, modulus
+from ..model.system import System
+
+#: About so many invariant points beyond one a mode are listed, from the highest down: below them hardly any
+#: motion is continuous.  Those of masses are listed up to so many masses: they cost the square of it.
+_LISTED_POINTS = 40
+_LISTED_MASSES = 12
+
+#: A point may lie on an end of the axis, and is found beside it: the search reaches so much further, and
+#: keeps what is no further off than rounding.
+_REACH = 1e-6
+_ON_END = 1e-13
+
+
+#: Least r over the fastest rate of a structure: some 10^6 intervals are searched for S there.
+_LEAST_RATIO = 1e-6
+
+
+@dataclass(frozen=True)
+class Curves:
+    """What depends on r, and on (mu, r), only; arrays of shape (n_r,) and (n_mu, n_r).
+
+    V, U, G, H and S are those of theory.md 2 and 3.
+    """
+
+    v: np.ndarray  # complex; infinite at an undamped resonance
+    u: np.ndarray
+    g: np.ndarray
+    h: np.ndarray
+    s: np.ndarray
+    beta_lim: np.ndarray
+    beta_lim_modal: np.ndarray
+    beta_stick: np.ndarray
+
+
+@dataclass(frozen=True)
+class OneMass:
+    """Curves of one mass, and what its cells need of them: `lim` is beta_lim over the load amplitude."""
+
+    curves: Curves
+    frequencies: Frequencies
+    lim: np.ndarray
+
+
+def find_beta_lim(
+    v_abs: np.ndarray, u: np.ndarray, h: np.ndarray, s: np.ndarray, inertia: np.ndarray, mu: np.ndarray,
+    at_resonance: np.ndarray,
+) -> np.ndarray:  # fmt: skip
+    """The boundary of continuous motion, |V|/sqrt(U^2 + max(S, H + mu/(m_eff r^2))^2), theory.md 3.
+
+    T(2.26), (3.21), (5.65) and (7.46) are cases of it.  0 where U or S alone is infinite, or U has no limit
+    (r = 0).
+
+    Parameters
+    ----------
+    v_abs, u, h, s : (n_r,) |V|, U, H, S; V and U are infinite at an undamped resonance
+    inertia : (n_r,) 1/(m_eff r^2), 0 at r = 0
+    mu : (n_mu,)
+    at_resonance : (n_r,) or (), the limit there: |V|/|U| is finite, and both outgrow S
+
+    Returns
+    -------
+    beta_lim : (n_mu, n_r)
+    """
+    resonance = np.isinf(v_abs) & np.isinf(u)
+    with np.errstate(invalid="ignore"):  # inf - inf at a resonance, replaced below
+        bracket = np.maximum(s, h + mu[:, np.newaxis] * inertia)
+    size = np.hypot(np.where(np.isnan(u), np.inf, u), bracket)
+    finite = np.isfinite(size)
+    found = np.where(finite, v_abs / np.where(finite, size, 1.0), 0.0)
+    return np.where(resonance, at_resonance, found)
+
+
+def find_beta_stick(force: np.ndarray, mu: np.ndarray) -> np.ndarray:
+    """The boundary to permanent sticking, |F|/mu, (n_mu, n_r), theory.md 4; F (n_r,), complex, holds z.
+
+    T(2.29), (3.24), (6.11), (6.27) and (6.33) are cases of it.
+    """
+    return modulus(force) / mu[:, np.newaxis]
+
+
+def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
+    """All curves of a normalised system, whose one mode has w = 1; `r` and `mu` are checked axes.
+
+    One mass has its own search of S, with intervals in closed form, and one equation for both contacts.
+    """
+    load = system.contact_load(r)
+    v_abs, v_arg, u, g, h, s = np.empty((6, r.size))
+    response_functions(r, system.zeta, u, g, v_abs, v_arg, h, s)
+    amplitude = modulus(load)
+    half = np.divide(0.5, r, out=np.zeros_like(r), where=r > 0.0)
+    even = (half >= 1.0) & (half == np.floor(half))
+    marginal = even & (system.zeta == 0.0)
+    frequencies = Frequencies(r, amplitude, angles(load), v_abs, v_arg, u, g, marginal)
+    lim = find_beta_lim(v_abs, u, h, s, _over_square(1.0, r), mu, np.array(0.25 * np.pi))
+    stiffness = system.modes.dynamic_stiffness(r)[:, 0]
+    resonance = stiffness == 0.0
+    found = Curves(
+        v=np.where(resonance, np.inf, load / np.where(resonance, 1.0, stiffness)),
+        u=u,
+        g=g,
+        h=h,
+        s=s,
+        beta_lim=lim * amplitude,
+        beta_lim_modal=lim * amplitude,  # of one mode the maximum of the sum is the sum of the maxima
+        beta_stick=find_beta_stick(load, mu),
+    )
+    return OneMass(found, frequencies, lim)
+
+
+def _over_square(number: float, r: np.ndarray) -> np.ndarray:
+    """number/r^2; 0 at r = 0, where S is infinite anyway."""
+    return np.divide(number, r * r, out=np.zeros_like(r), where=r > 0.0)
+
+
+def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
+    """All curves of a system of any number of masses; `r` and `mu` are checked axes."""
+    modes = system.modes
+    rates = modes.w * np.where(modes.zeta > 1.0, 2.0 * modes.zeta, 1.0)
+    least = _LEAST_RATIO * float(rates.max())
+    small = (r > 0.0) & (r < least)
+    if small.any():
+        raise InputError(
+            f"r must be 0, or >= {least:.3g} for this structure: below, S takes too many steps to find; "
+            f"got {r[small][0]:g}"
+        )
+    v = modes.contact_response(r)
+    u, g, h, s, by_modes = np.empty((5, r.size))
+    many_mode_functions(r, modes.w, modes.zeta, modes.chi, modes.inverse_mass, u, g, h, s, by_modes)
+    v_abs = modulus(v)
+    inertia = _over_square(modes.inverse_mass, r)
+    # at a resonance |V|/|U| -> (pi/4) |lambda_i/chi_i|, T(6.2), (6.26)
+    seen = modes.dynamic_stiffness(r) == 0.0  # r is an undamped frequency to the bit: else they are finite
+    ratio = modulus(modes.participation(r)) / np.where(modes.chi == 0.0, np.inf, np.abs(modes.chi))
+    at_resonance = 0.25 * np.pi * (seen * ratio).sum(axis=1)
+    return Curves(
+        v=v,
+        u=u,
+        g=g,
+        h=h,
+        s=s,
+        beta_lim=find_beta_lim(v_abs, u, h, s, inertia, mu, at_resonance),
+        beta_lim_modal=find_beta_lim(v_abs, u, h, by_modes, inertia, mu, at_resonance),
+        beta_stick=find_beta_stick(modes.held_load(r), mu),
+    )
+
+
+def find_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
+    """All curves of any system; `r` and `mu` are checked axes."""
+    if system.normalised:
+        return one_mass_curves(system, r, mu).curves
+    return many_mode_curves(system, r, mu)
+
+
+def boundary_variables(found: Curves) -> dict[str, xr.Variable]:
+    """beta_lim, beta_lim_modal and beta_stick, dims (mu, r)."""
+    return {
+        name: label_variable(name, getattr(found, name))
+        for name in ("beta_lim", "beta_lim_modal", "beta_stick")
+    }
+
+
+def _padded(rows: list[np.ndarray]) -> np.ndarray:
+    """Rows of different lengths in one array, filled up with NaN."""
+    table = np.full((len(rows), max(row.size for row in rows)), np.nan)
+    for row, values in zip(table, rows, strict=True):
+        row[: values.size] = values
+    return table
+
+
+def _invariants(system: System, r: np.ndarray) -> dict[str, np.ndarray]:
+    """Invariant points within the axis; a variable is left out if it would be empty, as NetCDF demands."""
+    positive = r[r > 0.0]
+    if positive.size < 2:
+        return {}
+    first = positive[0]
+    low, high = first * (1.0 - _ON_END), r[-1] * (1.0 + _ON_END)
+    end = min(r[-1] * (1.0 + _REACH), checks.LARGEST_RATIO)
+    reach = first * (1.0 - _REACH), end, _LISTED_POINTS + system.n
+    found: dict[str, np.ndarray] = {}
+    points = invariant_points(system, *reach)
+    points = points[(points >= low) & (points <= high)]
+    if points.size:
+        found["invariant_point"] = points
+    if system.n <= _LISTED_MASSES and one_phase(system) and not system.modes.zeta.any():
+        rows = [row[(row >= low) & (row <= high)] for row in all_mass_invariant_points(system, *reach)]
+        if any(row.size for row in rows):
+            found["mass_invariant_point"] = _padded(rows)
+    return found
+
+
+def _feature_variables(system: System, r: np.ndarray, mu: np.ndarray) -> dict[str, xr.Variable]:
+    """Features of theory.md 7 that are curves or lists."""
+    modes = system.modes
+    limits = [high_frequency_limits(system, value) for value in mu]
+    found = {
+        "natural_frequency": modes.w,
+        "peak_threshold": peak_thresholds(system),
+        "beta_lim_high": np.array([limit.beta_lim for limit in limits]),
+        "beta_stick_high": np.array([limit.beta_stick for limit in limits]),
+        **_invariants(system, r),
+    }
+    if system.n > 1:  # one mass held does not vibrate, and NetCDF has no empty dimension
+        found["held_frequency"] = modes.held_frequencies()
+        found["held_response"] = np.abs(modes.held_response(r)).T
+    else:
+        found["held_response"] = np.full((1, r.size), float(modes.base_motion))
+    return {name: label_variable(name, values) for name, values in found.items()}
+
+
+def boundaries(system: System, r: ArrayLike, mu: ArrayLike = 1.0) -> xr.Dataset:
+    """Boundaries of the motion regimes over frequency.
+
+    Parameters
+    ----------
+    system : System
+    r : array_like, shape (n_r,)
+        Frequency ratios omega/omega_1 [-], >= 0, increasing; omega_1 = sqrt(k_1/m_1) of a chain, else the
+        system's frequency_scale.
+    mu : array_like, shape (n_mu,)
+        Static over kinetic friction [-], >= 1, increasing.
+
+    Returns
+    -------
+    xarray.Dataset
+        On (mu, r): `beta_lim` (continuous below it, theory.md 3), `beta_lim_modal` (T(5.65) with (5.55))
+        and `beta_stick` (permanent sticking is possible from it on, theory.md 4).  On r: the response
+        function of z, `V` (real part) and `V_imag`, and `U`, `G`, `H`, `S`.  Features (theory.md 7): by
+        mode `natural_frequency` and `peak_threshold`; `held_frequency`; by mu the limits for r -> infinity,
+        `beta_lim_high` and `beta_stick_high`; on (dof, r) `held_response`, the amplitude of each mass with
+        the contact held, infinite where that resonates; within the axis `invariant_point`, where friction
+        leaves z as it is (the phase only, with damping), and on (dof, mass_invariant), without damping only,
+        `mass_invariant_point`, where it leaves the monoharmonic amplitude of a mass as it is, NaN where
+        there are fewer.  The highest 40 or so points and one a mode are listed, those of masses for up to 12
+        masses; a variable without points is left out.  `frictionmap.features` has them all.
+
+    Raises
+    ------
+    InputError
+        An axis is empty, not finite, not increasing or out of range.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.boundaries(fm.System(contact="joined-base-wall"), r=[0.5, 2.0])
+    >>> ds.beta_stick.values
+    array([[0.25, 4.  ]])
+    """
+    checks.instance(system, "system", System)
+    r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
+    mu = checks.axis(mu, "mu", least=1.0)
+    found = find_curves(system, r, mu)
+    functions = {
+        "V": found.v.real,
+        "V_imag": np.where(np.isinf(found.v.real), 0.0, found.v.imag),
+        "U": found.u,
+        "G": found.g,
+        "H": found.h,
+        "S": found.s,
+    }
+    variables = boundary_variables(found)
+    variables |= {name: label_variable(name, v) for name, v in functions.items()}
+    variables |= _feature_variables(system, r, mu)
+    axes = {"mu": mu, "r": r, "dof": np.arange(1, system.n + 1)}
+    ds = xr.Dataset(variables, coords={name: coordinate(name, axis) for name, axis in axes.items()})
+    return stamp(ds, "boundaries", "Boundaries of the motion regimes", system, {"r": r, "mu": mu})

@@ -22,7 +22,6 @@ from frictionmap._kernels.structure.oscillators import make_scratch
 from frictionmap._kernels.structure.state import make_structure, place
 from frictionmap.model.settings import Solver
 from frictionmap.steady.cells import make_cells
-from frictionmap.steady.sweep import _allocate
 
 from ..peers import cvode, heyoka, solve_ivp
 from ..peers.body import SHORTEST_STOP, TWO_PI, Body, Cell
@@ -35,6 +34,7 @@ from ..peers.fixed_step import (
     problem,
 )
 from ..peers.peer import Peer
+from .own_kernel import cells_by_kernel
 
 #: Each cell is solved so often in one timed call of ours: a call costs as much as a cell.
 COPIES = 40
@@ -110,19 +110,14 @@ def open_cells(
     system: fm.System, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver
 ) -> tuple[Callable[[], object], Callable[[], list[np.ndarray]]]:
     """(solve, read) of cells (r_k, beta_k) by the kernel of maps; read gives stops, Z and status if kept."""
-    mus = np.array([mu])
-    out = _allocate((1, r.size, r.size), system.n, solver.outputs)
-    one_a_row = np.arange(r.size)
-    cells = make_cells(system, r, beta, mus, solver)
-    function, arguments = cells.opened(
-        0, r.size, one_a_row, one_a_row + 1, one_a_row, out, np.zeros(1, dtype=np.uint8)
-    )
+    solve, out = cells_by_kernel(system, r, beta, mu, solver)
+    each = np.arange(r.size)
 
     def read() -> list[np.ndarray]:
         kept = (out.stops_per_cycle, out.contact_amplitude, out.status)
-        return [values[0, one_a_row, one_a_row] for values in kept if values.size]
+        return [values[0, each, each] for values in kept if values.size]
 
-    return lambda: function(*arguments), read
+    return solve, read
 
 
 def _stop_times(scene: Scene, r: float, beta: float, steps: int) -> list[float]:

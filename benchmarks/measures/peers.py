@@ -35,13 +35,11 @@ from numba import njit
 import frictionmap as fm
 from frictionmap import regimes
 from frictionmap._kernels.engine.answers import Limits
-from frictionmap._kernels.engine.fill import OpenCells
 from frictionmap._kernels.engine.march import steady_state
 from frictionmap._kernels.engine.motion import at_frequency, contact_at, start
 from frictionmap._kernels.engine.one_mass import Frequencies, OneMassSystem
 from frictionmap.model.settings import Solver
-from frictionmap.steady.cells import make_cells
-from frictionmap.steady.sweep import Arrays, _allocate
+from frictionmap.steady.sweep import Arrays
 from frictionmap.theory.boundaries import one_mass_curves
 
 from ..peers.body import Body, Cell, Outcome
@@ -52,6 +50,7 @@ from ..peers.solve_ivp import OneMassSolveIvp
 from ..report.figures import new_figure, save_figure
 from ..report.quoting import two_digits
 from ..report.record import pinned, save, spread, table, timed
+from .own_kernel import cells_by_kernel
 from .structures import SMALL_Z, equal_chain
 
 PEERS = (OneMassSolveIvp, OneMassHeyoka, HeyokaBatch)
@@ -299,7 +298,7 @@ def _near_cells(system: fm.System, quick: bool) -> tuple[np.ndarray, np.ndarray]
     return np.repeat(r, shares.size), (lim[:, np.newaxis] * shares).ravel()
 
 
-def cells_by_kernel(
+def _by_kernel(
     system: fm.System, r: np.ndarray, beta: np.ndarray, steady: str, cycles: int
 ) -> Callable[[], Arrays]:
     """A function that solves cells (r[k], beta[k]), mu = 1, by the kernel of maps; k is out[0, k, k]."""
@@ -309,19 +308,10 @@ def cells_by_kernel(
         tolerance=1e-10,
         outputs=("regime", "stops_per_cycle", "contact_amplitude", "cycles", "status"),
     )
-    out = _allocate((1, r.size, r.size), system.n, solver.outputs)
-    one_a_row = np.arange(r.size)
-    cells = make_cells(system, r, beta, np.ones(1), solver)
-    function, arguments = cells.opened(
-        0,
-        r.size,
-        OpenCells(one_a_row, one_a_row + 1, one_a_row, one_a_row + 1),
-        out,
-        np.zeros(1, dtype=np.uint8),
-    )
+    kernel, out = cells_by_kernel(system, r, beta, 1.0, solver)
 
     def solve() -> Arrays:
-        function(*arguments)
+        kernel()
         return out
 
     return solve
@@ -337,10 +327,10 @@ def solved_and_marched(
     """Both ways on the cells that both resolve in so many cycles, alternating; `budget` in seconds."""
     resolved = np.ones(r.size, dtype=bool)
     for steady in ("solved", "marched"):  # compiles, too
-        resolved &= _diagonal(cells_by_kernel(system, r, beta, steady, cycles)().status) == regimes.RESOLVED
+        resolved &= _diagonal(_by_kernel(system, r, beta, steady, cycles)().status) == regimes.RESOLVED
     left_out = int((~resolved).sum())
     r, beta = r[resolved], beta[resolved]
-    ways = {steady: cells_by_kernel(system, r, beta, steady, cycles) for steady in ("solved", "marched")}
+    ways = {steady: _by_kernel(system, r, beta, steady, cycles) for steady in ("solved", "marched")}
     seconds: dict[str, list[float]] = {name: [] for name in ways}
     answers: dict[str, Arrays] = {}
     spent, runs = 0.0, 0

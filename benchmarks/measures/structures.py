@@ -25,7 +25,6 @@ from numba import njit
 
 import frictionmap as fm
 from frictionmap import regimes
-from frictionmap._kernels.engine.fill import OpenCells
 from frictionmap._kernels.one_mass import events
 from frictionmap._kernels.one_mass import scan_step as phases
 from frictionmap._kernels.one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, TOUCH
@@ -34,7 +33,7 @@ from frictionmap._kernels.structure.oscillators import FELL, make_scratch
 from frictionmap._kernels.structure.state import make_structure
 from frictionmap.model.settings import Solver
 from frictionmap.steady.cells import make_cells
-from frictionmap.steady.sweep import Arrays, _allocate
+from frictionmap.steady.sweep import Arrays
 from frictionmap.theory.boundaries import many_mode_curves, one_mass_curves
 
 from ..peers.body import Body, Cell, Outcome
@@ -43,6 +42,7 @@ from ..peers.peer import Peer
 from ..peers.solve_ivp import ChainSolveIvp
 from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, timed
+from .own_kernel import cells_by_kernel
 
 MASSES = (1, 2, 5, 20, 50)
 BETA = 0.5
@@ -120,7 +120,7 @@ def _motion(system: fm.System, r: float, steps: int, special: bool) -> Callable[
         step = phases.step_constants(r, system.zeta, float(steps))
         work = np.empty(phases.MAX_TERMS)
         return lambda slides: follow_one(step, BETA, BETA, slides, work)
-    found = make_cells(system, np.array([r]), np.array([BETA]), np.ones(1), Solver()).found
+    found = make_cells(system, np.array([r]), np.array([BETA]), np.ones(1), Solver()).structures
     n = found.seen.size
     st = make_structure(found.model, found.loads, 0, r, float(steps))
     state, held, scratch = np.zeros((2, n)), np.zeros((2, n - 1)), make_scratch(n)
@@ -273,19 +273,7 @@ def sample_cells(
 def prepare(system: fm.System, sampled: list[Sampled]) -> tuple[Callable[[], None], Arrays]:
     """(solve, out): the cells by the kernel of maps, constants made anew for each; cell k is out[0, k, k]."""
     r, beta = (np.array([getattr(cell, name) for cell in sampled]) for name in ("r", "beta"))
-    mu = np.ones(1)
-    solver = Solver()
-    out = _allocate((1, r.size, r.size), system.n, solver.outputs)
-    one_a_row = np.arange(r.size)
-    cells = make_cells(system, r, beta, mu, solver)
-    function, arguments = cells.opened(
-        0,
-        r.size,
-        OpenCells(one_a_row, one_a_row + 1, one_a_row, one_a_row + 1),
-        out,
-        np.zeros(1, dtype=np.uint8),
-    )
-    return lambda: function(*arguments), out
+    return cells_by_kernel(system, r, beta, 1.0, Solver())
 
 
 def _differences(ours: list[Outcome], theirs: list[Outcome], cells: list[Sampled]) -> dict:

@@ -23,8 +23,9 @@ _QUICK = ("data: cut off",)
 
 
 def _installed(package: Path, folder: Path) -> Path:
-    """A copy of the package alone, its cache with it."""
-    shutil.copytree(package / "frictionmap", folder / "frictionmap", dirs_exist_ok=True)
+    """A copy of the package alone, without the caches of other states that may lie in it."""
+    stale = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(package / "frictionmap", folder / "frictionmap", dirs_exist_ok=True, ignore=stale)
     return folder
 
 

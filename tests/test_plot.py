@@ -650,3 +650,11 @@ print("matplotlib.pyplot" in sys.modules)
 def test_a_notebook_counts_as_pyplot_in_use(shell, expected):
     """IPython may be there without a shell that runs."""
     assert in_a_new_process(NOTEBOOK.format(shell=shell)) == f"{expected}\n"
+
+
+def test_a_response_of_one_moment_or_beyond_all_axes():
+    ds = fm.response(fm.System(), 0.7, 0.2, points=20)
+    with pytest.raises(InputError, match=r"^a response must have two tau or more to be drawn; got 1$"):
+        fm.plot_response(ds.isel(tau=[3]))
+    with pytest.raises(InputError, match=r"^z must be at most 1e\+300 to be drawn; got 1e\+308$"):
+        fm.plot_response(ds.assign(z=ds.z * 0.0 - 1e308))

@@ -55,11 +55,12 @@ class Matrices:
 
     def scaled(self, frequency: float, stiffness: float) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
         """Dimensionless M, K and C1 (theory.md 1) for units of frequency and of stiffness."""
-        scaled = (
-            self.mass * (frequency / stiffness * frequency),
-            self.stiffness / stiffness,
-            None if self.damping is None else self.damping * (frequency / stiffness),
-        )
+        with np.errstate(over="ignore", invalid="ignore"):  # what is out of range is refused below
+            scaled = (
+                self.mass * (frequency / stiffness * frequency),
+                self.stiffness / stiffness,
+                None if self.damping is None else self.damping * (frequency / stiffness),
+            )
         for name, matrix in zip(_NAMES, scaled, strict=True):
             if matrix is not None and not _in_range(matrix, name):
                 raise InputError(

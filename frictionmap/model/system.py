@@ -176,10 +176,11 @@ class System:
 
     def _check_chain(self) -> None:
         for name, default in (("frequency_scale", None), ("stiffness_scale", 1.0)):
-            if getattr(self, name) != default:
+            given = getattr(self, name)
+            if isinstance(given, bool) or given != default:  # True == 1.0
                 raise InputError(
                     f"{name} must be left out without matrices: a chain has the units of its first mass and "
-                    f"spring; got {checks.one_line(getattr(self, name))}"
+                    f"spring; got {checks.one_line(given)}"
                 )
         masses = _ratios((1.0,) if self.mass_ratios is None else self.mass_ratios, "mass_ratios")
         springs = _ratios(

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from .. import regimes
+from ..errors import InputError
 from .marks import spread
 from .palette import CLASSES, LINES, STUCK
 from .panels import Handle, given_axes, legend_below, new_figure, title_figure
@@ -34,6 +35,9 @@ _GAP, _MOST_LABELS = 0.09, 11
 
 #: A motion smaller than this is none.
 _ROUNDING = 1e-9
+
+#: Axes are wider than what they show, and have to end at a double.
+_LARGEST = 1e300
 
 #: Where stops begin; without one of these they are not marked.
 _EVENTS = ("event_tau", "event_phase", "event_z")
@@ -164,6 +168,16 @@ def _panels(ds: xr.Dataset) -> list[str]:
     ]
 
 
+def _check_can_be_seen(ds: xr.Dataset) -> None:
+    """Refuse one moment alone, and values whose range is beyond all doubles."""
+    if ds.sizes["tau"] < 2:
+        raise InputError(f"a response must have two tau or more to be drawn; got {ds.sizes['tau']}")
+    for name in ("z", "x", "friction"):
+        largest = float(np.abs(ds[name].values).max())
+        if largest > _LARGEST:
+            raise InputError(f"{name} must be at most {_LARGEST:g} to be drawn; got {largest:g}")
+
+
 def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":
     """Picture of one steady state: load, motion in the contact, every mass, friction force over time.
 
@@ -189,6 +203,7 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
     """
     ds = to_draw(ds, "plot_response", "response")
     check_holds(ds, ("z", "x", "friction", "phase"), "its motion")
+    _check_can_be_seen(ds)
     names = _panels(ds)
     if ax is None:
         heights = [_HEIGHTS[name] for name in names]

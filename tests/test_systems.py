@@ -928,7 +928,11 @@ def test_arrays_of_any_kind_are_lists():
 
 @pytest.mark.filterwarnings("error")
 def test_scales_that_are_none():
-    with pytest.raises(fm.InputError, match=r"^stiffness_scale must be left out without matrices.*; got True$"):
+    with pytest.raises(
+        fm.InputError, match=r"^stiffness_scale must be left out without matrices.*; got True$"
+    ):
         fm.System(stiffness_scale=True)
-    with pytest.raises(fm.InputError, match=r"^frequency_scale and stiffness_scale must leave M with entries"):
+    with pytest.raises(
+        fm.InputError, match=r"^frequency_scale and stiffness_scale must leave M with entries"
+    ):
         fm.System(matrices={"M": np.eye(2), "K": 2.0 * np.eye(2) - np.eye(2)[::-1]}, frequency_scale=1e200)

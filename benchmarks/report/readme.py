@@ -21,7 +21,7 @@ BEGIN = "<!-- from benchmarks/results by `python -m benchmarks readme`: do not e
 END = "<!-- end of the results -->"
 
 #: The benchmarks whose results are quoted.
-QUOTED = ("peers", "structures", "accuracy", "stress", "steady", "scaling", "startup")
+QUOTED = ("peers", "structures", "accuracy", "stress", "steady", "scaling", "startup", "faults")
 
 #: What `faults` found in an earlier state, quoted beside what it finds.
 BEFORE = "faults-before"

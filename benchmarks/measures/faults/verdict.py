@@ -1,5 +1,6 @@
 """What a run said and did, and what is wrong with it; counts of it, family by family."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -22,6 +23,9 @@ FOREIGN = "foreign error"
 
 #: Examples kept of each kind in each family; the counts are of all.
 _EXAMPLES = 3
+
+#: Folders of this machine, in what was said: nobody else has them.
+_FOLDERS = re.compile(r"/(?:[\w.+-]+/)+(?=[\w.-]+)")
 
 #: Characters kept of what a run said.
 _KEPT = 400
@@ -107,7 +111,7 @@ class Family:
         (self.named if excused else self.wrong)[wrong] += 1
         kept = self.examples.setdefault(wrong, [])
         if len(kept) < _EXAMPLES:
-            kept.append({"tried": str(what)[:_KEPT], "said": str(said)[:_KEPT]})
+            kept.append({"tried": str(what)[:_KEPT], "said": _FOLDERS.sub("", str(said))[:_KEPT]})
 
     def content(self) -> dict:
         """For the JSON."""

@@ -25,7 +25,7 @@ def _rows(now: dict, before: dict) -> Iterator[tuple[str, ...]]:
 def _beyond(now: dict) -> str:
     """What is counted apart: trials that ended inside a library."""
     counts = [f"{count:,} {kind}" for entry in now.values() for kind, count in entry["beyond reach"].items()]
-    return f"Counted apart: {', '.join(counts)}." if counts else "None ended inside the HDF5 library."
+    return f"Counted apart: {', '.join(counts)}." if counts else "No trial ended inside the HDF5 library."
 
 
 def faults_lines(faults: dict, before: dict | None) -> list[str]:

@@ -12,7 +12,7 @@ from frictionmap._kernels.engine.fill import RESTART, one_cell
 from frictionmap._kernels.structure.state import CHI, make_structure
 from frictionmap.datasets.labels import CELL_VARIABLES
 from frictionmap.model.settings import OUTPUTS, Solver
-from frictionmap.steady.cells import limits, make_cells
+from frictionmap.steady.cells import Cells, limits
 from frictionmap.steady.sweep import TILE, plan
 
 ONE = fm.System("joined-base-wall", damping_ratios=0.001)
@@ -48,7 +48,7 @@ def test_blocks_of_rows_are_the_same_part_of_the_whole(system):
 def test_work_is_cut_only_where_the_search_from_neighbours_starts_anew():
     r, mu, beta = np.linspace(0.1, 2.5, 30), np.array([1.0, 1.5]), np.linspace(0.0, 5.0, 2000)
     solver = Solver()
-    work = plan(make_cells(ONE, r, beta, mu, solver), r, mu, beta, solver)
+    work = plan(Cells(ONE, r, beta, mu, solver), r, mu, beta, solver)
     tiles = list(work.tiles())
     assert [0, *(last for _, last in tiles)] == [*(first for first, _ in tiles), work.cells]
     assert all(last - first < TILE + RESTART for first, last in tiles)
@@ -101,8 +101,8 @@ def test_one_mass_and_its_structure_have_one_table_of_phases(contact, r, beta):
     system = fm.System(contact, damping_ratios=0.05)
     axes = np.array([r]), np.array([beta]), np.array([1.0])
     solver = Solver(skip="none")
-    one = make_cells(system, *axes, solver)
-    many = make_cells(system, *axes, solver)
+    one = Cells(system, *axes, solver)
+    many = Cells(system, *axes, solver)
     many._one = None
     _, table = one_cell(one.motion, beta, 1.0, limits(solver), False)
     _, other = one_cell(many.motion, beta, 1.0, limits(solver), False)
@@ -137,7 +137,7 @@ CHAIN = {"contact_masses": [2], "mass_ratios": [1.0, 2.0, 0.7], "stiffness_ratio
 def test_phases_are_sums_of_exponentials(chain, zeta, beta):
     """The sums of a phase start from its state, place and velocity, and a slide ends where the contact is."""
     system, r, mu = fm.System(**chain, damping_ratios=zeta), 0.37, 1.0
-    cells = make_cells(system, np.array([r]), np.array([beta]), np.array([mu]), Solver())
+    cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), Solver())
     _, table = one_cell(cells.motion, beta, mu, limits(Solver()), False)
     found = cells.structures
     st = make_structure(found.model, found.loads, 0, r, 24.0)

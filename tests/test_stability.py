@@ -16,7 +16,7 @@ from frictionmap._kernels.structure.events import MOVING
 from frictionmap._kernels.structure.newton import make_workspace
 from frictionmap._kernels.structure.oscillators import make_scratch
 from frictionmap._kernels.structure.state import make_structure
-from frictionmap.steady.cells import make_cells
+from frictionmap.steady.cells import Cells
 
 after_slide = callable_kernel(follow.after_slide)
 slide_on = callable_kernel(follow.slide_on)
@@ -64,7 +64,7 @@ def test_closed_form_of_one_mass(r):
 
 def set_moving(system, r, beta, mu):
     """(n, structure, its moving start with cos and sin of the load's phase, workspace, scratch)."""
-    cells = make_cells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver())
+    cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver())
     found = cells.structures
     n = found.seen.size
     st = make_structure(found.model, found.loads, 0, r, 24.0)

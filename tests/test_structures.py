@@ -20,7 +20,7 @@ from frictionmap._kernels.structure.oscillators import COLUMNS, WW, WZ, ZW, ZZ, 
 from frictionmap._kernels.structure.state import make_structure
 from frictionmap.model.held_structure import held_structure
 from frictionmap.model.settings import OUTPUTS as EVERY
-from frictionmap.steady.cells import make_cells
+from frictionmap.steady.cells import Cells
 from frictionmap.steady.response import Question, _find
 
 decay = callable_kernel(closed_form.decay)
@@ -282,7 +282,7 @@ def test_held_structure(case):
 def gauss_samples(system, r, beta, mu):
     """Weights, times, velocities of the masses and of the contact, friction: Gauss points in every phase."""
     solver = fm.Solver()
-    cells = make_cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
+    cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
     question = Question(system, r, beta, mu, solver, 2)
     rows = _find(question, cells).table
     found = cells.structures

@@ -21,7 +21,7 @@ from frictionmap._kernels.structure.events import after_slide, slide_on
 from frictionmap._kernels.structure.oscillators import make_scratch
 from frictionmap._kernels.structure.state import make_structure, place
 from frictionmap.model.settings import Solver
-from frictionmap.steady.cells import make_cells
+from frictionmap.steady.cells import Cells
 
 from ..peers import cvode, heyoka, solve_ivp
 from ..peers.body import SHORTEST_STOP, TWO_PI, Body, Cell
@@ -212,7 +212,7 @@ def _march_structure(model, loads, r, beta, mu, steps, cycles, out, begins):
 def prepare_marched(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
     """The fixed-step exact integrator by itself, for the same number of periods as the peers."""
     r, beta = np.array(cells).T
-    found = make_cells(scene.system, r, beta, np.array([scene.mu]), Solver())
+    found = Cells(scene.system, r, beta, np.array([scene.mu]), Solver())
     out, begins = np.empty((r.size, 2)), np.empty((r.size, MOST_STOPS))
     if isinstance(found.motion, OneMassSystem):
         f = found.motion.frequencies

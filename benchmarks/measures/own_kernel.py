@@ -7,7 +7,7 @@ import numpy as np
 import frictionmap as fm
 from frictionmap._kernels.engine.fill import OpenCells
 from frictionmap.model.settings import Solver
-from frictionmap.steady.cells import make_cells
+from frictionmap.steady.cells import Cells
 from frictionmap.steady.sweep import Arrays, _allocate
 
 
@@ -17,7 +17,7 @@ def cells_by_kernel(
     """(solve, out): cells (r[k], beta[k]), constants made anew for each; cell k is out[0, k, k]."""
     out = _allocate((1, r.size, r.size), system.n, solver.outputs)
     one_a_row = np.arange(r.size)
-    cells = make_cells(system, r, beta, np.array([mu]), solver)
+    cells = Cells(system, r, beta, np.array([mu]), solver)
     function, arguments = cells.opened(
         0, r.size, OpenCells(one_a_row, one_a_row + 1, one_a_row, one_a_row + 1), out,
         np.zeros(1, dtype=np.uint8),

@@ -32,7 +32,7 @@ from frictionmap._kernels.structure.events import after_slide, slide_on
 from frictionmap._kernels.structure.oscillators import FELL, make_scratch
 from frictionmap._kernels.structure.state import make_structure
 from frictionmap.model.settings import Solver
-from frictionmap.steady.cells import make_cells
+from frictionmap.steady.cells import Cells
 from frictionmap.steady.sweep import Arrays
 from frictionmap.theory.boundaries import many_mode_curves, one_mass_curves
 
@@ -120,7 +120,7 @@ def _motion(system: fm.System, r: float, steps: int, special: bool) -> Callable[
         step = phases.step_constants(r, system.zeta, float(steps))
         work = np.empty(phases.MAX_TERMS)
         return lambda slides: follow_one(step, BETA, BETA, slides, work)
-    found = make_cells(system, np.array([r]), np.array([BETA]), np.ones(1), Solver()).structures
+    found = Cells(system, np.array([r]), np.array([BETA]), np.ones(1), Solver()).structures
     n = found.seen.size
     st = make_structure(found.model, found.loads, 0, r, float(steps))
     state, held, scratch = np.zeros((2, n)), np.zeros((2, n - 1)), make_scratch(n)

@@ -30,7 +30,7 @@ def limits(solver: Solver) -> Limits:
 
 
 class Cells:
-    """The cells of a system over checked axes."""
+    """The cells of a map of a system; r, beta and mu are checked axes."""
 
     def __init__(
         self, system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver
@@ -102,9 +102,7 @@ class Cells:
         """A job for the cells of rows first..last-1 that formulas decide."""
         return fill_closed, (first, last, cells, self._axes, self._closed_form, out, self._wanted)
 
-    def opened(
-        self, first: int, last: int, cells: OpenCells, out: Any, cancel: np.ndarray
-    ) -> Job:  # fmt: skip
+    def opened(self, first: int, last: int, cells: OpenCells, out: Any, cancel: np.ndarray) -> Job:
         """A job for cells first..last-1 of the list of open cells."""
         moving = self._solver.start == "moving"
         return fill_open, (
@@ -134,8 +132,3 @@ class Cells:
                 out.amplitude[:, axes.r == 0.0, 0, :] = static
             where = np.broadcast_to(self.structures.resonant[:, np.newaxis, :], out.amplitude.shape)
             out.amplitude[where & ~np.isnan(out.amplitude)] = np.inf
-
-
-def make_cells(system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver) -> Cells:
-    """The cells of a map; r, beta and mu are checked axes."""
-    return Cells(system, r, beta, mu, solver)

@@ -22,7 +22,7 @@ from ..errors import InputError, NoSteadyState
 from ..model.settings import Output, Solver, SolverSettings, merged
 from ..model.system import System
 from ..theory.boundaries import boundary_variables
-from .cells import Cells, limits, make_cells
+from .cells import Cells, limits
 from .sweep import plan, sweep
 
 #: Samples of a time history per excitation period.
@@ -333,7 +333,7 @@ def response(
     if r == 0.0:
         raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
     question = Question(system, r, beta, mu, solver, points)
-    cells = make_cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
+    cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
     found = _find(question, cells)
     history = _history(question, cells, found)
     summary = _summary(history, found)

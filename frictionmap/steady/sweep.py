@@ -19,7 +19,7 @@ from ..errors import InputError
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
 from ..theory.boundaries import boundary_variables
-from .cells import Cells, Job, make_cells
+from .cells import Cells, Job
 
 #: Cells a thread takes at a time: some milliseconds of work, so that the threads finish together, progress
 #: is seen and an interrupt is obeyed; and enough for the start of a tile not to count.
@@ -230,7 +230,7 @@ def sweep(
     threads = default_threads() if threads is None else checks.whole(threads, "threads", least=1)
     if progress is not None and not callable(progress):
         raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
-    cells = make_cells(system, r, beta, mu, solver)
+    cells = Cells(system, r, beta, mu, solver)
     out = _allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
     work = plan(cells, r, mu, beta, solver)
     _fill(cells, work, (mu.size, r.size, beta.size), mu == 1.0, out, threads, progress)

@@ -14,6 +14,7 @@ puts the numbers of the committed results into README.md.
   search_of_s                  the search of S: by grid, by the kernel, in 40 digits
   peers                        one mass by every solver; solved against marched
   scaling                      cost against cells, threads, low frequency, share of open cells
+  own_entry                    how functions here call kernels
   floor                        nanoseconds per slide and stop, and what their closed forms take with no logic
   startup                      import, --help, first run (compile), second run, in fresh processes
   stress                       the numerical torture test against 40-digit arithmetic

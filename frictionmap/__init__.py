@@ -9,10 +9,12 @@ _kernels       the only home of jitted code: numbers and arrays in, numbers and 
 model          what is simulated: system, matrices, modes, the structure held at its
                contact, settings of the solver
 datasets       what a dataset holds: labels, schema, provenance
+roots          the search for all roots of functions with poles
 features       limits, peak thresholds, invariant points, quasi-static displacement
 theory         closed forms over frequency: `boundaries`, `continuous_motion`
-steady         steady states: cells, `sweep` (plan, run, label), `response`; what a map costs
+steady         steady states: cells, `sweep` (plan, run, label), `curves`, `response`; what a map costs
 files          configurations; places of output, storage, reading; files in words
+identify       measured data: files, fits, estimates with their errors
 pictures       palette, panels, and a module for each kind of picture; `plot` is the door
 cli            the command line; `arguments`, `progress`, `interrupts`
 =============  =========================================================================
@@ -28,11 +30,12 @@ from .errors import InputError, NoSteadyState
 from .version import __version__
 
 if TYPE_CHECKING:
-    from . import features
+    from . import features, identify
     from .files.config import load_config
     from .model.settings import Solver
     from .model.system import System
-    from .plot import plot_boundaries, plot_regimes, plot_response
+    from .plot import plot_boundaries, plot_curves, plot_orbit, plot_regimes, plot_response
+    from .steady.curves import curves
     from .steady.response import response
     from .steady.sweep import sweep
     from .theory.boundaries import boundaries
@@ -46,9 +49,13 @@ __all__ = [
     "__version__",
     "boundaries",
     "continuous_motion",
+    "curves",
     "features",
+    "identify",
     "load_config",
     "plot_boundaries",
+    "plot_curves",
+    "plot_orbit",
     "plot_regimes",
     "plot_response",
     "response",
@@ -62,8 +69,11 @@ _HOME = {
     "System": "model.system",
     "boundaries": "theory.boundaries",
     "continuous_motion": "theory.continuous_motion",
+    "curves": "steady.curves",
     "load_config": "files.config",
     "plot_boundaries": "plot",
+    "plot_curves": "plot",
+    "plot_orbit": "plot",
     "plot_regimes": "plot",
     "plot_response": "plot",
     "response": "steady.response",
@@ -76,8 +86,8 @@ def __dir__() -> list[str]:
 
 
 def __getattr__(name: str) -> object:
-    if name == "features":
-        return import_module(".features", __name__)
+    if name in ("features", "identify"):
+        return import_module(f".{name}", __name__)
     if name in _HOME:
         value = getattr(import_module(f".{_HOME[name]}", __name__), name)
         globals()[name] = value

@@ -43,8 +43,8 @@ def run() -> int:
 
     try:
         status = main()
-    except SystemExit as stop:  # of help and of arguments that are wrong
-        status = int(stop.code or 0)
+    except SystemExit as ending:  # of help and of arguments that are wrong
+        status = int(ending.code or 0)
     status = _flush() or status
     interrupts.ignore()
     return status

@@ -69,11 +69,26 @@ def _takes_output(sub: argparse.ArgumentParser, metavar: str, text: str) -> None
     sub.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
 
-def _takes_config(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument("config", metavar="CONFIG.toml", type=Path, help="what to compute")
-    _takes_output(sub, "OUT.nc", "file to write; default: named after CONFIG, in the current folder")
-    text = "override a key of CONFIG, e.g. --set grid.r.step=0.01; repeatable, each key once"
+def _takes_config(
+    sub: argparse.ArgumentParser,
+    name: str = "CONFIG",
+    what: str = "what to compute",
+    key: str = "grid.r.step=0.01",
+) -> None:
+    sub.add_argument("config", metavar=f"{name}.toml", type=Path, help=what)
+    _takes_output(sub, "OUT.nc", f"file to write; default: named after {name}, in the current folder")
+    text = f"override a key of {name}, e.g. --set {key}; repeatable, each key once"
     sub.add_argument("--set", dest="overrides", metavar="KEY=VALUE", action="append", default=[], help=text)
+
+
+def _takes_yes(sub: argparse.ArgumentParser) -> None:
+    text = "compute what this machine seems to have too little memory for"
+    sub.add_argument("--yes", action="store_true", help=text)
+
+
+def _takes_threads(sub: argparse.ArgumentParser) -> None:
+    text = "threads to use (default: all processors); the result is the same to the bit"
+    sub.add_argument("--threads", metavar="N", type=_threads, action=_Once, help=text)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -92,10 +107,13 @@ def _parser() -> argparse.ArgumentParser:
     text = "Classify every cell of a grid and count its stops per cycle; write NetCDF."
     sub = command("map", "classify every cell of a grid", text)
     _takes_config(sub)
-    text = "threads to use (default: all processors); the result is the same to the bit"
-    sub.add_argument("--threads", metavar="N", type=_threads, action=_Once, help=text)
-    text = "compute a map for which this machine seems to have too little memory"
-    sub.add_argument("--yes", action="store_true", help=text)
+    _takes_threads(sub)
+    _takes_yes(sub)
+    text = "Compute response curves over frequency: amplitude, phase, harmonics, energy; write NetCDF."
+    sub = command("curves", "amplitude, phase, harmonics and energy over frequency", text)
+    _takes_config(sub)
+    _takes_threads(sub)
+    _takes_yes(sub)
     text = "Compute the boundaries of the regimes over frequency (no cell is classified); write NetCDF."
     _takes_config(command("boundaries", "curves only", text))
     sub = command("response", "one steady state in time", "Compute one steady state in time; write NetCDF.")
@@ -104,9 +122,18 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("--beta", type=float, required=True, action=_Once, help="friction ratio, >= 0")
     text = "static over kinetic friction, >= 1 (default: grid.mu of CONFIG if that is one value, else needed)"
     sub.add_argument("--mu", type=float, action=_Once, help=text)
+    text = "Fit friction, damping and frequency to measured data; print estimates with errors, write NetCDF."
+    sub = command("identify", "friction, damping and frequency from measured data", text)
+    _takes_config(sub, "RIG", "which data, and what is known", "data.window=[0.5,4]")
     sub = command("plot", "a picture of any file", "Draw any file that the other commands wrote.")
     sub.add_argument("file", metavar="FILE.nc", type=Path, help="what to draw")
     _takes_output(sub, "PICTURE", ".png, .pdf or .svg; default: FILE.png in the current folder")
+    text = (
+        "what to draw of response curves: amplitude (with the phase), first_harmonic, contact, harmonics, "
+        "energy or transmitted_force (default: the first there is); of a response: history (default) or orbit"
+    )
+    sub.add_argument("--quantity", metavar="NAME", action=_Once, help=text)
+    sub.add_argument("--log", action="store_true", help="amplitudes of curves on a logarithmic axis")
     sub = command("info", "what is in a file", "Print what is in a file, in one screen.")
     sub.add_argument("file", metavar="FILE.nc", type=Path, help="what to read")
     return parser

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from .files.config import Config
     from .files.places import Output
+    from .progress import Progress
 
 
 #: Cells of a map from which on its cost is told before it is taken.
@@ -37,19 +38,45 @@ def _tell(options: Options, output: "Output", *summary: str) -> None:
 
 
 def _map(options: Options, config: "Config", output: "Output") -> None:
-    from ._kernels.cache import listeners
-    from .files.summary import describe_causes, describe_map
-    from .progress import Progress
     from .steady.sweep import sweep
 
     cells = config.mu.size * config.r.size * config.beta.size
-    with Progress(f"map of {cells:,} cells", options.quiet) as progress:
-        listeners.append(progress.compiling)
+
+    def run(progress: "Progress") -> "xr.Dataset":
         if cells >= _MANY and not options.quiet:
             progress.say(f"{cells:,} cells take about {_cost(options, config)}", always=True)
+        return sweep(config.system, config.r, config.beta, config.mu, solver=config.solver,
+                     threads=options.threads, progress=progress)  # fmt: skip
+
+    _fill_cells(options, config, output, f"map of {cells:,} cells", run)
+
+
+def _curves(options: Options, config: "Config", output: "Output") -> None:
+    from .steady.curves import curves
+
+    asked = config.curves
+
+    def run(progress: "Progress") -> "xr.Dataset":
+        return curves(config.system, config.r, config.beta, config.mu, harmonics=asked.harmonics,
+                      quantities=asked.quantities, solver=config.solver, threads=options.threads,
+                      progress=progress)  # fmt: skip
+
+    lines = config.mu.size * config.beta.size
+    _fill_cells(options, config, output, f"{lines:,} response curves", run)
+
+
+def _fill_cells(
+    options: Options, config: "Config", output: "Output", what: str, run: Callable[["Progress"], "xr.Dataset"]
+) -> None:
+    """Compute a grid of cells with progress shown, write it, and tell what came out."""
+    from ._kernels.cache import listeners
+    from .files.summary import describe_causes, describe_map
+    from .progress import Progress
+
+    with Progress(what, options.quiet) as progress:
+        listeners.append(progress.compiling)
         began = time.perf_counter()
-        ds = sweep(config.system, config.r, config.beta, config.mu, solver=config.solver,
-                   threads=options.threads, progress=progress)  # fmt: skip
+        ds = run(progress)
         took = time.perf_counter() - began
         output.fill(_finish(ds, config, options), lambda size: progress.writing(output.path, size))
         listeners.remove(progress.compiling)
@@ -95,15 +122,31 @@ def _one_mu(config: "Config") -> float:
 def _compute(options: Options) -> None:
     from .files.config import load_config
     from .files.places import claimed
-    from .steady.cost import refuse_without_memory
+    from .steady.cost import refuse_curves_without_memory, refuse_map_without_memory
 
-    room = refuse_without_memory if options.command == "map" and not options.yes else None
-    config = load_config(options.config, options.overrides, room)
+    rooms = {"map": refuse_map_without_memory, "curves": refuse_curves_without_memory}
+    room = rooms.get(options.command)
+    config = load_config(options.config, options.overrides, None if room and options.yes else room)
     ending = "" if options.command == "map" else f"-{options.command}"
     path = options.output or Path(f"{config.name}{ending}.nc")
-    command = {"map": _map, "boundaries": _boundaries, "response": _response}[options.command]
+    commands = {"map": _map, "curves": _curves, "boundaries": _boundaries, "response": _response}
+    command = commands[options.command]
     with claimed(path, options.overwrite, config.files) as output:
         command(options, config, output)
+
+
+def _identify(options: Options) -> None:
+    from .files.places import claimed
+    from .files.storage import write_netcdf
+    from .identify.estimates import describe_estimates
+    from .identify.rig import identify, load_rig
+
+    rig = load_rig(options.config, options.overrides)
+    path = options.output or Path(f"{rig.name}-identify.nc")
+    with claimed(path, options.overwrite, rig.files) as output:
+        ds = identify(rig)
+        output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
+    _tell(options, output, rig.title, *describe_estimates(ds))
 
 
 def _plot(options: Options) -> None:
@@ -115,7 +158,7 @@ def _plot(options: Options) -> None:
     path = options.output or Path(f"{options.file.stem}.png")
     check_picture(path)
     with claimed(path, options.overwrite, [options.file]) as output:
-        output.fill(lambda scratch: save_picture(ds, scratch))
+        output.fill(lambda scratch: save_picture(ds, scratch, options.quantity, log=options.log))
     if not options.quiet:
         _print(f"wrote {path}")
 
@@ -157,7 +200,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = sys.argv[1:] if arguments is None else list(arguments)
     options = parse(given)
     options.command_line = f"frictionmap {shlex.join(given)}"
-    run = {"plot": _plot, "info": _info}.get(options.command, _compute)
+    run = {"plot": _plot, "info": _info, "identify": _identify}.get(options.command, _compute)
     try:
         _check_text(given)
         run(options)

@@ -4,7 +4,6 @@ Equation numbers are those of theory.md 7 and of the thesis (T).
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -15,24 +14,14 @@ from ._kernels.boundary.damping import first_damping_functions
 from .errors import InputError
 from .model.modes import ModalModel
 from .model.system import System
+from .roots import Stretch, find_roots, shaped, union, with_poles, without
 
 #: Invariant points crowd towards r = 0, where hardly any motion is continuous: no more than so many are
 #: looked for, from the highest down.
 MOST_POINTS = 1000
 
-#: Between two poles a change of sign is looked for at these shares of the way: ever closer to the poles,
-#: where a mode of little weight bends the sum only at its own.
-_NEAR = 0.25 ** np.arange(1.0, 16.0)
-_SHARES = np.unique(np.concatenate((_NEAR, 1.0 - _NEAR, np.arange(1.0, 16.0) / 16.0)))
-
 #: Phases of a load that differ by less than this are one: a few units of rounding of an exponential.
 _ONE_PHASE = 1e-14
-
-_EPS = float(np.finfo(float).eps)
-
-#: Steps to a root at most: every third is a halving, and no interval is halved more often than a double's
-#: bits allow.
-_STEPS = 200
 
 
 class HighFrequency(NamedTuple):
@@ -102,27 +91,18 @@ def quasi_static_displacement(system: System, beta: float) -> np.ndarray:
     return np.linalg.solve(modes.stiffness, modes.load.real - beta * modes.contact)
 
 
-class _Range(NamedTuple):
-    """A stretch of frequencies, and where in it the sums over modes turn sharply."""
-
-    low: float
-    high: float
-    edges: np.ndarray  # increasing, strictly inside
-    poles: np.ndarray  # of the edges, those where a sum may be infinite
-
-
-def _range(modes: ModalModel, low: object, high: object, most: object) -> _Range:
+def _range(modes: ModalModel, low: object, high: object, most: object) -> Stretch:
     """The checked range, cut at its lower end so that it has at most about `most` edges.
 
-    Edges are the natural frequencies and, of every seen mode that vibrates, the damped frequency over
-    1, 3, 5...: there u of T(7.11) has its poles, or without them changes its sign.
+    Edges are the natural frequencies and, of every participating mode that vibrates, the damped frequency
+    over 1, 3, 5...: there u of T(7.11) has its poles, or without them changes its sign.
     """
     low = checks.number(low, "low", above=0.0)
     high = checks.number(high, "high", above=low, most=checks.LARGEST_RATIO)
     most = checks.whole(most, "most", least=1)
-    seen = (modes.chi != 0.0) & (modes.zeta < 1.0)
+    vibrating = (modes.chi != 0.0) & (modes.zeta < 1.0)
     edges, poles = [modes.w], [modes.w[modes.zeta == 0.0]]
-    for w, zeta in zip(modes.w[seen], modes.zeta[seen], strict=True):
+    for w, zeta in zip(modes.w[vibrating], modes.zeta[vibrating], strict=True):
         top = w * math.sqrt((1.0 - zeta) * (1.0 + zeta))
         first = 2.0 * math.floor(0.5 * top / high) + 1.0
         last = min(top / low, first + 2.0 * most)
@@ -135,72 +115,16 @@ def _range(modes: ModalModel, low: object, high: object, most: object) -> _Range
     if inside[0].size > most:
         low = float(inside[0][-most - 1])
         inside = [part[part > low] for part in inside]
-    return _Range(low, high, *inside)
-
-
-def _polish(
-    f: Callable[[np.ndarray, np.ndarray], np.ndarray],
-    which: np.ndarray,
-    low: np.ndarray,
-    high: np.ndarray,
-    at_low: np.ndarray,
-    at_high: np.ndarray,
-) -> np.ndarray:
-    """Roots of the functions `which` between low and high, all (n_roots,), to two units of rounding.
-
-    The Illinois method: false position, where the value at an end that stays twice is halved; every third
-    step is a bisection, which bounds their number.
-    """
-    root = high.copy()
-    left = np.arange(low.size)
-    stayed = np.zeros(low.size)  # which end did: -1 low, 1 high
-    for step in range(_STEPS):
-        least = 2.0 * _EPS * high
-        open_ = (high - low > 2.0 * least) & (at_high != 0.0)
-        root[left] = np.where(open_, root[left], high)
-        left, which, low, high, at_low, at_high, least, stayed = (
-            part[open_] for part in (left, which, low, high, at_low, at_high, least, stayed)
-        )
-        if left.size == 0:
-            break
-        if step % 3 == 2:
-            new = 0.5 * (low + high)
-        else:
-            new = np.clip(low + (high - low) * (at_low / (at_low - at_high)), low + least, high - least)
-        value = f(new, which)
-        moves_low = value * np.sign(at_low) > 0.0
-        low, high = np.where(moves_low, new, low), np.where(moves_low, high, new)
-        at_high = np.where(moves_low, np.where(stayed > 0.0, 0.5 * at_high, at_high), value)
-        at_low = np.where(moves_low, value, np.where(stayed < 0.0, 0.5 * at_low, at_low))
-        stayed = np.where(moves_low, 1.0, -1.0)
-    return root
-
-
-def _roots(f: Callable[..., np.ndarray], where: _Range) -> list[np.ndarray]:
-    """Roots with a change of sign of several functions.
-
-    f(r) returns the values of all functions, (n_r, n_functions); f(r, which) those of one a frequency,
-    (n_r,).  A pair of roots between two samples is missed.
-    """
-    edges = np.concatenate(([where.low], where.edges, [where.high]))
-    r = np.unique(edges[:-1, np.newaxis] + np.diff(edges)[:, np.newaxis] * _SHARES)
-    r = r[~np.isin(r, where.poles)]  # a narrow stretch has samples that round to its ends
-    values = f(r)
-    sign = np.sign(values)
-    same_side = np.searchsorted(where.poles, r[1:]) == np.searchsorted(where.poles, r[:-1])
-    k, which = np.nonzero((sign[1:] * sign[:-1] < 0.0) & same_side[:, np.newaxis])
-    found = _polish(f, which, r[k], r[k + 1], values[k, which], values[k + 1, which])
-    exact = (sign == 0.0) & (values != 0.0).any(axis=0)  # not of a function that is zero everywhere
-    return [np.unique(np.concatenate((found[which == j], r[exact[:, j]]))) for j in range(values.shape[1])]
+    return Stretch(low, high, *inside)
 
 
 def _first_damping(modes: ModalModel, r: np.ndarray) -> np.ndarray:
     """u_i/w_i^2 chi_i, and 0 of modes that the contact does not see, whose u may be infinite; (n_r, n)."""
-    seen = modes.chi != 0.0
-    u = np.empty((r.size, int(seen.sum())))
-    first_damping_functions(r, modes.w[seen], modes.zeta[seen], u)
-    terms = np.zeros((r.size, seen.size))
-    terms[:, seen] = u * (modes.chi / modes.w**2)[seen]
+    participating = modes.chi != 0.0
+    u = np.empty((r.size, int(participating.sum())))
+    first_damping_functions(r, modes.w[participating], modes.zeta[participating], u)
+    terms = np.zeros((r.size, participating.size))
+    terms[:, participating] = u * (modes.chi / modes.w**2)[participating]
     return terms
 
 
@@ -219,7 +143,7 @@ def invariant_points(system: System, low: float, high: float, most: int = MOST_P
     modes = system.modes
     where = _range(modes, low, high, most)
     row = modes.chi[np.newaxis]
-    return _roots(lambda r, which=None: _sums(_first_damping(modes, r), row, which), where)[0]
+    return find_roots(lambda r, which=None: _sums(_first_damping(modes, r), row, which), where)[0]
 
 
 def _turned_load(modes: ModalModel) -> np.ndarray:
@@ -267,29 +191,55 @@ def _follows_contact(modes: ModalModel, rows: np.ndarray) -> np.ndarray:
     return (not modes.base_motion) & np.isclose(np.abs(rows), np.abs(modes.chi), 1e-12, 1e-13).all(axis=1)
 
 
+def _antiresonances(modes: ModalModel, where: Stretch) -> np.ndarray:
+    """Zeros of V, where V_k/V has its poles, unless V_k is zero there, too."""
+    return find_roots(lambda r, which=None: shaped(modes.contact_response(r).real, which), where)[0]
+
+
+class _Motions(NamedTuple):
+    """Masses, and at last the contact, as weights of the modes; (n_rows, n) and (n_rows,)."""
+
+    rows: np.ndarray
+    own: np.ndarray  # whether it is the motion in the contact
+
+    def ratios(self, modes: ModalModel, r: np.ndarray, which: np.ndarray | None) -> np.ndarray:
+        """V_k/V without damping, (n_r, n_rows), or (n_r,) of one a frequency; 1 of the contact itself."""
+        v_k, v = _sums(_responses(modes, r), self.rows, which), shaped(modes.contact_response(r).real, which)
+        own = self.own if which is None else self.own[which]
+        safe = np.where(v == 0.0, 1.0, v)
+        return np.where(own, 1.0, np.where(v == 0.0, 0.0, v_k / safe))
+
+
+def _motions(modes: ModalModel) -> _Motions:
+    masses = _displacement_rows(modes, np.arange(1, modes.w.size + 1))
+    own = np.append(_follows_contact(modes, masses), True)
+    return _Motions(np.vstack((masses, modes.chi)), own)
+
+
 def all_mass_invariant_points(
     system: System, low: float, high: float, most: int = MOST_POINTS
 ) -> list[np.ndarray]:
     """`mass_invariant_points` of every mass, at about the cost of one."""
     modes = _undamped(system)
     where = _range(modes, low, high, most)
-    rows = _displacement_rows(modes, np.arange(1, system.n + 1))
-    own = _follows_contact(modes, rows)
+    where = with_poles(where, _antiresonances(modes, where))
+    motions = _motions(modes)
+    n = system.n
 
     def functions(r: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
-        row = None if which is None else which % system.n
-        u, v = _first_damping(modes, r), _responses(modes, r)
-        u_k, v_k = _sums(u, rows, row), _sums(v, rows, row)
-        u_z, v_z = u @ modes.chi, modes.contact_response(r).real
+        row = np.arange(n) if which is None else which % n
+        u = _first_damping(modes, r)
+        u_k, u_z = _sums(u, motions.rows, None if which is None else row), u @ modes.chi
         if which is None:
-            u_z, v_z = u_z[:, np.newaxis], v_z[:, np.newaxis]
+            u_k, u_z = u_k[:, :n], u_z[:, np.newaxis]
+        ratios = motions.ratios(modes, r, None if which is None else row)
+        ratios = ratios[:, :n] if which is None else ratios
         # of the contact itself T(6.10) is never zero, but what it is multiplied with here is
-        free = ~own if row is None else ~own[row]
-        other = np.where(free & (u_k != 0.0), v_z * u_k - 2.0 * v_k * u_z, 0.0)
-        return np.hstack((u_k, other)) if which is None else np.where(which < system.n, u_k, other)
+        other = np.where(motions.own[row] | (u_k == 0.0), 0.0, u_k - 2.0 * ratios * u_z)
+        return np.hstack((u_k, other)) if which is None else np.where(which < n, u_k, other)
 
-    roots = _roots(functions, where)
-    return [np.union1d(roots[k], roots[k + system.n]) for k in range(system.n)]
+    roots = find_roots(functions, where)
+    return [union(roots[k], roots[k + n]) for k in range(n)]
 
 
 def mass_invariant_points(
@@ -306,28 +256,52 @@ def mass_invariant_points(
     return all_mass_invariant_points(system, low, high, most)[mass - 1]
 
 
+class FirstHarmonicPoints(NamedTuple):
+    """Frequency ratios where no friction changes a first harmonic; increasing."""
+
+    unchanged: np.ndarray  # amplitude and phase
+    inversions: np.ndarray  # the amplitude only: on either side friction changes it to the other
+
+    @property
+    def all(self) -> np.ndarray:
+        """Both, increasing, each once."""
+        return union(*self)
+
+
+def first_harmonic_points(
+    system: System, low: float, high: float, most: int = MOST_POINTS
+) -> list[FirstHarmonicPoints]:
+    """Frequency ratios in (low, high) where no friction changes a first harmonic, theory.md 9 (7).
+
+    Of every mass, and at last of the motion in the contact.  The first harmonic of friction acts through
+    A_k = sum phi_ki chi_i/(w_i^2 - r^2): where that is zero, amplitude and phase stay.  With it
+    abs(X_k1)^2 = V_k^2 + (8 beta^2/pi) A_k (V_k U/V + 2 A_k/pi), for all beta alike: where the bracket is
+    zero, the amplitude stays.  Damping is left out; the load must have one phase.
+    """
+    modes = _undamped(system)
+    where = _range(modes, low, high, most)
+    motions = _motions(modes)
+    pushed = replace(modes, load=modes.contact.astype(complex))  # A_k is V_k of a load c
+
+    def compliances(r: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
+        return _sums(_responses(pushed, r), motions.rows, which)
+
+    def brackets(r: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
+        u = shaped(_first_damping(modes, r) @ modes.chi, which)
+        return motions.ratios(modes, r, which) * u + 2.0 / math.pi * compliances(r, which)
+
+    unchanged = find_roots(compliances, where)
+    inversions = find_roots(brackets, with_poles(where, _antiresonances(modes, where)))
+    # where V_k, too, is zero, a root of A_k is one of the bracket
+    return [
+        FirstHarmonicPoints(both, without(amplitude, both))
+        for both, amplitude in zip(unchanged, inversions, strict=True)
+    ]
+
+
 def first_harmonic_invariant_points(
     system: System, mass: int, low: float, high: float, most: int = MOST_POINTS
 ) -> np.ndarray:
-    """Frequency ratios in (low, high) where no friction changes the first harmonic's amplitude of a mass.
-
-    With the compliance H_k = sum phi_ki chi_i/(w_i^2 - r^2), which the first harmonic of the friction force
-    acts through, abs(X)^2 = V_k^2 + (8 beta^2/pi) H_k (V_k U/V + 2 H_k/pi): its zeros, for all beta alike.
-    In T 4.4 the inversion of frequency-based curves.  Damping is left out; the load must have one phase.
-    """
+    """All `first_harmonic_points` of one mass.  In T 4.4 the inversion of frequency-based curves."""
     mass = checks.whole(mass, "mass", least=1, most=system.n)
-    modes = _undamped(system)
-    where = _range(modes, low, high, most)
-    rows = _displacement_rows(modes, np.array([mass]))
-    own = _follows_contact(modes, rows)
-    pushed = replace(modes, load=modes.contact.astype(complex))  # H_k is V_k of a load c
-
-    def functions(r: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
-        h_k, v_k = _responses(pushed, r) @ rows[0], _responses(modes, r) @ rows[0]
-        v = modes.contact_response(r).real
-        if own[0]:  # V_k = V
-            v_k, v = np.ones(r.size), np.ones(r.size)
-        other = v_k * (_first_damping(modes, r) @ modes.chi) + 2.0 / math.pi * v * h_k
-        return np.column_stack((h_k, other)) if which is None else np.where(which == 0, h_k, other)
-
-    return np.unique(np.concatenate(_roots(functions, where)))
+    return first_harmonic_points(system, low, high, most)[mass - 1].all

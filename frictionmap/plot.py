@@ -1,4 +1,4 @@
-"""Pictures: regime maps, boundaries, one response in time."""
+"""Pictures: regime maps, boundaries, response curves, one response in time."""
 
 from collections.abc import Callable
 from io import BytesIO
@@ -11,7 +11,10 @@ from .datasets.labels import HISTORY_VARIABLES
 from .errors import InputError
 from .files.reading import kind
 from .pictures.boundary_map import plot_boundaries
+from .pictures.curves import CURVE_VARIABLES, plot_curves
+from .pictures.harmonics import HARMONIC_VARIABLES
 from .pictures.history import plot_response
+from .pictures.orbit import plot_orbit
 from .pictures.regime_map import plot_regimes
 
 if TYPE_CHECKING:
@@ -22,6 +25,8 @@ __all__ = [
     "PICTURED",
     "check_picture",
     "plot_boundaries",
+    "plot_curves",
+    "plot_orbit",
     "plot_regimes",
     "plot_response",
     "save_picture",
@@ -29,15 +34,18 @@ __all__ = [
 
 FORMATS = (".png", ".pdf", ".svg")
 
-#: What pictures are made of: no other variable need be read.
-PICTURED = frozenset(
-    (
-        *("regime", "stops_per_cycle", "also_reachable", "period"),
-        *("beta_lim", "beta_lim_modal", "beta_stick"),
-        *("natural_frequency", "held_frequency", "invariant_point"),
-        *HISTORY_VARIABLES,
-    )
-)
+_BOUNDARIES = ("beta_lim", "beta_lim_modal", "beta_stick")
+_FEATURES = ("natural_frequency", "held_frequency", "invariant_point")
+
+#: What pictures are made of, by the kind of file: no other variable need be read.
+PICTURED = {
+    "map": frozenset(("regime", "stops_per_cycle", "also_reachable", "period", *_BOUNDARIES, *_FEATURES)),
+    "boundaries": frozenset((*_BOUNDARIES, *_FEATURES)),
+    "response": frozenset(
+        ("regime", "stops_per_cycle", "period", "status", *HISTORY_VARIABLES, *HARMONIC_VARIABLES)
+    ),
+    "curves": CURVE_VARIABLES,
+}
 
 _DPI = 160
 
@@ -48,13 +56,29 @@ def check_picture(path: Path) -> None:
         raise InputError(f"-o must end in {', '.join(FORMATS)}; got {path}")
 
 
-def save_picture(ds: xr.Dataset, path: Path) -> None:
-    """Draw a dataset of any kind into a file; drawn first, as on a full disk matplotlib fails in odd ways."""
-    draw: dict[str, Callable[[xr.Dataset], AxesArray]] = {
-        "map": plot_regimes,
-        "boundaries": plot_boundaries,
-        "response": plot_response,
+def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
+    """A picture of a dataset of any kind; the first of what is drawn of its kind if no quantity is given."""
+    what = kind(ds)
+    if what == "curves":
+        return plot_curves(ds, quantity, log=log)
+    drawn_of: dict[str, dict[str, Callable[[xr.Dataset], AxesArray]]] = {
+        "map": {"regimes": plot_regimes},
+        "boundaries": {"boundaries": plot_boundaries},
+        "response": {"history": plot_response, "orbit": plot_orbit},
     }
+    legal = drawn_of[what]
+    if log:
+        raise InputError(f"log is for response curves; got a dataset of kind {what}")
+    if quantity is None:
+        quantity = next(iter(legal))
+    if quantity not in legal:
+        raise InputError(f"quantity must be one of {', '.join(legal)} of a {what}; got {quantity}")
+    return legal[quantity](ds)
+
+
+def save_picture(ds: xr.Dataset, path: Path, quantity: str | None = None, *, log: bool = False) -> None:
+    """Draw a dataset of any kind into a file; drawn first, as on a full disk matplotlib fails in odd ways."""
     drawn = BytesIO()
-    draw[kind(ds)](ds)[0].figure.savefig(drawn, format=path.suffix[1:].lower(), dpi=_DPI)
+    figure = _draw(ds, quantity, log)[0].figure
+    figure.savefig(drawn, format=path.suffix[1:].lower(), dpi=_DPI)
     path.write_bytes(drawn.getbuffer())

@@ -51,3 +51,18 @@ def steady_rows() -> list[dict]:
 def all_steady() -> tuple[dict, list[dict]]:
     """Systems and rows of the 22-digit steady states."""
     return _rows("steady_states.json")
+
+
+@pytest.fixture(scope="session")
+def measured() -> Path:
+    """The folder of synthetic measurements with their truths."""
+    folder = REFERENCE / "identification"
+    if not folder.is_dir():
+        pytest.skip("the synthetic measurements are not at hand")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def curve_rows() -> tuple[dict, list[dict]]:
+    """Systems and rows of the 17-digit quantities of response curves."""
+    return _rows("curves.json")

@@ -2,14 +2,16 @@
 
 from collections.abc import Callable
 
-from numba import njit
+from frictionmap._kernels.jit import entry
 
 
 def callable_kernel(kernel: Callable) -> Callable:
-    """A function that calls the kernel, compiled for the test."""
+    """An entry that calls the kernel; compiled once, and kept on disk as the kernel itself is."""
 
-    @njit(error_model="numpy")
     def call(*arguments):
         return kernel(*arguments)
 
-    return call
+    function = getattr(kernel, "py_func", kernel)
+    call.__module__ = f"callable.{function.__module__}"
+    call.__qualname__ = function.__qualname__
+    return entry(call)

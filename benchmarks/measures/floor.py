@@ -16,12 +16,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from frictionmap._kernels.one_mass.events import _sum_at, after_slide, slide
 from frictionmap._kernels.one_mass.scan_step import MAX_TERMS, expand, step_constants
 
 from ..report.record import pinned, spread, table, timed
+from .own_entry import own_entry
 
 #: r, zeta, b, mu of the normalised oscillator: short and long slides, with and without stops.
 MOTIONS = (
@@ -51,39 +51,39 @@ class Track(NamedTuple):
     stopped: np.ndarray  # bool: a stop came between
 
 
-@njit(error_model="numpy")
+@own_entry
 def follow(step, b, mu_b, slides, work):
     """Follow a motion from rest by the kernel: (displacement at the end, stops)."""
-    _, z, c, s, push, _ = after_slide(b, mu_b, 0.0, 1.0, 0.0)
+    _, z, c, s, force, _ = after_slide(b, mu_b, 0.0, 1.0, 0.0)
     stops = 0
     for _ in range(slides):
-        _, z, c, s = slide(step, b, z, 0.0, step.stiffness * push, c, s, 1e6, work)
-        _, z, c, s, push, wait = after_slide(b, mu_b, z, c, s)
+        _, z, c, s = slide(step, b, z, 0.0, step.stiffness * force, c, s, 1e6, work)
+        _, z, c, s, force, wait = after_slide(b, mu_b, z, c, s)
         stops += wait > 0.0
     return z, stops
 
 
-@njit(error_model="numpy")
+@own_entry
 def write_down(step, b, mu_b, slides, work):
     """The track of a motion from rest, in the order of `Track`."""
     whole = np.empty(slides, dtype=np.int64)
     rest, length, turn = np.empty(slides), np.empty(slides), np.empty(slides)
     stopped = np.empty(slides, dtype=np.bool_)
-    _, z, c, s, push, _ = after_slide(b, mu_b, 0.0, 1.0, 0.0)
+    _, z, c, s, force, _ = after_slide(b, mu_b, 0.0, 1.0, 0.0)
     for k in range(slides):
-        n, before, c, s = slide(step, b, z, 0.0, step.stiffness * push, c, s, 1e6, work)
+        n, before, c, s = slide(step, b, z, 0.0, step.stiffness * force, c, s, 1e6, work)
         whole[k] = int(n)
         rest[k] = n - whole[k]
         length[k] = n * step.h
-        _, z, c, s, push, wait = after_slide(b, mu_b, before, c, s)
+        _, z, c, s, force, wait = after_slide(b, mu_b, before, c, s)
         turn[k] = 1.0 if z == before else -1.0
         stopped[k] = wait > 0.0
     return whole, rest, length, turn, stopped
 
 
-@njit(error_model="numpy")
+@own_entry
 def _restart(b, mu_b, z, c, s, turn, stopped):
-    """State, push and wait at the start of the next slide, when it is known what comes."""
+    """State, force and wait at the start of the next slide, when it is known what comes."""
     if not stopped:
         return turn * z, turn * c, turn * s, turn * (c - z) - b, 0.0
     c_end = z + turn * mu_b
@@ -92,14 +92,14 @@ def _restart(b, mu_b, z, c, s, turn, stopped):
     return turn * z, turn * c_end, turn * s_end, mu_b - b, wait
 
 
-@njit(error_model="numpy")
+@own_entry
 def walk(step, b, mu_b, track, work):
     """The scan steps, series, polishing and releases of a track: (displacement at the end, time stuck)."""
-    _, z, c, s, push, _ = after_slide(b, mu_b, 0.0, 1.0, 0.0)
+    _, z, c, s, force, _ = after_slide(b, mu_b, 0.0, 1.0, 0.0)
     stuck = 0.0
     for k in range(track.whole.size):
         w = 0.0
-        acceleration = step.stiffness * push
+        acceleration = step.stiffness * force
         for _ in range(track.whole[k]):
             z1 = (step.z_cos * c + step.z_sin * s - step.z_one * b) + (step.zz * z + step.zw * w)
             w = (step.w_cos * c + step.w_sin * s - step.w_one * b) + (step.wz * z + step.ww * w)
@@ -108,12 +108,12 @@ def walk(step, b, mu_b, track, work):
             acceleration = step.stiffness * (c - b - z) - step.damping * w
         expand(step, b, z, w, acceleration, c, s, work)
         z, c, s = _polish(step, b, z, c, s, track.rest[k], work)
-        z, c, s, push, wait = _restart(b, mu_b, z, c, s, track.turn[k], track.stopped[k])
+        z, c, s, force, wait = _restart(b, mu_b, z, c, s, track.turn[k], track.stopped[k])
         stuck += wait
     return z, stuck
 
 
-@njit(error_model="numpy")
+@own_entry
 def _polish(step, b, z, c, s, x, work):
     """(z, cos, sin) at the event next to x: the formulas of one polishing step, as in `events`."""
     velocity, rise = _sum_at(work, step.terms, x)
@@ -141,7 +141,7 @@ def _polish(step, b, z, c, s, x, work):
     return place, norm * c2, norm * s2
 
 
-@njit(error_model="numpy")
+@own_entry
 def jump(r, zeta, b, mu_b, track):
     """Each slide of a track at once, by the closed form over its length (r != 1, zeta < 1).
 

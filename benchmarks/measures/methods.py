@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 import frictionmap as fm
 from frictionmap._kernels.engine.one_mass import OneMassSystem
@@ -34,6 +33,7 @@ from ..peers.fixed_step import (
     problem,
 )
 from ..peers.peer import Peer
+from .own_entry import own_entry
 from .own_kernel import cells_by_kernel
 
 #: Each cell is solved so often in one timed call of ours: a call costs as much as a cell.
@@ -140,7 +140,7 @@ def prepare_solved(scene: Scene, cells: list[tuple[float, float]], setting: floa
     return solve, read, COPIES * len(cells)
 
 
-@njit(error_model="numpy")
+@own_entry
 def _march_one_mass(r, beta, zeta, load, phase, mu, steps, cycles, out, begins):
     """The integrator of one mass alone, from rest; out (cells, 2): stops, Z; begins (cells, MOST_STOPS)."""
     work = np.empty(MAX_TERMS)
@@ -149,20 +149,20 @@ def _march_one_mass(r, beta, zeta, load, phase, mu, steps, cycles, out, begins):
         b = beta[k] / load[k]
         mu_b = mu * b
         c, s = math.cos(phase[k]), math.sin(phase[k])
-        code, z, c, s, push, wait = events.after_slide(b, mu_b, 0.0, c, s)
+        code, z, c, s, force, wait = events.after_slide(b, mu_b, 0.0, c, s)
         sign = -1.0 if code in (REVERSE, STOP_THEN_BACK) else 1.0
         tau = wait
         window = TWO_PI * (cycles - 1)
         stops = 0
         peak = 0.0
         while tau < window + TWO_PI:
-            n, z, c, s = events.slide(step, b, z, 0.0, step.stiffness * push, c, s, 1e9, work)
+            n, z, c, s = events.slide(step, b, z, 0.0, step.stiffness * force, c, s, 1e9, work)
             tau += n * step.h
             inside = window <= tau < window + TWO_PI
             began = math.atan2(sign * s, sign * c) - phase[k]
             if inside:
                 peak = max(peak, abs(z))
-            code, z, c, s, push, wait = events.after_slide(b, mu_b, z, c, s)
+            code, z, c, s, force, wait = events.after_slide(b, mu_b, z, c, s)
             if inside and wait > SHORTEST_STOP:
                 begins[k, stops] = began % TWO_PI
                 stops += 1
@@ -173,7 +173,7 @@ def _march_one_mass(r, beta, zeta, load, phase, mu, steps, cycles, out, begins):
         out[k, 1] = peak * load[k]
 
 
-@njit(error_model="numpy")
+@own_entry
 def _march_structure(model, loads, r, beta, mu, steps, cycles, out, begins):
     """The integrator of structures alone, from rest; as `_march_one_mass`."""
     n = model.modes.shape[1]
@@ -182,20 +182,20 @@ def _march_structure(model, loads, r, beta, mu, steps, cycles, out, begins):
         st = make_structure(model, loads, k, r[k], steps)
         state[:] = 0.0
         mu_beta = mu * beta[k]
-        code, c, s, net, wait, _, _ = after_slide(st, beta[k], mu_beta, state, held, 1.0, 0.0, 1e6, scratch)
+        code, c, s, force, wait, _, _ = after_slide(st, beta[k], mu_beta, state, held, 1.0, 0.0, 1e6, scratch)
         sign = -1.0 if code in (REVERSE, STOP_THEN_BACK) else 1.0
         tau = wait
         window = TWO_PI * (cycles - 1)
         stops = 0
         peak = 0.0
         while tau < window + TWO_PI:
-            steps_done, _, c, s, _ = slide_on(st, beta[k], net, state, c, s, 1e9, scratch)
+            steps_done, _, c, s, _ = slide_on(st, beta[k], force, state, c, s, 1e9, scratch)
             tau += steps_done * st.h
             inside = window <= tau < window + TWO_PI
             began = math.atan2(sign * s, sign * c)
             if inside:
                 peak = max(peak, abs(place(st, state)))
-            code, c, s, net, wait, _, _ = after_slide(
+            code, c, s, force, wait, _, _ = after_slide(
                 st, beta[k], mu_beta, state, held, c, s, 1e6, scratch
             )  # fmt: skip
             stopped = code in (STOP_THEN_BACK, STOP_THEN_ON)

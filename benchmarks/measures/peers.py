@@ -30,7 +30,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from numba import njit
 
 import frictionmap as fm
 from frictionmap import regimes
@@ -50,6 +49,7 @@ from ..peers.solve_ivp import OneMassSolveIvp
 from ..report.figures import new_figure, save_figure
 from ..report.quoting import two_digits
 from ..report.record import pinned, save, spread, table, timed
+from .own_entry import own_entry
 from .own_kernel import cells_by_kernel
 from .structures import SMALL_Z, equal_chain
 
@@ -69,7 +69,7 @@ COUNTS = {
 }
 
 
-@njit
+@own_entry
 def solve_cells(system, beta, mu, limits):
     """Stops and amplitude of single cells, one a frequency, each with all its constants computed anew."""
     cancel = np.zeros(1, dtype=np.uint8)

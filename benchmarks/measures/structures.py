@@ -21,13 +21,12 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from numba import njit
 
 import frictionmap as fm
 from frictionmap import regimes
 from frictionmap._kernels.one_mass import events
 from frictionmap._kernels.one_mass import scan_step as phases
-from frictionmap._kernels.one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, TOUCH
+from frictionmap._kernels.one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from frictionmap._kernels.structure.events import after_slide, slide_on
 from frictionmap._kernels.structure.oscillators import FELL, make_scratch
 from frictionmap._kernels.structure.state import make_structure
@@ -42,6 +41,7 @@ from ..peers.peer import Peer
 from ..peers.solve_ivp import ChainSolveIvp
 from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, timed
+from .own_entry import own_entry
 from .own_kernel import cells_by_kernel
 
 MASSES = (1, 2, 5, 20, 50)
@@ -72,36 +72,36 @@ def equal_chain(masses: int, contact: int, load: int, zeta: float) -> fm.System:
 # ---------------------------------------------------------------- cost
 
 
-@njit
+@own_entry
 def follow_one(step, b, mu_b, slides, work):
     """Follow one mass from rest: (slides, stops, scan steps); a stop needs no scan."""
-    _, z, c, s, push, _ = events.after_slide(b, mu_b, 0.0, 1.0, 0.0)
+    _, z, c, s, force, _ = events.after_slide(b, mu_b, 0.0, 1.0, 0.0)
     stops, steps = 0, 0.0
     for _ in range(slides):
-        n, z, c, s = events.slide(step, b, z, 0.0, step.stiffness * push, c, s, 1e6, work)
+        n, z, c, s = events.slide(step, b, z, 0.0, step.stiffness * force, c, s, 1e6, work)
         steps += n
-        _, z, c, s, push, wait = events.after_slide(b, mu_b, z, c, s)
+        _, z, c, s, force, wait = events.after_slide(b, mu_b, z, c, s)
         stops += wait > 0.0
     return slides, stops, steps
 
 
-@njit
+@own_entry
 def follow_structure(st, beta, mu_beta, slides, state, held, scratch):
     """Follow a structure from rest: (slides, stops, scan steps); fewer slides if it sticks for good."""
     state[:] = 0.0
     allowed = 1e4
-    _, c, s, net, _, _, _ = after_slide(st, beta, mu_beta, state, held, 1.0, 0.0, allowed, scratch)
+    _, c, s, force, _, _, _ = after_slide(st, beta, mu_beta, state, held, 1.0, 0.0, allowed, scratch)
     stops, steps = 0, 0.0
     for k in range(slides):
-        n, end, c, s, _ = slide_on(st, beta, net, state, c, s, 1e6, scratch)
+        n, end, c, s, _ = slide_on(st, beta, force, state, c, s, 1e6, scratch)
         steps += n
         if end != FELL:
             return k, stops, steps
-        code, c, s, net, wait, _, _ = after_slide(st, beta, mu_beta, state, held, c, s, allowed, scratch)
+        code, c, s, force, wait, _, _ = after_slide(st, beta, mu_beta, state, held, c, s, allowed, scratch)
         if code in (STOP_THEN_BACK, STOP_THEN_ON):
             stops += 1
             steps += wait / st.h
-        elif code not in (REVERSE, TOUCH):
+        elif code not in (REVERSE, GRAZING):
             return k, stops, steps
     return slides, stops, steps
 
@@ -121,7 +121,7 @@ def _motion(system: fm.System, r: float, steps: int, special: bool) -> Callable[
         work = np.empty(phases.MAX_TERMS)
         return lambda slides: follow_one(step, BETA, BETA, slides, work)
     found = Cells(system, np.array([r]), np.array([BETA]), np.ones(1), Solver()).structures
-    n = found.seen.size
+    n = found.participating.size
     st = make_structure(found.model, found.loads, 0, r, float(steps))
     state, held, scratch = np.zeros((2, n)), np.zeros((2, n - 1)), make_scratch(n)
     return lambda slides: follow_structure(st, BETA, BETA, slides, state, held, scratch)

@@ -14,13 +14,14 @@ import pickle
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from numba.core import sigutils
-from numba.core.compiler import CompileResult
+from numba.core.compiler import CompileResult, compile_result
 from numba.core.serialize import dumps
 
 from .cache_folders import ENDING, UNDER_WAY, folders, places, state
+from .linking import Code, KernelLibrary, stored
 
 _DIGEST = 32
 
@@ -32,6 +33,22 @@ listeners: list[Callable[[], None]] = []
 
 class _Damaged(Exception):
     """A file of the cache is not what it should be."""
+
+
+class _Stored(NamedTuple):
+    """A compiled kernel, as it is stored."""
+
+    library: Code
+    calls: list[tuple[tuple[str, tuple], int]]  # places and numbers of the libraries that it calls
+    descriptor: Any  # of numba, and so the others
+    environment: Any
+    signature: Any
+    annotation: str
+    environments: tuple
+
+
+#: The code of kernels in this process, by the names of their files.
+_libraries: dict[str, KernelLibrary] = {}
 
 
 @functools.cache
@@ -74,11 +91,71 @@ def _write(path: Path, key: tuple, data: object) -> None:
         raise
 
 
+def _find(name: str, key: tuple) -> Any:
+    """What is stored in a file of any folder under the key; None if nothing that can be used is."""
+    damaged = None
+    for folder in folders():
+        try:
+            data = _read(folder / name, key)
+        except _Damaged:
+            damaged = folder
+            continue
+        if data is not None:
+            return data
+    if damaged is not None:
+        _say(f"the compiled kernels in {damaged} are damaged and compiled anew")
+    return None
+
+
+def _to_store(result: CompileResult) -> _Stored:
+    """What makes a kernel again."""
+    library, descriptor, environment, signature, _, _, annotation, _, environments = result._reduce()
+    calls = [(called.place, called.number) for called in result.library.calls]
+    return _Stored(library, calls, descriptor, environment, signature, annotation, environments)
+
+
+def _library(codegen: Any, name: str, key: tuple, data: _Stored | None = None) -> KernelLibrary | None:
+    """The code of a stored kernel, loaded with all that it calls; None if any of it is missing."""
+    if name not in _libraries:
+        data = data or _find(name, key)
+        if data is None:
+            return None
+        calls = []
+        for place, number in data.calls:
+            called = _library(codegen, *place)
+            if called is None or called.number != number:
+                return None
+            calls.append(called)
+        _libraries[name] = stored(codegen, data.library, calls)
+        _libraries[name].place = name, key
+    return _libraries[name]
+
+
+def _compile_result(target_context: Any, library: KernelLibrary, data: _Stored) -> CompileResult:
+    """What the compiler gave, as `CompileResult._rebuild` of numba makes it."""
+    for environment in data.environments:
+        library.codegen.set_env(environment.env_name, environment)
+    return compile_result(
+        target_context=target_context,
+        typing_context=target_context.typing_context,
+        library=library,
+        environment=data.environment,
+        entry_point=target_context.get_executable(library, data.descriptor, data.environment),
+        fndesc=data.descriptor,
+        type_annotation=data.annotation,
+        signature=data.signature,
+        objectmode=False,
+        lifted=(),
+        reload_init=(),
+        referenced_envs=data.environments,
+    )
+
+
 class KernelCache:
     """What a dispatcher of numba asks its cache for."""
 
-    def __init__(self, function: Callable) -> None:
-        self._name = f"{function.__module__}.{function.__qualname__}"
+    def __init__(self, function: Callable, kind: str = "") -> None:
+        self._name = f"{function.__module__}.{function.__qualname__}{kind}"
 
     @property
     def cache_path(self) -> str | None:
@@ -89,17 +166,10 @@ class KernelCache:
         """The compiled kernel for a signature, or None: then it is compiled."""
         target_context.refresh()
         key, name = self._key(signature, target_context.codegen())
-        damaged = None
-        for folder in folders():
-            try:
-                data = _read(folder / name, key)
-            except _Damaged:
-                damaged = folder
-                continue
-            if data is not None:
-                return CompileResult._rebuild(target_context, *data)
-        if damaged is not None:
-            _say(f"the compiled kernels in {damaged} are damaged and compiled anew")
+        data = _find(name, key)
+        library = _library(target_context.codegen(), name, key, data) if data is not None else None
+        if data is not None and library is not None:
+            return _compile_result(target_context, library, data)
         for listener in listeners:
             listener()
         return None
@@ -109,13 +179,17 @@ class KernelCache:
         if result.lifted or result.library.has_dynamic_globals:  # what lives in this process only
             return
         key, name = self._key(signature, result.codegen)
+        if any(called.place is None for called in result.library.calls):  # or calls what does
+            return
+        _libraries[name] = result.library
+        result.library.place = name, key
         if not folders():
             where = ", ".join(map(str, places()))
             _say(f"none of {where} can be written to: every run compiles the kernels anew")
             return
         folder = folders()[-1]
         try:
-            _write(folder / name, key, result._reduce())
+            _write(folder / name, key, _to_store(result))
         except OSError as error:
             _say(f"compiled kernels cannot be kept in {folder} ({error.strerror}): every run compiles anew")
         else:

@@ -11,6 +11,7 @@ from numba import config, types
 from numba.core.registry import CPUDispatcher
 
 from .cache import KernelCache
+from .linking import compiler
 
 #: Kernels never raise (`error_model="numpy"`), never re-order arithmetic (fast-math off) and release the
 #: interpreter lock, so that a pool of threads can run them side by side.  What is not said here a kernel
@@ -27,10 +28,10 @@ _RULES = {
 #: What kernels alone call needs no way in from Python: a fifth of the time of compilation.  Without arrays of
 #: its own it needs no reference counts: counting took 30 % of a map's time, and threads wait for each other's
 #: counts.
-KERNEL_RULES = {**_RULES, "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
+_KERNEL_RULES = {**_RULES, "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
 
 
-class _Entry(CPUDispatcher):
+class _Compiled(CPUDispatcher):
     """Compiled once for constant and variable arguments: numba would compile f(0) and f(i), and all that they
     call, one by one."""
 
@@ -38,11 +39,11 @@ class _Entry(CPUDispatcher):
         return super().get_call_template(tuple(types.unliteral(kind) for kind in args), kws)
 
 
-class _Kernel(_Entry):
+class _Kernel(_Compiled):
     """Compiled when another kernel that calls it is."""
 
     def add_overload(self, cres: Any) -> None:
-        if _holds_array(cres.signature.return_type):
+        if not self.targetoptions["_nrt"] and _holds_array(cres.signature.return_type):
             # whoever counts references would free what was never counted
             raise TypeError(f"the kernel {self.py_func.__name__} must not return an array: make it an entry")
         super().add_overload(cres)
@@ -54,25 +55,46 @@ class _Kernel(_Entry):
         raise TypeError(f"{self.py_func.__name__} can be called by kernels only; Python calls an entry")
 
 
+class _Entry(_Compiled):
+    """Compiled for Python when Python calls it; when a kernel does, without a way in, which takes longer."""
+
+    def get_call_template(self, args: tuple, kws: dict) -> Any:
+        return self.inside.get_call_template(args, kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        return self.inside.get_overload(sig)
+
+
 def _holds_array(kind: types.Type) -> bool:
     if isinstance(kind, types.BaseTuple):
         return any(_holds_array(part) for part in kind)
     return isinstance(kind, types.Array)
 
 
-def _decorator(dispatcher: type[_Entry], rules: dict[str, Any]) -> Callable[[Callable], Any]:
+def _compiled(kind: type[_Compiled], function: Callable, rules: dict, inner: bool | None, name: str) -> Any:
+    options = {"boundscheck": None, **rules}
+    compiled = kind(function, targetoptions=options, pipeline_class=compiler(inner))
+    compiled._cache = KernelCache(function, name)
+    return compiled
+
+
+def _decorator(rules: dict[str, Any], inner: bool | None) -> Callable[[Callable], Any]:
     def decorate(function: Callable) -> Any:
-        if config.DISABLE_JIT:
-            return function
-        compiled = dispatcher(function, targetoptions={"boundscheck": None, **rules})
-        compiled._cache = KernelCache(function)
-        return compiled
+        return function if config.DISABLE_JIT else _compiled(_Kernel, function, rules, inner, "")
 
     return decorate
 
 
-entry = _decorator(_Entry, _RULES)
-kernel = _decorator(_Kernel, KERNEL_RULES)
+kernel = _decorator(_KERNEL_RULES, inner=None)
 
 #: Called where a call would cost more than the work (48 ns beside 16).
-inner_kernel = _decorator(_Kernel, {**KERNEL_RULES, "forceinline": True})
+inner_kernel = _decorator({**_KERNEL_RULES, "forceinline": True}, inner=True)
+
+
+def entry(function: Callable) -> Any:
+    """What Python calls, or what makes or returns arrays."""
+    if config.DISABLE_JIT:
+        return function
+    compiled = _compiled(_Entry, function, _RULES, False, "")
+    compiled.inside = _compiled(_Kernel, function, {**_KERNEL_RULES, "_nrt": True}, None, ".inside")
+    return compiled

@@ -22,9 +22,10 @@ REFERENCES = (
 )
 
 
-#: Dimensions of what is told of every cell, and of what depends on frequency only.
+#: Dimensions of what is told of every cell, of what depends on frequency only, and of motions on a boundary.
 CELL = ("mu", "r", "beta")
 CURVE = ("mu", "r")
+LIMIT = (*CURVE, "dof")
 
 
 class Label(NamedTuple):
@@ -41,7 +42,9 @@ class Label(NamedTuple):
     nan: bool = False  # whether NaN is legal
     inf: bool = False
     unresolved: float = np.nan  # of a cell of a map, before it is decided
-    needs: str = ""  # beyond the steady state of a cell: its "details", or "coexistence" with others
+    needs: str = ""  # beyond the steady state of a cell: "details", its "cycle", or "coexistence" with others
+    units: str = "1"
+    texts: tuple[str, ...] = ()  # of an axis of texts: what its values are, in order
 
 
 #: Axes; strictly increasing and finite.
@@ -57,7 +60,36 @@ COORDINATES = {
     "beta": Label(np.float64, "ratio of kinetic friction force to load amplitude", ("beta",), least=0.0),
     "tau": Label(np.float64, "excitation phase, omega t", ("tau",), least=0.0),
     "dof": Label(np.int64, "mass, counted from 1", ("dof",), least=1),
+    "harmonic": Label(
+        np.int64, "harmonic of the excitation frequency; 0 is the mean", ("harmonic",), least=0
+    ),
+    "part": Label(np.str_, "part of a complex number", ("part",), texts=("real", "imaginary")),
 }
+
+_PER_CYCLE = "per excitation cycle, over P^2/k1"
+
+
+def _of_cell(long_name: str, comment: str = "", *further: str, least: float = -np.inf) -> Label:
+    """A number of every cell, or several, infinite at an undamped resonance."""
+    return Label(
+        np.float64,
+        long_name,
+        (*CELL, *further),
+        comment=comment,
+        least=least,
+        nan=True,
+        inf=True,
+        needs="cycle",
+    )
+
+
+def _phase(long_name: str, comment: str, *further: str, most: float = np.pi) -> Label:
+    """A phase of every cell, or several."""
+    return Label(
+        np.float64, long_name, (*CELL, *further), comment=comment, least=-np.pi, most=most, nan=True,
+        needs="cycle", units="radian",
+    )  # fmt: skip
+
 
 CELL_VARIABLES = {
     "regime": Label(
@@ -154,6 +186,99 @@ CELL_VARIABLES = {
         inf=True,
         needs="details",
     ),
+    "sliding_distance": _of_cell(
+        "distance that the contact slides", "per excitation cycle, over P/k1 (Y); 0 where stuck", least=0.0
+    ),
+    "work_friction": _of_cell("work that friction takes", _PER_CYCLE, least=0.0),
+    "work_input": _of_cell(
+        "work of the load, or of what moves the base", f"{_PER_CYCLE}; a joined wall is moved with the base"
+    ),
+    "work_damping": _of_cell("work that viscous damping takes", _PER_CYCLE, least=0.0),
+    "equivalent_damping": _of_cell(
+        "equivalent viscous damping of the contact, c omega/k1",
+        "work of friction over pi times the contact amplitude squared; NaN where stuck",
+        least=0.0,
+    ),
+    "contact_first_harmonic_amplitude": _of_cell(
+        "amplitude of the first harmonic of the motion in the contact, over P/k1 (Y)", least=0.0
+    ),
+    "contact_first_harmonic_phase": _phase(
+        "lag of the first harmonic of the motion in the contact behind the load", "NaN where stuck"
+    ),
+}
+
+_PLATEAU = "the load's phase, counted from its maximum; NaN where the maximum is not held over a stop"
+
+#: What response curves have of every cell beside outputs of a map.
+CYCLE_VARIABLES = {
+    "phase": _phase(
+        "lag of the maximum of the displacement of each mass behind that of the load",
+        "where the largest modulus is at a minimum, half a period later; NaN where it is held over a stop "
+        "(phase_begin, phase_end) and where the period is not 1",
+        "dof",
+    ),
+    "phase_begin": _phase("begin of the stop that holds a mass at its maximum", _PLATEAU, "dof"),
+    "phase_end": _phase("end of the stop that holds a mass at its maximum", _PLATEAU, "dof", most=np.inf),
+    "contact_phase": _phase(
+        "lag of the maximum of the motion in the contact behind that of the load",
+        "as `phase`; NaN where it is held over a stop (contact_phase_begin, contact_phase_end)",
+    ),
+    "contact_phase_begin": _phase("begin of the stop that holds the contact at its maximum", _PLATEAU),
+    "contact_phase_end": _phase(
+        "end of the stop that holds the contact at its maximum", _PLATEAU, most=np.inf
+    ),
+    "first_harmonic_amplitude": _of_cell(
+        "amplitude of the first harmonic of the displacement of each mass, over P/k1 (Y)",
+        "frequency-based transmissibility, thesis (4.4)",
+        "dof",
+        least=0.0,
+    ),
+    "first_harmonic_phase": _phase(
+        "lag of the first harmonic of the displacement of each mass behind the load",
+        "thesis (4.5), counted positive; NaN where there is no motion",
+        "dof",
+    ),
+    "displacement_harmonic": _of_cell(
+        "harmonics X of the displacement of each mass, over P/k1 (Y)",
+        "x = X_0 + Re sum X_n exp(i n tau); subharmonics are left out",
+        "dof",
+        "harmonic",
+        "part",
+    ),
+    "contact_harmonic": _of_cell(
+        "harmonics of the motion in the contact, over P/k1 (Y)",
+        "as displacement_harmonic",
+        "harmonic",
+        "part",
+    ),
+    "friction_harmonic": _of_cell(
+        "harmonics of the friction force against the motion in the contact, over P",
+        "as displacement_harmonic",
+        "harmonic",
+        "part",
+    ),
+    "transmitted_force": _of_cell(
+        "largest modulus of the force transmitted to the ground, over P",
+        "sum of the loads less the inertia",
+        least=0.0,
+    ),
+    "transmitted_first_harmonic": _of_cell(
+        "amplitude of the first harmonic of the force transmitted to the ground, over P",
+        "sum of the loads less the inertia",
+        least=0.0,
+    ),
+    "rms": _of_cell(
+        "root mean square of the displacement of each mass, over P/k1 (Y)",
+        "over the steady period, its mean included",
+        "dof",
+        least=0.0,
+    ),
+    "distortion": _of_cell(
+        "distortion of the displacement of each mass",
+        "root mean square of all but the mean and the first harmonic, over that of the first harmonic",
+        "dof",
+        least=0.0,
+    ),
 }
 
 CURVES = {
@@ -210,6 +335,52 @@ CURVES = {
         least=0.0,
         inf=True,
     ),
+    "held_phase": Label(
+        np.float64,
+        "lag of each mass behind the load with the contact held",
+        ("dof", "r"),
+        comment="of the phasor whose modulus is held_response; NaN of a mass at rest, and at a resonance",
+        least=-np.pi,
+        most=np.pi,
+        nan=True,
+        units="radian",
+    ),
+    "limit_amplitude": Label(
+        np.float64,
+        "amplitude of the displacement of each mass at beta_lim, over P/k1 (Y)",
+        LIMIT,
+        comment="of the continuous motion; its limit at an undamped resonance",
+        least=0.0,
+        inf=True,
+    ),
+    "limit_phase": Label(
+        np.float64,
+        "lag of the largest displacement of each mass at beta_lim behind the load",
+        LIMIT,
+        comment="NaN of a mass at rest, or with infinite amplitude",
+        least=-np.pi,
+        most=np.pi,
+        nan=True,
+        units="radian",
+    ),
+    "limit_first_harmonic_amplitude": Label(
+        np.float64,
+        "amplitude of the first harmonic of each mass at beta_lim, over P/k1 (Y)",
+        LIMIT,
+        comment="frequency-based amplitude, thesis (4.4)",
+        least=0.0,
+        inf=True,
+    ),
+    "limit_first_harmonic_phase": Label(
+        np.float64,
+        "lag of the first harmonic of each mass at beta_lim behind the load",
+        LIMIT,
+        comment="frequency-based phase, thesis (4.5); NaN of a mass at rest, or with infinite amplitude",
+        least=-np.pi,
+        most=np.pi,
+        nan=True,
+        units="radian",
+    ),
     "invariant_point": Label(
         np.float64,
         "frequency ratios where friction leaves the motion in the contact as it is",
@@ -224,6 +395,21 @@ CURVES = {
         comment="zeros of U_k and thesis (6.10), undamped; NaN fills up where a mass has fewer",
         least=0.0,
         nan=True,
+    ),
+    "invariant_first_harmonic": Label(
+        np.float64,
+        "frequency ratios where friction leaves the first harmonic's amplitude of a mass as it is",
+        ("dof", "root"),
+        comment="undamped; NaN fills up where a mass has fewer",
+        least=0.0,
+        nan=True,
+    ),
+    "contact_invariant_first_harmonic": Label(
+        np.float64,
+        "frequency ratios where friction leaves the first harmonic's amplitude in the contact as it is",
+        ("contact_root",),
+        comment="undamped; those of the natural frequencies with the contact held leave its phase, too",
+        least=0.0,
     ),
     "beta_lim_high": Label(np.float64, "limit of beta_lim for r to infinity", ("mu",), least=0.0, inf=True),
     "beta_stick_high": Label(
@@ -250,34 +436,49 @@ HISTORY_VARIABLES = {
     "event_z": Label(np.float64, "motion in the contact at the event, over P/k1 (Y)", ("event",)),
 }
 
-LABELS = {**CELL_VARIABLES, **CURVES, **HISTORY_VARIABLES}
+#: In a response `phase` is the sense of the motion; the lag of a mass has another name there.
+LAG = {"phase_lag": CYCLE_VARIABLES["phase"]}
+
+LABELS = {**CELL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES, **LAG}
+
+
+def labels_of(what: str) -> dict[str, Label]:
+    """The labels of a kind of dataset, see `schema.kind`."""
+    if what != "curves":
+        return LABELS
+    held = {name: CURVES[name]._replace(dims=("r", "dof")) for name in ("held_response", "held_phase")}
+    return {**LABELS, **CYCLE_VARIABLES, **held}
 
 
 def coordinate(name: str, values: np.ndarray | float) -> xr.Variable:
     """A labelled axis, or a labelled scalar."""
+    label = COORDINATES[name]
     dims = (name,) if np.ndim(values) else ()
-    return xr.Variable(dims, values, {"long_name": COORDINATES[name].long_name, "units": "1"})
+    units = {} if label.texts else {"units": label.units}
+    return xr.Variable(dims, values, {"long_name": label.long_name, **units})
 
 
-def attributes(name: str) -> dict[str, object]:
+def attributes(label: Label) -> dict[str, object]:
     """CF attributes of a variable."""
-    label = LABELS[name]
     result: dict[str, object] = {"long_name": label.long_name}
     if label.codes:
         result[label.flags] = np.array([code.value for code in label.codes], dtype=label.dtype)
         result["flag_meanings"] = " ".join(code.name for code in label.codes)
         result["comment"] = "; ".join(f"{code.name}: {code.meaning}" for code in label.codes)
     else:
-        result["units"] = "1"
+        result["units"] = label.units
         if label.comment:
             result["comment"] = label.comment
     return result
 
 
-def label_variable(name: str, values: np.ndarray | float) -> xr.Variable:
-    """A labelled variable, of one cell without the cell's dimensions; the values are not copied."""
-    dims = LABELS[name].dims
-    return xr.Variable(dims[len(dims) - np.ndim(values) :], values, attributes(name))
+def label_variable(name: str, values: np.ndarray | float, what: str = "") -> xr.Variable:
+    """A labelled variable, of one cell without the cell's dimensions; the values are not copied.
+
+    what : the kind of its dataset, see `labels_of`
+    """
+    label = labels_of(what)[name]
+    return xr.Variable(label.dims[len(label.dims) - np.ndim(values) :], values, attributes(label))
 
 
 def stamp(
@@ -287,6 +488,7 @@ def stamp(
     system: System,
     axes: Mapping[str, np.ndarray | float],
     solver: Solver | None = None,
+    curves: Mapping[str, object] | None = None,
 ) -> xr.Dataset:
     """Add the global attributes to what a function of the package computed on these axes."""
     ds.attrs = {
@@ -295,6 +497,6 @@ def stamp(
         "source": f"frictionmap {__version__}",
         "references": REFERENCES,
         "system": system.describe(),
-        **made_by(function, title, system, axes, solver),
+        **made_by(function, title, system, axes, solver, curves),
     }
     return ds

@@ -46,6 +46,7 @@ def made_by(
     system: "System",
     axes: Mapping[str, np.ndarray | float],
     solver: "Solver | None" = None,
+    curves: Mapping[str, object] | None = None,
 ) -> dict[str, str]:
     """Global attributes `history` and `config` of what a function of the package computed.
 
@@ -59,6 +60,8 @@ def made_by(
         lines.append("beta = 1.0  # boundaries need none")
     if solver is not None:
         lines += ["", "[solver]", *(f"{key} = {value_text(value)}" for key, value in asdict(solver).items())]
+    if curves is not None:
+        lines += ["", "[curves]", *(f"{key} = {value_text(value)}" for key, value in curves.items())]
     return {
         "history": f"{now()} frictionmap.{function} of {system.contact}, {call}",
         "config": "\n".join(lines) + "\n",

@@ -7,18 +7,43 @@ import xarray as xr
 
 from .. import checks
 from ..errors import InputError
-from .labels import CELL, COORDINATES, HISTORY_VARIABLES, LABELS, Label
+from .labels import (
+    CELL,
+    COORDINATES,
+    CURVES,
+    CYCLE_VARIABLES,
+    HISTORY_VARIABLES,
+    LABELS,
+    LIMIT,
+    Label,
+    labels_of,
+)
 
 #: Global attributes that are text, if they are there.
 TEXTS = ("title", "system", "source", "history", "references", "config")
 
-_KNOWN = {**COORDINATES, **LABELS}
+
+def _known(what: str) -> dict[str, Label]:
+    """The labels of axes and variables in a kind of dataset."""
+    return {**COORDINATES, **labels_of(what)}
+
+
+def _is_history(ds: xr.Dataset, name: object) -> bool:
+    """Whether a variable tells a motion in time; `phase` is an angle in curves."""
+    angle = name == "phase" and ds.variables["phase"].attrs.get("units") == "radian"
+    return name in HISTORY_VARIABLES and not angle
+
+
+def _on_limit(name: object) -> bool:
+    return name in CURVES and CURVES[str(name)].dims == LIMIT
 
 
 def kind(ds: xr.Dataset) -> str:
-    """What a dataset, or a slice of one, holds: "map", "response" or "boundaries"."""
-    if any(name in HISTORY_VARIABLES for name in ds.variables):
+    """What a dataset, or a slice of one, holds: "map", "curves", "response" or "boundaries"."""
+    if any(_is_history(ds, name) for name in ds.variables):
         return "response"
+    if any(name in CYCLE_VARIABLES or _on_limit(name) for name in ds.variables):
+        return "curves"
     cells = "beta" in ds.dims or any("beta" in LABELS[name].dims for name in LABELS if name in ds.variables)
     return "map" if cells else "boundaries"
 
@@ -30,7 +55,7 @@ def in_brackets(dims: Iterable[object]) -> str:
 
 def standard_dims(name: str, what: str) -> tuple[str, ...]:
     """Dimensions of a variable in a dataset of a kind; a response is of one cell."""
-    dims = LABELS[name].dims
+    dims = labels_of(what)[name].dims
     return tuple(dim for dim in dims if dim not in CELL) if what == "response" else dims
 
 
@@ -49,14 +74,17 @@ def check_structure(ds: xr.Dataset) -> None:
     if not any(name in LABELS for name in ds.variables):
         names = ", ".join(map(str, ds.variables)) or "none"
         raise InputError(f"a variable of frictionmap must be there, such as regime or beta_lim; got {names}")
+    known = _known(kind(ds))
     for name, variable in ds.variables.items():
-        if name in _KNOWN:
-            _check_type(str(name), variable)
-            _check_attributes(str(name), variable)
+        if name in known:
+            _check_type(str(name), variable, known[str(name)])
+            _check_attributes(str(name), variable, known[str(name)])
 
 
-def _check_type(name: str, variable: xr.Variable) -> None:
-    if variable.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false, nor times
+def _check_type(name: str, variable: xr.Variable, label: Label) -> None:
+    if label.texts:
+        _check_texts(name, variable, label)
+    elif variable.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false, nor times
         raise InputError(f"{name} must be numbers; got type {variable.dtype.name}")
     if len(set(variable.dims)) < len(variable.dims):
         raise InputError(f"{name} must have every dimension once; got {in_brackets(variable.dims)}")
@@ -64,13 +92,18 @@ def _check_type(name: str, variable: xr.Variable) -> None:
         raise InputError(f"{name} must have at most {checks.MOST_CELLS:.0e} values; got {variable.size:.3g}")
 
 
-def _check_attributes(name: str, variable: xr.Variable) -> None:
+def _check_texts(name: str, variable: xr.Variable, label: Label) -> None:
+    given = np.atleast_1d(variable.values)
+    if any(text not in label.texts for text in given.tolist()):
+        raise InputError(f"{name} must be of {', '.join(label.texts)}; got {checks.one_line(given.tolist())}")
+
+
+def _check_attributes(name: str, variable: xr.Variable, label: Label) -> None:
     """Units and codes, where they are still there, must be those that the values are read by."""
-    label = _KNOWN[name]
     if not label.codes:
-        units = variable.attrs.get("units", "1")
-        if not isinstance(units, str) or units != "1":
-            raise InputError(f"{name} must have the units '1'; got {checks.one_line(units)}")
+        units = variable.attrs.get("units", label.units)
+        if not isinstance(units, str) or units != label.units:
+            raise InputError(f"{name} must have the units {label.units!r}; got {checks.one_line(units)}")
     elif label.flags in variable.attrs and "flag_meanings" in variable.attrs:
         values: list = np.atleast_1d(variable.attrs[label.flags]).tolist()
         meanings = str(variable.attrs["flag_meanings"]).split()
@@ -82,12 +115,14 @@ def _check_attributes(name: str, variable: xr.Variable) -> None:
             raise InputError(f"{name} must have the codes {words}; got {values} {' '.join(meanings)}")
 
 
-def checked_values(name: str, given: np.ndarray) -> np.ndarray:
-    """The values of a variable or an axis as its type, if all are legal.
+def checked_values(name: str, given: np.ndarray, what: str = "") -> np.ndarray:
+    """The values of a variable or an axis as its type, if all are legal; `what`: the kind of its dataset.
 
     Whole numbers may come as floats: other programs make them so, to have a fill value.
     """
-    label = _KNOWN[name]
+    label = _known(what)[name]
+    if label.texts:
+        return given.astype(label.dtype)
     with np.errstate(invalid="ignore", over="ignore"):
         values: np.ndarray = given.astype(label.dtype, copy=False)
     wrong = _wrong(values, label)

@@ -13,7 +13,7 @@ import numpy as np
 from .. import checks
 from ..datasets.provenance import to_toml
 from ..errors import InputError
-from ..model.settings import Solver
+from ..model.settings import CurveSettings, Solver, curve_settings
 from ..model.system import System
 
 #: Values of one axis; more are surely a slip of the keyboard, and would not fit in memory with the others.
@@ -39,6 +39,7 @@ _SECTIONS = {
     "system": _SYSTEM_KEYS,
     "grid": ("r", "beta", "mu"),
     "solver": _SOLVER_KEYS,
+    "curves": ("harmonics", "quantities"),
 }
 _AXIS_KEYS = ("start", "stop", "step", "num", "values")
 #: Ways to give an axis exclude each other: on the command line, a key takes the place of these.
@@ -66,13 +67,14 @@ class Config:
     beta: np.ndarray
     mu: np.ndarray
     solver: Solver
+    curves: CurveSettings
     text: str  # the TOML text used, overrides applied
     name: str  # of the file, without its ending
     files: tuple[Path, ...] = ()  # that it was read from
 
 
 #: Called with the numbers of values of mu, r and beta, the system and the solver, before the axes are made.
-Room = Callable[[Mapping[str, int], System, Solver], None]
+Room = Callable[[Mapping[str, int], System, Solver, CurveSettings], None]
 
 
 def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | None = None) -> Config:
@@ -86,6 +88,18 @@ def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | No
     InputError
         The file cannot be read or is not TOML; a key is unknown, missing, of the wrong type or out of
         range.  The message names the key.
+    """
+    tree, text = read_tree(path, overrides)
+    return _check(tree, text, Path(path), room)
+
+
+def read_tree(path: str | Path, overrides: Sequence[str] = ()) -> tuple[dict, str]:
+    """The tables of a configuration file, overrides applied, and its text; its keys are not checked.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or is not TOML, or an override makes no sense.
     """
     if not isinstance(path, (str, os.PathLike)):
         raise InputError(f"configuration must be the path of a TOML file; got {checks.one_line(path)}")
@@ -108,9 +122,7 @@ def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | No
     except InputError as error:
         raise InputError(f"configuration {path} {error}") from None
     _override_all(tree, overrides)
-    if overrides:
-        text = to_toml(tree)
-    return _check(tree, text, path, room)
+    return tree, to_toml(tree) if overrides else text
 
 
 def parse(text: str) -> dict:
@@ -177,7 +189,8 @@ def _override(tree: dict, parts: list[str], value: object, override: str) -> Non
     branch[parts[-1]] = value
 
 
-def _unknown(key: str, section: str, legal: Sequence[str]) -> InputError:
+def unknown_key(key: str, section: str, legal: Sequence[str]) -> InputError:
+    """An error that names the key and those that are legal."""
     name = f"{section}.{key}" if section else key
     where = f"the keys of [{section}]" if section else "the keys"
     return InputError(f"unknown key {name}{checks.nearest(key, legal)}; {where} are {', '.join(legal)}")
@@ -189,7 +202,7 @@ def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
         raise InputError(f"{name} must be a table [{name}]; got {table!r}")
     for key in table:
         if key not in _SECTIONS[name]:
-            raise _unknown(key, name, _SECTIONS[name])
+            raise unknown_key(key, name, _SECTIONS[name])
     return table
 
 
@@ -244,7 +257,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     name = path.stem
     for key in tree:
         if key not in _SECTIONS:
-            raise _unknown(key, "", tuple(_SECTIONS))
+            raise unknown_key(key, "", tuple(_SECTIONS))
     title = tree.get("title", name)
     if not isinstance(title, str):
         raise InputError(f"title must be text; got {title!r}")
@@ -253,6 +266,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     described = _system_table(tree, path.parent)
     system = _build(System, described, "system")
     solver = _build(Solver, _table(tree, "solver"), "solver")
+    curves = _build(curve_settings, _table(tree, "curves"), "curves")
     grid = _table(tree, "grid")
     for key in ("r", "beta"):
         if key not in grid:
@@ -260,7 +274,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     counts = {key: _count(grid.get(key, [1.0]), f"grid.{key}") for key in ("mu", "r", "beta")}
     checks.cells(counts["mu"], counts["r"], counts["beta"])
     if room is not None:
-        room(counts, system, solver)
+        room(counts, system, solver, curves)
     axes = {
         key: checks.axis(_values(grid.get(key, [1.0]), f"grid.{key}"), f"grid.{key}", **bounds)
         for key, bounds in (
@@ -271,7 +285,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     }
     matrices = described.get("matrices")
     files = (path, matrices) if isinstance(matrices, Path) else (path,)
-    return Config(title, system, axes["r"], axes["beta"], axes["mu"], solver, text, name, files)
+    return Config(title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, name, files)
 
 
 def _is_number(value: object) -> bool:
@@ -282,7 +296,7 @@ def _axis_table(axis: Mapping[str, object], name: str) -> None:
     """Refuse an axis table that does not say one thing."""
     for key in axis:
         if key not in _AXIS_KEYS:
-            raise _unknown(key, name, _AXIS_KEYS)
+            raise unknown_key(key, name, _AXIS_KEYS)
     legal = "{ start, stop, step }, { start, stop, num } or { values }"
     keys = set(axis)
     if keys not in ({"values"}, {"start", "stop", "step"}, {"start", "stop", "num"}):

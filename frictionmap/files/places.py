@@ -9,6 +9,7 @@ import contextlib
 import errno
 import hashlib
 import os
+import secrets
 import stat
 import sys
 import threading
@@ -111,10 +112,11 @@ class Output:
 
     def release(self) -> None:
         """Give the name back; nothing is left but the file itself, if it was put in its place."""
-        if self._lock >= 0:
-            _remove(self._folder, self._scratch.name)
-            os.close(self._lock)
-        _claims.discard(self)
+        with _guard:
+            if self._lock >= 0:
+                _remove(self._folder, self._lock, self._scratch.name)
+                os.close(self._lock)
+            _claims.discard(self)
 
 
 @contextlib.contextmanager
@@ -131,6 +133,7 @@ def claimed(path: Path, overwrite: bool = False, inputs: Sequence[Path] = ()) ->
     output = Output(path, overwrite)
     try:
         output.claim()
+        _check(path, overwrite, inputs)  # again: a run that ended since may have made it
         yield output
     finally:
         output.release()
@@ -166,7 +169,8 @@ def _abandon() -> str:
     """Clear away every claim, for good: nothing can be claimed or put in its place after it."""
     known = _guard.acquire(timeout=1.0)
     for output in list(_claims):
-        _remove(output._folder, output._scratch.name)
+        if output._lock >= 0:
+            _remove(output._folder, output._lock, output._scratch.name)
     if not known:  # a file system that has stopped answering
         return "the output may have been written"
     return f"{', '.join(map(str, _written))} had been written" if _written else ""
@@ -214,12 +218,13 @@ def _sweep(parent: Path) -> None:
     for folder in parent.glob(_FOLDERS):
         with contextlib.suppress(OSError, _Taken):
             lock = _lock(folder, os.O_RDWR)
-            _remove(folder)
+            _remove(folder, lock)
             os.close(lock)
 
 
-def _remove(folder: Path, files: str = f"{_FILE}*") -> None:
+def _remove(folder: Path, lock: int, files: str = f"{_FILE}*") -> None:
     """Remove what a claim may have left, and nothing else."""
+    folder = _moved_away(folder, lock)
     for _ in range(3):  # a library may make its file just now
         for file in (*folder.glob(files), folder / _LOCK):
             with contextlib.suppress(OSError):
@@ -227,6 +232,19 @@ def _remove(folder: Path, files: str = f"{_FILE}*") -> None:
         with contextlib.suppress(OSError):
             folder.rmdir()
             return
+
+
+def _moved_away(folder: Path, lock: int) -> Path:
+    """Where the folder is now: whoever claims its name from here on makes another, which we do not touch."""
+    away = folder.with_name(_PREFIX + secrets.token_hex(8))
+    try:
+        _flock(lock)  # ours already; an error where there are no locks, as then others may be in the folder
+        if not all(name == _LOCK or name.startswith(_FILE) for name in os.listdir(folder)):
+            return folder  # somebody keeps other things there
+        folder.rename(away)
+    except OSError:
+        return folder
+    return away
 
 
 def _aside(work: Callable[[], None], waiting: Callable[[], None]) -> None:

@@ -2,24 +2,24 @@
 
 import contextlib
 import warnings
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from .. import checks
-from ..datasets.labels import CELL, COORDINATES, LABELS, coordinate, label_variable
+from ..datasets.labels import CELL, COORDINATES, LABELS, coordinate, label_variable, labels_of
 from ..datasets.schema import check_structure, checked_values, in_brackets, kind, standard_dims
 from ..errors import InputError
 
 __all__ = ["kind", "read", "standard_form"]
 
 
-def read(path: Path, only: Collection[str] | None = None) -> xr.Dataset:
-    """Read a file that this package wrote, or a slice of it that xarray wrote (nothing is held open).
+def read(path: Path, only: Mapping[str, Collection[str]] | None = None) -> xr.Dataset:
+    """Read a file that this package wrote, or a slice of it that xarray wrote (nothing is kept open).
 
-    Of our variables those named `only`, if they are there; by default all.
+    Of our variables those that `only` names for the file's kind, if they are there; by default all.
 
     Returns
     -------
@@ -37,7 +37,7 @@ def read(path: Path, only: Collection[str] | None = None) -> xr.Dataset:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of a malformed file; what is wrong with it is said below
-            ds = _load(path, LABELS if only is None else only)
+            ds = _load(path, only)
     except InputError:
         raise
     except Exception as error:  # the libraries raise anything over a file that is not what they expect
@@ -58,7 +58,7 @@ def _naming(path: Path) -> Iterator[None]:
         raise InputError(f"file {path}: {error}") from None
 
 
-def _load(path: Path, wanted: Collection[str]) -> xr.Dataset:
+def _load(path: Path, only: Mapping[str, Collection[str]] | None) -> xr.Dataset:
     """The wanted variables of a file; their values are read once all else about them is known to be well."""
     # no value of ours is a time, whatever the units say
     with xr.open_dataset(path, engine="netcdf4", decode_times=False) as opened:
@@ -67,6 +67,7 @@ def _load(path: Path, wanted: Collection[str]) -> xr.Dataset:
             raise InputError(f"file {path} must be written by frictionmap; its source is {source!r}")
         with _naming(path):
             check_structure(opened)
+        wanted = LABELS if only is None else only[kind(opened)]
         ours = _ours(opened)
         return ours.drop_vars(
             [name for name in ours.variables if name in LABELS and name not in wanted]
@@ -79,12 +80,13 @@ def _ours(ds: xr.Dataset) -> xr.Dataset:
 
 
 def standard_form(ds: xr.Dataset) -> xr.Dataset:
-    """A map, response or boundaries, or any slice of one, in the form that it has when it is computed.
+    """A map, curves, a response or boundaries, or any slice of one, in the form that it was computed in.
 
     Works by names.  A value of mu, r, beta or of a mass that was chosen (`isel`, `sel`) becomes an axis of
-    one value again; dimensions come in their order (mu, r, beta, dof), axes increase, types and attributes
-    are those of `labels`.  A response is of one cell: its mu, r and beta are numbers.  Variables may be
-    missing; those that are not ours are left out.  Values are not copied where they are well as they are.
+    one value again; dimensions come in their order (mu, r, beta, dof, harmonic, part), axes increase, types
+    and attributes are those of `labels`.  A response is of one cell: its mu, r and beta are numbers.
+    Variables may be missing; those that are not ours are left out.  Values are not copied where they are well
+    as they are.
 
     Parameters
     ----------
@@ -110,12 +112,13 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
     ds = _increasing(ds)
     variables: dict[str, xr.Variable] = {}
     used: set[str] = set()
-    for name in LABELS:
+    for name in labels_of(what):
         if name in ds.variables:
             dims = standard_dims(name, what)
-            variables[name] = label_variable(name, checked_values(name, _placed(ds, name, dims)))
+            values = checked_values(name, _placed(ds, name, dims), what)
+            variables[name] = label_variable(name, values, what)
             used.update(dims)
-    if what == "map":
+    if what in ("map", "curves"):
         used.update(CELL)  # also if what there is depends on frequency only
     return xr.Dataset(variables, coords=_axes(ds, what, used), attrs=ds.attrs)
 
@@ -133,6 +136,8 @@ def _increasing(ds: xr.Dataset) -> xr.Dataset:
         values = checked_values(name, ds[name].values)
         if values.size == 0:
             raise InputError(f"{name} must have at least one value; got none")
+        if COORDINATES[name].texts:
+            continue
         if values[0] > values[-1]:
             turned[name] = slice(None, None, -1)
             values = values[::-1]

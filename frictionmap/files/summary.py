@@ -1,7 +1,7 @@
 """What a dataset holds, in words: plain ASCII but for what the file itself says."""
 
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator, Sequence
 
 import numpy as np
 import xarray as xr
@@ -78,7 +78,7 @@ def describe_file(ds: xr.Dataset) -> str:
     Parameters
     ----------
     ds : xarray.Dataset
-        A map, a response or boundaries, or a slice of one.
+        A map, curves, a response or boundaries, or a slice of one.
 
     Raises
     ------
@@ -96,9 +96,19 @@ def describe_file(ds: xr.Dataset) -> str:
     listed = [name for name in ds.data_vars if _is_list(ds[name])]
     lines += ["variables", *(_named(ds[name]) for name in ds.data_vars if name not in listed)]
     if listed:
-        lines += ["values", *(line for name in listed for line in _entry(str(name), _values(ds[name])))]
+        few = [name for name in listed if ds[name].dims in ((), ("dof",))]
+        others = [name for name in listed if name not in few]
+        lines += ["values", *_numbers_in_lines(ds, few)]
+        lines += [line for name in others for line in _entry(str(name), _values(ds[name]))]
     lines += list(_in_short(ds, what))
     return "\n".join(lines)
+
+
+def _numbers_in_lines(ds: xr.Dataset, names: Sequence[Hashable]) -> list[str]:
+    """Single numbers, or one a mass, with their names, as many on a line as there is room for."""
+    words = [f"{name} {_values(ds[name])}".replace(" ", "\0") for name in names]  # none is torn apart
+    lines = textwrap.wrap("; ".join(words), _WIDTH, initial_indent="  ", subsequent_indent="  ")
+    return [line.replace("\0", " ") for line in lines]
 
 
 def _printable(text: str) -> str:
@@ -119,12 +129,14 @@ def _entry(name: str, text: str) -> list[str]:
 
 def _named(variable: xr.DataArray) -> str:
     dims = f"({', '.join(map(str, variable.dims))})"
-    room = _WIDTH - _INDENT - 17
-    meaning = textwrap.shorten(LABELS[str(variable.name)].long_name, room, placeholder="...")
-    return f"  {variable.name!s:<{_INDENT - 3}} {dims:<16} {meaning}"
+    begin = f"  {variable.name!s:<{_INDENT - 3}} {dims:<16} "
+    meaning = textwrap.shorten(variable.attrs["long_name"], _WIDTH - len(begin), placeholder="...")
+    return begin + meaning
 
 
 def _axis(values: np.ndarray) -> str:
+    if values.dtype.kind == "U":
+        return ", ".join(np.atleast_1d(values))
     if values.size <= _SHOWN:
         return _numbers(values)
     return f"{values[0]:g} to {values[-1]:g}, {values.size:,} values"
@@ -156,13 +168,13 @@ def _values(variable: xr.DataArray) -> str:
 
 def _in_short(ds: xr.Dataset, what: str) -> Iterator[str]:
     """The last lines: what came out, and what to mind."""
-    if what == "map":
+    if what in ("map", "curves"):
         yield describe_map(ds)
     elif what == "response":
         yield describe_response(ds)
         yield from _motion(ds)
     yield from (f"  {line}" for line in describe_causes(ds))
-    if what == "map" and "stops_per_cycle" in ds:
+    if what in ("map", "curves") and "stops_per_cycle" in ds:
         yield from _stops(ds["stops_per_cycle"].values)
 
 

@@ -24,9 +24,9 @@ class HeldStructure(NamedTuple):
     """m = n - 1 oscillators for n free modes that the contact sees; see the module.
 
     omega, zeta : (m,) frequency and damping ratio of every oscillator
-    to_free : (2n, 2m) free coordinates (u, u') of (y, p), relative to `lift` times the contact's place
+    to_free : (2n, 2m) free coordinates (u, u') of (y, p), relative to the static shape
     to_held : (2m, 2n) the inverse on motions that leave the contact alone
-    lift : (n,) free coordinates of a unit static displacement of the contact
+    static_shape : (n,) free coordinates of a unit static displacement of the contact
     stiffness : static stiffness at the contact
     """
 
@@ -34,7 +34,7 @@ class HeldStructure(NamedTuple):
     zeta: np.ndarray
     to_free: np.ndarray
     to_held: np.ndarray
-    lift: np.ndarray
+    static_shape: np.ndarray
     stiffness: float
 
 
@@ -96,10 +96,11 @@ def held_structure(w: np.ndarray, zeta: np.ndarray, chi: np.ndarray) -> HeldStru
     n = w.size
     m = n - 1
     compliance = float(np.sum((chi / w) ** 2))
-    lift = chi / w**2 / compliance
+    static_shape = chi / w**2 / compliance
     if m == 0:
         empty = np.empty(0)
-        return HeldStructure(empty, empty, np.empty((2 * n, 0)), np.empty((0, 2 * n)), lift, 1.0 / compliance)
+        to_free, to_held = np.empty((2 * n, 0)), np.empty((0, 2 * n))
+        return HeldStructure(empty, empty, to_free, to_held, static_shape, 1.0 / compliance)
     allowed = np.linalg.svd(chi[np.newaxis])[2][1:].T  # orthonormal, chi.allowed = 0
     stiffness = allowed.T @ (w[:, np.newaxis] ** 2 * allowed)
     if not zeta.any():
@@ -139,4 +140,4 @@ def held_structure(w: np.ndarray, zeta: np.ndarray, chi: np.ndarray) -> HeldStru
         inverse = scaled @ rescale
     zero = np.zeros_like(allowed)
     spread = np.block([[allowed, zero], [zero, allowed]])
-    return HeldStructure(omega, ratio, spread @ basis, inverse @ spread.T, lift, 1.0 / compliance)
+    return HeldStructure(omega, ratio, spread @ basis, inverse @ spread.T, static_shape, 1.0 / compliance)

@@ -129,6 +129,11 @@ def angles(values: np.ndarray) -> np.ndarray:
     return np.array([math.atan2(value.imag, value.real) for value in values])
 
 
+def wrapped(angle: np.ndarray | float) -> np.ndarray:
+    """Angles in (-pi, pi], by whole turns."""
+    return angle - math.tau * np.ceil((angle - math.pi) / math.tau)
+
+
 def times(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:
     """Complex rows (n_r, n) times a real matrix (n, k); every row as if it were alone.
 
@@ -321,6 +326,10 @@ class ModalModel:
         """Participation of the load, lambda_i = p(r).phi_i, complex (n_r, n)."""
         return _phasors(r, *self._load_shares)
 
+    def total_load(self, r: np.ndarray) -> np.ndarray:
+        """Phasor p(r) of the load on the masses, (n_r, n)."""
+        return _phasors(r, self.load, self.load_rate, np.zeros(self.w.size))
+
     def relative_load(self, r: np.ndarray) -> np.ndarray:
         """Phasor of the load on x - s, which is x as seen from the contact's other side, (n_r, n).
 
@@ -370,33 +379,40 @@ class ModalModel:
         from .._kernels.boundary.balance import held_motions
 
         r = np.ascontiguousarray(r, dtype=float)
-        seen = self.chi != 0.0
+        participating = self.chi != 0.0
         found = np.empty((r.size, self.w.size), dtype=complex)
         force = np.empty(r.size, dtype=complex)
         singular = np.empty(r.size, dtype=bool)
-        held_motions(r, self._body, bool(seen.all()), found, force, singular)
+        held_motions(r, self._body, bool(participating.all()), found, force, singular)
         at = np.flatnonzero(singular)
-        if seen.all():
+        if participating.all():
             load = self.relative_load(r[at])
             solved = _solve_held(self.mass, self.stiffness, self.damping, self.contact, r[at], load)
             found[at], force[at] = solved[:, :-1], solved[:, -1]
             return found, force
-        w, zeta, chi = self.w[seen], self.zeta[seen], self.chi[seen]
+        w, zeta, chi = self.w[participating], self.zeta[participating], self.chi[participating]
         parts = self.relative_participation(r)
         solved = _solve_held(
-            np.eye(w.size), np.diag(w**2), np.diag(2.0 * zeta * w), chi, r[at], parts[np.ix_(at, seen)]
+            np.eye(w.size),
+            np.diag(w**2),
+            np.diag(2.0 * zeta * w),
+            chi,
+            r[at],
+            parts[np.ix_(at, participating)],
         )
-        found[np.ix_(at, seen)], force[at] = solved[:, :-1], solved[:, -1]
-        return self._spread(r, parts, found, seen, np.isinf(force)), force
+        found[np.ix_(at, participating)], force[at] = solved[:, :-1], solved[:, -1]
+        return self._spread(r, parts, found, participating, np.isinf(force)), force
 
     def _spread(
-        self, r: np.ndarray, parts: np.ndarray, q: np.ndarray, seen: np.ndarray, resonant: np.ndarray
+        self, r: np.ndarray, parts: np.ndarray, q: np.ndarray, participating: np.ndarray, resonant: np.ndarray
     ) -> np.ndarray:
-        """Displacements (n_r, n) of seen modes q and of the others, which move freely under `parts`."""
+        """Displacements (n_r, n) of participating modes q and of the others, which `parts` move freely."""
         stiffness = self.dynamic_stiffness(r)
-        free = np.where(seen, 0.0, parts)
+        free = np.where(participating, 0.0, parts)
         motion = np.column_stack([_modal_sum(stiffness, _weighted(free, row)) for row in self.phi])
-        motion += times(np.where(resonant[:, np.newaxis], 0.0, q)[:, seen], self.phi[:, seen].T)
+        motion += times(
+            np.where(resonant[:, np.newaxis], 0.0, q)[:, participating], self.phi[:, participating].T
+        )
         motion[resonant] = np.inf
         return motion
 
@@ -417,6 +433,20 @@ class ModalModel:
         Infinite where the load feeds an undamped resonance of the held structure.
         """
         return self.held(r)[0] + self.base_motion
+
+    def held_at_rest(self) -> np.ndarray:
+        """Masses that no load moves with the contact held, bool (n,).
+
+        The one that a fixed wall holds, and those that are tied to the load through it only.
+        """
+        if self.base_motion or np.count_nonzero(self.contact) > 1:
+            return np.zeros(self.w.size, dtype=bool)
+        free = self.contact == 0.0
+        tied = (self.stiffness != 0.0) | (self.mass != 0.0) | (self.damping != 0.0)
+        moved = free & ((self.load != 0.0) | (self.load_rate != 0.0))
+        for _ in range(self.w.size):  # from mass to mass, away from the load
+            moved |= free & tied @ moved
+        return ~moved
 
     def held_frequencies(self) -> np.ndarray:
         """Natural frequencies of the undamped structure with its contact held, shape (n - 1,)."""

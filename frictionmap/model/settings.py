@@ -1,4 +1,4 @@
-"""Settings of the steady-state solver."""
+"""Settings of the steady-state solver, and of response curves."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
@@ -22,8 +22,25 @@ Output = Literal[
     "also_reachable",
     "sliding_limit",
     "amplitude",
+    "sliding_distance",
+    "work_friction",
+    "work_input",
+    "work_damping",
+    "equivalent_damping",
+    "contact_first_harmonic_amplitude",
+    "contact_first_harmonic_phase",
 ]
 OUTPUTS: tuple[str, ...] = get_args(Output)
+
+#: What response curves can hold, in the order of the file.
+Quantity = Literal[
+    "amplitude", "phase", "first_harmonic", "energy", "harmonics", "transmitted_force", "distortion"
+]  # fmt: skip
+
+#: What they hold if nobody says, and the highest harmonic then; rounding grows with their number.
+QUANTITIES: tuple[Quantity, ...] = ("amplitude", "phase", "first_harmonic", "energy", "harmonics")
+HARMONICS = 7
+_MOST_HARMONICS = 1000
 
 Start = Literal["rest", "moving"]
 Skip = Literal["exact", "none"]
@@ -104,3 +121,44 @@ def merged(solver: Solver | None, settings: Mapping[str, object]) -> Solver:
             hint = checks.nearest(name, names)
             raise InputError(f"settings must be some of {', '.join(names)}; got {name}{hint}")
     return replace(solver or Solver(), **settings)  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class CurveSettings:
+    """What is computed of response curves: these quantities, and harmonics 0 to `harmonics`; 0: none."""
+
+    harmonics: int
+    quantities: tuple[Quantity, ...]
+
+
+def curve_settings(
+    harmonics: int | None = None, quantities: Sequence[Quantity] | None = None
+) -> CurveSettings:
+    """What is computed of response curves, checked.
+
+    Parameters
+    ----------
+    harmonics : int, optional
+        The highest harmonic that is kept, up to 1000; 0: none.  Default 7 where `quantities` names
+        "harmonics", else none.
+    quantities : sequence of str, optional
+        Default all but the last two.  A number of harmonics adds "harmonics", 0 takes them away.
+
+    Raises
+    ------
+    InputError
+        A quantity is unknown, or none is given, or the number is no whole number in range.
+    """
+    given = QUANTITIES if quantities is None else quantities
+    legal: tuple[Quantity, ...] = get_args(Quantity)
+    if isinstance(given, str) or not isinstance(given, Sequence):
+        raise InputError(f"quantities must be a list of names; got {checks.one_line(given)}")
+    for name in given:
+        checks.choice(name, "quantities", legal)
+    if not given:
+        raise InputError(f"quantities must name at least one of {', '.join(legal)}; got none")
+    if harmonics is None:
+        harmonics = HARMONICS if "harmonics" in given else 0
+    harmonics = checks.whole(harmonics, "harmonics", least=0, most=_MOST_HARMONICS)
+    kept = {*given, "harmonics"} if harmonics else {*given} - {"harmonics"}
+    return CurveSettings(harmonics, tuple(name for name in legal if name in kept))

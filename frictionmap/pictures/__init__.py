@@ -10,8 +10,18 @@ raster          cells to pixels: nothing is lost, however many cells a pixel has
 marks           where to write names, draw rings, put labels so that they lie apart
 words           titles and captions
 panels          figures, panels, axes, legends
+boundary_curves boundaries over a map, as fine as the picture
 regime_map      maps of regimes and stops
 boundary_map    what the boundaries alone tell
 history         one steady state in time
+orbit           one steady state without time: phase portrait, friction loop, harmonics
+families        what the lines of response curves differ in
+curve_lines     their lines: pieces by regime, phases without jumps
+curve_axes      their axes, what is cut off, how panels lie
+invariants      points that friction leaves alone, resonances that it makes finite
+motions         amplitude and phase over frequency
+harmonics       harmonics over frequency
+works           works, distances and forces over frequency
+curves          which of these is drawn
 ==============  ==========================================================================
 """

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from ..files.stored import stored_system
+from ..model.system import System
 from .grids import Grid
 
 #: Least distance of two marks, as a share of the axis.
@@ -34,14 +35,25 @@ _KINDS = {
 }
 
 
+def _of_system(system: System | None) -> dict[str, np.ndarray]:
+    if system is None:
+        return {}
+    known = {"natural_frequency": system.modes.w}
+    if system.n > 1:
+        known["held_frequency"] = system.modes.held_frequencies()
+    return known
+
+
+def frequencies_of(system: System | None) -> list[Feature]:
+    """Natural frequencies of a system, and with the contact held; none of an unknown one."""
+    return [Feature(*_KINDS[name], places) for name, places in _of_system(system).items()]
+
+
 def features_of(ds: xr.Dataset) -> list[Feature]:
     """What a dataset knows of its system's frequencies, by its variables or by its configuration."""
     known = {name: ds[name].values for name in _KINDS if name in ds}
-    system = stored_system(ds) if "natural_frequency" not in ds else None
-    if system is not None:
-        known["natural_frequency"] = system.modes.w
-        if system.n > 1:
-            known["held_frequency"] = system.modes.held_frequencies()
+    if "natural_frequency" not in known:
+        known |= _of_system(stored_system(ds))
     found = [Feature(*_KINDS[name], known[name]) for name in _KINDS if name in known]
     natural = known.get("natural_frequency", np.empty(0))
     # parts of the frequencies of more masses would fill the axis; of one, they are the invariant points

@@ -59,8 +59,8 @@ class Grid:
         low, high = self._warp(np.array(self.limits))
         return (self._warp(np.asarray(values, dtype=float)) - low) / (high - low)
 
-    def at(self, share: float) -> float:
-        """The value at a share of the plotted axis."""
+    def at(self, share: np.ndarray) -> np.ndarray:
+        """The values at shares of the plotted axis."""
         low, high = self._warp(np.array(self.limits))
         place = low + share * (high - low)
-        return float(np.exp(place) if self.logarithmic else place)
+        return np.exp(place) if self.logarithmic else place

@@ -1,6 +1,6 @@
 """Pictures of one steady state in time."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
@@ -31,7 +31,7 @@ class _Shade(TypedDict):
 _HEIGHTS = {"load": 1.0, "z": 2.4, "masses": 3.0, "friction": 2.2}
 
 #: Labels beside lines: least distance as a share of a panel's height, and how many fit.
-_GAP, _MOST_LABELS = 0.09, 11
+_GAP, MOST_LABELS = 0.09, 11
 
 #: A motion smaller than this is none.
 _ROUNDING = 1e-9
@@ -103,7 +103,7 @@ def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
         ax.plot(turns, place, color=colour, linewidth=1.2)
     _in_sight(ax, x)
     ax.set_ylabel("masses\n" r"$x$ / $(P/k_1)$")
-    labelled = np.unique(np.linspace(0, len(x) - 1, min(len(x), _MOST_LABELS)).round().astype(int))
+    labelled = np.unique(np.linspace(0, len(x) - 1, min(len(x), MOST_LABELS)).round().astype(int))
     _label_beside(
         ax, x[labelled, -1], [rf"$x_{{{numbers[k]}}}$" for k in labelled], [colours[k] for k in labelled]
     )
@@ -142,7 +142,7 @@ def _mark_phases(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray) -> lis
     return handles
 
 
-def _title(ds: xr.Dataset) -> str:
+def title_of(ds: xr.Dataset) -> str:
     """The cell and its answer."""
     symbols = {"r": "r", "beta": "β", "mu": "μ"}
     cell = ", ".join(f"{symbol} = {float(ds[name]):.6g}" for name, symbol in symbols.items())
@@ -157,9 +157,14 @@ def _title(ds: xr.Dataset) -> str:
     return f"{cell}: {words}{counted}" + (f", period {period}" if period > 1 else "")
 
 
+def contact_is_a_mass(ds: xr.Dataset) -> bool:
+    """Whether a mass moves as the contact does."""
+    return any(np.allclose(x, ds["z"].values, rtol=0.0, atol=1e-12) for x in ds["x"].values)
+
+
 def _panels(ds: xr.Dataset) -> list[str]:
-    """Which panels a steady state needs: one mass on a fixed wall moves as its contact does."""
-    same = ds.sizes["dof"] == 1 and np.allclose(ds["x"].values[0], ds["z"].values, rtol=0.0, atol=1e-12)
+    """Which panels a steady state needs: one mass that moves as its contact does has none of its own."""
+    same = ds.sizes["dof"] == 1 and contact_is_a_mass(ds)
     loaded = load_of(ds) is not None
     return [
         name
@@ -168,11 +173,11 @@ def _panels(ds: xr.Dataset) -> list[str]:
     ]
 
 
-def _check_can_be_seen(ds: xr.Dataset) -> None:
-    """Refuse one moment alone, and values whose range is beyond all doubles."""
+def check_can_be_seen(ds: xr.Dataset, names: Iterable[str]) -> None:
+    """Refuse one moment alone, and variables whose range is beyond all doubles."""
     if ds.sizes["tau"] < 2:
         raise InputError(f"a response must have two tau or more to be drawn; got {ds.sizes['tau']}")
-    for name in ("z", "x", "friction"):
+    for name in names:
         largest = float(np.abs(ds[name].values).max())
         if largest > _LARGEST:
             raise InputError(f"{name} must be at most {_LARGEST:g} to be drawn; got {largest:g}")
@@ -203,7 +208,7 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
     """
     ds = to_draw(ds, "plot_response", "response")
     check_holds(ds, ("z", "x", "friction", "phase"), "its motion")
-    _check_can_be_seen(ds)
+    check_can_be_seen(ds, ("z", "x", "friction"))
     names = _panels(ds)
     if ax is None:
         heights = [_HEIGHTS[name] for name in names]
@@ -223,6 +228,6 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
     axes[-1].set_xlabel(r"$\tau/\pi$")
     axes[-1].set_xlim(turns[0], turns[-1])
     if ax is None:
-        title_figure(axes[0].figure, _title(ds))
+        title_figure(axes[0].figure, title_of(ds))
         legend_below(axes[0].figure, handles, caption(ds))
     return axes

@@ -7,6 +7,10 @@ with the number of stops.  They also stay apart for readers who do not see red o
 from typing import Literal, NamedTuple, TypedDict
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import to_hex
+
+from .. import regimes
 
 
 class Look(NamedTuple):
@@ -21,7 +25,7 @@ class LineStyle(TypedDict, total=False):
 
     color: str
     linewidth: float
-    linestyle: Literal[":"] | tuple[int, tuple[int, int]]
+    linestyle: Literal[":"] | tuple[int, tuple[float, float]]
     label: str
 
 
@@ -60,6 +64,28 @@ MODAL: LineStyle = {
 
 #: Lines of masses, in turn; numbers beside the lines say which is which.
 LINES = ("#2b4fa6", "#bd7f50", "#00162c", "#48b2d1", "#cc1f03", "#2880b8")
+
+#: Lines of response curves, by the regime of the motion.
+REGIME_LINES: dict[int, Literal["-"] | tuple[int, tuple[float, float]]] = {
+    regimes.CONTINUOUS: "-",
+    regimes.STICK_SLIP: (0, (3.5, 1.5)),
+    regimes.PERMANENT_STICKING: (0, (1, 1.5)),
+}
+LIMIT: LineStyle = {
+    "color": "black",
+    "linewidth": 1.1,
+    "linestyle": (0, (7, 2)),
+    "label": r"continuous motion at $\beta_\mathrm{lim}$",
+}
+HELD: LineStyle = {"color": "black", "linewidth": 1.3, "linestyle": ":", "label": "contact held"}
+
+#: Part of a colour map of even steps that is neither white nor black on paper, from light to dark.
+_LIGHT, _DARK = 0.88, 0.0
+
+
+def sequence(number: int) -> list[str]:
+    """Colours of an ordered family of lines, from light to dark."""
+    return [to_hex(colormaps["viridis"](share)) for share in np.linspace(_DARK, _LIGHT, number)[::-1]]
 
 
 def colour_table() -> np.ndarray:

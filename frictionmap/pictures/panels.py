@@ -66,13 +66,18 @@ def panel_grid(panels: int, title: str) -> "AxesArray":
         )
     columns = 2 if panels in (2, 4) else min(panels, 3)
     rows = -(-panels // columns)
-    width = {1: 6.2, 2: 5.2, 3: 4.4}[columns]
-    figure = new_figure(width * columns + 0.4, 3.9 * rows + 0.4)  # a legend adds its own height
-    grid = figure.subplots(rows, columns, squeeze=False).ravel()
+    grid = table_of_panels(rows, columns, 3.9, title).ravel()
     for spare in grid[panels:]:
         spare.remove()
-    title_figure(figure, title)
     return grid[:panels]
+
+
+def table_of_panels(rows: int, columns: int, height: float, title: str) -> "AxesArray":
+    """Panels of a new figure in rows and columns, each `height` inches tall; shape (rows, columns)."""
+    width = {1: 6.2, 2: 5.2}.get(columns, 4.4)
+    figure = new_figure(width * columns + 0.4, height * rows + 0.4)  # a legend adds its own height
+    title_figure(figure, title)
+    return figure.subplots(rows, columns, squeeze=False)
 
 
 def given_axes(ax: "Axes | Sequence[Axes] | AxesArray", panels: int, what: str) -> "AxesArray":

@@ -1,6 +1,6 @@
 """Pictures of regime maps: classes of cells in colours, boundaries over them, what is small marked."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, overload
@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ..errors import InputError
+from .boundary_curves import boundary_curves
 from .classes import classes, count, legend_label, stops_range
 from .features import features_of, mark_features
 from .grids import Grid
@@ -48,6 +49,8 @@ from .words import caption
 
 if TYPE_CHECKING:
     from .panels import AxesArray
+
+_STYLES = {"beta_lim": LIM, "beta_stick": STICK}
 
 #: Stripes: distance and width [inch].
 _SPACING, _STRIPE = 0.085, 0.012
@@ -124,22 +127,11 @@ class CellImage(Artist):
         shade(image, darkness, (red, green, blue))
 
 
-def _curves(panel: xr.Dataset, r: Grid) -> list[tuple[np.ndarray, np.ndarray, dict]]:
-    """The boundaries to draw over a map: frequencies, values, style; a single value reaches over its cell."""
-    found = []
-    for name, style in (("beta_lim", LIM), ("beta_stick", STICK)):
-        if name in panel:
-            values = panel[name].values
-            one = r.values.size == 1
-            found.append((r.edges if one else r.values, np.repeat(values, 2) if one else values, dict(style)))
-    return found
-
-
-def _name_regions(ax: Axes, cells: Cells, curves: list) -> None:
+def _name_regions(ax: Axes, cells: Cells, curves: Iterable[tuple[np.ndarray, np.ndarray]]) -> None:
     """Write the names of the large regions into them, off the curves."""
     x_edges, y_edges = (COARSE * grid.share(grid.edges) for grid in (cells.r, cells.beta))
     coarse = rasterise(cells.found, x_edges, y_edges, (COARSE, COARSE), len(CLASSES))
-    for x, y, _ in curves:
+    for x, y in curves:
         coarse[trace(cells.r.share(x), cells.beta.share(y))] = len(CLASSES)
     for index in (STUCK, CONTINUOUS):
         place = room_for(coarse == index, CLASSES[index].label, size_of(ax))
@@ -170,14 +162,14 @@ def _ring(ax: Axes, cells: Cells) -> list[Handle]:
 def _draw(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
     """Draw one mu; the entries for a legend that are not classes."""
     ax.add_artist(CellImage(cells))
-    curves = _curves(panel, cells.r)
+    curves = boundary_curves(panel, cells.r, cells.beta.limits[1])
     handles: list[Handle] = []
     name_axes(ax, cells.r, float(panel["mu"]))
     if cells.beta.logarithmic:
         ax.set_yscale("log")
     ax.set_ylim(*cells.beta.limits)
-    for x, y, style in curves:
-        handles += ax.plot(x, y, path_effects=halo(), **style)
+    for name, curve in curves.items():
+        handles += ax.plot(*curve, path_effects=halo(), **_STYLES[name])
     if cells.several is not None:
         handles.append(
             Patch(
@@ -187,7 +179,7 @@ def _draw(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
         )  # fmt: skip
     handles += _ring(ax, cells)
     handles += mark_features(ax, features_of(panel), cells.r)
-    _name_regions(ax, cells, curves)
+    _name_regions(ax, cells, curves.values())
     return handles
 
 

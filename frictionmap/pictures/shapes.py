@@ -10,9 +10,15 @@ from ..files.reading import kind, standard_form
 _MAKERS = {
     "map": "sweep returns, over mu, r and beta",
     "boundaries": "boundaries returns, over mu and r",
+    "curves": "curves returns, over mu, r and beta",
     "response": "response returns, over tau",
 }
-_DRAWN_BY = {"map": "plot_regimes", "boundaries": "plot_boundaries", "response": "plot_response"}
+_DRAWN_BY = {
+    "map": "plot_regimes",
+    "boundaries": "plot_boundaries",
+    "curves": "plot_curves",
+    "response": "plot_response",
+}
 
 
 def to_draw(ds: object, function: str, *legal: str) -> xr.Dataset:

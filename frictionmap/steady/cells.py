@@ -12,20 +12,24 @@ import numpy as np
 
 from .._kernels.engine.answers import Limits
 from .._kernels.engine.details import Details, Displacements, Nothing
-from .._kernels.engine.fill import Axes, ClosedForm, OpenCells, fill_closed, fill_open
+from .._kernels.engine.extremes import Alone
+from .._kernels.engine.fill import Axes, ClosedForm, OpenCells, Wanted, fill_closed, fill_open
 from .._kernels.engine.many_masses import ManyMassSystem
 from .._kernels.engine.one_mass import OneMassSystem
+from .._kernels.engine.quantities import Quantities
 from ..datasets.labels import CELL_VARIABLES
 from ..model.settings import Solver
 from ..model.system import System
 from ..theory.boundaries import OneMass, many_mode_curves, one_mass_curves
 from .kernel_data import Structures, structures
+from .quantity_data import Asked, quantity_numbers, results
+from .quantity_limits import put_resonance, put_static
 
 Job = tuple[Callable[..., None], tuple]
 
 
 def limits(solver: Solver) -> Limits:
-    """When the kernels stop."""
+    """When the kernels give up."""
     return Limits(float(solver.cycles), solver.tolerance, solver.steady == "solved")
 
 
@@ -33,10 +37,13 @@ class Cells:
     """The cells of a map of a system; r, beta and mu are checked axes."""
 
     def __init__(
-        self, system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver
-    ) -> None:
-        self._system, self._solver = system, solver
+        self, system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver,
+        asked: Asked | None = None,
+    ) -> None:  # fmt: skip
+        self._system, self._solver, self._asked = system, solver, asked
         self._axes = Axes(mu, r, beta)
+        #: what was asked for of a cycle, for the jobs to fill
+        self.results = results((mu.size, r.size, beta.size), system.n, asked or Asked(frozenset()))
         self._one: OneMass | None = None
         if system.normalised:
             self._one = one_mass_curves(system, r, mu)
@@ -74,7 +81,7 @@ class Cells:
         f = self.structures
         return ManyMassSystem(
             self._axes.r, f.model, f.loads, f.orbit, f.marginal, f.rest, f.moving, steps,
-            self.curves.beta_lim, f.seen.size,
+            self.curves.beta_lim, f.participating.size,
         )  # fmt: skip
 
     @cached_property
@@ -91,12 +98,25 @@ class Cells:
         return float(self._closed_form.load[0])
 
     @cached_property
-    def _wanted(self) -> Details | Nothing:
+    def _details(self) -> Details | Nothing:
         if "details" not in self._needs:
             return Nothing(0)
         f = self.structures
-        parts = Displacements(f.shapes, f.alone_re, f.alone_im, f.held)
+        parts = Displacements(f.shapes, Alone(f.alone, f.alone), f.held)
         return Details(self._axes.r, f.model, f.loads, f.orbit, float(self._solver.steps), parts)
+
+    @cached_property
+    def quantities(self) -> Quantities | Nothing:
+        """What a cycle is asked for, in numbers."""
+        if self._asked is None:
+            return Nothing(0)
+        return quantity_numbers(
+            self._system, self._axes.r, self.structures, float(self._solver.steps), self._asked, self.results
+        )  # fmt: skip
+
+    @cached_property
+    def _wanted(self) -> Wanted:
+        return Wanted(self._details, self.quantities)
 
     def closed(self, first: int, last: int, cells: OpenCells, out: Any) -> Job:
         """A job for the cells of rows first..last-1 that formulas decide."""
@@ -119,16 +139,24 @@ class Cells:
         axes = self._axes
         shared = (
             axes, self.curves.beta_lim, self.curves.beta_stick, self.no_load, self.motion,
-            limits(self._solver), out.also_reachable, out.sliding_limit, cancel,
+            limits(self._solver), out, cancel,
         )  # fmt: skip
         return [(fill_reachable, (row, row + 1, *shared)) for row in range(axes.mu.size * axes.r.size)]
 
     def finish(self, out: Any) -> None:
         """The limit r = 0 without friction; and modes that the contact does not see may resonate."""
+        axes = self._axes
         if out.amplitude.size:
-            axes = self._axes
             if axes.beta[0] == 0.0:
                 static = np.abs(self._system.modes.static_response())
                 out.amplitude[:, axes.r == 0.0, 0, :] = static
             where = np.broadcast_to(self.structures.resonant[:, np.newaxis, :], out.amplitude.shape)
             out.amplitude[where & ~np.isnan(out.amplitude)] = np.inf
+        if self._asked is not None:
+            put_resonance(self._system, axes.r, self.structures.resonant, self.results)
+            if axes.r[0] == 0.0:
+                static = put_static(self._system, axes.beta, out.status[:, 0], self.results)
+                if out.contact_amplitude.size:
+                    out.contact_amplitude[:, 0] = np.where(
+                        np.isnan(static), out.contact_amplitude[:, 0], static
+                    )

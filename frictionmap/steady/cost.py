@@ -1,17 +1,21 @@
-"""What a map will cost: memory, compared with what the machine has, and time, from a small part of it."""
+"""What maps and curves will cost: memory, compared with what the machine has, and time, from a small part."""
 
 import contextlib
 import math
 import os
 import time
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import InputError
-from ..model.settings import Solver
+from ..model.settings import CurveSettings, Solver
 from ..model.system import System
+
+if TYPE_CHECKING:
+    from .quantity_data import Asked
 
 #: Bytes that a process takes before it has any cells.
 _BASE = 400e6
@@ -39,12 +43,37 @@ _FEWEST, _MOST = 8, 256
 def memory_of_map(counts: Mapping[str, int], masses: int, outputs: tuple[str, ...]) -> float:
     """Bytes that a map with so many values of mu, r and beta takes at its peak."""
     from ..datasets.labels import CELL_VARIABLES
+    from .quantity_data import asked_for
 
-    sizes = {**counts, "dof": masses}
-    cells = 0.0
-    for name in {*outputs, "status"}:
-        label = CELL_VARIABLES[name]
-        cells += np.dtype(label.dtype).itemsize * math.prod(float(sizes[dim]) for dim in label.dims)
+    of_cycle = [name for name in outputs if CELL_VARIABLES[name].needs == "cycle"]
+    return _memory({**counts, "dof": masses}, {*outputs, "status"}, asked_for(of_cycle))
+
+
+def memory_of_curves(counts: Mapping[str, int], masses: int, settings: CurveSettings) -> float:
+    """Bytes that response curves at so many values of mu, r and beta take at their peak."""
+    from .curves import cycle_variables, plain_outputs
+    from .quantity_data import asked_for
+
+    sizes = {**counts, "dof": masses, "harmonic": settings.harmonics + 1, "part": 2}
+    names = cycle_variables(settings)
+    variables = {*plain_outputs(settings), *names}
+    return _memory(sizes, variables, asked_for(names, settings.harmonics), "curves")
+
+
+def _memory(counts: Mapping[str, int], names: Collection[str], asked: "Asked", what: str = "") -> float:
+    """Bytes of so many values of every dimension: variables of cells, and the results of cycles.
+
+    what : the kind of the dataset, see `labels_of`
+    """
+    from ..datasets.labels import labels_of
+    from .quantity_data import results
+
+    masses, labels = counts["dof"], labels_of(what)
+    kept = sum(array.nbytes for array in results((1, 1, 1), masses, asked))
+    cells = float(kept) * counts["mu"] * counts["r"] * counts["beta"]
+    for name in names:
+        label = labels[name]
+        cells += np.dtype(label.dtype).itemsize * math.prod(float(counts[dim]) for dim in label.dims)
     frequency = _PER_FREQUENCY + (_PER_MASS * masses if masses > 1 else 0.0)
     return _BASE + _WRITING * cells + counts["mu"] * counts["r"] * frequency + counts["beta"] * _PER_BETA
 
@@ -68,7 +97,9 @@ def _of_machine() -> float:
     return float("inf")
 
 
-def refuse_without_memory(counts: Mapping[str, int], system: System, solver: Solver) -> None:
+def refuse_map_without_memory(
+    counts: Mapping[str, int], system: System, solver: Solver, _: CurveSettings
+) -> None:
     """Refuse a map that this machine has no memory for, before any is taken.
 
     Raises
@@ -76,12 +107,24 @@ def refuse_without_memory(counts: Mapping[str, int], system: System, solver: Sol
     InputError
         With what is needed and what there is.
     """
-    needed, there = memory_of_map(counts, system.n, tuple(solver.outputs)), available_memory()
+    _refuse(counts, memory_of_map(counts, system.n, tuple(solver.outputs)), "outputs")
+
+
+def refuse_curves_without_memory(
+    counts: Mapping[str, int], system: System, _: Solver, curves: CurveSettings
+) -> None:
+    """The same of response curves."""
+    _refuse(counts, memory_of_curves(counts, system.n, curves), "quantities or harmonics")
+
+
+def _refuse(counts: Mapping[str, int], needed: float, fewer: str) -> None:
+    """Refuse cells that need more memory than there is; `fewer`: of what else there might be fewer."""
+    there = available_memory()
     if needed > there:
         cells = counts["mu"] * counts["r"] * counts["beta"]
         raise InputError(
             f"grid must fit in memory: its {cells:,} cells need about {in_bytes(needed)}, available are "
-            f"{in_bytes(there)}; make it coarser, ask for fewer outputs, or insist with --yes"
+            f"{in_bytes(there)}; make it coarser, ask for fewer {fewer}, or insist with --yes"
         )
 
 

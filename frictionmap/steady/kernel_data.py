@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._kernels.closed_form import damping_functions
-from .._kernels.engine.displacements import Shapes
+from .._kernels.engine.extremes import Shapes
 from .._kernels.engine.many_masses import Starts
 from .._kernels.engine.policies import MOVING, MOVING_CAP
 from .._kernels.structure.sliding_orbit import Continuous
-from .._kernels.structure.state import CHI, LIFT, MODE_ROWS, Loads, Model
+from .._kernels.structure.state import CHI, MODE_ROWS, STATIC_SHAPE, Loads, Model
 from ..model.held_structure import held_structure
 from ..model.modes import ModalModel, angles, modulus, times
 from ..model.system import System
@@ -24,7 +24,7 @@ _ZERO_SHARE = 64.0
 class Structures:
     """A system at frequencies r: everything that its cells need; nothing of what moves is meant at r = 0."""
 
-    seen: np.ndarray  # the modes that the contact sees
+    participating: np.ndarray  # the modes that move the contact, chi != 0
     model: Model
     loads: Loads
     orbit: Continuous
@@ -32,19 +32,18 @@ class Structures:
     rest: Starts
     moving: Starts
     shapes: Shapes
-    alone_re: np.ndarray  # (n_r, n_dof) phasor of what moves with the load alone; 0 where infinite
-    alone_im: np.ndarray
+    alone: np.ndarray  # (n_r, n_dof) phasor of what moves with the load alone; 0 where infinite
     resonant: np.ndarray  # (n_r, n_dof) bool, where that is infinite
     held: np.ndarray  # (n_r, n_dof) phasor of the displacements with the contact held
 
 
-def _model(modes: ModalModel, seen: np.ndarray) -> Model:
-    w, zeta, chi = modes.w[seen], modes.zeta[seen], modes.chi[seen]
+def _model(modes: ModalModel, participating: np.ndarray) -> Model:
+    w, zeta, chi = modes.w[participating], modes.zeta[participating], modes.chi[participating]
     held = held_structure(w, zeta, chi)
     table = np.empty((MODE_ROWS, w.size))
     mass = 1.0 / np.sum(chi**2)  # m_eff
     load, load_rate = mass * chi * w**2, 2.0 * mass * chi * zeta * w
-    table[:] = w, zeta, chi, held.lift, load, load_rate
+    table[:] = w, zeta, chi, held.static_shape, load, load_rate
     watch = np.concatenate((load, load_rate)) @ held.to_free
     return Model(
         table, held.omega, held.zeta, watch, np.ascontiguousarray(held.to_free),
@@ -85,13 +84,13 @@ def _loads(model: Model, r: np.ndarray, participation: np.ndarray) -> Loads:
 
 
 def _orbit(
-    modes: ModalModel, seen: np.ndarray, r: np.ndarray, participation: np.ndarray, curves: Curves
+    modes: ModalModel, participating: np.ndarray, r: np.ndarray, participation: np.ndarray, curves: Curves
 ) -> Continuous:
-    stiffness = modes.dynamic_stiffness(r)[:, seen]
+    stiffness = modes.dynamic_stiffness(r)[:, participating]
     resonant = stiffness == 0.0
     response = np.where(resonant, np.inf, participation / np.where(resonant, 1.0, stiffness))
-    u, g = np.empty((2, r.size, seen.size))
-    for k, i in enumerate(seen):
+    u, g = np.empty((2, r.size, participating.size))
+    for k, i in enumerate(participating):
         for j, value in enumerate(r):
             u[j, k], g[j, k] = damping_functions(modes.w[i], modes.zeta[i], value)
     return Continuous(
@@ -100,41 +99,41 @@ def _orbit(
     )  # fmt: skip
 
 
-def _rest(modes: ModalModel, seen: np.ndarray, n_r: int) -> Starts:
+def _rest(modes: ModalModel, participating: np.ndarray, n_r: int) -> Starts:
     """Every mass at rest at 0, one on a joined base-wall at the base's displacement; tau = 0."""
     c = modes.contact
     x = modes.base_motion * (c / (c @ c) - 1.0)  # relative to the base
-    place = (modes.phi[:, seen].T @ modes.mass @ x)[np.newaxis].repeat(n_r, axis=0)
+    place = (modes.phi[:, participating].T @ modes.mass @ x)[np.newaxis].repeat(n_r, axis=0)
     return Starts(place, np.zeros_like(place), np.ones(n_r), np.zeros(n_r))
 
 
 def _moving(
-    modes: ModalModel, seen: np.ndarray, r: np.ndarray, participation: np.ndarray, force: np.ndarray
+    modes: ModalModel, participating: np.ndarray, r: np.ndarray, participation: np.ndarray, force: np.ndarray
 ) -> Starts:
     """The contact at z = 0, every mode at its largest speed; the load in the held contact falls through 0.
 
     Its amplitude is 1.5 times what the load alone sustains of it, that taken as 10 times its static answer at
     most; `force` (n_r,) is the phasor of the held load.
     """
-    w = modes.w[seen]
-    stiffness = np.ascontiguousarray(modulus(modes.dynamic_stiffness(r)[:, seen]))
+    w = modes.w[participating]
+    stiffness = np.ascontiguousarray(modulus(modes.dynamic_stiffness(r)[:, participating]))
     with np.errstate(divide="ignore"):
         gain = np.minimum(1.0 / stiffness, MOVING_CAP / w**2)
     size = MOVING * modulus(participation) * gain * np.maximum(w, r[:, np.newaxis])
     lead = np.where(np.isfinite(force), angles(force), 0.0)
     sine, cosine = (np.array([function(angle) for angle in lead]) for function in (math.sin, math.cos))
-    return Starts(np.zeros_like(size), size * np.sign(modes.chi[seen]), sine, cosine)
+    return Starts(np.zeros_like(size), size * np.sign(modes.chi[participating]), sine, cosine)
 
 
 def _alone(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Phasor (n_r, n_dof) of the base's motion and of the modes that are not seen; where infinite."""
-    unseen = np.flatnonzero(modes.chi == 0.0)
-    stiffness = modes.dynamic_stiffness(r)[:, unseen]
-    loads = modes.relative_participation(r)[:, unseen]
+    """Phasor (n_r, n_dof) of the base's motion and of the modes that do not participate; where infinite."""
+    idle = np.flatnonzero(modes.chi == 0.0)
+    stiffness = modes.dynamic_stiffness(r)[:, idle]
+    loads = modes.relative_participation(r)[:, idle]
     resonant = (stiffness == 0.0) & (loads != 0.0)
     parts = np.where(stiffness == 0.0, 0.0, loads / np.where(stiffness == 0.0, 1.0, stiffness))
-    alone = modes.base_motion + times(parts, modes.phi[:, unseen].T)
-    return alone, (resonant.astype(float) @ np.abs(modes.phi[:, unseen].T)) > 0.0
+    alone = modes.base_motion + times(parts, modes.phi[:, idle].T)
+    return alone, (resonant.astype(float) @ np.abs(modes.phi[:, idle].T)) > 0.0
 
 
 def _marginal(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> np.ndarray:
@@ -155,26 +154,31 @@ def _marginal(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> np.ndarray:
     return found
 
 
+def _shapes(model: Model, phi: np.ndarray) -> Shapes:
+    """Displacements of the masses; `phi` (n_dof, n) of the participating modes."""
+    n = phi.shape[1]
+    # contiguous, all of them: another memory layout would be another type to the kernels, compiled anew
+    return Shapes(
+        np.concatenate((phi, np.zeros_like(phi)), axis=1), np.ascontiguousarray(phi @ model.to_free[:n]),
+        phi @ model.modes[STATIC_SHAPE], np.zeros(phi.shape[0]),
+    )  # fmt: skip
+
+
 def structures(system: System, r: np.ndarray, curves: Curves) -> Structures:
     """Everything that the cells of a system need at frequencies r, for which `curves` are."""
     modes = system.modes
-    seen = np.flatnonzero(modes.chi)
-    model = _model(modes, seen)
+    participating = np.flatnonzero(modes.chi)
+    model = _model(modes, participating)
     alone, resonant = _alone(modes, r)
     held, force = modes.held(r)
     held = held + modes.base_motion
     r = np.where(r > 0.0, r, 1.0)  # no cell at r = 0 is followed: any other number does
-    participation = np.ascontiguousarray(modes.relative_participation(r)[:, seen])
-    phi = modes.phi[:, seen]
-    # contiguous, all of them: another memory layout would be another type to the kernels, compiled anew
-    shapes = Shapes(
-        np.ascontiguousarray(phi), np.ascontiguousarray(phi @ model.to_free[: seen.size]),
-        phi @ model.modes[LIFT],
-    )  # fmt: skip
+    participation = np.ascontiguousarray(modes.relative_participation(r)[:, participating])
     return Structures(
-        seen, model, _loads(model, r, participation), _orbit(modes, seen, r, participation, curves),
-        _marginal(modes.w[seen], modes.zeta[seen], r), _rest(modes, seen, r.size),
-        _moving(modes, seen, r, participation, force), shapes,
-        np.ascontiguousarray(alone.real), np.ascontiguousarray(alone.imag), resonant,
+        participating, model, _loads(model, r, participation),
+        _orbit(modes, participating, r, participation, curves),
+        _marginal(modes.w[participating], modes.zeta[participating], r), _rest(modes, participating, r.size),
+        _moving(modes, participating, r, participation, force), _shapes(model, modes.phi[:, participating]),
+        np.ascontiguousarray(alone), resonant,
         np.ascontiguousarray(held),
     )  # fmt: skip

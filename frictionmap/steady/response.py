@@ -11,7 +11,12 @@ from .. import checks, regimes
 from .._kernels.engine import phase_table
 from .._kernels.engine.answers import Cell
 from .._kernels.engine.fill import one_cell
-from .._kernels.engine.time_history import sample_phases
+from .._kernels.engine.quantities import (
+    continuous_cell_quantities,
+    stuck_cell_quantities,
+    table_cell_quantities,
+)
+from .._kernels.engine.time_history import Samples, sample_phases
 from .._kernels.engine.window import window_table
 from .._kernels.one_mass.sliding_orbit import orbit_phase
 from .._kernels.structure.newton import make_workspace
@@ -19,10 +24,11 @@ from .._kernels.structure.oscillators import make_scratch
 from .._kernels.structure.state import make_structure
 from ..datasets.labels import CELL_VARIABLES, coordinate, label_variable, stamp
 from ..errors import InputError, NoSteadyState
-from ..model.settings import Output, Solver, SolverSettings, merged
+from ..model.settings import HARMONICS, Output, Solver, SolverSettings, merged
 from ..model.system import System
 from ..theory.boundaries import boundary_variables
 from .cells import Cells, limits
+from .quantity_data import PARTS, VARIABLES, asked_for, read_result
 from .sweep import plan, sweep
 
 #: Samples of a time history per excitation period.
@@ -38,6 +44,9 @@ _WINDOWED = (
 )
 
 _TURN = 2.0 * math.pi
+
+#: What response curves have, all of it.
+CYCLE = tuple(name for names in VARIABLES.values() for name in names)
 
 
 @dataclass(frozen=True)
@@ -71,12 +80,16 @@ class History:
 
 @dataclass(frozen=True)
 class Found:
-    """The steady state of a cell, or a window of a motion that does not repeat."""
+    """The steady state of a cell, or a window of a motion that does not repeat.
+
+    once : the phases until the motion returns, mirrored or not; none where the closed form tells them
+    """
 
     table: np.ndarray | None  # phases of one period, or of the window; none where it sticks for good
     status: int
     rest: float = 0.0  # where it sticks
     averages: Cell | None = None  # of the motion that does not repeat
+    once: np.ndarray | None = None
 
 
 def _times(period: int, points: int) -> np.ndarray:
@@ -120,7 +133,7 @@ def _with_mirror_image(table: np.ndarray) -> np.ndarray:
 def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
     """The table of phases of the continuous orbit, one phase."""
     found = cells.structures
-    orbit, n = found.orbit, found.seen.size
+    orbit, n = found.orbit, found.participating.size
     st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
     table = np.empty((1, phase_table.phase_columns(n)))
     phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], question.beta)
@@ -155,13 +168,14 @@ def _find(question: Question, cells: Cells) -> Found:
         regime, rest = cell.regime, cells.unit * cell.sign * cell.at.z
     if regime == regimes.PERMANENT_STICKING:
         return Found(None, status, rest)
-    if table.shape[0] == 0:
+    once = table if table.shape[0] else None
+    if once is None:
         if math.isinf(cells.structures.orbit.v_abs[0]):
             raise _no_steady_state(question, _UNBOUNDED)
         table = _continuous_table(question, cells)
         marginal = bool(cells.structures.marginal[0]) and question.beta > 0.0
         status = regimes.MARGINAL if marginal else status
-    return Found(_with_mirror_image(table), status)
+    return Found(_with_mirror_image(table), status, once=once)
 
 
 def _stuck_history(question: Question, cells: Cells, rest: float) -> History:
@@ -170,9 +184,10 @@ def _stuck_history(question: Question, cells: Cells, rest: float) -> History:
     tau = _times(1, question.points)
     turn = np.exp(1j * tau)
     held = found.held[0][:, np.newaxis] * turn
+    offset = found.shapes.static_shape[:, np.newaxis] * rest
     force = question.system.modes.held_load(np.array([question.r]))[0] * turn
     return History(
-        1, tau, held.real + found.shapes.lift[:, np.newaxis] * rest, -held.imag, np.full(tau.size, rest),
+        1, tau, held.real + offset, -held.imag, np.full(tau.size, rest),
         force.real - found.model.stiffness * rest, np.zeros(tau.size, np.int8),
         (np.empty(0), np.empty(0), np.empty(0)), np.empty(0), 0.0, True,
     )  # fmt: skip
@@ -210,7 +225,7 @@ def _moving_history(question: Question, cells: Cells, found: Found) -> History:
     assert table is not None
     if numbers.resonant.any():
         raise _no_steady_state(question, _UNBOUNDED)
-    n = numbers.seen.size
+    n = numbers.participating.size
     lengths = table[:, phase_table.LENGTH]
     period = WINDOW if found.averages else max(1, round(float(lengths.sum()) / _TURN))
     tau = _times(period, question.points)
@@ -220,17 +235,16 @@ def _moving_history(question: Question, cells: Cells, found: Found) -> History:
     coordinates, velocities = np.empty((2, n, tau.size))
     z, friction = np.empty((2, tau.size))
     sense = np.empty(tau.size, dtype=np.int8)
-    sample_phases(
-        st, question.beta, table, since[order], coordinates, velocities, z, friction, sense,
-        make_workspace(n), make_scratch(n),
-    )  # fmt: skip
+    samples = Samples(coordinates, velocities, z, friction, sense)
+    sample_phases(st, question.beta, table, since[order], samples, make_workspace(n), make_scratch(n))
     back = np.empty_like(order)
     back[order] = np.arange(order.size)
-    alone = (numbers.alone_re[0] + 1j * numbers.alone_im[0])[:, np.newaxis] * np.exp(1j * tau)
+    alone = numbers.alone[0][:, np.newaxis] * np.exp(1j * tau)
+    shapes = numbers.shapes.free[:, :n]
     begins, places = _phase_starts(table)
     return History(
-        period, tau, (numbers.shapes.free @ coordinates)[:, back] + alone.real,
-        (numbers.shapes.free @ velocities)[:, back] - alone.imag, z[back], friction[back], sense[back],
+        period, tau, (shapes @ coordinates)[:, back] + alone.real,
+        (shapes @ velocities)[:, back] - alone.imag, z[back], friction[back], sense[back],
         (times, begins[shown], places[shown]), lengths[table[:, phase_table.SENSE] == 0.0],
         float(np.abs(table[:, phase_table.Z_END]).max()), False,
     )  # fmt: skip
@@ -258,6 +272,22 @@ def _summary(history: History, found: Found) -> dict[str, float]:
         "period": history.period,
         "status": found.status,
     }
+
+
+def _cycle(question: Question, cells: Cells, found: Found) -> dict[str, np.ndarray]:
+    """What the cell's response curves have; NaN of a motion that does not repeat."""
+    if found.averages is None:
+        if found.table is None:
+            stuck_cell_quantities(cells.quantities)
+        elif found.once is None:
+            continuous_cell_quantities(cells.quantities, question.beta)
+        else:
+            table_cell_quantities(cells.quantities, question.beta, found.once)
+    values = {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
+    if found.table is None:  # here the place where the contact rests is shown, too
+        values["amplitude"] += np.abs(cells.structures.shapes.static_shape * found.rest)
+    values["phase_lag"] = values.pop("phase")
+    return values
 
 
 def _further(question: Question, names: list[Output]) -> dict[str, xr.Variable]:
@@ -304,8 +334,9 @@ def response(
         Over `tau` (0 to 2 pi times the period): `x(dof, tau)`, `v(dof, tau)`, `z`, `friction` (over P)
         and `phase` (-1, 0, 1).  Over `event`: `event_tau`, `event_phase` (the phase that begins) and
         `event_z`.  Scalars: `regime`, `stops_per_cycle`, `contact_amplitude`, `stuck_fraction`, `period`,
-        `status`, the boundaries and what else `outputs` asks for.  tau = 0 is a maximum of the load (of the
-        base's displacement).
+        `status`, the boundaries, what else `outputs` asks for, and those of `frictionmap.curves`, with
+        `phase_lag(dof)` for its `phase`; harmonics 0 to 7 over (`harmonic`, `part`).  tau = 0 is a maximum of
+        the load (of the base's displacement).
 
         Of stick-slip that does not repeat (`status` not_periodic, `period` 0) tau goes over 8 periods at the
         end of those that were followed, and the scalars are those of the map: averages.
@@ -333,7 +364,9 @@ def response(
     if r == 0.0:
         raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
     question = Question(system, r, beta, mu, solver, points)
-    cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
+    cells = Cells(
+        system, np.array([r]), np.array([beta]), np.array([mu]), solver, asked_for(CYCLE, HARMONICS)
+    )
     found = _find(question, cells)
     history = _history(question, cells, found)
     summary = _summary(history, found)
@@ -348,10 +381,18 @@ def response(
         "event_phase": begins.astype(np.int8),
         "event_z": places,
     }
-    dofs = np.arange(1, system.n + 1)
+    cycle = _cycle(question, cells, found)
+    # what a map is asked for comes from its kernels below, to the bit
+    variables |= {name: value for name, value in cycle.items() if name not in solver.outputs}
+    own = {
+        "tau": history.tau,
+        "dof": np.arange(1, system.n + 1),
+        "harmonic": np.arange(HARMONICS + 1),
+        "part": PARTS,
+    }
     ds = xr.Dataset(
         {name: label_variable(name, values) for name, values in variables.items()},
-        coords={"tau": coordinate("tau", history.tau), "dof": coordinate("dof", dofs)},
+        coords={name: coordinate(name, values) for name, values in own.items()},
     )
     ds = ds.assign({name: v[0, 0] for name, v in boundary_variables(cells.curves).items()})
     ds = ds.assign(

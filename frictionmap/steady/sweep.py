@@ -2,7 +2,7 @@
 
 import os
 from collections import namedtuple
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from itertools import islice
@@ -20,6 +20,7 @@ from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
 from ..theory.boundaries import boundary_variables
 from .cells import Cells, Job
+from .quantity_data import Asked, asked_for, read_result
 
 #: Cells a thread takes at a time: some milliseconds of work, so that the threads finish together, progress
 #: is seen and an interrupt is obeyed; and enough for the start of a tile not to count.
@@ -32,8 +33,9 @@ ROW_CELLS = 262144
 #: for what else it could end in, with mu = 1 and above.
 _DECIDED, _FOLLOWED, _LOOKED_AT_SMOOTH, _LOOKED_AT = 2, 100, 25, 800
 
-#: The arrays of a map, one for every output.
-Arrays = namedtuple("Arrays", CELL_VARIABLES)  # type: ignore[misc]
+#: The arrays of a map, one for every output but those that are read from the results of a cycle.
+_NAMES = tuple(name for name, label in CELL_VARIABLES.items() if label.needs != "cycle")
+Arrays = namedtuple("Arrays", _NAMES)  # type: ignore[misc]
 
 Progress = Callable[[int, int], None]
 
@@ -99,7 +101,8 @@ def _allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> A
     """Outputs asked for, and status, unresolved until they are filled; the others have no cells."""
     sizes = dict(zip((*CELL, "dof"), (*shape, dofs), strict=True))
     arrays: list[np.ndarray] = []
-    for name, label in CELL_VARIABLES.items():
+    for name in _NAMES:
+        label = CELL_VARIABLES[name]
         kept = name in (*names, "status")
         arrays.append(np.full([kept * sizes[dim] for dim in label.dims], label.unresolved, label.dtype))
     return Arrays(*arrays)
@@ -173,6 +176,31 @@ def _fill(
     cells.finish(out)
 
 
+def checked_axes(r: ArrayLike, beta: ArrayLike, mu: ArrayLike, per_cell: int) -> dict[str, np.ndarray]:
+    """The axes mu, r and beta of a grid, of so many numbers a cell."""
+    r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
+    beta = checks.axis(beta, "beta", least=0.0)
+    mu = checks.axis(mu, "mu", least=1.0)
+    checks.cells(mu.size, r.size, beta.size * per_cell)
+    return {"mu": mu, "r": r, "beta": beta}
+
+
+def compute(
+    system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: Asked | None, threads: int | None,
+    progress: Progress | None,
+) -> tuple[Cells, Any]:  # fmt: skip
+    """The cells of a grid and their arrays, filled; `asked`: what else, in the results of the cells."""
+    threads = default_threads() if threads is None else checks.whole(threads, "threads", least=1)
+    if progress is not None and not callable(progress):
+        raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
+    mu, r, beta = axes["mu"], axes["r"], axes["beta"]
+    cells = Cells(system, r, beta, mu, solver, asked)
+    out = _allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
+    work = plan(cells, r, mu, beta, solver)
+    _fill(cells, work, (mu.size, r.size, beta.size), mu == 1.0, out, threads, progress)
+    return cells, out
+
+
 def sweep(
     system: System,
     r: ArrayLike,
@@ -223,27 +251,24 @@ def sweep(
     """
     checks.instance(system, "system", System)
     solver = merged(solver, settings)
-    r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
-    beta = checks.axis(beta, "beta", least=0.0)
-    mu = checks.axis(mu, "mu", least=1.0)
-    checks.cells(mu.size, r.size, beta.size * (system.n if "amplitude" in solver.outputs else 1))
-    threads = default_threads() if threads is None else checks.whole(threads, "threads", least=1)
-    if progress is not None and not callable(progress):
-        raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
-    cells = Cells(system, r, beta, mu, solver)
-    out = _allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
-    work = plan(cells, r, mu, beta, solver)
-    _fill(cells, work, (mu.size, r.size, beta.size), mu == 1.0, out, threads, progress)
+    axes = checked_axes(r, beta, mu, system.n if "amplitude" in solver.outputs else 1)
+    of_cycle = [name for name in solver.outputs if CELL_VARIABLES[name].needs == "cycle"]
+    asked = asked_for(of_cycle) if of_cycle else None
+    cells, out = compute(system, axes, solver, asked, threads, progress)
     names = list(solver.outputs)
     if "status" not in names and out.status.any():  # no cell is unresolved, or averaged, without a word
         names.append("status")
-    variables = {name: label_variable(name, getattr(out, name)) for name in names}
-    axes = {"mu": mu, "r": r, "beta": beta}
+    variables = {
+        name: label_variable(
+            name, read_result(name, cells.results) if name in of_cycle else getattr(out, name)
+        )
+        for name in names
+    }
+    grid = {name: axes[name] for name in ("r", "beta", "mu")}
     if "amplitude" in solver.outputs:
         axes["dof"] = np.arange(1, system.n + 1)
     ds = xr.Dataset(
         variables | boundary_variables(cells.curves),
         coords={name: coordinate(name, values) for name, values in axes.items()},
     )
-    grid = {"r": r, "beta": beta, "mu": mu}
     return stamp(ds, "sweep", "Motion regimes and stops per cycle", system, grid, solver)

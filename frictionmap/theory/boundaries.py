@@ -10,16 +10,17 @@ from .. import checks
 from .._kernels.boundary.functions import response_functions
 from .._kernels.boundary.structure import many_mode_functions
 from .._kernels.engine.one_mass import Frequencies
-from ..datasets.labels import coordinate, label_variable, stamp
+from ..datasets.labels import LABELS, coordinate, label_variable, stamp
 from ..errors import InputError
 from ..features import (
     all_mass_invariant_points,
+    first_harmonic_points,
     high_frequency_limits,
     invariant_points,
     one_phase,
     peak_thresholds,
 )
-from ..model.modes import angles, modulus
+from ..model.modes import angles, modulus, wrapped
 from ..model.system import System
 
 #: About so many invariant points beyond one a mode are listed, from the highest down: below them hardly any
@@ -63,6 +64,17 @@ class OneMass:
     lim: np.ndarray
 
 
+def over_square(number: float, r: np.ndarray) -> np.ndarray:
+    """number/r^2; 0 at r = 0, where S is infinite anyway."""
+    return np.divide(number, r * r, out=np.zeros_like(r), where=r > 0.0)
+
+
+def sliding_bracket(h: np.ndarray, s: np.ndarray, inertia: np.ndarray, mu: np.ndarray) -> np.ndarray:
+    """max(S, H + mu/(m_eff r^2)), (n_mu, n_r), theory.md 3: (Z + beta G)/beta has to be no less."""
+    with np.errstate(invalid="ignore"):  # an infinite S or H may come as nan, and leaves no beta_lim
+        return np.maximum(s, h + mu[:, np.newaxis] * inertia)
+
+
 def find_beta_lim(
     v_abs: np.ndarray, u: np.ndarray, h: np.ndarray, s: np.ndarray, inertia: np.ndarray, mu: np.ndarray,
     at_resonance: np.ndarray,
@@ -84,8 +96,7 @@ def find_beta_lim(
     beta_lim : (n_mu, n_r)
     """
     resonance = np.isinf(v_abs) & np.isinf(u)
-    with np.errstate(invalid="ignore"):  # inf - inf at a resonance, replaced below
-        bracket = np.maximum(s, h + mu[:, np.newaxis] * inertia)
+    bracket = sliding_bracket(h, s, inertia, mu)
     size = np.hypot(np.where(np.isnan(u), np.inf, u), bracket)
     finite = np.isfinite(size)
     found = np.where(finite, v_abs / np.where(finite, size, 1.0), 0.0)
@@ -113,7 +124,7 @@ def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
     even = (half >= 1.0) & (half == np.floor(half))
     marginal = even & (system.zeta == 0.0)
     frequencies = Frequencies(r, amplitude, angles(load), v_abs, v_arg, u, g, marginal)
-    lim = find_beta_lim(v_abs, u, h, s, _over_square(1.0, r), mu, np.array(0.25 * np.pi))
+    lim = find_beta_lim(v_abs, u, h, s, over_square(1.0, r), mu, np.array(0.25 * np.pi))
     stiffness = system.modes.dynamic_stiffness(r)[:, 0]
     resonance = stiffness == 0.0
     found = Curves(
@@ -127,11 +138,6 @@ def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
         beta_stick=find_beta_stick(load, mu),
     )
     return OneMass(found, frequencies, lim)
-
-
-def _over_square(number: float, r: np.ndarray) -> np.ndarray:
-    """number/r^2; 0 at r = 0, where S is infinite anyway."""
-    return np.divide(number, r * r, out=np.zeros_like(r), where=r > 0.0)
 
 
 def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
@@ -149,11 +155,11 @@ def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     u, g, h, s, by_modes = np.empty((5, r.size))
     many_mode_functions(r, modes.w, modes.zeta, modes.chi, modes.inverse_mass, u, g, h, s, by_modes)
     v_abs = modulus(v)
-    inertia = _over_square(modes.inverse_mass, r)
+    inertia = over_square(modes.inverse_mass, r)
     # at a resonance |V|/|U| -> (pi/4) |lambda_i/chi_i|, T(6.2), (6.26)
-    seen = modes.dynamic_stiffness(r) == 0.0  # r is an undamped frequency to the bit: else they are finite
+    resonant = modes.dynamic_stiffness(r) == 0.0  # r is an undamped frequency to the bit
     ratio = modulus(modes.participation(r)) / np.where(modes.chi == 0.0, np.inf, np.abs(modes.chi))
-    at_resonance = 0.25 * np.pi * (seen * ratio).sum(axis=1)
+    at_resonance = 0.25 * np.pi * (resonant * ratio).sum(axis=1)
     return Curves(
         v=v,
         u=u,
@@ -198,15 +204,16 @@ def _invariants(system: System, r: np.ndarray) -> dict[str, np.ndarray]:
     low, high = first * (1.0 - _ON_END), r[-1] * (1.0 + _ON_END)
     end = min(r[-1] * (1.0 + _REACH), checks.LARGEST_RATIO)
     reach = first * (1.0 - _REACH), end, _LISTED_POINTS + system.n
-    found: dict[str, np.ndarray] = {}
-    points = invariant_points(system, *reach)
-    points = points[(points >= low) & (points <= high)]
-    if points.size:
-        found["invariant_point"] = points
+    lists = {"invariant_point": [invariant_points(system, *reach)]}
     if system.n <= _LISTED_MASSES and one_phase(system) and not system.modes.zeta.any():
-        rows = [row[(row >= low) & (row <= high)] for row in all_mass_invariant_points(system, *reach)]
-        if any(row.size for row in rows):
-            found["mass_invariant_point"] = _padded(rows)
+        lists["mass_invariant_point"] = all_mass_invariant_points(system, *reach)
+        *masses, contact = (points.all for points in first_harmonic_points(system, *reach))
+        lists |= {"invariant_first_harmonic": masses, "contact_invariant_first_harmonic": [contact]}
+    found = {}
+    for name, rows in lists.items():
+        inside = [row[(row >= low) & (row <= high)] for row in rows]
+        if any(row.size for row in inside):
+            found[name] = _padded(inside) if len(LABELS[name].dims) > 1 else inside[0]
     return found
 
 
@@ -223,10 +230,28 @@ def _feature_variables(system: System, r: np.ndarray, mu: np.ndarray) -> dict[st
     }
     if system.n > 1:  # one mass held does not vibrate, and NetCDF has no empty dimension
         found["held_frequency"] = modes.held_frequencies()
-        found["held_response"] = np.abs(modes.held_response(r)).T
+    variables = {name: label_variable(name, values) for name, values in found.items()}
+    return variables | held_variables(system, r)
+
+
+def held_variables(system: System, r: np.ndarray) -> dict[str, xr.Variable]:
+    """Amplitude and phase of every mass with the contact held, dims (dof, r); `r` is a checked axis.
+
+    A mass at rest, or one that resonates, has no phase: NaN.
+    """
+    modes = system.modes
+    if system.n > 1:
+        motion = modes.held_response(r)
+        motion[:, modes.held_at_rest()] = 0.0
     else:
-        found["held_response"] = np.full((1, r.size), float(modes.base_motion))
-    return {name: label_variable(name, values) for name, values in found.items()}
+        motion = np.full((r.size, 1), modes.base_motion, dtype=complex)
+    size = np.abs(motion)
+    moves = (size > 0.0) & np.isfinite(size)
+    phase = np.where(moves, wrapped(-np.angle(np.where(moves, motion, 1.0))), np.nan)
+    return {
+        "held_response": label_variable("held_response", size.T),
+        "held_phase": label_variable("held_phase", phase.T),
+    }
 
 
 def boundaries(system: System, r: ArrayLike, mu: ArrayLike = 1.0) -> xr.Dataset:
@@ -248,12 +273,15 @@ def boundaries(system: System, r: ArrayLike, mu: ArrayLike = 1.0) -> xr.Dataset:
         and `beta_stick` (permanent sticking is possible from it on, theory.md 4).  On r: the response
         function of z, `V` (real part) and `V_imag`, and `U`, `G`, `H`, `S`.  Features (theory.md 7): by
         mode `natural_frequency` and `peak_threshold`; `held_frequency`; by mu the limits for r -> infinity,
-        `beta_lim_high` and `beta_stick_high`; on (dof, r) `held_response`, the amplitude of each mass with
-        the contact held, infinite where that resonates; within the axis `invariant_point`, where friction
-        leaves z as it is (the phase only, with damping), and on (dof, mass_invariant), without damping only,
-        `mass_invariant_point`, where it leaves the monoharmonic amplitude of a mass as it is, NaN where
-        there are fewer.  The highest 40 or so points and one a mode are listed, those of masses for up to 12
-        masses; a variable without points is left out.  `frictionmap.features` has them all.
+        `beta_lim_high` and `beta_stick_high`; on (dof, r) `held_response` and `held_phase`, amplitude
+        and lag [radian] of each mass with the contact held, infinite and NaN where that resonates; within the
+        axis `invariant_point`, where friction leaves z as it is (the phase only, with damping), and on (dof,
+        mass_invariant), without damping only, `mass_invariant_point`, where it leaves the monoharmonic
+        amplitude of a mass as it is, NaN where there are fewer.  On (dof, root) in the same way
+        `invariant_first_harmonic`, where it leaves the amplitude of the first harmonic, and on (contact_root)
+        `contact_invariant_first_harmonic`, that of z, theory.md 9.  The highest 40 or so points and one a
+        mode are listed, those of masses for up to 12 masses; a variable without points is left out.
+        `frictionmap.features` has them all.
 
     Raises
     ------

@@ -50,7 +50,7 @@ def _parts(child: Child, package: Path, quick: bool) -> dict[str, Part]:
     env = environment(package)
 
     def in_processes(part: Callable) -> Part:
-        return lambda folder: part(moments.inputs(folder / "inputs", env), folder, env, quick)
+        return lambda folder: part(moments.inputs(folder / "inputs", env, quick), folder, env, quick)
 
     return {
         "command line": lambda folder: refusals.run(child, folder, quick),

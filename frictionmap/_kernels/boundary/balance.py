@@ -66,6 +66,15 @@ def make_motion(n):
 
 
 @kernel
+def _damped(body):
+    """Whether any mode is."""
+    damped = False
+    for zeta in body.zeta:
+        damped = damped or zeta != 0.0
+    return damped
+
+
+@kernel
 def _times(factor, number):
     """A complex number times a real one."""
     return complex(factor * number.real, factor * number.imag)
@@ -272,7 +281,7 @@ def contact_responses(r, body, out):
     Where the sum over modes cancels, the balance of forces has the digits that the sum has not.
     """
     motion = make_motion(body.w.size)
-    damped = np.any(body.zeta != 0.0)
+    damped = _damped(body)
     for j in range(r.size):
         _fill_stiffness(body, r[j], motion.stiffness)
         _fill_phasors(r[j], body.share, body.share_rate, body.share_square, motion.parts)
@@ -283,17 +292,17 @@ def contact_responses(r, body, out):
 
 
 @entry
-def held_motions(r, body, seen, out, force, singular):
+def held_motions(r, body, all_participate, out, force, singular):
     """With the contact held: displacements relative to the base, or modal coordinates, and the force F.
 
-    `out` (n_r, n), complex, has displacements if the contact sees all modes (`seen`), else the coordinates of
-    those that it sees.  `force` (n_r,), complex; `singular` (n_r,) bool, where neither is found.
+    `out` (n_r, n), complex, has displacements if all modes participate, else the coordinates of those that
+    do.  `force` (n_r,), complex; `singular` (n_r,) bool, where neither is found.
     """
     motion = make_motion(body.w.size)
-    damped = np.any(body.zeta != 0.0)
+    damped = _damped(body)
     for j in range(r.size):
         _fill_stiffness(body, r[j], motion.stiffness)
-        if seen:
+        if all_participate:
             _fill_phasors(r[j], body.load, body.load_rate, body.load_square, motion.load)
             _, force[j], singular[j] = _balanced(body, r[j], True, damped, motion)
             found = motion.x

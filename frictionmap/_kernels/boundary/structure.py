@@ -281,7 +281,7 @@ def largest_sum(floor, table, n, stack):
 def many_mode_functions(r, w, zeta, chi, inverse_mass, u, g, h, s, by_modes):
     """Fill U, G, H, S of theory.md 2 and 3 and the bound of T(5.55) over frequencies r, shape (n_r,).
 
-    At r = 0 (limits): S is infinite; U has no limit if a seen mode is undamped (nan), else it is 0.
+    At r = 0 (limits): S is infinite; U has no limit if a participating mode is undamped (nan), else it is 0.
     """
     table = np.empty((ROWS, w.size))
     stack = np.empty((2 * _DEEPEST, 8))

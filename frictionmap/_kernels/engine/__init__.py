@@ -11,8 +11,8 @@
 | `march` | the driver |
 | `measure` | stops, amplitude and share stuck of a periodic orbit, and its table of phases |
 | `phase_table` | the table of phases of a steady state |
-| `displacements`, `exponentials`, `floquet`, `time_history` | what is read from it |
-| `details` | those of them that a map was asked for |
+| `extremes`, `transforms`, `harmonics`, `works`, `rests`, `floquet`, `time_history` | what is read from it |
+| `details`, `quantities` | those of them that a map was asked for |
 | `coexistence` | what else a cell could end in |
 | `window` | a part of a motion that does not repeat |
 | `fill` | the cells of a map |

@@ -20,15 +20,15 @@ from ..jit import kernel
 from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from ..one_mass.newton import full_period
 
-#: A stop shorter than this (in tau) is a touch of no duration, seen through rounding: that of one mass's load
-#: phase is some 1e-15, of the sum over many modes up to 1e-13.
+#: A stop shorter than this (in tau) is a grazing of no duration, told from none by rounding: that of one
+#: mass's load phase is some 1e-15, of the sum over many modes up to 1e-13.
 SHORTEST_STOP = 1e-12
 
 TURN = 2.0 * math.pi
 
 
 class Limits(NamedTuple):
-    """When to stop; constant over a sweep."""
+    """When to give up; constant over a sweep."""
 
     cycles: float
     tolerance: float
@@ -51,7 +51,7 @@ class Moment(NamedTuple):
     w: float  # its change per scan step; 0 at an anchor
     cos: float  # of the load's phase
     sin: float
-    net: float  # force in the contact, friction taken off
+    contact_force: float  # force in the contact, friction taken off
 
 
 class Orbit(NamedTuple):

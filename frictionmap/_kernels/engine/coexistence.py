@@ -122,7 +122,7 @@ def _keep(motion, system, row, ladder, way, k, beta, found):
         at = on_continuous(motion, _contact(system, row, beta))
     keep_state(motion, ladder.slot + way * ladder.beta.size + k)
     numbers = ladder.at[way, k]
-    numbers[0], numbers[1], numbers[2], numbers[3], numbers[4] = at.z, at.w, at.cos, at.sin, at.net
+    numbers[0], numbers[1], numbers[2], numbers[3], numbers[4] = at.z, at.w, at.cos, at.sin, at.contact_force
     ladder.slides[way, k] = True
 
 
@@ -256,11 +256,12 @@ def _fill_still(row, no_load, beta, reachable, sliding_limit):
 
 
 @entry
-def fill_reachable(first, last, axes, lim, stick, no_load, system, limits, reachable, sliding_limit, cancel):
-    """Rows first..last-1 of (mu, r): `reachable` (n_mu, n_r, n_beta) flags, `sliding_limit` (n_mu, n_r).
+def fill_reachable(first, last, axes, lim, stick, no_load, system, limits, out, cancel):
+    """Rows first..last-1 of (mu, r): `out.also_reachable` and `out.sliding_limit`.
 
     One that was not asked for has no values.  no_load : (n_r,) bool, where nothing loads the contact.
     """
+    reachable, sliding_limit = out.also_reachable, out.sliding_limit
     beta, n_r = axes.beta, axes.r.size
     around, above = _make_ladder(EIGHTHS, AROUND), _make_ladder(RUNGS, ABOVE)
     for place in range(first, last):

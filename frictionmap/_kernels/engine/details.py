@@ -1,6 +1,7 @@
-"""What is asked for of steady states beyond their regime: all of it is read from their tables of phases.
+"""What is asked for of steady states beyond their regime: amplitudes, multipliers, asymmetry.
 
-Chosen by the class of `wanted` (`kinds`): who asks for nothing compiles nothing of it.
+All of it is read from their tables of phases.  Chosen by the class of `wanted` (`kinds`): who asks for
+nothing compiles nothing of it.
 """
 
 import math
@@ -16,7 +17,7 @@ from ..structure.oscillators import Scratch, make_scratch
 from ..structure.sliding_orbit import Continuous
 from ..structure.state import Loads, Model, Structure, make_structure
 from .answers import known_orbit
-from .displacements import Shapes, largest_displacements
+from .extremes import FOUND, VALUE, Alone, Shapes, largest_moduli
 from .floquet import asymmetry, continuous_multiplier, orbit_multiplier
 from .measure import measure
 from .phase_table import continuous_phase, phase_columns
@@ -33,8 +34,7 @@ class Displacements(NamedTuple):
     """What the displacements of the masses are made of; arrays (n_r, n_dof)."""
 
     shapes: Shapes
-    re: np.ndarray  # phasor of what moves with the load alone: modes that the contact does not see, the base
-    im: np.ndarray
+    alone: Alone
     held: np.ndarray  # phasor of the displacements with the contact held
 
 
@@ -57,6 +57,7 @@ class DetailsHere(NamedTuple):
     fine: Structure
     orbit: Continuous
     displacements: Displacements
+    extremes: np.ndarray  # (n_dof, FOUND) of a cell
     work: Workspace
     scratch: Scratch
 
@@ -72,7 +73,8 @@ def _details_at(wanted, i):
     st = make_structure(wanted.model, wanted.loads, i, r, wanted.steps)
     fine = make_structure(wanted.model, wanted.loads, i, r, max(wanted.steps, FINE_STEPS))
     work, scratch = make_workspace(st.n), make_scratch(st.n)
-    return DetailsHere(i, st, fine, wanted.orbit, wanted.displacements, work, scratch)
+    extremes = np.empty((wanted.displacements.held.shape[1], FOUND))
+    return DetailsHere(i, st, fine, wanted.orbit, wanted.displacements, extremes, work, scratch)
 
 
 @kernel
@@ -85,8 +87,8 @@ def _stuck(details, out, m, i, j, z):
     """Where the contact is held at z: the masses swing about where that puts them."""
     displacements = details.displacements
     for mass in range(out.amplitude.shape[3]):
-        lift = abs(displacements.shapes.lift[mass] * z)
-        out.amplitude[m, i, j, mass] = abs(displacements.held[i, mass]) + lift
+        offset = abs(displacements.shapes.static_shape[mass] * z)
+        out.amplitude[m, i, j, mass] = abs(displacements.held[i, mass]) + offset
 
 
 @kernel
@@ -118,21 +120,22 @@ def _continuous(details, out, m, i, j, beta, mu_beta):
 @entry
 def _masses(details, out, m, i, j, beta, table):
     """Amplitudes of the masses."""
-    parts = details.displacements
-    largest_displacements(
-        details.fine, beta, parts.shapes, parts.re[i], parts.im[i], table, out.amplitude[m, i, j],
-        details.work, details.scratch,
+    parts, found = details.displacements, details.extremes
+    largest_moduli(
+        details.st, beta, parts.shapes, parts.alone, details.i, -1, table, found, details.work,
+        details.scratch,
     )  # fmt: skip
+    out.amplitude[m, i, j] = found[:, VALUE]
 
 
 @kernel
 def _no_orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude):
-    pass
+    """Nothing; see `note_orbit` for its arguments."""
 
 
 @entry
 def _orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude):
-    """Of a periodic orbit, whose table of phases is written first."""
+    """Of a periodic orbit, whose table of phases is written first; see `note_orbit` for its arguments."""
     st, work, scratch = details.st, details.work, details.scratch
     table = np.empty((2 * found.slides, phase_columns(st.n)))
     orbit = known_orbit(found.at, found.event, found.sign, found.slides)
@@ -145,7 +148,7 @@ def _orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitu
         _masses(details, out, m, i, j, beta, table)
 
 
-@by_class((Nothing, _nothing_at), (Details, _details_at), allocates=True)
+@by_class((Nothing, _nothing_at), (Details, _details_at))
 def details_at(wanted, i):
     """The details at the i-th frequency."""
 
@@ -155,14 +158,14 @@ def note_stuck(details, out, m, i, j, z):
     """Write those of a cell whose contact sticks at z."""
 
 
-@by_class((Nothing, _no_continuous), (DetailsHere, _continuous), allocates=True)
+@by_class((Nothing, _no_continuous), (DetailsHere, _continuous))
 def note_continuous(details, out, m, i, j, beta, mu_beta):
     """Write those of a cell on the continuous orbit."""
 
 
-@by_class((Nothing, _no_orbit), (DetailsHere, _orbit), allocates=True)
+@by_class((Nothing, _no_orbit), (DetailsHere, _orbit))
 def note_orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude):
     """Write those of a cell on the periodic orbit that was found.
 
-    Twelve arguments: the cell's friction is told in units of the map, the contact's in those of the motion.
+    Eleven arguments: the cell's friction is told in units of the map, the contact's in those of the motion.
     """

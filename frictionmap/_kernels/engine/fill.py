@@ -9,11 +9,12 @@ from ...regimes import CLOSED_FORM, CONTINUOUS, PERMANENT_STICKING, RESOLVED
 from ..jit import entry, kernel
 from ..one_mass.sliding_orbit import continuous_amplitude
 from .answers import continuous_cell, known_orbit, quasi_static_cell, stuck_cell
-from .details import details_at, note_continuous, note_orbit, note_stuck
+from .details import Details, Nothing, details_at, note_continuous, note_orbit, note_stuck
 from .march import steady_state
 from .measure import measure
 from .motion import at_frequency, contact_at, forget_neighbour, start
 from .phase_table import phase_columns
+from .quantities import Quantities, quantities_at, take_continuous, take_orbit, take_stuck
 
 #: Open cells of a row after which the search from the neighbour's orbit starts anew.  Work is cut only there
 #: and at the ends of rows, so that no answer depends on how it is cut.
@@ -45,6 +46,13 @@ class ClosedForm(NamedTuple):
     u: np.ndarray
     g: np.ndarray
     marginal: np.ndarray  # bool
+
+
+class Wanted(NamedTuple):
+    """What is asked for beyond the outputs that every cell has."""
+
+    details: Details | Nothing
+    quantities: Quantities | Nothing
 
 
 @kernel
@@ -79,7 +87,7 @@ def fill_closed(first, last, cells, axes, closed, out, wanted):
         m = row // n_r
         i = row % n_r
         load = closed.load[i]
-        details = details_at(wanted, i)
+        details, quantities = details_at(wanted.details, i), quantities_at(wanted.quantities, i)
         for j in range(cells.low[row]):
             b = axes.beta[j] / load
             amplitude = continuous_amplitude(closed.v_abs[i], closed.u[i], closed.g[i], b)
@@ -87,12 +95,25 @@ def fill_closed(first, last, cells, axes, closed, out, wanted):
             store(out, m, i, j, continuous_cell(amplitude, marginal, CLOSED_FORM, 0.0), load)
             if axes.r[i] > 0.0:
                 note_continuous(details, out, m, i, j, axes.beta[j], axes.mu[m] * axes.beta[j])
+                take_continuous(quantities, m, j, axes.beta[j])
         if axes.r[i] == 0.0:
             for j in range(cells.low[row], cells.high[row]):
                 store(out, m, i, j, quasi_static_cell(), load)
         for j in range(cells.high[row], axes.beta.size):
             store(out, m, i, j, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
             note_stuck(details, out, m, i, j, 0.0)
+            take_stuck(quantities, m, j)
+
+
+@kernel
+def _take(quantities, motion, contact, found, m, j, beta):
+    """Write the quantities that were asked for of an open cell."""
+    if found.regime == PERMANENT_STICKING:
+        take_stuck(quantities, m, j)
+    elif found.slides > 0:
+        take_orbit(quantities, motion, contact, found, m, j, beta)
+    elif found.regime == CONTINUOUS:
+        take_continuous(quantities, m, j, beta)
 
 
 @kernel
@@ -107,6 +128,19 @@ def _note(details, motion, contact, found, out, m, i, j, beta, mu_beta):
         note_continuous(details, out, m, i, j, beta, mu_beta)
 
 
+@kernel
+def _row_of(cells, cell):
+    """The place in the list of rows of an open cell, by bisection."""
+    low, high = 0, cells.ends.size
+    while low < high:
+        middle = (low + high) // 2
+        if cells.ends[middle] <= cell:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
 @entry
 def fill_open(first, last, cells, axes, system, limits, moving, out, wanted, cancel):
     """Cells first..last-1 of the list of open cells; ends soon after cancel[0] is set.
@@ -119,11 +153,11 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, wanted, can
     limits : Limits
     moving : which start
     out : named tuple of arrays, one for every output
-    wanted : details that are asked for, see `details`
+    wanted : Wanted, see `details` and `quantities`
     cancel : (1,) set by another thread to end the work
     """
     n_r = axes.r.size
-    k = np.searchsorted(cells.ends, first, side="right")
+    k = _row_of(cells, first)
     cell = first
     while cell < last:
         row = cells.rows[k]
@@ -131,7 +165,7 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, wanted, can
         i = row % n_r
         begin = cells.ends[k - 1] if k > 0 else 0
         motion = at_frequency(system, i)
-        details = details_at(wanted, i)
+        details, quantities = details_at(wanted.details, i), quantities_at(wanted.quantities, i)
         for place in range(cell - begin, min(last, cells.ends[k]) - begin):
             if cancel[0] != 0:
                 return
@@ -144,6 +178,7 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, wanted, can
             found = steady_state(motion, contact, at, moving, limits, cancel)
             store(out, m, i, j, found, motion.load)
             _note(details, motion, contact, found, out, m, i, j, beta, mu * beta)
+            _take(quantities, motion, contact, found, m, j, beta)
         cell = cells.ends[k]
         k += 1
 

@@ -5,24 +5,23 @@ import math
 import numpy as np
 
 from ..jit import entry, kernel
-from ..one_mass.events import REVERSE
+from ..one_mass.events import REVERSE, EventSequence
 from ..one_mass.newton import half_periods
 from ..one_mass.sliding_orbit import orbit_phase
 from ..structure.events import slide_on
 from ..structure.newton import copy_state, return_map, spectral_radius
 from ..structure.sliding_orbit import orbit_state
-from .phase_table import COS, EVENT, LENGTH, NET, SENSE, SIN, take_start
-from .time_history import sample_phases
+from .phase_table import CONTACT_FORCE, COS, EVENT, LENGTH, SENSE, SIN, take_start
+from .time_history import Samples, sample_phases
 
 #: Samples of z in half a period of the excitation for its asymmetry.
 _SAMPLES = 256
 
 
 @kernel
-def _around(st, beta, mu_beta, c, s, codes, count, halves, work, scratch):
+def _around(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
     """Largest modulus over the steady period from work.middle in a slide; nan if it does not fit."""
-    first = np.int64(0)  # not a literal, which would be compiled for itself
-    if not return_map(st, beta, mu_beta, work.middle, c, s, codes, first, count, halves, True, work, scratch):
+    if not return_map(st, beta, mu_beta, work.middle, c, s, sequence, halves, True, work, scratch):
         return math.nan
     radius = spectral_radius(work.flow, 2 * st.n, work.square)
     return radius * radius if halves % 2 == 1 else radius
@@ -31,21 +30,22 @@ def _around(st, beta, mu_beta, c, s, codes, count, halves, work, scratch):
 @entry
 def orbit_multiplier(st, beta, mu_beta, table, work, scratch):
     """Largest modulus of the multipliers of the periodic orbit of a table of phases."""
-    codes = np.empty(table.shape[0])
+    events = np.empty(table.shape[0])
     slides = 0
     time = 0.0
     for k in range(table.shape[0]):
         time += table[k, LENGTH]
         if table[k, SENSE] > 0.0:
-            codes[slides] = table[k, EVENT]
+            events[slides] = table[k, EVENT]
             slides += 1
     take_start(st, table[0], work)
     copy_state(work.moved, work.middle, st.n)
     # from the middle of the first slide
     c, s = table[0, COS], table[0, SIN]
     half = 0.5 * table[0, LENGTH] / st.h
-    _, _, c, s, _ = slide_on(st, beta, table[0, NET], work.middle, c, s, half, scratch)
-    return _around(st, beta, mu_beta, c, s, codes, slides, half_periods(time), work, scratch)
+    sequence = EventSequence(events, np.int64(0), slides)
+    _, _, c, s, _ = slide_on(st, beta, table[0, CONTACT_FORCE], work.middle, c, s, half, scratch)
+    return _around(st, beta, mu_beta, c, s, sequence, half_periods(time), work, scratch)
 
 
 @kernel
@@ -58,9 +58,10 @@ def continuous_multiplier(st, orbit, i, beta, mu_beta, work, scratch):
     # in the middle of the rising half
     c, s = math.sin(phase), -math.cos(phase)
     orbit_state(st, orbit, i, beta, phase, c, s, work.middle)
-    work.codes[0] = REVERSE
-    once = np.int64(1)
-    return _around(st, beta, mu_beta, c, s, work.codes, once, once, work, scratch)
+    work.events[0] = REVERSE
+    once = np.int64(1)  # not a literal, which would be compiled for itself
+    sequence = EventSequence(work.events, np.int64(0), once)
+    return _around(st, beta, mu_beta, c, s, sequence, once, work, scratch)
 
 
 @kernel
@@ -94,8 +95,8 @@ def asymmetry(st, beta, table, amplitude, work, scratch):
     for j in range(size):
         tau[j] = total * j / size
     z = np.zeros(size)
-    sample_phases(
-        st, beta, table, tau, np.empty((st.n, size)), np.empty((st.n, size)), z, np.empty(size),
-        np.empty(size, dtype=np.int8), work, scratch,
+    samples = Samples(
+        np.empty((st.n, size)), np.empty((st.n, size)), z, np.empty(size), np.empty(size, dtype=np.int8)
     )  # fmt: skip
+    sample_phases(st, beta, table, tau, samples, work, scratch)
     return _least_difference(z, halves) / amplitude

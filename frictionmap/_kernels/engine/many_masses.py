@@ -10,19 +10,22 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import entry, inner_kernel, kernel
-from ..one_mass.events import NO_END, STOP_THEN_BACK
+from ..one_mass.events import NO_END, STOP_THEN_BACK, EventSequence
 from ..one_mass.sliding_orbit import continuous_amplitude, orbit_phase
 from ..structure.events import MOVING, after_slide, slide_on
 from ..structure.newton import (
+    BETA,
+    EARLIER_BETA,
     HALVES,
     PHASE_COS,
     PHASE_SIN,
     SIDE,
+    SLIDES,
     Workspace,
     copy_state,
+    follow_events,
     make_workspace,
     newton_step,
-    order_of_events,
     return_map,
     solve_return,
     spectral_radius,
@@ -62,6 +65,9 @@ _NEAR_RETURN = 0.01
 #: With several steady states the one solved for must be where the motion is heading: no further off than
 #: this many times what the last return and the contraction there make one expect.
 _HEADING = 4.0
+
+#: An orbit is expected on the line through its neighbours up to this many times their distance.
+_FURTHEST = 2.0
 
 #: Anchors this close are one: ten times the one mass's, for the rounding of sums over many modes.
 _SAME = 1e-8
@@ -147,7 +153,7 @@ def start(motion, system, i, contact, moving):
 def slide_to_turn(motion, contact, at, allowed):
     """See `motion.slide_to_turn`."""
     steps, end, c, s, _ = slide_on(
-        motion.st, contact.b, at.net, motion.state, at.cos, at.sin, allowed, motion.scratch
+        motion.st, contact.b, at.contact_force, motion.state, at.cos, at.sin, allowed, motion.scratch
     )
     done = steps if end == FELL else float(NO_END)
     return done, Moment(place(motion.st, motion.state), 0.0, c, s, 0.0)
@@ -156,12 +162,12 @@ def slide_to_turn(motion, contact, at, allowed):
 @inner_kernel
 def after_turn(motion, contact, at, allowed):
     """See `motion.after_turn`."""
-    event, c, s, net, wait, _, _ = after_slide(
+    event, c, s, contact_force, wait, _, _ = after_slide(
         motion.st, contact.b, contact.mu_b, motion.state, motion.work.held, at.cos, at.sin, allowed,
         motion.scratch,
     )  # fmt: skip
     z = -at.z if turns_at(event) else at.z
-    return event, Moment(z, 0.0, c, s, net), wait
+    return event, Moment(z, 0.0, c, s, contact_force), wait
 
 
 @kernel
@@ -228,41 +234,64 @@ def return_distance(motion, now, then, size):
 
 @kernel
 def creeps(motion, contact, events):
-    """See `motion.creeps`: `follow.pause` sees it itself."""
+    """See `motion.creeps`: `wait_for_release` sees it itself."""
     return False, 0.0
 
 
 @kernel
-def _converge(motion, contact, anchored, sign, codes, first, slides, near, limits):
+def _keep_orbit(work, n, b, anchored, halves, sign, slides):
+    """Keep the orbit of work.middle, and the one before it if that is anchored alike: see `_nearest`."""
+    kept = work.anchored
+    alike = kept[HALVES] == halves and kept[SIDE] == sign and kept[SLIDES] == slides
+    alike = alike and kept[PHASE_COS] == anchored.cos and kept[PHASE_SIN] == anchored.sin
+    copy_state(work.solved, work.earlier, n)
+    copy_state(work.middle, work.solved, n)
+    kept[EARLIER_BETA] = kept[BETA] if alike else math.nan
+    kept[HALVES], kept[SIDE], kept[SLIDES], kept[BETA] = halves, sign, slides, b
+    kept[PHASE_COS], kept[PHASE_SIN] = anchored.cos, anchored.sin
+
+
+@kernel
+def _expect(work, n, b):
+    """The state in work.middle at friction b: on the line through the last two orbits, or else the last."""
+    kept = work.anchored
+    copy_state(work.solved, work.middle, n)
+    share = (b - kept[BETA]) / (kept[BETA] - kept[EARLIER_BETA])
+    if abs(share) <= _FURTHEST:  # it is NaN if there is no line
+        for i in range(n):
+            work.middle[0, i] += share * (work.solved[0, i] - work.earlier[0, i])
+            work.middle[1, i] += share * (work.solved[1, i] - work.earlier[1, i])
+
+
+@kernel
+def _converge(motion, contact, anchored, sign, sequence, near, limits):
     """A periodic orbit by Newton's method, with its anchor.
 
     The unknown, work.middle, is the state in a slide at the load's phase of the moment `anchored`; `sign`
     says of that slide whether it is a mirror image.  The orbit returns after near.halves half periods and
-    `slides` slides, which end in codes[first], ...  The state becomes the orbit's at the anchor that follows.
+    the slides of `sequence`.  The state becomes the orbit's at the anchor that follows.
     """
     st, work = motion.st, motion.work
     b, mu_b, halves = contact.b, contact.mu_b, near.halves
     copy_state(work.middle, work.start, st.n)
     if not solve_return(
-        st, b, mu_b, anchored.cos, anchored.sin, codes, first, slides, halves, limits.tolerance, work,
+        st, b, mu_b, anchored.cos, anchored.sin, sequence, halves, limits.tolerance, work,
         motion.scratch,
     ):  # fmt: skip
         return no_orbit()
-    if not contact.unique and not _attracts(motion, contact, anchored, codes, first, slides, near):
+    if not contact.unique and not _attracts(motion, contact, anchored, sequence, near):
         return no_orbit()
     copy_state(work.middle, motion.state, st.n)
     steps, at = slide_to_turn(motion, contact, anchored, _LONGEST_SLIDE / st.h)
     if steps == NO_END:
         return no_orbit()
     event, at, _ = after_turn(motion, contact, at, TURN * limits.cycles)
-    copy_state(work.middle, work.solved, st.n)
-    work.anchored[HALVES], work.anchored[SIDE] = halves, sign
-    work.anchored[PHASE_COS], work.anchored[PHASE_SIN] = anchored.cos, anchored.sin
-    return known_orbit(at, event, -sign if turns_at(event) else sign, slides)
+    _keep_orbit(work, st.n, b, anchored, halves, sign, sequence.count)
+    return known_orbit(at, event, -sign if turns_at(event) else sign, sequence.count)
 
 
 @kernel
-def _attracts(motion, contact, anchored, codes, first, slides, near):
+def _attracts(motion, contact, anchored, sequence, near):
     """Whether the orbit in work.middle attracts, and is where the motion is heading from work.start.
 
     Unlike one mass, an undamped structure comes nearer to its orbit in no simple way: returns tell nothing.
@@ -270,30 +299,34 @@ def _attracts(motion, contact, anchored, codes, first, slides, near):
     st, work, n = motion.st, motion.work, motion.st.n
     copy_state(work.middle, work.moved, n)
     if not return_map(
-        st, contact.b, contact.mu_b, work.moved, anchored.cos, anchored.sin, codes, first, slides,
-        near.halves, True, work, motion.scratch,
+        st, contact.b, contact.mu_b, work.moved, anchored.cos, anchored.sin, sequence, near.halves, True,
+        work, motion.scratch,
     ):  # fmt: skip
         return False
     contraction = spectral_radius(work.flow, 2 * n, work.square)
     for i in range(n):
         work.moved[0, i] = work.middle[0, i] - work.start[0, i]
         work.moved[1, i] = work.middle[1, i] - work.start[1, i]
-    expected = near.gap * energy(st, work.middle) / (1.0 - contraction)
+    expected = near.distance * energy(st, work.middle) / (1.0 - contraction)
     return contraction < 1.0 and energy(st, work.moved) <= _HEADING * expected
 
 
 @kernel
-def _from_anchor(motion, contact, at, sign, codes, first, slides, near, limits):
+def _from_anchor(motion, contact, at, sign, sequence, near, limits):
     """`_converge` from the middle of the slide that starts at an anchor, the state there."""
     st, work, b = motion.st, motion.work, contact.b
     copy_state(motion.state, work.middle, st.n)
     most = _LONGEST_SLIDE / st.h
-    steps, end, _, _, _ = slide_on(st, b, at.net, motion.state, at.cos, at.sin, most, motion.scratch)
+    steps, end, _, _, _ = slide_on(
+        st, b, at.contact_force, motion.state, at.cos, at.sin, most, motion.scratch
+    )
     if end != FELL:
         return no_orbit()
-    _, _, c, s, _ = slide_on(st, b, at.net, work.middle, at.cos, at.sin, 0.5 * steps, motion.scratch)
+    _, _, c, s, _ = slide_on(
+        st, b, at.contact_force, work.middle, at.cos, at.sin, 0.5 * steps, motion.scratch
+    )
     middle = Moment(0.0, 0.0, c, s, MOVING)
-    return _converge(motion, contact, middle, sign, codes, first, slides, near, limits)
+    return _converge(motion, contact, middle, sign, sequence, near, limits)
 
 
 @kernel
@@ -305,16 +338,16 @@ def seek(motion, contact, at, event, sign, events, near, tries, limits):
     """
     st, work = motion.st, motion.work
     copy_state(motion.state, work.anchor, st.n)
-    codes, first, slides = motion.memory.codes, np.int64(events - near.lag), near.lag
+    sequence = EventSequence(motion.memory.events, np.int64(events - near.lag), near.lag)
     if near.lag == 0 or (contact.unique and tries % 3 == 2):
         starts, c, s = release_steady(st, contact.mu_b, work.held, motion.state)
         at = Moment(0.0, 0.0, c, s, contact.mu_b - contact.b)
-        codes, first, slides = work.codes, np.int64(0), 1 if starts else 0
-        codes[0] = STOP_THEN_BACK
-        near, sign = Near(0, near.gap, 1), 1.0
+        work.events[0] = STOP_THEN_BACK
+        sequence = EventSequence(work.events, np.int64(0), 1 if starts else 0)
+        near, sign = Near(0, near.distance, 1), 1.0
     orbit = no_orbit()
-    if slides > 0:
-        orbit = _from_anchor(motion, contact, at, sign, codes, first, slides, near, limits)
+    if sequence.count > 0:
+        orbit = _from_anchor(motion, contact, at, sign, sequence, near, limits)
     if not orbit.found:
         copy_state(work.anchor, motion.state, st.n)
     return orbit
@@ -330,13 +363,13 @@ def forget_neighbour(motion):
 def _nearest(motion, contact):
     """(found, moment, sign, half periods): the orbit to start from, its state into work.middle.
 
-    That of the last cell, if that was solved for, or the motion without stops whose velocity touches zero
-    where the strip of the open cells begins.
+    What the last cells make one expect, if they were solved for, or the motion without stops whose velocity
+    touches zero where the strip of the open cells begins.
     """
     work, orbit, i, b = motion.work, motion.orbit, motion.i, contact.b
     halves = int(work.anchored[HALVES])
     if halves > 0:
-        copy_state(work.solved, work.middle, motion.st.n)
+        _expect(work, motion.st.n, b)
         at = Moment(0.0, 0.0, work.anchored[PHASE_COS], work.anchored[PHASE_SIN], MOVING)
         return True, at, work.anchored[SIDE], halves
     if math.isinf(motion.v_abs) or not b * abs(orbit.u[i]) < motion.v_abs:
@@ -354,32 +387,28 @@ def seek_nearby(motion, contact, limits):
     st, work, scratch = motion.st, motion.work, motion.scratch
     b, mu_b = contact.b, contact.mu_b
     found, at, sign, halves = _nearest(motion, contact)
-    work.anchored[HALVES] = 0.0
     if not found:
         return no_orbit()
     copy_state(motion.state, work.anchor, st.n)
-    zero = np.int64(0)  # not a literal, which would be compiled for itself
     for _ in range(_MOST_ORDERS):
         copy_state(work.middle, work.moved, st.n)
-        slides = order_of_events(
-            st, b, mu_b, work.moved, at.cos, at.sin, halves, work.codes, work, scratch
-        )  # fmt: skip
+        slides = follow_events(st, b, mu_b, work.moved, at.cos, at.sin, halves, work, scratch)
         if slides == 0:
             break
+        sequence = EventSequence(work.events, np.int64(0), slides)
         copy_state(work.middle, work.near, st.n)
-        orbit = _converge(
-            motion, contact, at, sign, work.codes, zero, slides, Near(0, 0.0, halves), limits
-        )  # fmt: skip
+        orbit = _converge(motion, contact, at, sign, sequence, Near(0, 0.0, halves), limits)
         if orbit.found:
             return orbit
         # the order changes on the way: a step with this one, then on with what follows there
         copy_state(work.near, work.middle, st.n)
-        move = newton_step(st, b, mu_b, at.cos, at.sin, work.codes, zero, slides, halves, work, scratch)
+        move, _ = newton_step(st, b, mu_b, at.cos, at.sin, sequence, halves, work, scratch)
         if not move < math.inf:
             break
         for j in range(st.n):
             work.middle[0, j] += work.moved[0, j]
             work.middle[1, j] += work.moved[1, j]
+    work.anchored[HALVES] = 0.0
     copy_state(work.anchor, motion.state, st.n)
     return no_orbit()
 

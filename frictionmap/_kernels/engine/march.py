@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from ...regimes import INTEGRATED, MARGINAL, NOT_COMPUTED, RESOLVED, SOLVED, TOO_MANY_EVENTS, UNRESOLVED
 from ..jit import inner_kernel, kernel
-from ..one_mass.events import NO_END, STUCK, TOUCH
+from ..one_mass.events import GRAZING, NO_END, STUCK
 from ..structure.events import NO_RELEASE
 from .answers import (
     TURN,
@@ -87,7 +87,7 @@ class Look(NamedTuple):
     """A look at how far from it a motion is."""
 
     arrived: bool
-    gap: float
+    distance: float
     events: int  # when that was
     due: int  # when the next look is
 
@@ -107,7 +107,7 @@ def _next_anchor(motion, contact, at, trail, moves, end, most_steps):
     sign = -trail.sign if turns_at(event) else trail.sign
     stopped = stops_at(event)
     windows = count_event(trail.windows, time, size, stopped, wait)
-    column = trail.events % motion.memory.codes.size
+    column = trail.events % motion.memory.events.size
     if stopped:
         trail = Trail(time + wait, trail.events + 1, sign, 0, 0, size, windows)
     else:
@@ -130,22 +130,22 @@ def _around(motion, contact):
 @kernel
 def _look(motion, contact, around, at, trail, last, tolerance):
     """How far the continuous orbit is now, and when to look again: at the rate of approach, soon before."""
-    gap, size = off_continuous(motion, contact, around.amplitude, around.phase, at)
+    distance, size = off_continuous(motion, contact, around.amplitude, around.phase, at)
     enough = max(around.radius, tolerance * size)
-    if gap < around.radius or gap <= tolerance * size:
-        return Look(True, gap, trail.events, 0)
+    if distance < around.radius or distance <= tolerance * size:
+        return Look(True, distance, trail.events, 0)
     slides = trail.events - last.events
     soon = 1.0
-    if slides < trail.slides and gap < last.gap:
-        soon = _FORETOLD * slides * math.log(enough / gap) / math.log(gap / last.gap)
+    if slides < trail.slides and distance < last.distance:
+        soon = _FORETOLD * slides * math.log(enough / distance) / math.log(distance / last.distance)
     soon = min(max(soon, 1.0), _UNSEEN)
-    return Look(False, gap, trail.events, trail.events + int(soon))
+    return Look(False, distance, trail.events, trail.events + int(soon))
 
 
 @kernel
 def _may_return(event, trail, around, unbounded):
     """Whether an anchor is one to look for returns at: a stop, or a turn where it no longer stops."""
-    if event == TOUCH:
+    if event == GRAZING:
         return False
     return trail.slides == 0 or not (around.exists or unbounded or trail.slides < _SLIDES_ON)
 
@@ -171,9 +171,9 @@ def _time_to_look(trail, look):
 @kernel
 def _has_settled(near, last, tolerance):
     """Whether marching may end: two returns of one order of events, the rest of which is nothing."""
-    if near.lag == 0 or near.lag != last.lag or near.gap > tolerance:
+    if near.lag == 0 or near.lag != last.lag or near.distance > tolerance:
         return False
-    return settled(near.gap, last.gap, tolerance)
+    return settled(near.distance, last.distance, tolerance)
 
 
 @kernel
@@ -205,10 +205,10 @@ def _goes_there(motion, contact, at, orbit, allowed):
             slide += 1
         if event != orbit.event:
             return False
-        gap = distance_from(motion, GOAL, orbit.at, at, stopped)
-        if not gap <= closer * before + _ROUNDING:
+        distance = distance_from(motion, GOAL, orbit.at, at, stopped)
+        if not distance <= closer * before + _ROUNDING:
             return False
-        before = gap
+        before = distance
     return True
 
 

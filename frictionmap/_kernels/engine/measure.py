@@ -7,7 +7,7 @@ from ..one_mass.events import NO_END
 from ..one_mass.newton import half_periods
 from .answers import SHORTEST_STOP, TURN, stops_at, turns_at
 from .motion import after_turn, back_at, bring_back, keep_state, put_slide, put_stop, slide_to_turn
-from .phase_table import EVENT, NET, put_phase
+from .phase_table import CONTACT_FORCE, EVENT, put_phase
 from .policies import ANCHOR
 
 #: Longest slide of an orbit, in periods of its slower part: one that was followed once has none so long.
@@ -41,7 +41,7 @@ def measure(motion, contact, orbit, table):
     for _ in range(orbit.slides):
         if writes:
             put_slide(motion, at, table[phases])
-            table[phases, NET] = motion.load * at.net
+            table[phases, CONTACT_FORCE] = motion.load * at.contact_force
         steps, at = slide_to_turn(motion, contact, at, longest)
         if steps == NO_END:
             time = 0.0

@@ -1,4 +1,4 @@
-"""Anchors remembered, and the recogniser of returns."""
+"""Anchors remembered, and how far two of them lie apart."""
 
 import math
 from typing import NamedTuple
@@ -22,7 +22,7 @@ LONGEST_PERIOD = 8
 class Memory(NamedTuple):
     """The last anchors, in rings."""
 
-    codes: np.ndarray  # (length,) events
+    events: np.ndarray  # (length,) that ended the slides before them
     anchors: np.ndarray  # (length, STATE + numbers of a state)
 
 
@@ -30,7 +30,7 @@ class Near(NamedTuple):
     """A moment when the motion was nearly where it is now."""
 
     lag: int  # slides since then; 0 if there was none
-    gap: float  # how far from there it is now, relative to the motion
+    distance: float  # how far from there it is now, relative to the motion
     halves: int  # half periods of the excitation since then
 
 
@@ -47,7 +47,7 @@ def make_memory(h, size):
 @inner_kernel
 def note_anchor(memory, column, event, at, time, sign):
     """Note an anchor, all but its state."""
-    memory.codes[column] = event
+    memory.events[column] = event
     memory.anchors[column, COS] = at.cos
     memory.anchors[column, SIN] = at.sin
     memory.anchors[column, TIME] = time
@@ -78,7 +78,7 @@ def could_return(halves):
 
 
 @kernel
-def settled(gap, old_gap, tolerance):
-    """Whether returns that were `old_gap` and are `gap` off leave less than the tolerance to go."""
-    rate = min(gap / old_gap, 0.999999) if old_gap > 0.0 else 0.0
-    return gap * rate <= 10.0 * tolerance * (1.0 - rate)
+def settled(distance, old_distance, tolerance):
+    """Whether returns that were `old_distance` and are `distance` off leave less than the tolerance to go."""
+    rate = min(distance / old_distance, 0.999999) if old_distance > 0.0 else 0.0
+    return distance * rate <= 10.0 * tolerance * (1.0 - rate)

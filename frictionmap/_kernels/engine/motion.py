@@ -25,7 +25,7 @@ def _of_systems(name: str) -> tuple:
     return (OneMassSystem, getattr(one_mass, name)), (ManyMassSystem, getattr(many_masses, name))
 
 
-@by_class(*_of_systems("at_frequency"), allocates=True)
+@by_class(*_of_systems("at_frequency"))
 def at_frequency(system, i):
     """The motion of a system at its i-th frequency, r > 0."""
 
@@ -40,12 +40,12 @@ def start(motion, system, i, contact, moving):
     """The moment from which a motion starts, at rest or moving."""
 
 
-@by_class(*_both("slide_to_turn"), inline=True)
+@by_class(*_both("slide_to_turn"))
 def slide_to_turn(motion, contact, at, allowed):
     """(steps, moment): a slide to where it ends; NO_END where not within `allowed` scan steps."""
 
 
-@by_class(*_both("after_turn"), inline=True)
+@by_class(*_both("after_turn"))
 def after_turn(motion, contact, at, allowed):
     """(event, moment, wait): what follows a slide, see `events`, the next anchor, and the time in between.
 
@@ -68,7 +68,7 @@ def off_continuous(motion, contact, amplitude, phase, at):
     """(distance, size): energy norms, of an anchor's distance from the continuous orbit and of the motion."""
 
 
-@by_class(*_both("note_state"), inline=True)
+@by_class(*_both("note_state"))
 def note_state(motion, at, column):
     """Write the state at an anchor into the memory."""
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import entry, inner_kernel, kernel
-from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, slide
-from ..one_mass.newton import first_push, solve_orbit
+from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, EventSequence, after_slide, slide
+from ..one_mass.newton import first_contact_force, solve_orbit
 from ..one_mass.scan_step import MAX_TERMS, Step, step_constants
 from ..one_mass.sliding_orbit import (
     Oscillator,
@@ -136,8 +136,8 @@ def start(motion, system, i, contact, moving):
     oscillator = motion.oscillator
     size = MOVING * min(oscillator.v_abs, MOVING_CAP) * max(1.0, oscillator.r)
     speed = size / oscillator.r
-    net = -contact.b - 2.0 * oscillator.zeta * oscillator.r * speed
-    return Moment(0.0, speed * motion.h, 0.0, 1.0, net)
+    contact_force = -contact.b - 2.0 * oscillator.zeta * oscillator.r * speed
+    return Moment(0.0, speed * motion.h, 0.0, 1.0, contact_force)
 
 
 @inner_kernel
@@ -145,7 +145,7 @@ def slide_to_turn(motion, contact, at, allowed):
     """See `motion.slide_to_turn`."""
     step = motion.step
     steps, z, c, s = slide(
-        step, contact.b, at.z, at.w, step.stiffness * at.net, at.cos, at.sin, allowed, motion.work
+        step, contact.b, at.z, at.w, step.stiffness * at.contact_force, at.cos, at.sin, allowed, motion.work
     )
     return steps, Moment(z, 0.0, c, s, 0.0)
 
@@ -153,8 +153,8 @@ def slide_to_turn(motion, contact, at, allowed):
 @inner_kernel
 def after_turn(motion, contact, at, allowed):
     """See `motion.after_turn`."""
-    event, z, c, s, net, wait = after_slide(contact.b, contact.mu_b, at.z, at.cos, at.sin)
-    return event, Moment(z, 0.0, c, s, net), wait
+    event, z, c, s, contact_force, wait = after_slide(contact.b, contact.mu_b, at.z, at.cos, at.sin)
+    return event, Moment(z, 0.0, c, s, contact_force), wait
 
 
 @kernel
@@ -178,8 +178,8 @@ def stop_free(motion, contact):
 @kernel
 def off_continuous(motion, contact, amplitude, phase, at):
     """See `motion.off_continuous`."""
-    gap = distance_to_orbit(motion.oscillator, contact.b, amplitude, phase, at.z, at.cos, at.sin)
-    return gap, amplitude
+    distance = distance_to_orbit(motion.oscillator, contact.b, amplitude, phase, at.z, at.cos, at.sin)
+    return distance, amplitude
 
 
 @inner_kernel
@@ -198,9 +198,9 @@ def size_now(motion, at):
 def return_distance(motion, now, then, size):
     """See `motion.return_distance`; at a stop the load's phase is a function of the place."""
     memory = motion.memory
-    gap = abs(memory.anchors[now, STATE] - memory.anchors[then, STATE])
-    turn = turned(memory, now, then) if memory.codes[now] == REVERSE else 0.0
-    return turn + gap / size if size > 0.0 else math.inf
+    distance = abs(memory.anchors[now, STATE] - memory.anchors[then, STATE])
+    turn = turned(memory, now, then) if memory.events[now] == REVERSE else 0.0
+    return turn + distance / size if size > 0.0 else math.inf
 
 
 @kernel
@@ -211,11 +211,11 @@ def creeps(motion, contact, events):
     reached in a finite time.
     """
     memory = motion.memory
-    length = memory.codes.size
+    length = memory.events.size
     if not contact.mu_b >= 1.0 or events < 2:
         return False, 0.0
     now, then = (events - 1) % length, (events - 2) % length
-    if memory.codes[now] != STOP_THEN_ON or memory.codes[then] != STOP_THEN_ON:
+    if memory.events[now] != STOP_THEN_ON or memory.events[then] != STOP_THEN_ON:
         return False, 0.0
     place = memory.anchors[now, STATE]
     end = contact.mu_b - 1.0
@@ -228,11 +228,11 @@ def creeps(motion, contact, events):
 @kernel
 def _middle(memory, events):
     """Displacement between the last stop and the one before; nan if there is none before."""
-    length = memory.codes.size
+    length = memory.events.size
     now = events - 1
     for lag in range(1, min(events, length)):
         then = (now - lag) % length
-        if stops_at(memory.codes[then]):
+        if stops_at(memory.events[then]):
             return 0.5 * (memory.anchors[now % length, STATE] + memory.anchors[then, STATE])
     return math.nan
 
@@ -258,25 +258,27 @@ def seek(motion, contact, at, event, sign, events, near, tries, limits):
             slides = guess
         found, z, c, s, contraction = solve_orbit(
             motion.step, motion.oscillator, contact.b, contact.mu_b, start, at.cos, at.sin, stopped,
-            motion.memory.codes, events - slides, slides, limits.tolerance, motion.work,
+            EventSequence(motion.memory.events, events - slides, slides), limits.tolerance, motion.work,
         )  # fmt: skip
         if found:
             if stopped:
                 _keep(motion, z, sign, events, slides)
-            net = first_push(contact.b, contact.mu_b, z, c)
-            return Orbit(True, Moment(z, 0.0, c, s, net), event, sign, slides, contact.unique, contraction)
+            contact_force = first_contact_force(contact.b, contact.mu_b, z, c)
+            return Orbit(
+                True, Moment(z, 0.0, c, s, contact_force), event, sign, slides, contact.unique, contraction
+            )
     return no_orbit()
 
 
 @kernel
 def _keep(motion, z, sign, events, slides):
     """Keep an orbit that starts at the end of a stop for the next cell."""
-    neighbour, codes = motion.neighbour, motion.memory.codes
+    neighbour, ring = motion.neighbour, motion.memory.events
     if slides > MOST_EVENTS:
         return
     neighbour[COUNT], neighbour[PLACE], neighbour[SIDE] = slides, z, sign
     for m in range(slides):
-        neighbour[FIRST + m] = codes[(events - slides + m) % codes.size]
+        neighbour[FIRST + m] = ring[(events - slides + m) % ring.size]
 
 
 @kernel
@@ -301,15 +303,15 @@ def seek_nearby(motion, contact, limits):
     neighbour[COUNT] = 0.0
     found, z, c, s, _ = solve_orbit(
         motion.step, motion.oscillator, contact.b, contact.mu_b, neighbour[PLACE], 1.0, 0.0, True,
-        neighbour[FIRST:], 0, slides, limits.tolerance, motion.work,
+        EventSequence(neighbour[FIRST:], np.int64(0), slides), limits.tolerance, motion.work,
     )  # fmt: skip
     if not found:
         return no_orbit()
     neighbour[COUNT] = slides
     neighbour[PLACE] = z
-    net = first_push(contact.b, contact.mu_b, z, c)
+    contact_force = first_contact_force(contact.b, contact.mu_b, z, c)
     event = int(neighbour[FIRST + slides - 1])
-    return known_orbit(Moment(z, 0.0, c, s, net), event, neighbour[SIDE], slides)
+    return known_orbit(Moment(z, 0.0, c, s, contact_force), event, neighbour[SIDE], slides)
 
 
 @kernel

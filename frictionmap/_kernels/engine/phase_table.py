@@ -19,7 +19,7 @@ COS = 4  # load's phase at the start
 SIN = 5
 PLACE = 6  # z of a stop
 Z_END = 7  # z at the end
-NET = 8  # force in the contact at the start of a slide, friction taken off
+CONTACT_FORCE = 8  # force in the contact at the start of a slide, friction taken off
 EVENT = 9  # which ended a slide, see `one_mass.events`
 STATE = 10  # 2n of a slide, or 2m of a stop: coordinates, and velocities in t = tau/r
 

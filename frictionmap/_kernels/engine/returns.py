@@ -21,27 +21,27 @@ def near_return(motion, at, events, any_will_do, shortest):
     be nearly symmetric.  Where there is one steady state any start will do to look for it.
     """
     memory = motion.memory
-    length = memory.codes.size
+    length = memory.events.size
     now = (events - 1) % length
     size = size_now(motion, at)
     best = Near(0, math.inf, 0)
     near = math.inf if any_will_do else motion.near_return
-    seen = 0
+    returns = 0
     for lag in range(1, min(events, length)):
         then = (events - 1 - lag) % length
         if memory.anchors[now, TIME] - memory.anchors[then, TIME] > (_LONGEST_RETURN + 0.5) * math.pi:
             break
-        if memory.codes[then] != memory.codes[now]:
+        if memory.events[then] != memory.events[now]:
             continue
         halves = halves_between(memory, now, then)
         if not could_return(halves):
             continue
-        gap = return_distance(motion, now, then, size)
-        if gap < math.inf:
-            seen += 1
-            if gap <= near:
-                best = Near(lag, gap, halves)
-                near = 0.25 * gap
-        if (shortest and best.lag > 0) or seen == _MAX_RETURN:
+        distance = return_distance(motion, now, then, size)
+        if distance < math.inf:
+            returns += 1
+            if distance <= near:
+                best = Near(lag, distance, halves)
+                near = 0.25 * distance
+        if (shortest and best.lag > 0) or returns == _MAX_RETURN:
             break
     return best

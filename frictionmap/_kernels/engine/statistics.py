@@ -49,7 +49,7 @@ class Tries(NamedTuple):
     """The schedule of Newton's method, in half periods of the excitation."""
 
     made: int
-    pause: int  # from the last try to the next; longer after each failure
+    delay: int  # from the last try to the next; longer after each failure
     due: int  # when the next is
 
 
@@ -62,5 +62,5 @@ def first_try():
 @kernel
 def put_off(tries, half):
     """The schedule after a try that failed."""
-    pause = tries.pause + 1 + tries.pause // 4
-    return Tries(tries.made + 1, pause, half + pause)
+    delay = tries.delay + 1 + tries.delay // 4
+    return Tries(tries.made + 1, delay, half + delay)

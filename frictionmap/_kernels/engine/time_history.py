@@ -1,6 +1,9 @@
 """A steady state in time: samples of its table of phases."""
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 from ..jit import entry
 from ..structure.newton import copy_state
@@ -9,13 +12,20 @@ from ..structure.state import held_load, place, release
 from .phase_table import BEGIN, COS, LENGTH, PLACE, SENSE, SIGN, SIN, take_start
 
 
-@entry
-def sample_phases(st, beta, table, tau, coordinates, velocities, z, friction, sense, work, scratch):
-    """The motion at times `tau` >= 0, increasing, from the start of the table's first phase.
+class Samples(NamedTuple):
+    """A motion at k times."""
 
-    coordinates, velocities: (n, tau.size) of the free modes, velocities in tau; z, friction, sense:
-    (tau.size,).
-    """
+    coordinates: np.ndarray  # (n, k) of the free modes
+    velocities: np.ndarray  # (n, k) in tau
+    z: np.ndarray  # (k,)
+    friction: np.ndarray  # (k,)
+    sense: np.ndarray  # (k,) int8
+
+
+@entry
+def sample_phases(st, beta, table, tau, samples, work, scratch):
+    """Fill `samples` with the motion at times `tau` >= 0, increasing, since the table's first phase began."""
+    z, friction = samples.z, samples.friction
     j = 0
     for k in range(table.shape[0]):
         row = table[k]
@@ -46,8 +56,8 @@ def sample_phases(st, beta, table, tau, coordinates, velocities, z, friction, se
                 release(st, scratch.next, row[PLACE], c, s, work.start)
                 z[j] = row[SIGN] * row[PLACE]
                 friction[j] = -row[SIGN] * held_load(st, scratch.next, row[PLACE], c, s)
-            sense[j] = int(row[SIGN] * row[SENSE])
+            samples.sense[j] = int(row[SIGN] * row[SENSE])
             for i in range(st.n):
-                coordinates[i, j] = row[SIGN] * work.start[0, i]
-                velocities[i, j] = row[SIGN] * work.start[1, i] / st.h
+                samples.coordinates[i, j] = row[SIGN] * work.start[0, i]
+                samples.velocities[i, j] = row[SIGN] * work.start[1, i] / st.h
             j += 1

@@ -5,6 +5,7 @@ as an upward one: a state that is about to move down is *mirrored* first.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,8 +16,17 @@ from .scan_step import MAX_TERMS, expand
 REVERSE = 0  # slides back at once
 STOP_THEN_BACK = 1  # stops, then moves the other way
 STOP_THEN_ON = 2  # stops, then moves on the same way
-TOUCH = 3  # velocity touches zero and the slide goes on: the load pushes on beyond mu b
+GRAZING = 3  # velocity touches zero and the slide goes on: the load pushes on beyond mu b
 STUCK = 4  # stops and never moves again
+
+
+class EventSequence(NamedTuple):
+    """What ends the slides of a motion until it returns, in order."""
+
+    events: np.ndarray  # a ring
+    first: int  # place in it
+    count: int
+
 
 #: A slide's end was not found within the scan steps allowed.
 NO_END = -1
@@ -241,8 +251,9 @@ def slide(step, b, z, w, acceleration, c, s, max_steps, work):
 def after_slide(b, mu_b, z, c, s):
     """What follows an upward slide that ended at displacement z and load phase (c, s).
 
-    Returns (code, z, c, s, push, wait): the state from which the next upward slide starts, mirrored if
-    the motion turns back; push = r^2 z'' at its start; wait = duration of the stop in tau.
+    Returns (code, z, c, s, contact_force, wait): the state from which the next upward slide starts, mirrored
+    if the motion turns back; contact_force = r^2 z'' at its start, friction taken off; wait = duration of the
+    stop in tau.
 
     Sticks if |load| <= mu b (a tie sticks); a stop ends when |load| exceeds mu b.
     """
@@ -250,7 +261,7 @@ def after_slide(b, mu_b, z, c, s):
     if load > mu_b:
         return REVERSE, -z, -c, -s, load - b, 0.0
     if load < -mu_b:
-        return TOUCH, z, c, s, -load - b, 0.0
+        return GRAZING, z, c, s, -load - b, 0.0
     c_back = z - mu_b  # the load leaves upwards where cos falls through this ...
     c_on = z + mu_b  # ... and downwards where cos rises through that
     falls = c_back > -1.0
@@ -269,7 +280,7 @@ def after_slide(b, mu_b, z, c, s):
         wait = max(wait, 0.0)  # rounding: the load can be past its end by a bit already
     elif wait <= 0.0:
         wait += 2.0 * math.pi
-    push = mu_b - b
+    contact_force = mu_b - b
     if back:
-        return STOP_THEN_BACK, -z, -c_end, -s_end, push, wait
-    return STOP_THEN_ON, z, c_end, s_end, push, wait
+        return STOP_THEN_BACK, -z, -c_end, -s_end, contact_force, wait
+    return STOP_THEN_ON, z, c_end, s_end, contact_force, wait

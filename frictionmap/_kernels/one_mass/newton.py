@@ -43,7 +43,7 @@ def stop_ends(mu_b, z):
 
 
 @kernel
-def first_push(b, mu_b, z, c):
+def first_contact_force(b, mu_b, z, c):
     """r^2 z'' at an anchor; exact where a stop ends there, which `stop_ends` makes c tell."""
     return mu_b - b if c == z + mu_b else c - z - b
 
@@ -55,35 +55,35 @@ def longest_slide(step, r):
 
 
 @kernel
-def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, codes, first, count, work):
-    """One return through the given order of events.
+def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, work):
+    """One return through a sequence of events.
 
     Returns (fits, z, c, s, z_z, z_t, t_z, t_t): the state, and the derivatives of its displacement z and
     phase t with respect to those at the anchor; after a stop, z_z is the only one.
     """
     a = 1.0 / oscillator.r
-    size = codes.size
+    events = sequence.events
     max_steps = longest_slide(step, oscillator.r)
-    push = mu_b - b if after_stop else c - z - b
+    contact_force = mu_b - b if after_stop else c - z - b
     # what a neighbour started with another z (first) or another phase (second) differs by
     z_z, t_z = 1.0, -1.0 / s if after_stop else 0.0
     z_t, t_t = 0.0, 0.0 if after_stop else 1.0
-    for m in range(count):
-        n, z, c, s = slide(step, b, z, 0.0, step.stiffness * push, c, s, max_steps, work)
+    for m in range(sequence.count):
+        n, z, c, s = slide(step, b, z, 0.0, step.stiffness * contact_force, c, s, max_steps, work)
         if n == NO_END:
             return False, z, c, s, 0.0, 0.0, 0.0, 0.0
         q, e = decay(oscillator.zeta, a * n * step.h)
         d = e + 2.0 * oscillator.zeta * q
         # a later start is a velocity that lags at a fixed phase
-        lag_z = -push * a * a * t_z
-        lag_t = -push * a * a * t_t
+        lag_z = -contact_force * a * a * t_z
+        lag_t = -contact_force * a * a * t_t
         v_z = e * lag_z - a * q * z_z
         v_t = e * lag_t - a * q * z_t
         z_z = d * z_z + oscillator.r * q * lag_z
         z_t = d * z_t + oscillator.r * q * lag_t
         pull = (z - c + b) * a * a  # -z'' at the end of the slide
-        code, z, c, s, push, _ = after_slide(b, mu_b, z, c, s)
-        if code != int(codes[(first + m) % size]):
+        code, z, c, s, contact_force, _ = after_slide(b, mu_b, z, c, s)
+        if code != int(events[(sequence.first + m) % events.size]):
             return False, z, c, s, 0.0, 0.0, 0.0, 0.0
         if code == REVERSE or code == STOP_THEN_BACK:
             z_z = -z_z
@@ -100,11 +100,11 @@ def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, codes, first, co
 
 
 @kernel
-def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, codes, first, count, tolerance, work):
+def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolerance, work):
     """Newton's method on the return map: (found, z, c, s, contraction).
 
     `found` also says that the orbit is stable; `contraction` is the largest modulus of the multipliers
-    of one return.
+    of one return.  Eleven arguments: the oscillator is of a frequency, friction of a cell, the rest of a try.
     """
     last = math.inf
     for _ in range(_MAX_NEWTON):
@@ -113,7 +113,7 @@ def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, codes, first, co
             if not s < 0.0:
                 break
         fits, z1, c1, s1, z_z, z_t, t_z, t_t = _return_map(
-            step, oscillator, b, mu_b, z, c, s, after_stop, codes, first, count, work
+            step, oscillator, b, mu_b, z, c, s, after_stop, sequence, work
         )
         if not fits:
             break

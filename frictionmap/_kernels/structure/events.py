@@ -4,7 +4,7 @@ mirrored."""
 import math
 
 from ..jit import kernel
-from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
+from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
 from .oscillators import AT_LIMIT, ELSEWHERE, FAILED, ROSE, scan
 from .state import (
     contact_load,
@@ -30,17 +30,17 @@ _TURN = 2.0 * math.pi
 
 
 @kernel
-def slide_on(st, beta, net, state, c, s, limit, scratch):
+def slide_on(st, beta, contact_force, state, c, s, limit, scratch):
     """An upward slide to the zero of the velocity, or for `limit` steps; see `oscillators.scan`.
 
-    It starts with no velocity under the force `net` >= 0 in the contact, friction taken off; or net = MOVING.
+    It starts with no velocity under `contact_force` >= 0, friction taken off; or contact_force = MOVING.
     """
-    push = net * st.inverse_mass / (st.rate * st.rate) if net >= 0.0 else ELSEWHERE
-    return scan(st.free, beta, 0.0, math.inf, push, state, c, s, limit, scratch)
+    slope = contact_force * st.inverse_mass / (st.rate * st.rate) if contact_force >= 0.0 else ELSEWHERE
+    return scan(st.free, beta, 0.0, math.inf, slope, state, c, s, limit, scratch)
 
 
 @kernel
-def pause(st, mu_beta, z, held, c, s, allowed, scratch):
+def wait_for_release(st, mu_beta, z, held, c, s, allowed, scratch):
     """A stop at z, to where the load exceeds mu beta: (end, cos, sin, duration in tau, dload/dx).
 
     `end` is FELL or ROSE (the load left through -mu beta or mu beta), AT_LIMIT (never) or FAILED (not in
@@ -73,20 +73,19 @@ def pause(st, mu_beta, z, held, c, s, allowed, scratch):
 def after_slide(st, beta, mu_beta, state, held, c, s, allowed, scratch):
     """What follows an upward slide that ended in this free state.
 
-    Returns (code, cos, sin, net, wait, load, slope): as `events.after_slide`, `net` the force left in the
-    contact at the start of the next slide; `load` at the end of this one, and its slope dload/dx at the end
-    of the stop.  The state becomes the one from which the next upward slide starts; a stop that lasts
-    leaves it.
+    Returns (code, cos, sin, contact_force, wait, load, slope): as `events.after_slide`, `contact_force` at
+    the start of the next slide; `load` at the end of this one, and its slope dload/dx at the end of the stop.
+    The state becomes the one from which the next upward slide starts; a stop that lasts leaves it.
     """
     load = contact_load(st, state, c, s)
     if load > mu_beta:
         mirror(st, state)
         return REVERSE, -c, -s, load - beta, 0.0, load, 0.0
     if load < -mu_beta:
-        return TOUCH, c, s, -load - beta, 0.0, load, 0.0
+        return GRAZING, c, s, -load - beta, 0.0, load, 0.0
     z = place(st, state)
     hold(st, state, z, c, s, held)
-    end, c, s, wait, slope = pause(st, mu_beta, z, held, c, s, allowed, scratch)
+    end, c, s, wait, slope = wait_for_release(st, mu_beta, z, held, c, s, allowed, scratch)
     if end == AT_LIMIT:
         return STUCK, c, s, 0.0, math.inf, load, 0.0
     if end == FAILED:

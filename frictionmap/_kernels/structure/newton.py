@@ -13,18 +13,20 @@ import numpy as np
 
 from ..closed_form import decay
 from ..jit import entry, kernel
-from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK, TOUCH
+from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
 from .events import MOVING, NO_RELEASE, after_slide, slide_on
 from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA
-from .state import CHI, LIFT, energy
+from .state import CHI, STATIC_SHAPE, energy
 
 _MAX_NEWTON = 16
 
-#: Events of an order of events found by `order_of_events`.
-MOST_CODES = 64
+#: Events at most of a sequence found by `follow_events`.
+LONGEST_SEQUENCE = 64
 
-#: Columns of `Workspace.anchored`.
-HALVES, PHASE_COS, PHASE_SIN, SIDE = 0, 1, 2, 3
+#: Columns of `Workspace.anchored`: half periods to the orbit's return (0: there is none), load's phase, sign
+#: of the slide, number of slides, beta, and beta of the orbit before, NaN if that is anchored otherwise.
+HALVES, PHASE_COS, PHASE_SIN, SIDE, SLIDES, BETA, EARLIER_BETA = 0, 1, 2, 3, 4, 5, 6
+ANCHORED = 7
 
 #: Newton steps below this share of the motion have to shrink fast.
 _NEAR_END = 1e-6
@@ -49,10 +51,11 @@ class Workspace(NamedTuple):
     start: np.ndarray  # (2, n) where Newton's method started
     anchor: np.ndarray  # (2, n)
     table: np.ndarray  # (n + 1, COLUMNS)
-    codes: np.ndarray  # (MOST_CODES,) an order of events
+    events: np.ndarray  # (LONGEST_SEQUENCE,) of an event sequence
     near: np.ndarray  # (2, n)
-    solved: np.ndarray  # (2, n) middle of a slide of the orbit solved for last, and how it is anchored:
-    anchored: np.ndarray  # (4,) half periods to its return (0: there is none), cos, sin, sign
+    solved: np.ndarray  # (2, n) middle of a slide of the orbit solved for last
+    earlier: np.ndarray  # (2, n) of the one before
+    anchored: np.ndarray  # (ANCHORED,)
 
 
 @entry
@@ -62,8 +65,8 @@ def make_workspace(n):
     return Workspace(
         np.zeros((2, m)), np.zeros((2, n)), np.zeros((2, n)), np.zeros((2 * n, 2 * n)),
         np.zeros((2 * m + 1, 2 * n)), np.zeros((2 * n, 2 * n)), np.zeros(2 * n), np.zeros(2 * n),
-        np.zeros((2, n)), np.zeros((2, n)), np.zeros((n + 1, COLUMNS)), np.zeros(MOST_CODES),
-        np.zeros((2, n)), np.zeros((2, n)), np.zeros(4),
+        np.zeros((2, n)), np.zeros((2, n)), np.zeros((n + 1, COLUMNS)), np.zeros(LONGEST_SEQUENCE),
+        np.zeros((2, n)), np.zeros((2, n)), np.zeros((2, n)), np.zeros(ANCHORED),
     )  # fmt: skip
 
 
@@ -122,7 +125,7 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
             for i in range(n):
                 a = st.to_held[k, i]
                 b = st.to_held[k, n + i]
-                shift = a * st.modes[LIFT, i]
+                shift = a * st.modes[STATIC_SHAPE, i]
                 for j in range(size):
                     stopped[k, j] += a * flow[i, j] + b * flow[n + i, j] - shift * stopped[2 * m, j]
         _carry(st.held, m, wait / st.r, stopped, size)
@@ -132,9 +135,9 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
             for j in range(size):
                 row[j] += st.held[k, OZ] * stopped[k, j] + st.held[k, OW] * stopped[m + k, j] / st.rate
         for i in range(size):
-            lift = st.modes[LIFT, i] if i < n else 0.0
+            shape = st.modes[STATIC_SHAPE, i] if i < n else 0.0
             for j in range(size):
-                flow[i, j] = lift * stopped[2 * m, j]
+                flow[i, j] = shape * stopped[2 * m, j]
             for k in range(2 * m):
                 a = st.to_free[i, k]
                 for j in range(size):
@@ -154,10 +157,11 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
 
 
 @kernel
-def return_map(st, beta, mu_beta, state, c, s, codes, first, count, halves, derive, work, scratch):
-    """The state `halves` half periods on, through the events codes[first], ...; in place.
+def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, scratch):
+    """The state `halves` half periods on, through a sequence of events; in place.
 
-    Returns whether the events fit; `work.flow` becomes the derivative if `derive`.
+    Returns whether the events fit; `work.flow` becomes the derivative if `derive`.  Eleven arguments: the
+    state, its phase and what becomes of it change from call to call, friction from cell to cell.
     """
     size = 2 * st.n
     if derive:
@@ -170,18 +174,19 @@ def return_map(st, beta, mu_beta, state, c, s, codes, first, count, halves, deri
     odd = halves % 2 == 1
     mirrored = False
     time = 0.0
-    net = MOVING
-    for m in range(count):
-        n, end, c, s, _ = slide_on(st, beta, net, state, c, s, limit, scratch)
+    contact_force = MOVING
+    events = sequence.events
+    for m in range(sequence.count):
+        n, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, limit, scratch)
         if end != FELL:
             return False
         time += n * st.h
         if derive:
             _carry(st.free, st.n, n * st.h / st.r, work.flow, size)
-        code, c, s, net, wait, load, slope = after_slide(
+        code, c, s, contact_force, wait, load, slope = after_slide(
             st, beta, mu_beta, state, work.held, c, s, whole, scratch
         )
-        if code != int(codes[(first + m) % codes.size]):
+        if code != int(events[(sequence.first + m) % events.size]):
             return False
         if not (code == REVERSE or code == STOP_THEN_BACK or code == STOP_THEN_ON):
             return False
@@ -197,7 +202,7 @@ def return_map(st, beta, mu_beta, state, c, s, codes, first, count, halves, deri
     rest += _TURN * math.floor((whole - time - rest) / _TURN + 0.5)
     if not rest > 0.0:
         return False
-    n, end, c, s, _ = slide_on(st, beta, net, state, c, s, rest / st.h, scratch)
+    n, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, rest / st.h, scratch)
     if end != AT_LIMIT:
         return False
     if derive:
@@ -206,30 +211,32 @@ def return_map(st, beta, mu_beta, state, c, s, codes, first, count, halves, deri
 
 
 @kernel
-def order_of_events(st, beta, mu_beta, state, c, s, halves, codes, work, scratch):
-    """Number of events in the `halves` half periods from a state in a slide, and what they are, into `codes`.
+def follow_events(st, beta, mu_beta, state, c, s, halves, work, scratch):
+    """Number of events in `halves` half periods from a state in a slide, and what they are, in work.events.
 
     0 if they are too many, or do not lead back into a slide in the same direction, mirrored if odd.
     """
     whole = math.pi * halves
     mirrored = False
     time = 0.0
-    net = MOVING
+    contact_force = MOVING
     count = 0
     while True:
-        n, end, c, s, _ = slide_on(st, beta, net, state, c, s, (whole - time) / st.h, scratch)
+        n, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, (whole - time) / st.h, scratch)
         time += n * st.h
         if end == AT_LIMIT:
             return count if mirrored == (halves % 2 == 1) else 0
-        if end != FELL or count == codes.size:
+        if end != FELL or count == work.events.size:
             return 0
-        code, c, s, net, wait, _, _ = after_slide(st, beta, mu_beta, state, work.held, c, s, whole, scratch)
+        code, c, s, contact_force, wait, _, _ = after_slide(
+            st, beta, mu_beta, state, work.held, c, s, whole, scratch
+        )
         time += wait
-        if code == TOUCH or code == STUCK or code == NO_RELEASE or not time < whole:
+        if code == GRAZING or code == STUCK or code == NO_RELEASE or not time < whole:
             return 0
         if code != STOP_THEN_ON:
             mirrored = not mirrored
-        codes[count] = code
+        work.events[count] = code
         count += 1
 
 
@@ -294,34 +301,50 @@ def spectral_radius(matrix, n, a):
 
 
 @kernel
-def newton_step(st, beta, mu_beta, c, s, codes, first, count, halves, work, scratch):
-    """A step of Newton's method from work.middle, into work.moved; its size, infinite if there is none."""
+def newton_step(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
+    """A step of Newton's method from work.middle, into work.moved.
+
+    Returns its size, infinite if there is none, and by how much the orbit misses its return.
+    """
     n = st.n
     size = 2 * n
     copy_state(work.middle, work.moved, n)
-    if not return_map(st, beta, mu_beta, work.moved, c, s, codes, first, count, halves, True, work, scratch):
-        return math.inf
+    if not return_map(st, beta, mu_beta, work.moved, c, s, sequence, halves, True, work, scratch):
+        return math.inf, 0.0
     for i in range(n):
-        work.step[i] = work.moved[0, i] - work.middle[0, i]
-        work.step[n + i] = (work.moved[1, i] - work.middle[1, i]) * st.rate
+        work.moved[0, i] -= work.middle[0, i]
+        work.moved[1, i] -= work.middle[1, i]
+        work.step[i] = work.moved[0, i]
+        work.step[n + i] = work.moved[1, i] * st.rate
+    miss = energy(st, work.moved)
     for i in range(size):
         for j in range(size):
             work.square[i, j] = (1.0 if i == j else 0.0) - work.flow[i, j]
     if not solve_linear(work.square, work.step, size):
-        return math.inf
+        return math.inf, miss
     for i in range(n):
         work.moved[0, i] = work.step[i]
         work.moved[1, i] = work.step[n + i] / st.rate
-    return energy(st, work.moved)
+    return energy(st, work.moved), miss
 
 
 @kernel
-def solve_return(st, beta, mu_beta, c, s, codes, first, count, halves, tolerance, work, scratch):
+def _nothing_to_come(move, last, miss, scale, tolerance):
+    """Whether the step after one of size `move` would be rounding: quadratically it gets this much smaller.
+
+    Where steps make much of what an orbit misses by, they do so of rounding, and nothing is to be expected.
+    """
+    expected = move * (move / last) ** 2 if last < math.inf else move
+    return expected <= 1e-16 * scale and 1e-16 * move <= tolerance * miss
+
+
+@kernel
+def solve_return(st, beta, mu_beta, c, s, sequence, halves, tolerance, work, scratch):
     """Newton's method on the return map from work.middle, which becomes the solution; whether it is one."""
     n = st.n
     last = math.inf
     for _ in range(_MAX_NEWTON):
-        move = newton_step(st, beta, mu_beta, c, s, codes, first, count, halves, work, scratch)
+        move, miss = newton_step(st, beta, mu_beta, c, s, sequence, halves, work, scratch)
         if not move < math.inf:
             return False
         scale = energy(st, work.middle)
@@ -332,7 +355,7 @@ def solve_return(st, beta, mu_beta, c, s, codes, first, count, halves, tolerance
         for i in range(n):
             work.middle[0, i] += work.moved[0, i]
             work.middle[1, i] += work.moved[1, i]
-        if move <= 1e-15 * scale:
+        if move <= 1e-15 * scale or _nothing_to_come(move, last, miss, scale, tolerance):
             return True
         last = move
     return False

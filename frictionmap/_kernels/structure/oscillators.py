@@ -143,7 +143,7 @@ def advance(series, n, terms, x, state):
 
 
 @kernel
-def _watch(table, c, s, series, watched):
+def watch(table, c, s, series, watched):
     """Taylor coefficients of y from those of every z."""
     n = table.shape[0] - 1
     h = table[n, H]
@@ -192,7 +192,7 @@ def value(table, state, c, s):
 
 
 @kernel
-def _derivatives(table, friction, state, c, s):
+def derivatives(table, friction, state, c, s):
     """y of a state and its first three derivatives in x."""
     n = table.shape[0] - 1
     h = table[n, H]
@@ -204,12 +204,12 @@ def _derivatives(table, friction, state, c, s):
         k, d = table[i, K], table[i, D]
         oz, ow = table[i, OZ], table[i, OW]
         load = table[i, FC] * c + table[i, FS] * s
-        push = load + table[i, F1] * friction - k * state[0, i] - d * state[1, i]
-        jerk = h * (table[i, FS] * c - table[i, FC] * s) - k * state[1, i] - d * push
-        snap = -h * h * load - k * push - d * jerk
+        acceleration = load + table[i, F1] * friction - k * state[0, i] - d * state[1, i]
+        jerk = h * (table[i, FS] * c - table[i, FC] * s) - k * state[1, i] - d * acceleration
+        snap = -h * h * load - k * acceleration - d * jerk
         y += oz * state[0, i] + ow * state[1, i]
-        slope += oz * state[1, i] + ow * push
-        bend += oz * push + ow * jerk
+        slope += oz * state[1, i] + ow * acceleration
+        bend += oz * acceleration + ow * jerk
         third += oz * jerk + ow * snap
     return y, slope, bend, third
 
@@ -231,9 +231,9 @@ def bounds(table, friction, state, c, s):
         root = table[i, ROOT]
         growth = table[i, GROWTH]
         force = table[i, FC] * c + table[i, FS] * s + table[i, F1] * friction
-        push = force - k * state[0, i] - d * state[1, i]
-        jerk = h * (table[i, FS] * c - table[i, FC] * s) - k * state[1, i] - d * push
-        energy = root * abs(push) + abs(jerk) + growth
+        acceleration = force - k * state[0, i] - d * state[1, i]
+        jerk = h * (table[i, FS] * c - table[i, FC] * s) - k * state[1, i] - d * acceleration
+        energy = root * abs(acceleration) + abs(jerk) + growth
         oz = abs(table[i, OZ])
         ow = abs(table[i, OW])
         per_second = oz / root + ow
@@ -304,11 +304,11 @@ def _nudge(table, friction, state, c, s, x):
     for i in range(n):
         k, d = table[i, K], table[i, D]
         load = table[i, FC] * c + table[i, FS] * s
-        push = load + table[i, F1] * friction - k * state[0, i] - d * state[1, i]
-        jerk = h * (table[i, FS] * c - table[i, FC] * s) - k * state[1, i] - d * push
-        snap = -h * h * load - k * push - d * jerk
-        state[0, i] += x * (state[1, i] + x * (0.5 * push + x * (1.0 / 6.0) * jerk))
-        state[1, i] += x * (push + x * (0.5 * jerk + x * (1.0 / 6.0) * snap))
+        acceleration = load + table[i, F1] * friction - k * state[0, i] - d * state[1, i]
+        jerk = h * (table[i, FS] * c - table[i, FC] * s) - k * state[1, i] - d * acceleration
+        snap = -h * h * load - k * acceleration - d * jerk
+        state[0, i] += x * (state[1, i] + x * (0.5 * acceleration + x * (1.0 / 6.0) * jerk))
+        state[1, i] += x * (acceleration + x * (0.5 * jerk + x * (1.0 / 6.0) * snap))
 
 
 @kernel
@@ -322,7 +322,7 @@ def _at_crossing(table, friction, level, x, done, start, now, state, scratch):
     for _ in range(MAX_POLISH):
         _move(table, friction, scratch.next, now[0], now[1], x, scratch.watched, state)
         c, s = _turned(start[0], start[1], (done + x) * h)
-        y, slope, bend, third = _derivatives(table, friction, state, c, s)
+        y, slope, bend, third = derivatives(table, friction, state, c, s)
         y -= level
         if not abs(y) < NEARLY * abs(slope) or not abs(y * bend) < NEARLY * slope * slope:
             break
@@ -335,10 +335,10 @@ def _at_crossing(table, friction, level, x, done, start, now, state, scratch):
 
 
 @kernel
-def _exit(table, friction, low, high, push, ends, errors, done, start, now, state, scratch):
+def _exit(table, friction, low, high, rise, ends, errors, done, start, now, state, scratch):
     """Where y leaves [low, high] from scratch.next to `state`: (x, end, dy/dx); x = 2 if it does not.
 
-    So many arguments: this is the seldom part of `scan`, whose arguments they are.  push : as there, of
+    So many arguments: this is the seldom part of `scan`, whose arguments they are.  rise : as there, of
     the first step; ends : y at both ends; errors : bounds on its derivatives 2 to 4; now : the load's phase
     at the start of this step.  If y leaves, `state` becomes that at x.
     """
@@ -346,14 +346,14 @@ def _exit(table, friction, low, high, push, ends, errors, done, start, now, stat
     c, s = now
     y, y1 = ends
     second, third, fourth = errors
-    _, dy, bend, _ = _derivatives(table, friction, scratch.next, c, s)
-    if push >= 0.0:
+    _, dy, bend, _ = derivatives(table, friction, scratch.next, c, s)
+    if rise >= 0.0:
         # y/x is above a concave parabola that is positive at both ends
-        if push + 0.5 * bend - third * (1.0 / 6.0) > 0.0 and y1 + 0.125 * second < high:
+        if rise + 0.5 * bend - third * (1.0 / 6.0) > 0.0 and y1 + 0.125 * second < high:
             return 2.0, AT_LIMIT, 0.0
     else:
         turn_c, turn_s = table[n, TURN_COS], table[n, TURN_SIN]
-        _, dy1, _, _ = _derivatives(table, friction, state, turn_c * c - turn_s * s, turn_c * s + turn_s * c)
+        _, dy1, _, _ = derivatives(table, friction, state, turn_c * c - turn_s * s, turn_c * s + turn_s * c)
         if _inside(y, dy, y1, dy1, low, high, fourth * (1.0 / 384.0)):
             return 2.0, AT_LIMIT, 0.0
         # a slope that differs from the straight line by so little keeps its sign: there is one root
@@ -368,24 +368,24 @@ def _exit(table, friction, low, high, push, ends, errors, done, start, now, stat
             _move(table, friction, scratch.next, c, s, 1.0, scratch.watched, state)
     terms = int(table[n, TERMS])
     expand(table, n, friction, scratch.next, c, s, table[n, H], terms, scratch.series)
-    _watch(table, c, s, scratch.series, scratch.watched)
-    x, end = _leaves(scratch.watched, scratch.below, terms, low, high, push)
+    watch(table, c, s, scratch.series, scratch.watched)
+    x, end = _leaves(scratch.watched, scratch.below, terms, low, high, rise)
     if end == AT_LIMIT:
         return 2.0, end, 0.0
     advance(scratch.series, n, terms, x, state)
     c, s = _turned(start[0], start[1], (done + x) * table[n, H])
-    return x, end, _derivatives(table, friction, state, c, s)[1]
+    return x, end, derivatives(table, friction, state, c, s)[1]
 
 
 @kernel
-def scan(table, friction, low, high, push, state, c, s, limit, scratch):
+def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
     """Follow the motion until y leaves [low, high], or for `limit` steps.
 
     Parameters
     ----------
     table, friction : the oscillators and the friction force on them
     low, high : range of y; one may be infinite
-    push : if >= 0, y starts at `low` exactly with this slope, and that root is not looked for; else ELSEWHERE
+    rise : if >= 0, y starts at `low` exactly with this slope, and that root is not looked for; else ELSEWHERE
     state : (2, n) z and w; replaced by the state at the end
     c, s : cos(tau), sin(tau)
     limit : steps allowed, a fraction included
@@ -404,7 +404,7 @@ def scan(table, friction, low, high, push, state, c, s, limit, scratch):
     turn_c, turn_s, yc, ys = table[n, TURN_COS], table[n, TURN_SIN], table[n, YC], table[n, YS]
     start = (c, s)
     second, third, fourth, second_growth, third_growth, fourth_growth = bounds(table, friction, state, c, s)
-    y = low if push >= 0.0 else value(table, state, c, s)
+    y = low if rise >= 0.0 else value(table, state, c, s)
     done = 0.0
     while y == y:  # a number
         c1 = turn_c * c - turn_s * s
@@ -417,7 +417,7 @@ def scan(table, friction, low, high, push, state, c, s, limit, scratch):
             x, end, slope = 2.0, AT_LIMIT, 0.0
             if not sure:
                 x, end, slope = _exit(
-                    table, friction, low, high, push if done == 0.0 else ELSEWHERE, (y, y1),
+                    table, friction, low, high, rise if done == 0.0 else ELSEWHERE, (y, y1),
                     (second, third, fourth), done, start, (c, s), state, scratch,
                 )  # fmt: skip
             rest = 1.0 if whole else limit - done
@@ -436,7 +436,7 @@ def scan(table, friction, low, high, push, state, c, s, limit, scratch):
 
 
 @kernel
-def _leaves(watched, below, terms, low, high, push):
+def _leaves(watched, below, terms, low, high, rise):
     """(x, end): where y first leaves [low, high] in the step whose series this is; x = 2 if it does not."""
     x = 2.0
     end = AT_LIMIT
@@ -445,10 +445,10 @@ def _leaves(watched, below, terms, low, high, push):
             below[j] = watched[j]
         below[0] -= low
         first = 0
-        if push >= 0.0:
+        if rise >= 0.0:
             below[0] = 0.0
-            below[1] = push
-            first = 1 if push != 0.0 else 2
+            below[1] = rise
+            first = 1 if rise != 0.0 else 2
         x = first_root(below, first, terms)
         if x <= 1.0:
             end = FELL

@@ -13,7 +13,7 @@ from .state import CHI, DAMPING, LOAD, LOAD_RATE, W, contact_load
 
 
 class Continuous(NamedTuple):
-    """Response functions at every r; arrays (n_r, n) of the seen modes, and (n_r,) of the contact."""
+    """Response functions at every r; arrays (n_r, n) of participating modes, and (n_r,) of the contact."""
 
     re: np.ndarray  # modal response lambda_i/(w_i^2 - r^2 + 2 i zeta_i w_i r)
     im: np.ndarray

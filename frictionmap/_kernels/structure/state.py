@@ -1,7 +1,7 @@
 """One structure at one frequency, ready to be followed: free and held oscillators, and the way between them.
 
 While it slides, its state is that of the free modes; a stop leaves the contact where it is, and the rest
-moves as the held oscillators do, about the static shape (`lift`) that the contact's place gives it.  Both
+moves as the held oscillators do, about the static shape that the contact's place gives it.  Both
 are in units of one scan step: row 0 the coordinates, row 1 their change per step.
 
 With a joined base-wall all displacements are taken relative to the base: then its contact is that with a
@@ -34,9 +34,9 @@ from .oscillators import (
     watch_load,
 )
 
-# Rows of the table of free modes: frequency, damping ratio, participation, static lift, and what the load in
+# Rows of the table of free modes: frequency, damping ratio, participation, static shape, and what the load in
 # the contact has of the coordinate and of its velocity in t = tau/r.
-W, DAMPING, CHI, LIFT, LOAD, LOAD_RATE = 0, 1, 2, 3, 4, 5
+W, DAMPING, CHI, STATIC_SHAPE, LOAD, LOAD_RATE = 0, 1, 2, 3, 4, 5
 MODE_ROWS = 6
 
 #: Load periods beyond which `held_period` does not look for a repetition.
@@ -176,7 +176,7 @@ def hold(st, state, z, c, s, held):
         y = 0.0
         p = 0.0
         for i in range(n):
-            u = state[0, i] - st.modes[LIFT, i] * z
+            u = state[0, i] - st.modes[STATIC_SHAPE, i] * z
             v = st.rate * state[1, i]
             y += st.to_held[k, i] * u + st.to_held[k, n + i] * v
             p += st.to_held[m + k, i] * u + st.to_held[m + k, n + i] * v
@@ -189,7 +189,7 @@ def release(st, held, z, c, s, state):
     """The free state that a held state is."""
     n, m = st.n, st.m
     for i in range(n):
-        u = st.modes[LIFT, i] * z
+        u = st.modes[STATIC_SHAPE, i] * z
         v = 0.0
         for k in range(m):
             p = st.rate * held[1, k] - st.direct[0, k] * c - st.direct[1, k] * s

@@ -1,0 +1,222 @@
+"""When masses are farthest out, and the force to the ground largest, in a steady state.
+
+What is looked at is linear in the state, so in a scan step it is a polynomial.  Times are those of a maximum:
+what is largest at a minimum has its maximum half a period later, in its mirror image if it is symmetric.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..jit import kernel
+from ..structure.oscillators import COLUMNS, OW, OZ, bounds, derivatives, expand, step_on, watch, watch_load
+from .phase_table import COS, LENGTH, PLACE, SENSE, SIN, Z_END, take_start
+
+#: Columns of what is found: the largest modulus, the load's phase at it, and where it is held over a stop the
+#: load's phases at which that begins and ends.
+VALUE, PHASE, PHASE_BEGIN, PHASE_END = 0, 1, 2, 3
+FOUND = 4
+
+#: Part of a scan step that is not cut further, what a polynomial could hide in it being of the third order;
+#: and by which steps overlap.
+_SHORTEST = 1e-6
+
+
+#: A step of Newton's method after which the next one would be rounding.
+_NEXT = 1e-9
+
+
+class Shapes(NamedTuple):
+    """What each of the things looked at, the masses first, has of the state; velocities in t = tau/r."""
+
+    free: np.ndarray  # (rows, 2n) of the free modes and their velocities
+    held: np.ndarray  # (rows, 2m) of the held oscillators (y, p)
+    static_shape: np.ndarray  # (rows,) of a unit displacement of the contact while it is held
+    friction: np.ndarray  # (rows,) of the friction force while the contact slides
+
+
+class Alone(NamedTuple):
+    """Phasors (n_r, rows) of what moves with the load alone: modes that do not participate, the base."""
+
+    sliding: np.ndarray
+    held: np.ndarray
+
+
+@kernel
+def turned_half(angle, value):
+    """The phase of a maximum, in (-pi, pi], of what is `value` at an angle of the load."""
+    if value < 0.0:
+        angle += math.pi
+    angle -= 2.0 * math.pi * math.ceil((angle - math.pi) / (2.0 * math.pi))
+    return math.pi if angle <= -math.pi else angle + 0.0  # not -0.0
+
+
+@kernel
+def largest_in_contact(table, out):
+    """The same of z, `out` (FOUND,): it turns only where slides end, and stops hold it there."""
+    out[VALUE] = -1.0
+    for k in range(table.shape[0]):
+        row = table[k]
+        if row[SENSE] > 0.0 and abs(row[Z_END]) > out[VALUE]:
+            out[VALUE] = abs(row[Z_END])
+            end = turned_half(math.atan2(row[SIN], row[COS]) + row[LENGTH], row[Z_END])
+            out[PHASE], out[PHASE_BEGIN], out[PHASE_END] = end, math.nan, math.nan
+            if k + 1 < table.shape[0] and table[k + 1, SENSE] == 0.0:
+                out[PHASE], out[PHASE_BEGIN], out[PHASE_END] = math.nan, end, end + table[k + 1, LENGTH]
+
+
+@kernel
+def set_watch(st, shapes, k, beta, phasor, row, slides, n, table):
+    """Fill a table of the n oscillators of a phase, in which the k-th row of `shapes` is watched.
+
+    phasor : of what moves with the load alone
+    Returns (friction force, what the row has beside what is watched).
+    """
+    source = st.free if slides else st.held
+    yc, ys = phasor.real, -phasor.imag
+    for i in range(n + 1):
+        for column in range(COLUMNS):
+            table[i, column] = source[i, column]
+    for i in range(n):
+        if slides:
+            place, rate = shapes.free[k, i], shapes.free[k, n + i]
+        else:
+            place, rate = shapes.held[k, i], shapes.held[k, n + i]
+            yc -= rate * st.direct[0, i]
+            ys -= rate * st.direct[1, i]
+        table[i, OZ], table[i, OW] = place, rate * st.rate
+    watch_load(table, yc, ys)
+    if slides:
+        return beta, shapes.friction[k] * beta
+    return 0.0, shapes.static_shape[k] * row[PLACE]
+
+
+@kernel
+def _search(st, table, n, friction, offset, row, state, scratch, out):
+    """Enter the largest modulus over a phase of what a table watches, from its state at the start.
+
+    Scan steps are expanded in which it may turn beyond what was found before, and the first and the last.
+    They overlap a little, so that no turn falls between them by rounding.
+    """
+    angle = math.atan2(row[SIN], row[COS])
+    c, s = row[COS], row[SIN]
+    length = row[LENGTH] / st.h
+    done = 0.0
+    value, slope, _, _ = derivatives(table, friction, state, c, s)
+    while done < length:
+        first, last = done == 0.0, length <= done + 1.0
+        bend, _, _, _, _, _ = bounds(table, friction, state, c, s)
+        step_on(table, n, friction, state, scratch.next, c, s)
+        c1, s1 = math.cos(angle + (done + 1.0) * st.h), math.sin(angle + (done + 1.0) * st.h)
+        value1, slope1, _, _ = derivatives(table, friction, state, c1, s1)
+        straight = slope * slope1 > 0.0 and abs(slope) + abs(slope1) >= bend
+        low = max(abs(value + offset), abs(value1 + offset)) + 0.125 * bend <= out[VALUE]
+        if first or last or not (straight or low):
+            expand(table, n, friction, scratch.next, c, s, st.h, st.terms, scratch.series)
+            watch(table, c, s, scratch.series, scratch.watched)
+            scratch.watched[0] += offset
+            begin, end = 0.0 if first else -_SHORTEST, length - done if last else 1.0 + _SHORTEST
+            most, x = _largest(scratch.watched, st.terms, begin, end, first, last, out[VALUE])
+            if abs(most) > out[VALUE]:
+                out[VALUE], out[PHASE] = abs(most), turned_half(angle + (done + x) * st.h, most)
+        value, slope, c, s = value1, slope1, c1, s1
+        done += 1.0
+
+
+@kernel
+def largest_moduli(st, beta, shapes, alone, i, skipped, table, out, work, scratch):
+    """The largest modulus, and when, of every row of `shapes` over the table's phases; `out` (rows, FOUND).
+
+    alone : Alone, at the i-th frequency
+    skipped : a row to leave out, or -1
+    """
+    for k in range(shapes.static_shape.size):
+        if k == skipped:
+            continue
+        for column in range(FOUND):
+            out[k, column] = math.nan
+        out[k, VALUE] = -1.0
+        for j in range(table.shape[0]):
+            row = table[j]
+            slides, n, state = take_start(st, row, work)
+            watched = work.table[: n + 1]
+            phasor = alone.sliding[i, k] if slides else alone.held[i, k]
+            force, offset = set_watch(st, shapes, k, beta, phasor, row, slides, n, watched)
+            _search(st, watched, n, force, offset, row, state, scratch, out[k])
+
+
+@kernel
+def _at(p, terms, x):
+    """A polynomial, its slope and its bend at x."""
+    value = slope = bend = 0.0
+    for k in range(terms - 1, -1, -1):
+        bend = bend * x + 2.0 * slope
+        slope = slope * x + value
+        value = value * x + p[k]
+    return value, slope, bend
+
+
+@kernel
+def _bounds(p, terms):
+    """Bounds over [0, 1] on the moduli of the second and the third derivative of a polynomial."""
+    second = third = 0.0
+    for k in range(2, terms):
+        size = k * (k - 1.0) * abs(p[k])
+        second += size
+        third += (k - 2.0) * size
+    return second, third
+
+
+@kernel
+def _turn(p, terms, low, high, slope_low):
+    """(value, x) where a polynomial turns in [low, high], the only place: Newton's method, kept inside."""
+    x = 0.5 * (low + high)
+    while True:
+        value, slope, bend = _at(p, terms, x)
+        if slope * slope_low > 0.0:
+            low = x
+        else:
+            high = x
+        new = x - slope / bend if bend != 0.0 else low - 1.0
+        if abs(new - x) < _NEXT or high - low < _SHORTEST * _NEXT:
+            return value, min(max(new, low), high)
+        x = new if low < new < high else 0.5 * (low + high)
+
+
+@kernel
+def _largest(p, terms, begin, end, opens, closes, most):
+    """(value, x) of the largest modulus over [begin, end] of a polynomial beyond `most`; value 0 if none is.
+
+    opens, closes : whether the phase begins or ends here.  Its ends count where the modulus falls from or
+    rises to them.  Other nodes do not: beside a turn they are as large to rounding, at another time.
+
+    An interval of length l holds nothing beyond its larger end by l^2/8 max |p''|; and no turn where the
+    slopes differ by less than they would if it had one, or one where the bend keeps its sign.
+    """
+    second, third = _bounds(p, terms)
+    best, at = 0.0, begin
+    a, length = begin, end - begin
+    value_a, slope_a, bend_a = _at(p, terms, begin)
+    if opens and value_a * slope_a <= 0.0 and abs(value_a) > most:
+        best, most = value_a, abs(value_a)
+    while a < end:
+        b = min(a + length, end)
+        value, slope, bend = _at(p, terms, b)
+        size = b - a
+        low = max(abs(value_a), abs(value)) + 0.125 * size * size * second <= most
+        straight = slope_a * slope > 0.0 and abs(slope_a) + abs(slope) >= size * second
+        if not (low or straight or second == 0.0):
+            bent = bend_a * bend > 0.0 and abs(bend_a) + abs(bend) > size * third
+            if not bent and size > _SHORTEST:
+                length = 0.5 * size
+                continue
+            if slope_a * slope <= 0.0:
+                turn, x = _turn(p, terms, a, b, slope_a)
+                if abs(turn) > most:
+                    best, at, most = turn, x, abs(turn)
+        a, value_a, slope_a, bend_a = b, value, slope, bend
+        length = end - a
+    if closes and value_a * slope_a >= 0.0 and abs(value_a) > most:
+        best, at = value_a, end
+    return best, at

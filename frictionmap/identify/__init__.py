@@ -1,0 +1,24 @@
+"""From measured data to friction, damping and frequencies, with their errors.
+
+===============  =======================================================================
+module           what is in it, in the order in which data flows
+===============  =======================================================================
+units            units that names of columns end in
+tables           files of measured data: CSV, MAT, NPZ
+columns          columns by what they are, checked value by value
+turning_points   extremes of a record, its noise, the linear decrement
+decay_checks     which samples can be a free decay
+decay_motion     the exact decay and its derivatives
+least_squares    least squares with bounds, standard errors, intervals, correlations
+decay_fit        the decay nearest to all samples
+estimates        estimates as a dataset, and in words
+free_decay       `free_decay`: from arrays to estimates
+sweep            `sweep`: two masses without friction, from amplitudes over frequency
+rig              configurations of rigs, for the command `identify`
+===============  =======================================================================
+"""
+
+from .free_decay import free_decay
+from .sweep import sweep
+
+__all__ = ["free_decay", "sweep"]

@@ -1,0 +1,226 @@
+"""Natural frequency, viscous damping and friction force from the free decay of one mass."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from .. import checks
+from ..errors import InputError
+from .decay_checks import checked_record, checked_turning_points, largest_gap, unclipped, within
+from .decay_fit import X_F, ZETA, Fit, fit_decay
+from .decay_motion import PARAMETERS
+from .estimates import estimates, number, verdict
+from .least_squares import Errors, errors
+from .turning_points import TurningPoints, linear_decrement
+from .units import checked_unit, conversion
+
+#: Estimates so many standard errors above zero are found.
+_FOUND = 3.0
+
+#: Beyond this two estimates cannot well be told apart.
+_CORRELATED = 0.95
+
+#: Codes of what was found, in order.
+_VERDICTS = {
+    "neither_found": "neither friction nor viscous damping found",
+    "friction_found": "friction found, viscous damping not",
+    "viscous_damping_found": "viscous damping found, friction not",
+    "both_found": "friction and viscous damping found",
+}
+
+_LOSS = "growth of the sum of squares without {}, over the variance of a sample"
+
+_MEANINGS = {
+    "f_n": "natural frequency without friction and damping",
+    "zeta": "viscous damping ratio",
+    "x_F": "kinetic friction force over stiffness",
+    "X0": "turning point at t0, from the centre",
+    "t0": "time of a turning point at the beginning",
+    "centre": "place of the unloaded mass",
+}
+
+
+def free_decay(
+    time: Sequence[float] | np.ndarray,
+    x: Sequence[float] | np.ndarray,
+    *,
+    unit: str = "mm",
+    known: Mapping[str, float] | None = None,
+    base: float | None = None,
+    stiffness: float | None = None,
+    window: object = None,
+) -> xr.Dataset:
+    """Fit the exact decay with Coulomb and viscous friction to all samples of a record.
+
+    Parameters
+    ----------
+    time : array, shape (samples,)
+        Times [s], increasing; equal steps are not needed.
+    x : array, shape (samples,)
+        Displacements of the mass, in `unit`.
+    unit : "mm", "m" or "um"
+        Of `x`, and of every length that is given or returned.
+    known : mapping
+        Parameters to be held: f_n [Hz] > 0, zeta in [0, 1), x_F >= 0, X0, t0 [s], centre.  Others are fitted.
+    base : float
+        Amplitude Y > 0 of a base motion; gives the friction ratio beta = x_F/Y.
+    stiffness : float
+        k [N/m] > 0; gives the friction force F = k x_F [N].
+    window : [begin, end]
+        Times [s] of the part to be fitted; default: all.
+
+    Returns
+    -------
+    xarray.Dataset
+        On parameter (f_n, zeta, x_F, X0, t0, centre): estimate, standard_error, lower and upper (95 %,
+        one-sided where `at_bound`), `known`, unit; `correlation`; on sample: time, data, model, residual;
+        scalars `reduced_chi_square` (the variance of a sample, as no error of the data is given),
+        `residual_rms`, `verdict`, `half_cycles` before rest or the end, `at_rest`, and
+        `mu_lower` <= mu < `mu_upper` from where it came to rest and where it did not.  Attribute `warnings`.
+
+    Raises
+    ------
+    InputError
+        An argument is illegal, or the record is no free decay: no motion, fewer than 3 extrema, an amplitude
+        that grows, fewer than 8 samples a cycle.
+
+    Notes
+    -----
+    Distances of the extrema from the centre follow A_{j+1} = q A_j - (1 + q) x_F with
+    q = exp(-pi zeta/sqrt(1 - zeta^2)), T(4.2) without viscous damping; the mass rests from the first
+    A_j <= mu x_F.  The number of half cycles before rest is an unknown of the fit.
+    """
+    checked_unit(unit, "length", "unit")
+    held = checked_known(known or {})
+    times, places = checked_record(time, x)
+    inside = within(window, times)
+    times, places = times[inside], places[inside]
+    good = unclipped(places)
+    t, data = times[good], places[good]
+    points = checked_turning_points(t, data)
+    fit, problem = fit_decay(t, data, points, held)
+    found = errors(problem, fit.solution)
+    losses = _losses(t, data, points, held, fit, found)
+    ds = estimates(_MEANINGS, _units(unit), fit.solution, found, problem.free, data, unit)
+    ds["time"] = xr.Variable("sample", t, {"long_name": "time", "units": "s"})
+    ds["verdict"] = verdict(_verdict(fit, found, losses), _VERDICTS)
+    ds["likelihood_ratio_friction"] = number(losses["x_F"], _LOSS.format("friction"))
+    ds["likelihood_ratio_viscous"] = number(losses["zeta"], _LOSS.format("viscous damping"))
+    decrement = linear_decrement(points)
+    if decrement is not None:
+        ds["linear_decrement"] = number(
+            decrement, "x_F by the linear decrement T(4.3), true if zeta = 0", unit
+        )
+    ds = ds.assign(_motion(fit, unit)).assign(_scaled(fit, found, unit, base, stiffness))
+    ds.attrs["title"] = "Free decay"
+    ds.attrs["warnings"] = "; ".join(_warnings(times, good, fit, found))
+    return ds
+
+
+def checked_known(known: Mapping[str, float]) -> dict[str, float]:
+    """Parameters to be held, if they are known by name and in range."""
+    ranges: dict[str, dict[str, float]] = {
+        "f_n": {"above": 0.0},
+        "zeta": {"least": 0.0},
+        "x_F": {"least": 0.0},
+    }
+    result = {}
+    for name, value in known.items():
+        checks.choice(name, "known", PARAMETERS)
+        result[name] = checks.number(value, f"known.{name}", **ranges.get(name, {}))
+    if result.get("zeta", 0.0) >= 1.0:
+        raise InputError(f"known.zeta must be < 1, or there are no extrema; got {known['zeta']}")
+    if len(result) == len(PARAMETERS):
+        raise InputError(f"known must leave something to fit; got all of {', '.join(PARAMETERS)}")
+    return result
+
+
+def _units(unit: str) -> tuple[str, ...]:
+    return ("Hz", "1", unit, unit, "s", unit)
+
+
+def _losses(
+    time: np.ndarray, x: np.ndarray, points: TurningPoints, held: Mapping[str, float], fit: Fit, found: Errors
+) -> dict[str, float]:
+    """Growth of the sum of squares without friction, and without damping, over the variance of a sample."""
+    losses = {}
+    for name in ("x_F", "zeta"):
+        if name in held:
+            losses[name] = 0.0
+            continue
+        without = fit_decay(time, x, points, {**held, name: 0.0})[0].solution.sum
+        # another number of half cycles may fit a little better where the least sum lies on the bound
+        losses[name] = max(without - fit.solution.sum, 0.0) / (found.variance * found.inflation**2)
+    return losses
+
+
+def _verdict(fit: Fit, found: Errors, losses: Mapping[str, float]) -> int:
+    """What was found: beyond three standard errors, and the fit is as much worse without it."""
+    friction, damping = (
+        losses[PARAMETERS[index]] > _FOUND**2
+        and fit.solution.values[index] > _FOUND * found.standard_error[index]
+        for index in (X_F, ZETA)
+    )
+    return int(friction) + 2 * int(damping)
+
+
+def _motion(fit: Fit, unit: str) -> dict[str, xr.Variable]:
+    """How many half cycles there were, where it came to rest, and what that says of mu."""
+    heights, friction = fit.heights, fit.decay.x_F
+    passed = heights[:-1] if fit.at_rest else heights
+    lower = abs(float(heights[-1])) / friction if fit.at_rest and friction > 0.0 else 0.0
+    upper = float(passed[-1]) / friction if friction > 0.0 else np.inf
+    result = {
+        "half_cycles": xr.Variable(
+            (), np.int32(fit.half_cycles), {"long_name": "half cycles before rest, or begun in the record"}
+        ),
+        "at_rest": xr.Variable((), np.int8(fit.at_rest), {"long_name": "1 if it came to rest in the record"}),
+        "mu_lower": number(lower, "static over kinetic friction is at least this, as it rests where it does"),
+        "mu_upper": number(
+            upper, "static over kinetic friction is below this, as it left the turning point before"
+        ),
+    }
+    if fit.at_rest:
+        side = np.sign(fit.decay.X0) * (-1.0) ** fit.half_cycles
+        result["rest"] = number(fit.decay.centre + side * float(heights[-1]), "place of rest", unit)
+    return result
+
+
+def _scaled(
+    fit: Fit, found: Errors, unit: str, base: float | None, stiffness: float | None
+) -> dict[str, xr.Variable]:
+    """x_F as a friction ratio and as a force, with its error."""
+    scales: list[tuple[str, str, str, float]] = []
+    if base is not None:
+        scales.append(("beta", "friction ratio x_F/Y", "1", 1.0 / checks.number(base, "base", above=0.0)))
+    if stiffness is not None:
+        newtons = checks.number(stiffness, "stiffness", above=0.0) * conversion(unit, "m")
+        scales.append(("friction_force", "kinetic friction force k x_F", "N", newtons))
+    result = {}
+    for name, words, units, scale in scales:
+        result[name] = number(scale * fit.decay.x_F, words, units)
+        error = scale * float(found.standard_error[X_F])
+        result[f"{name}_standard_error"] = number(error, f"standard error of {name}", units)
+    return result
+
+
+def _warnings(time: np.ndarray, good: np.ndarray, fit: Fit, found: Errors) -> list[str]:
+    """What to mind, in words."""
+    words = []
+    if not good.all():
+        words.append(f"clipped: {1.0 - good.mean():.1%} of the samples are at the extremes and were left out")
+    if gap := largest_gap(time):
+        words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
+    if found.inflation > 1.0:
+        words.append(
+            f"residuals are not white (lag-1 correlation {found.lag_correlation:.2f}): "
+            f"errors are taken {found.inflation:.2f} times as large"
+        )
+    correlation = float(found.correlation[ZETA, X_F])
+    if abs(correlation) > _CORRELATED:
+        words.append(f"zeta and x_F trade: correlation {correlation:.2f}")
+    bounds = [name for name, at_bound in zip(PARAMETERS, fit.solution.at_bound, strict=True) if at_bound]
+    if bounds:
+        words.append(f"{' and '.join(bounds)} on the bound 0: the interval is one-sided")
+    return words

@@ -1,0 +1,181 @@
+"""Nonlinear least squares with bounds at zero, and the errors of what is fitted."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq, least_squares
+from scipy.special import stdtrit
+
+#: Residuals and their derivatives by the parameters, shapes (samples,) and (samples, parameters).
+Residuals = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+#: 95 %: two-sided, and one-sided on a bound.
+_TWO_SIDED, _ONE_SIDED = 0.975, 0.95
+
+#: Lag-1 correlations beyond so many standard errors are no chance.
+_COLOURED = 3.0
+
+
+class Problem(NamedTuple):
+    """What is fitted."""
+
+    residuals: Residuals
+    free: np.ndarray  # shape (parameters,), bool: others are held
+    not_negative: np.ndarray  # shape (parameters,), bool
+    lowest: np.ndarray  # where the model ends
+    highest: np.ndarray
+
+
+class Solution(NamedTuple):
+    """A least sum of squares."""
+
+    values: np.ndarray  # shape (parameters,)
+    residual: np.ndarray  # shape (samples,)
+    slopes: np.ndarray  # shape (samples, parameters)
+    at_bound: np.ndarray  # shape (parameters,), bool
+
+    @property
+    def sum(self) -> float:
+        """Sum of squared residuals."""
+        return float(self.residual @ self.residual)
+
+
+class Errors(NamedTuple):
+    """Errors of estimates; held parameters have none."""
+
+    standard_error: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    correlation: np.ndarray
+    variance: float  # of a sample, from the residuals, reduced chi square
+    lag_correlation: float
+    inflation: float  # of the errors, as residuals are correlated
+
+
+def minimise(problem: Problem, start: np.ndarray) -> Solution:
+    """The least sum with no parameter below its bound.
+
+    A parameter that the free fit puts below zero is held at zero, and the rest fitted anew; of several ways
+    to hold some the least sum wins.
+    """
+    free_fit = _fit(problem, start, problem.free)
+    below = problem.not_negative & problem.free & (free_fit.values < 0.0)
+    if not below.any():
+        return free_fit
+    candidates = problem.not_negative & problem.free
+    held_fits = (_hold(problem, start, held) for held in _subsets(candidates))
+    legal = [fit for fit in held_fits if (fit.values[candidates] >= 0.0).all()]
+    return min(legal, key=lambda fit: fit.sum)
+
+
+def errors(problem: Problem, best: Solution, known_variance: float | None = None) -> Errors:
+    """Standard errors, 95 % intervals and correlations from the slopes at the least sum.
+
+    The variance of a sample is that of the residuals, if it is not known.  Residuals that are correlated
+    count as fewer: errors grow by the root of the integrated autocorrelation time, (1 + c)/(1 - c) for the
+    lag-1 correlation c.  On a bound the interval is one-sided, from the profile of the sum.
+    """
+    free = problem.free
+    freedom = best.residual.size - int(free.sum())
+    reduced = best.sum / freedom
+    variance = reduced if known_variance is None else known_variance
+    lag, inflation = _inflation(best.residual)
+    inverse = np.zeros((free.size, free.size))
+    inverse[np.ix_(free, free)] = _inverse(best.slopes[:, free])
+    deviation = np.sqrt(np.diag(inverse))
+    standard_error = deviation * np.sqrt(variance) * inflation
+    scale = np.where(free, deviation, 1.0)
+    correlation = np.where(np.eye(free.size, dtype=bool), 1.0, inverse / np.outer(scale, scale))
+    reach = float(stdtrit(freedom, _TWO_SIDED)) * standard_error
+    lower, upper = best.values - reach, best.values + reach
+    lower = np.where(problem.not_negative, np.maximum(lower, 0.0), lower)
+    allowed = float(stdtrit(freedom, _ONE_SIDED)) ** 2 * variance * inflation**2
+    for index in np.flatnonzero(best.at_bound):
+        lower[index] = 0.0
+        upper[index] = _profile_end(problem, best, int(index), allowed, float(standard_error[index]))
+    return Errors(standard_error, lower, upper, correlation, reduced, lag, inflation)
+
+
+def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:
+    """The least sum over some parameters, bounds at zero not heeded."""
+    values = start.astype(float)
+
+    def at(part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        values[free] = part
+        return problem.residuals(values)
+
+    if free.any():
+        inside = np.clip(values[free], problem.lowest[free], problem.highest[free])
+        found = least_squares(
+            lambda part: at(part)[0],
+            inside,
+            jac=lambda part: at(part)[1][:, free],
+            bounds=(problem.lowest[free], problem.highest[free]),
+            method="trf",
+            x_scale="jac",
+            xtol=1e-12,
+            ftol=1e-14,
+            gtol=1e-14,
+        )
+        values[free] = found.x
+    residual, slopes = problem.residuals(values)
+    return Solution(values.copy(), residual, slopes, np.zeros(values.size, dtype=bool))
+
+
+def _hold(problem: Problem, start: np.ndarray, held: np.ndarray) -> Solution:
+    fit = _fit(problem, np.where(held, 0.0, start), problem.free & ~held)
+    return fit._replace(at_bound=held)
+
+
+def _at(problem: Problem, start: Solution, index: int, value: float) -> Solution:
+    """The least sum with one more parameter held at a value, bounds heeded."""
+    free = problem.free.copy()
+    free[index] = False
+    values = start.values.copy()
+    values[index] = value
+    return minimise(problem._replace(free=free), values)
+
+
+def _subsets(candidates: np.ndarray) -> list[np.ndarray]:
+    """Every way to choose at least one of the candidates."""
+    places = np.flatnonzero(candidates)
+    result = []
+    for code in range(1, 2**places.size):
+        chosen = np.zeros_like(candidates)
+        chosen[[place for bit, place in enumerate(places) if code >> bit & 1]] = True
+        result.append(chosen)
+    return result
+
+
+def _inverse(slopes: np.ndarray) -> np.ndarray:
+    """(J^T J)^-1, by the scaled slopes."""
+    scale = np.linalg.norm(slopes, axis=0)
+    _, triangle = np.linalg.qr(slopes / scale)
+    inverse = np.linalg.inv(triangle)
+    return (inverse @ inverse.T) / np.outer(scale, scale)
+
+
+def _inflation(residual: np.ndarray) -> tuple[float, float]:
+    """Lag-1 correlation of residuals, and by what it makes errors larger."""
+    power = float(residual @ residual)
+    lag = float(residual[1:] @ residual[:-1]) / power if power > 0.0 else 0.0
+    coloured = lag > _COLOURED / np.sqrt(residual.size)
+    return lag, float(np.sqrt((1.0 + lag) / (1.0 - lag))) if coloured else 1.0
+
+
+def _profile_end(problem: Problem, best: Solution, index: int, allowed: float, scale: float) -> float:
+    """How far a parameter can go up from zero before the least sum has grown by what is allowed."""
+    if scale == 0.0:  # data without any noise
+        return 0.0
+
+    def excess(value: float) -> float:
+        return _at(problem, best, index, value).sum - best.sum - allowed
+
+    highest = problem.highest[index]
+    end = min(scale, highest)
+    while excess(end) < 0.0:
+        if end == highest:  # where the model ends
+            return float(highest)
+        end = min(2.0 * end, highest)
+    return float(brentq(excess, 0.0, end, xtol=1e-3 * scale))

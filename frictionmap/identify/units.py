@@ -1,0 +1,41 @@
+"""Units that names of columns end in."""
+
+from typing import NamedTuple
+
+from .. import checks
+from ..errors import InputError
+
+
+class Unit(NamedTuple):
+    """What a unit measures, and its size in the SI unit of that."""
+
+    measures: str
+    size: float
+
+
+UNITS = {
+    "s": Unit("time", 1.0),
+    "ms": Unit("time", 1e-3),
+    "mm": Unit("length", 1e-3),
+    "m": Unit("length", 1.0),
+    "um": Unit("length", 1e-6),
+    "Hz": Unit("frequency", 1.0),
+}
+
+
+def suffixes(measures: str) -> tuple[str, ...]:
+    """Suffixes of the units of time, length or frequency."""
+    return tuple(f"_{name}" for name, unit in UNITS.items() if unit.measures == measures)
+
+
+def conversion(unit: str, into: str) -> float:
+    """What a number in one unit is multiplied by to be in another."""
+    return UNITS[unit].size / UNITS[into].size
+
+
+def checked_unit(unit: str, measures: str, name: str) -> str:
+    """`unit`, if it is one of those of time, length or frequency."""
+    legal = tuple(suffix[1:] for suffix in suffixes(measures))
+    if unit not in legal:
+        raise InputError(f"{name} must be one of {', '.join(legal)}; got {checks.one_line(unit)}")
+    return unit

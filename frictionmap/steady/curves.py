@@ -1,0 +1,128 @@
+"""Response curves: amplitude, phase, harmonics and energy of steady states over frequency."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
+from typing import Unpack
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from .. import checks
+from ..datasets.labels import coordinate, label_variable, stamp
+from ..model.settings import CurveSettings, Output, Quantity, Solver, SolverSettings, curve_settings, merged
+from ..model.system import System
+from ..theory.boundaries import Curves, boundary_variables, held_variables
+from ..theory.limit_curves import limit_variables
+from .quantity_data import PARTS, VARIABLES, asked_for, read_result
+from .sweep import Progress, checked_axes, compute
+
+#: What every cell tells.
+_ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "period", "status")
+
+
+def plain_outputs(asked: CurveSettings) -> list[Output]:
+    """What maps have, too, and is written as in them."""
+    amplitude: list[Output] = ["contact_amplitude"] if "amplitude" in asked.quantities else []
+    return [*_ALWAYS, *amplitude]
+
+
+def cycle_variables(asked: CurveSettings) -> list[str]:
+    """What is read from the results of a cycle."""
+    return [name for quantity in asked.quantities for name in VARIABLES[quantity]]
+
+
+def _over_frequency(system: System, axes: Mapping[str, np.ndarray], found: Curves) -> dict[str, xr.Variable]:
+    """What does not depend on beta: the contact held, and motions on the boundary."""
+    held = held_variables(system, axes["r"])
+    turned = {name: label_variable(name, value.values.T, "curves") for name, value in held.items()}
+    return turned | limit_variables(system, axes["r"], axes["mu"], found)
+
+
+def curves(
+    system: System,
+    r: ArrayLike,
+    beta: ArrayLike,
+    mu: ArrayLike = 1.0,
+    *,
+    harmonics: int | None = None,
+    quantities: Sequence[Quantity] | None = None,
+    solver: Solver | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    **settings: Unpack[SolverSettings],
+) -> xr.Dataset:
+    """Response curves of the steady states on a mu-r-beta grid, through all regimes.
+
+    Parameters
+    ----------
+    system : System
+    r : array_like, shape (n_r,)
+        Frequency ratios omega/omega_1 [-], >= 0, increasing.
+    beta : array_like, shape (n_beta,)
+        Kinetic friction force over load amplitude F/P (F/(k1 Y)) [-], >= 0, increasing.
+    mu : array_like, shape (n_mu,)
+        Static over kinetic friction [-], >= 1, increasing.
+    harmonics : int, optional
+        The highest harmonic of the displacements, of the motion in the contact and of the friction force, up
+        to 1000; 0: none.  Default 7 where `quantities` has "harmonics", else none.
+    quantities : sequence of str, optional
+        Of "amplitude", "phase", "first_harmonic", "energy", "harmonics", "transmitted_force" and
+        "distortion"; default all but the last two.  Nothing else is computed.
+    solver : Solver, optional
+        Settings; or give them one by one as keywords.  Its `outputs` are not asked for.
+    threads : int, optional
+        Threads to use; default: all processors of the process.  The result is the same to the bit.
+    progress : callable, optional
+        Called as progress(done, all) with numbers that tell the share of the work.
+
+    Returns
+    -------
+    xarray.Dataset
+        On (mu, r, beta), some also on dof and on (harmonic, part): `regime`, `stops_per_cycle`, `period`,
+        `status` and what the quantities are: `amplitude` and `contact_amplitude`, largest moduli over
+        time; `phase` and `contact_phase`, lags of the maxima [rad], NaN where they are held over a stop (then
+        `phase_begin`, `phase_end`) or the period is not 1; `first_harmonic_amplitude` and
+        `first_harmonic_phase`, modulus and lag -arg X_1 of the first harmonic, and `contact_...`;
+        `sliding_distance`, `work_friction`, `work_input`, `work_damping` and `equivalent_damping` per cycle;
+        `displacement_harmonic`, `contact_harmonic` and `friction_harmonic`; `transmitted_force` and
+        `transmitted_first_harmonic`; `rms`, root mean square, and `distortion`, that of all but the mean and
+        the first harmonic over that of the first.  On (mu, r): `beta_lim`, `beta_lim_modal`, `beta_stick`;
+        on (mu, r, dof)
+        `limit_amplitude`, `limit_phase`, `limit_first_harmonic_amplitude`, `limit_first_harmonic_phase` of
+        the continuous motion at beta_lim; on (r, dof) `held_response` and `held_phase` with the contact held.
+
+        Infinite at an undamped resonance, where phases are those that the growing motion goes to.  Where the
+        contact sticks, the motion about the place where it rests.
+
+    Raises
+    ------
+    InputError
+        An argument or a setting is of the wrong kind or out of range.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.curves(fm.System(), r=[0.85], beta=[0.2], quantities=["first_harmonic", "energy"])
+    >>> round(ds.first_harmonic_phase.item(), 6), round(ds.work_friction.item(), 6)
+    (0.257396, 2.805945)
+    """
+    checks.instance(system, "system", System)
+    solver = merged(solver, settings)
+    asked = curve_settings(harmonics, quantities)
+    axes = checked_axes(r, beta, mu, system.n * (asked.harmonics + 1))
+    basic, names = plain_outputs(asked), cycle_variables(asked)
+    cells, out = compute(
+        system, axes, replace(solver, outputs=basic), asked_for(names, asked.harmonics), threads, progress
+    )
+    values: dict[str, np.ndarray] = {name: getattr(out, name) for name in basic}
+    values |= {name: read_result(name, cells.results) for name in names}
+    variables = {name: label_variable(name, value, "curves") for name, value in values.items()}
+    variables |= boundary_variables(cells.curves) | _over_frequency(system, axes, cells.curves)
+    grid = {name: axes[name] for name in ("r", "beta", "mu")}
+    axes["dof"] = np.arange(1, system.n + 1)
+    if asked.harmonics:
+        axes |= {"harmonic": np.arange(asked.harmonics + 1), "part": PARTS}
+    coords = {name: coordinate(name, values) for name, values in axes.items()}
+    ds = xr.Dataset(variables, coords=coords)
+    return stamp(ds, "curves", "Response curves", system, grid, solver, asdict(asked))

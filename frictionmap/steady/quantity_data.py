@@ -1,0 +1,236 @@
+"""Quantities of a cycle in the numbers that the kernels take, and the arrays that they are written into."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._kernels.engine.extremes import FOUND, PHASE, PHASE_BEGIN, PHASE_END, VALUE, Alone, Shapes
+from .._kernels.engine.quantities import (
+    BY_DAMPING,
+    BY_FRICTION,
+    BY_LOAD,
+    DISTANCE,
+    DISTORTION,
+    EQUIVALENT,
+    LAG,
+    MODULUS,
+    RMS,
+    WORKS,
+    Balance,
+    Linear,
+    Quantities,
+    Results,
+)
+from .._kernels.structure.state import CHI, STATIC_SHAPE
+from ..datasets.labels import COORDINATES
+from ..model.modes import ModalModel, modulus, times
+from ..model.system import System
+from .kernel_data import Structures
+
+#: Where every variable is found: kind of result, rows, and column.
+_MASSES, _FORCE, _CONTACT, _CELL = "masses", "force", "contact", "cell"
+_PLACES = {
+    "amplitude": ("extremes", _MASSES, VALUE),
+    "phase": ("extremes", _MASSES, PHASE),
+    "phase_begin": ("extremes", _MASSES, PHASE_BEGIN),
+    "phase_end": ("extremes", _MASSES, PHASE_END),
+    "contact_phase": ("extremes", _CONTACT, PHASE),
+    "contact_phase_begin": ("extremes", _CONTACT, PHASE_BEGIN),
+    "contact_phase_end": ("extremes", _CONTACT, PHASE_END),
+    "transmitted_force": ("extremes", _FORCE, VALUE),
+    "first_harmonic_amplitude": ("firsts", _MASSES, MODULUS),
+    "first_harmonic_phase": ("firsts", _MASSES, LAG),
+    "contact_first_harmonic_amplitude": ("firsts", _CONTACT, MODULUS),
+    "contact_first_harmonic_phase": ("firsts", _CONTACT, LAG),
+    "transmitted_first_harmonic": ("firsts", _FORCE, MODULUS),
+    "displacement_harmonic": ("harmonics", _MASSES, None),
+    "contact_harmonic": ("harmonics", _CONTACT, None),
+    "friction_harmonic": ("harmonics", _FORCE, None),
+    "sliding_distance": ("works", _CELL, DISTANCE),
+    "work_friction": ("works", _CELL, BY_FRICTION),
+    "work_input": ("works", _CELL, BY_LOAD),
+    "work_damping": ("works", _CELL, BY_DAMPING),
+    "equivalent_damping": ("works", _CELL, EQUIVALENT),
+    "rms": ("rests", _MASSES, RMS),
+    "distortion": ("rests", _MASSES, DISTORTION),
+}
+
+
+#: The variables that a quantity is, in the order of the file.
+VARIABLES: dict[str, tuple[str, ...]] = {
+    "amplitude": ("amplitude",),
+    "phase": (
+        "phase", "phase_begin", "phase_end", "contact_phase", "contact_phase_begin", "contact_phase_end",
+    ),
+    "first_harmonic": (
+        "first_harmonic_amplitude", "first_harmonic_phase", "contact_first_harmonic_amplitude",
+        "contact_first_harmonic_phase",
+    ),
+    "energy": ("sliding_distance", "work_friction", "work_input", "work_damping", "equivalent_damping"),
+    "harmonics": ("displacement_harmonic", "contact_harmonic", "friction_harmonic"),
+    "transmitted_force": ("transmitted_force", "transmitted_first_harmonic"),
+    "distortion": ("rms", "distortion"),
+}  # fmt: skip
+
+PARTS = np.array(COORDINATES["part"].texts)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked for of every cell."""
+
+    kinds: frozenset[str]  # of the fields of `Results`
+    harmonics: int = 1  # the highest one that is kept
+    force: bool = False  # whether the transmitted force is looked at over time
+
+
+def asked_for(names: Iterable[str], harmonics: int = 1) -> Asked:
+    """What these variables are read from."""
+    names = set(names)
+    return Asked(frozenset(_PLACES[name][0] for name in names), harmonics, "transmitted_force" in names)
+
+
+def read_result(name: str, found: Results) -> np.ndarray:
+    """A variable over (mu, r, beta[, dof][, harmonic, part])."""
+    kind, rows, column = _PLACES[name]
+    array = getattr(found, kind)
+    if rows == _CELL:
+        return np.ascontiguousarray(array[..., column])
+    masses = array.shape[3] - (0 if kind == "rests" else 2)
+    row = {_MASSES: slice(masses), _FORCE: masses, _CONTACT: masses + 1}[rows]
+    chosen = np.ascontiguousarray(array[:, :, :, row])
+    if column is None:
+        return chosen.view(float).reshape(*chosen.shape, 2)
+    return np.ascontiguousarray(chosen[..., column])
+
+
+def results(cells: tuple[int, int, int], masses: int, asked: Asked) -> Results:
+    """Arrays over (mu, r, beta) of what is asked for, NaN until they are filled."""
+
+    def array(kind: str, *further: int, dtype: type = float) -> np.ndarray:
+        shape = (*cells, *further) if kind in asked.kinds else (0,) * (3 + len(further))
+        return np.full(shape, np.nan, dtype)
+
+    rows = masses + 2
+    return Results(
+        array("extremes", rows, FOUND), array("firsts", rows, 2),
+        array("harmonics", rows, asked.harmonics + 1, dtype=complex), array("works", WORKS),
+        array("rests", masses, 2),
+    )  # fmt: skip
+
+
+def _at_wall(system: System) -> int:
+    """The mass whose displacement is that in the contact, counted from 0; -1 if there is none."""
+    return system.contact_masses[0] - 1 if system.contact == "fixed-wall" else -1
+
+
+def _with_force(shapes: Shapes, found: Structures, modes: ModalModel) -> Shapes:
+    """The shapes, and as one more row the transmitted force, the loads less the inertia.
+
+    Inertia is replaced by what the equations of the modes make of it; friction, in a stop, by the load.
+    """
+    participating, model = found.participating, found.model
+    mass = modes.phi[:, participating].T @ modes.mass.sum(axis=0)
+    stiff, rate = (
+        mass * modes.w[participating] ** 2,
+        mass * 2.0 * modes.zeta[participating] * modes.w[participating],
+    )
+    friction = float(mass @ model.modes[CHI])
+    held = np.concatenate((stiff, rate)) @ model.to_free - friction * model.watch
+    static = float(stiff @ model.modes[STATIC_SHAPE]) - friction * model.stiffness
+    return Shapes(
+        np.vstack((shapes.free, np.concatenate((stiff, rate)))), np.vstack((shapes.held, held)),
+        np.append(shapes.static_shape, static), np.append(shapes.friction, friction),
+    )  # fmt: skip
+
+
+def _column(rows: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Complex rows (n_r, n) times real weights (n,), each row as if it were alone; (n_r,)."""
+    return times(rows, weights[:, np.newaxis])[:, 0]
+
+
+def _scaled(values: np.ndarray, factors: np.ndarray) -> np.ndarray:
+    """Complex values times real factors, each as if it were alone, as `times`."""
+    found = np.empty_like(values)
+    found.real, found.imag = values.real * factors, values.imag * factors
+    return found
+
+
+def _alone(found: Structures, modes: ModalModel, r: np.ndarray, balance: Balance, force: bool) -> Alone:
+    """Phasors of what moves with the load alone, of the masses and, if it is asked for, of the force."""
+    if not force:
+        return Alone(found.alone, found.alone)
+    participating, model = found.participating, found.model
+    mass = modes.phi[:, participating].T @ modes.mass.sum(axis=0)
+    loads = np.ascontiguousarray(modes.relative_participation(r)[:, participating])
+    sliding = balance.load - _column(loads, mass)
+    sliding += _scaled(_column(found.alone, modes.mass.sum(axis=0)), r * r)
+    chi = model.modes[CHI]
+    held = sliding + _column(loads, chi * (float(mass @ chi) / model.inverse_mass))
+    return Alone(np.column_stack((found.alone, sliding)), np.column_stack((found.alone, held)))
+
+
+def _base_share(system: System) -> float:
+    """What the dampers have of the base's velocity beside that of the displacements that are followed.
+
+    These are relative to the base with a joined base-wall; the dampers' may be either.
+    """
+    return float(system.base_motion) - float(system.damping_reference == "base")
+
+
+def _balance(system: System, found: Structures, r: np.ndarray) -> Balance:
+    modes = system.modes
+    loads = modes.total_load(r)
+    to_base = system.damping_reference == "base"
+    share, total_mass = _base_share(system), modes.mass.sum(axis=0)
+    participating = np.isin(np.arange(modes.w.size), found.participating)
+    mass = modes.phi.T @ total_mass
+    stiffness = modes.dynamic_stiffness(r)
+    moving = np.where(participating | (stiffness == 0.0), 0.0, modes.relative_participation(r))
+    moving /= np.where(stiffness == 0.0, 1.0, stiffness)
+    rate = 2.0 * modes.zeta * modes.w
+    speed = np.where(participating, 0.0, modulus(moving + share * mass))
+    held = np.where(np.isfinite(found.held), found.held, 0.0) - float(to_base)
+    drag = times(held, modes.damping)
+    held_rate = (held.real * drag.real + held.imag * drag.imag).sum(axis=1)
+    return Balance(
+        load=loads.sum(axis=1),
+        inertia=r[:, np.newaxis] ** 2 * total_mass,
+        power=-(loads if to_base else loads.conj()),
+        power_alone=loads.sum(axis=1) if to_base else np.zeros(r.size, complex),
+        base_motion=float(system.base_motion),
+        base=share * mass[participating],
+        damped=bool(modes.zeta[found.participating].any()),
+        damping_alone=np.pi * r * (rate * speed**2).sum(axis=1),
+        damping_held=np.pi * r * held_rate,
+    )  # fmt: skip
+
+
+def _growing(system: System, found: Structures, r: np.ndarray) -> np.ndarray:
+    """Directions (n_r, n_dof + 2) of masses, transmitted force and contact that grow at a resonance.
+
+    A quarter of a period behind the load on the mode; 0 elsewhere.
+    """
+    modes = system.modes
+    resonant = (modes.dynamic_stiffness(r)[:, found.participating] == 0.0) & (r > 0.0)[:, np.newaxis]
+    growing = -1j * np.where(resonant, modes.participation(r)[:, found.participating], 0.0)
+    phi = modes.phi[:, found.participating]
+    masses = times(growing, np.ascontiguousarray(phi.T))
+    contact = times(growing, modes.chi[found.participating][:, np.newaxis])
+    return np.column_stack((masses, times(masses, modes.mass.sum(axis=0)[:, np.newaxis]), contact))
+
+
+def quantity_numbers(
+    system: System, r: np.ndarray, found: Structures, steps: float, asked: Asked, out: Results
+) -> Quantities:
+    """Everything that the quantities of a system's cells need at frequencies r."""
+    modes = system.modes
+    balance = _balance(system, found, r)
+    shapes = _with_force(found.shapes, found, modes) if asked.force else found.shapes
+    linear = Linear(found.held, modes.held_load(r), _growing(system, found, r))
+    return Quantities(
+        r, found.model, found.loads, found.orbit, steps, _at_wall(system), shapes,
+        _alone(found, modes, r, balance, asked.force), linear, balance, out,
+        asked.harmonics,
+    )  # fmt: skip

@@ -1,0 +1,50 @@
+"""Work over a cycle of the load, and the force transmitted to the ground, from first harmonics; theory.md 9.
+
+The load and a base are harmonic, so only first harmonics work with them: what is here holds in every regime.
+"""
+
+import math
+
+import numpy as np
+
+from ..model.modes import ModalModel
+
+
+def work_input(modes: ModalModel, r: float, first: np.ndarray, friction: complex) -> float:
+    """Work of the load per cycle, over P^2/k1; where the base moves, of all that moves it and the wall.
+
+    Parameters
+    ----------
+    r : frequency ratio
+    first : (n,) complex, first harmonics X_k1 of the displacements
+    friction : first harmonic F_1 of the force of friction against z'
+    """
+    load = modes.load + 1j * r * modes.load_rate
+    work = float(np.sum(load * np.conj(first)).imag)
+    if modes.base_motion:
+        work -= friction.imag  # the wall moves against it
+    dashpots = modes.load_rate.real  # those that end at the base take its velocity there
+    return math.pi * (work + r * float(np.sum(dashpots * (1.0 - 2.0 * first.real))))
+
+
+def damping_participation(modes: ModalModel, r: float) -> np.ndarray:
+    """Harmonic part of the modes' coordinates as their dashpots see it, complex (n,).
+
+    Relative to the base where they end there.  0 for undamped modes, which have none.
+    """
+    at = np.array([r])
+    damped = modes.zeta > 0.0
+    parts = np.zeros(damped.size, dtype=complex)
+    np.divide(modes.participation(at)[0], modes.dynamic_stiffness(at)[0], out=parts, where=damped)
+    if modes.load_rate.any():
+        parts -= np.where(damped, modes.phi.T @ modes.mass @ np.ones(damped.size), 0.0)
+    return parts
+
+
+def transmitted_first_harmonic(modes: ModalModel, r: float, first: np.ndarray) -> complex:
+    """First harmonic of the force of springs, dashpots and wall on the ground: loads less inertia, over P.
+
+    What a moving base does to the masses counts as load, as in the equations of motion.
+    """
+    load = complex(np.sum(modes.load + 1j * r * modes.load_rate))
+    return load + r * r * complex(np.sum(modes.mass @ first))

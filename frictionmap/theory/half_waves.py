@@ -1,0 +1,323 @@
+"""Motions over half a period from a maximum of z on, theory.md 2, and where they are largest.
+
+Such a half is harmonic but for the answers h_i of the modes to the square wave of friction; the next one is
+its mirror image.  Modes that do not participate have the harmonic part only.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from .._kernels.closed_form import damping_functions
+from ..model.modes import ModalModel, wrapped
+
+#: First intervals of half a period in the search of an amplitude, and parts that an open one is cut into.
+_INTERVALS = 16
+_PARTS = 32
+
+#: The search ends when nothing can lie higher by this share of what was found, or after so many rounds: by
+#: then an interval is shorter than the rounding of a time within it.
+_TOLERANCE = 4e-16
+
+#: Displacements that are searched at a time, and their open intervals that are cut up at a time; a motion of
+#: many masses with many equal maxima leaves some hundred.
+_AT_ONCE = 512
+_MOST_OPEN = 20000
+_ROUNDS = 8
+
+#: Newton's steps from the end of that search to the turn: they square an error of some 1e-8, and one more
+#: finds nothing to mend.
+_STEPS = 6
+
+#: Below this (1 + 2 zeta) theta, 1 - d is summed as a series; terms beyond the last are less than rounding.
+_SMALL = 0.3
+_TERMS = 14
+
+#: What is left of u at an undamped resonance when its infinite part is taken with the harmonic motion.
+RESONANT_U = -2.0 / math.pi
+
+#: First harmonic of h, -(4 i/pi) w^2/(w^2 - r^2) of an undamped mode, where that part is taken from it.
+RESONANT_FIRST_HARMONIC = -3j / math.pi
+
+
+def free_answers(zeta: float, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """1 - d, q and e = R q' of T(B.8), (B.9) at theta = tau/R >= 0, to a few units of rounding each.
+
+    zeta >= 1 is the analytic continuation (sin -> sinh, and the double root at zeta = 1).
+    """
+    if zeta < 1.0:
+        s = math.sqrt((1.0 - zeta) * (1.0 + zeta))
+        envelope = np.exp(-zeta * theta)
+        q = envelope * np.sin(s * theta) / s
+        e = envelope * np.cos(s * theta) - zeta * q
+    elif zeta == 1.0:
+        envelope = np.exp(-theta)
+        q = envelope * theta
+        e = envelope - q
+    else:
+        s = math.sqrt((zeta - 1.0) * (zeta + 1.0))
+        slow = 1.0 / (zeta + s)
+        q = np.exp(-slow * theta) * -np.expm1(-2.0 * s * theta) / (2.0 * s)
+        e = np.exp(-(zeta + s) * theta) - slow * q
+    if zeta < 2.0:
+        rise = 1.0 - e - 2.0 * zeta * q
+    else:  # the two exponentials of d apart: the slow one is still near 1 where the fast one is gone
+        rise = (slow * np.expm1(-theta / slow) - np.expm1(-slow * theta) / slow) / (2.0 * s)
+    # y = 1 - d is the answer to a unit step, y'' + 2 zeta y' + y = 1 from rest: of order theta^2
+    small = (1.0 + 2.0 * zeta) * theta < _SMALL
+    if small.any():
+        x = theta[small]
+        before, term = np.zeros_like(x), 0.5 * x * x
+        total = term.copy()
+        for k in range(3, _TERMS):
+            before, term = term, -x * (2.0 * zeta * term + x / (k - 1.0) * before) / k
+            total += term
+        rise[small] = total
+    return rise, q, e
+
+
+class Swing(NamedTuple):
+    """One mode of several motions: a = w/r, u (0 where it is infinite), g, and whether u is infinite."""
+
+    a: np.ndarray
+    u: np.ndarray
+    g: np.ndarray
+    resonant: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionAnswers:
+    """The answers h_i of theory.md 2 of the participating modes, in several motions.
+
+    zeta : (p,) damping ratios
+    pace : (n_motions, p) w_i/r
+    u, g : (n_motions, p) damping functions T(7.11), (7.12).  At an undamped resonance u is infinite: its
+        part u sin(tau) is in the harmonic motion there, and (2/pi) tau cos(tau) is left, theory.md 9 (5)
+
+    Times t, 0 <= t <= pi, are those since the maximum of z; a motion is an index, or one for every time.
+    """
+
+    zeta: np.ndarray
+    pace: np.ndarray
+    u: np.ndarray
+    g: np.ndarray
+
+    def displacement(self, mode: int, motion: np.ndarray | int, t: np.ndarray) -> np.ndarray:
+        """h_i at times t."""
+        a, u, g, resonant = self._swing(mode, motion)
+        rise, q, _ = free_answers(self.zeta[mode], a * t)
+        return (1.0 + g) * rise - g - np.where(resonant, RESONANT_U * t * np.cos(t), u / a * q)
+
+    def rates(self, mode: int, motion: np.ndarray | int, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """h_i' and h_i'' at times t."""
+        a, u, g, resonant = self._swing(mode, motion)
+        zeta = self.zeta[mode]
+        _, q, e = free_answers(zeta, a * t)
+        swing, bend = u * e, -a * u * (2.0 * zeta * e + q)
+        if np.any(resonant):
+            sine, cosine = np.sin(t), np.cos(t)
+            swing = np.where(resonant, RESONANT_U * (cosine - t * sine), swing)
+            bend = np.where(resonant, -RESONANT_U * (2.0 * sine + t * cosine), bend)
+        return (1.0 + g) * a * q - swing, (1.0 + g) * a * a * e - bend
+
+    def _swing(self, mode: int, motion: np.ndarray | int) -> Swing:
+        u = self.u[motion, mode]
+        resonant = np.isinf(u)
+        return Swing(self.pace[motion, mode], np.where(resonant, 0.0, u), self.g[motion, mode], resonant)
+
+    def largest_displacements(self) -> np.ndarray:
+        """Sizes of the parts of h_i, whose rounding is that of the sum; (n_motions, p)."""
+        swing = np.where(np.isinf(self.u), 2.0, np.abs(self.u) / self.pace)
+        return 1.0 + np.abs(1.0 + self.g) + swing
+
+    def largest_accelerations(self) -> np.ndarray:
+        """Bounds of |h_i''| over all times; (n_motions, p).
+
+        h'' = a e + b q, and q^2 + e^2 <= 1: it is the energy of free motion, 1 at the start.
+        """
+        a, zeta = self.pace, self.zeta
+        resonant = np.isinf(self.u)
+        u = np.where(resonant, 0.0, self.u)
+        bound = np.hypot((1.0 + self.g) * a * a + 2.0 * zeta * a * u, a * u)
+        return np.where(resonant, 1.0 - RESONANT_U * (2.0 + math.pi), bound)
+
+
+def friction_answers(modes: ModalModel, r: np.ndarray, beta: np.ndarray) -> FrictionAnswers:
+    """Those of motions at r > 0 with friction beta, (n_motions,) both.
+
+    u and g count for nothing, and are 0, where there is no friction: u may be infinite without a resonance.
+    """
+    participating = modes.chi != 0.0
+    w, zeta = modes.w[participating], modes.zeta[participating]
+    pairs = np.array([[damping_functions(*mode, x) for mode in zip(w, zeta, strict=True)] for x in r])
+    u, g = np.where(beta[:, np.newaxis, np.newaxis] > 0.0, pairs, 0.0).transpose(2, 0, 1)
+    return FrictionAnswers(zeta, w / r[:, np.newaxis], u, g)
+
+
+def dynamic_shares(modes: ModalModel, s: np.ndarray) -> np.ndarray:
+    """w_i^2/(w_i^2 - s^2 + 2 i zeta_i w_i s) of the participating modes, complex (n_s, p).
+
+    0 where that is infinite, at an undamped s = w_i.
+    """
+    participating = modes.chi != 0.0
+    stiffness = modes.dynamic_stiffness(s)[:, participating]
+    return np.divide(
+        modes.w[participating] ** 2, stiffness, out=np.zeros_like(stiffness), where=stiffness != 0.0
+    )
+
+
+def mass_responses(modes: ModalModel, r: np.ndarray) -> np.ndarray:
+    """V_k, displacements without friction, complex (n_r, n); infinite at a loaded undamped resonance."""
+    return np.column_stack([modes.response(r, row) for row in modes.phi])
+
+
+def compliances(modes: ModalModel) -> np.ndarray:
+    """phi_ki chi_i/w_i^2 of the participating modes, (n, p)."""
+    participating = modes.chi != 0.0
+    return modes.phi[:, participating] * (modes.chi / modes.w**2)[participating]
+
+
+class HalfWaves(NamedTuple):
+    """Displacements Re(harmonic e^{it}) + sum_i weights_i h_i(t), 0 <= t <= pi from a maximum of z on.
+
+    answers : the h_i of the motions
+    motion : (m,) which of them each displacement is of
+    harmonic : (m,) complex
+    weights : (m, p)
+    """
+
+    answers: FrictionAnswers
+    motion: np.ndarray
+    harmonic: np.ndarray
+    weights: np.ndarray
+
+    def displacement(self, which: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Those of indices `which` at times t, arrays that fit each other."""
+        x = (self.harmonic[which] * np.exp(1j * t)).real
+        for i, weight in enumerate(self.weights.T):
+            x = x + weight[which] * self.answers.displacement(i, self.motion[which], t)
+        return x
+
+    def turning(self, which: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Velocity and acceleration at times t of any size, as the motion goes on beyond its half."""
+        halves = np.floor(t / math.pi)
+        t = np.clip(t - math.pi * halves, 0.0, math.pi)
+        motion, turn = self.motion[which], self.harmonic[which] * np.exp(1j * t)
+        velocity, acceleration = -turn.imag, -turn.real
+        for i, weight in enumerate(self.weights.T):
+            swing, bend = self.answers.rates(i, motion, t)
+            velocity = velocity + weight[which] * swing
+            acceleration = acceleration + weight[which] * bend
+        sign = np.where(halves % 2.0 == 0.0, 1.0, -1.0)
+        return sign * velocity, sign * acceleration
+
+
+class Peaks(NamedTuple):
+    """Where displacements are largest; (m,) each."""
+
+    modulus: np.ndarray
+    t: np.ndarray  # since the maximum of z
+    value: np.ndarray  # the displacement there, negative at a minimum
+
+
+def largest_moduli(waves: HalfWaves) -> Peaks:
+    """max |x| of every displacement: no larger value exists by more than `_TOLERANCE`."""
+    size = np.abs(waves.harmonic)
+    found = Peaks(size, -np.angle(waves.harmonic), size.copy())  # of a harmonic motion
+    with_friction = np.flatnonzero((waves.weights != 0.0).any(axis=1))
+    found.modulus[with_friction] = -1.0  # less than any sample
+    for first in range(0, with_friction.size, _AT_ONCE):
+        _search(waves, with_friction[first : first + _AT_ONCE], found)
+    found.t[with_friction] = _turned(waves, with_friction, found.t[with_friction])
+    return found
+
+
+def _search(waves: HalfWaves, which: np.ndarray, found: Peaks) -> None:
+    """Fill in the peaks of the displacements `which`, but for the last digits of their times.
+
+    An interval of length l holds nothing above the larger of its ends plus l^2/8 max |x''|.  Those that
+    could hold more than the best so far are cut up until it is too little to matter.
+    """
+    answers, weights, motion = waves.answers, np.abs(waves.weights), waves.motion
+    bend = np.abs(waves.harmonic) + (weights * answers.largest_accelerations()[motion]).sum(axis=1)
+    # next to a pole of u the parts cancel: below the rounding of the largest there is nothing to look for
+    size = np.abs(waves.harmonic) + (weights * answers.largest_displacements()[motion]).sum(axis=1)
+    length = math.pi / _INTERVALS
+    nodes = np.tile(np.linspace(0.0, math.pi, _INTERVALS + 1), (which.size, 1))
+    for _ in range(_ROUNDS):
+        x = waves.displacement(which[:, np.newaxis], nodes)
+        _keep_largest(which, nodes, x, found)
+        top = np.maximum(np.abs(x[:, :-1]), np.abs(x[:, 1:])).ravel()
+        which, start = np.repeat(which, nodes.shape[1] - 1), nodes[:, :-1].ravel()
+        slack = length * length / 8.0 * bend
+        matters = slack > _TOLERANCE * np.maximum(found.modulus, size)
+        wanted = (top + slack[which] > found.modulus[which]) & matters[which]
+        # so many are left only where the parts cancel down to rounding, all along: samples say as much
+        if not 0 < np.count_nonzero(wanted) <= _MOST_OPEN:
+            return
+        which, start = which[wanted], start[wanted]
+        length /= _PARTS
+        nodes = np.minimum(start[:, np.newaxis] + length * np.arange(_PARTS + 1), math.pi)
+
+
+def _keep_largest(which: np.ndarray, t: np.ndarray, x: np.ndarray, found: Peaks) -> None:
+    """Enter samples x (k, n_nodes) of the displacements `which` (k,) where they are the largest so far."""
+    rows = np.arange(which.size)
+    node = np.argmax(np.abs(x), axis=1)
+    value = x[rows, node]
+    before = found.modulus[which]
+    np.maximum.at(found.modulus, which, np.abs(value))
+    new = (np.abs(value) == found.modulus[which]) & (np.abs(value) > before)
+    found.t[which[new]], found.value[which[new]] = t[rows, node][new], value[new]
+
+
+def _turned(waves: HalfWaves, which: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """Times next to `start` where the velocity is zero, to rounding: Newton's steps while it gets smaller."""
+    found = start.copy()
+    at = np.arange(start.size)
+    velocity, acceleration = waves.turning(which, start)
+    for _ in range(_STEPS):
+        moving = (velocity != 0.0) & (acceleration != 0.0)
+        at, velocity, acceleration = at[moving], velocity[moving], acceleration[moving]
+        new = found[at] - velocity / acceleration
+        speed, bend = waves.turning(which[at], new)
+        smaller = np.abs(speed) < np.abs(velocity)
+        at, velocity, acceleration = at[smaller], speed[smaller], bend[smaller]
+        found[at] = new[smaller]
+    return found
+
+
+def mass_peaks(
+    modes: ModalModel, answers: FrictionAnswers, beta: np.ndarray, harmonic: np.ndarray, z: np.ndarray
+) -> Peaks:
+    """Peaks of all masses in several motions, (n_motions, n) each.
+
+    beta, z : (n_motions,) friction, and amplitude of the contact
+    harmonic : (n_motions, n) complex, as of `HalfWaves`
+    """
+    shape = harmonic.shape
+    weights = beta[:, np.newaxis, np.newaxis] * compliances(modes)
+    motion = np.repeat(np.arange(shape[0]), shape[1])
+    at_wall = int(np.argmax(modes.contact))
+    is_contact = not modes.base_motion and np.count_nonzero(modes.contact) == 1
+    if is_contact:
+        weights[:, at_wall] = 0.0  # not looked for
+    waves = HalfWaves(answers, motion, harmonic.ravel(), weights.reshape(harmonic.size, -1))
+    found = Peaks(*(part.reshape(shape) for part in largest_moduli(waves)))
+    if is_contact:
+        # this mass is the contact: on beta_lim it turns so slowly that a search has half of the digits
+        rows = np.flatnonzero(beta > 0.0)
+        found.modulus[rows, at_wall] = found.value[rows, at_wall] = z[rows]
+        found.t[rows, at_wall] = 0.0
+    return found
+
+
+def peak_phases(peaks: Peaks, contact_phase: np.ndarray | float) -> np.ndarray:
+    """tau in (-pi, pi] of the maxima of displacements, T(3.27), (7.29), by that of z.
+
+    A minimum is half a period from its maximum.  NaN of what stays at rest.
+    """
+    tau = wrapped(contact_phase + peaks.t + np.where(peaks.value < 0.0, math.pi, 0.0))
+    return np.where(peaks.modulus > 0.0, tau, np.nan)

@@ -1,0 +1,124 @@
+"""Amplitude and phase of every mass on the boundary of continuous motion, at beta_lim(r), theory.md 9.
+
+On the boundary root(|V|^2 - beta^2 U^2) is beta max(S, H + mu/(m_eff r^2)), so z is known without a
+difference of large numbers; where an undamped mode resonates, V and U are infinite and the motion is not.
+Where beta_lim is 0, at r = 0 or a pole of U, motions are those without friction.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ..datasets.labels import label_variable
+from ..model.modes import ModalModel, wrapped
+from ..model.system import System
+from .boundaries import Curves, over_square, sliding_bracket
+from .half_waves import (
+    RESONANT_FIRST_HARMONIC,
+    RESONANT_U,
+    compliances,
+    dynamic_shares,
+    friction_answers,
+    mass_peaks,
+    mass_responses,
+    peak_phases,
+)
+
+
+class LimitMotions(NamedTuple):
+    """Continuous motions at beta_lim of one mu, over frequency.
+
+    r, beta : (n_r,)
+    contact_phase : (n_r,) phi_z; 0 where there is no friction
+    harmonic : (n_r, n) complex, from a maximum of z on, as of `HalfWaves`
+    infinite : (n_r, n) bool, of a mass that resonates; its harmonic is 0
+    """
+
+    r: np.ndarray
+    beta: np.ndarray
+    contact_phase: np.ndarray
+    harmonic: np.ndarray
+    infinite: np.ndarray
+
+
+def _limit_motions(
+    modes: ModalModel, r: np.ndarray, found: Curves, beta: np.ndarray, bracket: np.ndarray
+) -> LimitMotions:
+    resonant = (beta > 0.0) & np.isinf(found.v)
+    regular = (beta > 0.0) & ~resonant
+    u, size, v = (np.where(regular, part, 1.0) for part in (found.u, bracket, found.v))
+    phase = np.where(regular, -np.arctan2(u, size) - np.angle(v), 0.0)
+    responses = mass_responses(modes, r)
+    infinite = np.isinf(responses) & ~resonant[:, np.newaxis]
+    harmonic = np.where(np.isinf(responses), 0.0, responses) * np.exp(1j * phase)[:, np.newaxis]
+    for j in np.flatnonzero(resonant):
+        phase[j], harmonic[j] = _at_resonance(modes, r[j], beta[j], bracket[j])
+    return LimitMotions(r, beta, phase, harmonic, infinite)
+
+
+def _at_resonance(modes: ModalModel, r: float, beta: float, bracket: float) -> tuple[float, np.ndarray]:
+    """phi_z and the harmonic part of every mass where an undamped mode i that is loaded has w_i = r.
+
+    Its u loses the part u sin(tau), with which the harmonic motion is finite.  z fixes that of mode i; in
+    x_k - (phi_ki/chi_i) z mode i has no share.
+    """
+    at = np.array([r])
+    stiffness, load = modes.dynamic_stiffness(at)[0], modes.participation(at)[0]
+    participating = modes.chi != 0.0
+    i = int(np.flatnonzero((stiffness == 0.0) & participating)[0])
+    u = friction_answers(modes, at, np.array([beta])).u[0]
+    u = np.where(np.isinf(u), RESONANT_U, u)
+    contact = beta * complex(bracket, -float(np.sum((modes.chi / modes.w)[participating] ** 2 * u)))
+    turn = 1j * np.abs(load[i]) / load[i] * np.sign(modes.chi[i])  # e^{i phi_z}
+    others = np.divide(load, stiffness, out=np.zeros_like(load), where=stiffness != 0.0)
+    share = modes.phi[:, i] / modes.chi[i]
+    rest = modes.phi @ others - share * (modes.chi @ others - modes.base_motion)
+    return float(np.angle(turn)), share * contact + turn * rest
+
+
+def _first_harmonics(modes: ModalModel, motions: LimitMotions) -> np.ndarray:
+    """X_k1, complex (n_r, n)."""
+    shares = dynamic_shares(modes, motions.r)
+    answers = np.where(shares == 0.0, RESONANT_FIRST_HARMONIC, -4j / np.pi * shares)
+    friction = motions.beta[:, np.newaxis] * (answers @ compliances(modes).T)
+    return (motions.harmonic + friction) * np.exp(-1j * motions.contact_phase)[:, np.newaxis]
+
+
+def _amplitudes_and_phases(
+    modes: ModalModel, r: np.ndarray, found: Curves, beta: np.ndarray, bracket: np.ndarray
+) -> dict[str, np.ndarray]:
+    """The four variables of one mu, (n_r, n) each; `beta` (n_r,) is beta_lim, `bracket` that of S."""
+    bracket = np.where(beta > 0.0, bracket, 0.0)
+    motions = _limit_motions(modes, r, found, beta, bracket)
+    answers = friction_answers(modes, np.where(beta > 0.0, r, 1.0), beta)
+    z = beta * (bracket - np.where(beta > 0.0, found.g, 0.0))
+    peaks = mass_peaks(modes, answers, beta, motions.harmonic, z)
+    first = _first_harmonics(modes, motions)
+    size = np.abs(first)
+    values = {
+        "limit_amplitude": peaks.modulus,
+        "limit_phase": peak_phases(peaks, motions.contact_phase[:, np.newaxis]),
+        "limit_first_harmonic_amplitude": size,
+        "limit_first_harmonic_phase": np.where(size > 0.0, wrapped(-np.angle(first)), np.nan),
+    }
+    return {
+        name: np.where(motions.infinite, np.nan if name.endswith("phase") else np.inf, value)
+        for name, value in values.items()
+    }
+
+
+def limit_variables(system: System, r: np.ndarray, mu: np.ndarray, found: Curves) -> dict[str, xr.Variable]:
+    """Amplitude and phase, and those of the first harmonic, at beta_lim; dims (mu, r, dof).
+
+    `r` and `mu` are checked axes, and `found` the curves there.  Phases are lags in radian.  A mass that
+    resonates though the contact does not, in a mode that it does not see, has infinite amplitudes; it has no
+    phase, nor has one at rest: NaN.
+    """
+    modes = system.modes
+    bracket = sliding_bracket(found.h, found.s, over_square(modes.inverse_mass, r), mu)
+    rows = [
+        _amplitudes_and_phases(modes, r, found, beta, row)
+        for beta, row in zip(found.beta_lim, bracket, strict=True)
+    ]
+    return {name: label_variable(name, np.array([row[name] for row in rows])) for name in rows[0]}

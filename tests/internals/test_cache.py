@@ -1,0 +1,468 @@
+"""Compiled kernels on disk: found again, never believed when damaged, kept wherever there is a place."""
+
+import os
+import pickle
+import shutil
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import numba
+import pytest
+
+import frictionmap as fm
+from benchmarks.measures.faults.machine import prepared
+from frictionmap._kernels import cache, cache_folders
+from frictionmap._kernels.jit import entry
+
+pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
+POSIX = pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
+
+
+def twice(x):
+    return 2.0 * x
+
+
+def thrice(x):
+    return 3.0 * x
+
+
+def user_cache(monkeypatch, path):
+    monkeypatch.setattr(cache_folders, "AppDirs", lambda **names: SimpleNamespace(user_cache_dir=path))
+
+
+def forget():
+    """As in a new process."""
+    cache_folders.folders.cache_clear()
+    cache_folders.state.cache_clear()
+    cache._say.cache_clear()
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    """The folder of NUMBA_CACHE_DIR, empty; the user's and the temporary one lie beside it."""
+    # numba reads its settings anew where one has changed in the environment: both have to say the same
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "given"))
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "given"))
+    user_cache(monkeypatch, tmp_path / "user")
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "temporary"))
+    forget()
+    yield tmp_path / "given"
+    forget()
+
+
+def hits(function=twice):
+    """Call the function as a new process would; whether it was found on disk."""
+    forget()
+    compiled = entry(function)
+    assert compiled(1.5) == function(1.5)
+    return len(compiled.stats.cache_hits)
+
+
+def only_file(place):
+    (file,) = (path for path in place.rglob("*") if not path.is_dir())
+    return file
+
+
+def test_found_again(place, tmp_path):
+    assert [hits(), hits()] == [0, 1]
+    assert list((tmp_path / "temporary").iterdir()) == []
+    assert not (tmp_path / "user").exists()
+    assert only_file(place).name.startswith("test_cache.twice-")
+
+
+def test_each_type_and_each_function_has_a_file_of_its_own(place):
+    assert [hits(), hits(thrice), hits(), hits(thrice)] == [0, 0, 1, 1]
+    assert entry(twice)(3) == 6
+    assert len(list(place.rglob("*.nbc"))) == 3
+
+
+def test_listeners_hear_of_what_is_compiled(place, monkeypatch):
+    heard = []
+    monkeypatch.setattr(cache, "listeners", [lambda: heard.append(1)])
+    hits()
+    assert heard == [1]
+    hits()
+    assert heard == [1]
+
+
+#: A kernel that two others call.
+SHARED = """
+from frictionmap._kernels.jit import entry, kernel
+
+@kernel
+def increased(x):
+    return x + 1.0
+
+@entry
+def once(x):
+    return increased(x)
+
+@entry
+def twice(x):
+    return increased(increased(x))
+"""
+
+
+def test_what_is_compiled_later_calls_what_was_kept(place, tmp_path):
+    """In a new process: what it compiles calls what an earlier one has compiled for something else."""
+    (tmp_path / "shared.py").write_text(SHARED)
+    search = os.pathsep.join([str(tmp_path), str(Path(fm.__file__).parent.parent)])
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", f"import shared; print(shared.{name}(1.0))"],
+            env=os.environ | {"PYTHONPATH": search}, capture_output=True, text=True, timeout=600,
+        )
+        for name in ("once", "twice", "once")
+    ]  # fmt: skip
+    assert [(done.returncode, done.stdout) for done in said] == [(0, "2.0\n"), (0, "3.0\n"), (0, "2.0\n")]
+    assert len(list(place.rglob("*.nbc"))) == 3
+
+
+# Damage
+
+
+def cut(path):
+    path.write_bytes(path.read_bytes()[:-100])
+
+
+def flip(path):
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+
+
+def folder(path):
+    path.unlink()
+    path.mkdir()
+
+
+def swap(path):
+    """Another kernel, whole, under this one's name."""
+    hits(thrice)
+    (other,) = set(path.parent.iterdir()) - {path}
+    other.replace(path)
+
+
+def loop(path):
+    path.unlink()
+    path.symlink_to(path)
+
+
+def pipe(path):
+    path.unlink()
+    os.mkfifo(path)
+
+
+DAMAGES = {
+    "cut off": cut,
+    "empty": lambda path: path.write_bytes(b""),
+    "shorter than a digest": lambda path: path.write_bytes(b"frictionmap"),
+    "zeros": lambda path: path.write_bytes(bytes(path.stat().st_size)),
+    "garbage": lambda path: path.write_bytes(os.urandom(path.stat().st_size)),
+    "one bit": flip,
+    "another pickle": lambda path: path.write_bytes(pickle.dumps([1, 2])),
+    "another kernel": swap,
+    "a folder": folder,
+    "a link to itself": loop,
+    "a pipe": pipe,
+}
+
+
+@POSIX
+@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
+def test_what_is_damaged_is_compiled_anew_and_that_is_said_once(place, caplog, damage):
+    hits()
+    file = only_file(place)
+    damage(file)
+    forget()
+    one, two = entry(twice), entry(twice)
+    assert one(1.5) == two(1.5) == 3.0
+    assert len(one.stats.cache_hits) == 0
+    message = f"frictionmap: the compiled kernels in {file.parent} are damaged and compiled anew"
+    assert caplog.messages == [message]
+    assert hits() == 1
+    assert caplog.messages == [message]
+
+
+def test_a_folder_with_something_in_it_instead_of_a_kernel(place, caplog):
+    """It stays; the kernel is compiled in every run."""
+    hits()
+    file = only_file(place)
+    folder(file)
+    (file / "thesis.tex").write_text("all of it")
+    assert hits() == 0
+    damaged, lost = caplog.messages
+    assert "damaged" in damaged
+    assert f"cannot be kept in {file.parent} (Directory not empty)" in lost
+    assert (file / "thesis.tex").read_text() == "all of it"
+
+
+# Places
+
+
+@pytest.fixture
+def unwritable(monkeypatch):
+    """A set of folders that cannot be written to; root would write in any."""
+    found = set()
+    access = os.access
+    monkeypatch.setattr(
+        os, "access", lambda path, mode: not found & {path, *Path(path).parents} and access(path, mode)
+    )
+    return found
+
+
+def test_the_next_place_is_taken_if_one_cannot_be_written(place, unwritable, tmp_path, caplog):
+    unwritable.add(place)
+    assert [hits(), hits()] == [0, 1]
+    assert list((tmp_path / "user").rglob("*.nbc"))
+    message = f"frictionmap: {place} cannot be written to: compiled kernels are kept in {tmp_path / 'user'}"
+    assert caplog.messages == [message]
+
+    unwritable.add(tmp_path / "user")
+    assert [hits(thrice), hits(thrice)] == [0, 1]
+    (temporary,) = (tmp_path / "temporary").iterdir()
+    assert caplog.messages[1].endswith(f"are kept in {temporary}")
+    if os.name != "nt":
+        assert stat.S_IMODE(temporary.stat().st_mode) == 0o700
+
+
+def test_kernels_that_can_only_be_read_are_used(place, unwritable, tmp_path, caplog):
+    """As in a container whose image was made with the kernels in it."""
+    hits()
+    unwritable.add(place)
+    assert [hits(), hits(thrice), hits(thrice)] == [1, 0, 1]
+    assert len(list(place.rglob("*.nbc"))) == len(list((tmp_path / "user").rglob("*.nbc"))) == 1
+
+
+def test_no_place_at_all(place, unwritable, tmp_path, caplog):
+    unwritable.update((place, tmp_path / "user", tmp_path / "temporary"))
+    assert [hits(), hits()] == [0, 0]
+    lines = caplog.messages
+    assert len(lines) == 2  # one a process
+    assert lines[0].startswith(f"frictionmap: none of {place}, {tmp_path / 'user'}, {tmp_path / 'temporary'}")
+    assert lines[0].endswith("can be written to: every run compiles the kernels anew")
+
+
+@POSIX
+@pytest.mark.parametrize("mode", [0o777, 0o755, 0o770, 0o700])
+def test_a_temporary_folder_that_others_can_enter_is_not_trusted(place, unwritable, tmp_path, mode):
+    unwritable.update((place, tmp_path / "user"))
+    folder = tmp_path / "temporary" / f"frictionmap-{os.getuid()}"
+    folder.mkdir()
+    folder.chmod(mode)
+    assert [hits(), hits()] == [0, int(mode == 0o700)]
+
+
+@POSIX
+def test_a_temporary_folder_that_is_a_link_is_not_trusted(place, unwritable, tmp_path):
+    unwritable.update((place, tmp_path / "user"))
+    (tmp_path / "theirs").mkdir(mode=0o700)
+    (tmp_path / "temporary" / f"frictionmap-{os.getuid()}").symlink_to(tmp_path / "theirs")
+    assert [hits(), hits()] == [0, 0]
+    assert list((tmp_path / "theirs").iterdir()) == []
+
+
+def test_the_current_folder_is_no_temporary_one(place, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path / "temporary")
+    assert len(cache_folders.places()) == 2
+
+
+def test_without_a_home(place, monkeypatch):
+    """What would be a folder named ~ in the current one is no place."""
+    user_cache(monkeypatch, "~/.cache")
+    assert all(path.is_absolute() for path in cache_folders.places())
+
+
+# States
+
+
+def test_another_state_of_the_kernels_has_another_folder(place, tmp_path, monkeypatch):
+    sources = tmp_path / "package" / "_kernels"
+    sources.mkdir(parents=True)
+    (sources / "one.py").write_text("a = 1")
+    (sources.parent / "regimes.py").write_text("")
+    monkeypatch.setattr(cache_folders, "_SOURCES", sources)
+    assert [hits(), hits()] == [0, 1]
+    (sources / "one.py").write_text("a = 2")  # called by the kernel, perhaps
+    assert [hits(), hits()] == [0, 1]
+    monkeypatch.setenv("NUMBA_BOUNDSCHECK", "1")
+    assert [hits(), hits()] == [0, 1]
+    monkeypatch.setenv("NUMBA_NUM_THREADS", "1")
+    assert hits() == 1
+    assert len(list(place.iterdir())) == 3
+
+
+def test_states_long_past_go(place):
+    old, recent, other = (place / f"kernels-{16 * letter}" for letter in "abc")
+    for path in (old, recent, other):
+        path.mkdir(parents=True)
+        (path / "new-half").write_text("")
+        (path / "kernel.nbc").write_text("")
+    (other / "thesis.tex").write_text("all of it")
+    past = time.time() - 100 * 86400
+    for path in (old, other):
+        os.utime(path, (past, past))
+    os.utime(recent / "new-half", (past, past))
+    hits()
+    assert not old.exists()
+    assert [path.name for path in recent.iterdir()] == ["kernel.nbc"]
+    assert [path.name for path in other.iterdir()] == ["thesis.tex"]
+
+
+# For real
+
+
+@pytest.fixture
+def installed(tmp_path):
+    """A copy of the package, a home, a configuration."""
+    package = Path(fm.__file__).parent
+    shutil.copytree(package, tmp_path / "site" / "frictionmap", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("home", "work"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "work" / "c.toml").write_text("[system]\n[grid]\nr = [0.5, 2.0]\nbeta = 1\n")
+    yield tmp_path
+    for path in tmp_path.rglob("*"):
+        if path.is_dir() and not path.is_symlink():
+            path.chmod(0o755)
+
+
+def run(installed, **environment):
+    """The program, permissions holding for it even if it is root's; what it says."""
+    left_out = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "TMPDIR", "HOME", "PYTHONPATH")
+    kept = {name: value for name, value in os.environ.items() if name not in left_out}
+    arguments = ["boundaries", "c.toml", "-o", "out.nc", "--overwrite", "--quiet"]
+    done = subprocess.run(
+        [sys.executable, "-B", "-m", "frictionmap", *arguments],
+        env=kept | {"PYTHONPATH": str(installed / "site"), **environment},
+        cwd=installed / "work", capture_output=True, text=True, timeout=1800,
+        preexec_fn=prepared(ordinary=True),
+    )  # fmt: skip
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+    return done.stderr
+
+
+@POSIX
+def test_package_and_home_that_cannot_be_written(installed):
+    """Without any cache, with a temporary folder, with a cache that the image brings along."""
+    package, home, work = installed / "site" / "frictionmap", installed / "home", installed / "work"
+    for path in [package, *package.rglob("*"), home]:
+        if path.is_dir():
+            path.chmod(0o555)
+    own = package / "_kernels" / "__pycache__"
+    none = f"frictionmap: none of {own}, {home}/.cache/frictionmap can be written to: every run compiles"
+    said = run(installed, HOME=str(home), TMPDIR=str(work))  # the current folder does not count
+    assert said.startswith(none)
+
+    temporary = installed / "temporary"
+    kept = temporary / f"frictionmap-{os.getuid()}"
+    message = f"frictionmap: {own} cannot be written to: compiled kernels are kept in {kept}\n"
+    assert run(installed, HOME=str(home), TMPDIR=str(temporary)) == message
+    assert run(installed, HOME=str(home), TMPDIR=str(temporary)) == ""
+
+    own.parent.chmod(0o755)
+    shutil.copytree(kept, own)
+    for path in (own.parent, own, *own.iterdir()):
+        path.chmod(0o555)
+    assert run(installed, HOME=str(home), TMPDIR=str(work)) == ""
+    assert sorted(path.name for path in work.iterdir()) == ["c.toml", "out.nc"]
+
+
+@POSIX
+def test_a_cache_in_ruins(installed):
+    """Every file of it; the next run says so, the one after it has nothing to say."""
+    own = installed / "work" / "own"
+    assert run(installed, NUMBA_CACHE_DIR=str(own)) == ""
+    files = list(own.rglob("*.nbc"))
+    assert len(files) > 5
+    for path, damage in zip(files, (cut, flip, folder, loop, DAMAGES["empty"]) * 10, strict=False):
+        damage(path)
+    err = run(installed, NUMBA_CACHE_DIR=str(own))
+    assert err == f"frictionmap: the compiled kernels in {files[0].parent} are damaged and compiled anew\n"
+    assert run(installed, NUMBA_CACHE_DIR=str(own)) == ""
+
+
+# Kernels that are called by name
+
+CALLS = """
+import sys
+from collections import Counter
+from frictionmap._kernels import cache, linking
+if "inner" not in sys.argv:
+    linking._SMALL = 0  # all are
+from frictionmap._kernels.jit import entry, kernel
+
+compiled = []
+cache.listeners.append(lambda: compiled.append(1))
+
+@kernel
+def half(x):
+    return 0.5 * x
+
+@kernel
+def quarter(x):
+    return half(half(x))
+
+@entry
+def eighth(x):
+    return half(quarter(x))
+
+class Taken(Counter):
+    def __missing__(self, name):
+        return 1 if ".half" in name else 0
+
+if "taken" in sys.argv:  # the name of `half` is
+    linking._times = Taken()
+print(eighth(1.0), len(compiled))
+"""
+
+
+def run_calls(place, *arguments):
+    """How many kernels a new process compiled, whose answer is right."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(place)}
+    command = [sys.executable, "-c", CALLS, *arguments]
+    found = subprocess.run(command, env=environment, capture_output=True, text=True, check=True, timeout=600)
+    value, compiled = found.stdout.split()
+    assert float(value) == 0.125
+    return int(compiled)
+
+
+def kept(place, name):
+    """The file of a kernel."""
+    (file,) = place.rglob(f"*.{name}-*.nbc")
+    return file
+
+
+def test_kernels_that_are_called_by_name_are_compiled_once(place):
+    assert [run_calls(place), run_calls(place)] == [3, 0]
+
+
+@pytest.mark.parametrize("name", ["half", "quarter", "eighth"])
+@pytest.mark.parametrize("damage", [Path.unlink, cut], ids=["missing", "damaged"])
+def test_a_kernel_that_is_missing_is_compiled_anew_with_those_that_call_it(place, name, damage):
+    run_calls(place)
+    damage(kept(place, name))
+    assert run_calls(place) > 0
+    assert run_calls(place) == 0
+
+
+def test_a_caller_is_compiled_with_inner_kernels_from_the_disk(place):
+    """Inner kernels have no code of their own in the process, whose environment could be set."""
+    run_calls(place, "inner")
+    kept(place, "eighth").unlink()
+    assert [run_calls(place, "inner"), run_calls(place, "inner")] == [1, 0]
+
+
+def test_callers_of_a_kernel_that_has_another_name_now_are_compiled_anew(place):
+    run_calls(place)
+    first = kept(place, "half").read_bytes()
+    kept(place, "half").unlink()
+    assert run_calls(place, "taken") == 3
+    kept(place, "half").write_bytes(first)
+    assert run_calls(place) == 2  # the callers: what they call by name is no more
+    assert run_calls(place) == 0

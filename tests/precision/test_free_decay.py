@@ -1,0 +1,254 @@
+"""Free decays: the model against marching, estimates against truths and their Cramer-Rao bounds."""
+
+import json
+
+import mpmath as mp
+import numpy as np
+import pytest
+from decays import Truth, marched, synthetic
+
+import frictionmap as fm
+from frictionmap.identify.decay_motion import (
+    PARAMETERS,
+    Decay,
+    amplitudes,
+    displacement,
+    displacement_and_slopes,
+)
+
+MIXED = Truth(3.086, 0.012, 0.15, 12.0, -0.02, -0.4, 250.0, 6.0, 0.03)
+COULOMB = Truth(3.086, 0.0, 0.35, 9.0, -0.031, 0.2, 250.0, 4.0, 0.02)
+VISCOUS = Truth(5.2, 0.02, 0.0, 4.0, -0.01, 0.0, 500.0, 5.0, 0.02)
+SHORT = Truth(2.0, 0.004, 1.1, 7.3, -0.03, 0.0, 200.0, 3.0, 0.02)
+
+#: Cramer-Rao bounds of f_n [Hz], zeta and x_F [mm], computed apart from the package.
+BOUNDS = {
+    MIXED: (5.0119e-5, 3.1051e-5, 1.9613e-4),
+    COULOMB: (9.6249e-5, 6.7583e-5, 3.8305e-4),
+    VISCOUS: (7.7862e-5, 3.2755e-5, 5.8570e-5),
+}
+
+
+def decay_of(truth):
+    return Decay(*truth[: len(PARAMETERS)])
+
+
+# The model
+
+
+@pytest.mark.parametrize(
+    ("truth", "mu"), [(COULOMB, 1.0), (MIXED, 1.0), (SHORT, 1.3), (MIXED._replace(X0=-5.0, zeta=0.2), 1.0)]
+)
+def test_the_motion_is_that_of_the_equation(truth, mu):
+    time = np.sort(np.random.default_rng(3).uniform(truth.t0, truth.length, 400))
+    expected, half_cycles = marched(truth, mu, time)
+    # 25 half cycles at 1e-12 a step: some 1e-10
+    np.testing.assert_allclose(displacement(decay_of(truth), half_cycles, time), expected, atol=1e-9)
+
+
+@pytest.mark.parametrize(("zeta", "x_F", "X0", "n"), [("0.012", "0.15", "12", 24), ("0", "0.35", "9", 13)])
+def test_turning_points_to_the_last_digits(zeta, x_F, X0, n):
+    with mp.workdps(40):
+        zeta, x_F, height = mp.mpf(zeta), mp.mpf(x_F), mp.mpf(X0)
+        q = mp.exp(-mp.pi * zeta / mp.sqrt(1 - zeta**2))
+        expected = [float(height)]
+        for _ in range(n):
+            height = q * height - (1 + q) * x_F
+            expected.append(float(height))
+        decay = Decay(1.0, float(zeta), float(x_F), float(X0), 0.0, 0.0)
+    # each step rounds by some 1e-16 of at most 12 mm
+    np.testing.assert_allclose(amplitudes(decay, n), expected, atol=n * 12.0 * 4.5e-16)
+
+
+def test_turning_points_of_the_reference(measured):
+    for row in json.loads((measured / "exact.json").read_text())["exact_values"]["decay_extrema"]:
+        n = len(row["extrema"]) - 1
+        found = amplitudes(Decay(1.0, row["zeta"], row["x_F"], row["X0"], 0.0, 0.0), n)
+        signs = np.sign(row["X0"]) * (-1.0) ** np.arange(n + 1)
+        np.testing.assert_allclose(signs * found, row["extrema"], atol=2e-14)
+
+
+@pytest.mark.parametrize("truth", [MIXED, COULOMB, SHORT._replace(X0=-7.3)])
+@pytest.mark.parametrize("n", [3, 200])
+def test_slopes_are_those_of_the_motion(truth, n):
+    """Against central differences of step h: their error is some h^2, rounding 1e-14/h."""
+    time = np.random.default_rng(5).uniform(truth.t0 + 0.01, 2.0, 300)
+    slopes = displacement_and_slopes(decay_of(truth), n, time)[1]
+    h = 1e-6
+    for k in range(len(PARAMETERS)):
+        above, below = list(decay_of(truth)), list(decay_of(truth))
+        above[k] += h
+        below[k] -= h
+        difference = (displacement(Decay(*above), n, time) - displacement(Decay(*below), n, time)) / (2.0 * h)
+        np.testing.assert_allclose(slopes[:, k], difference, atol=2e-8 * max(1.0, np.abs(difference).max()))
+
+
+def test_held_before_it_is_let_go():
+    decay = decay_of(MIXED._replace(t0=0.5))
+    assert (displacement(decay, 24, np.array([0.0, 0.3, 0.5])) == decay.X0 + decay.centre).all()
+
+
+# Estimates
+
+
+@pytest.mark.parametrize("truth", BOUNDS, ids=["mixed", "coulomb", "viscous"])
+def test_estimates_reach_the_cramer_rao_bound(truth):
+    ds = fm.identify.free_decay(*synthetic(truth, seed=11))
+    for name, bound in zip(("f_n", "zeta", "x_F"), BOUNDS[truth], strict=True):
+        one = ds.sel(parameter=name)
+        assert abs(float(one.estimate) - getattr(truth, name)) < 4.0 * bound
+        # the scatter of a residual is known to 1/sqrt(2 n), below 3 % here
+        assert float(one.standard_error) == pytest.approx(bound, rel=0.1)
+
+
+KINDS = ("decay-coulomb", "decay-mixed", "decay-viscous", "decay-noisy", "decay-short")
+
+
+@pytest.mark.parametrize("folder", ["visible-1", "visible-2"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_synthetic_measurements(measured, folder, kind):
+    truth = json.loads((measured / folder / "truth.json").read_text())[kind]
+    time, x = np.loadtxt(measured / folder / f"{kind}.csv", delimiter=",", skiprows=1, unpack=True)
+    ds = fm.identify.free_decay(time, x)
+    for name, tolerance in truth["tolerance"].items():
+        one = ds.sel(parameter=name)
+        assert abs(float(one.estimate) - truth[name]) < tolerance, name
+        assert 0.8 < float(one.standard_error) / truth["crb"][name] < 1.25, name
+        assert np.isfinite([one.lower, one.upper]).all()
+    if truth["rest"] is not None:
+        assert int(ds.half_cycles) == truth["half_cycles"]
+        assert float(ds.rest) == pytest.approx(truth["rest"], abs=truth["tolerance"]["X0"])
+        assert float(ds.mu_lower) < truth["mu"] < float(ds.mu_upper)
+    correlation = float(ds.correlation.sel(parameter="zeta", parameter2="x_F"))
+    assert correlation == pytest.approx(truth["corr_zeta_xF"], abs=0.01)
+
+
+@pytest.mark.slow
+def test_intervals_hold_the_truth_as_often_as_they_say():
+    seeds = 100
+    names = ["f_n", "zeta", "x_F", "X0", "t0", "centre"]
+    truths = np.array([getattr(MIXED, name) for name in names])
+    held, scaled = [], []
+    for seed in range(seeds):
+        ds = fm.identify.free_decay(*synthetic(MIXED, seed))
+        held.append((ds.lower.values <= truths) & (truths <= ds.upper.values))
+        scaled.append((ds.estimate.values - truths) / ds.standard_error.values)
+    share = np.mean(held, axis=0)  # 0.95, give or take 0.022
+    assert (share >= 0.9).all()
+    assert (share <= 0.99).all()
+    # the scatter of 100 normal deviates is 1, give or take 0.071
+    np.testing.assert_allclose(np.sqrt(np.mean(np.square(scaled), axis=0)), 1.0, atol=0.25)
+
+
+def test_a_bound_on_zeta_is_told():
+    """Without viscous damping half of all fits would have it below zero."""
+    flags = []
+    for seed in range(8):
+        ds = fm.identify.free_decay(*synthetic(COULOMB, seed)).sel(parameter="zeta")
+        flags.append(int(ds.at_bound))
+        assert float(ds.estimate) >= 0.0 == float(ds.lower)
+        assert (float(ds.estimate) == 0.0) == bool(ds.at_bound)
+        assert float(ds.upper) > 0.0
+    assert 0 < sum(flags) < 8
+
+
+@pytest.mark.parametrize(
+    ("truth", "found"),
+    [
+        (MIXED, "both_found"),
+        (COULOMB, "friction_found"),
+        (VISCOUS, "viscous_damping_found"),
+        (VISCOUS._replace(zeta=0.0), "neither_found"),
+    ],
+)
+def test_verdict(truth, found):
+    verdict = fm.identify.free_decay(*synthetic(truth, seed=2)).verdict
+    assert verdict.flag_meanings.split()[int(verdict)] == found
+
+
+def test_the_linear_decrement_is_right_without_damping_and_wrong_with_it():
+    """T(4.3): a maximum is 4 x_F below the one before if zeta = 0."""
+    exact = fm.identify.free_decay(*synthetic(COULOMB, 1))
+    assert float(exact.linear_decrement) == pytest.approx(COULOMB.x_F, abs=0.005)
+    mixed = fm.identify.free_decay(*synthetic(MIXED, 1))
+    assert float(mixed.linear_decrement) > 1.5 * MIXED.x_F
+
+
+# Records as they come
+
+
+def test_a_record_may_begin_with_the_mass_held():
+    truth = MIXED._replace(t0=0.8)
+    time = np.arange(1700) / 250.0
+    x, half_cycles = marched(truth, 1.0, time)
+    ds = fm.identify.free_decay(time, x + np.random.default_rng(4).normal(0.0, 0.03, x.size))
+    assert int(ds.half_cycles) == half_cycles
+    assert abs(float(ds.estimate.sel(parameter="x_F")) - truth.x_F) < 4.0 * BOUNDS[MIXED][2]
+    assert abs(float(ds.estimate.sel(parameter="t0")) - 0.8) < 2e-4
+
+
+def test_times_need_not_be_uniform():
+    time, x = synthetic(MIXED, 8)
+    kept = np.sort(np.random.default_rng(8).choice(time.size, 900, replace=False))
+    ds = fm.identify.free_decay(time[kept], x[kept])
+    widened = np.sqrt(time.size / 900)
+    for name, bound in zip(("f_n", "zeta", "x_F"), BOUNDS[MIXED], strict=True):
+        assert abs(float(ds.estimate.sel(parameter=name)) - getattr(MIXED, name)) < 4.0 * widened * bound
+
+
+def test_units_are_those_of_the_data():
+    time, x = synthetic(COULOMB, 6)
+    in_mm = fm.identify.free_decay(time, x, base=1.75, stiffness=1191.0)
+    in_m = fm.identify.free_decay(time, 1e-3 * x, unit="m", base=1.75e-3, stiffness=1191.0)
+    lengths = [
+        name for name, unit in zip(in_m.parameter.values, in_m.unit.values, strict=True) if unit == "m"
+    ]
+    assert lengths == ["x_F", "X0", "centre"]
+    scale = np.where(np.isin(in_m.parameter.values, lengths), 1e-3, 1.0)
+    # both end at the same sum of squares, to what the search leaves: far below a standard error
+    error = np.abs(in_m.estimate.values / scale - in_mm.estimate.values)
+    assert (error < 1e-3 * in_mm.standard_error.values).all()
+    assert float(in_m.beta) == pytest.approx(float(in_mm.beta), rel=1e-6)
+    assert float(in_mm.beta) == pytest.approx(0.2, abs=0.002)
+    assert float(in_mm.friction_force) == pytest.approx(1191.0 * 0.35e-3, abs=0.002)
+    assert float(in_m.friction_force) == pytest.approx(float(in_mm.friction_force), rel=1e-6)
+
+
+def test_what_is_known_is_held():
+    ds = fm.identify.free_decay(*synthetic(MIXED, 9), known={"zeta": 0.012, "centre": -0.4})
+    assert ds.estimate.sel(parameter=["zeta", "centre"]).values.tolist() == [0.012, -0.4]
+    assert ds.standard_error.sel(parameter=["zeta", "centre"]).values.tolist() == [0.0, 0.0]
+    one = ds.sel(parameter="x_F")
+    assert abs(float(one.estimate) - 0.15) < 4.0 * float(one.standard_error)
+    # most of its error was that of zeta: sqrt(1 - 0.945^2) is a third
+    assert float(one.standard_error) < 0.5 * BOUNDS[MIXED][2]
+
+
+def test_coloured_residuals_make_errors_larger():
+    """Samples that repeat 0.8 of the one before count as a ninth of them: errors are three times as large."""
+    rng = np.random.default_rng(10)
+    time, x = synthetic(MIXED._replace(noise=0.0), 0)
+    noise = np.empty(x.size)
+    noise[0] = rng.normal()
+    for k in range(1, x.size):
+        noise[k] = 0.8 * noise[k - 1] + 0.6 * rng.normal()
+    ds = fm.identify.free_decay(time, x + 0.03 * noise)
+    assert float(ds.residual_correlation) == pytest.approx(0.8, abs=0.06)
+    assert float(ds.error_inflation) == pytest.approx(3.0, abs=0.6)
+    assert "not white" in ds.warnings
+
+
+def test_a_viscous_decay_into_the_noise_is_not_at_rest():
+    truth = Truth(18.0, 0.043, 0.0, 15.0, -0.002, 1.3, 1500.0, 1.33, 0.008)
+    ds = fm.identify.free_decay(*synthetic(truth, 12))
+    assert int(ds.at_rest) == 0
+    one = ds.sel(parameter="zeta")
+    assert abs(float(one.estimate) - truth.zeta) < 4.0 * float(one.standard_error)
+
+
+def test_the_first_turning_point_is_the_last_one_before_the_record():
+    """Also where noise makes one up at the beginning."""
+    truth = Truth(13.6, 0.021, 0.0, -12.4, -0.0104, -0.15, 1741.0, 1.72, 0.73)
+    for seed in range(50, 58):
+        ds = fm.identify.free_decay(*synthetic(truth, seed))
+        assert abs(float(ds.estimate.sel(parameter="t0")) - truth.t0) < 0.002

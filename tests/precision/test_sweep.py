@@ -1,0 +1,106 @@
+"""Two masses from a sweep: the closed form, estimates against truths, what cannot be told."""
+
+import json
+
+import numpy as np
+import pytest
+
+import frictionmap as fm
+from frictionmap.identify.sweep import _ratio_slopes, ratios
+
+GAMMA, KAPPA, F_K1M1 = 0.9772, 1.1119, 2.9248318  # the two-storey rig
+
+
+def amplitudes(f, gamma=GAMMA, kappa=KAPPA, f_k1m1=F_K1M1):
+    """|X_1|/Y of two masses on a shaken base, from M and K."""
+    K = np.array([[1.0 + kappa, -kappa], [-kappa, kappa]])
+    return np.array(
+        [abs(np.linalg.solve(K - (one / f_k1m1) ** 2 * np.diag([1.0, gamma]), [1.0, 0.0])[0]) for one in f]
+    )
+
+
+FREQUENCIES = np.concatenate((np.linspace(0.5, 1.7, 7), np.linspace(1.97, 4.7, 16), np.linspace(5.2, 8.0, 7)))
+
+
+def test_ratios_of_a_known_structure():
+    """Natural frequencies of M and K lead back to gamma and kappa."""
+    K = np.array([[1.0 + KAPPA, -KAPPA], [-KAPPA, KAPPA]])
+    f1, f2 = np.sqrt(np.linalg.eigvals(np.diag([1.0, 1.0 / GAMMA]) @ K)[[0, 1]]) * F_K1M1
+    f1, f2 = sorted((f1, f2))
+    found = ratios(np.sqrt(KAPPA / GAMMA) * F_K1M1, f1, f2)
+    np.testing.assert_allclose(found, [F_K1M1, GAMMA, KAPPA], rtol=1e-13)
+
+
+def test_ratios_of_the_reference(measured):
+    for row in json.loads((measured / "exact.json").read_text())["exact_values"]["appendix_a"]:
+        found = ratios(row["f0"], row["f1"], row["f2"])
+        np.testing.assert_allclose(found, [row["f_k1m1"], row["gamma"], row["kappa"]], rtol=1e-12)
+
+
+def test_slopes_of_the_ratios():
+    at = np.array([3.1, 1.8, 4.9])
+    for k, slope in enumerate(_ratio_slopes(*at).T):
+        step = 1e-6 * np.eye(3)[k]
+        difference = (np.array(ratios(*(at + step))) - np.array(ratios(*(at - step)))) / 2e-6
+        np.testing.assert_allclose(slope, difference, rtol=1e-7)
+
+
+def test_exact_amplitudes_give_the_structure_back():
+    ds = fm.identify.sweep(FREQUENCIES, amplitudes(FREQUENCIES))
+    found = ds.estimate.sel(parameter=["f_k1m1", "gamma", "kappa"])
+    np.testing.assert_allclose(found, [F_K1M1, GAMMA, KAPPA], rtol=1e-7)
+
+
+def test_errors_are_those_of_many_sweeps():
+    """Standard errors with 2 % given: the scatter over 60 seeds is known to 9 %."""
+    exact = amplitudes(FREQUENCIES)
+    found, stated = [], []
+    for seed in range(60):
+        noise = np.random.default_rng(seed).normal(0.0, 0.02, exact.size)
+        ds = fm.identify.sweep(FREQUENCIES, exact * np.exp(noise), sigma_amplitude=0.02)
+        found.append(ds.estimate.values)
+        stated.append(ds.standard_error.values)
+    scatter = np.std(found, axis=0, ddof=1)
+    np.testing.assert_allclose(scatter / np.median(stated, axis=0), 1.0, atol=0.35)
+
+
+@pytest.mark.parametrize("folder", ["visible-1", "visible-2"])
+def test_synthetic_sweeps(measured, folder):
+    truth = json.loads((measured / folder / "truth.json").read_text())["sweep-two-storey"]
+    f, x = np.loadtxt(measured / folder / "sweep-two-storey.csv", delimiter=",", skiprows=1, unpack=True)
+    ds = fm.identify.sweep(f, x, sigma_amplitude=0.02)
+    for name, tolerance in truth["tolerance"].items():
+        one = ds.sel(parameter=name)
+        assert abs(float(one.estimate) - truth[name]) < tolerance, name
+        assert 0.8 < float(one.standard_error) / truth["crb"][name] < 1.25, name
+    assert ds.verdict.flag_meanings.split()[int(ds.verdict)] == "two_frequencies_found"
+
+
+def test_errors_that_are_too_small_are_told():
+    x = amplitudes(FREQUENCIES) * np.exp(np.random.default_rng(1).normal(0.0, 0.05, FREQUENCIES.size))
+    ds = fm.identify.sweep(FREQUENCIES, x, sigma_amplitude=0.01)
+    assert ds.verdict.flag_meanings.split()[int(ds.verdict)] == "scatter_beyond_errors"
+
+
+def test_one_peak():
+    f = np.linspace(0.5, 7.75, 30)
+    with pytest.raises(fm.InputError, match="one peak: two frequencies wanted"):
+        fm.identify.sweep(f, 1.0 / abs(1.0 - (f / 3.1) ** 2))
+
+
+@pytest.mark.parametrize(
+    ("frequency", "amplitude", "message"),
+    [
+        (
+            [1.0, 2.0, 3.0],
+            [1.0, 2.0, 1.0],
+            "frequency must have more values than there are unknowns, 3; got 3",
+        ),
+        ([-1.0, 2.0], [1.0, 2.0], "frequency must be >= 0; got -1.0 at index 0"),
+        ([1.0, 2.0], [1.0, 0.0], "amplitude_ratio must be finite and > 0; got 0.0 at index 1"),
+        ([1.0, 2.0], [1.0], "amplitude_ratio must be 2 numbers, one a frequency"),
+    ],
+)
+def test_bad_sweeps(frequency, amplitude, message):
+    with pytest.raises(fm.InputError, match=message):
+        fm.identify.sweep(frequency, amplitude)

@@ -1,0 +1,280 @@
+"""The benchmarks run, write what they say they write, and README.md quotes the committed results."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+from benchmarks.__main__ import BENCHMARKS
+from benchmarks.measures.faults.verdict import SLOW as TOO_SLOW
+from benchmarks.report import quoting, readme, record
+
+RESULTS = ROOT / "benchmarks" / "results"
+
+#: Benchmarks without timings.
+UNTIMED = {"stress", "steady", "faults"}
+
+#: Benchmarks whose figure has another name.
+FIGURES = {"bound": "fig-5-55"}
+
+
+def python(*arguments: str, timeout: float = 7200.0) -> str:
+    """What a fresh Python prints."""
+    search = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    done = subprocess.run(
+        [sys.executable, *arguments],
+        env=os.environ | {"PYTHONPATH": search},
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=timeout,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def numbers(content: object) -> list[float]:
+    """All numbers in a result, flags left out."""
+    if isinstance(content, dict):
+        return [number for value in content.values() for number in numbers(value)]
+    if isinstance(content, list):
+        return [number for value in content for number in numbers(value)]
+    if isinstance(content, int | float) and not isinstance(content, bool):
+        return [float(content)]
+    return []
+
+
+def spreads(content: object) -> list[dict]:
+    """All timings in a result: what `record.spread` made."""
+    if isinstance(content, list):
+        return [one for value in content for one in spreads(value)]
+    if not isinstance(content, dict):
+        return []
+    if {"median", "least", "most", "runs"} <= set(content):
+        return [content]
+    return [one for value in content.values() for one in spreads(value)]
+
+
+# The quick forms, all in one process
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory):
+    """The folder of the results, and what was printed."""
+    folder = tmp_path_factory.mktemp("results")
+    return folder, python("-m", "benchmarks", "all", "--quick", "--results", str(folder))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", BENCHMARKS)
+def test_quick_form(name, quick):
+    folder, said = quick
+    assert [line for line in said.splitlines()[-len(BENCHMARKS) :] if line.split()[:2] == [name, "took"]]
+    content = json.loads((folder / f"{name}.json").read_text())
+    machine = content.pop("machine")
+    assert machine["versions"]["numba"]
+    found = numbers(content)
+    assert len(found) > 5
+    assert not any(math.isnan(number) for number in found)
+    for one in spreads(content):
+        assert one["least"] <= one["median"] <= one["most"]
+        assert one["runs"] >= 1
+    assert (folder / f"{FIGURES.get(name, name)}.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.slow
+def test_quick_results_can_be_quoted(quick):
+    folder, _ = quick
+    lines = readme.block(folder).splitlines()
+    tables = [line.count("|") for line in lines if line.startswith("|")]
+    assert len(tables) > 40
+    assert not {"nan", "inf", "None"} & set(" ".join(lines).replace("(", " ").split())
+    for before, line in pairwise(lines):  # as many cells in a row as in the one above
+        if before.startswith("|") and line.startswith("|"):
+            assert before.count("|") == line.count("|")
+
+
+@pytest.mark.slow
+def test_our_quick_answers_are_right(quick):
+    folder, _ = quick
+    accuracy = json.loads((folder / "accuracy.json").read_text())
+    for scene in accuracy["steady states"].values():
+        for point in scene["methods"]["frictionmap"]["points"]:
+            assert point["cells with wrong stop counts"] == 0
+            assert max(point["relative errors of Z"]) < 1e-10
+    assert accuracy["random cells"]["cells with wrong stop counts"] == 0
+    stress = json.loads((folder / "stress.json").read_text())
+    assert stress["random cells"]["resolved without a regime or a number"] == []
+    for group in stress["groups"].values():
+        assert group["inconsistent"] == group["trouble"] == group["wrong stop counts"] == 0
+    steady = json.loads((folder / "steady.json").read_text())
+    for name in ("T Fig. 3.12", "five damped chains", "mu = 1, any start"):
+        assert "unexplained" not in steady[name]["differences by cause"]
+
+
+@pytest.mark.slow
+def test_nothing_goes_wrong_in_careless_hands(quick):
+    folder, _ = quick
+    families = json.loads((folder / "faults.json").read_text())["families"]
+    assert sum(entry["tried"] for entry in families.values()) > 250
+    for name, entry in families.items():
+        wrong = set(entry["wrong by kind"]) - {TOO_SLOW}  # a busy machine is
+        assert not wrong, (name, entry["examples"])
+
+
+def test_what_is_no_number_is_saved_as_none(tmp_path):
+    content = {"a": [1.5, math.nan], "b": {"c": (math.inf, np.float64("nan"), 2)}, "d": "nan"}
+    path = record.save("name", content, tmp_path)
+    saved = json.loads(path.read_text(), parse_constant=pytest.fail)
+    assert {name: saved[name] for name in content} == {
+        "a": [1.5, None],
+        "b": {"c": [None, None, 2]},
+        "d": "nan",
+    }
+
+
+def test_a_benchmark_is_imported_only_when_it_is_asked_for():
+    code = "import sys, benchmarks.__main__; print([name for name in sys.modules if 'frictionmap' in name])"
+    assert python("-c", code) == "[]\n"
+
+
+def test_what_can_be_asked_for():
+    said = python("-m", "benchmarks", "--help")
+    assert all(name in said for name in (*BENCHMARKS, "all", "readme", "--quick"))
+
+
+# The committed results
+
+
+def test_readme_quotes_the_committed_results():
+    _, quoted, _ = readme.parts(readme.README.read_text(encoding="utf-8"))
+    assert quoted == readme.block(RESULTS), "run python -m benchmarks readme"
+
+
+def test_readme_has_no_timing_outside_the_quoted_results():
+    before, _, after = readme.parts(readme.README.read_text(encoding="utf-8"))
+    units = {"ns", "us", "µs", "ms", "s", "seconds"}
+    words = [word.strip("().,;:|") for word in f"{before} {after}".split()]
+    for number, unit in pairwise(words):
+        timing = number.replace(".", "").replace(",", "").isdigit() and unit in units
+        assert not timing, f"{number} {unit}"
+
+
+@pytest.mark.parametrize("name", readme.QUOTED)
+def test_committed_results_are_whole(name):
+    content = json.loads((RESULTS / f"{name}.json").read_text())
+    assert {"processor", "system", "python", "versions"} <= set(content["machine"])
+    assert spreads(content) or name in UNTIMED
+    assert (RESULTS / f"{name}.png").is_file()
+
+
+def test_committed_results_are_of_full_runs():
+    accuracy, stress, steady = (
+        json.loads((RESULTS / f"{name}.json").read_text()) for name in ("accuracy", "stress", "steady")
+    )
+    assert accuracy["random cells"]["cells"] >= 20_000
+    assert "marched, cycles = 10^6" in stress["groups"]
+    assert stress["random cells"]["wanted"] == 1_000_000
+    assert steady["mu = 1, any start"]["resolved by all three"] >= 10_000
+
+
+def test_committed_peers_had_our_answers():
+    content = json.loads((RESULTS / "peers.json").read_text())
+    for entry in content["cells"].values():
+        if "differences" in entry:
+            assert entry["differences"]["cells with other stop counts"] == 0
+    for entry in content["solved and marched"].values():
+        for one in entry.values() if isinstance(entry, dict) else ():
+            assert one["cells with other stop counts"] == 0
+
+
+def test_committed_scaling_had_the_same_answers():
+    content = json.loads((RESULTS / "scaling.json").read_text())
+    assert content["threads"]["the same bits"]
+    for rows in content["cells"]["maps"].values():
+        done = [row for row in rows if "seconds" in row]
+        assert all(row["cells shared with the coarsest map have its regimes and stops"] for row in done)
+        assert all(row["their Z differs by"] < 1e-9 for row in done)
+    for row in content["open cells"]["maps"]:
+        assert row["stuck where beta >= 1, and there only"]
+
+
+#: Least number of trials, by the beginning of the names of families.
+FAULT_TRIALS = {"bad c": 300, "bad Python": 200, "interrupts": 100, "malformed": 5000, "damaged": 11}
+
+
+def test_committed_faults_are_many_and_hardly_any_went_wrong():
+    before, now = (
+        json.loads((RESULTS / f"{name}.json").read_text())["families"] for name in ("faults-before", "faults")
+    )
+    for begins, least in FAULT_TRIALS.items():
+        assert sum(entry["tried"] for name, entry in now.items() if name.startswith(begins)) >= least
+    wrong = {name: entry["wrong"] for name, entry in now.items() if entry["wrong"]}
+    # what it found was mended after it, each with a test; but single numbers of a response have no checksum
+    assert wrong.keys() <= {
+        "bad configurations",
+        "malformed files: other values",
+        "malformed files: damaged bytes",
+        "malformed files: slices",
+    }
+    assert sum(wrong.values()) < 10
+    assert sum(entry["wrong"] for entry in before.values()) > 100  # the harness can fail
+
+
+# How numbers are quoted
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [
+        (0.0508, "51 ms"),
+        (19.2, "19 s"),
+        (143.0, "140 s"),
+        (6.3017e-6, "6.3 µs"),
+        (9.99e-4, "1 ms"),
+        (0.9036, "900 ms"),
+        (1.6e-7, "160 ns"),
+        (1e-10, "0.1 ns"),
+    ],
+)
+def test_durations(seconds, text):
+    assert quoting.duration(seconds) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(143385.2, "140,000"), (664.9, "660"), (1.8, "1.8"), (2.0, "2"), (0.0, "0"), (9.97, "10")],
+)
+def test_two_digits(value, text):
+    assert quoting.two_digits(value) == text
+
+
+def test_the_block_replaces_the_block_and_nothing_else(tmp_path):
+    page = tmp_path / "README.md"
+    page.write_text(f"before\n{readme.BEGIN}\nold\n{readme.END}\nafter\n")
+    readme.rewrite(RESULTS, page)
+    before, inside, after = readme.parts(page.read_text())
+    assert (before, after) == ("before\n", "\nafter\n")
+    assert inside == readme.block(RESULTS)
+    readme.rewrite(RESULTS, page)
+    assert readme.parts(page.read_text()) == (before, inside, after)
+
+
+def test_a_page_without_markers():
+    with pytest.raises(ValueError, match="needs the lines"):
+        readme.parts("no markers")
+
+
+def test_what_was_not_measured_is_not_quoted(tmp_path):
+    (tmp_path / "startup.json").write_text((RESULTS / "startup.json").read_text())
+    text = readme.block(tmp_path)
+    assert "frictionmap --help" in text
+    assert "fresh process" in text
+    assert "heyoka" not in text

@@ -1,0 +1,170 @@
+"""Which module may know which: cheap start, kernels without objects, pictures in one place."""
+
+import ast
+import importlib
+import os
+import pkgutil
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import frictionmap as fm
+
+PACKAGE = Path(fm.__file__).parent
+#: How kernels are compiled and kept on disk is no kernel.
+PLUMBING = ("jit.py", "kinds.py", "cache.py", "cache_folders.py", "linking.py")
+KERNELS = sorted(path for path in (PACKAGE / "_kernels").rglob("*.py") if path.name not in PLUMBING)
+SOURCES = sorted(PACKAGE.rglob("*.py"))
+HEAVY = ("numba", "xarray", "matplotlib", "scipy", "netCDF4", "pandas")
+
+
+def imported(path):
+    """Absolute names of the modules a source file imports."""
+    package = ["frictionmap", *path.relative_to(PACKAGE).parts[:-1]]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else []
+            module = ".".join(base + (node.module.split(".") if node.module else []))
+            yield from (f"{module}.{alias.name}" for alias in node.names)
+
+
+def run(code):
+    search = os.pathsep.join([str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")])
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | {"PYTHONPATH": search},
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=True,
+    ).stdout
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["map", "--help"], ["map"], ["--version"]])
+def test_help_and_usage_errors_import_nothing_heavy(arguments):
+    code = f"""
+import contextlib, io, sys
+import frictionmap, frictionmap.cli
+text = io.StringIO()
+with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text), contextlib.suppress(SystemExit):
+    frictionmap.cli.main({arguments!r})
+print([name for name in {HEAVY!r} if name in sys.modules])
+"""
+    assert run(code) == "[]\n"
+
+
+def test_a_configuration_is_checked_without_anything_heavy(tmp_path):
+    (tmp_path / "bad.toml").write_text("[sistem]")
+    code = f"""
+import contextlib, io, sys
+import frictionmap.files.config
+try:
+    frictionmap.load_config({str(tmp_path / "bad.toml")!r})
+except frictionmap.InputError as error:
+    print(error)
+print([name for name in {HEAVY!r} if name in sys.modules])
+"""
+    message, heavy = run(code).splitlines()
+    assert message.startswith("unknown key sistem (did you mean system?)")
+    assert heavy == "[]"
+
+
+@pytest.mark.parametrize("path", KERNELS, ids=lambda path: path.name)
+def test_kernels_know_numbers_and_codes_only(path):
+    legal = (
+        "numpy",
+        "numba",
+        "cmath",
+        "math",
+        "typing",
+        "collections.abc",
+        "frictionmap.regimes",
+        "frictionmap._kernels",
+    )
+    for name in imported(path):
+        assert any(name == module or name.startswith(f"{module}.") for module in legal), name
+
+
+def test_imports_are_read_right():
+    """The check above sees relative imports as what they are."""
+    names = set(imported(PACKAGE / "_kernels" / "engine" / "fill.py"))
+    assert "frictionmap._kernels.jit.entry" in names
+    assert any(name.startswith("frictionmap.regimes") for path in KERNELS for name in imported(path))
+
+
+@pytest.mark.parametrize(
+    ("module", "home"),
+    [
+        ("argparse", {"arguments.py"}),
+        ("tomllib", {"config.py"}),
+        ("netCDF4", set()),
+    ],
+)
+def test_one_home(module, home):
+    users = {path.name for path in SOURCES if any(name.split(".")[0] == module for name in imported(path))}
+    assert users == home
+
+
+@pytest.mark.parametrize(("module", "folder"), [("numba", "_kernels"), ("matplotlib", "pictures")])
+def test_one_folder(module, folder):
+    users = {
+        path.parent.name for path in SOURCES if any(name.split(".")[0] == module for name in imported(path))
+    }
+    assert users == {folder}
+
+
+#: Rooms, and modules that stand alone, in the order in which data flows: none knows a later one.
+ORDER = (
+    "errors", "version", "regimes", "checks", "interrupts", "_kernels", "model", "datasets", "roots",
+    "features",
+    "theory", "steady", "files", "identify", "pictures", "plot", "progress", "arguments", "cli", "__main__",
+)  # fmt: skip
+
+
+def test_data_flows_one_way():
+    places = {path.relative_to(PACKAGE).parts[0].removesuffix(".py") for path in SOURCES}
+    assert places == {*ORDER, "__init__"}
+    for path in SOURCES:
+        own = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+        if own == "__init__":  # the door: it loads what is asked for
+            continue
+        used = {name.split(".")[1] for name in imported(path) if name.startswith("frictionmap.")}
+        later = {name for name in used if ORDER.index(name) > ORDER.index(own)}
+        assert not later, path
+
+
+# Public names
+
+
+def test_public_names_stay_what_they_are_whatever_is_imported():
+    """`fm.sweep` is the function, also once all modules, some with similar names, are loaded."""
+    before = {name: getattr(fm, name) for name in fm.__all__}
+    for module in pkgutil.walk_packages(fm.__path__, "frictionmap."):
+        if module.name != "frictionmap.__main__":
+            importlib.import_module(module.name)
+    for name, value in before.items():
+        assert getattr(fm, name) is value
+        assert isinstance(value, ModuleType) == (name in ("features", "identify")), name
+        assert isinstance(value, (str, ModuleType)) or callable(value)
+        assert isinstance(value, str) or value.__doc__, name
+
+
+def test_public_names_with_a_module_imported_first():
+    names = set(fm.__all__) - {"features", "identify"}  # modules by intent
+    types = f"import frictionmap as fm; print(*(type(getattr(fm, name)) for name in {names!r}))"
+    assert "module" not in run(f"import frictionmap.steady.sweep; {types}")
+
+
+def test_lazy_names_are_public_and_listed_once():
+    assert set(fm._HOME) <= set(fm.__all__)
+    assert len(set(fm.__all__)) == len(fm.__all__)
+
+
+def test_an_unknown_name():
+    with pytest.raises(AttributeError, match=r"module 'frictionmap' has no attribute 'sweeep'"):
+        fm.sweeep  # noqa: B018

@@ -1,0 +1,118 @@
+"""What the README shows runs as it stands, and a type checker agrees with it."""
+
+import importlib.util
+import os
+import re
+import shlex
+import subprocess
+import sys
+
+import pytest
+from conftest import ROOT
+
+from frictionmap.arguments import parse
+
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
+CODE = "\n".join(text for language, text in BLOCKS if language == "python")
+
+#: Slips that a type checker has to find, each in place of what the README says.
+SLIPS = {
+    "a setting": ("outputs=[", "output=["),
+    "an output": ('"also_reachable"', '"also_reachble"'),
+    "a contact": ('"fixed-wall"', '"fixed_wall"'),
+    "an argument": ("damping_ratios=0.01)\nds", "damping_ratio=0.01)\nds"),
+    "a start": ("mu=1.2,", 'mu=1.2, start="moveing",'),
+    "a name": ("fm.boundaries", "fm.boundarys"),
+    "a system": ("fm.response(system", "fm.response(ds"),
+}
+
+
+def commands():
+    """Command lines of frictionmap in blocks that are not Python, without their comments."""
+    for language, text in BLOCKS:
+        if language in ("", "sh"):
+            for line in text.splitlines():
+                for part in line.partition("#")[0].split("&&"):
+                    words = shlex.split(part)
+                    if words and words[0].split("/")[-1] == "frictionmap":
+                        yield words[1:]
+
+
+def test_python_blocks_run(tmp_path):
+    """In order, in one program, in an empty folder."""
+    assert CODE.count("import frictionmap as fm") == 1
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", CODE],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=6000,
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "map.png").stat().st_size > 1000
+
+
+def test_command_lines_parse():
+    found = list(commands())
+    assert {words[0] for words in found} >= {"map", "boundaries", "response", "plot", "info"}
+    for words in found:
+        assert parse(words).command == words[0]
+
+
+def test_shell_blocks_are_shell():
+    texts = [text for language, text in BLOCKS if language == "sh"]
+    assert texts
+    for text in texts:
+        assert subprocess.run(["sh", "-n"], input=text, text=True).returncode == 0, text
+
+
+def errors(checker, programs, folder):
+    """Lines in which a type checker, at its strictest, finds errors, for each of the programs by name."""
+    for name, code in programs.items():
+        (folder / name).write_text(code)
+    if checker == "mypy":
+        options = ["--strict", "--follow-imports=silent", "--config-file=", "--cache-dir=.mypy"]
+    else:
+        (folder / "pyrightconfig.json").write_text(
+            f'{{"typeCheckingMode": "strict", "extraPaths": ["{ROOT}"]}}'
+        )
+        options = ["--pythonpath", sys.executable]
+    done = subprocess.run(
+        [sys.executable, "-m", checker, *options, *programs],
+        cwd=folder,
+        env=os.environ | {"MYPYPATH": str(ROOT), "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=6000,
+    )
+    assert done.returncode in (0, 1), done.stdout + done.stderr
+    found = {
+        name: [
+            int(line.partition(f"{name}:")[2].split(":")[0])
+            for line in done.stdout.splitlines()
+            if re.search(r"\berror\b", line) and f"{name}:" in line
+        ]
+        for name in programs
+    }
+    assert any(found.values()) == bool(done.returncode), done.stdout
+    return found
+
+
+@pytest.mark.parametrize("checker", ["mypy", "pyright"])
+def test_type_checkers_accept_the_code_and_find_slips(checker, tmp_path):
+    if importlib.util.find_spec(checker) is None:
+        pytest.skip(f"{checker} is not installed")
+    code = CODE
+    for right, wrong in SLIPS.values():
+        assert right in CODE
+        code = code.replace(right, wrong, 1)
+    found = errors(checker, {"shown.py": CODE, "slipped.py": code}, tmp_path)
+    assert found["shown.py"] == []
+    changed = {
+        number
+        for number, (one, other) in enumerate(zip(CODE.splitlines(), code.splitlines(), strict=True), 1)
+        if one != other
+    }
+    assert changed <= set(found["slipped.py"])

@@ -1,0 +1,691 @@
+"""The command line: every message, every exit status, and what is and is not left in the folder."""
+
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import ROOT
+
+import frictionmap as fm
+from frictionmap.cli import main
+from frictionmap.model.settings import OUTPUTS
+
+ENVIRONMENT = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
+
+#: Seconds after which something hangs, on a machine however slow.
+HANGS = 1200.0
+
+SYSTEM = 'contact = "fixed-wall"'
+GRID = "r = [0.3, 0.8]\nbeta = [0.1, 0.5, 1.5]"
+
+
+def toml(system=SYSTEM, grid=GRID, solver="", top=""):
+    return f"{top}\n[system]\n{system}\n[grid]\n{grid}\n[solver]\n{solver}\n"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """The current folder, with a good configuration in it."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "good.toml").write_text(toml())
+    return tmp_path
+
+
+def listing(folder):
+    return {
+        str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None
+        for path in folder.rglob("*")
+    }
+
+
+def status_of(arguments):
+    """Exit status of a command line, given as one string or as a list."""
+    try:
+        return main(shlex.split(arguments) if isinstance(arguments, str) else arguments)
+    except SystemExit as stop:  # of argparse
+        return stop.code
+
+
+def assert_refused(capsys, folder, arguments, *words, status=2):
+    """One line on standard error with these words in it; nothing printed, nothing written."""
+    before = listing(folder)
+    assert status_of(arguments) == status
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("frictionmap")
+    assert re.fullmatch(r"[^\n]+\n", err), err
+    for word in words:
+        assert word in err
+    assert listing(folder) == before
+
+
+# Bad configurations: what the message says
+
+BAD_CONFIGURATIONS = {
+    "not TOML": ("a = 1\nb = ,\n", ["configuration bad.toml must be TOML", "line 2, column 5"]),
+    "TOML with a key given twice": (toml(top="title = 'a'\ntitle = 'b'"), ["bad.toml", "TOML", "line 2"]),
+    "brackets without end": ("a = " + "[" * 5000, ["bad.toml", "TOML"]),
+    "a number of thousands of digits": ("a = " + "1" * 5000, ["bad.toml", "TOML"]),
+    # unknown keys, at each level
+    "unknown key": (toml(top="titel = 'x'"), ["unknown key titel", "did you mean title?", "system, grid"]),
+    "unknown table": (toml() + "[sover]\n", ["unknown key sover", "did you mean solver?"]),
+    "unknown key with a line break": (toml(top='"a\\nb" = 1'), ["unknown key a b"]),
+    "unknown system key": (
+        toml(system="damping_ratio = 0.1"),
+        ["unknown key system.damping_ratio", "did you mean damping_ratios?", "contact_masses"],
+    ),
+    "unknown system key, a word cut short": (
+        toml(system='matrix = "frame.npz"'),
+        ["unknown key system.matrix", "did you mean matrices?", "frequency_scale", "damping_reference"],
+    ),
+    "unknown grid key": (toml(grid=GRID + "\nbetta = 1"), ["unknown key grid.betta", "did you mean beta?"]),
+    "unknown solver key": (
+        toml(solver="tolerence = 1e-9"),
+        ["unknown key solver.tolerence", "did you mean tolerance?", "cycles"],
+    ),
+    "unknown axis key": (
+        toml(grid="beta = 1\nr = { start = 0, stop = 1, stepp = 0.1 }"),
+        ["unknown key grid.r.stepp", "did you mean step?", "start, stop, step, num, values"],
+    ),
+    "a key unlike all others": (toml(solver="zzz = 1"), ["unknown key solver.zzz; the keys of [solver] are"]),
+    # missing and misplaced
+    "no system": ("[grid]\nr = 1\nbeta = 1", ["[system]", "none"]),
+    "no grid": ("[system]", ["grid.r", "missing"]),
+    "no beta": (toml(grid="r = 1"), ["grid.beta", "missing"]),
+    "system is not a table": ("system = 5", ["system must be a table", "got 5"]),
+    "grid is a list": ("grid = [1]\n[system]", ["grid must be a table", "got [1]"]),
+    # wrong types
+    "a number for text": (toml(top="title = 5"), ["title must be text", "got 5"]),
+    "a number for a word": (toml(system="contact = 1"), ["system.contact", "fixed-wall", "got 1"]),
+    "text for a number": (toml(solver='tolerance = "1e-9"'), ["solver.tolerance must be a number", "'1e-9'"]),
+    "text for a whole number": (toml(solver='steps = "9"'), ["solver.steps must be a whole number", "'9'"]),
+    "a fraction for a whole number": (toml(solver="steps = 9.5"), ["solver.steps", "whole number", "9.5"]),
+    "true for a number": (toml(system="damping_ratios = true"), ["system.damping_ratios", "number", "True"]),
+    "true for a whole number": (toml(solver="cycles = true"), ["solver.cycles", "whole number", "True"]),
+    "text in an axis": (toml(grid='r = [1, "2"]\nbeta = 1'), ["grid.r[1] must be a number", "'2'"]),
+    "true in an axis": (toml(grid="r = [true]\nbeta = 1"), ["grid.r[0] must be a number", "True"]),
+    "text for an axis": (toml(grid='r = "1"\nbeta = 1'), ["grid.r", "a number, a list", "'1'"]),
+    "true for an axis": (toml(grid="r = true\nbeta = 1"), ["grid.r", "a number, a list", "True"]),
+    "a date for an axis": (toml(grid="r = 2020-01-01\nbeta = 1"), ["grid.r", "a number, a list", "2020"]),
+    "text in an axis table": (
+        toml(grid='beta = 1\nr = { start = "0", stop = 1, num = 3 }'),
+        ["grid.r.start must be a number", "'0'"],
+    ),
+    "a fraction for num": (
+        toml(grid="beta = 1\nr = { start = 0, stop = 1, num = 2.5 }"),
+        ["grid.r.num must be a whole number", "2.5"],
+    ),
+    # out of range
+    "mu < 1": (toml(grid=GRID + "\nmu = [0.5, 1.0]"), ["grid.mu must be >= 1", "0.5", "index 0"]),
+    "beta < 0": (toml(grid="r = 1\nbeta = [-0.25, 0.5]"), ["grid.beta must be >= 0", "-0.25", "index 0"]),
+    "r < 0": (toml(grid="r = [-1, 1]\nbeta = 1"), ["grid.r must be >= 0", "-1.0", "index 0"]),
+    "r too large": (toml(grid="r = [1, 1e9]\nbeta = 1"), ["grid.r must be <= 1e+08", "index 1"]),
+    "zeta < 0": (toml(system="damping_ratios = -0.1"), ["system.damping_ratios must be >= 0", "-0.1"]),
+    "zeta in a list < 0": (toml(system="damping_ratios = [-0.1]"), ["system.damping_ratios[0]", ">= 0"]),
+    "zeta too large": (toml(system="damping_ratios = 1e3"), ["system.damping_ratios must be <= 100", "1000"]),
+    "zeta not finite": (toml(system="damping_ratios = nan"), ["system.damping_ratios", "finite", "nan"]),
+    "nan in an axis": (toml(grid="r = [0.5, nan]\nbeta = 1"), ["grid.r[1] must be finite", "nan"]),
+    "inf in an axis": (toml(grid="r = 1\nbeta = [1, inf]"), ["grid.beta[1] must be finite", "inf"]),
+    "inf for an axis": (toml(grid="r = inf\nbeta = 1"), ["grid.r must be finite", "inf"]),
+    "nan as a start": (
+        toml(grid="beta = 1\nr = { start = nan, stop = 1, num = 2 }"),
+        ["grid.r.start must be finite", "nan"],
+    ),
+    "an integer beyond all doubles": (toml(grid=f"beta = 1\nr = 1{400 * '0'}"), ["grid.r", "finite", "inf"]),
+    "empty axis": (toml(grid="r = []\nbeta = 1"), ["grid.r must have at least one value", "none"]),
+    "empty values": (toml(grid="beta = 1\nr = { values = [] }"), ["grid.r must have at least one value"]),
+    "unsorted axis": (toml(grid="r = [1, 3, 2]\nbeta = 1"), ["grid.r must be increasing", "2.0 at index 2"]),
+    "a value twice": (toml(grid="r = [1, 1]\nbeta = 1"), ["grid.r must be increasing", "1.0 at index 1"]),
+    "axis table without keys": (toml(grid="r = {}\nbeta = 1"), ["grid.r must be", "{ start, stop, step }"]),
+    "axis table with step and num": (
+        toml(grid="beta = 1\nr = { start = 0, stop = 1, step = 0.5, num = 3 }"),
+        ["grid.r must be { start, stop, step }, { start, stop, num } or { values }", "step, num"],
+    ),
+    "axis table without stop": (
+        toml(grid="beta = 1\nr = { start = 0, step = 0.5 }"),
+        ["grid.r must be { start, stop, step }", "got start, step"],
+    ),
+    "step of zero": (
+        toml(grid="beta = 1\nr = { start = 0, stop = 1, step = 0 }"),
+        ["grid.r.step must be > 0", "got 0"],
+    ),
+    "step < 0": (
+        toml(grid="beta = 1\nr = { start = 0, stop = 1, step = -0.1 }"),
+        ["grid.r.step must be > 0", "got -0.1"],
+    ),
+    "num of zero": (
+        toml(grid="beta = 1\nr = { start = 0, stop = 1, num = 0 }"),
+        ["grid.r.num must be >= 1", "got 0"],
+    ),
+    "stop < start": (
+        toml(grid="beta = 1\nr = { start = 1, stop = 0.5, step = 0.1 }"),
+        ["grid.r.stop must be >= start (1)", "got 0.5"],
+    ),
+    # solver
+    "one step": (toml(solver="steps = 1"), ["solver.steps must be >= 2", "got 1"]),
+    "no cycles": (toml(solver="cycles = 0"), ["solver.cycles must be >= 1", "got 0"]),
+    "too many cycles": (toml(solver="cycles = 10_000_000_000"), ["solver.cycles must be <= 1e+09"]),
+    "a coarse tolerance": (toml(solver="tolerance = 1"), ["solver.tolerance must be <= 0.001", "got 1"]),
+    "a tolerance of zero": (toml(solver="tolerance = 0"), ["solver.tolerance must be >= 1e-15", "got 0"]),
+    "unknown start": (
+        toml(solver='start = "movin"'),
+        ["solver.start", "rest, moving", "'movin'", "mean moving"],
+    ),
+    "unknown skip": (toml(solver='skip = "all"'), ["solver.skip", "exact, none", "'all'"]),
+    "unknown output": (
+        toml(solver='outputs = ["regime", "stop_per_cycle"]'),
+        ["solver.outputs must be one of regime,", "'stop_per_cycle'", "did you mean stops_per_cycle?"],
+    ),
+    "a number as an output": (toml(solver="outputs = [1]"), ["solver.outputs must be one of", "got 1"]),
+    "no outputs": (toml(solver="outputs = []"), ["solver.outputs must name at least one of regime,", "none"]),
+    "outputs as text": (toml(solver='outputs = "regime"'), ["solver.outputs must be a list", "'regime'"]),
+    # system
+    "unknown contact": (
+        toml(system='contact = "fixed-wal"'),
+        ["system.contact must be one of fixed-wall, joined-base-wall", "'fixed-wal'", "mean fixed-wall?"],
+    ),
+    "no masses": (toml(system="mass_ratios = []"), ["system.mass_ratios", "at least one value"]),
+    "a mass of zero": (toml(system="mass_ratios = [0]"), ["system.mass_ratios[0] must be > 0", "got 0"]),
+    "a first mass that is not the unit": (
+        toml(system="mass_ratios = [2]"),
+        ["system.mass_ratios[0] must be 1"],
+    ),
+    "a mass as text": (toml(system='mass_ratios = "1"'), ["system.mass_ratios must be a list", "'1'"]),
+    "springs and masses differ": (
+        toml(system="stiffness_ratios = [1, 2]"),
+        ["system.stiffness_ratios", "as many values as mass_ratios (1)", "got 2"],
+    ),
+    "between masses, of one": (
+        toml(system='contact = "between-masses"'),
+        ["system.contact must be fixed-wall or joined-base-wall", "'between-masses'"],
+    ),
+    "a second mass in contact": (
+        toml(system="contact_masses = [2]"),
+        ["system.contact_masses[0] must be <= 1", "got 2"],
+    ),
+    "two masses in contact": (
+        toml(system="contact_masses = [1, 2]"),
+        ["system.contact_masses must name one mass", "[1, 2]"],
+    ),
+    "a load on a second mass": (toml(system="load_mass = 2"), ["system.load_mass must be <= 1", "got 2"]),
+    "matrices that are not there": (
+        toml(system='matrices = "frame.npz"'),
+        ["system.matrices must be an .npz file with arrays M, K", "frame.npz: No such file or directory"],
+    ),
+    "a damping ratio too many": (
+        toml(system="damping_ratios = [0.1, 0.2]"),
+        ["system.damping_ratios must be one number or one a mode (1)", "got 2"],
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "words"), BAD_CONFIGURATIONS.values(), ids=BAD_CONFIGURATIONS)
+def test_bad_configuration(folder, capsys, text, words):
+    (folder / "bad.toml").write_text(text)
+    assert_refused(capsys, folder, ["map", "bad.toml"], *words)
+
+
+@pytest.mark.parametrize("command", ["map", "boundaries", "response --r 1 --beta 1"])
+def test_configurations_that_cannot_be_read(folder, capsys, command):
+    command, *more = command.split()
+    (folder / "latin.toml").write_bytes('title = "é"'.encode("latin-1"))
+    (folder / "a folder").mkdir()
+    for name, word in (
+        ("missing.toml", "No such file or directory"),
+        ("a folder", "directory"),
+        ("good.toml/x.toml", "Not a directory"),
+        ("latin.toml", "must be text in UTF-8"),
+    ):
+        assert_refused(capsys, folder, [command, name, *more], f"configuration {name} ", word)
+
+
+@pytest.mark.parametrize(
+    ("grid", "words"),
+    [
+        (
+            "r = { start = 0, stop = 1, step = 1e-6 }\nbeta = { start = 0, stop = 1, num = 1_000_000 }",
+            ["grid must have at most 1e+09 cells", "got 1e+12", "1000001 r x 1000000 beta"],
+        ),
+        ("r = { start = 0, stop = 1, step = 1e-12 }\nbeta = 1", ["grid.r.step", "at most 1e+09", "1e+12"]),
+        ("r = { start = 0, stop = 1, step = 5e-324 }\nbeta = 1", ["grid.r.step", "at most 1e+09", "5e-324"]),
+        ("beta = { start = 0, stop = 1, num = 1_000_000_000_000 }\nr = 1", ["grid.beta.num", "<= 1e+09"]),
+        (
+            f"r = {{ start = 0, stop = 1, num = 100_000_000 }}\nbeta = 1\nmu = {list(range(1, 21))}",
+            ["at most 1e+09 cells", "20 mu x 100000000 r"],
+        ),
+    ],
+)
+def test_huge_grids_are_refused_at_once_and_without_memory(folder, capsys, grid, words):
+    (folder / "huge.toml").write_text(toml(grid=grid))
+    tracemalloc.start()
+    began = time.perf_counter()
+    try:
+        assert_refused(capsys, folder, ["map", "huge.toml"], *words)
+        assert tracemalloc.get_traced_memory()[1] < 5e6
+    finally:
+        tracemalloc.stop()
+    assert time.perf_counter() - began < 5.0  # it takes some milliseconds
+
+
+# Bad arguments
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ("", ["COMMAND", "required"]),
+        ("mapp good.toml", ["'mapp'", "'map'", "'boundaries'"]),
+        ("map", ["CONFIG.toml", "required"]),
+        ("map good.toml more", ["unrecognized", "more"]),
+        ("map good.toml --threads=x", ["--threads", "whole number", "'x'"]),
+        ("map good.toml --threads 0", ["--threads: must be >= 1", "got 0"]),
+        ("map good.toml --threads -2", ["--threads: must be >= 1", "got -2"]),
+        ("map good.toml --threads 1.5", ["--threads", "whole number", "'1.5'"]),
+        ("map good.toml --set", ["--set", "expected one argument"]),
+        ("map good.toml --set grid.r", ["--set must be KEY=VALUE", "'grid.r'"]),
+        ("map good.toml --set grid.q=1", ["unknown key grid.q", "r, beta, mu"]),
+        ("map good.toml --set solver.step=9", ["unknown key solver.step", "did you mean steps?"]),
+        ("map good.toml --set grid.r.stepp=1", ["grid.r.stepp=1", "must be a table", "[0.3, 0.8]"]),
+        ("map good.toml --set solver.outputs=regime", ["solver.outputs must be a list", "'regime'"]),
+        ("map good.toml --set solver.steps=many", ["solver.steps must be a whole number", "'many'"]),
+        ("response good.toml --r 0.5", ["--beta", "required"]),
+        ("response good.toml --r x --beta 1", ["--r", "float", "'x'"]),
+        ("response good.toml --r nan --beta 1", ["r must be finite", "nan"]),
+        ("response good.toml --r inf --beta 1", ["r must be finite", "inf"]),
+        ("response good.toml --r 0 --beta 1", ["r must be > 0", "got 0"]),
+        ("response good.toml --r -1 --beta 1", ["r must be >= 0", "got -1"]),
+        ("response good.toml --r 1 --beta -1", ["beta must be >= 0", "got -1"]),
+        ("response good.toml --r 1 --beta 1 --mu 0.5", ["mu must be >= 1", "got 0.5"]),
+        ("boundaries good.toml --threads 2", ["unrecognized", "--threads"]),
+        ("map good.toml --over", ["unrecognized", "--over"]),
+        ("map good.toml --threads 1 --threads 2", ["--threads: must be given once"]),
+        ("map good.toml -o a.nc -o b.nc", ["-o: must be given once"]),
+        ("plot good.nc -o a.png -o b.png", ["-o: must be given once"]),
+        ("response good.toml --r 1 --r 2 --beta 1", ["--r: must be given once"]),
+        ("response good.toml --r 1 --beta 1 --beta 1", ["--beta: must be given once"]),
+        ("response good.toml --r 1 --beta 1 --mu 1 --mu 2", ["--mu: must be given once"]),
+        ("response good.toml --r 1 --beta 1 --set grid.mu=[1,1.5,2]", ["--mu must be given", "1, 1.5, 2"]),
+        ("map good.toml --set grid.r=1 --set grid.r=2", ["--set grid.r=2 must not undo --set grid.r=1"]),
+        (
+            "map good.toml --set grid.r={start=0,stop=1,num=3} --set grid.r.num=5 --set grid.r=1",
+            ["--set grid.r=1 must not undo --set grid.r={start=0,stop=1,num=3}"],
+        ),
+        (
+            "map good.toml --set grid.r={start=0,stop=1,num=3} --set grid.r.num=5 --set grid.r.step=0.5",
+            ["--set grid.r.step=0.5 must not undo --set grid.r.num=5"],
+        ),
+        ("map good.toml --set 'solver.steps=24 # of old'", ["solver.steps", "'24 # of old'"]),
+        ("map good.toml --set 'solver.steps=24, cycles = 5'", ["solver.steps", "'24, cycles = 5'"]),
+        ("map good.toml --set 'solver.steps=24 }, b = { c = 1'", ["solver.steps", "'24 }, b = { c = 1'"]),
+        ("plot", ["FILE.nc", "required"]),
+        ("plot missing.nc", ["missing.nc does not exist", "written by frictionmap"]),
+        ("info missing.nc", ["missing.nc does not exist", "written by frictionmap"]),
+        ("info .", ["file . is not a file"]),
+        ("plot good.toml", ["good.toml must be NetCDF written by frictionmap"]),
+        ("info good.toml", ["good.toml must be NetCDF written by frictionmap"]),
+    ],
+)
+def test_bad_arguments(folder, capsys, arguments, words):
+    assert_refused(capsys, folder, arguments, *words)
+
+
+def test_an_argument_that_no_file_can_record(folder, capsys):
+    assert_refused(capsys, folder, ["map", "good.toml", "--set", "title=\udcff"], "UTF-8", r"'title=\udcff'")
+
+
+def test_an_argument_with_a_line_break(folder, capsys):
+    assert_refused(capsys, folder, ["map", "good.toml", "a\nb"], "unrecognized arguments: a b")
+
+
+@pytest.mark.parametrize("override", ["solver.steps=9\nsolver.cycles=5", "title=one\ntwo", "grid.r\r\n=1"])
+def test_an_override_with_a_line_break(folder, capsys, override):
+    assert_refused(capsys, folder, ["map", "good.toml", "--set", override], "--set must be one line")
+
+
+def test_files_of_others(folder, capsys):
+    xr.Dataset({"regime": ("x", [1.0])}).to_netcdf(folder / "foreign.nc")
+    xr.Dataset({"t": ("x", [1.0])}, attrs={"source": "frictionmap 1"}).to_netcdf(folder / "strange.nc")
+    undecodable = xr.Dataset({"t": ("x", [1.0], {"units": "days since never"})})
+    undecodable.to_netcdf(folder / "undecodable.nc")
+    for command in ("plot", "info"):
+        for name, word in (
+            ("foreign.nc", "its source is 'not given'"),
+            ("strange.nc", "must be written by frictionmap"),
+            ("undecodable.nc", "its source is 'not given'"),
+        ):
+            assert_refused(capsys, folder, [command, name], f"file {name} must be", word)
+
+
+OUTPUT_COMMANDS = [
+    "map good.toml",
+    "boundaries good.toml",
+    "response good.toml --r 0.8 --beta 0.1",
+    "plot ours.nc",
+]
+
+
+@pytest.mark.parametrize("command", OUTPUT_COMMANDS)
+def test_outputs_that_cannot_be_written(folder, capsys, command):
+    assert status_of("map good.toml -o ours.nc --quiet") == 0
+    (folder / "dir.png").mkdir()
+    (folder / "old.png").write_text("old")
+    for output, words in (
+        ("none/out.png", ["-o must lie in a folder that exists", "none/out.png"]),
+        ("good.toml/out.png", ["-o must lie in a folder that exists", "good.toml/out.png"]),
+        ("dir.png", ["-o must be a file", "folder dir.png"]),
+        ("-", ["-o: must be the name of a file; got '-'"]),
+        ("", ["-o: must be the name of a file; got ''"]),
+        ("new.png/", ["-o: must be the name of a file; got 'new.png/'"]),
+        ("old.png", ["old.png exists already", "--overwrite"]),
+        ("x" * 300 + ".png", ["-o must be a place that can be written to", "too long"]),
+    ):
+        assert_refused(capsys, folder, [*command.split(), "-o", output], *words)
+        if output != "old.png":
+            assert_refused(capsys, folder, [*command.split(), "-o", output, "--overwrite"], *words)
+    if hasattr(os, "mkfifo"):  # stands for /dev/null, which a test must not endanger
+        os.mkfifo(folder / "pipe.png")
+        assert_refused(capsys, folder, f"{command} -o pipe.png --overwrite", "-o must be an ordinary file")
+
+
+@pytest.mark.parametrize("command", OUTPUT_COMMANDS)
+def test_no_output_is_an_input(folder, capsys, command):
+    """Whatever its name: the configuration, its matrices, the file that is drawn."""
+    np.savez(folder / "frame.npz", M=np.eye(1), K=np.eye(1))
+    (folder / "good.toml").write_text(toml(system=f'{SYSTEM}\nmatrices = "frame.npz"'))
+    assert status_of("map good.toml -o ours.nc --quiet") == 0
+    (folder / "ours.png").symlink_to("ours.nc")
+    (folder / "link").symlink_to("good.toml")
+    (folder / "hard").hardlink_to(folder / "frame.npz")
+    names = ["ours.png"] if command.startswith("plot") else ["good.toml", "link", "frame.npz", "hard"]
+    for name in names:
+        for overwrite in ([], ["--overwrite"]):
+            words = ["-o must not be a file that is read", f"got {name}"]
+            assert_refused(capsys, folder, [*command.split(), "-o", name, *overwrite], *words)
+
+
+def test_a_file_named_like_what_is_read(folder, capsys):
+    """The default name of the output of a configuration x.nc is x.nc."""
+    (folder / "x.nc").write_text(toml())
+    assert_refused(capsys, folder, "map x.nc --overwrite", "-o must not be a file that is read; got x.nc")
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write anywhere")
+def test_a_folder_without_permission(folder, capsys):
+    (folder / "closed").mkdir(mode=0o500)
+    words = ["-o must be a place that can be written to", "Permission denied"]
+    assert_refused(capsys, folder, ["map", "good.toml", "-o", "closed/out.nc"], *words)
+
+
+@pytest.mark.parametrize("picture", ["picture.jpg", "picture", "picture.nc"])
+def test_wrong_picture_ending(folder, capsys, picture):
+    assert status_of("map good.toml -o ours.nc --quiet") == 0
+    assert_refused(capsys, folder, ["plot", "ours.nc", "-o", picture], ".png, .pdf, .svg", f"got {picture}")
+
+
+def test_a_map_that_cannot_be_drawn(folder, capsys):
+    assert status_of(["map", "good.toml", "--quiet", "--set", 'solver.outputs=["cycles"]']) == 0
+    assert_refused(capsys, folder, ["plot", "good.nc"], "regime or stops_per_cycle", "neither")
+
+
+def test_user_errors_without_a_traceback_from_the_shell(folder):
+    for arguments, word in ((["map", "missing.toml"], "missing.toml"), (["mapp"], "mapp"), ([], "COMMAND")):
+        done = subprocess.run(
+            [sys.executable, "-m", "frictionmap", *arguments],
+            env=ENVIRONMENT,
+            capture_output=True,
+            text=True,
+            timeout=HANGS,
+        )
+        assert done.returncode == 2
+        assert done.stdout == ""
+        assert word in done.stderr
+        assert done.stderr.count("\n") == 1
+    assert list(listing(folder)) == ["good.toml"]
+
+
+# Trouble that is nobody's fault: exit status 1
+
+
+def test_an_undamped_resonance_has_no_response(folder, capsys):
+    arguments = "response good.toml --r 1 --beta 0.3"
+    assert_refused(capsys, folder, arguments, "r = 1, beta = 0.3", "undamped resonance", status=1)
+
+
+@pytest.mark.parametrize(
+    ("error", "word"),
+    [
+        (MemoryError(), "MemoryError"),
+        (MemoryError("Unable to allocate 8 GiB"), "8 GiB"),
+        (OSError(28, "No space left on device"), "good.nc cannot be written (No space left on device)"),
+        (RuntimeError("NetCDF: HDF error"), "is there room on the disk?"),
+    ],
+)
+def test_trouble_while_writing(folder, capsys, monkeypatch, error, word):
+    def fail(self, path, **options):
+        Path(path).write_text("half")
+        raise error
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
+    assert_refused(capsys, folder, ["map", "good.toml", "--quiet"], word, status=1)
+
+
+# Good paths
+
+
+def output_of(capsys, arguments):
+    """What is printed; on standard error are at most the lines of a map, which is no terminal."""
+    assert status_of(arguments) == 0
+    out, err = capsys.readouterr()
+    assert re.fullmatch(
+        r"(frictionmap: map of \d+ cells begun\n"
+        r"(frictionmap: compiling kernels, once: .*\n)?"
+        r"frictionmap: map of \d+ cells done in \d+ s\n)?",
+        err,
+    )
+    if "--quiet" in arguments:
+        assert err == ""
+    return out
+
+
+def test_every_command_with_default_names(folder, capsys):
+    assert re.fullmatch(
+        r"6 cells \(2 permanent sticking, 2 stick slip, 2 continuous\) in \S+ s; wrote good\.nc\n",
+        output_of(capsys, ["map", "good.toml"]),
+    )
+    out = output_of(capsys, ["boundaries", "good.toml"])
+    assert out == "2 frequencies, 1 mu; wrote good-boundaries.nc\n"
+    out = output_of(capsys, "response good.toml --r 0.3 --beta 0.5")
+    assert re.fullmatch(r"stick slip, 2 stops per cycle, .*; wrote good-response\.nc\n", out)
+    for name in ("good", "good-boundaries", "good-response"):
+        assert output_of(capsys, ["plot", f"{name}.nc"]) == f"wrote {name}.png\n"
+    assert sorted(listing(folder)) == sorted(
+        ["good.toml"]
+        + [f"good{kind}.{ending}" for kind in ("", "-boundaries", "-response") for ending in ("nc", "png")]
+    )
+
+
+def test_info(folder, capsys):
+    status_of(
+        ["map", "good.toml", "--quiet", "--set", f"solver.outputs={list(OUTPUTS)}", "--set", "title=A map"]
+    )
+    out = output_of(capsys, ["info", "good.nc"])
+    lines = out.splitlines()
+    assert lines[0] == "A map [map]"
+    assert "one mass" in out
+    assert re.search(r"^  r +0\.3, 0\.8$", out, re.MULTILINE)
+    assert "6 cells (2 permanent sticking, 2 stick slip, 2 continuous)" in lines
+    for name in (*OUTPUTS, "beta_lim", "beta_lim_modal", "beta_stick"):
+        assert re.search(rf"^  {name} +\(mu, r", out, re.MULTILINE)
+    assert len(lines) < 40
+
+    status_of("response good.toml --quiet --r 0.8 --beta 0.1")
+    out = output_of(capsys, ["info", "good-response.nc"])
+    assert "[response]" in out
+    assert re.search(r"^continuous, amplitude 2\.7", out, re.MULTILINE)
+
+    status_of("boundaries good.toml --quiet")
+    assert "[boundaries]" in output_of(capsys, ["info", "good-boundaries.nc"])
+
+
+def test_info_says_what_can_be_done_about_unresolved_cells(folder, capsys):
+    grid = ["--set", "grid.r=[0.0, 0.5]", "--set", "grid.beta=[0.1]", "--set", 'solver.outputs=["status"]']
+    status_of(["map", "good.toml", "--quiet", *grid])
+    assert "1 cell quasi_static: r = 0" in output_of(capsys, ["info", "good.nc"])
+
+
+@pytest.mark.parametrize(
+    "command", ["map good.toml", "boundaries good.toml", "response good.toml --r 2 --beta 0.1"]
+)
+def test_quiet_prints_nothing(folder, capsys, command):
+    assert output_of(capsys, [*command.split(), "--quiet", "-o", "out.nc"]) == ""
+    assert output_of(capsys, ["plot", "out.nc", "--quiet", "-o", "out.svg"]) == ""
+    assert sorted(listing(folder)) == ["good.toml", "out.nc", "out.svg"]
+
+
+def test_overwrite_replaces(folder, capsys):
+    status_of(["map", "good.toml", "--quiet"])
+    first = xr.load_dataset("good.nc")
+    status_of(["map", "good.toml", "--quiet", "--overwrite", "--set", "grid.r=0.7"])
+    assert first.sizes["r"] == 2
+    assert xr.load_dataset("good.nc").r.values.tolist() == [0.7]
+
+
+def test_overrides_are_kept_in_the_file_and_give_it_again(folder, capsys):
+    overrides = [
+        "grid.r={ start = 0.3, stop = 0.7, step = 0.2 }",
+        "grid.r.num=5",
+        "grid.mu=[1, 1.5]",
+        "system.contact=joined-base-wall",
+        "system.damping_ratios=0.05",
+        "solver.start=moving",
+        'solver.outputs=["regime", "contact_amplitude"]',
+        'title=with "quotes" and \\ in it',
+    ]
+    status_of(["map", "good.toml", "--quiet", *(a for text in overrides for a in ("--set", text))])
+    first = xr.load_dataset("good.nc")
+    tree = tomllib.loads(first.attrs["config"])
+    assert tree["grid"]["r"] == {"start": 0.3, "stop": 0.7, "num": 5}
+    assert tree["solver"]["start"] == "moving"
+    assert first.attrs["title"] == tree["title"] == 'with "quotes" and \\ in it'
+    assert list(first.data_vars)[:2] == ["regime", "contact_amplitude"]
+
+    (folder / "again.toml").write_text(first.attrs["config"])
+    status_of(["map", "again.toml", "--quiet"])
+    again = xr.load_dataset("again.nc")
+    assert again.attrs.pop("history") != first.attrs.pop("history")
+    xr.testing.assert_identical(again, first)
+
+
+def test_history_has_the_command_line(folder):
+    status_of(["map", "good.toml", "--quiet", "-o", "a b.nc"])
+    history = xr.load_dataset("a b.nc").attrs["history"]
+    assert re.fullmatch(
+        r"20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ frictionmap map good\.toml --quiet -o 'a b\.nc'", history
+    )
+
+
+def test_map_and_response_and_library_agree(folder):
+    status_of("map good.toml --quiet --threads 1")
+    status_of("response good.toml --quiet --r 0.3 --beta 0.5")
+    ds, one = xr.load_dataset("good.nc"), xr.load_dataset("good-response.nc")
+    cell = ds.sel(mu=1.0, r=0.3, beta=0.5)
+    for name in ("regime", "stops_per_cycle"):
+        assert cell[name] == one[name]
+    assert float(cell.contact_amplitude) == pytest.approx(float(one.contact_amplitude), rel=1e-12)
+    direct = fm.sweep(fm.System(), [0.3, 0.8], [0.1, 0.5, 1.5])
+    for name in direct.variables:
+        np.testing.assert_array_equal(ds[name], direct[name], strict=True)
+
+
+def test_response_takes_the_mu_of_its_configuration(folder):
+    """One value is it, whatever it is; --mu goes before it."""
+    for grid, option, mu in (("1.5", "", 1.5), ("[2]", "", 2.0), ("[1, 2]", "--mu 1.2", 1.2)):
+        status_of(
+            f"response good.toml --quiet --overwrite --r 0.8 --beta 0.5 --set 'grid.mu={grid}' {option}"
+        )
+        assert float(xr.load_dataset("good-response.nc").mu) == mu
+    status_of("response good.toml --quiet --overwrite --r 0.8 --beta 0.5")
+    assert float(xr.load_dataset("good-response.nc").mu) == 1.0
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["map", "--help"], ["--version"]])
+def test_help_and_version(capsys, arguments):
+    assert status_of(arguments) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert "frictionmap" in out
+    if arguments == ["--help"]:
+        for command in ("map", "boundaries", "response", "plot", "info"):
+            assert re.search(rf"^ +{command}\b", out, re.MULTILINE)
+
+
+# On a terminal: progress and Ctrl-C
+
+
+def start_on_a_terminal(arguments):
+    """The program with a terminal as its standard error; the other end of it."""
+    pty = pytest.importorskip("pty")
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "frictionmap", *arguments]
+    process = subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=theirs)
+    os.close(theirs)
+    return process, ours
+
+
+def read_until(terminal, word, seconds=HANGS):
+    text = ""
+    deadline = time.monotonic() + seconds
+    while word not in text and time.monotonic() < deadline:
+        try:
+            text += os.read(terminal, 4096).decode()
+        except OSError:  # what Linux says when the other end is closed
+            break
+    return text
+
+
+def close(process, terminal):
+    process.kill()
+    process.wait()
+    process.stdout.close()
+    os.close(terminal)
+
+
+#: Every cell of it is marched, some 17,000 a second on one processor: three minutes there.
+SLOW_GRID = [
+    "--set", 'solver.steady="marched"',
+    "--set", "grid.mu=1.5",
+    "--set", "grid.r={ start = 0.02, stop = 0.3, num = 3000 }",
+    "--set", "grid.beta={ start = 0.01, stop = 0.5, num = 1000 }",
+]  # fmt: skip
+
+POSIX = pytest.mark.skipif(sys.platform == "win32", reason="terminals and signals of POSIX")
+
+
+@POSIX
+def test_interrupt(folder):
+    """Ctrl-C during a long map: the end within seconds, and nothing is left."""
+    process, terminal = start_on_a_terminal(["map", "good.toml", *SLOW_GRID])
+    try:
+        assert re.search(r"\r +[0-9.]+ %  about [0-9.]+ (s|min|h) left", read_until(terminal, " left"))
+        assert process.poll() is None
+        began = time.perf_counter()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=HANGS) == 130
+        assert time.perf_counter() - began < 25.0  # two seconds, on a machine ten times slower
+        text = read_until(terminal, "nothing was written")
+        assert "frictionmap: interrupted; nothing was written" in text
+        assert "Traceback" not in text
+        assert process.stdout.read() == b""
+        assert list(listing(folder)) == ["good.toml"]
+    finally:
+        close(process, terminal)

@@ -1,0 +1,283 @@
+"""The command `identify`: files of measured data, configurations of rigs, tables of estimates, refusals."""
+
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+from decays import Truth, synthetic
+from scipy.io import savemat
+
+import frictionmap as fm
+from frictionmap.cli import main
+
+TRUTH = Truth(3.1, 0.01, 0.2, 10.0, -0.02, 0.3, 200.0, 4.0, 0.02)
+
+
+@pytest.fixture
+def rig(tmp_path, monkeypatch):
+    """Writes a data file and its configuration; the path of the latter."""
+    monkeypatch.chdir(tmp_path)
+
+    def write(text, more="", name="decay.csv"):
+        if isinstance(text, str):
+            (tmp_path / name).write_text(text)
+        path = tmp_path / "rig.toml"
+        path.write_text(f'[data]\nkind = "free-decay"\nfile = "{name}"\n{more}\n')
+        return path
+
+    return write
+
+
+def csv_of(time, x, head="time_s,x_mm", separator=",", comma=False):
+    rows = [f"{t:.6g}{separator}{place:.6g}" for t, place in zip(time, x, strict=True)]
+    text = "\n".join(rows)
+    return head + "\n" + (text.replace(".", ",") if comma else text) + "\n"
+
+
+def refusal(capsys, *arguments):
+    """The one line on standard error of a command that is refused."""
+    assert main([str(argument) for argument in arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    return err
+
+
+# What comes out
+
+
+def test_from_a_file_to_a_friction_force(rig, capsys):
+    path = rig(csv_of(*synthetic(TRUTH, 1)), "[known]\nbase_mm = 1.75\nstiffness = 1191.0")
+    assert main(["identify", str(path)]) == 0
+    out = capsys.readouterr().out
+    row = next(line.split() for line in out.splitlines() if line.split()[:1] == ["x_F"])
+    assert float(row[1]) == pytest.approx(TRUTH.x_F, abs=0.002)
+    assert row[-1] == "mm"
+    assert "friction and viscous damping found" in out
+    with xr.open_dataset("rig-identify.nc") as ds:
+        assert float(ds.estimate.sel(parameter="x_F")) == pytest.approx(TRUTH.x_F, abs=0.002)
+        np.testing.assert_allclose(ds.model - ds.data, ds.residual, atol=1e-12)
+        assert ds.unit.values.tolist() == ["Hz", "1", "mm", "mm", "s", "mm"]
+        assert float(ds.friction_force) == pytest.approx(1191.0 * TRUTH.x_F * 1e-3, abs=0.003)
+        assert ds.attrs["config"] == path.read_text()
+        assert not any(np.isnan(ds[name]).any() for name in ds.data_vars if ds[name].dtype.kind == "f")
+
+
+def test_an_existing_file_is_kept(rig, capsys):
+    path = rig(csv_of(*synthetic(TRUTH, 1)))
+    assert main(["identify", str(path), "--quiet"]) == 0
+    assert capsys.readouterr().out == ""
+    assert "exists already" in refusal(capsys, "identify", path)
+    assert main(["identify", str(path), "--quiet", "--overwrite"]) == 0
+    assert "must not be a file that is read" in refusal(
+        capsys, "identify", path, "-o", "decay.csv", "--overwrite"
+    )
+
+
+def test_known_and_free_say_the_same(rig, capsys):
+    path = rig(csv_of(*synthetic(TRUTH, 1)), "[known]\nzeta = 0.01")
+    assert main(["identify", str(path)]) == 0
+    assert re.search(r"zeta +0.01 +held", capsys.readouterr().out)
+    free = 'fit.free=["f_n", "zeta", "x_F", "X0", "t0", "centre"]'
+    assert "must not name what [known] holds; got zeta" in refusal(capsys, "identify", path, "--set", free)
+    message = refusal(capsys, "identify", path, "--set", 'fit.free=["f_n", "x_F"]')
+    assert "fit.free must name X0, or known.X0 give its value" in message
+
+
+def test_a_window_leaves_out_the_rest(rig, capsys):
+    path = rig(csv_of(*synthetic(TRUTH, 1)), "window = [0.0, 1.5]")
+    assert main(["identify", str(path), "--quiet"]) == 0
+    with xr.open_dataset("rig-identify.nc") as ds:
+        assert ds.sizes["sample"] == 301
+    message = refusal(capsys, "identify", path, "--overwrite", "--set", "data.window=[7, 8]")
+    assert "window must hold samples" in message
+
+
+# Files
+
+
+@pytest.mark.parametrize(
+    ("head", "separator", "comma", "form"),
+    [
+        ("time_s,x_mm", ",", False, "comma between columns, decimal point"),
+        ("time_s;x_mm", ";", False, "semicolon between columns, decimal point"),
+        ("time_s;x_mm", ";", True, "semicolon between columns, decimal comma"),
+        ("time_s\tx_mm", "\t", True, "tab between columns, decimal comma"),
+    ],
+)
+def test_files_of_data_loggers(rig, head, separator, comma, form):
+    time, x = synthetic(TRUTH, 1)
+    path = rig(csv_of(time, x, head, separator, comma))
+    assert main(["identify", str(path), "--quiet"]) == 0
+    with xr.open_dataset("rig-identify.nc") as ds:
+        np.testing.assert_allclose(ds.data, x, rtol=1e-5)
+        assert form in ds.attrs["data_form"]
+
+
+def test_arrays_in_files(rig, tmp_path):
+    time, x = synthetic(TRUTH, 1)
+    np.savez(tmp_path / "decay.npz", time_ms=1e3 * time, x_m=1e-3 * x)
+    savemat(tmp_path / "decay.mat", {"time_s": time, "Weg_um": 1e3 * x[:, None], "note": "a rig"})
+    more = 'columns = { x = "Weg_um" }'
+    for name, keys, unit in (("decay.npz", "", "m"), ("decay.mat", more, "um")):
+        assert main(["identify", str(rig(None, keys, name)), "--quiet", "--overwrite"]) == 0
+        with xr.open_dataset("rig-identify.nc") as ds:
+            one = ds.sel(parameter="x_F")
+            assert one.unit == unit
+            in_mm = float(one.estimate) * {"m": 1e3, "um": 1e-3}[unit]
+            assert in_mm == pytest.approx(TRUTH.x_F, abs=0.002)
+            np.testing.assert_allclose(ds.time, time, atol=1e-12)
+
+
+def test_no_such_data(rig, capsys, tmp_path):
+    (tmp_path / "decay.npz").write_bytes(b"PK nothing")
+    (tmp_path / "decay.mat").write_bytes(b"MATLAB 5.0 nothing")
+    for name in ("decay.npz", "decay.mat", "absent.csv", "decay.tdms"):
+        assert name in refusal(capsys, "identify", rig(None, name=name))
+
+
+GOOD = csv_of(*synthetic(TRUTH, 1)).splitlines()
+
+
+def changed(line, text):
+    """The good file with one line, counted from 1, replaced."""
+    return "\n".join([*GOOD[: line - 1], text, *GOOD[line:]]) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("\n".join(GOOD[1:]), r"must have a column time_s \(suffixes: _s, _ms\)"),
+        (changed(1, "time,x"), r"column time must end in its unit, one of _s, _ms; it has none"),
+        (changed(1, "time_s,x_furlong"), r"column x_furlong must end in its unit, .*_um; it has 'furlong'"),
+        (changed(1, "time_s,y_mm"), r"must have a column x_mm .*; it has time_s, y_mm"),
+        ("time_s,x_mm\n", r"must have values below time_s, x_mm"),
+        ("", r"must have a line with names of columns; it is empty"),
+        (changed(402, "2,nan"), r"column x_mm, line 402 must be a finite number; got 'nan' .*\"drop\""),
+        (changed(9, "0.035,abc"), r"column x_mm, line 9 must be a finite number; got 'abc'"),
+        (changed(9, "0.035,1_0"), r"column x_mm, line 9 must be a finite number; got '1_0'"),
+        (changed(9, "0.035"), r"line 9 must have 2 values, as its first line has; got 1"),
+        (changed(9, "0.02,1"), r"column time_s, line 9 must be later than the row before, 0.03; got 0.02"),
+        (changed(9, "0.03,1"), r"column time_s, line 9 must be later than the row before, 0.03; got 0.03"),
+        ("\n".join(GOOD[:20]), r"fewer than 3 extrema in 19 samples, no damping can be told"),
+        (csv_of(np.arange(100) / 100, np.full(100, 1.5)), r"no motion above its own resolution \(0\)"),
+        ("\n".join(GOOD[:1] + GOOD[1::20]), r"samples a cycle; 8 are needed"),
+    ],
+)  # fmt: skip
+def test_bad_files(rig, capsys, text, message):
+    found = refusal(capsys, "identify", rig(text))
+    assert re.search(message, found), found
+    assert "decay.csv" in found
+
+
+def test_a_growing_motion_is_no_decay(rig, capsys):
+    time = np.arange(1000) / 250.0
+    x = 0.1 * np.exp(time) * np.cos(2.0 * np.pi * 3.1 * time)
+    assert "amplitude grows: no free decay" in refusal(capsys, "identify", rig(csv_of(time, x)))
+
+
+def test_rows_without_a_number_are_dropped_on_request_only(rig, capsys):
+    path = rig(changed(402, "2,nan"))
+    assert main(["identify", str(path), "--set", "data.missing=drop"]) == 0
+    assert "warning: 1 of 800 rows of decay.csv have no number and were left out" in capsys.readouterr().out
+    many = "\n".join(GOOD[:1] + [f"{line.split(',')[0]}," for line in GOOD[1:10]] + GOOD[10:])
+    message = refusal(capsys, "identify", rig(many), "--overwrite", "--set", "data.missing=drop")
+    assert "9 of 800 rows" in message or "line 2" in message
+
+
+def test_gaps_and_clipped_samples_are_told(rig, capsys):
+    time, x = synthetic(TRUTH, 1)
+    path = rig(csv_of(np.delete(time, slice(300, 340)), np.delete(x, slice(300, 340))))
+    assert main(["identify", str(path)]) == 0
+    assert "warning: a gap of 0.205 s" in capsys.readouterr().out
+    path = rig(csv_of(time, np.clip(x, -5.0, 5.0)))
+    assert main(["identify", str(path), "--overwrite"]) == 0
+    assert "warning: clipped" in capsys.readouterr().out
+    with xr.open_dataset("rig-identify.nc") as ds:
+        assert (np.abs(ds.data) < 5.0).all()
+        one = ds.sel(parameter="x_F")
+        assert abs(float(one.estimate) - TRUTH.x_F) < 4.0 * float(one.standard_error)
+
+
+def test_coarse_samples_are_not_clipped():
+    time, x = synthetic(TRUTH._replace(noise=0.0, rate=2000.0), 1)
+    assert "clipped" not in fm.identify.free_decay(time, np.round(x, 1)).warnings
+
+
+BAD = {
+    "no-header": "_s, _ms", "no-unit": "none", "unknown-unit": "'furlong'", "missing-column": "x_mm",
+    "empty": "x_mm", "nan": "line 402", "text": "line 122", "time-backwards": "line 303",
+    "time-twice": "line 13", "too-short": "fewer than 3 extrema", "constant": "resolution (0)",
+    "growing": "amplitude grows: no free decay", "undersampled": "samples a cycle; 8 are needed",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_measurements(measured, rig, capsys, name):
+    path = rig(None, name=str(measured / "bad" / f"{name}.csv"))
+    message = refusal(capsys, "identify", path)
+    assert BAD[name] in message
+    assert f"{name}.csv" in message
+
+
+@pytest.mark.parametrize(("name", "warning"), [("gap", "a gap of 0.084 s"), ("clipped", "clipped: 14.4%")])
+def test_odd_measurements(measured, rig, capsys, name, warning):
+    assert main(["identify", str(rig(None, name=str(measured / "bad" / f"{name}.csv")))]) == 0
+    assert f"warning: {warning}" in capsys.readouterr().out
+
+
+# Configurations and arguments
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("data.kind=decay", "data.kind must be one of free-decay; got 'decay'"),
+        ("data.kind=forced", "data.kind = 'forced' cannot be fitted yet; free-decay can"),
+        ("data.kind=record", "data.kind = 'record' cannot be fitted yet; free-decay can"),
+        ("data.fil=a.csv", "unknown key data.fil (did you mean file?)"),
+        ("known.beta=0.2", "unknown key known.beta"),
+        ("known.zeta=1.2", "known.zeta must be < 1, or there are no extrema; got 1.2"),
+        ("known.f_n=-3", "known.f_n must be > 0; got -3"),
+        ("known.stiffness=0", "stiffness must be > 0; got 0"),
+        ("fit.free=[]", "fit.free must be a list of parameters; got []"),
+        ("data.columns={ x = 3 }", "data.columns must be names of columns"),
+        ("data.columns={ y = 'y_mm' }", "unknown key data.columns.y"),
+        ("data.missing=ignore", "data.missing must be one of refuse, drop; got 'ignore'"),
+        ("data.window=[1, nan]", "window must be finite"),
+        ("data.window=[1]", "window must be two times; got [1]"),
+        ("grid.r=1", "unknown key grid"),
+    ],
+)
+def test_bad_configurations(rig, capsys, override, message):
+    assert message in refusal(capsys, "identify", rig("\n".join(GOOD)), "--set", override)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"x": [1.0, 2.0]}, "x must be 800 numbers, as many as times"),
+        ({"x": np.full(800, np.nan)}, "x must be finite; got nan at index 0"),
+        ({"time": np.zeros(800)}, "time must be increasing"),
+        ({"unit": "inch"}, "unit must be one of mm, m, um; got 'inch'"),
+        ({"base": 0.0}, "base must be > 0"),
+        ({"known": {"mu": 1.0}}, "known must be one of f_n, zeta, x_F, X0, t0, centre; got 'mu'"),
+    ],
+)
+def test_bad_arguments(arguments, message):
+    time, x = synthetic(TRUTH, 1)
+    with pytest.raises(fm.InputError, match=re.escape(message)):
+        fm.identify.free_decay(**{"time": time, "x": x} | arguments)
+
+
+def test_the_room_is_loaded_when_used():
+    code = (
+        "import frictionmap as fm, sys; print('scipy' in sys.modules); print(fm.identify.free_decay.__name__)"
+    )
+    shown = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=600
+    )
+    assert shown.stdout.split() == ["False", "free_decay"]

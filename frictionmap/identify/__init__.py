@@ -14,7 +14,9 @@ decay_fit        the decay nearest to all samples
 estimates        estimates as a dataset, and in words
 free_decay       `free_decay`: from arrays to estimates
 sweep            `sweep`: two masses without friction, from amplitudes over frequency
-rig              configurations of rigs, for the command `identify`
+rig              what a configuration says of measured data, and a kind of data of itself
+rig_decay        free decays from the file of a rig
+configuration    configurations of rigs, for the command `identify`
 ===============  =======================================================================
 """
 

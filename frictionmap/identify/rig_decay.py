@@ -1,0 +1,38 @@
+"""Free decays from the file of a rig."""
+
+import xarray as xr
+
+from ..errors import InputError
+from .columns import check_increasing, pick_columns
+from .decay_motion import PARAMETERS
+from .free_decay import free_decay
+from .rig import Kind, Rig, check_columns, dropped_rows
+from .tables import Table
+from .units import conversion
+
+#: What is given in mm, whatever the unit of the data.
+_LENGTHS = ("x_F", "X0", "centre", "base_mm")
+
+
+def _free_decay(rig: Rig, table: Table) -> xr.Dataset:
+    check_columns(rig, ("time", "x"))
+    picked = pick_columns(table, {"time": "time", "x": "length"}, rig.columns, rig.missing)
+    time, x = picked.columns["time"], picked.columns["x"]
+    check_increasing(table, time, picked.rows)
+    known = {
+        key: value * conversion("mm", x.unit) if key in _LENGTHS else value
+        for key, value in rig.known.items()
+    }
+    base, stiffness = known.pop("base_mm", None), known.pop("stiffness", None)
+    try:
+        ds = free_decay(
+            time.values * conversion(time.unit, "s"), x.values, unit=x.unit, known=known, base=base,
+            stiffness=stiffness, window=rig.data.get("window"),
+        )  # fmt: skip
+    except InputError as error:
+        raise InputError(f"file {rig.file}, columns {time.name} and {x.name}: {error}") from None
+    ds.attrs["warnings"] = "; ".join(filter(None, (dropped_rows(table, picked), ds.attrs["warnings"])))
+    return ds
+
+
+FREE_DECAY = Kind(_free_decay, PARAMETERS, known=("base_mm", "stiffness"), data=("window",))

@@ -16,6 +16,7 @@ free_decay       `free_decay`: from arrays to estimates
 sweep            `sweep`: two masses without friction, from amplitudes over frequency
 rig              what a configuration says of measured data, and a kind of data of itself
 rig_decay        free decays from the file of a rig
+rig_sweep        sweeps from the file of a rig
 configuration    configurations of rigs, for the command `identify`
 ===============  =======================================================================
 """

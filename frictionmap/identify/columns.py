@@ -1,6 +1,6 @@
 """Columns of a table by what they are, with their units: no unit is guessed, no value is repaired."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -38,7 +38,8 @@ def pick_columns(
 ) -> Columns:
     """The columns that a fit needs.
 
-    wanted : what it measures ("time", "length") of every column, such as {"time": "time", "x": "length"}
+    wanted : what it measures ("time", "length", ..., or "ratio", which has no unit) of every column, such as
+        {"time": "time", "x": "length"}
     names : names in the file where they are not the default, which is what the column is with a suffix
     missing : "refuse", or "drop" rows without a number, of which there may be 1 %
 
@@ -61,14 +62,23 @@ def pick_columns(
     return Columns(kept, rows, int(bad.sum()))
 
 
-def check_increasing(table: Table, time: Column, rows: np.ndarray) -> None:
-    """Refuse times that repeat or go back."""
-    wrong = np.flatnonzero(np.diff(time.values) <= 0.0)
+def check_increasing(table: Table, column: Column, rows: np.ndarray, beyond: str = "later") -> None:
+    """Refuse values, such as times, that repeat or go back; `beyond` is the word for what they must be."""
+    wrong = np.flatnonzero(np.diff(column.values) <= 0.0)
     if wrong.size:
-        before, after = time.values[wrong[0]], time.values[wrong[0] + 1]
+        before, after = column.values[wrong[0]], column.values[wrong[0] + 1]
         raise InputError(
-            f"{table.place(time.name, int(rows[wrong[0] + 1]))} must be later than the row before, "
+            f"{table.place(column.name, int(rows[wrong[0] + 1]))} must be {beyond} than the row before, "
             f"{before:g}; got {after:g} (rows are not sorted: mend the file)"
+        )
+
+
+def check_positive(table: Table, column: Column, rows: np.ndarray) -> None:
+    """Refuse values that are not above zero."""
+    wrong = np.flatnonzero(column.values <= 0.0)
+    if wrong.size:
+        raise InputError(
+            f"{table.place(column.name, int(rows[wrong[0]]))} must be > 0; got {column.values[wrong[0]]:g}"
         )
 
 
@@ -76,13 +86,14 @@ def _find(table: Table, role: str, name: str | None, measures: str) -> Column:
     """The column of a name, or the one whose name is what it is and a unit."""
     legal = suffixes(measures)
     has = f"it has {', '.join(table.columns) or 'none'}"
-    wanted = f"a column {name or role + legal[0]} (suffixes: {', '.join(legal)})"
+    known = f" (suffixes: {', '.join(legal)})" if legal else ""
+    wanted = f"a column {name or role + next(iter(legal), '')}{known}"
     if name is not None and name not in table.columns:
         raise InputError(
             f"file {table.file} must have {wanted}, named by data.columns.{role}; {has}"
             f"{checks.nearest(name, table.columns)}"
         )
-    candidates = [name] if name is not None else _named_like(table, role)
+    candidates = [name] if name is not None else _named_like(table, role, legal)
     if not candidates:
         raise InputError(f"file {table.file} must have {wanted}, or data.columns.{role} names another; {has}")
     if len(candidates) > 1:
@@ -91,17 +102,25 @@ def _find(table: Table, role: str, name: str | None, measures: str) -> Column:
             f"it has {', '.join(candidates)}"
         )
     column = candidates[0]
+    unit = _unit(table, column, legal) if legal else "1"
+    return Column(column, unit, table.columns[column])
+
+
+def _unit(table: Table, column: str, legal: Sequence[str]) -> str:
+    """The unit that the name of a column ends in."""
     unit = column.rpartition("_")[2] if "_" in column else ""
     if f"_{unit}" not in legal:
         what = f"it has {unit!r}" if unit else "it has none"
         raise InputError(
             f"file {table.file}, column {column} must end in its unit, one of {', '.join(legal)}; {what}"
         )
-    return Column(column, unit, table.columns[column])
+    return unit
 
 
-def _named_like(table: Table, role: str) -> list[str]:
+def _named_like(table: Table, role: str, legal: Sequence[str]) -> list[str]:
     """Columns of a role: its name, followed by a unit or by what should be one."""
+    if not legal:
+        return [name for name in table.columns if name == role]
     known = [
         name for name in table.columns if name.rpartition("_")[0] == role and name.rpartition("_")[2] in UNITS
     ]

@@ -15,12 +15,13 @@ from ..files.config import read_tree, unknown_key
 from .columns import MISSING
 from .rig import Kind, Rig
 from .rig_decay import FREE_DECAY
+from .rig_sweep import SWEEP
 from .tables import read_table
 
-_KINDS = {"free-decay": FREE_DECAY}
+_KINDS = {"free-decay": FREE_DECAY, "sweep": SWEEP}
 
 #: Kinds that have a name and are not fitted.
-_NOT_BUILT = ("forced", "record", "sweep")
+_NOT_BUILT = ("forced", "record")
 
 
 def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:

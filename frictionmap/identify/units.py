@@ -24,7 +24,7 @@ UNITS = {
 
 
 def suffixes(measures: str) -> tuple[str, ...]:
-    """Suffixes of the units of time, length or frequency."""
+    """Suffixes of the units of time, length or frequency; a ratio has none."""
     return tuple(f"_{name}" for name, unit in UNITS.items() if unit.measures == measures)
 
 

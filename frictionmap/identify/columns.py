@@ -8,7 +8,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from .tables import Table
-from .units import UNITS, suffixes
+from .units import UNITS, ending, suffixes
 
 #: What is done about values that are no numbers.
 MISSING = ("refuse", "drop")
@@ -108,7 +108,7 @@ def _find(table: Table, role: str, name: str | None, measures: str) -> Column:
 
 def _unit(table: Table, column: str, legal: Sequence[str]) -> str:
     """The unit that the name of a column ends in."""
-    unit = column.rpartition("_")[2] if "_" in column else ""
+    unit = ending(column)
     if f"_{unit}" not in legal:
         what = f"it has {unit!r}" if unit else "it has none"
         raise InputError(
@@ -121,9 +121,7 @@ def _named_like(table: Table, role: str, legal: Sequence[str]) -> list[str]:
     """Columns of a role: its name, followed by a unit or by what should be one."""
     if not legal:
         return [name for name in table.columns if name == role]
-    known = [
-        name for name in table.columns if name.rpartition("_")[0] == role and name.rpartition("_")[2] in UNITS
-    ]
+    known = [name for name in table.columns if ending(name) in UNITS and name == f"{role}_{ending(name)}"]
     return known or [name for name in table.columns if name == role or name.startswith(f"{role}_")]
 
 

@@ -56,8 +56,8 @@ def problem(time: np.ndarray, x: np.ndarray, n: int, start: Decay, known: Mappin
     lowest[0], highest[0] = start.f_n * (1.0 - _FREQUENCY_RANGE), start.f_n * (1.0 + _FREQUENCY_RANGE)
     lowest[ZETA], highest[ZETA] = _ZETA_RANGE
     free = np.array([name not in known for name in PARAMETERS])
-    not_negative = np.array([name in ("zeta", "x_F") for name in PARAMETERS])
-    return Problem(residuals, free, not_negative, lowest, highest)
+    floor = np.array([0.0 if name in ("zeta", "x_F") else -np.inf for name in PARAMETERS])
+    return Problem(residuals, free, floor, lowest, highest)
 
 
 def fit_decay(

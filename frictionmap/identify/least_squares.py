@@ -1,4 +1,4 @@
-"""Nonlinear least squares with bounds at zero, and the errors of what is fitted."""
+"""Nonlinear least squares with bounds from below, and the errors of what is fitted."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -22,8 +22,8 @@ class Problem(NamedTuple):
 
     residuals: Residuals
     free: np.ndarray  # shape (parameters,), bool: others are held
-    not_negative: np.ndarray  # shape (parameters,), bool
-    lowest: np.ndarray  # where the model ends
+    floor: np.ndarray  # what a parameter cannot be below, a little above which the fit may end; -inf: none
+    lowest: np.ndarray  # where the model ends, below the floor
     highest: np.ndarray
 
 
@@ -56,16 +56,15 @@ class Errors(NamedTuple):
 def minimise(problem: Problem, start: np.ndarray) -> Solution:
     """The least sum with no parameter below its bound.
 
-    A parameter that the free fit puts below zero is held at zero, and the rest fitted anew; of several ways
-    to hold some the least sum wins.
+    A parameter that the free fit puts below its bound is held there, and the rest fitted anew; of several
+    ways to hold some the least sum wins.
     """
     free_fit = _fit(problem, start, problem.free)
-    below = problem.not_negative & problem.free & (free_fit.values < 0.0)
-    if not below.any():
+    if not (problem.free & (free_fit.values < problem.floor)).any():
         return free_fit
-    candidates = problem.not_negative & problem.free
+    candidates = np.isfinite(problem.floor) & problem.free
     held_fits = (_hold(problem, start, held) for held in _subsets(candidates))
-    legal = [fit for fit in held_fits if (fit.values[candidates] >= 0.0).all()]
+    legal = [fit for fit in held_fits if (fit.values >= problem.floor)[candidates].all()]
     return min(legal, key=lambda fit: fit.sum)
 
 
@@ -89,21 +88,27 @@ def errors(problem: Problem, best: Solution, known_variance: float | None = None
     correlation = np.where(np.eye(free.size, dtype=bool), 1.0, inverse / np.outer(scale, scale))
     reach = float(stdtrit(freedom, _TWO_SIDED)) * standard_error
     lower, upper = best.values - reach, best.values + reach
-    lower = np.where(problem.not_negative, np.maximum(lower, 0.0), lower)
+    lower = np.where(free, np.maximum(lower, problem.floor), lower)
     allowed = float(stdtrit(freedom, _ONE_SIDED)) ** 2 * variance * inflation**2
     for index in np.flatnonzero(best.at_bound):
-        lower[index] = 0.0
+        lower[index] = problem.floor[index]
         upper[index] = _profile_end(problem, best, int(index), allowed, float(standard_error[index]))
     return Errors(standard_error, lower, upper, correlation, reduced, lag, inflation)
 
 
 def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:
-    """The least sum over some parameters, bounds at zero not heeded."""
+    """The least sum over some parameters, bounds from below not heeded."""
     values = start.astype(float)
+    last: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}  # residuals and slopes are asked for one by one
 
     def at(part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        values[free] = part
-        return problem.residuals(values)
+        key = part.tobytes()
+        if key not in last:
+            values[free] = part
+            found = problem.residuals(values)
+            last.clear()
+            last[key] = found
+        return last[key]
 
     if free.any():
         inside = np.clip(values[free], problem.lowest[free], problem.highest[free])
@@ -124,7 +129,7 @@ def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:
 
 
 def _hold(problem: Problem, start: np.ndarray, held: np.ndarray) -> Solution:
-    fit = _fit(problem, np.where(held, 0.0, start), problem.free & ~held)
+    fit = _fit(problem, np.where(held, problem.floor, start), problem.free & ~held)
     return fit._replace(at_bound=held)
 
 
@@ -165,17 +170,18 @@ def _inflation(residual: np.ndarray) -> tuple[float, float]:
 
 
 def _profile_end(problem: Problem, best: Solution, index: int, allowed: float, scale: float) -> float:
-    """How far a parameter can go up from zero before the least sum has grown by what is allowed."""
+    """How far a parameter can go up from its bound before the least sum has grown by what is allowed."""
+    floor = float(problem.floor[index])
     if scale == 0.0:  # data without any noise
-        return 0.0
+        return floor
 
     def excess(value: float) -> float:
         return _at(problem, best, index, value).sum - best.sum - allowed
 
     highest = problem.highest[index]
-    end = min(scale, highest)
-    while excess(end) < 0.0:
+    reach = scale
+    while excess(end := min(floor + reach, highest)) < 0.0:
         if end == highest:  # where the model ends
             return float(highest)
-        end = min(2.0 * end, highest)
-    return float(brentq(excess, 0.0, end, xtol=1e-3 * scale))
+        reach *= 2.0
+    return float(brentq(excess, floor, end, xtol=1e-3 * scale))

@@ -164,8 +164,8 @@ def _within(
         return (model - data) / sigma, slopes / sigma
 
     begin = np.array(intervals)
-    every = np.ones(_FITTED, dtype=bool)
-    problem = Problem(residuals, every, ~every, f[begin], f[begin + 1])
+    every, no_floor = np.ones(_FITTED, dtype=bool), np.full(_FITTED, -np.inf)
+    problem = Problem(residuals, every, no_floor, f[begin], f[begin + 1])
     return minimise(problem, 0.5 * (f[begin] + f[begin + 1])), problem
 
 

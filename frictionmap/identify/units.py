@@ -1,5 +1,6 @@
 """Units that names of columns end in."""
 
+import math
 from typing import NamedTuple
 
 from .. import checks
@@ -7,7 +8,7 @@ from ..errors import InputError
 
 
 class Unit(NamedTuple):
-    """What a unit measures, and its size in the SI unit of that."""
+    """What a unit measures, and its size in the SI unit of that, Hz for frequencies."""
 
     measures: str
     size: float
@@ -20,12 +21,22 @@ UNITS = {
     "m": Unit("length", 1.0),
     "um": Unit("length", 1e-6),
     "Hz": Unit("frequency", 1.0),
+    "rad_s": Unit("frequency", 0.5 / math.pi),
+    "deg": Unit("angle", math.pi / 180.0),
+    "rad": Unit("angle", 1.0),
+    "N": Unit("force", 1.0),
 }
 
 
 def suffixes(measures: str) -> tuple[str, ...]:
-    """Suffixes of the units of time, length or frequency; a ratio has none."""
+    """Suffixes of the units of time, length, frequency, angle or force; a ratio has none."""
     return tuple(f"_{name}" for name, unit in UNITS.items() if unit.measures == measures)
+
+
+def ending(name: str) -> str:
+    """The unit that a name ends in, or what stands in its place after the last underscore."""
+    known = [unit for unit in UNITS if name.endswith(f"_{unit}")]
+    return max(known, key=len) if known else name.rpartition("_")[2] if "_" in name else ""
 
 
 def conversion(unit: str, into: str) -> float:

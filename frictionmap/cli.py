@@ -136,10 +136,10 @@ def _compute(options: Options) -> None:
 
 
 def _identify(options: Options) -> None:
+    from .files.estimates import describe_estimates
     from .files.places import claimed
     from .files.storage import write_netcdf
     from .identify.configuration import identify, load_rig
-    from .identify.estimates import describe_estimates
 
     rig = load_rig(options.config, options.overrides)
     path = options.output or Path(f"{rig.name}-identify.nc")

@@ -66,6 +66,8 @@ def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
         "boundaries": {"boundaries": plot_boundaries},
         "response": {"history": plot_response, "orbit": plot_orbit},
     }
+    if what not in drawn_of:
+        raise InputError(f"ds must be of {', '.join(drawn_of)} or curves to be drawn; got one of {what}")
     legal = drawn_of[what]
     if log:
         raise InputError(f"log is for response curves; got a dataset of kind {what}")

@@ -1,5 +1,7 @@
 """Malformed files: a NetCDF file as a tree in memory, changed at random and written again."""
 
+import re
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,6 +9,10 @@ from typing import Any
 
 import netCDF4
 import numpy as np
+
+from frictionmap import InputError
+from frictionmap.files.reading import read
+from frictionmap.files.summary import describe_file
 
 
 @dataclass
@@ -208,3 +214,26 @@ def flip_bytes(rng: np.random.Generator, content: bytes) -> bytes:
     for _ in range(int(rng.integers(1, 5))):
         changed[rng.integers(len(changed))] ^= 1 << int(rng.integers(8))
     return bytes(changed)
+
+
+def refused(source: Path, path: Path, seed: int) -> int:
+    """How many of 150 mutants of a file are refused, each in one line that names the file."""
+    rng = np.random.default_rng(seed)
+    count = 0
+    for index in range(150):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            what = write_mutant(rng, source, path)
+        message = _complaint(path) if what else ""
+        count += bool(message)
+        assert not message or re.fullmatch(rf"file {re.escape(str(path))}\b.*", message), (index, what)
+    return count
+
+
+def _complaint(path: Path) -> str:
+    """What is wrong with a file; "" if nothing is."""
+    try:
+        describe_file(read(path))
+    except InputError as error:
+        return str(error)
+    return ""

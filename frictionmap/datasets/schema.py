@@ -7,6 +7,7 @@ import xarray as xr
 
 from .. import checks
 from ..errors import InputError
+from .estimate_labels import ESTIMATE_TEXTS, ESTIMATES
 from .labels import (
     CELL,
     COORDINATES,
@@ -25,7 +26,7 @@ TEXTS = ("title", "system", "source", "history", "references", "config")
 
 def _known(what: str) -> dict[str, Label]:
     """The labels of axes and variables in a kind of dataset."""
-    return {**COORDINATES, **labels_of(what)}
+    return ESTIMATES if what == "estimates" else {**COORDINATES, **labels_of(what)}
 
 
 def _is_history(ds: xr.Dataset, name: object) -> bool:
@@ -39,7 +40,9 @@ def _on_limit(name: object) -> bool:
 
 
 def kind(ds: xr.Dataset) -> str:
-    """What a dataset, or a slice of one, holds: "map", "curves", "response" or "boundaries"."""
+    """What a dataset, or a slice of one, holds: "map", "curves", "response", "boundaries" or "estimates"."""
+    if "estimate" in ds.variables:
+        return "estimates"
     if any(_is_history(ds, name) for name in ds.variables):
         return "response"
     if any(name in CYCLE_VARIABLES or _on_limit(name) for name in ds.variables):
@@ -67,34 +70,39 @@ def check_structure(ds: xr.Dataset) -> None:
     InputError
         Something is not what the labels say; one line that names it.
     """
-    for key in TEXTS:
+    what = kind(ds)
+    for key in (*TEXTS, *ESTIMATE_TEXTS) if what == "estimates" else TEXTS:
         text = ds.attrs.get(key, "")
         if not isinstance(text, str):
             raise InputError(f"the attribute {key} must be text; got {checks.one_line(text)}")
-    if not any(name in LABELS for name in ds.variables):
+    known = _known(what)
+    if not any(name in LABELS or name == "estimate" for name in ds.variables):
         names = ", ".join(map(str, ds.variables)) or "none"
         raise InputError(f"a variable of frictionmap must be there, such as regime or beta_lim; got {names}")
-    known = _known(kind(ds))
     for name, variable in ds.variables.items():
         if name in known:
             _check_type(str(name), variable, known[str(name)])
-            _check_attributes(str(name), variable, known[str(name)])
+            if what != "estimates":  # their units are those of the data
+                _check_attributes(str(name), variable, known[str(name)])
 
 
 def _check_type(name: str, variable: xr.Variable, label: Label) -> None:
-    if label.texts:
-        _check_texts(name, variable, label)
-    elif variable.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false, nor times
+    # text, complex, true and false, times are no numbers
+    if label.dtype is not np.str_ and variable.dtype.kind not in "iuf":
         raise InputError(f"{name} must be numbers; got type {variable.dtype.name}")
     if len(set(variable.dims)) < len(variable.dims):
         raise InputError(f"{name} must have every dimension once; got {in_brackets(variable.dims)}")
     if variable.size > checks.MOST_CELLS:
         raise InputError(f"{name} must have at most {checks.MOST_CELLS:.0e} values; got {variable.size:.3g}")
+    if label.dtype is np.str_:
+        _check_texts(name, variable, label)
 
 
 def _check_texts(name: str, variable: xr.Variable, label: Label) -> None:
-    given = np.atleast_1d(variable.values)
-    if any(text not in label.texts for text in given.tolist()):
+    given = np.atleast_1d(variable.values).ravel()
+    if not all(isinstance(text, str) for text in given.tolist()):
+        raise InputError(f"{name} must be text; got {checks.one_line(given.tolist())}")
+    if label.texts and any(text not in label.texts for text in given.tolist()):
         raise InputError(f"{name} must be of {', '.join(label.texts)}; got {checks.one_line(given.tolist())}")
 
 
@@ -121,7 +129,7 @@ def checked_values(name: str, given: np.ndarray, what: str = "") -> np.ndarray:
     Whole numbers may come as floats: other programs make them so, to have a fill value.
     """
     label = _known(what)[name]
-    if label.texts:
+    if label.dtype is np.str_:
         return given.astype(label.dtype)
     with np.errstate(invalid="ignore", over="ignore"):
         values: np.ndarray = given.astype(label.dtype, copy=False)
@@ -133,6 +141,25 @@ def checked_values(name: str, given: np.ndarray, what: str = "") -> np.ndarray:
         at = f" at [{', '.join(map(str, index))}]" if index else ""
         raise InputError(f"{name} must be {_legal(label)}; got {given[index]}{at}")
     return values
+
+
+def placed(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
+    """The values of a variable over exactly these dimensions, in this order."""
+    variable = ds.variables[name]
+    if not set(variable.dims) <= set(dims):
+        legal = (
+            f"have the dimensions {in_brackets(dims)}, or fewer" if dims else "be one number in a response"
+        )
+        raise InputError(f"{name} must {legal}; got {in_brackets(variable.dims)}")
+    missing = [dim for dim in dims if dim not in variable.dims]
+    for dim in missing:
+        given = ds[dim].size if dim in ds.coords else ds.sizes.get(dim, int(dim not in COORDINATES))
+        if given != 1:
+            raise InputError(
+                f"{name} has no dimension {dim}: one value of {dim} must be there; got {given or 'none'}"
+            )
+    values = variable.values[(..., *[np.newaxis] * len(missing))]
+    return xr.Variable((*variable.dims, *missing), values).transpose(*dims).values
 
 
 def _range(label: Label) -> tuple[float, float]:

@@ -10,8 +10,9 @@ import xarray as xr
 
 from .. import checks
 from ..datasets.labels import CELL, COORDINATES, LABELS, coordinate, label_variable, labels_of
-from ..datasets.schema import check_structure, checked_values, in_brackets, kind, standard_dims
+from ..datasets.schema import check_structure, checked_values, in_brackets, kind, placed, standard_dims
 from ..errors import InputError
+from .estimates import estimates_form
 
 __all__ = ["kind", "read", "standard_form"]
 
@@ -63,14 +64,17 @@ def _load(path: Path, only: Mapping[str, Collection[str]] | None) -> xr.Dataset:
     # no value of ours is a time, whatever the units say
     with xr.open_dataset(path, engine="netcdf4", decode_times=False) as opened:
         source = opened.attrs.get("source", "not given")
-        if not str(source).startswith("frictionmap") or not LABELS.keys() & opened.variables.keys():
+        ours = LABELS.keys() & opened.variables.keys() or kind(opened) == "estimates"
+        if not str(source).startswith("frictionmap") or not ours:
             raise InputError(f"file {path} must be written by frictionmap; its source is {source!r}")
         with _naming(path):
             check_structure(opened)
+        if kind(opened) == "estimates":  # small, and drawn of all that is there
+            return opened.load()
         wanted = LABELS if only is None else only[kind(opened)]
-        ours = _ours(opened)
-        return ours.drop_vars(
-            [name for name in ours.variables if name in LABELS and name not in wanted]
+        part = _ours(opened)
+        return part.drop_vars(
+            [name for name in part.variables if name in LABELS and name not in wanted]
         ).load()
 
 
@@ -80,7 +84,7 @@ def _ours(ds: xr.Dataset) -> xr.Dataset:
 
 
 def standard_form(ds: xr.Dataset) -> xr.Dataset:
-    """A map, curves, a response or boundaries, or any slice of one, in the form that it was computed in.
+    """A map, curves, a response, boundaries or estimates, or any slice, in the form that it was computed in.
 
     Works by names.  A value of mu, r, beta or of a mass that was chosen (`isel`, `sel`) becomes an axis of
     one value again; dimensions come in their order (mu, r, beta, dof, harmonic, part), axes increase, types
@@ -105,6 +109,8 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
         raise InputError(f"ds must be an xarray.Dataset; got {type(ds).__name__}")
     check_structure(ds)
     what = kind(ds)
+    if what == "estimates":
+        return estimates_form(ds)
     ds = _ours(ds)
     ds = ds.set_coords([name for name in COORDINATES if name in ds.data_vars])
     if what == "response":
@@ -115,7 +121,7 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
     for name in labels_of(what):
         if name in ds.variables:
             dims = standard_dims(name, what)
-            values = checked_values(name, _placed(ds, name, dims), what)
+            values = checked_values(name, placed(ds, name, dims), what)
             variables[name] = label_variable(name, values, what)
             used.update(dims)
     if what in ("map", "curves"):
@@ -150,25 +156,6 @@ def _check_increasing(name: str, values: np.ndarray) -> None:
     if wrong.size:
         first, second = values[wrong[0]], values[wrong[0] + 1]
         raise InputError(f"{name} must be strictly increasing; got {second} after {first}")
-
-
-def _placed(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
-    """The values of a variable over exactly these dimensions, in this order."""
-    variable = ds.variables[name]
-    if not set(variable.dims) <= set(dims):
-        legal = (
-            f"have the dimensions {in_brackets(dims)}, or fewer" if dims else "be one number in a response"
-        )
-        raise InputError(f"{name} must {legal}; got {in_brackets(variable.dims)}")
-    missing = [dim for dim in dims if dim not in variable.dims]
-    for dim in missing:
-        given = ds[dim].size if dim in ds.coords else ds.sizes.get(dim, int(dim not in COORDINATES))
-        if given != 1:
-            raise InputError(
-                f"{name} has no dimension {dim}: one value of {dim} must be there; got {given or 'none'}"
-            )
-    values = variable.values[(..., *[np.newaxis] * len(missing))]
-    return xr.Variable((*variable.dims, *missing), values).transpose(*dims).values
 
 
 def _axes(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:

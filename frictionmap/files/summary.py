@@ -9,6 +9,7 @@ import xarray as xr
 from .. import regimes
 from ..datasets.labels import LABELS
 from ..datasets.schema import TEXTS, kind
+from .estimates import describe_estimates, source_of_data
 from .reading import standard_form
 
 _WIDTH = 99
@@ -78,7 +79,7 @@ def describe_file(ds: xr.Dataset) -> str:
     Parameters
     ----------
     ds : xarray.Dataset
-        A map, curves, a response or boundaries, or a slice of one.
+        A map, curves, a response, boundaries or estimates, or a slice of one.
 
     Raises
     ------
@@ -92,6 +93,8 @@ def describe_file(ds: xr.Dataset) -> str:
     for name in ("system", "source", "history"):
         if texts[name]:
             lines += _entry(name, texts[name])
+    if what == "estimates":
+        return "\n".join([*lines, *_estimates(ds)])
     lines += ["axes", *(line for name in ds.coords for line in _entry(str(name), _axis(ds[name].values)))]
     listed = [name for name in ds.data_vars if _is_list(ds[name])]
     lines += ["variables", *(_named(ds[name]) for name in ds.data_vars if name not in listed)]
@@ -102,6 +105,15 @@ def describe_file(ds: xr.Dataset) -> str:
         lines += [line for name in others for line in _entry(str(name), _values(ds[name]))]
     lines += list(_in_short(ds, what))
     return "\n".join(lines)
+
+
+def _estimates(ds: xr.Dataset) -> Iterator[str]:
+    """Where the data are from, and the table of what they tell."""
+    yield from _entry("data", _printable(source_of_data(ds)))
+    yield "estimates"
+    for line in describe_estimates(ds):
+        shown = "".join(c if c.isprintable() else "?" for c in f"  {line}")
+        yield from textwrap.wrap(shown, _WIDTH, subsequent_indent=" " * 6)
 
 
 def _numbers_in_lines(ds: xr.Dataset, names: Sequence[Hashable]) -> list[str]:

@@ -11,7 +11,7 @@ decay_checks     which samples can be a free decay
 decay_motion     the exact decay and its derivatives
 least_squares    least squares with bounds, standard errors, intervals, correlations
 decay_fit        the decay nearest to all samples
-estimates        estimates as a dataset, and in words
+estimates        estimates as a dataset
 free_decay       `free_decay`: from arrays to estimates
 sweep            `sweep`: two masses without friction, from amplitudes over frequency
 rig              what a configuration says of measured data, and a kind of data of itself

@@ -68,7 +68,9 @@ def identify(rig: Rig) -> xr.Dataset:
     """
     table = read_table(rig.file)
     ds = _KINDS[rig.kind].identify(rig, table)
-    ds.attrs |= {"title": rig.title, "config": rig.text, "data_form": table.form}
+    ds.attrs |= {
+        "title": rig.title, "config": rig.text, "data_file": rig.file.as_posix(), "data_form": table.form,
+    }  # fmt: skip
     return ds
 
 

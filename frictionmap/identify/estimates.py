@@ -1,4 +1,4 @@
-"""Estimates with their errors as a labelled dataset, and in words."""
+"""Estimates with their errors as a labelled dataset."""
 
 from collections.abc import Mapping, Sequence
 
@@ -98,41 +98,3 @@ def estimates(
         "references": REFERENCES,
     }
     return xr.Dataset(variables, coords, attributes)
-
-
-def describe_estimates(ds: xr.Dataset) -> list[str]:
-    """A table of the estimates with their errors and intervals, and what else was found, line by line."""
-    rows = [("", "estimate", "std. error", "95 % interval", "unit")]
-    for name in ds["parameter"].values:
-        one = ds.sel(parameter=name)
-        if one["known"]:
-            errors = ("", "held")
-        else:
-            interval = f"{float(one['lower']):.6g} to {float(one['upper']):.6g}"
-            errors = (
-                f"{float(one['standard_error']):.2g}",
-                interval + (" (on a bound)" if one["at_bound"] else ""),
-            )
-        rows.append(
-            (str(name), f"{float(one['estimate']):.6g}", *errors, _unit_in_words(str(one["unit"].values)))
-        )
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    lines = [
-        "  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
-    singles = [name for name in ds.data_vars if name not in _SHOWN_ELSEWHERE and ds[name].ndim == 0]
-    lines += [
-        f"{name}  {float(ds[name]):.5g} {_unit_in_words(ds[name].attrs.get('units', '1'))}".rstrip()
-        for name in singles
-    ]
-    lines.append(str(ds["verdict"].attrs["comment"]).split("; ")[int(ds["verdict"])].partition(": ")[2])
-    lines += [f"warning: {words}" for words in ds.attrs["warnings"].split("; ") if words]
-    return lines
-
-
-_SHOWN_ELSEWHERE = ("verdict", "residual_correlation", "error_inflation", "reduced_chi_square")
-
-
-def _unit_in_words(unit: str) -> str:
-    return "" if unit == "1" else unit

@@ -1,0 +1,43 @@
+"""Names, types and legal values of what a dataset of estimates holds, whatever data they are from.
+
+A kind of data adds variables of its own, over no dimension or over samples; they are numbers or texts.
+"""
+
+import numpy as np
+
+from .labels import Label
+
+_PARAMETER, _SAMPLE = ("parameter",), ("sample",)
+_FLAG = Label(np.int8, "", _PARAMETER, least=0, most=1)
+_NUMBER = Label(np.float64, "number", ())
+
+#: Without these there are no estimates.
+OF_PARAMETERS = {
+    "estimate": Label(np.float64, "estimate", _PARAMETER),
+    "standard_error": Label(np.float64, "standard error", _PARAMETER, least=0.0),
+    "lower": Label(np.float64, "lower end of the 95 % interval", _PARAMETER, inf=True),
+    "upper": Label(np.float64, "upper end of the 95 % interval", _PARAMETER, inf=True),
+    "unit": Label(np.str_, "unit", _PARAMETER),
+    "known": _FLAG,
+    "at_bound": _FLAG,
+}
+
+_OF_SAMPLES = {name: Label(np.float64, name, _SAMPLE) for name in ("data", "model", "residual", "time")}
+
+ESTIMATES = {
+    **OF_PARAMETERS,
+    "correlation": Label(np.float64, "correlation of errors", ("parameter", "parameter2")),
+    **_OF_SAMPLES,
+    "frequency": Label(np.float64, "frequency", _SAMPLE, least=0.0),
+    "reduced_chi_square": _NUMBER._replace(least=0.0),
+    "residual_rms": _NUMBER._replace(least=0.0),
+    "residual_correlation": _NUMBER,
+    "error_inflation": _NUMBER._replace(least=1.0),
+    "verdict": Label(np.int8, "what the data show", (), least=0),
+    "parameter": Label(np.str_, "parameter", _PARAMETER),
+    "parameter2": Label(np.str_, "parameter", ("parameter2",)),
+    "sample": Label(np.int64, "sample fitted", _SAMPLE),
+}
+
+#: Global attributes that are text, beside those of every file.
+ESTIMATE_TEXTS = ("warnings", "data_file", "data_form")

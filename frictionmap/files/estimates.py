@@ -1,0 +1,111 @@
+"""Datasets of estimates that are read: checked, in the form that they were made in, and in words."""
+
+from collections.abc import Hashable
+
+import numpy as np
+import xarray as xr
+
+from ..datasets.estimate_labels import ESTIMATES, OF_PARAMETERS
+from ..datasets.schema import checked_values, placed
+from ..errors import InputError
+
+#: What a line of the table says itself.
+_SHOWN_ELSEWHERE = ("verdict", "residual_correlation", "error_inflation", "reduced_chi_square")
+
+
+def estimates_form(ds: xr.Dataset) -> xr.Dataset:
+    """Estimates, or a slice of them, in the form that they were made in; the structure has been checked.
+
+    A parameter that was chosen is a list of one again.  What is neither a number nor text is left out.
+
+    Raises
+    ------
+    InputError
+        What every fit holds is missing, or a value is illegal; one line that names the variable.
+    """
+    variables = {}
+    for name, label in ESTIMATES.items():
+        if name in ds.variables:
+            given = placed(ds, name, label.dims)
+            variables[name] = xr.Variable(
+                label.dims, checked_values(name, given, "estimates"), ds[name].attrs
+            )
+    for name in ("parameter", *OF_PARAMETERS):
+        if name not in variables:
+            raise InputError(f"a dataset of estimates must hold {name}; it does not")
+    _check_parameters(variables["parameter"].values)
+    kept = {name: ds.variables[name] for name in ds.variables if _is_further(ds, name)}
+    coords = {
+        name: variables.pop(name) for name in ("parameter", "parameter2", "sample") if name in variables
+    }
+    return xr.Dataset({**variables, **kept}, coords, ds.attrs)
+
+
+def _is_further(ds: xr.Dataset, name: Hashable) -> bool:
+    """Whether a variable may be what a kind of data adds: numbers or texts, of samples or alone."""
+    variable = ds.variables[name]
+    plain = variable.dtype.kind in "iufOU" and set(variable.dims).isdisjoint(("parameter", "parameter2"))
+    return name not in ESTIMATES and plain and len(set(variable.dims)) == variable.ndim
+
+
+def _check_parameters(names: np.ndarray) -> None:
+    if not names.size or np.unique(names).size < names.size:
+        words = ", ".join(names.tolist()) or "none"
+        raise InputError(f"parameter must be different names, one or more; got {words}")
+
+
+def describe_estimates(ds: xr.Dataset) -> list[str]:
+    """A table of the estimates with their errors and intervals, and what else was found, line by line."""
+    rows = [("", "estimate", "std. error", "95 % interval", "unit")]
+    rows += [_row(ds.sel(parameter=name)) for name in ds["parameter"].values]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    lines = [
+        "  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+    singles = [name for name in ds.data_vars if name not in _SHOWN_ELSEWHERE and _is_number(ds[name])]
+    lines += [
+        f"{name}  {float(ds[name]):.5g} {_unit_in_words(ds[name].attrs.get('units', '1'))}".rstrip()
+        for name in singles
+    ]
+    lines += filter(None, [verdict_in_words(ds)])
+    return lines + [f"warning: {words}" for words in warnings_of(ds)]
+
+
+def _row(one: xr.Dataset) -> tuple[str, str, str, str, str]:
+    """A line of the table."""
+    name, unit = str(one["parameter"].values), _unit_in_words(str(one["unit"].values))
+    if one["known"]:
+        return name, f"{float(one['estimate']):.6g}", "", "held", unit
+    interval = f"{float(one['lower']):.6g} to {float(one['upper']):.6g}"
+    interval += " (on a bound)" if one["at_bound"] else ""
+    return name, f"{float(one['estimate']):.6g}", f"{float(one['standard_error']):.2g}", interval, unit
+
+
+def _is_number(variable: xr.DataArray) -> bool:
+    return variable.ndim == 0 and variable.dtype.kind in "iuf"
+
+
+def _unit_in_words(unit: object) -> str:
+    return "" if unit == "1" else str(unit)
+
+
+def verdict_in_words(ds: xr.Dataset) -> str:
+    """What the data show; empty if the file does not say."""
+    if "verdict" not in ds:
+        return ""
+    meanings = [part.partition(": ")[2] for part in str(ds["verdict"].attrs.get("comment", "")).split("; ")]
+    code = int(ds["verdict"])
+    return meanings[code] if code < len(meanings) else ""
+
+
+def warnings_of(ds: xr.Dataset) -> list[str]:
+    """What to mind, in words."""
+    return [words for words in str(ds.attrs.get("warnings", "")).split("; ") if words]
+
+
+def source_of_data(ds: xr.Dataset) -> str:
+    """Which file the data were read from, and how many samples were fitted."""
+    file, form = (str(ds.attrs.get(name, "")) for name in ("data_file", "data_form"))
+    samples = f"{ds.sizes['sample']:,} samples fitted" if "sample" in ds.sizes else ""
+    return ", ".join(filter(None, (f"{file} ({form})" if file and form else file or form, samples)))

@@ -28,6 +28,7 @@ ESTIMATES = {
     **OF_PARAMETERS,
     "correlation": Label(np.float64, "correlation of errors", ("parameter", "parameter2")),
     **_OF_SAMPLES,
+    "sigma": Label(np.float64, "standard error of a sample", _SAMPLE, least=0.0),
     "frequency": Label(np.float64, "frequency", _SAMPLE, least=0.0),
     "reduced_chi_square": _NUMBER._replace(least=0.0),
     "residual_rms": _NUMBER._replace(least=0.0),

@@ -47,6 +47,19 @@ def amplitudes(decay: Decay, n: int) -> np.ndarray:
     return result
 
 
+def envelope(decay: Decay, time: np.ndarray) -> np.ndarray:
+    """Distances from the centre, shape (samples,), of the smooth curve through all turning points.
+
+    With s half cycles since t0 it is q^s A_0 - (1 + q) x_F (1 - q^s)/(1 - q): a straight line without viscous
+    damping, an exponential without friction.
+    """
+    halves = (time - decay.t0) / half_period(decay)
+    decrement = np.pi * decay.zeta / np.sqrt(1.0 - decay.zeta**2)
+    lost = -np.expm1(-decrement * halves)
+    friction = halves if decrement == 0.0 else lost / -np.expm1(-decrement)
+    return (1.0 - lost) * abs(decay.X0) - (1.0 + np.exp(-decrement)) * decay.x_F * friction
+
+
 def displacement(decay: Decay, n: int, time: np.ndarray) -> np.ndarray:
     """Places at `time`, shape (samples,), of a mass that is at rest from turning point `n` on."""
     return displacement_and_slopes(decay, n, time)[0]

@@ -57,6 +57,7 @@ def estimates(
     free: np.ndarray,
     data: np.ndarray,
     data_unit: str,
+    sigma: float | np.ndarray | None = None,
 ) -> xr.Dataset:
     """The dataset of a fit.
 
@@ -64,7 +65,10 @@ def estimates(
     units : theirs
     free : shape (parameters,), bool: whether a parameter was fitted; the others have no error
     data : shape (samples,), in `data_unit`; residuals are model less data
+    sigma : the error of a sample, or of all, in `data_unit`; by default it is that of the residuals
     """
+    of_one = np.sqrt(errors.variance) if sigma is None else sigma
+    source = "from the residuals" if sigma is None else "as given"
 
     def of_samples(values: np.ndarray, words: str) -> xr.Variable:
         return xr.Variable("sample", values, {"long_name": words, "units": data_unit})
@@ -75,6 +79,9 @@ def estimates(
         "data": of_samples(data, "measured"),
         "model": of_samples(data + solution.residual, "fitted"),
         "residual": of_samples(solution.residual, "fitted less measured"),
+        "sigma": of_samples(
+            np.broadcast_to(of_one, data.shape).copy(), f"standard error of a sample, {source}"
+        ),
         "reduced_chi_square": number(
             errors.variance,
             "variance of a sample, from the residuals",

@@ -69,7 +69,7 @@ def _ratio_slopes(f0: float, f1: float, f2: float) -> np.ndarray:
     )
 
 
-def _log_amplitude(frequencies: np.ndarray, f: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def log_amplitude(frequencies: np.ndarray, f: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """ln |X_1| at `f` and its derivatives by f0, f1 and f2."""
     f0, f1, f2 = frequencies
     zero, first, second = f0**2 - f**2, f1**2 - f**2, f2**2 - f**2
@@ -119,7 +119,9 @@ def sweep(
     best, problem = _nearest(f, data, sigma)
     found = errors(problem, best, 1.0 if sigma_amplitude is not None else None)
     solution = best._replace(residual=sigma * best.residual)
-    ds = estimates(_MEANINGS, _UNITS, *_all_six(solution, found), np.ones(6, dtype=bool), data, "1")
+    ds = estimates(
+        _MEANINGS, _UNITS, *_all_six(solution, found), np.ones(6, dtype=bool), data, "1", sigma_amplitude
+    )
     ds["frequency"] = xr.Variable("sample", f, {"long_name": "frequency of the base", "units": "Hz"})
     beyond = sigma_amplitude is not None and gammaincc(0.5 * (f.size - _FITTED), 0.5 * best.sum) < _CHANCE
     ds["verdict"] = verdict(int(beyond), _VERDICTS)
@@ -160,7 +162,7 @@ def _within(
     """The least sum with f0, f1 and f2 each between the sample of that index and the next."""
 
     def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        model, slopes = _log_amplitude(values, f)
+        model, slopes = log_amplitude(values, f)
         return (model - data) / sigma, slopes / sigma
 
     begin = np.array(intervals)

@@ -14,6 +14,7 @@ from frictionmap.identify.decay_motion import (
     amplitudes,
     displacement,
     displacement_and_slopes,
+    envelope,
 )
 
 MIXED = Truth(3.086, 0.012, 0.15, 12.0, -0.02, -0.4, 250.0, 6.0, 0.03)
@@ -58,6 +59,29 @@ def test_turning_points_to_the_last_digits(zeta, x_F, X0, n):
         decay = Decay(1.0, float(zeta), float(x_F), float(X0), 0.0, 0.0)
     # each step rounds by some 1e-16 of at most 12 mm
     np.testing.assert_allclose(amplitudes(decay, n), expected, atol=n * 12.0 * 4.5e-16)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 1e-300, 1e-12, 0.012, 0.3])
+@pytest.mark.parametrize("x_F", [0.0, 0.15])
+def test_the_envelope_passes_through_all_turning_points(zeta, x_F):
+    """By T(4.2) with viscous damping, step by step in 40 digits; the steps round as those above do."""
+    with mp.workdps(40):
+        root = mp.sqrt(1 - mp.mpf(zeta) ** 2)
+        q, height, expected = mp.exp(-mp.pi * mp.mpf(zeta) / root), mp.mpf(12), []
+        for _ in range(25):
+            expected.append(float(height))
+            height = q * height - (1 + q) * mp.mpf(x_F)
+        times = [float(mp.mpf(j) / (2 * mp.mpf(3.1) * root) - mp.mpf(0.02)) for j in range(25)]
+    found = envelope(Decay(3.1, zeta, x_F, -12.0, -0.02, 0.4), np.array(times))
+    np.testing.assert_allclose(found, expected, atol=25 * 12.0 * 4.5e-16)
+
+
+def test_the_envelope_is_straight_under_friction_alone_and_exponential_without_it():
+    time = np.linspace(-0.02, 3.0, 50)
+    straight = 12.0 - 4.0 * 0.15 * 3.1 * (time + 0.02)
+    np.testing.assert_allclose(envelope(Decay(3.1, 0.0, 0.15, 12.0, -0.02, 0.4), time), straight, atol=1e-13)
+    falling = 12.0 * np.exp(-0.02 * 2.0 * np.pi * 3.1 * (time + 0.02))
+    np.testing.assert_allclose(envelope(Decay(3.1, 0.02, 0.0, 12.0, -0.02, 0.4), time), falling, atol=1e-13)
 
 
 def test_turning_points_of_the_reference(measured):

@@ -81,6 +81,13 @@ def test_what_a_terminal_would_take_for_a_command_is_not_printed(datasets):
     assert "\x1b" not in describe_file(ds.assign_attrs(warnings="a\x1b[2J; b"))
 
 
+def test_errors_of_samples_are_those_given_or_those_of_the_residuals(datasets):
+    assert datasets["sweep"].sigma.values.tolist() == [0.02] * 30
+    decay = datasets["free-decay"]
+    expected = np.sqrt(np.sum(decay.residual.values**2) / (800 - 6))
+    np.testing.assert_allclose(decay.sigma, expected, rtol=1e-12)
+
+
 # Slices
 
 

@@ -10,6 +10,7 @@ turning_points   extremes of a record, its noise, the linear decrement
 decay_checks     which samples can be a free decay
 decay_motion     the exact decay and its derivatives
 least_squares    least squares with bounds, standard errors, intervals, correlations
+phasors          harmonics of a record, by least squares on one frequency
 decay_fit        the decay nearest to all samples
 estimates        estimates as a dataset
 free_decay       `free_decay`: from arrays to estimates

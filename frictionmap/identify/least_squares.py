@@ -79,21 +79,21 @@ def errors(problem: Problem, best: Solution, known_variance: float | None = None
     freedom = best.residual.size - int(free.sum())
     reduced = best.sum / freedom
     variance = reduced if known_variance is None else known_variance
-    lag, inflation = _inflation(best.residual)
+    lag, grown = inflation(best.residual)
     inverse = np.zeros((free.size, free.size))
     inverse[np.ix_(free, free)] = _inverse(best.slopes[:, free])
     deviation = np.sqrt(np.diag(inverse))
-    standard_error = deviation * np.sqrt(variance) * inflation
+    standard_error = deviation * np.sqrt(variance) * grown
     scale = np.where(free, deviation, 1.0)
     correlation = np.where(np.eye(free.size, dtype=bool), 1.0, inverse / np.outer(scale, scale))
     reach = float(stdtrit(freedom, _TWO_SIDED)) * standard_error
     lower, upper = best.values - reach, best.values + reach
     lower = np.where(free, np.maximum(lower, problem.floor), lower)
-    allowed = float(stdtrit(freedom, _ONE_SIDED)) ** 2 * variance * inflation**2
+    allowed = float(stdtrit(freedom, _ONE_SIDED)) ** 2 * variance * grown**2
     for index in np.flatnonzero(best.at_bound):
         lower[index] = problem.floor[index]
         upper[index] = _profile_end(problem, best, int(index), allowed, float(standard_error[index]))
-    return Errors(standard_error, lower, upper, correlation, reduced, lag, inflation)
+    return Errors(standard_error, lower, upper, correlation, reduced, lag, grown)
 
 
 def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:
@@ -161,7 +161,7 @@ def _inverse(slopes: np.ndarray) -> np.ndarray:
     return (inverse @ inverse.T) / np.outer(scale, scale)
 
 
-def _inflation(residual: np.ndarray) -> tuple[float, float]:
+def inflation(residual: np.ndarray) -> tuple[float, float]:
     """Lag-1 correlation of residuals, and by what it makes errors larger."""
     power = float(residual @ residual)
     lag = float(residual[1:] @ residual[:-1]) / power if power > 0.0 else 0.0

@@ -1,0 +1,125 @@
+"""The steady state of one mass under a load of several harmonics: cycles until the state repeats.
+
+Once the number of events repeats, Newton's method on the state after one period leads to it; what it finds
+counts only if it is stable.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..jit import entry, kernel
+from .cycle import follow
+from .slides import Samples, oscillator, scratch
+
+REPEATS = 0
+NO_REPEAT = 1  # not within the cycles allowed, or not after one period
+HANGS = 2  # slides without length follow each other
+
+#: On a Newton step, and on what one period changes, relative to the motion.
+_TOLERANCE = 1e-12
+_NO_CHANGE = 1e-14
+
+#: A multiplier above 1 by rounding alone is not above 1.
+_STABLE = 1.0 + 1e-9
+
+#: A Newton step is taken if it is shorter than this share of the last one, and not long; else cycles follow.
+_SHORTER = 0.5
+_FARTHEST = 0.3  # of the motion: beyond, the map is not linear
+_PAUSE = 8
+
+
+class Steady(NamedTuple):
+    """The steady state at tau = 0, and what happens in its period."""
+
+    status: int
+    q: float
+    v: float
+    stops: int
+    stuck: float
+    turn_load: float
+    cycles: int
+
+
+@kernel
+def _newton(cycle, q, v):
+    """The step to the fixed point of the map that is linear about (q, v); infinite if there is none."""
+    t = cycle.tangent
+    rest_q = cycle.q - q
+    rest_v = cycle.v - v
+    determinant = (1.0 - t.q_q) * (1.0 - t.v_v) - t.q_v * t.v_q
+    if determinant == 0.0 or not math.isfinite(determinant):
+        return math.inf, math.inf
+    return (
+        ((1.0 - t.v_v) * rest_q + t.q_v * rest_v) / determinant,
+        (t.v_q * rest_q + (1.0 - t.q_q) * rest_v) / determinant,
+    )
+
+
+@kernel
+def _largest_multiplier(t):
+    """Spectral radius of the derivatives."""
+    half = 0.5 * (t.q_q + t.v_v)
+    determinant = t.q_q * t.v_v - t.q_v * t.v_q
+    square = half * half - determinant
+    if square <= 0.0:
+        return math.sqrt(max(determinant, 0.0))
+    return abs(half) + math.sqrt(square)
+
+
+@kernel
+def _find(mass, q, v, most, work, nowhere):
+    """(status, q, v, cycles) of the state that repeats."""
+    events = -1
+    last = math.inf
+    ready = 1  # the first cycle from which a Newton step may be taken
+    scale = 0.0
+    for n in range(most):
+        cycle = follow(mass, q, v, work, nowhere)
+        if not cycle.whole:
+            return HANGS, q, v, n
+        scale = max(scale, abs(cycle.q), mass.r * abs(cycle.v))
+        move = max(abs(cycle.q - q), mass.r * abs(cycle.v - v))
+        if move <= _NO_CHANGE * scale:
+            return REPEATS, cycle.q, cycle.v, n
+        step_q, step_v = _newton(cycle, q, v)
+        size = max(abs(step_q), mass.r * abs(step_v))
+        if cycle.events == events and n >= ready and size < min(_SHORTER * last, _FARTHEST * scale):
+            if _largest_multiplier(cycle.tangent) > _STABLE:
+                ready = most  # what lies there is not where the motion goes
+            elif size <= _TOLERANCE * scale:
+                return REPEATS, q + step_q, v + step_v, n
+            else:
+                events = cycle.events
+                last = size
+                q += step_q
+                v += step_v
+                continue
+        elif last < math.inf:
+            ready = n + _PAUSE
+            last = math.inf
+        events = cycle.events
+        q = cycle.q
+        v = cycle.v
+    return NO_REPEAT, q, v, most
+
+
+@entry
+def steady_motion(r, zeta, friction, mu, load, q, v, phases, places, most):
+    """The `Steady` state that the motion from (q, v) at tau = 0 leads to.
+
+    Parameters
+    ----------
+    r, zeta : frequency ratio > 0, damping ratio >= 0
+    friction, mu : kinetic friction over stiffness >= 0, static over kinetic friction >= 1
+    load : complex harmonics 0, 1, ... of the load over stiffness, in the length of q
+    phases, places : increasing phases in [0, 2 pi); filled with q there
+    most : cycles allowed
+    """
+    mass = oscillator(r, zeta, friction, mu, load)
+    work = scratch()
+    nowhere = Samples(phases[:0], places[:0], np.zeros(1, np.int64))
+    status, q, v, cycles = _find(mass, q, v, most, work, nowhere)
+    cycle = follow(mass, q, v, work, Samples(phases, places, np.zeros(1, np.int64)))
+    return Steady(status, q, v, cycle.stops, cycle.stuck, cycle.turn_load, cycles)

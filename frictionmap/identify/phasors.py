@@ -1,0 +1,234 @@
+"""Phasors of a record: all channels on harmonics of one frequency, by least squares.
+
+    channel k:   a_k + b_k (t - t_m) + Re sum_n X_kn e^{i n omega (t - t_m)},   n = 1 .. H
+
+The frequency is the one unknown that is not linear, and all channels share it.  No window is needed, nor
+whole cycles.  t_m is the middle of the record.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import InputError
+from .least_squares import inflation
+
+#: Harmonics, fewer where there are not this many samples a cycle of the highest one.
+_HARMONICS = 9
+_SAMPLES_OF_HIGHEST = 2.5
+
+#: Cycles that a record must have.
+_LEAST_CYCLES = 2.0
+
+#: Samples a cycle that are needed.
+_LEAST_SAMPLES = 8
+
+#: The spectrum is refined by so many values over its main lobe, the first of which may be the frequency.
+_REFINED = 17
+
+#: The frequency is found where it moves by less than this share of 1/length.
+_SETTLED = 1e-10
+_MAX_STEPS = 50
+
+
+class Phasors(NamedTuple):
+    """Harmonics of several channels."""
+
+    frequency: float  # Hz
+    frequency_error: float  # standard errors, here and below
+    middle: float  # s, where phases count from
+    values: np.ndarray  # shape (channels, H + 1), complex; harmonic 0 is the mean at `middle`
+    errors: np.ndarray  # shape (channels, H + 1), of the real and of the imaginary part at this frequency
+    drift: np.ndarray  # shape (channels,), a second
+    drift_errors: np.ndarray
+    slopes: np.ndarray  # shape (channels, H + 1), derivatives of the values by the frequency
+    residual: np.ndarray  # shape (samples, channels): data less harmonics
+    inflation: np.ndarray  # shape (channels,), of the errors, as residuals are correlated
+
+    @property
+    def rms(self) -> np.ndarray:
+        """Root mean squares of the residuals, shape (channels,)."""
+        return np.sqrt(np.mean(self.residual**2, axis=0))
+
+
+class _Linear(NamedTuple):
+    """The least squares at one frequency."""
+
+    coefficients: np.ndarray  # shape (columns, channels)
+    residual: np.ndarray  # shape (samples, channels)
+    inverse: np.ndarray  # of the triangle of the QR decomposition
+    turned: np.ndarray  # shape (columns, channels): derivatives of the coefficients by the frequency
+    curve: np.ndarray  # shape (samples, channels): derivatives of the residual, the coefficients following
+
+
+def phasors_of(time: np.ndarray, channels: np.ndarray) -> Phasors:
+    """Fit harmonics of one frequency to all channels, the first of which tells where to look for it.
+
+    time : shape (samples,), s, increasing
+    channels : shape (samples, channels)
+
+    Raises
+    ------
+    InputError
+        There are too few samples a cycle, too few cycles, or too few samples at all.
+    """
+    middle = 0.5 * (time[0] + time[-1])
+    t = time - middle
+    start = _coarse_frequency(t, channels[:, 0])
+    harmonics = _checked_harmonics(t, start)
+    return _refine(t, channels, start, harmonics)._replace(middle=float(middle))
+
+
+def harmonics_at(values: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Re sum_n X_n e^{i n angle} of one channel, harmonic 0 included."""
+    turn = np.exp(1j * angle)
+    total = np.zeros(np.shape(angle), dtype=complex)
+    for value in values[::-1]:
+        total = total * turn + value
+    return total.real
+
+
+def amplitude_and_lag(phasors: Phasors, n: int = 1) -> tuple[float, float]:
+    """|X_n/Y_n| and the lag -arg(X_n/Y_n) [rad] of the second channel behind the first."""
+    ratio = phasors.values[1, n] / phasors.values[0, n]
+    return float(abs(ratio)), float(-np.angle(ratio))
+
+
+def ratio_error(phasors: Phasors) -> float:
+    """Standard error of X_1/Y_1, relative: of its logarithm's real part, and of its angle [rad]."""
+    own = phasors.errors[:, 1] / np.abs(phasors.values[:, 1])
+    turn = phasors.slopes[:, 1] / phasors.values[:, 1]
+    shared = abs(turn[1] - turn[0]) * phasors.frequency_error
+    return float(np.sqrt(np.sum(own**2) + shared**2))
+
+
+def changes(time: np.ndarray, channels: np.ndarray, whole: Phasors) -> np.ndarray:
+    """How far X_1 of every channel differs between the first and the last third, squared, over its variance.
+
+    Two normal deviates of their own make it 2 on average.  None are told of thirds shorter than a cycle.
+    """
+    third = (time[-1] - time[0]) / 3.0
+    if third * whole.frequency < 1.0:
+        return np.zeros(0)
+    parts = (time <= time[0] + third, time >= time[-1] - third)
+    if min(int(part.sum()) for part in parts) <= 2 * whole.values.shape[1] + 1:
+        return np.zeros(0)  # a gap has taken one of them
+    fits = [
+        _linear(time[part] - whole.middle, channels[part], whole.frequency, whole.values.shape[1] - 1)
+        for part in parts
+    ]
+    squares = np.abs(_complex(fits[0].coefficients)[:, 1] - _complex(fits[1].coefficients)[:, 1]) ** 2
+    variance = sum(
+        (_first_error(fit) * np.array([inflation(one)[1] for one in fit.residual.T])) ** 2 for fit in fits
+    )
+    return squares / variance
+
+
+def _first_error(fit: _Linear) -> np.ndarray:
+    """Standard errors of the real part of X_1."""
+    rows, columns = fit.residual.shape[0], fit.coefficients.shape[0]
+    scatter = np.sqrt(np.sum(fit.residual**2, axis=0) / (rows - columns))
+    return scatter * float(np.linalg.norm(fit.inverse[2]))
+
+
+def _coarse_frequency(t: np.ndarray, base: np.ndarray) -> float:
+    """The frequency with the largest line: from the spectrum, refined by least squares of one harmonic."""
+    length = float(t[-1] - t[0])
+    even = np.linspace(t[0], t[-1], t.size)
+    values = np.interp(even, t, base)
+    values = values - np.polynomial.Polynomial.fit(even, values, 1)(even)
+    size = 4 * t.size
+    spectrum = np.abs(np.fft.rfft(values * np.hanning(t.size), size))
+    step = (t.size - 1) / (length * size)
+    peak = step * max(int(np.argmax(spectrum[1:])) + 1, 1)
+    near = peak + np.linspace(-1.0, 1.0, _REFINED) / length
+    near = near[near > 0.5 / length]
+    if not near.size:
+        return peak
+    sums = [float(np.sum(_linear(t, base[:, None], float(f), 1).residual ** 2)) for f in near]
+    return float(near[int(np.argmin(sums))])
+
+
+def _checked_harmonics(t: np.ndarray, frequency: float) -> int:
+    """How many harmonics the samples can tell."""
+    length = float(t[-1] - t[0])
+    cycles = length * frequency
+    if cycles < _LEAST_CYCLES:
+        raise InputError(
+            f"time must span at least {_LEAST_CYCLES:g} cycles of the base; "
+            f"it spans {cycles:.2g} ({length:.4g} s at {frequency:.4g} Hz)"
+        )
+    samples = 1.0 / (float(np.median(np.diff(t))) * frequency)
+    if samples < _LEAST_SAMPLES:
+        raise InputError(
+            f"time must have more samples: {samples:.2g} samples a cycle; {_LEAST_SAMPLES} are needed"
+        )
+    harmonics = min(_HARMONICS, int(samples / _SAMPLES_OF_HIGHEST))
+    unknowns = 2 * harmonics + 3
+    if t.size <= unknowns:
+        raise InputError(f"time must have more samples than there are unknowns, {unknowns}; got {t.size}")
+    return harmonics
+
+
+def _refine(t: np.ndarray, channels: np.ndarray, start: float, harmonics: int) -> Phasors:
+    """Gauss-Newton for the frequency, channels weighted by their own residuals."""
+    length = float(t[-1] - t[0])
+    f = start
+    fit = _linear(t, channels, f, harmonics)
+    for _ in range(_MAX_STEPS):
+        scatter = _scatter(fit)
+        weighted, curve = fit.residual / scatter, fit.curve / scatter
+        step = -float(np.sum(curve * weighted)) / float(np.sum(curve**2))
+        f += step
+        fit = _linear(t, channels, f, harmonics)
+        if abs(step) * length < _SETTLED:
+            break
+    return _with_errors(f, fit)
+
+
+def _with_errors(f: float, fit: _Linear) -> Phasors:
+    scatter = _scatter(fit)
+    grown = np.array([inflation(one)[1] for one in fit.residual.T])
+    information = np.sum((fit.curve / (scatter * grown)) ** 2)
+    own = np.linalg.norm(fit.inverse, axis=1)[:, None] * (scatter * grown)
+    errors = np.column_stack((own[0], np.sqrt(0.5 * (own[2::2] ** 2 + own[3::2] ** 2)).T))
+    frequency_error = float(1.0 / np.sqrt(information))
+    drift_errors = np.hypot(own[1], fit.turned[1] * frequency_error)
+    return Phasors(
+        float(f), frequency_error, 0.0, _complex(fit.coefficients), errors, fit.coefficients[1], drift_errors,
+        _complex(fit.turned), fit.residual, grown,
+    )  # fmt: skip
+
+
+def _scatter(fit: _Linear) -> np.ndarray:
+    """Standard deviations of the residuals; of exact data their rounding, or weights were infinite."""
+    rows, columns = fit.residual.shape[0], fit.coefficients.shape[0]
+    found = np.sqrt(np.sum(fit.residual**2, axis=0) / (rows - columns - 1))
+    return np.maximum(found, np.finfo(float).eps * np.abs(fit.coefficients).max(axis=0))
+
+
+def _complex(coefficients: np.ndarray) -> np.ndarray:
+    """Rows a, b, Re X_1, -Im X_1, ... as complex harmonics 0 .. H, shape (channels, H + 1)."""
+    return np.vstack((coefficients[:1], coefficients[2::2] - 1j * coefficients[3::2])).T
+
+
+def _linear(t: np.ndarray, channels: np.ndarray, f: float, harmonics: int) -> _Linear:
+    """Least squares at a frequency, by QR, and how it changes with the frequency."""
+    order = np.arange(1, harmonics + 1)
+    angle = 2.0 * np.pi * f * t[:, None] * order
+    rate = 2.0 * np.pi * t[:, None] * order
+    columns = np.empty((t.size, 2 + 2 * harmonics))
+    slopes = np.zeros_like(columns)
+    columns[:, 0], columns[:, 1] = 1.0, t
+    columns[:, 2::2], columns[:, 3::2] = np.cos(angle), np.sin(angle)
+    slopes[:, 2::2], slopes[:, 3::2] = -rate * columns[:, 3::2], rate * columns[:, 2::2]
+    orthogonal, triangle = np.linalg.qr(columns)
+    inverse = np.linalg.inv(triangle)
+    along = orthogonal.T @ channels
+    coefficients = inverse @ along
+    moved = slopes @ coefficients
+    moved_along = orthogonal.T @ moved
+    return _Linear(
+        coefficients, channels - orthogonal @ along, inverse, -inverse @ moved_along,
+        -(moved - orthogonal @ moved_along),
+    )  # fmt: skip

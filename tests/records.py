@@ -1,0 +1,150 @@
+"""Records of one mass on a shaken base for tests: its equation of motion integrated, and noise on top."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+
+class Truth(NamedTuple):
+    """What is measured, in Hz, mm and s, and how."""
+
+    f_n: float
+    zeta: float
+    x_F: float  # noqa: N815
+    mu: float
+    offset_x: float
+    f: float
+    base: tuple  # complex harmonics 0, 1, ...
+    contact: str = "fixed-wall"
+    damping_reference: str = "base"
+    rate: float = 250.0
+    length: float = 10.0
+    noise_x: float = 0.01
+    noise_y: float = 0.003
+
+
+class Cycle(NamedTuple):
+    """The last cycle that was integrated."""
+
+    parts: list  # (begin, end, place(t)), t in [0, 1/f]
+    stops: int
+    change: float  # of the state in it, in mm
+
+
+def base_at(truth, t, derivative=0):
+    """The base, or a derivative of it by time."""
+    n = np.arange(len(truth.base))
+    phasors = np.array(truth.base) * (2j * np.pi * truth.f * n) ** derivative
+    return (np.exp(2j * np.pi * truth.f * np.multiply.outer(t, n)) @ phasors).real
+
+
+def _acceleration(truth, t, x, v):
+    """x'' without friction: m x'' + c (x' - y') + k (x - offset - y) = 0, or with c x'."""
+    w = 2.0 * np.pi * truth.f_n
+    shaken = truth.damping_reference == "base"
+    speed = v - (base_at(truth, t, 1) if shaken else 0.0)
+    return -(w**2) * (x - truth.offset_x - base_at(truth, t)) - 2.0 * truth.zeta * w * speed
+
+
+def _wall(truth, t, derivative):
+    """The surface that the mass rubs on."""
+    return base_at(truth, t, derivative) if truth.contact == "joined-base-wall" else 0.0 * t
+
+
+def _pull(truth, t, x, v):
+    """What friction would have to hold in a stop, over the stiffness."""
+    free = _acceleration(truth, t, x, v) - _wall(truth, t, 2)
+    return free / (2.0 * np.pi * truth.f_n) ** 2
+
+
+def _stop(truth, begin, end, x):
+    """Until when it sticks, and the held motion."""
+
+    def place(t):
+        return x + _wall(truth, t, 0) - _wall(truth, begin, 0)
+
+    def left(t):
+        return truth.mu * truth.x_F - np.abs(_pull(truth, t, place(t), _wall(truth, t, 1)))
+
+    grid = np.linspace(begin, end, max(3, int(4000 * (end - begin) * truth.f)))
+    over = np.flatnonzero(left(grid[1:]) < 0.0)
+    if not over.size:
+        return end, place
+    k = int(over[0])
+    if left(grid[k]) <= 0.0:
+        return grid[k], place
+    return brentq(left, grid[k], grid[k + 1], xtol=1e-15), place
+
+
+def _slide(truth, begin, end, state, sense):
+    """Until when it slides, the motion, and the state there."""
+    w = 2.0 * np.pi * truth.f_n
+
+    def slope(t, y):
+        return [y[1], _acceleration(truth, t, y[0], y[1]) - w**2 * truth.x_F * sense]
+
+    def turn(t, y):
+        return y[1] - _wall(truth, t, 1)
+
+    turn.terminal, turn.direction = True, -sense
+    run = solve_ivp(
+        slope, (begin, end), state, "DOP853", events=turn, dense_output=True, rtol=3e-13, atol=1e-13,
+        max_step=0.02 / max(truth.f_n, truth.f),
+    )  # fmt: skip
+    return run.t[-1], lambda t: run.sol(t)[0], run.y[:, -1], run.status == 1
+
+
+def cycle(truth, state, stuck):
+    """One cycle from a state: what happened, and the state after it."""
+    period, t = 1.0 / truth.f, 0.0
+    parts, stops = [], 0
+    sense = np.sign(state[1] - _wall(truth, 0.0, 1))
+    while t < period:
+        if stuck:
+            begin, x = t, state[0]
+            t, place = _stop(truth, begin, period, x)
+            state = np.array([place(t), _wall(truth, t, 1)])
+            sense = np.sign(_pull(truth, t, *state))
+            stuck = t >= period
+        else:
+            begin = t
+            t, place, state, turned = _slide(truth, begin, period, state, sense)
+            if turned:
+                pull = _pull(truth, t, *state)
+                state[1] = _wall(truth, t, 1)
+                stuck, sense = abs(pull) <= truth.mu * truth.x_F, np.sign(pull)
+                stops += int(stuck)
+        parts.append((begin, t, place))
+    return parts, stops, state, stuck
+
+
+def steady(truth, cycles=60, accuracy=1e-10):
+    """Integrated from a moving start until a cycle changes nothing, or as often as is allowed."""
+    state, stuck = np.array([truth.offset_x, 0.1 * truth.f * abs(truth.base[1])]), False
+    for _ in range(cycles):
+        parts, stops, after, stuck = cycle(truth, state, stuck)
+        change = float(np.max(np.abs(after - state) / [1.0, 2.0 * np.pi * truth.f]))
+        state = after
+        if change < accuracy:
+            break
+    return Cycle(parts, stops, change)
+
+
+def places(truth, motion, time):
+    """The mass in the steady state."""
+    t = np.mod(time, 1.0 / truth.f)
+    x = np.empty(t.size)
+    for begin, end, place in motion.parts:
+        inside = (t >= begin) & (t <= end)
+        x[inside] = place(t[inside])
+    return x
+
+
+def synthetic(truth, motion, seed):
+    """Times, base and mass as they are measured, with noise of its own for every seed."""
+    time = np.arange(int(truth.rate * truth.length) + 1) / truth.rate
+    rng = np.random.default_rng(seed)
+    base = base_at(truth, time) + rng.normal(0.0, truth.noise_y, time.size)
+    return time, base, places(truth, motion, time) + rng.normal(0.0, truth.noise_x, time.size)

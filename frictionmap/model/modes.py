@@ -6,12 +6,10 @@ Everything is dimensionless, as in theory.md 1.
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from .._kernels.boundary.balance import Body
+from .balance import Body, Polynomial, contact_responses, dynamic_stiffness, held_motions
 
 _EPS = float(np.finfo(float).eps)
 
@@ -147,13 +145,9 @@ def times(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:
     return total
 
 
-def _phasors(r: np.ndarray, constant: np.ndarray, rate: np.ndarray, square: np.ndarray) -> np.ndarray:
-    """constant + i r rate + r^2 square, complex (n_r, n); every row as if it were alone, as `times`."""
-    r = np.asarray(r, dtype=float)[:, np.newaxis]
-    found = np.empty((r.size, constant.size), dtype=complex)
-    found.real = constant.real - r * rate.imag + r * r * square.real
-    found.imag = constant.imag + r * rate.real + r * r * square.imag
-    return found
+def _rows(polynomial: Polynomial, r: np.ndarray) -> np.ndarray:
+    """Its values at r, complex (n_r, n)."""
+    return polynomial.at(np.asarray(r, dtype=float)).rows()
 
 
 def _weighted(parts: np.ndarray, weights: np.ndarray) -> np.ndarray:
@@ -278,35 +272,30 @@ class ModalModel:
         return self._shares(self.contact)
 
     @cached_property
-    def _load_shares(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _load_shares(self) -> Polynomial:
         """Participation of load, of load_rate, and of nothing that grows with r^2."""
-        return self._shares(self.load), self._shares(self.load_rate), np.zeros(self.w.size)
+        return Polynomial(self._shares(self.load), self._shares(self.load_rate), np.zeros(self.w.size))
 
     @cached_property
-    def _relative(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _relative(self) -> Polynomial:
         """`relative_load` in its parts: constant, times i r, times r^2; complex (n,) each."""
         nothing = np.zeros(self.w.size, dtype=complex)
         if not self.base_motion:
-            return self.load.astype(complex), self.load_rate.astype(complex), nothing
+            return Polynomial(self.load.astype(complex), self.load_rate.astype(complex), nothing)
         ones = np.ones(self.w.size)
-        return nothing, self.load_rate - self.damping @ ones, (self.mass @ ones).astype(complex)
+        return Polynomial(nothing, self.load_rate - self.damping @ ones, (self.mass @ ones).astype(complex))
 
     @cached_property
-    def _relative_shares(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _relative_shares(self) -> Polynomial:
         """Participation of these parts."""
-        constant, rate, square = (self._shares(part).astype(complex) for part in self._relative)
-        return constant, rate, square
+        return Polynomial(*(self._shares(part).astype(complex) for part in self._relative))
 
     @cached_property
-    def _body(self) -> "Body":
-        """The structure in the numbers that the kernels take."""
-        from .._kernels.boundary.balance import Body  # not loaded where a configuration is only checked
-
+    def _body(self) -> Body:
+        """The structure in the numbers that its balance takes."""
         return Body(
-            self.w, self.zeta, np.ascontiguousarray(self.phi), self.chi, self.contact,
-            np.ascontiguousarray(self.mass), np.ascontiguousarray(self.stiffness),
-            np.empty(0) if self.springs is None else self.springs,
-            np.ascontiguousarray(self.mass @ self.phi), *self._relative, *self._relative_shares,
+            self.w, self.zeta, self.phi, self.chi, self.contact, self.mass, self.stiffness, self.springs,
+            self.mass @ self.phi, self._relative, self._relative_shares,
             _ZERO_PRODUCT * _EPS,
         )  # fmt: skip
 
@@ -324,11 +313,11 @@ class ModalModel:
 
     def participation(self, r: np.ndarray) -> np.ndarray:
         """Participation of the load, lambda_i = p(r).phi_i, complex (n_r, n)."""
-        return _phasors(r, *self._load_shares)
+        return _rows(self._load_shares, r)
 
     def total_load(self, r: np.ndarray) -> np.ndarray:
         """Phasor p(r) of the load on the masses, (n_r, n)."""
-        return _phasors(r, self.load, self.load_rate, np.zeros(self.w.size))
+        return _rows(Polynomial(self.load, self.load_rate, np.zeros(self.w.size)), r)
 
     def relative_load(self, r: np.ndarray) -> np.ndarray:
         """Phasor of the load on x - s, which is x as seen from the contact's other side, (n_r, n).
@@ -336,19 +325,15 @@ class ModalModel:
         With base motion p - (K - r^2 M + i r C1) ones = r^2 M ones + i r (load_rate - C1 ones), without
         the difference of nearly equal numbers that p - K ones would be; else p.
         """
-        return _phasors(r, *self._relative)
+        return _rows(self._relative, r)
 
     def relative_participation(self, r: np.ndarray) -> np.ndarray:
         """relative_load(r).phi_i, (n_r, n)."""
-        return _phasors(r, *self._relative_shares)
+        return _rows(self._relative_shares, r)
 
     def dynamic_stiffness(self, r: np.ndarray) -> np.ndarray:
         """w_i^2 - r^2 + 2 i zeta_i w_i r, shape (n_r, n), without cancellation at resonance."""
-        r = np.asarray(r, dtype=float)[:, np.newaxis]
-        found = np.empty((r.size, self.w.size), dtype=complex)
-        found.real = (self.w - r) * (self.w + r)
-        found.imag = 2.0 * self.zeta * self.w * r
-        return found
+        return dynamic_stiffness(self.w, self.zeta, np.asarray(r, dtype=float)).rows()
 
     def response(self, r: np.ndarray, weights: np.ndarray) -> np.ndarray:
         """sum_i weights_i lambda_i/(w_i^2 - r^2 + 2 i zeta_i w_i r), complex (n_r,).
@@ -362,12 +347,7 @@ class ModalModel:
 
         It is response(r, chi) - s, without the loss of digits that the difference would have at small r.
         """
-        from .._kernels.boundary.balance import contact_responses
-
-        r = np.ascontiguousarray(r, dtype=float)
-        v = np.empty(r.size, dtype=complex)
-        contact_responses(r, self._body, v)
-        return v
+        return contact_responses(np.asarray(r, dtype=float), self._body)
 
     def held(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """x - s (n_r, n) and F (n_r,) with the contact held, theory.md 4.
@@ -376,14 +356,9 @@ class ModalModel:
         the contact does not see move as if free and leave F alone: taken out of the equations they cannot
         make them singular.
         """
-        from .._kernels.boundary.balance import held_motions
-
-        r = np.ascontiguousarray(r, dtype=float)
+        r = np.asarray(r, dtype=float)
         participating = self.chi != 0.0
-        found = np.empty((r.size, self.w.size), dtype=complex)
-        force = np.empty(r.size, dtype=complex)
-        singular = np.empty(r.size, dtype=bool)
-        held_motions(r, self._body, bool(participating.all()), found, force, singular)
+        found, force, singular = held_motions(r, self._body)
         at = np.flatnonzero(singular)
         if participating.all():
             load = self.relative_load(r[at])

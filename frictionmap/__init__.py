@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from .files.config import load_config
     from .model.settings import Solver
     from .model.system import System
-    from .plot import plot_boundaries, plot_curves, plot_orbit, plot_regimes, plot_response
+    from .plot import plot_boundaries, plot_curves, plot_fit, plot_orbit, plot_regimes, plot_response
     from .steady.curves import curves
     from .steady.response import response
     from .steady.sweep import sweep
@@ -55,6 +55,7 @@ __all__ = [
     "load_config",
     "plot_boundaries",
     "plot_curves",
+    "plot_fit",
     "plot_orbit",
     "plot_regimes",
     "plot_response",
@@ -73,6 +74,7 @@ _HOME = {
     "load_config": "files.config",
     "plot_boundaries": "plot",
     "plot_curves": "plot",
+    "plot_fit": "plot",
     "plot_orbit": "plot",
     "plot_regimes": "plot",
     "plot_response": "plot",

@@ -12,6 +12,7 @@ from .errors import InputError
 from .files.reading import kind
 from .pictures.boundary_map import plot_boundaries
 from .pictures.curves import CURVE_VARIABLES, plot_curves
+from .pictures.fits import plot_fit
 from .pictures.harmonics import HARMONIC_VARIABLES
 from .pictures.history import plot_response
 from .pictures.orbit import plot_orbit
@@ -26,6 +27,7 @@ __all__ = [
     "check_picture",
     "plot_boundaries",
     "plot_curves",
+    "plot_fit",
     "plot_orbit",
     "plot_regimes",
     "plot_response",
@@ -65,9 +67,8 @@ def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
         "map": {"regimes": plot_regimes},
         "boundaries": {"boundaries": plot_boundaries},
         "response": {"history": plot_response, "orbit": plot_orbit},
+        "estimates": {"fit": plot_fit},
     }
-    if what not in drawn_of:
-        raise InputError(f"ds must be of {', '.join(drawn_of)} or curves to be drawn; got one of {what}")
     legal = drawn_of[what]
     if log:
         raise InputError(f"log is for response curves; got a dataset of kind {what}")

@@ -1,5 +1,6 @@
-"""Whether the parts of a picture lie where they can be read."""
+"""What a picture shows, and whether its parts lie where they can be read."""
 
+import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 
@@ -11,6 +12,18 @@ def drawn(figure):
 
 def legends(figure):
     return figure.legends + [ax.get_legend() for ax in figure.axes if ax.get_legend()]
+
+
+def rendered(axes):
+    """The picture, drawn; a warning is an error."""
+    canvas = FigureCanvasAgg(axes[0].figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())
+
+
+def words_of(axes):
+    """The words of the legend."""
+    return [text.get_text() for text in axes[0].figure.legends[0].get_texts()]
 
 
 def assert_inside_and_apart(figure):

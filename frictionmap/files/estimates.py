@@ -12,6 +12,9 @@ from ..errors import InputError
 #: What a line of the table says itself.
 _SHOWN_ELSEWHERE = ("verdict", "residual_correlation", "error_inflation", "reduced_chi_square")
 
+#: Digits behind the point that can be read.
+_DECIMALS = 7
+
 
 def estimates_form(ds: xr.Dataset) -> xr.Dataset:
     """Estimates, or a slice of them, in the form that they were made in; the structure has been checked.
@@ -65,7 +68,7 @@ def describe_estimates(ds: xr.Dataset) -> list[str]:
     ]
     singles = [name for name in ds.data_vars if name not in _SHOWN_ELSEWHERE and _is_number(ds[name])]
     lines += [
-        f"{name}  {float(ds[name]):.5g} {_unit_in_words(ds[name].attrs.get('units', '1'))}".rstrip()
+        f"{name}  {float(ds[name]):.5g} {unit_in_words(ds[name].attrs.get('units', '1'))}".rstrip()
         for name in singles
     ]
     lines += filter(None, [verdict_in_words(ds)])
@@ -74,7 +77,7 @@ def describe_estimates(ds: xr.Dataset) -> list[str]:
 
 def _row(one: xr.Dataset) -> tuple[str, str, str, str, str]:
     """A line of the table."""
-    name, unit = str(one["parameter"].values), _unit_in_words(str(one["unit"].values))
+    name, unit = str(one["parameter"].values), unit_in_words(str(one["unit"].values))
     if one["known"]:
         return name, f"{float(one['estimate']):.6g}", "", "held", unit
     interval = f"{float(one['lower']):.6g} to {float(one['upper']):.6g}"
@@ -86,8 +89,32 @@ def _is_number(variable: xr.DataArray) -> bool:
     return variable.ndim == 0 and variable.dtype.kind in "iuf"
 
 
-def _unit_in_words(unit: object) -> str:
+def unit_in_words(unit: object) -> str:
+    """A unit; nothing of a pure number."""
     return "" if unit == "1" else str(unit)
+
+
+def estimates_in_short(ds: xr.Dataset) -> str:
+    """What was fitted, each with its standard error, on one line that breaks between them only."""
+    words = []
+    for name in ds["parameter"].values:
+        one = ds.sel(parameter=name)
+        if not one["known"]:
+            value = _with_error(float(one["estimate"]), float(one["standard_error"]))
+            words.append(f"{name} {value} {unit_in_words(str(one['unit'].values))}".rstrip())
+    return ", ".join(part.replace(" ", "\u00a0") for part in words)
+
+
+def _with_error(value: float, error: float) -> str:
+    """A value as far as its error reaches, two digits of which are told."""
+    if error == 0.0:
+        return f"{value:.6g}"
+    decimals = max(1 - int(np.floor(np.log10(error))), 0)
+    return (
+        f"{value:.{decimals}f} ± {error:.{decimals}f}"
+        if decimals <= _DECIMALS
+        else f"{value:.6g} ± {error:.2g}"
+    )
 
 
 def verdict_in_words(ds: xr.Dataset) -> str:

@@ -23,5 +23,11 @@ motions         amplitude and phase over frequency
 harmonics       harmonics over frequency
 works           works, distances and forces over frequency
 curves          which of these is drawn
+fit_data        measured samples with their errors, and residuals
+fit_picture     what a picture of a fit consists of
+fit_samples     fits to any data
+fit_decay       free decays with their envelope
+fit_sweep       sweeps of two masses
+fits            which of these is drawn
 ==============  ==========================================================================
 """

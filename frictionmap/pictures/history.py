@@ -1,7 +1,7 @@
 """Pictures of one steady state in time."""
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -12,19 +12,13 @@ from matplotlib.patches import Patch
 from .. import regimes
 from ..errors import InputError
 from .marks import spread
-from .palette import CLASSES, LINES, STUCK
+from .palette import CLASSES, LINES, STUCK, Shade
 from .panels import Handle, given_axes, legend_below, new_figure, title_figure
-from .shapes import check_holds, to_draw
+from .shapes import check_holds, check_range, to_draw
 from .words import caption, load_of, moves_base
 
 if TYPE_CHECKING:
     from .panels import AxesArray
-
-
-class _Shade(TypedDict):
-    color: str
-    alpha: float
-    linewidth: float
 
 
 #: Height of the panels: load, motion in the contact, masses, friction.
@@ -36,13 +30,10 @@ _GAP, MOST_LABELS = 0.09, 11
 #: A motion smaller than this is none.
 _ROUNDING = 1e-9
 
-#: Axes are wider than what they show, and have to end at a double.
-_LARGEST = 1e300
-
 #: Where stops begin; without one of these they are not marked.
 _EVENTS = ("event_tau", "event_phase", "event_z")
 
-_SHADE: _Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.55, "linewidth": 0.0}
+_SHADE: Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.55, "linewidth": 0.0}
 _LOAD_COLOUR = "#cc1f03"
 
 _REGIME_WORDS = {
@@ -177,10 +168,7 @@ def check_can_be_seen(ds: xr.Dataset, names: Iterable[str]) -> None:
     """Refuse one moment alone, and variables whose range is beyond all doubles."""
     if ds.sizes["tau"] < 2:
         raise InputError(f"a response must have two tau or more to be drawn; got {ds.sizes['tau']}")
-    for name in names:
-        largest = float(np.abs(ds[name].values).max())
-        if largest > _LARGEST:
-            raise InputError(f"{name} must be at most {_LARGEST:g} to be drawn; got {largest:g}")
+    check_range(ds, names)
 
 
 def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":

@@ -29,6 +29,14 @@ class LineStyle(TypedDict, total=False):
     label: str
 
 
+class Shade(TypedDict):
+    """What matplotlib fills a span with."""
+
+    color: str
+    alpha: float
+    linewidth: float
+
+
 CLASSES = (
     Look("unresolved", "#cc1f03"),
     Look("permanent sticking", "#c4c4c4"),

@@ -2,22 +2,28 @@
 
 from collections.abc import Iterable
 
+import numpy as np
 import xarray as xr
 
 from ..errors import InputError
 from ..files.reading import kind, standard_form
+
+#: Axes are wider than what they show, and have to end at a double.
+_LARGEST = 1e300
 
 _MAKERS = {
     "map": "sweep returns, over mu, r and beta",
     "boundaries": "boundaries returns, over mu and r",
     "curves": "curves returns, over mu, r and beta",
     "response": "response returns, over tau",
+    "estimates": "the functions of identify return, over parameter",
 }
 _DRAWN_BY = {
     "map": "plot_regimes",
     "boundaries": "plot_boundaries",
     "curves": "plot_curves",
     "response": "plot_response",
+    "estimates": "plot_fit",
 }
 
 
@@ -37,6 +43,14 @@ def check_holds(ds: xr.Dataset, names: Iterable[str], what: str) -> None:
     for name in names:
         if name not in ds:
             raise InputError(f"a dataset must hold {name} for {what} to be drawn; it does not")
+
+
+def check_range(ds: xr.Dataset, names: Iterable[str]) -> None:
+    """Refuse variables whose range is beyond all doubles."""
+    for name in names:
+        largest = float(np.abs(ds[name].values).max(initial=0.0))
+        if largest > _LARGEST:
+            raise InputError(f"{name} must be at most {_LARGEST:g} to be drawn; got {largest:g}")
 
 
 def panels_of(ds: xr.Dataset) -> list[xr.Dataset]:

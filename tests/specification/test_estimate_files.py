@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from decays import Truth, synthetic
+from sweeps import swept
 
 import frictionmap as fm
 from frictionmap import InputError
@@ -16,14 +17,6 @@ from frictionmap.files.storage import write
 from frictionmap.files.summary import describe_file
 
 TRUTH = Truth(3.1, 0.01, 0.2, 10.0, -0.02, 0.3, 200.0, 4.0, 0.02)
-
-
-def swept():
-    """Two masses on a shaken base, from M and K, with 2 % of noise."""
-    f = np.concatenate((np.linspace(0.5, 1.7, 7), np.linspace(1.97, 4.7, 16), np.linspace(5.2, 8.0, 7)))
-    K = np.array([[2.1, -1.1], [-1.1, 1.1]])
-    x = [abs(np.linalg.solve(K - (one / 2.9) ** 2 * np.diag([1.0, 0.98]), [1.0, 0.0])[0]) for one in f]
-    return f, np.array(x) * np.exp(np.random.default_rng(1).normal(0.0, 0.02, f.size))
 
 
 @pytest.fixture(scope="module")

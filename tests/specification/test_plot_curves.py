@@ -4,8 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from layouts import assert_inside_and_apart
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from layouts import assert_inside_and_apart, rendered, words_of
 from matplotlib.figure import Figure
 
 import frictionmap as fm
@@ -14,17 +13,6 @@ from frictionmap.files.reading import read
 from frictionmap.files.storage import write
 
 TWO = {"mass_ratios": [1.0, 1.0], "stiffness_ratios": [1.0, 1.0]}
-
-
-def rendered(axes):
-    """The picture, drawn; a warning is an error."""
-    canvas = FigureCanvasAgg(axes[0].figure)
-    canvas.draw()
-    return np.asarray(canvas.buffer_rgba())
-
-
-def words_of(axes):
-    return [text.get_text() for text in axes[0].figure.legends[0].get_texts()]
 
 
 # Orbits

@@ -1,0 +1,90 @@
+"""Pictures of sweeps of two masses without friction: amplitude over frequency with its peaks and its zero."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from ..errors import InputError
+from ..identify.sweep import log_amplitude
+from .fit_data import FITTED, Samples, draw_data, draw_residuals, samples_of
+from .fit_picture import FitPicture
+from .fit_samples import RESIDUALS, VALUES
+from .panels import Handle
+
+_FREQUENCIES = ("f0", "f1", "f2")
+
+#: Points of the fitted curve over the axis.
+_POINTS = 2001
+
+#: Room beside the data, as a share of their span.
+_MARGIN = 0.04
+
+#: Amplitudes whose logarithms are larger have no place on an axis of doubles.
+_LARGEST_LOGARITHM = 600.0
+
+#: The curve is infinite, and zero, within the axis: it ends so many times beyond the data.
+_BEYOND = 4.0
+
+
+def is_sweep(ds: xr.Dataset) -> bool:
+    """Whether all is there that the curve of two masses needs."""
+    return set(_FREQUENCIES) <= set(ds["parameter"].values.tolist()) and "frequency" in ds
+
+
+def sweep_picture(ds: xr.Dataset) -> FitPicture:
+    """Amplitudes over the fitted curve, and residuals of their logarithms below."""
+    samples = samples_of(ds)
+    frequencies = np.array([float(ds["estimate"].sel(parameter=name)) for name in _FREQUENCIES])
+    _check(samples, frequencies)
+
+    def values(ax: Axes) -> list[Handle]:
+        return [*_draw_curve(ax, samples, frequencies), *_draw_amplitudes(ax, samples)]
+
+    def residuals(ax: Axes) -> list[Handle]:
+        return draw_residuals(ax, samples, "residual of ln")
+
+    return FitPicture([(VALUES, values), (RESIDUALS, residuals)], None, [])
+
+
+def _check(samples: Samples, frequencies: np.ndarray) -> None:
+    """Refuse what no fit can be: frequencies of zero, amplitudes beyond all doubles."""
+    if frequencies.min() <= 0.0:
+        raise InputError(f"f0, f1 and f2 must be > 0 to be drawn; got {frequencies.min():g}")
+    largest = float((np.abs(samples.data) + samples.sigma).max())
+    if largest > _LARGEST_LOGARITHM:
+        raise InputError(
+            f"data must be logarithms of at most {_LARGEST_LOGARITHM:g} to be drawn; got {largest:g}"
+        )
+
+
+def _draw_amplitudes(ax: Axes, samples: Samples) -> list[Handle]:
+    """Data are logarithms; the axis is logarithmic."""
+    ends = np.exp(samples.data - samples.sigma), np.exp(samples.data + samples.sigma)
+    return draw_data(ax, samples._replace(data=np.exp(samples.data)), ends)
+
+
+def _draw_curve(ax: Axes, samples: Samples, frequencies: np.ndarray) -> list[Handle]:
+    """The fitted amplitude; its peaks and its zero are named."""
+    margin = _MARGIN * (float(np.ptp(samples.x)) or float(samples.x[0]) or 1.0)
+    low, high = max(float(samples.x[0]) - margin, 0.0), float(samples.x[-1]) + margin
+    f = np.linspace(low, high, _POINTS)
+    f = f[~np.isin(f, frequencies)]  # there it is infinite, or zero
+    bottom, top = (np.exp(end) for end in (samples.data.min(), samples.data.max()))
+    ax.set_yscale("log")
+    ax.set_xlim(low, high)
+    ax.set_ylim(bottom / _BEYOND, top * _BEYOND)
+    ax.set_ylabel("amplitude of mass 1 / base")
+    for name, place in zip(_FREQUENCIES, frequencies.tolist(), strict=True):
+        if low < place < high:
+            _name_frequency(ax, name, place)
+    return [
+        *ax.plot(f, np.exp(log_amplitude(frequencies, f)[0]), color=FITTED, linewidth=1.1, label="fitted")
+    ]
+
+
+def _name_frequency(ax: Axes, name: str, place: float) -> None:
+    ax.axvline(place, color="#606060", linewidth=0.9, linestyle=":", zorder=0.7)
+    ax.annotate(
+        f"${name[0]}_{name[1]}$", (place, 1.0), xycoords=("data", "axes fraction"), xytext=(3, -11),
+        textcoords="offset points", fontsize=9,
+    )  # fmt: skip

@@ -1,0 +1,93 @@
+"""Pictures of fits to measured data: which of them is drawn, and their layout."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..errors import InputError
+from ..files.estimates import estimates_in_short, verdict_in_words
+from .fit_data import about_residuals
+from .fit_decay import decay_picture, is_decay
+from .fit_picture import FitPicture
+from .fit_samples import samples_picture
+from .fit_sweep import is_sweep, sweep_picture
+from .panels import distinct, given_axes, legend_below, legend_under, new_figure, title_figure
+from .shapes import check_holds, check_range, to_draw
+
+if TYPE_CHECKING:
+    from .panels import AxesArray
+
+#: Widths of the panels over one axis, and of the one beside them [inch].
+_WIDTH, _BESIDE = 7.2, 5.4
+
+
+def plot_fit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":
+    """Picture of a fit to measured data: samples over the fitted curve, residuals below.
+
+    A free decay has its turning points, their envelope and the place of rest.  Bars are one standard error of
+    a sample, and a band beside the residuals; the caption has the estimates with their standard errors, what
+    was found, and the lag-1 correlation of the residuals.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        As the functions of `identify` return it, or a part of it.
+    ax : array of matplotlib axes, optional
+        Axes to draw into, from top to bottom; the legend goes under the last of them.
+
+    Returns
+    -------
+    An array of the axes.
+
+    Raises
+    ------
+    InputError
+        The dataset holds no estimates, or lacks a variable to draw, or there are more or fewer axes than
+        panels.
+    """
+    ds = to_draw(ds, "plot_fit", "estimates")
+    names = ("data", "model", "residual")
+    check_holds(ds, names, "its fit")
+    check_range(ds, names)
+    if ds.sizes["sample"] < 1:
+        raise InputError("a dataset must have at least one sample for its fit to be drawn; it has none")
+    picture = _picture(ds)
+    panels = [panel for _, panel in picture.panels]
+    panels += [picture.beside] if picture.beside else []
+    axes = _new_axes(picture, ds) if ax is None else given_axes(ax, len(panels), "one for each panel")
+    handles = distinct([handle for panel, one in zip(panels, axes, strict=True) for handle in panel(one)])
+    if ax is None:
+        figure = axes[0].figure
+        assert isinstance(figure, Figure)
+        told = (estimates_in_short(ds), verdict_in_words(ds), about_residuals(ds), *picture.remarks)
+        legend_below(figure, handles, "; ".join(filter(None, told)))
+    else:
+        legend_under(axes[-1], handles)
+    return axes
+
+
+def _picture(ds: xr.Dataset) -> FitPicture:
+    if is_decay(ds):
+        return decay_picture(ds)
+    return sweep_picture(ds) if is_sweep(ds) else samples_picture(ds)
+
+
+def _new_axes(picture: FitPicture, ds: xr.Dataset) -> "AxesArray":
+    """Axes of a new figure: panels over one axis, and the one beside them."""
+    heights = [height for height, _ in picture.panels]
+    beside = [_BESIDE] if picture.beside else []
+    figure = new_figure(_WIDTH + sum(beside), sum(heights) + 0.6)
+    title_figure(figure, str(ds.attrs.get("title", "")))
+    grid = figure.add_gridspec(
+        len(heights), 1 + len(beside), height_ratios=heights, width_ratios=[_WIDTH, *beside]
+    )
+    axes = [figure.add_subplot(grid[0, 0])]
+    axes += [figure.add_subplot(grid[k, 0], sharex=axes[0]) for k in range(1, len(heights))]
+    for one in axes[:-1]:
+        one.tick_params(labelbottom=False)
+    axes += [figure.add_subplot(grid[:, 1])] if beside else []
+    return np.array(axes, dtype=object)

@@ -1,0 +1,248 @@
+"""Pictures of fits to measured data: what is drawn is what was measured and fitted, all of it to be read."""
+
+import contextlib
+import re
+import warnings
+from pathlib import Path
+
+import mutants
+import numpy as np
+import pytest
+from decays import Truth, marched, synthetic
+from layouts import assert_inside_and_apart, rendered, words_of
+from matplotlib.figure import Figure
+from sweeps import F_K1M1, GAMMA, KAPPA, amplitudes, swept
+
+import frictionmap as fm
+from frictionmap import InputError, cli, plot
+from frictionmap.files.reading import read
+from frictionmap.files.storage import write
+
+MIXED = Truth(3.1, 0.01, 0.2, 10.0, -0.02, 0.3, 200.0, 4.0, 0.02)
+
+
+@pytest.fixture(scope="module")
+def datasets():
+    return {
+        "decay": fm.identify.free_decay(*synthetic(MIXED, 1)),
+        "sweep": fm.identify.sweep(*swept(), sigma_amplitude=0.02),
+    }
+
+
+def caption_of(axes):
+    words = axes[0].figure.legends[0].get_title().get_text()
+    return words.replace("\n", " ").replace("\u00a0", " ")
+
+
+def line(ax, label):
+    """Data of the one line with a label."""
+    (found,) = (one.get_xydata() for one in ax.lines if one.get_label() == label and one.get_xdata().size)
+    return found
+
+
+def dots(ax):
+    """Data of all dots."""
+    return [one.get_xydata() for one in ax.lines if one.get_marker() == "o" and one.get_xdata().size]
+
+
+@pytest.mark.parametrize("kind", ["decay", "sweep"])
+@pytest.mark.parametrize("ending", plot.FORMATS)
+def test_fits_of_every_kind_in_every_format(datasets, tmp_path, kind, ending):
+    plot.save_picture(datasets[kind], tmp_path / f"picture{ending}")
+    assert (tmp_path / f"picture{ending}").stat().st_size > 5000
+
+
+@pytest.mark.parametrize("kind", ["decay", "sweep"])
+def test_nothing_overlaps(datasets, kind):
+    assert_inside_and_apart(fm.plot_fit(datasets[kind])[0].figure)
+
+
+# Free decays
+
+
+def test_samples_and_residuals_are_those_measured(datasets):
+    ds = datasets["decay"]
+    upper, lower = axes = fm.plot_fit(ds)
+    np.testing.assert_array_equal(dots(upper)[0], np.column_stack((ds.time, ds.data)))
+    np.testing.assert_array_equal(dots(lower)[0], np.column_stack((ds.time, ds.residual)))
+    assert upper.get_ylabel() == "displacement [mm]"
+    assert lower.get_ylabel() == "residual [mm]"
+    assert lower.get_xlabel() == "time [s]"
+    rendered(axes)
+
+
+def places_at(truth, time):
+    """The motion at a few times; between them marching wants some more."""
+    every = np.union1d(np.linspace(truth.t0, truth.length, 400), time)
+    return marched(truth, 1.0, every)[0][np.searchsorted(every, time)]
+
+
+@pytest.mark.parametrize("truth", [MIXED, MIXED._replace(zeta=0.0, x_F=0.45), MIXED._replace(X0=-10.0)])
+def test_the_curve_moves_as_the_equation_has_it(truth):
+    """Without noise the fit is the truth; marching knows no closed form."""
+    ds = fm.identify.free_decay(*synthetic(truth._replace(noise=0.0), 1))
+    upper, _ = fm.plot_fit(ds)
+    time, place = line(upper, "fitted").T
+    expected, halves = marched(truth, 1.0, time)
+    np.testing.assert_allclose(place, expected, atol=1e-5)  # to the six digits of a fit of exact data
+    (points,) = (found for found in dots(upper) if found.shape[0] < 60)
+    beside = [places_at(truth, points[:, 0] + step) for step in (-0.01, 0.0, 0.01)]
+    np.testing.assert_allclose(points[:, 1], beside[1], atol=1e-5)
+    inward = -np.sign(points[:, 1] - truth.centre)[:-1]  # from the last one it does not turn back
+    assert (inward * (beside[0] - beside[1])[:-1] > 0.0).all()
+    assert (inward * (beside[2] - beside[1])[:-1] > 0.0).all()
+    assert points.shape[0] == halves  # all but the one before the record
+    above, below = (one.get_ydata() for one in upper.lines if len(one.get_xdata()) == 400)
+    np.testing.assert_allclose(above + below, 2.0 * truth.centre, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("known", "words"),
+    [
+        ({"zeta": 0.0}, "envelope: straight, as under friction alone"),
+        ({"x_F": 0.0}, "envelope: exponential, as under viscous damping alone"),
+        ({}, "envelope: friction and viscous damping"),
+    ],
+)
+def test_the_legend_says_what_the_envelope_is(known, words):
+    ds = fm.identify.free_decay(*synthetic(MIXED, 1), known=known)
+    axes = fm.plot_fit(ds)
+    assert words in words_of(axes)
+    assert ("comes to rest" in words_of(axes)) == bool(ds.at_rest)
+    rendered(axes)
+
+
+def test_the_caption_tells_estimates_verdict_and_whether_residuals_are_white(datasets):
+    ds = datasets["decay"]
+    words = caption_of(fm.plot_fit(ds))
+    for name in ds.parameter.values:
+        value, error = re.search(rf"\b{name} (\S+) ± ([^\s,;]+)", words).groups()
+        one = ds.sel(parameter=name)
+        assert float(value) == pytest.approx(float(one.estimate), abs=0.06 * float(one.standard_error))
+        assert float(error) == pytest.approx(float(one.standard_error), rel=0.06)
+    assert "friction and viscous damping found; lag-1 correlation of residuals" in words
+    assert "no more than chance makes (0.07)" in words  # 2/sqrt(800)
+
+
+def test_coloured_residuals_are_told():
+    time, x = synthetic(MIXED._replace(noise=0.0), 1)
+    noise = np.random.default_rng(2).normal(0.0, 0.02, x.size)
+    ds = fm.identify.free_decay(time, x + noise + np.roll(noise, 1))  # lag-1 correlation 1/2
+    lag, chance, grown = re.search(
+        r"residuals (\S+), more than chance makes \((\S+)\): errors are taken (\S+) times as large",
+        caption_of(fm.plot_fit(ds)),
+    ).groups()
+    assert float(lag) == pytest.approx(0.5, abs=0.1)
+    assert float(chance) == 0.07
+    assert float(grown) == pytest.approx(np.sqrt(3.0), abs=0.2)
+
+
+# Sweeps
+
+
+def test_the_curve_of_a_sweep_is_that_of_two_masses(datasets):
+    ds = datasets["sweep"]
+    upper, lower = axes = fm.plot_fit(ds)
+    f, found = line(upper, "fitted").T
+    gamma, kappa, f_k1m1 = ds.estimate.sel(parameter=["gamma", "kappa", "f_k1m1"]).values
+    np.testing.assert_allclose(found, amplitudes(f, gamma, kappa, f_k1m1), rtol=1e-6)
+    measured = dots(upper)[0]
+    np.testing.assert_allclose(measured, np.column_stack(swept()), rtol=1e-13)
+    (bars,) = upper.collections
+    ends = np.array([segment[:, 1] for segment in bars.get_segments()])
+    np.testing.assert_allclose(ends / measured[:, 1:], np.broadcast_to(np.exp([-0.02, 0.02]), ends.shape))
+    assert upper.get_yscale() == "log"
+    assert [text.get_text() for text in upper.texts] == ["$f_0$", "$f_1$", "$f_2$"]
+    assert "measured, with one standard error" in words_of(axes)
+    np.testing.assert_array_equal(dots(lower)[0][:, 1], ds.residual)
+
+
+def test_peaks_and_zero_are_where_the_masses_have_them():
+    f = np.linspace(0.5, 8.0, 61)
+    upper, _ = fm.plot_fit(fm.identify.sweep(f, amplitudes(f)))
+    places = sorted(one.get_xdata()[0] for one in upper.lines if one.get_linestyle() == ":")
+    K = np.array([[1.0 + KAPPA, -KAPPA], [-KAPPA, KAPPA]])
+    natural = np.sqrt(np.sort(np.linalg.eigvals(np.diag([1.0, 1.0 / GAMMA]) @ K))) * F_K1M1
+    expected = [natural[0], np.sqrt(KAPPA / GAMMA) * F_K1M1, natural[1]]
+    np.testing.assert_allclose(places, expected, rtol=1e-6)
+
+
+# Slices, axes, refusals
+
+
+def test_what_lacks_its_parameters_is_drawn_by_its_samples(datasets):
+    ds = datasets["decay"]
+    part = ds.sel(parameter=["f_n", "x_F"]).isel(sample=slice(0, 100))
+    upper, lower = axes = fm.plot_fit(part)
+    np.testing.assert_array_equal(line(upper, "fitted"), np.column_stack((part.time, part.model)))
+    assert len(upper.collections) == len(lower.collections) == 1  # so few have their errors
+    rendered(axes)
+    rendered(fm.plot_fit(ds.drop_vars(["time", "sigma"])))
+    rendered(fm.plot_fit(datasets["sweep"].isel(sample=[3])))
+
+
+def test_fits_are_drawn_into_given_axes(datasets):
+    axes = Figure().subplots(2, 1)
+    np.testing.assert_array_equal(fm.plot_fit(datasets["decay"], axes), axes)
+    with pytest.raises(InputError, match=r"^ax must be 2 axes, one for each panel; got 1$"):
+        fm.plot_fit(datasets["decay"], axes[:1])
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda ds: ds.drop_vars("model"), "a dataset must hold model for its fit to be drawn; it does not"),
+        (lambda ds: ds.assign(data=1e301 * ds.data), r"data must be at most 1e\+300 to be drawn; got"),
+        (lambda ds: ds.assign(estimate=-ds.estimate), "must have f_n > 0 and zeta < 1 to be drawn; got -3"),
+        (lambda ds: ds.assign(half_cycles=10**9), "must have at most 400 half cycles to be drawn; got 1e"),
+        (lambda ds: ds.assign(time=1e4 * ds.time), "must have at most 400 half cycles to be drawn; got"),
+        (lambda ds: fm.boundaries(fm.System(), [0.5]), "^plot_fit takes .* use plot_boundaries$"),
+    ],
+)
+def test_what_cannot_be_drawn(datasets, change, message):
+    with pytest.raises(InputError, match=message):
+        fm.plot_fit(change(datasets["decay"]))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda ds: ds.assign(data=1e3 * ds.data), r"data must be logarithms of at most 600 .*; got \d+"),
+        (lambda ds: ds.assign(estimate=0.0 * ds.estimate), "f0, f1 and f2 must be > 0 to be drawn; got 0"),
+        (lambda ds: ds.isel(sample=[]), "must have at least one sample for its fit to be drawn; it has none"),
+    ],
+)
+def test_sweeps_that_cannot_be_drawn(datasets, change, message):
+    with pytest.raises(InputError, match=message):
+        fm.plot_fit(change(datasets["sweep"]))
+
+
+def test_mutants_are_drawn_or_refused(datasets, tmp_path):
+    """Files changed at random, as far as they can be read: a picture without a warning, or an InputError."""
+    write(datasets["decay"], tmp_path / "decay.nc")
+    write(datasets["sweep"], tmp_path / "sweep.nc")
+    rng, path, drawn = np.random.default_rng(1), tmp_path / "mutant.nc", 0
+    for index in range(60):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            mutants.write_mutant(rng, tmp_path / ("decay.nc", "sweep.nc")[index % 2], path)
+        with contextlib.suppress(InputError):
+            rendered(fm.plot_fit(read(path)))
+            drawn += 1
+    assert 15 < drawn < 50
+
+
+def test_other_pictures_send_fits_here(datasets):
+    with pytest.raises(InputError, match=r"^plot_regimes takes .* use plot_fit$"):
+        fm.plot_regimes(datasets["decay"])
+    with pytest.raises(InputError, match=r"^quantity must be one of fit of a estimates; got history$"):
+        plot.save_picture(datasets["decay"], Path("no.png"), "history")
+
+
+def test_the_command_draws_what_identify_wrote(datasets, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    write(datasets["decay"], Path("fit.nc"))
+    assert cli.main(["plot", "fit.nc"]) == 0
+    assert capsys.readouterr().out == "wrote fit.png\n"
+    again = rendered(fm.plot_fit(read(Path("fit.nc"))))
+    np.testing.assert_array_equal(again, rendered(fm.plot_fit(datasets["decay"])))

@@ -238,6 +238,11 @@ def _load(value: object, name: str) -> object:
     return complex(*(checks.number(part, name) for part in value))
 
 
+def read_system(table: Mapping[str, object], folder: Path) -> System:
+    """The system of a table [system] in a configuration in that folder, checked."""
+    return _build(System, _system_table({"system": table}, folder), "system")
+
+
 def system_in(text: str) -> System | None:
     """The system of a configuration that is at hand as text only; None if the text does not hold all of it.
 

@@ -15,14 +15,23 @@ decay_fit        the decay nearest to all samples
 estimates        estimates as a dataset
 free_decay       `free_decay`: from arrays to estimates
 sweep            `sweep`: two masses without friction, from amplitudes over frequency
+forced_model     amplitudes and lags of forced responses, and their derivatives
+forced_data      tables of forced responses, checked
+forced_start     where the fit of forced responses begins
+forced_fit       the steady states nearest to forced responses
+forced_told      what to mind of such a fit, in words
+forced_labels    the dataset of such a fit
+forced           `forced`: from amplitudes and lags to estimates
 rig              what a configuration says of measured data, and a kind of data of itself
 rig_decay        free decays from the file of a rig
+rig_forced       forced responses from the file of a rig
 rig_sweep        sweeps from the file of a rig
 configuration    configurations of rigs, for the command `identify`
 ===============  =======================================================================
 """
 
+from .forced import forced
 from .free_decay import free_decay
 from .sweep import sweep
 
-__all__ = ["free_decay", "sweep"]
+__all__ = ["forced", "free_decay", "sweep"]

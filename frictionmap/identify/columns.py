@@ -62,6 +62,11 @@ def pick_columns(
     return Columns(kept, rows, int(bad.sum()))
 
 
+def has_column(table: Table, role: str, measures: str, names: Mapping[str, str]) -> bool:
+    """Whether there is a column that `pick_columns` would take, or refuse for its unit."""
+    return role in names or bool(_named_like(table, role, suffixes(measures)))
+
+
 def check_increasing(table: Table, column: Column, rows: np.ndarray, beyond: str = "later") -> None:
     """Refuse values, such as times, that repeat or go back; `beyond` is the word for what they must be."""
     wrong = np.flatnonzero(np.diff(column.values) <= 0.0)

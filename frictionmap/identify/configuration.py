@@ -15,13 +15,14 @@ from ..files.config import read_tree, unknown_key
 from .columns import MISSING
 from .rig import Kind, Rig
 from .rig_decay import FREE_DECAY
+from .rig_forced import FORCED
 from .rig_sweep import SWEEP
 from .tables import read_table
 
-_KINDS = {"free-decay": FREE_DECAY, "sweep": SWEEP}
+_KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "sweep": SWEEP}
 
 #: Kinds that have a name and are not fitted.
-_NOT_BUILT = ("forced", "record")
+_NOT_BUILT = ("record",)
 
 
 def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:

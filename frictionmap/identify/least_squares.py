@@ -56,16 +56,25 @@ class Errors(NamedTuple):
 def minimise(problem: Problem, start: np.ndarray) -> Solution:
     """The least sum with no parameter below its bound.
 
-    A parameter that the free fit puts below its bound is held there, and the rest fitted anew; of several
-    ways to hold some the least sum wins.
+    A parameter that a fit puts below its bound is held there, and the rest fitted anew; of several ways to
+    hold some of them the least sum wins.
     """
     free_fit = _fit(problem, start, problem.free)
-    if not (problem.free & (free_fit.values < problem.floor)).any():
+    candidates = _below(problem, free_fit)
+    if not candidates.any():
         return free_fit
-    candidates = np.isfinite(problem.floor) & problem.free
-    held_fits = (_hold(problem, start, held) for held in _subsets(candidates))
-    legal = [fit for fit in held_fits if (fit.values >= problem.floor)[candidates].all()]
-    return min(legal, key=lambda fit: fit.sum)
+    inside = np.maximum(free_fit.values, problem.floor)
+    while True:
+        held_fits = [_hold(problem, inside, held) for held in _subsets(candidates)]
+        legal = [fit for fit in held_fits if not _below(problem, fit).any()]
+        if legal:
+            return min(legal, key=lambda fit: fit.sum)
+        candidates = np.logical_or.reduce([candidates, *(_below(problem, fit) for fit in held_fits)])
+
+
+def _below(problem: Problem, fit: Solution) -> np.ndarray:
+    """Free parameters below their bounds, bool (parameters,)."""
+    return problem.free & (fit.values < problem.floor)
 
 
 def errors(problem: Problem, best: Solution, known_variance: float | None = None) -> Errors:

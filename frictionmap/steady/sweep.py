@@ -97,7 +97,7 @@ def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: 
     return Plan(low.ravel(), high.ravel(), rows, np.cumsum(open_cells[rows]))
 
 
-def _allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> Any:
+def allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> Any:
     """Outputs asked for, and status, unresolved until they are filled; the others have no cells."""
     sizes = dict(zip((*CELL, "dof"), (*shape, dofs), strict=True))
     arrays: list[np.ndarray] = []
@@ -195,7 +195,7 @@ def compute(
         raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]
     cells = Cells(system, r, beta, mu, solver, asked)
-    out = _allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
+    out = allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
     work = plan(cells, r, mu, beta, solver)
     _fill(cells, work, (mu.size, r.size, beta.size), mu == 1.0, out, threads, progress)
     return cells, out

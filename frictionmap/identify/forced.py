@@ -1,0 +1,167 @@
+"""Friction, natural frequency and damping from amplitudes and lags of forced responses."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from .. import checks
+from ..errors import InputError
+from ..model.system import System
+from .estimates import verdict
+from .forced_data import ForcedTable, Values, checked_table
+from .forced_fit import Fit, fit_forced
+from .forced_labels import labelled
+from .forced_model import F_N, MU, ZETA
+from .forced_told import told
+
+#: Estimates so many standard errors above zero are found.
+_FOUND = 3.0
+
+#: An error of all rows, or one of each.
+Error = float | Sequence[float] | np.ndarray | None
+
+_VERDICTS = {
+    "neither_found": "neither friction nor viscous damping found",
+    "friction_found": "friction found, viscous damping not",
+    "viscous_damping_found": "viscous damping found, friction not",
+    "both_found": "friction and viscous damping found",
+    "friction_not_found": "no friction found, viscous damping held",
+    "friction_found_damping_held": "friction found, viscous damping held",
+}
+
+
+def forced(
+    frequency: Sequence[float] | np.ndarray,
+    phase_lag: Values | None = None,
+    amplitude_ratio: Values | None = None,
+    *,
+    system: System | None = None,
+    load: Sequence[float] | np.ndarray | None = None,
+    unit: str = "mm",
+    sets: Sequence[object] | None = None,
+    known: Mapping[str, float] | None = None,
+    sigma_phase: Error = None,
+    sigma_amplitude: Error = None,
+) -> xr.Dataset:
+    """Fit the exact steady states to first harmonics of forced responses, all friction forces at once.
+
+    Parameters
+    ----------
+    frequency : array, shape (rows,)
+        Of the load or the base [Hz], > 0, in any order.
+    phase_lag, amplitude_ratio : array, shape (rows,), or mapping of such
+        First harmonics over the load's: lag [deg] and modulus, X/Y or X k1/P, > 0; of the only mass, or by
+        mass, counted from 1.  At least one of the two.
+    system : System
+        Default: one mass on a shaken base, its dashpot between the two, and a fixed wall.  Damping that it
+        has is held; else zeta of every mode is a parameter.
+    load : array, shape (rows,)
+        Amplitude of the base or of the force, > 0, in `unit`; by default the same in every row.
+    unit : str
+        Of `load`, and of the friction that is then told as a length F/k1, or as a force: "mm", say, or "N".
+    sets : sequence, shape (rows,)
+        Labels of tests; those of one label have one friction force.
+    known : mapping
+        Parameters to be held: beta (of all sets), f_n [Hz] > 0, zeta >= 0, mu >= 1.  Others are fitted.
+    sigma_phase, sigma_amplitude : float or array, shape (rows,)
+        Errors of the lags [deg], and relative ones of the amplitudes; by default from the residuals.
+
+    Returns
+    -------
+    xarray.Dataset
+        On parameter (beta, or beta_<label> of every set; f_n, zeta, mu) and on sample as `free_decay`, see
+        `quantity`: data and model are lags [deg] and amplitude ratios, residuals degrees and logarithms of
+        ratios.  beta is the friction force over the mean load of its set.  Also on sample: frequency,
+        mass, set, sigma, frequency_ratio, friction_ratio, `regime`, and `reached`, the starts from which the
+        motion is reached.  Attribute `warnings`.
+
+    Raises
+    ------
+    InputError
+        An argument is illegal, there are fewer data than unknowns, or the data cannot tell a parameter.
+
+    Notes
+    -----
+    Motions are continuous, theory.md 2 and 9, or stick-slip, as they come; of several with mu > 1 that
+    nearest to the data counts.  Lags alone do not tell f_n: it is then held where they pass 90 deg.
+    """
+    system = _default_system() if system is None else checks.instance(system, "system", System)
+    table = checked_table(
+        system, frequency, (phase_lag, amplitude_ratio), (sigma_phase, sigma_amplitude), load, sets
+    )
+    held = _checked_known(known or {}, system, len(table.labels))
+    warnings = []
+    if not (~table.samples.is_phase).any() and np.isnan(held[F_N]):
+        held[F_N] = _passing(table)
+        warnings.append(
+            f"lags alone do not tell f_n: it is held at {held[F_N]:.6g} Hz, where they pass 90 deg"
+        )
+    _check_count(table, held)
+    fit = fit_forced(table, system, held)
+    ds = labelled(table, fit, unit if load is not None else None)
+    ds["verdict"] = verdict(_verdict(fit), _VERDICTS)
+    ds.attrs["title"] = "Forced responses"
+    ds.attrs["system"] = fit.model.with_zeta(float(fit.solution.values[ZETA])).describe()
+    ds.attrs["warnings"] = "; ".join(warnings + told(table, fit))
+    return ds
+
+
+def _default_system() -> System:
+    return System(excitation="base", damping_reference="base")
+
+
+def _checked_known(known: Mapping[str, float], system: System, sets: int) -> np.ndarray:
+    """Parameters that are held, NaN of the others."""
+    held = np.full(sets + 3, np.nan)
+    for name, value in known.items():
+        if name == "beta":
+            held[:F_N] = checks.number(value, "known.beta", least=0.0)
+        elif name == "f_n":
+            held[F_N] = checks.number(value, "known.f_n", above=0.0)
+        elif name == "zeta":
+            held[ZETA] = checks.number(value, "known.zeta", least=0.0, most=checks.LARGEST_DAMPING)
+        else:
+            checks.choice(name, "known", ("beta", "f_n", "zeta", "mu"))
+            held[MU] = checks.number(value, "known.mu", least=1.0)
+    if system.modes.zeta.any():
+        if not np.isnan(held[ZETA]):
+            raise InputError(f"known.zeta must be left out for a system with damping; got {held[ZETA]:g}")
+        held[ZETA] = system.zeta
+    if not np.isnan(held).any():
+        raise InputError("known must leave something to fit; got all of beta, f_n, zeta, mu")
+    return held
+
+
+def _check_count(table: ForcedTable, held: np.ndarray) -> None:
+    unknowns, count = int(np.isnan(held).sum()), table.samples.row.size
+    if count <= unknowns:
+        raise InputError(f"there must be more data than unknowns; got {count} data for {unknowns} unknowns")
+
+
+def _passing(table: ForcedTable) -> float:
+    """Where lags of the first mass pass 90 deg, the median over the sets [Hz]."""
+    samples, rows = table.samples, table.rows
+    found = []
+    for one in range(len(table.labels)):
+        chosen = (samples.mass == 0) & (rows.member[samples.row] == one)
+        f, lag = rows.frequency[samples.row[chosen]], samples.value[chosen] - 0.5 * np.pi
+        order = np.argsort(f, kind="stable")
+        f, lag = f[order], lag[order]
+        for k in np.flatnonzero((lag[:-1] < 0.0) & (lag[1:] >= 0.0)):
+            found.append(f[k] - lag[k] * (f[k + 1] - f[k]) / (lag[k + 1] - lag[k]))
+    if not found:
+        raise InputError(
+            "known.f_n must be given: lags alone do not tell f_n, and those of the first mass "
+            "do not pass 90 deg"
+        )
+    return float(np.median(found))
+
+
+def _verdict(fit: Fit) -> int:
+    values, error = fit.solution.values, fit.errors.standard_error
+    found = values > _FOUND * error
+    friction = bool(found[:F_N].all())
+    if not fit.problem.free[ZETA]:
+        return 4 + int(friction)
+    return int(friction) + 2 * int(found[ZETA])

@@ -1,0 +1,146 @@
+"""The exact steady states nearest to forced responses, and the errors of what they tell."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import gammainccinv
+
+from .. import checks, regimes
+from ..errors import InputError
+from ..model.system import System
+from .forced_data import ForcedTable
+from .forced_model import F_N, MU, ZETA, Fitted, ForcedModel, Samples, evaluate
+from .forced_start import starts
+from .least_squares import Errors, Problem, Solution, errors, minimise
+
+#: The natural frequency is within this share of where the fit begins.
+_FREQUENCY_RANGE = 0.2
+
+#: Sums that chance makes larger this rarely end the search for a better one.
+_CHANCE = 1e-2
+
+#: Errors from residuals are found again and again until they change by less than this share.
+_SETTLED, _ROUNDS = 1e-3, 20
+
+#: Below this share of the largest effect on the data, one of parameters together is not told.
+_TOLD = 1e-6
+
+
+class Fit(NamedTuple):
+    """A fit with its errors."""
+
+    model: ForcedModel  # its samples have the errors that were taken
+    problem: Problem
+    solution: Solution
+    errors: Errors
+    here: Fitted
+    mu_idle: bool  # mu was to be fitted, but no motion that was found stops
+
+
+def fit_forced(table: ForcedTable, system: System, known: np.ndarray) -> Fit:
+    """The steady states nearest to a table.
+
+    known : (parameters,) values that are held; NaN of the others
+    """
+    model = ForcedModel(system, bool(system.modes.zeta.any()), table.rows, table.samples)
+    model, solution, task = _with_errors(model, known, table.given)
+    here = evaluate(model, solution.values, task.free)
+    idle = bool(task.free[MU]) and not (here.regime == regimes.STICK_SLIP).any()
+    if idle:
+        known = known.copy()
+        known[MU] = 1.0
+        model, solution, task = _with_errors(model, known, table.given)
+        here = evaluate(model, solution.values, task.free)
+    _check_told(table, solution, task)
+    found = errors(task, solution, 1.0 if any(table.given) else None)
+    return Fit(model, task, solution, found, here, idle)
+
+
+def problem(model: ForcedModel, free: np.ndarray, f_n: float) -> Problem:
+    """Least squares of all samples; `f_n` is where the fit begins.
+
+    Below a bound, where there is no model, its tangent there takes its place.
+    """
+    floor = np.full(free.size, -np.inf)
+    floor[:F_N], floor[ZETA], floor[MU] = 0.0, 0.0, 1.0
+
+    def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        inside = np.maximum(values, floor)
+        found = evaluate(model, inside, free)
+        return found.residual + found.slopes @ (values - inside), found.slopes
+
+    lowest, highest = np.full(free.size, -np.inf), np.full(free.size, np.inf)
+    lowest[F_N], highest[F_N] = f_n * (1.0 - _FREQUENCY_RANGE), f_n * (1.0 + _FREQUENCY_RANGE)
+    highest[ZETA] = checks.LARGEST_DAMPING
+    return Problem(residuals, free, floor, lowest, highest)
+
+
+def _with_errors(
+    model: ForcedModel, known: np.ndarray, given: tuple[bool, bool]
+) -> tuple[ForcedModel, Solution, Problem]:
+    """The least sum with errors as given, or as the residuals tell them of lags and of amplitudes apart."""
+    free = np.isnan(known)
+    solution, task = _best(model, known, all(given))
+    for _ in range(0 if all(given) else _ROUNDS):
+        samples = _with_scatter(model.samples, solution, int(free.sum()), given)
+        change = samples.sigma / model.samples.sigma
+        if (np.abs(change - 1.0) < _SETTLED).all() or not (samples.sigma > 0.0).all():
+            break
+        model = model._replace(samples=samples)
+        task = problem(model, free, float(solution.values[F_N]))
+        solution = minimise(task, solution.values)
+    return model, solution, task
+
+
+def _with_scatter(samples: Samples, solution: Solution, unknowns: int, given: tuple[bool, bool]) -> Samples:
+    """Samples with the errors of lags, or amplitudes, from their residuals, if they were not given."""
+    share = 1.0 - unknowns / samples.row.size  # of the residuals that the fit has left
+    sigma = samples.sigma.copy()
+    for kind, known in zip((samples.is_phase, ~samples.is_phase), given, strict=True):
+        if not known and kind.any():
+            sigma[kind] *= np.sqrt(np.mean(solution.residual[kind] ** 2) / share)
+    return samples._replace(sigma=sigma)
+
+
+def _best(model: ForcedModel, known: np.ndarray, sure: bool) -> tuple[Solution, Problem]:
+    """The least sum over all starts, or the first that chance explains if the errors are sure."""
+    free = np.isnan(known)
+    freedom = model.samples.row.size - int(free.sum())
+    enough = 2.0 * float(gammainccinv(0.5 * freedom, _CHANCE)) if sure else 0.0
+    best: tuple[Solution, Problem] | None = None
+    for start in starts(model, known):
+        task = problem(model, free, float(start[F_N]))
+        if not np.isfinite(task.residuals(start)[0]).all():
+            continue
+        found = minimise(task, start)
+        if best is None or found.sum < best[0].sum:
+            best = found, task
+        if found.sum <= enough:
+            break
+    if best is None:
+        raise InputError(
+            "the data must be of masses that move; one that was measured is held, whatever the friction"
+        )
+    return best
+
+
+def _check_told(table: ForcedTable, solution: Solution, task: Problem) -> None:
+    """Refuse data that leave parameters, or some together, untold."""
+    slopes = solution.slopes[:, task.free]
+    names = [name for name, free in zip(parameter_names(table), task.free, strict=True) if free]
+    size = np.linalg.norm(slopes, axis=0)
+    for name, one in zip(names, size, strict=True):
+        if one == 0.0:
+            raise InputError(f"the data do not tell {name}, on which nothing that was measured depends")
+    _, shares, ways = np.linalg.svd(slopes / size)
+    if shares[-1] < _TOLD * shares[0]:
+        together = [name for name, part in zip(names, np.abs(ways[-1]), strict=True) if part > 0.1]
+        raise InputError(
+            f"the data do not tell {' and '.join(together)} apart; known may hold one, or measure more"
+        )
+
+
+def parameter_names(table: ForcedTable) -> tuple[str, ...]:
+    """beta, or one of every set; f_n, zeta and mu."""
+    betas = [f"beta_{label}" for label in table.labels] if len(table.labels) > 1 else ["beta"]
+    return (*betas, "f_n", "zeta", "mu")

@@ -1,0 +1,103 @@
+"""Where the fit of forced responses begins: a coarse look at all friction ratios and natural frequencies.
+
+Sums of squares have many least values over f_n, and some over beta: the look takes residuals with errors
+so large that it cannot pass between its samples.
+"""
+
+from itertools import product
+
+import numpy as np
+
+from ..steady.points import steady_states
+from .forced_model import F_N, MU, ZETA, ForcedModel, Samples, residuals
+
+#: Errors with which it looks, radian and relative, and the most that one number counts.
+_LOOK_PHASE, _LOOK_AMPLITUDE = 0.15, 0.2
+_MOST = 5.0
+
+#: What a mass at rest, or no steady state, counts: as much as no motion does.
+_AT_REST = 1e3
+
+#: Friction ratios: so many below that at which everything sticks, down to a share of it.
+_BETAS, _LEAST_SHARE = 16, 0.02
+
+#: Natural frequencies: from this share of the lowest frequency to this multiple of the highest, by this step.
+_F_BELOW, _F_ABOVE, _F_STEP = 0.5, 3.0, 1.06
+
+_DAMPINGS = (0.003, 0.03)
+
+#: Starts that are tried, no two with natural frequencies as near to each other as this.
+_TRIED, _APART = 3, 0.06
+_MU = (1.05, 1.4)
+
+
+def starts(model: ForcedModel, known: np.ndarray) -> list[np.ndarray]:
+    """Values to begin with, the most promising first.
+
+    known : (parameters,) values that are held; NaN of the others
+    """
+    tempered = model._replace(samples=_tempered(model))
+    frequencies = _candidates(model) if np.isnan(known[F_N]) else [known[F_N]]
+    dampings = _DAMPINGS if np.isnan(known[ZETA]) else [known[ZETA]]
+    looked = []
+    for f_n, zeta in product(frequencies, dampings):
+        values = known.copy()
+        values[F_N], values[ZETA] = f_n, zeta
+        values[MU] = 1.0 if np.isnan(known[MU]) else known[MU]
+        looked.append(_best_frictions(tempered, values, np.isnan(known[:F_N])))
+    looked.sort(key=lambda one: one[0])
+    chosen: list[np.ndarray] = []
+    for _, values in looked:
+        if all(abs(np.log(values[F_N] / other[F_N])) > _APART for other in chosen):
+            chosen.append(values)
+    chosen = chosen[:_TRIED]
+    if not np.isnan(known[MU]):
+        return chosen
+    looked = []
+    for values, mu in product(chosen, _MU):
+        other = values.copy()
+        other[MU] = mu
+        looked.append(_best_frictions(tempered, other, np.isnan(known[:F_N])))
+    return [values for _, values in sorted(looked, key=lambda one: one[0])]
+
+
+def _tempered(model: ForcedModel) -> Samples:
+    """The samples with larger errors."""
+    samples = model.samples
+    least = np.where(samples.is_phase, _LOOK_PHASE, _LOOK_AMPLITUDE)
+    return samples._replace(sigma=np.maximum(samples.sigma, least))
+
+
+def _candidates(model: ForcedModel) -> np.ndarray:
+    low, high = model.rows.frequency.min() * _F_BELOW, model.rows.frequency.max() * _F_ABOVE
+    count = int(np.ceil(np.log(high / low) / np.log(_F_STEP)))
+    return np.geomspace(low, high, count + 1)
+
+
+def _best_frictions(model: ForcedModel, values: np.ndarray, free: np.ndarray) -> tuple[float, np.ndarray]:
+    """The sum with the best friction ratio of every set, and the values with these.
+
+    free : (sets,) whether its friction ratio is looked for
+    """
+    rows = model.rows
+    r = rows.frequency / values[F_N]
+    system = model.with_zeta(float(values[ZETA]))
+    stick = np.abs(system.modes.held_load(np.unique(r)))
+    top = float(stick[np.isfinite(stick)].max(initial=1.0))
+    grid = np.append(np.geomspace(_LEAST_SHARE * top, top, _BETAS), 0.0)
+    tried = np.where(free[rows.member], grid[:, np.newaxis], values[:F_N][rows.member])
+    beta = (tried / rows.share).ravel()
+    states = steady_states(system, np.tile(r, grid.size), beta, float(values[MU]))
+    sums = np.min([_sums(model, state.phasors.reshape(grid.size, r.size, -1)) for state in states], axis=0)
+    best = sums.argmin(axis=0)
+    found = values.copy()
+    found[:F_N] = np.where(free, grid[best], values[:F_N])
+    return float(sums.min(axis=0).sum()), found
+
+
+def _sums(model: ForcedModel, phasors: np.ndarray) -> np.ndarray:
+    """Sums of squares by friction ratio and set, (tried, sets)."""
+    found = np.abs(residuals(model.samples, phasors))
+    squares = np.where(np.isfinite(found), np.minimum(found, _MOST) ** 2, _AT_REST)
+    member = model.rows.member[model.samples.row]
+    return np.stack([squares[:, member == one].sum(axis=1) for one in range(model.sets)], axis=1)

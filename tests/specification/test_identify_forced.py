@@ -1,0 +1,214 @@
+"""The command `identify` for forced responses: columns, sets, what is refused and what is warned of."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from responses import Truth, table
+
+import frictionmap as fm
+from frictionmap.cli import main
+
+TRUTH = Truth(3.0, 0.01, (0.2, 0.4), (0.65, 0.7, 0.9, 1.1, 1.4, 1.8))
+SETS, FREQUENCY, LAG, RATIO = table(TRUTH, 1)
+TWO = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1])
+HEAD = "set,frequency_Hz,phase_lag_deg,amplitude_ratio,base_mm"
+LINES = [f"{s},{f:.5f},{p:.5f},{x:.6f},1.5" for s, f, p, x in zip(SETS, FREQUENCY, LAG, RATIO, strict=True)]
+RIG = """
+[data]
+kind = "forced"
+file = "table.csv"
+sigma_phase_deg = 0.7
+sigma_amplitude = 0.01
+[system]
+contact = "fixed-wall"
+excitation = "base"
+damping_reference = "base"
+[known]
+mu = 1.0
+"""
+
+
+@pytest.fixture
+def rig(tmp_path, monkeypatch):
+    """Writes a data file and its configuration; the path of the latter."""
+    monkeypatch.chdir(tmp_path)
+
+    def write(lines=LINES, text=RIG, head=HEAD):
+        (tmp_path / "table.csv").write_text("\n".join([head, *lines]) + "\n")
+        (tmp_path / "rig.toml").write_text(text)
+        return "rig.toml"
+
+    return write
+
+
+def refusal(capsys, *arguments):
+    """The one line on standard error of a command that is refused."""
+    assert main(["identify", *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    return err
+
+
+def columns(line, *kept):
+    return ",".join(line.split(",")[k] for k in kept)
+
+
+def test_from_a_file_to_friction_forces(rig, capsys):
+    assert main(["identify", rig()]) == 0
+    out = capsys.readouterr().out
+    rows = {line.split()[0]: line.split() for line in out.splitlines() if line.split()}
+    assert float(rows["beta_2"][1]) == pytest.approx(0.4, abs=0.02)
+    assert float(rows["x_F_2"][1]) == pytest.approx(0.6, abs=0.03)
+    assert rows["mu"][2] == "held"
+    assert "friction and viscous damping found" in out
+    assert "warning" not in out
+    with xr.open_dataset("rig-identify.nc") as ds:
+        lags = ds.quantity == 1
+        np.testing.assert_allclose(ds.data[lags], LAG, atol=1e-5)
+        np.testing.assert_allclose(ds.data[~lags], RATIO, rtol=1e-5)
+        np.testing.assert_allclose((ds.model - ds.data)[lags], ds.residual[lags], atol=1e-9)
+        np.testing.assert_allclose(np.log(ds.model / ds.data)[~lags], ds.residual[~lags], atol=1e-9)
+        assert set(ds.set.values.tolist()) == {"1", "2"}
+        assert (ds.sigma[lags] == 0.7).all()
+
+
+def test_units_of_columns(rig):
+    """Radians and rad/s are the same data."""
+    assert main(["identify", rig(), "--quiet"]) == 0
+    head = "set,frequency_rad_s,phase_lag_rad,amplitude_ratio"
+    lines = [
+        f"{s},{2.0 * np.pi * f:.6f},{np.radians(p):.7f},{x:.6f}"
+        for s, f, p, x in zip(SETS, FREQUENCY, LAG, RATIO, strict=True)
+    ]
+    assert main(["identify", rig(lines, head=head), "--quiet", "-o", "other.nc"]) == 0
+    with xr.open_dataset("rig-identify.nc") as ds, xr.open_dataset("other.nc") as other:
+        np.testing.assert_allclose(other.estimate, ds.estimate, rtol=1e-4)
+
+
+def test_loads_that_differ_row_by_row(rig):
+    """One friction force under bases of two sizes: beta is over their mean."""
+    f = np.tile(np.array(TRUTH.r) * TRUTH.f_n, 2)
+    once = [table(TRUTH._replace(beta=(beta,)), 3, 0.0, 0.0)[2:] for beta in (0.2, 0.4)]
+    lag, ratio = np.concatenate(once, axis=1)
+    base = np.repeat([2.0, 1.0], len(TRUTH.r))
+    lines = [f"{a},{b},{c},{d}" for a, b, c, d in zip(f, lag, ratio, base, strict=True)]
+    path = rig(lines, head="frequency_Hz,phase_lag_deg,amplitude_ratio,base_mm")
+    assert main(["identify", path, "--quiet"]) == 0
+    with xr.open_dataset("rig-identify.nc") as ds:
+        assert float(ds.estimate.sel(parameter="beta")) == pytest.approx(0.4 / 1.5, rel=1e-5)
+        assert float(ds.x_F) == pytest.approx(0.4, rel=1e-5)
+
+
+def test_errors_by_row_and_from_the_residuals(rig, capsys):
+    lines = [f"{line},0.7,0.01" for line in LINES]
+    own = RIG.replace("sigma_phase_deg = 0.7\nsigma_amplitude = 0.01\n", "")
+    assert main(["identify", rig(), "--quiet"]) == 0
+    path = rig(lines, own, f"{HEAD},sigma_phase_deg,sigma_amplitude")
+    assert main(["identify", path, "--quiet", "-o", "rows.nc"]) == 0
+    with xr.open_dataset("rig-identify.nc") as ds, xr.open_dataset("rows.nc") as rows:
+        np.testing.assert_allclose(rows.standard_error, ds.standard_error, rtol=1e-9)
+    assert main(["identify", rig(text=own), "--quiet", "-o", "residuals.nc"]) == 0
+    with xr.open_dataset("residuals.nc") as ds:
+        assert ds.attrs["errors"] == "of lags from the residuals, of amplitudes from the residuals"
+        assert 0.3 < float(ds.sigma[ds.quantity == 1][0]) < 1.2  # 12 lags of which the fit takes some
+        assert float(ds.reduced_chi_square) == pytest.approx(1.0, abs=0.01)
+    path = rig(lines, head=f"{HEAD},sigma_phase_deg,sigma_amplitude")
+    assert "data.sigma_phase_deg must be left out" in refusal(capsys, path, "--overwrite")
+
+
+def test_lags_alone_do_not_tell_the_frequency(rig, capsys):
+    lines = [columns(line, 0, 1, 2) for line in LINES]
+    head = "set,frequency_Hz,phase_lag_deg"
+    assert main(["identify", rig(lines, RIG.replace("mu = 1.0", "mu = 1.0\nzeta = 0.01"), head)]) == 0
+    out = capsys.readouterr().out
+    assert "warning: lags alone do not tell f_n: it is held at" in out
+    below = [line for line in lines if float(line.split(",")[2]) < 90.0]
+    assert "known.f_n must be given: lags alone do not tell f_n" in refusal(
+        capsys, rig(below, head=head), "--overwrite"
+    )
+
+
+def test_no_stop_no_mu(rig, capsys):
+    assert main(["identify", rig(text=RIG.replace("mu = 1.0", ""))]) == 0
+    out = capsys.readouterr().out
+    assert "warning: no motion that was fitted stops: the data do not tell mu, which is held at 1" in out
+
+
+def test_sets_by_any_name(rig):
+    lines = [line.replace("1,", "loose,", 1) if line[0] == "1" else f"b{line}" for line in LINES]
+    assert main(["identify", rig(lines), "--quiet"]) == 0
+    with xr.open_dataset("rig-identify.nc") as ds:
+        assert ds.parameter.values.tolist() == ["beta_loose", "beta_b2", "f_n", "zeta", "mu"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "head", "message"),
+    [
+        (["1,-2.0,20,1.5,1"], HEAD, "column frequency_Hz, line 2 must be > 0; got -2"),
+        (["1,2.0,20,1.6,1.75"], HEAD, "more data than unknowns; got 2 data for 3 unknowns"),
+        ([*LINES[:3], "1,2.5,230,1.2,1.5"], HEAD, "line 5 must be in 0 to 180 deg; got 230: lags of the "
+         "loaded mass are in 0..180; is it a lead, or another mass?"),
+        ([*LINES[:3], "1,2.5,20,-1.2,1.5"], HEAD, "column amplitude_ratio, line 5 must be > 0; got -1.2"),
+        (LINES, HEAD.replace("_deg", ""), "column phase_lag must end in its unit, one of _deg, _rad"),
+        (LINES, HEAD.replace("_deg", "_grad"), "column phase_lag_grad must end in its unit"),
+        (LINES, HEAD.replace("frequency_Hz", "f"), "must have a column frequency_Hz (suffixes: _Hz, _rad_s)"),
+        ([columns(line, 0, 1) for line in LINES], "set,frequency_Hz", "must have a column phase_lag_deg"),
+        ([*LINES[:3], "1,2.5,nan,1.2,1.5"], HEAD, "phase_lag_deg, line 5 must be a finite number; got 'nan'"),
+        (LINES, HEAD.replace("base_mm", "force_N"), "system.excitation must be force for a file with"),
+    ],
+)  # fmt: skip
+def test_bad_tables(rig, capsys, lines, head, message):
+    found = refusal(capsys, rig(lines, head=head))
+    assert message in found
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("data.use=['lag']", "data.use[0] must be one of phase, amplitude; got 'lag'"),
+        ("data.sigma_phase_deg=0", "data.sigma_phase_deg must be > 0; got 0"),
+        ("system.contact=wall", "system.contact must be one of fixed-wall"),
+        ("system.masses=2", "unknown key system.masses"),
+        ("known.mu=0.9", "known.mu must be >= 1; got 0.9"),
+        ("known.x_F=1", "unknown key known.x_F"),
+        ("fit.free=['beta']", "fit.free must name f_n, or known.f_n give its value"),
+        ("data.columns={ lag = 'phase_lag_deg' }", "unknown key data.columns.lag"),
+    ],
+)
+def test_bad_configurations(rig, capsys, override, message):
+    assert message in refusal(capsys, rig(), "--set", override)
+
+
+def test_bad_forced_files(measured, rig, capsys):
+    words = {
+        "phase-out-of-range": "lags of the loaded mass are in 0..180",
+        "negative-frequency": "line 2 must be > 0; got -2",
+        "one-point": "more data than unknowns; got 2 data for 3 unknowns",
+    }
+    for name, message in words.items():
+        path = str(measured / "bad" / f"{name}.csv")
+        found = refusal(capsys, rig(), "--set", f"data.file={path}")
+        assert message in found
+        assert f"{name}.csv" in found
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"phase_lag": None, "amplitude_ratio": None}, "phase_lag or amplitude_ratio must be given"),
+        ({"phase_lag": [1.0]}, "phase_lag must be 12 numbers, one a frequency"),
+        ({"sets": [1]}, "sets must be 12 labels, one a frequency; got 1"),
+        ({"load": np.zeros(12)}, "load must be finite and > 0; got 0 at index 0"),
+        ({"known": {"x_F": 1.0}}, "known must be one of beta, f_n, zeta, mu; got 'x_F'"),
+        ({"known": {"beta": 0.1, "f_n": 3.0, "zeta": 0.0, "mu": 1.0}}, "known must leave something to fit"),
+        ({"sigma_phase": -1.0}, "sigma_phase must be > 0"),
+        ({"system": TWO}, "phase_lag must say of which masses"),
+        ({"system": 3}, "system must be a frictionmap.System"),
+    ],
+)  # fmt: skip
+def test_bad_arguments(arguments, message):
+    good = {"frequency": FREQUENCY, "phase_lag": LAG, "amplitude_ratio": RATIO, "sets": SETS}
+    with pytest.raises(fm.InputError) as caught:
+        fm.identify.forced(**(good | arguments))
+    assert message in str(caught.value)

@@ -14,6 +14,7 @@ features       limits, peak thresholds, invariant points, quasi-static displacem
 theory         closed forms over frequency: `boundaries`, `continuous_motion`
 steady         steady states: cells, `sweep` (plan, run, label), `curves`, `response`; what a map costs
 files          configurations; places of output, storage, reading; files in words
+stores         maps block by block into a zarr store, in this process or on workers
 identify       measured data: files, fits, estimates with their errors
 pictures       palette, panels, and a module for each kind of picture; `plot` is the door
 cli            the command line; `arguments`, `progress`, `interrupts`

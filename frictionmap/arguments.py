@@ -74,9 +74,10 @@ def _takes_config(
     name: str = "CONFIG",
     what: str = "what to compute",
     key: str = "grid.r.step=0.01",
+    out: str = "OUT.nc",
 ) -> None:
     sub.add_argument("config", metavar=f"{name}.toml", type=Path, help=what)
-    _takes_output(sub, "OUT.nc", f"file to write; default: named after {name}, in the current folder")
+    _takes_output(sub, out, f"file to write; default: named after {name}, in the current folder")
     text = f"override a key of {name}, e.g. --set {key}; repeatable, each key once"
     sub.add_argument("--set", dest="overrides", metavar="KEY=VALUE", action="append", default=[], help=text)
 
@@ -89,6 +90,14 @@ def _takes_yes(sub: argparse.ArgumentParser) -> None:
 def _takes_threads(sub: argparse.ArgumentParser) -> None:
     text = "threads to use (default: all processors); the result is the same to the bit"
     sub.add_argument("--threads", metavar="N", type=_threads, action=_Once, help=text)
+
+
+def _takes_workers(sub: argparse.ArgumentParser) -> None:
+    where = sub.add_mutually_exclusive_group()
+    text = "compute OUT.zarr on N processes of this machine (needs dask)"
+    where.add_argument("--workers", metavar="N", type=_threads, action=_Once, help=text)
+    text = "compute OUT.zarr on the workers of a dask scheduler that is running"
+    where.add_argument("--scheduler", metavar="ADDRESS", action=_Once, help=text)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -106,9 +115,10 @@ def _parser() -> argparse.ArgumentParser:
 
     text = "Classify every cell of a grid and count its stops per cycle; write NetCDF."
     sub = command("map", "classify every cell of a grid", text)
-    _takes_config(sub)
+    _takes_config(sub, out="OUT.nc|OUT.zarr")
     _takes_threads(sub)
     _takes_yes(sub)
+    _takes_workers(sub)
     text = "Compute response curves over frequency: amplitude, phase, harmonics, energy; write NetCDF."
     sub = command("curves", "amplitude, phase, harmonics and energy over frequency", text)
     _takes_config(sub)

@@ -144,11 +144,12 @@ def axis(values: object, name: str, *, least: float, most: float = math.inf) -> 
     return result
 
 
-def cells(n_mu: int, n_r: int, n_beta: int, name: str = "grid") -> None:
-    """Refuse a map too large to hold."""
-    total = n_mu * n_r * n_beta
+def cells(n_mu: int, n_r: int, n_beta: int, name: str = "grid", points: int = 1) -> None:
+    """Refuse a map too large to hold, or maps of so many points."""
+    total = n_mu * n_r * n_beta * points
     if total > MOST_CELLS:
+        further = f" x {points} points" if points > 1 else ""
         raise InputError(
-            f"{name} must have at most {MOST_CELLS:.0e} cells; got {total:.3g} "
-            f"({n_mu} mu x {n_r} r x {n_beta} beta)"
+            f"{name} must have at most {MOST_CELLS:.0e} cells in memory; got {total:.3g} "
+            f"({n_mu} mu x {n_r} r x {n_beta} beta{further})"
         )

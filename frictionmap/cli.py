@@ -40,13 +40,14 @@ def _tell(options: Options, output: "Output", *summary: str) -> None:
 def _map(options: Options, config: "Config", output: "Output") -> None:
     from .steady.sweep import sweep
 
-    cells = config.mu.size * config.r.size * config.beta.size
+    points = 1 if config.variations is None else config.variations.count
+    cells = points * config.mu.size * config.r.size * config.beta.size
 
     def run(progress: "Progress") -> "xr.Dataset":
         if cells >= _MANY and not options.quiet:
             progress.say(f"{cells:,} cells take about {_cost(options, config)}", always=True)
         return sweep(config.system, config.r, config.beta, config.mu, solver=config.solver,
-                     threads=options.threads, progress=progress)  # fmt: skip
+                     axes=config.variations, threads=options.threads, progress=progress)  # fmt: skip
 
     _fill_cells(options, config, output, f"map of {cells:,} cells", run)
 
@@ -88,8 +89,11 @@ def _cost(options: Options, config: "Config") -> str:
 
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
     counts = {name: axis.size for name, axis in axes.items()}
+    counts["points"] = 1 if config.variations is None else config.variations.count
     memory = memory_of_map(counts, config.system.n, tuple(config.solver.outputs))
-    seconds = seconds_of_map(config.system, **axes, solver=config.solver, threads=options.threads)
+    seconds = counts["points"] * seconds_of_map(
+        config.system, **axes, solver=config.solver, threads=options.threads
+    )
     return f"{in_bytes(memory)} of memory and {in_time(seconds)}"
 
 
@@ -126,13 +130,53 @@ def _compute(options: Options) -> None:
 
     rooms = {"map": refuse_map_without_memory, "curves": refuse_curves_without_memory}
     room = rooms.get(options.command)
+    if options.command == "map" and _is_store(options):
+        _store(options)
+        return
     config = load_config(options.config, options.overrides, None if room and options.yes else room)
     ending = "" if options.command == "map" else f"-{options.command}"
+    if config.variations is not None and options.command != "map":
+        raise InputError(f"[axes] must be left out for {options.command}: further axes are of maps")
     path = options.output or Path(f"{config.name}{ending}.nc")
     commands = {"map": _map, "curves": _curves, "boundaries": _boundaries, "response": _response}
     command = commands[options.command]
     with claimed(path, options.overwrite, config.files) as output:
         command(options, config, output)
+
+
+def _is_store(options: Options) -> bool:
+    """Whether a map goes into a store, block by block."""
+    stored = options.output is not None and options.output.suffix == ".zarr"
+    if not stored and (options.workers or options.scheduler):
+        raise InputError("--workers and --scheduler must come with a store, -o OUT.zarr")
+    return stored
+
+
+def _store(options: Options) -> None:
+    """Compute a map into a store, or go on with one."""
+    from ._kernels.cache import listeners
+    from .files.config import load_config
+    from .progress import Progress
+    from .stores.run import fill_store, in_this_process
+    from .stores.study import study_of
+    from .stores.summary import describe_store
+
+    config = load_config(options.config, options.overrides, lambda *_: None)  # a block is all that is held
+    axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
+    study = study_of(config.system, config.variations, axes, config.solver)
+    if options.workers or options.scheduler:
+        from .stores import workers
+
+        fill = workers.running(options.scheduler) if options.scheduler else workers.local(options.workers)
+    else:
+        fill = in_this_process(options.threads)
+    with Progress(f"map of {study.cells:,} cells in {study.blocks:,} blocks", options.quiet) as progress:
+        listeners.append(progress.compiling)
+        store = fill_store(options.output, study, config.title, fill, options.overwrite, progress)
+        listeners.remove(progress.compiling)
+    if not options.quiet:
+        first, *others = describe_store(store)
+        _print("\n  ".join((f"{first}; wrote {options.output}", *others)))
 
 
 def _identify(options: Options) -> None:

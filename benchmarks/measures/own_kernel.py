@@ -8,14 +8,14 @@ import frictionmap as fm
 from frictionmap._kernels.engine.fill import OpenCells
 from frictionmap.model.settings import Solver
 from frictionmap.steady.cells import Cells
-from frictionmap.steady.sweep import Arrays, _allocate
+from frictionmap.steady.maps import Arrays, allocate
 
 
 def cells_by_kernel(
     system: fm.System, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver
 ) -> tuple[Callable[[], None], Arrays]:
     """(solve, out): cells (r[k], beta[k]), constants made anew for each; cell k is out[0, k, k]."""
-    out = _allocate((1, r.size, r.size), system.n, solver.outputs)
+    out = allocate((1, r.size, r.size), system.n, solver.outputs)
     one_a_row = np.arange(r.size)
     cells = Cells(system, r, beta, np.array([mu]), solver)
     function, arguments = cells.opened(

@@ -38,7 +38,7 @@ from frictionmap._kernels.engine.march import steady_state
 from frictionmap._kernels.engine.motion import at_frequency, contact_at, start
 from frictionmap._kernels.engine.one_mass import Frequencies, OneMassSystem
 from frictionmap.model.settings import Solver
-from frictionmap.steady.sweep import Arrays
+from frictionmap.steady.maps import Arrays
 from frictionmap.theory.boundaries import one_mass_curves
 
 from ..peers.body import Body, Cell, Outcome

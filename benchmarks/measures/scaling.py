@@ -28,7 +28,7 @@ from matplotlib.axes import Axes
 
 import frictionmap as fm
 from frictionmap import regimes
-from frictionmap.steady.sweep import default_threads
+from frictionmap.steady.maps import default_threads
 
 from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, table, timed

@@ -32,7 +32,7 @@ from frictionmap._kernels.structure.oscillators import FELL, make_scratch
 from frictionmap._kernels.structure.state import make_structure
 from frictionmap.model.settings import Solver
 from frictionmap.steady.cells import Cells
-from frictionmap.steady.sweep import Arrays
+from frictionmap.steady.maps import Arrays
 from frictionmap.theory.boundaries import many_mode_curves, one_mass_curves
 
 from ..peers.body import Body, Cell, Outcome

@@ -458,6 +458,11 @@ def coordinate(name: str, values: np.ndarray | float) -> xr.Variable:
     return xr.Variable(dims, values, {"long_name": label.long_name, **units})
 
 
+def coordinate_of_study(dim: str, meaning: str, values: np.ndarray) -> xr.Variable:
+    """An axis of a study, or what goes with one: numbers of a system, or points counted from 0."""
+    return xr.Variable((dim,), values, {"long_name": meaning, "units": "1"})
+
+
 def attributes(label: Label) -> dict[str, object]:
     """CF attributes of a variable."""
     result: dict[str, object] = {"long_name": label.long_name}
@@ -489,6 +494,7 @@ def stamp(
     axes: Mapping[str, np.ndarray | float],
     solver: Solver | None = None,
     curves: Mapping[str, object] | None = None,
+    study: Mapping[str, object] | None = None,
 ) -> xr.Dataset:
     """Add the global attributes to what a function of the package computed on these axes."""
     ds.attrs = {
@@ -497,6 +503,6 @@ def stamp(
         "source": f"frictionmap {__version__}",
         "references": REFERENCES,
         "system": system.describe(),
-        **made_by(function, title, system, axes, solver, curves),
+        **made_by(function, title, system, axes, solver, curves, study),
     }
     return ds

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import UTC, datetime
@@ -47,25 +48,42 @@ def made_by(
     axes: Mapping[str, np.ndarray | float],
     solver: "Solver | None" = None,
     curves: Mapping[str, object] | None = None,
+    study: Mapping[str, object] | None = None,
 ) -> dict[str, str]:
-    """Global attributes `history` and `config` of what a function of the package computed.
-
-    `config` is TOML: read by `load_config` it gives the same system, axes and settings, to the bit.  What is
-    too large for text, and what the function does not need, is a comment.
-    """
+    """Global attributes `history` and `config` of what a function of the package computed; see there."""
     call = ", ".join(f"{name} = {_in_words(np.atleast_1d(values))}" for name, values in axes.items())
-    lines = [f"title = {quoted(title)}", "", "[system]", *_system_lines(system), "", "[grid]"]
-    lines += [_axis_line(name, np.atleast_1d(values)) for name, values in axes.items()]
+    return {
+        "history": f"{now()} frictionmap.{function} of {system.contact}, {call}",
+        "config": configuration(title, system, axes, solver, curves, study),
+    }
+
+
+def configuration(
+    title: str,
+    system: "System",
+    axes: Mapping[str, np.ndarray | float],
+    solver: "Solver | None" = None,
+    curves: Mapping[str, object] | None = None,
+    study: Mapping[str, object] | None = None,
+    matrices: str = "",
+) -> str:
+    """A configuration: read by `load_config` it gives the same system, axes and settings, to the bit.
+
+    matrices : a file that has those of the system; else what is too large for text is a comment, as is what
+        a function does not need
+    """
+    most = float("inf") if matrices else _MOST_VALUES
+    lines = [f"title = {quoted(title)}", "", "[system]", *_system_lines(system, matrices), "", "[grid]"]
+    lines += [_axis_line(name, np.atleast_1d(values), most) for name, values in axes.items()]
     if "beta" not in axes:
         lines.append("beta = 1.0  # boundaries need none")
     if solver is not None:
         lines += ["", "[solver]", *(f"{key} = {value_text(value)}" for key, value in asdict(solver).items())]
     if curves is not None:
         lines += ["", "[curves]", *(f"{key} = {value_text(value)}" for key, value in curves.items())]
-    return {
-        "history": f"{now()} frictionmap.{function} of {system.contact}, {call}",
-        "config": "\n".join(lines) + "\n",
-    }
+    if study is not None:
+        lines += ["", "[axes]", *(f"{_key(key)} = {value_text(value)}" for key, value in study.items())]
+    return "\n".join(lines) + "\n"
 
 
 def _in_words(values: np.ndarray) -> str:
@@ -74,16 +92,16 @@ def _in_words(values: np.ndarray) -> str:
     return f"{values[0]:g} to {values[-1]:g} ({values.size} values)"
 
 
-def _axis_line(name: str, values: np.ndarray) -> str:
+def _axis_line(name: str, values: np.ndarray, most: float) -> str:
     start, stop, num = float(values[0]), float(values[-1]), values.size
     if num > 3 and np.array_equal(np.linspace(start, stop, num), values):
         return f"{name} = {{ start = {start!r}, stop = {stop!r}, num = {num} }}"
-    if num > _MOST_VALUES:
+    if num > most:
         return f"# {name} = {num} values from {start!r} to {stop!r}, those of the axis {name}"
     return f"{name} = {value_text(values.tolist())}"
 
 
-def _system_lines(system: "System") -> list[str]:
+def _system_lines(system: "System", file: str) -> list[str]:
     matrices = system.matrices
     own = {key: getattr(system, key) for key in _SYSTEM}
     lines = [
@@ -91,6 +109,8 @@ def _system_lines(system: "System") -> list[str]:
     ]
     if not isinstance(matrices, Matrices):
         return lines
+    if file:
+        return [*lines, f"matrices = {quoted(file)}"]
     if matrices.n > _MOST_MASSES:
         return [*lines, f"# matrices = {matrices.n} by {matrices.n}, too large to be put here"]
     arrays = {"M": matrices.mass, "K": matrices.stiffness, "C": matrices.damping}
@@ -101,6 +121,11 @@ def _system_lines(system: "System") -> list[str]:
 def quoted(text: str) -> str:
     """Text as a TOML basic string: JSON has the same escapes, but leaves the delete character."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _key(name: str) -> str:
+    """A key, in quotes if TOML wants them."""
+    return name if re.fullmatch("[A-Za-z0-9_-]+", name) else quoted(name)
 
 
 def value_text(item: object) -> str:
@@ -115,15 +140,15 @@ def value_text(item: object) -> str:
     if isinstance(item, (list, tuple)):
         return "[" + ", ".join(value_text(element) for element in item) + "]"
     if isinstance(item, Mapping):
-        return "{ " + ", ".join(f"{key} = {value_text(v)}" for key, v in item.items()) + " }"
+        return "{ " + ", ".join(f"{_key(key)} = {value_text(v)}" for key, v in item.items()) + " }"
     return repr(item)
 
 
 def to_toml(tree: Mapping[str, object]) -> str:
     """A configuration tree as TOML text."""
-    lines = [f"{key} = {value_text(v)}" for key, v in tree.items() if not isinstance(v, Mapping)]
+    lines = [f"{_key(key)} = {value_text(v)}" for key, v in tree.items() if not isinstance(v, Mapping)]
     for name, table in tree.items():
         if isinstance(table, Mapping):
             lines += ["", f"[{name}]"]
-            lines += [f"{key} = {value_text(v)}" for key, v in table.items()]
+            lines += [f"{_key(key)} = {value_text(v)}" for key, v in table.items()]
     return "\n".join(lines) + "\n"

@@ -1,5 +1,6 @@
 """Configuration files (TOML): read, overridden, checked key by key."""
 
+import csv
 import os
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
@@ -15,6 +16,7 @@ from ..datasets.provenance import to_toml
 from ..errors import InputError
 from ..model.settings import CurveSettings, Solver, curve_settings
 from ..model.system import System
+from ..model.variations import Variations, checked_variations
 
 #: Values of one axis; more are surely a slip of the keyboard, and would not fit in memory with the others.
 _MOST_VALUES = checks.MOST_CELLS
@@ -34,12 +36,13 @@ _SYSTEM_KEYS = (
     "damping_reference",
 )
 _SOLVER_KEYS = ("start", "cycles", "tolerance", "steps", "skip", "steady", "outputs")
-_SECTIONS = {
+_SECTIONS: dict[str, tuple[str, ...] | None] = {
     "title": (),
     "system": _SYSTEM_KEYS,
     "grid": ("r", "beta", "mu"),
     "solver": _SOLVER_KEYS,
     "curves": ("harmonics", "quantities"),
+    "axes": None,  # named by the keys of [system]
 }
 _AXIS_KEYS = ("start", "stop", "step", "num", "values")
 #: Ways to give an axis exclude each other: on the command line, a key takes the place of these.
@@ -70,18 +73,24 @@ class Config:
     curves: CurveSettings
     text: str  # the TOML text used, overrides applied
     name: str  # of the file, without its ending
+    variations: Variations | None = None  # along further axes
     files: tuple[Path, ...] = ()  # that it was read from
 
 
-#: Called with the numbers of values of mu, r and beta, the system and the solver, before the axes are made.
+#: Called with the numbers of values of mu, r and beta and of points along further axes, the system and the
+#: settings, before the axes are made.
 Room = Callable[[Mapping[str, int], System, Solver, CurveSettings], None]
+
+
+def _fits(counts: Mapping[str, int], *_: object) -> None:
+    checks.cells(counts["mu"], counts["r"], counts["beta"], points=counts["points"])
 
 
 def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | None = None) -> Config:
     """Read a configuration file and apply overrides such as ``grid.r.step=0.01``.
 
     A path in it, also one of an override, is relative to the folder of the file.  `room` may refuse a grid
-    before any memory is taken for it.
+    before any memory is taken for it; by default one of too many cells is.
 
     Raises
     ------
@@ -91,6 +100,13 @@ def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | No
     """
     tree, text = read_tree(path, overrides)
     return _check(tree, text, Path(path), room)
+
+
+def config_of(text: str, system: Mapping[str, object]) -> Config:
+    """A configuration that is at hand as text; `system` takes the place of keys of its table."""
+    tree = parse(text)
+    tree["system"] = {**tree.get("system", {}), **system}
+    return _check(tree, text, Path("config"), lambda *_: None)
 
 
 def read_tree(path: str | Path, overrides: Sequence[str] = ()) -> tuple[dict, str]:
@@ -200,9 +216,10 @@ def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
     table = tree.get(name, {})
     if not isinstance(table, Mapping):
         raise InputError(f"{name} must be a table [{name}]; got {table!r}")
+    legal = _SECTIONS[name]
     for key in table:
-        if key not in _SECTIONS[name]:
-            raise unknown_key(key, name, _SECTIONS[name])
+        if legal is not None and key not in legal:
+            raise unknown_key(key, name, legal)
     return table
 
 
@@ -277,9 +294,10 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
         if key not in grid:
             raise InputError(f"grid.{key} must be given; it is missing")
     counts = {key: _count(grid.get(key, [1.0]), f"grid.{key}") for key in ("mu", "r", "beta")}
-    checks.cells(counts["mu"], counts["r"], counts["beta"])
-    if room is not None:
-        room(counts, system, solver, curves)
+    further = _further_axes(tree, path.parent)
+    variations = None if further is None else checked_variations(system, further)
+    points = 1 if variations is None else variations.count
+    (room or _fits)({**counts, "points": points}, system, solver, curves)
     axes = {
         key: checks.axis(_values(grid.get(key, [1.0]), f"grid.{key}"), f"grid.{key}", **bounds)
         for key, bounds in (
@@ -290,7 +308,52 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     }
     matrices = described.get("matrices")
     files = (path, matrices) if isinstance(matrices, Path) else (path,)
-    return Config(title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, name, files)
+    return Config(
+        title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, name, variations, files
+    )  # fmt: skip
+
+
+def _further_axes(tree: Mapping[str, object], folder: Path) -> dict[str, Any] | None:
+    """The table [axes] as `sweep` takes it: numbers, or for a dimension of several keys a mapping of them."""
+    if "axes" not in tree:
+        return None
+    axes: dict[str, Any] = {}
+    for key, given in _table(tree, "axes").items():
+        if not isinstance(given, Mapping) or set(given) & set(_AXIS_KEYS):
+            _count(given, f"axes.{key}")
+            axes[key] = _values(given, f"axes.{key}")
+        elif set(given) == {"file"}:
+            axes[key] = _columns(folder, given["file"], f"axes.{key}.file")
+        else:
+            axes[key] = {name: _listed(values, f"axes.{key}.{name}") for name, values in given.items()}
+    return axes
+
+
+def _listed(values: object, name: str) -> object:
+    _count_list(values, name)
+    return values
+
+
+def _columns(folder: Path, file: object, name: str) -> dict[str, list[float]]:
+    """The columns of a CSV file of numbers, by the names in its first row."""
+    if not isinstance(file, str) or not file:
+        raise InputError(f"{name} must be the path of a CSV file; got {checks.one_line(file)}")
+    try:
+        with open(folder / file, encoding="utf-8-sig", newline="") as opened:
+            header, *rows = [row for row in csv.reader(opened) if row]
+    except (OSError, ValueError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or "no rows of text with commas"
+        raise InputError(f"{name}, {folder / file}, cannot be read ({reason})") from None
+    columns: dict[str, list[float]] = {key.strip(): [] for key in header}
+    for number, row in enumerate(rows, start=2):
+        for key, text in zip(columns, row, strict=False):
+            try:
+                columns[key].append(float(text))
+            except ValueError:
+                raise InputError(f"{name}, row {number}, {key} must be a number; got {text!r}") from None
+        if len(row) != len(columns):
+            raise InputError(f"{name}, row {number} must have {len(columns)} numbers; got {len(row)}")
+    return columns
 
 
 def _is_number(value: object) -> bool:

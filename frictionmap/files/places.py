@@ -51,6 +51,7 @@ class Output:
         self._folder = self._target.parent / f"{_PREFIX}{name[:16]}"
         self._scratch = self._folder / f"{_FILE}-{os.getpid()}{path.suffix[:16]}"
         self._lock = -1
+        self.kept: Callable[[], str] = lambda: ""  # what of unfinished work an interrupt leaves, in words
 
     def fill(
         self, write: Callable[[Path], None], progress: Callable[[int], None] = lambda size: None
@@ -139,6 +140,28 @@ def claimed(path: Path, overwrite: bool = False, inputs: Sequence[Path] = ()) ->
         output.release()
 
 
+@contextlib.contextmanager
+def claimed_folder(path: Path) -> Iterator[Output]:
+    """A folder that is filled little by little, whose name is kept until the end of the context.
+
+    Raises
+    ------
+    InputError
+        `path` is something else than a folder, cannot be written to, or another run is writing it.
+    """
+    target = Path(os.path.realpath(path))
+    if not target.parent.is_dir():
+        raise InputError(f"-o must lie in a folder that exists; got {path}")
+    if target.exists() and not target.is_dir():
+        raise InputError(f"-o must be a store, which is a folder; got the file {path}")
+    output = Output(path, True)
+    try:
+        output.claim()
+        yield output
+    finally:
+        output.release()
+
+
 def _check(path: Path, overwrite: bool, inputs: Sequence[Path]) -> None:
     try:
         target = Path(os.path.realpath(path))
@@ -168,12 +191,13 @@ def _check(path: Path, overwrite: bool, inputs: Sequence[Path]) -> None:
 def _abandon() -> str:
     """Clear away every claim, for good: nothing can be claimed or put in its place after it."""
     known = _guard.acquire(timeout=1.0)
+    kept = "".join(output.kept() for output in _claims)
     for output in list(_claims):
         if output._lock >= 0:
             _remove(output._folder, output._lock, output._scratch.name)
     if not known:  # a file system that has stopped answering
         return "the output may have been written"
-    return f"{', '.join(map(str, _written))} had been written" if _written else ""
+    return kept or (f"{', '.join(map(str, _written))} had been written" if _written else "")
 
 
 interrupts.before_exit(_abandon)

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from ..datasets.labels import LABELS
+from ..datasets.labels import CELL, LABELS
 from ..datasets.schema import TEXTS, kind
 from .estimates import describe_estimates, source_of_data
 from .reading import standard_form
@@ -24,9 +24,15 @@ _LISTS = frozenset(("mu", "mode", "held_mode", "invariant", "dof", "mass_invaria
 
 def describe_map(ds: xr.Dataset) -> str:
     """One line: how many cells of each regime."""
-    words = f"{int(np.prod([ds.sizes[name] for name in ('mu', 'r', 'beta')])):,} cells"
-    if "regime" in ds:
-        counts = _counts(ds["regime"], regimes.REGIMES)
+    further = [name for name in ds["regime"].dims if name not in CELL] if "regime" in ds else []
+    cells = int(np.prod([ds.sizes[name] for name in (*further, *CELL)]))
+    return in_cells(cells, _counts(ds["regime"], regimes.REGIMES) if "regime" in ds else [])
+
+
+def in_cells(cells: int, counts: Sequence[tuple[regimes.Code, int]]) -> str:
+    """How many cells, and of each regime."""
+    words = f"{cells:,} cells"
+    if counts:
         words += f" ({', '.join(f'{count:,} {_plain(code)}' for code, count in counts)})"
     return words
 
@@ -35,9 +41,14 @@ def describe_causes(ds: xr.Dataset) -> list[str]:
     """A line for every cause why cells are unresolved or not all that they seem, and what to do about it."""
     if "status" not in ds:
         return []
+    return in_causes(_counts(ds["status"], regimes.STATUSES))
+
+
+def in_causes(counts: Sequence[tuple[regimes.Code, int]]) -> list[str]:
+    """A line for every status but that of cells that are well."""
     return [
         f"{count:,} cell{'s' * (count != 1)} {code.name}: {code.advice}"
-        for code, count in _counts(ds["status"], regimes.STATUSES)
+        for code, count in counts
         if code.value != regimes.RESOLVED
     ]
 

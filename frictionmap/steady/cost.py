@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import checks
 from ..errors import InputError
 from ..model.settings import CurveSettings, Solver
 from ..model.system import System
@@ -69,13 +70,16 @@ def _memory(counts: Mapping[str, int], names: Collection[str], asked: "Asked", w
     from .quantity_data import results
 
     masses, labels = counts["dof"], labels_of(what)
+    points = counts.get("points", 1)  # along further axes
     kept = sum(array.nbytes for array in results((1, 1, 1), masses, asked))
-    cells = float(kept) * counts["mu"] * counts["r"] * counts["beta"]
+    one = float(kept) * counts["mu"] * counts["r"] * counts["beta"]  # of a map; they are not kept
+    cells = 0.0
     for name in names:
         label = labels[name]
         cells += np.dtype(label.dtype).itemsize * math.prod(float(counts[dim]) for dim in label.dims)
     frequency = _PER_FREQUENCY + (_PER_MASS * masses if masses > 1 else 0.0)
-    return _BASE + _WRITING * cells + counts["mu"] * counts["r"] * frequency + counts["beta"] * _PER_BETA
+    rows = counts["mu"] * counts["r"]
+    return _BASE + _WRITING * (points * cells + one) + points * rows * frequency + counts["beta"] * _PER_BETA
 
 
 def available_memory() -> float:
@@ -120,8 +124,9 @@ def refuse_curves_without_memory(
 def _refuse(counts: Mapping[str, int], needed: float, fewer: str) -> None:
     """Refuse cells that need more memory than there is; `fewer`: of what else there might be fewer."""
     there = available_memory()
+    checks.cells(counts["mu"], counts["r"], counts["beta"], points=counts["points"])
     if needed > there:
-        cells = counts["mu"] * counts["r"] * counts["beta"]
+        cells = counts["mu"] * counts["r"] * counts["beta"] * counts["points"]
         raise InputError(
             f"grid must fit in memory: its {cells:,} cells need about {in_bytes(needed)}, available are "
             f"{in_bytes(there)}; make it coarser, ask for fewer {fewer}, or insist with --yes"

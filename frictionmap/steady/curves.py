@@ -14,8 +14,8 @@ from ..model.settings import CurveSettings, Output, Quantity, Solver, SolverSett
 from ..model.system import System
 from ..theory.boundaries import Curves, boundary_variables, held_variables
 from ..theory.limit_curves import limit_variables
+from .maps import Progress, checked_axes, compute
 from .quantity_data import PARTS, VARIABLES, asked_for, read_result
-from .sweep import Progress, checked_axes, compute
 
 #: What every cell tells.
 _ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "period", "status")

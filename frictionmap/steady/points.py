@@ -12,8 +12,8 @@ from ..model.system import System
 from ..theory.boundaries import Curves, find_curves
 from ..theory.half_waves import compliances, dynamic_shares, mass_responses
 from .cells import Cells
+from .maps import allocate
 from .quantity_data import asked_for
-from .sweep import allocate
 
 #: Points that are followed at a time: arrays are over all pairs of their frequencies and friction ratios.
 _AT_ONCE = 256

@@ -28,8 +28,9 @@ from ..model.settings import HARMONICS, Output, Solver, SolverSettings, merged
 from ..model.system import System
 from ..theory.boundaries import boundary_variables
 from .cells import Cells, limits
+from .maps import plan
 from .quantity_data import PARTS, VARIABLES, asked_for, read_result
-from .sweep import plan, sweep
+from .sweep import sweep
 
 #: Samples of a time history per excitation period.
 POINTS = 2000

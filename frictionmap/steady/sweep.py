@@ -1,11 +1,6 @@
-"""Regime maps: plan which cells need integration, run them in parallel, label the result."""
+"""`sweep`: regime maps of one system, or of many along further axes."""
 
-import os
-from collections import namedtuple
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass
-from itertools import islice
+from collections.abc import Mapping
 from typing import Any, Unpack
 
 import numpy as np
@@ -13,192 +8,11 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
-from .._kernels.engine.fill import RESTART, OpenCells
-from ..datasets.labels import CELL, CELL_VARIABLES, coordinate, label_variable, stamp
-from ..errors import InputError
+from ..datasets.labels import coordinate_of_study, stamp
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
-from ..theory.boundaries import boundary_variables
-from .cells import Cells, Job
-from .quantity_data import Asked, asked_for, read_result
-
-#: Cells a thread takes at a time: some milliseconds of work, so that the threads finish together, progress
-#: is seen and an interrupt is obeyed; and enough for the start of a tile not to count.
-TILE = 1024
-
-#: Rows of the map a thread fills by closed form at a time.
-ROW_CELLS = 262144
-
-#: What a cell costs, about, in hundredths of one that is followed: decided by a formula; followed; looked at
-#: for what else it could end in, with mu = 1 and above.
-_DECIDED, _FOLLOWED, _LOOKED_AT_SMOOTH, _LOOKED_AT = 2, 100, 25, 800
-
-#: The arrays of a map, one for every output but those that are read from the results of a cycle.
-_NAMES = tuple(name for name, label in CELL_VARIABLES.items() if label.needs != "cycle")
-Arrays = namedtuple("Arrays", _NAMES)  # type: ignore[misc]
-
-Progress = Callable[[int, int], None]
-
-
-@dataclass(frozen=True)
-class Plan:
-    """Which cells are open: in each row (mu, r), those from `low` to before `high` in beta."""
-
-    low: np.ndarray  # (n_mu * n_r,)
-    high: np.ndarray
-    rows: np.ndarray  # the rows that have open cells
-    ends: np.ndarray  # number of open cells up to and with each of them
-
-    @property
-    def cells(self) -> int:
-        """Number of open cells."""
-        return int(self.ends[-1]) if self.ends.size else 0
-
-    def tiles(self) -> Iterator[tuple[int, int]]:
-        """First cell and the one after the last of every tile of the list of open cells.
-
-        Cut at the ends of rows and where the search from neighbours starts anew, and nowhere else.
-        """
-        begin = first = 0
-        for end in self.ends.tolist():
-            for cut in (*range(begin + RESTART, end, RESTART), end):
-                if cut - first >= TILE:
-                    yield first, cut
-                    first = cut
-            begin = end
-        if first < begin:
-            yield first, begin
-
-
-def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Plan:
-    """Sort the cells into those that a formula decides and those that are open (theory.md 6).
-
-    - beta = 0 is linear; where nothing loads the contact (joined base-wall, r = 0), nothing moves.
-    - skip = "exact", mu = 1: continuous below beta_lim, stuck from beta_stick on, whatever the start.
-    - skip = "exact", start from rest: one mass with beta >= beta_stick never begins to move.
-    - r = 0 has no motion to integrate; a regime, but no number of stops, follows from the boundaries.
-    """
-    beta_lim, beta_stick = cells.curves.beta_lim, cells.curves.beta_stick
-    shape = beta_lim.shape
-    no_load = np.broadcast_to(cells.no_load, shape)
-    no_motion = np.broadcast_to(r == 0.0, shape)
-    low = np.full(shape, int(beta[0] == 0.0))
-    high = np.full(shape, beta.size)
-    stuck_from = np.searchsorted(beta, beta_stick)
-    if solver.skip == "exact":
-        smooth = (mu == 1.0)[:, np.newaxis]
-        proved = smooth | (solver.start == "rest" and cells.rest_sticks)
-        high = np.where(proved, stuck_from, high)
-        low = np.where(smooth, np.maximum(low, np.searchsorted(beta, beta_lim)), low)
-    high = np.where(no_motion, stuck_from, high)
-    low = np.where(no_load, 0, np.minimum(low, high))
-    open_cells = np.where(no_motion, 0, high - low).ravel()
-    rows = np.flatnonzero(open_cells)
-    return Plan(low.ravel(), high.ravel(), rows, np.cumsum(open_cells[rows]))
-
-
-def allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> Any:
-    """Outputs asked for, and status, unresolved until they are filled; the others have no cells."""
-    sizes = dict(zip((*CELL, "dof"), (*shape, dofs), strict=True))
-    arrays: list[np.ndarray] = []
-    for name in _NAMES:
-        label = CELL_VARIABLES[name]
-        kept = name in (*names, "status")
-        arrays.append(np.full([kept * sizes[dim] for dim in label.dims], label.unresolved, label.dtype))
-    return Arrays(*arrays)
-
-
-def default_threads() -> int:
-    """Processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
-def _run(jobs: Sequence[Job], threads: int, done: Callable) -> None:
-    """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
-
-    This thread only waits, so that an interrupt reaches it at once.
-    """
-    pool = ThreadPoolExecutor(threads)
-    running: dict[Future, int] = {}
-    waiting = iter(enumerate(jobs))
-    try:
-        while True:
-            for index, (function, arguments) in islice(waiting, 2 * threads - len(running)):
-                running[pool.submit(function, *arguments)] = index
-            if not running:
-                return
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                future.result()
-                done(running.pop(future))
-    finally:
-        pool.shutdown(wait=not running, cancel_futures=True)
-
-
-def _fill(
-    cells: Cells, work: Plan, shape: tuple[int, int, int], smooth: np.ndarray, out: Any, threads: int,
-    progress: Progress | None,
-) -> None:  # fmt: skip
-    """`smooth` (n_mu,): where mu = 1."""
-    n_rows, columns = work.low.size, shape[2]
-    rows_at_once = max(1, ROW_CELLS // columns)
-    opened = OpenCells(work.rows, work.ends, work.low, work.high)
-    cancel = np.zeros(1, dtype=np.uint8)
-    jobs: list[Job] = []
-    costs: list[int] = []
-    for first in range(0, n_rows, rows_at_once):
-        last = min(first + rows_at_once, n_rows)
-        jobs.append(cells.closed(first, last, opened, out))
-        costs.append(_DECIDED * (last - first) * columns)
-    for first, last in work.tiles():
-        jobs.append(cells.opened(first, last, opened, out, cancel))
-        costs.append(_FOLLOWED * (last - first))
-
-    others = cells.reachable(out, cancel)
-    jobs += others
-    per_row = columns * np.repeat(np.where(smooth, _LOOKED_AT_SMOOTH, _LOOKED_AT), shape[1])
-    costs += per_row.tolist()[: len(others)]
-
-    spent, total = 0, sum(costs)
-
-    def done(index: int) -> None:
-        nonlocal spent
-        spent += costs[index]
-        if progress is not None:
-            progress(spent, total)
-
-    try:
-        _run(jobs, threads, done)
-    except BaseException:
-        cancel[0] = 1  # the kernels look at it at every event
-        raise
-    cells.finish(out)
-
-
-def checked_axes(r: ArrayLike, beta: ArrayLike, mu: ArrayLike, per_cell: int) -> dict[str, np.ndarray]:
-    """The axes mu, r and beta of a grid, of so many numbers a cell."""
-    r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
-    beta = checks.axis(beta, "beta", least=0.0)
-    mu = checks.axis(mu, "mu", least=1.0)
-    checks.cells(mu.size, r.size, beta.size * per_cell)
-    return {"mu": mu, "r": r, "beta": beta}
-
-
-def compute(
-    system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: Asked | None, threads: int | None,
-    progress: Progress | None,
-) -> tuple[Cells, Any]:  # fmt: skip
-    """The cells of a grid and their arrays, filled; `asked`: what else, in the results of the cells."""
-    threads = default_threads() if threads is None else checks.whole(threads, "threads", least=1)
-    if progress is not None and not callable(progress):
-        raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
-    mu, r, beta = axes["mu"], axes["r"], axes["beta"]
-    cells = Cells(system, r, beta, mu, solver, asked)
-    out = allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
-    work = plan(cells, r, mu, beta, solver)
-    _fill(cells, work, (mu.size, r.size, beta.size), mu == 1.0, out, threads, progress)
-    return cells, out
+from ..model.variations import Variations, checked_variations
+from .maps import Progress, checked_axes, regime_map
 
 
 def sweep(
@@ -208,6 +22,7 @@ def sweep(
     mu: ArrayLike = 1.0,
     *,
     solver: Solver | None = None,
+    axes: Mapping[str, Any] | Variations | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
     **settings: Unpack[SolverSettings],
@@ -226,6 +41,12 @@ def sweep(
     solver : Solver, optional
         Settings; or give them one by one as keywords: start, cycles, tolerance, steps, skip, steady,
         outputs (see `Solver`).  If both are given, a keyword takes the place of the solver's setting.
+    axes : mapping, optional
+        Further axes: numbers of the system and the values they take, such as
+        ``{"damping_ratios": [0, 0.01], "stiffness_ratios[2]": [0.5, 1, 2]}``, one of a list counted from 1;
+        every one is a dimension before mu (``stiffness_ratios_2``).  Numbers that change together are a
+        mapping under a name of their own: ``{"sample": {"mass_ratios[2]": [...], "stiffness_ratios[2]":
+        [...]}}``.
     threads : int, optional
         Threads to use; default: all processors of the process.  The result is the same to the bit.
     progress : callable, optional
@@ -251,24 +72,69 @@ def sweep(
     """
     checks.instance(system, "system", System)
     solver = merged(solver, settings)
-    axes = checked_axes(r, beta, mu, system.n if "amplitude" in solver.outputs else 1)
-    of_cycle = [name for name in solver.outputs if CELL_VARIABLES[name].needs == "cycle"]
-    asked = asked_for(of_cycle) if of_cycle else None
-    cells, out = compute(system, axes, solver, asked, threads, progress)
-    names = list(solver.outputs)
-    if "status" not in names and out.status.any():  # no cell is unresolved, or averaged, without a word
-        names.append("status")
-    variables = {
-        name: label_variable(
-            name, read_result(name, cells.results) if name in of_cycle else getattr(out, name)
-        )
-        for name in names
-    }
-    grid = {name: axes[name] for name in ("r", "beta", "mu")}
-    if "amplitude" in solver.outputs:
-        axes["dof"] = np.arange(1, system.n + 1)
-    ds = xr.Dataset(
-        variables | boundary_variables(cells.curves),
-        coords={name: coordinate(name, values) for name, values in axes.items()},
+    grid = checked_axes(r, beta, mu, system.n if "amplitude" in solver.outputs else 1)
+    variations = None if axes is None else checked_variations(system, axes)
+    if variations is None:
+        ds = regime_map(system, grid, solver, threads, progress)
+    else:
+        checks.cells(grid["mu"].size, grid["r"].size, grid["beta"].size, points=variations.count)
+        ds = _study(variations, grid, solver, threads, progress)
+    if "status" not in solver.outputs and not ds["status"].values.any():
+        ds = ds.drop_vars("status")  # else no cell is unresolved, or averaged, without a word
+    title = "Motion regimes and stops per cycle"
+    return stamp(
+        ds,
+        "sweep",
+        title,
+        system,
+        {name: grid[name] for name in ("r", "beta", "mu")},
+        solver,
+        study=None if variations is None else variations.described,
     )
-    return stamp(ds, "sweep", "Motion regimes and stops per cycle", system, grid, solver)
+
+
+def _study(
+    variations: Variations, grid: Mapping[str, np.ndarray], solver: Solver, threads: int | None,
+    progress: Progress | None,
+) -> xr.Dataset:  # fmt: skip
+    """The maps of all points along further axes, in one dataset."""
+    count = variations.count
+    dims = [axis.name for axis in variations.axes]
+    whole: dict[str, xr.Variable] = {}
+    coords: dict[str, xr.Variable] = {}
+    for done, point in enumerate(variations.points()):
+        ds = regime_map(variations.at(point), grid, solver, threads, _share(progress, done, count))
+        if not whole:
+            coords = study_coordinates(variations) | {str(name): ds[name].variable for name in ds.coords}
+            whole = {
+                str(name): _room(variable.variable, dims, variations.shape)
+                for name, variable in ds.data_vars.items()
+            }
+        for name, variable in ds.data_vars.items():
+            whole[str(name)].values[point] = variable.values
+    return xr.Dataset(whole, coords)
+
+
+def _room(one: xr.Variable, dims: list[str], shape: tuple[int, ...]) -> xr.Variable:
+    """A variable like that of one map, with room for those of many; not filled."""
+    values = np.empty((*shape, *one.shape), one.dtype)
+    return xr.Variable((*dims, *one.dims), values, one.attrs)
+
+
+def _share(progress: Progress | None, done: int, count: int) -> Progress | None:
+    """What tells the progress of one map of many."""
+    if progress is None or not callable(progress):
+        return progress
+    return lambda spent, total: progress(done * total + spent, count * total)
+
+
+def study_coordinates(variations: Variations) -> dict[str, xr.Variable]:
+    """The further axes: numbers that change alone are their own; others are counted, and stand beside."""
+    coords = {}
+    for axis in variations.axes:
+        if axis.zipped:
+            counted = np.arange(axis.size)
+            coords[axis.name] = coordinate_of_study(axis.name, "points of several numbers", counted)
+        for number, values in zip(axis.numbers, axis.values, strict=True):
+            coords[number.dimension] = coordinate_of_study(axis.name, number.meaning, values)
+    return coords

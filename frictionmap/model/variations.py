@@ -1,0 +1,223 @@
+"""Further axes of a study: numbers of a system that change, one by one or together.
+
+A number of a system is named as in a configuration: ``damping_ratios`` for all modes at once, or one of a
+list, counted from 1, such as ``stiffness_ratios[2]``; the dimension of that is ``stiffness_ratios_2``.
+"""
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from .. import checks
+from ..errors import InputError
+from .system import System
+
+#: What may change as one number, and what as one of a list; with what a value means.
+_NUMBERS = {
+    "damping_ratios": "damping ratio of all modes",
+    "load_mass": "mass that the load acts on",
+    "frequency_scale": "frequency of r = 1, in the units of sqrt(K/M)",
+    "stiffness_scale": "stiffness that displacements are over, in the units of K",
+}
+_LISTS = {
+    "mass_ratios": "mass ratio m_{0}/m_1",
+    "stiffness_ratios": "stiffness ratio k_{0}/k_1",
+    "damping_ratios": "damping ratio of mode {0}",
+    "load": "load on mass {0}, over P",
+    "contact_masses": "mass in contact, number {0} of them",
+}
+_WHOLE = ("load_mass", "contact_masses")
+_INDEXED = re.compile(r"([a-z_]+)\[([1-9][0-9]*)\]")
+
+#: Dimensions that a dataset has already.
+_TAKEN = ("mu", "r", "beta", "dof", "mode", "harmonic", "part", "tau", "parameter", "row_block")
+
+
+@dataclass(frozen=True)
+class Number:
+    """One number of a system."""
+
+    key: str
+    place: int | None  # in a list, counted from 1
+
+    @property
+    def dimension(self) -> str:
+        """Its name as a dimension, or as a coordinate."""
+        return self.key if self.place is None else f"{self.key}_{self.place}"
+
+    @property
+    def text(self) -> str:
+        """Its name in a configuration."""
+        return self.key if self.place is None else f"{self.key}[{self.place}]"
+
+    @property
+    def meaning(self) -> str:
+        """What it is, in words."""
+        return _NUMBERS[self.key] if self.place is None else _LISTS[self.key].format(self.place)
+
+    def in_system(self, system: System, value: float) -> Any:
+        """The value of the key with this number in it."""
+        given = int(value) if self.key in _WHOLE and value == int(value) else float(value)
+        if self.place is None:
+            return given
+        values = list(getattr(system, self.key) or ())
+        if self.place > len(values):
+            raise InputError(
+                f"axes.{self.text} must be one of the {len(values)} numbers of {self.key}, counted from 1"
+            )
+        values[self.place - 1] = given
+        return values
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A dimension along which one number changes, or several together."""
+
+    name: str
+    numbers: tuple[Number, ...]
+    values: tuple[np.ndarray, ...]  # (size,) each
+
+    @property
+    def size(self) -> int:
+        """Points along it."""
+        return int(self.values[0].size)
+
+    @property
+    def zipped(self) -> bool:
+        """Whether it counts points of several numbers, or is the number itself."""
+        return self.name != self.numbers[0].dimension or len(self.numbers) > 1
+
+
+@dataclass(frozen=True)
+class Variations:
+    """A system and the axes along which it changes."""
+
+    system: System
+    axes: tuple[Axis, ...]
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return math.prod(self.shape)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Points along every axis."""
+        return tuple(axis.size for axis in self.axes)
+
+    @property
+    def described(self) -> dict[str, Any]:
+        """As they were given: values by names, or a mapping of those that change together."""
+        described: dict[str, Any] = {}
+        for axis in self.axes:
+            columns = {
+                number.text: values.tolist() for number, values in zip(axis.numbers, axis.values, strict=True)
+            }
+            described |= {axis.name: columns} if axis.zipped else columns
+        return described
+
+    def points(self) -> Iterator[tuple[int, ...]]:
+        """Every point, the last axis first."""
+        return iter(np.ndindex(self.shape))
+
+    def at(self, point: Sequence[int]) -> System:
+        """The system at a point.
+
+        Raises
+        ------
+        InputError
+            There is no such system; the message names the point.
+        """
+        system = self.system
+        where: list[str] = []
+        for axis, index in zip(self.axes, point, strict=True):
+            for number, values in zip(axis.numbers, axis.values, strict=True):
+                value = float(values[index])
+                where.append(f"{number.dimension} = {value:g}")
+                try:
+                    system = replace(system, **{number.key: number.in_system(system, value)})
+                except InputError as error:
+                    raise InputError(f"axes, at {', '.join(where)}: {error}") from None
+        return system
+
+
+def checked_variations(system: System, axes: "Mapping[str, Any] | Variations") -> Variations:
+    """`axes` of `sweep`, checked: every value of each is tried beside the first of the others.
+
+    Raises
+    ------
+    InputError
+        A name or a value is illegal, or no system has it.
+    """
+    if isinstance(axes, Variations):
+        return axes
+    if not isinstance(axes, Mapping) or not axes:
+        raise InputError(
+            "axes must be a mapping such as {'damping_ratios': [0, 0.01]} with at least one axis; "
+            f"got {checks.one_line(axes)}"
+        )
+    found = tuple(_axis(name, values) for name, values in axes.items())
+    numbers = [number for axis in found for number in axis.numbers]
+    for name in (*(axis.name for axis in found), *(number.dimension for number in numbers)):
+        if name in _TAKEN:
+            raise InputError(f"axes must not name {name}, which is a dimension of its own")
+    for number in numbers:
+        rivals = [other for other in numbers if other.key == number.key and other is not number]
+        if any(other == number or other.place is None or number.place is None for other in rivals):
+            raise InputError(f"axes must change {number.key} in one way only; got {', '.join(axes)}")
+    if len({axis.name for axis in found}) < len(found):
+        raise InputError(f"axes must have different dimensions; got {', '.join(axis.name for axis in found)}")
+    variations = Variations(system, found)
+    first = [0] * len(found)
+    for k, axis in enumerate(found):
+        for index in range(axis.size):
+            variations.at([*first[:k], index, *first[k + 1 :]])
+    return variations
+
+
+def _axis(name: object, values: object) -> Axis:
+    if not isinstance(name, str) or not name:
+        raise InputError(f"axes must have texts as names; got {checks.one_line(name)}")
+    if isinstance(values, Mapping):
+        if not re.fullmatch("[a-z][a-z0-9_]*", name) or name in (*_NUMBERS, *_LISTS):
+            raise InputError(
+                f"axes must give keys that change together a name of their own, of small letters, such as "
+                f"sample; got {name!r}"
+            )
+        columns = {key: _column(f"axes.{name}.{key}", column) for key, column in values.items()}
+        sizes = {key: column.size for key, column in columns.items()}
+        if not columns or len(set(sizes.values())) > 1:
+            words = ", ".join(f"{key} {size}" for key, size in sizes.items()) or "none"
+            raise InputError(f"axes.{name} must have as many values of every key; got {words}")
+        return Axis(name, tuple(_number(key, f"axes.{name}") for key in columns), tuple(columns.values()))
+    number = _number(name, "axes")
+    column = checks.axis(values, f"axes.{name}", least=-np.inf)
+    return Axis(number.dimension, (number,), (column,))
+
+
+def _column(name: str, values: object) -> np.ndarray:
+    """Numbers in any order."""
+    column = np.atleast_1d(checks.array(values, name))
+    if column.ndim != 1 or column.size == 0 or column.dtype.kind not in "iuf":
+        raise InputError(f"{name} must be a list of numbers; got {checks.one_line(values)}")
+    wrong = np.flatnonzero(~np.isfinite(column))
+    if wrong.size:
+        raise InputError(f"{name}[{wrong[0]}] must be finite; got {column[wrong[0]]}")
+    return column.astype(float)
+
+
+def _number(key: object, where: str) -> Number:
+    if key in _NUMBERS:
+        return Number(str(key), None)
+    matched = _INDEXED.fullmatch(key) if isinstance(key, str) else None
+    if matched and matched[1] in _LISTS:
+        return Number(matched[1], int(matched[2]))
+    legal = (*_NUMBERS, *(f"{name}[i]" for name in _LISTS))
+    raise InputError(
+        f"{where} must name a number of the system, i counted from 1: {', '.join(legal)}; "
+        f"got {checks.one_line(key)}{checks.nearest(str(key), legal)}"
+    )

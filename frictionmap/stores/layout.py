@@ -1,0 +1,73 @@
+"""The arrays of a store: dimensions, types, chunks; a block is one chunk of every variable."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ..datasets.labels import CELL_VARIABLES, coordinate
+from .study import Block, Study
+
+#: Marks of blocks that are done; 1 where they are.
+MARKS = "block_done"
+
+
+class Array(NamedTuple):
+    """One array of a store."""
+
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+    chunks: tuple[int, ...]
+    dtype: np.dtype
+    fill: Any
+    attributes: Mapping[str, Any]
+
+
+def arrays_of(study: Study, sample: xr.Dataset) -> dict[str, Array]:
+    """The variables of a store, by one cell of it."""
+    dims = tuple(axis.name for axis in study.variations.axes)
+    sizes = dict(zip(dims, study.variations.shape, strict=True))
+    sizes |= {"mu": study.mu.size, "r": study.r.size, "beta": study.beta.size, "dof": study.system.n}
+    arrays = {}
+    for name, variable in sample.data_vars.items():
+        own = (*dims, *map(str, variable.dims))
+        chunk = {name: 1 for name in (*dims, "mu")} | {"r": study.rows}
+        fill = CELL_VARIABLES[str(name)].unresolved if name in CELL_VARIABLES else np.nan
+        arrays[str(name)] = Array(
+            own, tuple(sizes[dim] for dim in own), tuple(chunk.get(dim, sizes[dim]) for dim in own),
+            variable.dtype, variable.dtype.type(fill), plain(variable.attrs),
+        )  # fmt: skip
+    marks = {"long_name": "1 if the block of rows is computed; the others hold no results yet"}
+    arrays[MARKS] = Array(
+        (*dims, "mu", "row_block"),
+        study.shape,
+        (1,) * len(study.shape),
+        np.dtype(np.uint8),
+        np.uint8(0),
+        marks,
+    )
+    return arrays
+
+
+def coordinates_of(study: Study, sample: xr.Dataset) -> dict[str, xr.Variable]:
+    """The axes of a store."""
+    grid = {name: coordinate(name, getattr(study, name)) for name in ("mu", "r", "beta")}
+    further = {"dof": sample["dof"].variable} if "dof" in sample.coords else {}
+    return study.coordinates() | grid | further
+
+
+def plain(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Attributes as JSON can hold them."""
+    return {
+        str(name): value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
+        for name, value in attributes.items()
+    }
+
+
+def region(study: Study, block: Block, array: Array) -> tuple[slice | int, ...]:
+    """Where a block lies in an array."""
+    where = dict(zip(array.dims, block.point, strict=False))
+    where |= {"mu": block.mu, "row_block": block.rows}
+    rows = study.frequencies(block)
+    return tuple(rows if dim == "r" else where.get(dim, slice(None)) for dim in array.dims)

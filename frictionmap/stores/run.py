@@ -1,0 +1,74 @@
+"""Filling a store: what is missing is computed block by block, wherever a run was stopped."""
+
+import shutil
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from ..files.places import claimed_folder
+from ..steady.maps import Progress
+from .store import Store, check_same, make_store, remove_strays
+from .study import Block, Study
+
+#: Computes and writes blocks, and yields when one is done.
+Fill = Callable[[Store, Iterable[Block]], Iterator[Block]]
+
+
+def in_this_process(threads: int | None) -> Fill:
+    """One block after the other, each on threads."""
+
+    def fill(store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
+        for block in blocks:
+            store.write(block, store.study.compute(block, threads))
+            yield block
+
+    return fill
+
+
+def fill_store(
+    path: Path,
+    study: Study,
+    title: str,
+    fill: Fill,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> Store:
+    """Make the store of a study, or go on with it, until all its blocks are done.
+
+    Raises
+    ------
+    InputError
+        There is a store of another study or version (without `overwrite`), or something else of that name,
+        or another run is at it.
+    OSError
+        A block cannot be written; those before it are kept.
+    """
+    with claimed_folder(path) as claim:
+        if overwrite and path.exists():
+            _remove(path)
+        if path.exists():
+            check_same(path, study, title)
+        remove_strays(path)
+        if not path.exists():
+            make_store(path, study, title)
+        store = Store(path, study)
+        done = store.marks()
+        count = int(np.count_nonzero(done))
+        claim.kept = lambda: f"{count:,} of {done.size:,} blocks are in {path}; the same command goes on"
+        try:
+            for _ in fill(store, [study.block(place) for place in study.places() if not done[place]]):
+                count += 1
+                if progress is not None:
+                    progress(count, done.size)
+        except OSError as error:
+            raise OSError(f"{path} cannot be written ({error.strerror or error}); {claim.kept()}") from error
+        return store
+
+
+def _remove(path: Path) -> None:
+    """Remove a store; nothing else that is in a folder."""
+    if not (path / "zarr.json").is_file():
+        raise InputError(f"-o must be a store to be overwritten; the folder {path} holds something else")
+    shutil.rmtree(path)

@@ -1,0 +1,219 @@
+"""A store on disk: made whole, recognised as that of a study, tidied; blocks written, and marked as done."""
+
+import contextlib
+import glob
+import secrets
+import shutil
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from .. import checks
+from ..datasets.labels import REFERENCES
+from ..datasets.provenance import configuration
+from ..errors import InputError
+from ..files.config import Config, config_of, parse
+from ..model.matrices import Matrices
+from ..version import __version__
+from .layout import MARKS, Array, arrays_of, coordinates_of, plain, region
+from .study import Block, Study, study_of
+
+if TYPE_CHECKING:
+    import zarr
+
+#: The group of the matrices of a structure that has any.
+_MATRICES = "matrices"
+
+#: What a file is called while it is written.
+_PARTIAL = "*.partial"
+
+_SOURCE = f"frictionmap {__version__}"
+
+
+def _zarr() -> Any:
+    try:
+        import zarr
+    except ImportError:
+        raise InputError(
+            "-o must be a .nc file unless zarr is installed: pip install 'frictionmap[zarr]'"
+        ) from None
+    return zarr
+
+
+class Store:
+    """A study's store."""
+
+    def __init__(self, path: Path, study: Study) -> None:
+        self.path = path
+        self.study = study
+
+    @cached_property
+    def _group(self) -> "zarr.Group":
+        return _zarr().open_group(self.path, mode="r+", use_consolidated=False)
+
+    def marks(self) -> np.ndarray:
+        """Which blocks are done; bool, in the shape of `study.shape`."""
+        return np.asarray(self._group[MARKS][...]) != 0
+
+    def write(self, block: Block, found: xr.Dataset) -> None:
+        """Write a block, whole chunks only, and then its mark."""
+        for name, array in self._arrays.items():
+            if name != MARKS:
+                where = region(self.study, block, array)
+                self._group[name][where] = found[name].values.reshape(_shape(where, array.shape))
+        self._group[MARKS][block.place] = 1
+
+    def blocks_of(self, name: str) -> Iterator[np.ndarray]:
+        """The values of a variable in every block that is done, if there is that variable."""
+        if name in self._arrays:
+            array = self._group[name]
+            for place in np.argwhere(self.marks()):
+                block = self.study.block(tuple(int(index) for index in place))
+                yield np.asarray(array[region(self.study, block, self._arrays[name])])
+
+    @cached_property
+    def _arrays(self) -> dict[str, Array]:
+        return arrays_of(self.study, self.study.sample())
+
+
+def _shape(where: tuple[slice | int, ...], shape: tuple[int, ...]) -> list[int]:
+    """The shape of what lies there."""
+    return [
+        len(range(*index.indices(size)))
+        for index, size in zip(where, shape, strict=True)
+        if isinstance(index, slice)
+    ]
+
+
+def make_store(path: Path, study: Study, title: str) -> None:
+    """Make the store of a study, without any block; it appears whole or not at all."""
+    zarr = _zarr()
+    away = path.with_name(_being_made(path) + secrets.token_hex(8))
+    try:
+        sample = study.sample()
+        text = _configuration(study, title)
+        attributes = {
+            "Conventions": "CF-1.11", "title": title, "source": _SOURCE, "references": REFERENCES,
+            "system": study.system.describe(), "config": text,
+        }  # fmt: skip
+        group = zarr.create_group(away, attributes=attributes)
+        for name, array in arrays_of(study, sample).items():
+            _make_array(group, name, array)
+        for name, variable in coordinates_of(study, sample).items():
+            values = np.asarray(variable.values)
+            dims = tuple(map(str, variable.dims))
+            fill = values.dtype.type(0)
+            like = Array(dims, values.shape, values.shape, values.dtype, fill, plain(variable.attrs))
+            _make_array(group, name, like)[...] = values
+        for name, matrix in _matrices(study.system.matrices).items():
+            like = Array(
+                ("row", "column"), matrix.shape, matrix.shape, matrix.dtype, matrix.dtype.type(0), {}
+            )
+            _make_array(group, f"{_MATRICES}/{name}", like)[...] = matrix
+        away.rename(path)
+    finally:
+        shutil.rmtree(away, ignore_errors=True)
+
+
+def _make_array(group: "zarr.Group", name: str, array: Array) -> "zarr.Array":
+    from zarr.codecs import BloscCodec
+
+    codec = BloscCodec(cname="zstd", clevel=1, shuffle="shuffle", typesize=array.dtype.itemsize)
+    return group.create_array(
+        name, shape=array.shape, chunks=array.chunks, dtype=array.dtype, fill_value=array.fill,
+        compressors=codec, dimension_names=array.dims, attributes=dict(array.attributes),
+    )  # fmt: skip
+
+
+def _matrices(matrices: object) -> dict[str, np.ndarray]:
+    """Those of a structure, if it is given by matrices, by their names."""
+    if not isinstance(matrices, Matrices):
+        return {}
+    arrays = {"M": matrices.mass, "K": matrices.stiffness, "C": matrices.damping}
+    return {name: array for name, array in arrays.items() if array is not None}
+
+
+def _configuration(study: Study, title: str) -> str:
+    """A configuration that makes the study again, beside its matrices."""
+    grid = {"r": study.r, "beta": study.beta, "mu": study.mu}
+    further = study.variations.described or None
+    return configuration(title, study.system, grid, study.solver, study=further, matrices=_MATRICES)
+
+
+def opened(path: Path) -> Store:
+    """The store at a path, with its study.
+
+    Raises
+    ------
+    InputError
+        There is no store of this version.
+    """
+    config = _config(path)
+    axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
+    return Store(path, study_of(config.system, config.variations, axes, config.solver))
+
+
+def _config(path: Path) -> Config:
+    """The configuration of a store; refused is what is no store of ours, or of another version."""
+    source: object = "something else"
+    with contextlib.suppress(Exception):  # whatever the library makes of files that are not its own
+        group = _zarr().open_group(path, mode="r", use_consolidated=False)
+        source = group.attrs.get("source", source)
+        if source == _SOURCE:
+            found = {name: np.asarray(array[...]) for name, array in _arrays_in(group, _MATRICES)}
+            return config_of(str(group.attrs["config"]), {"matrices": found} if found else {})
+    raise InputError(
+        f"store {path} must be of this version, {_SOURCE}, to go on with; it is of {source}; "
+        "use --overwrite or another -o"
+    )
+
+
+def _arrays_in(group: "zarr.Group", name: str) -> list[tuple[str, "zarr.Array"]]:
+    return list(group[name].arrays()) if name in group else []
+
+
+def check_same(path: Path, study: Study, title: str) -> None:
+    """Refuse a store of another study, by name of what differs."""
+    config = _config(path)
+    there = _flat(parse(config.text))
+    here = _flat(parse(_configuration(study, title)))
+    there.pop("title", None)
+    here.pop("title", None)
+    differing = [key for key in {**there, **here} if there.get(key) != here.get(key)]
+    if config.system.matrices != study.system.matrices and not differing:
+        differing = ["system.matrices"]
+    if differing:
+        words = "; ".join(
+            f"{key}: {checks.one_line(there.get(key))} there, {checks.one_line(here.get(key))} here"
+            for key in differing[:3]
+        )
+        raise InputError(
+            f"store {path} must be of this configuration to go on with; it differs in {words}; "
+            "use --overwrite or another -o"
+        )
+
+
+def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """A tree by dotted keys."""
+    flat: dict[str, Any] = {}
+    for key, value in tree.items():
+        flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, Mapping) else {f"{prefix}{key}": value}
+    return flat
+
+
+def _being_made(path: Path) -> str:
+    """How the name of a store begins while it is made."""
+    return f".{path.name}-"
+
+
+def remove_strays(path: Path) -> None:
+    """Remove what was being made or written when a run was stopped; no other may be at it."""
+    for folder in path.parent.glob(glob.escape(_being_made(path)) + 16 * "[0-9a-f]"):
+        shutil.rmtree(folder, ignore_errors=True)
+    for stray in path.rglob(_PARTIAL):
+        with contextlib.suppress(OSError):
+            stray.unlink()

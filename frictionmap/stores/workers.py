@@ -1,0 +1,147 @@
+"""Blocks on processes of dask: of this machine, or of a cluster that is running.
+
+Workers are sent the path of the store and the place of a block, no data.  A block that was done by a worker
+that is lost is done again, to the same bytes.
+"""
+
+import contextlib
+import sys
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .._kernels.cache_folders import folders
+from ..errors import InputError
+from .run import Fill
+from .store import Store, opened
+from .study import Block
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+#: Blocks that wait at a worker, beside the one it computes: it is never idle, and a stop leaves few behind.
+_WAITING = 2
+
+#: A block whose workers are lost so many times is what kills them.
+_LOSSES = 20
+
+
+def _distributed() -> Any:
+    try:
+        import distributed
+    except ImportError:
+        raise InputError(
+            "--workers and --scheduler must be left out unless dask is installed: "
+            "pip install 'frictionmap[dask]'"
+        ) from None
+    return distributed
+
+
+@lru_cache(maxsize=4)
+def _store(path: str) -> Store:
+    """The store, opened once a process."""
+    return opened(Path(path))
+
+
+def warm(path: str) -> None:
+    """Have the kernels compiled by one process of this host; the others wait for it."""
+    with _alone():
+        _store(path).study.sample()
+
+
+@contextlib.contextmanager
+def _alone() -> Iterator[None]:
+    """As long as no other process of this host is there, if kernels are kept and files can be locked."""
+    places = folders()
+    if sys.platform == "win32" or not places:
+        yield
+        return
+    import fcntl
+
+    with open(places[0] / "compiling.lock", "w") as lock:
+        with contextlib.suppress(OSError):  # a file system without locks
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def compute(path: str, place: tuple[int, ...]) -> tuple[int, ...]:
+    """Compute and write a block."""
+    store = _store(path)
+    block = store.study.block(place)
+    store.write(block, store.study.compute(block, threads=1))
+    return place
+
+
+def local(workers: int) -> Fill:
+    """On so many processes of this machine, started for it."""
+    distributed = _distributed()
+    import dask
+
+    def fill(store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
+        with (
+            dask.config.set({"distributed.scheduler.allowed-failures": _LOSSES}),
+            distributed.LocalCluster(
+                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
+                silence_logs="CRITICAL",
+            ) as cluster,
+            distributed.Client(cluster) as client,
+        ):  # fmt: skip
+            yield from _on(client, store, blocks)
+
+    return fill
+
+
+def running(address: str) -> Fill:
+    """On the workers of a scheduler that is running; they see the store under the same path."""
+    distributed = _distributed()
+
+    def fill(store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
+        try:
+            client = distributed.Client(address, timeout="30s")
+        except (OSError, ValueError) as error:
+            raise InputError(
+                f"--scheduler must be the address of a running one; got {address} ({error})"
+            ) from None
+        with client:
+            yield from _on(client, store, blocks)
+
+    return fill
+
+
+def _on(client: "Client", store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
+    """Blocks as they are done; a few more are under way than there are workers."""
+    path = str(store.path.resolve())
+    client.run(warm, path)
+    waiting = iter(blocks)
+    places: dict[str, tuple[int, ...]] = {}
+    losses: Counter[tuple[int, ...]] = Counter()
+
+    def submit(place: tuple[int, ...]) -> "Future":
+        future = client.submit(compute, path, place, pure=False)
+        places[future.key] = place
+        return future
+
+    first = islice(waiting, (1 + _WAITING) * max(1, len(client.nthreads())))
+    under_way = _distributed().as_completed([submit(block.place) for block in first], raise_errors=False)
+    for future in under_way:
+        place = places.pop(future.key)
+        if future.status == "finished":
+            yield store.study.block(place)
+            for block in islice(waiting, 1):
+                under_way.add(submit(block.place))
+        else:
+            losses[place] += 1
+            _check_lost(future, losses[place])
+            under_way.add(submit(place))
+
+
+def _check_lost(future: "Future", times: int) -> None:
+    """Raise what stopped a block, unless it is the loss of workers, and of few."""
+    if future.status != "error":
+        raise OSError("the scheduler of dask was lost")
+    error = future.exception()
+    if not isinstance(error, _distributed().KilledWorker) or times > _LOSSES:
+        raise error

@@ -1,0 +1,150 @@
+"""Further axes: maps over numbers of the system, alone and together."""
+
+import numpy as np
+import pytest
+
+import frictionmap as fm
+from frictionmap import InputError
+
+GRID = {"r": [0.3, 0.9, 1.4], "beta": [0.1, 0.5, 1.0], "mu": [1.0, 1.5]}
+
+
+@pytest.fixture(scope="module")
+def two_masses():
+    return fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1])
+
+
+def is_point(ds, point, system):
+    """Whether a point of a study is the map of its system, to the bit."""
+    one = fm.sweep(system, **GRID, outputs=(*fm.Solver().outputs, "status"))
+    part = ds.isel(point)
+    for name in one.data_vars:
+        if name in part:
+            assert part[name].dims == one[name].dims
+            np.testing.assert_array_equal(part[name].values, one[name].values)
+
+
+def test_every_point_is_the_map_of_its_system(two_masses):
+    axes = {"damping_ratios": [0.0, 0.02], "stiffness_ratios[2]": [0.5, 1.0, 2.0]}
+    ds = fm.sweep(two_masses, **GRID, axes=axes)
+    assert ds["regime"].dims == ("damping_ratios", "stiffness_ratios_2", "mu", "r", "beta")
+    assert ds["beta_lim"].dims == ("damping_ratios", "stiffness_ratios_2", "mu", "r")
+    np.testing.assert_array_equal(ds["stiffness_ratios_2"], [0.5, 1.0, 2.0])
+    assert ds["stiffness_ratios_2"].attrs["long_name"] == "stiffness ratio k_2/k_1"
+    for i, zeta in enumerate(axes["damping_ratios"]):
+        for k, kappa in enumerate(axes["stiffness_ratios[2]"]):
+            system = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, kappa], damping_ratios=zeta)
+            is_point(ds, {"damping_ratios": i, "stiffness_ratios_2": k}, system)
+
+
+def test_numbers_that_change_together(two_masses):
+    sample = {"mass_ratios[2]": [1.0, 1.1, 0.9], "stiffness_ratios[2]": [2.0, 1.0, 3.0]}
+    ds = fm.sweep(two_masses, **GRID, axes={"sample": sample})
+    assert ds["regime"].dims == ("sample", "mu", "r", "beta")
+    np.testing.assert_array_equal(ds["mass_ratios_2"], sample["mass_ratios[2]"])
+    assert ds["mass_ratios_2"].dims == ("sample",)
+    for k, (gamma, kappa) in enumerate(zip(*sample.values(), strict=True)):
+        is_point(ds, {"sample": k}, fm.System(mass_ratios=[1, gamma], stiffness_ratios=[1, kappa]))
+
+
+@pytest.mark.parametrize(
+    ("axes", "words"),
+    [
+        ({}, "axes must be a mapping such as"),
+        ([1], "axes must be a mapping such as"),
+        ({"mass_ratio[2]": [1]}, r"axes must name a number of the system.*did you mean mass_ratios\[i\]"),
+        ({"mass_ratios": [1, 2]}, "axes must name a number of the system"),
+        ({"mass_ratios[0]": [1, 2]}, "axes must name a number of the system"),
+        ({"mass_ratios[3]": [1, 2]}, r"axes.mass_ratios\[3\] must be one of the 2 numbers of mass_ratios"),
+        ({"mass_ratios[1]": [1, 2]}, r"at mass_ratios_1 = 2: mass_ratios\[0\] must be 1"),
+        ({"damping_ratios": [0.0, 1e3]}, "at damping_ratios = 1000: damping_ratios must be <= 100"),
+        ({"damping_ratios": [0.1, 0.0]}, "axes.damping_ratios must be increasing; got 0.0"),
+        ({"damping_ratios": ["x"]}, "axes.damping_ratios must be numbers"),
+        ({"damping_ratios": [0], "damping_ratios[1]": [0]}, "must change damping_ratios in one way only"),
+        ({"load_mass": [1.5]}, "at load_mass = 1.5: load_mass must be a whole number"),
+        ({"r": [1]}, "axes must name a number of the system"),
+        ({"dof": {"load_mass": [1]}}, "axes must not name dof"),
+        ({"Case 1": {"load_mass": [1]}}, "a name of their own, of small letters"),
+        ({"sample": {}}, "as many values of every key; got none"),
+        ({"sample": {"load_mass": [1], "damping_ratios": [0, 1]}}, "load_mass 1, damping_ratios 2"),
+        ({"sample": {"damping_ratios": [0, np.nan]}}, r"axes.sample.damping_ratios\[1\] must be finite"),
+    ],
+)
+def test_what_is_refused(two_masses, axes, words):
+    with pytest.raises(InputError, match=words) as refused:
+        fm.sweep(two_masses, **GRID, axes=axes)
+    assert "\n" not in str(refused.value)
+
+
+CONFIG = """
+[system]
+mass_ratios = [1.0, 1.0]
+stiffness_ratios = [1.0, 1.0]
+[grid]
+r = [0.3, 0.9]
+beta = { start = 0.1, stop = 1.0, num = 4 }
+"""
+
+
+def loaded(tmp_path, text):
+    path = tmp_path / "study.toml"
+    path.write_text(CONFIG + text)
+    return fm.load_config(path)
+
+
+def test_axes_of_a_configuration(tmp_path):
+    text = (
+        '[axes]\ndamping_ratios = [0.0, 0.1]\n"mass_ratios[2]" = { start = 0.5, stop = 1.5, step = 0.25 }\n'
+    )
+    variations = loaded(tmp_path, text).variations
+    assert variations.shape == (2, 5)
+    assert variations.at((1, 3)) == fm.System(
+        mass_ratios=[1, 1.25], stiffness_ratios=[1, 1], damping_ratios=0.1
+    )
+
+
+def test_a_file_of_variants(tmp_path):
+    (tmp_path / "variants.csv").write_text("mass_ratios[2],damping_ratios\n1.5,0.01\n0.5,0\n")
+    variations = loaded(tmp_path, '[axes]\nsample = { file = "variants.csv" }\n').variations
+    assert variations.shape == (2,)
+    assert variations.at((1,)) == fm.System(mass_ratios=[1, 0.5], stiffness_ratios=[1, 1])
+    same = {"mass_ratios[2]": [1.5, 0.5], "damping_ratios": [0.01, 0.0]}
+    assert variations.described == {"sample": same}
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (None, "cannot be read"),
+        ("load_mass,damping_ratios\n1,0\n1\n", "row 3 must have 2 numbers; got 1"),
+        ("load_mass\none\n", "row 2, load_mass must be a number; got 'one'"),
+        ("mass\n1\n", "axes.sample must name a number of the system"),
+        ("load_mass\n", "axes.sample.load_mass must be a list of numbers"),
+    ],
+)
+def test_bad_files_of_variants(tmp_path, content, words):
+    if content is not None:
+        (tmp_path / "variants.csv").write_text(content)
+    with pytest.raises(InputError, match=words):
+        loaded(tmp_path, '[axes]\nsample = { file = "variants.csv" }\n')
+
+
+def test_the_configuration_in_the_file_makes_it_again(tmp_path, two_masses):
+    axes = {"damping_ratios": [0.0, 0.02], "sample": {"mass_ratios[2]": [2.0, 1.0]}}
+    ds = fm.sweep(two_masses, **GRID, axes=axes)
+    path = tmp_path / "again.toml"
+    path.write_text(ds.attrs["config"])
+    config = fm.load_config(path)
+    assert config.variations.described == {name: _lists(values) for name, values in axes.items()}
+    assert config.system == two_masses
+
+
+def _lists(values):
+    return {key: list(map(float, v)) for key, v in values.items()} if isinstance(values, dict) else values
+
+
+def test_too_many_cells_are_refused(two_masses):
+    axes = {"damping_ratios": np.linspace(0, 1, 1000)}
+    grid = {"r": np.linspace(0.1, 2, 2000), "beta": np.linspace(0, 1, 1000)}
+    with pytest.raises(InputError, match=r"at most 1e\+09 cells in memory; got 2e\+09 .* x 1000 points"):
+        fm.sweep(two_masses, **grid, axes=axes)

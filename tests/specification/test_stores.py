@@ -1,0 +1,252 @@
+"""Stores: block by block the same bytes as at once, however a run was stopped."""
+
+import filecmp
+import os
+import random
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import frictionmap as fm
+from frictionmap import InputError
+from frictionmap.cli import main
+from frictionmap.files.places import claimed_folder
+from frictionmap.stores.run import fill_store, in_this_process
+from frictionmap.stores.store import opened
+from frictionmap.stores.study import Study, study_of
+
+zarr = pytest.importorskip("zarr")
+
+ONE = fm.System(contact="joined-base-wall")
+FIVE = fm.System(mass_ratios=[1] * 5, stiffness_ratios=[1] * 5, damping_ratios=0.01, contact_masses=[3])
+CONFIG = """
+[system]
+contact = "joined-base-wall"
+[grid]
+r = { start = 0.05, stop = 2.0, num = 30 }
+beta = { start = 0.0, stop = 1.5, num = 20 }
+mu = [1.0, 1.5]
+[axes]
+damping_ratios = { start = 0.0, stop = 0.1, num = 12 }
+"""
+
+
+def study(system, block_cells, outputs=("regime", "stops_per_cycle", "contact_amplitude", "amplitude")):
+    grid = {"mu": np.array([1.0, 1.5]), "r": np.linspace(0.05, 2.0, 23), "beta": np.linspace(0.0, 1.5, 40)}
+    whole = study_of(system, None, grid, fm.Solver(outputs=outputs))
+    return Study(whole.variations, whole.mu, whole.r, whole.beta, whole.solver, block_cells)
+
+
+def same_files(one, other):
+    """Whether two folders hold the same bytes under the same names."""
+    names = sorted(path.relative_to(one) for path in one.rglob("*") if path.is_file())
+    assert names == sorted(path.relative_to(other) for path in other.rglob("*") if path.is_file())
+    assert filecmp.cmpfiles(one, other, names, shallow=False)[1:] == ([], [])
+
+
+@pytest.mark.parametrize("system", [ONE, FIVE], ids=["one mass", "five"])
+@pytest.mark.parametrize(("block_cells", "threads"), [(1, 1), (300, 2), (10**6, 2)])
+def test_a_store_is_the_map_to_the_bit(tmp_path, system, block_cells, threads):
+    asked = study(system, block_cells)
+    path = tmp_path / "map.zarr"
+    fill_store(path, asked, "map", in_this_process(threads))
+    whole = fm.sweep(system, asked.r, asked.beta, asked.mu, solver=asked.solver)
+    with xr.open_zarr(path, consolidated=False, chunks=None) as stored:
+        assert set(whole.variables) == set(stored.variables) - {"block_done"}
+        for name, variable in whole.variables.items():
+            assert stored[name].dims == variable.dims
+            assert stored[name].dtype == variable.dtype
+            np.testing.assert_array_equal(stored[name].values, variable.values)
+            assert stored[name].attrs["long_name"] == variable.attrs["long_name"]
+        assert stored["block_done"].values.all()
+
+
+def test_matrices_are_part_of_a_store(tmp_path):
+    mass, stiffness = np.diag([1.0, 2.0]), np.array([[2.0, -1.0], [-1.0, 1.5]])
+    system = fm.System(matrices={"M": mass, "K": stiffness})
+    fill_store(tmp_path / "m.zarr", study(system, 300), "m", in_this_process(1))
+    assert opened(tmp_path / "m.zarr").study.system == system
+    other = fm.System(matrices={"M": mass, "K": 2.0 * stiffness})
+    with pytest.raises(InputError, match=r"it differs in system\.matrices"):
+        fill_store(tmp_path / "m.zarr", study(other, 300), "m", in_this_process(1))
+
+
+def test_what_is_done_is_not_done_again(tmp_path):
+    asked, path = study(ONE, 300), tmp_path / "map.zarr"
+    count = asked.blocks
+    computed = []
+
+    def stops_after(number):
+        def fill(store, blocks):
+            for block, _ in zip(blocks, range(number), strict=False):
+                store.write(block, store.study.compute(block, 1))
+                computed.append(block)
+                yield block
+
+        return fill
+
+    fill_store(path, asked, "map", stops_after(3))
+    assert opened(path).marks().sum() == 3
+    fill_store(path, asked, "map", stops_after(10**6))
+    assert len(computed) == len(set(computed)) == count
+    fill_store(tmp_path / "at once.zarr", asked, "map", in_this_process(1))
+    same_files(path, tmp_path / "at once.zarr")
+
+
+def test_a_block_without_its_mark_is_written_anew(tmp_path):
+    """A chunk that a stop has damaged, and what was being written."""
+    asked, path = study(ONE, 300), tmp_path / "map.zarr"
+    fill_store(path, asked, "map", in_this_process(1))
+    fill_store(tmp_path / "well.zarr", asked, "map", in_this_process(1))
+    mark = path / "block_done" / "c" / "0" / "1"
+    mark.unlink()
+    chunk = path / "contact_amplitude" / "c" / "0" / "1" / "0"
+    chunk.write_bytes(chunk.read_bytes()[:10])
+    chunk.with_suffix(".0123.partial").write_bytes(b"half")
+    fill_store(path, asked, "map", in_this_process(1))
+    same_files(path, tmp_path / "well.zarr")
+
+
+def config(tmp_path, text=CONFIG):
+    path = tmp_path / "study.toml"
+    path.write_text(text)
+    return path
+
+
+def command(tmp_path, *further):
+    return [sys.executable, "-m", "frictionmap", "map", str(config(tmp_path)), *further]
+
+
+def environment():
+    return os.environ | {"PYTHONPATH": str(Path(fm.__file__).parent.parent)}
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("grid.beta.num=21", "grid.beta.num: 20 there, 21 here"),
+        ("axes.damping_ratios.num=11", r"axes.damping_ratios: \[0.0\] there, \[0.0, 0.01, .* 0.1\] here"),
+        ("solver.steps=30", "solver.steps: 24 there, 30 here"),
+        ('system.contact="fixed-wall"', "system.contact: 'joined-base-wall' there, 'fixed-wall' here"),
+    ],
+)
+def test_another_configuration_is_refused_by_name(tmp_path, capsys, override, words):
+    path, out = config(tmp_path), tmp_path / "out.zarr"
+    assert main(["map", str(path), "-o", str(out), "--quiet", "--set", "axes.damping_ratios=[0.0]"]) == 0
+    before = opened(out).marks()
+    first = [] if "axes" in override else ["--set", "axes.damping_ratios=[0.0]"]
+    again = ["map", str(path), "-o", str(out), "--quiet", *first, "--set", override]
+    assert main(again) == 2
+    message = capsys.readouterr().err
+    assert re.search(words, message), message
+    np.testing.assert_array_equal(opened(out).marks(), before)
+    assert main([*again, "--overwrite"]) == 0
+
+
+def test_another_version_is_refused(tmp_path, capsys):
+    asked, path = study(ONE, 300), tmp_path / "map.zarr"
+    fill_store(path, asked, "map", in_this_process(1))
+    zarr.open_group(path, mode="r+").attrs["source"] = "frictionmap 0.0.1"
+    with pytest.raises(InputError, match=r"must be of this version, .* it is of frictionmap 0\.0\.1"):
+        fill_store(path, asked, "map", in_this_process(1))
+
+
+def test_what_is_no_store_is_left_alone(tmp_path):
+    asked = study(ONE, 300)
+    (tmp_path / "file.zarr").write_text("mine")
+    (tmp_path / "folder.zarr").mkdir()
+    (tmp_path / "folder.zarr" / "thesis.tex").write_text("mine")
+    for name, overwrite in (("file", False), ("file", True), ("folder", False), ("folder", True)):
+        with pytest.raises(InputError):
+            fill_store(tmp_path / f"{name}.zarr", asked, "map", in_this_process(1), overwrite)
+    assert (tmp_path / "file.zarr").read_text() == "mine"
+    assert (tmp_path / "folder.zarr" / "thesis.tex").read_text() == "mine"
+
+
+def test_one_run_at_a_time(tmp_path):
+    with (
+        claimed_folder(tmp_path / "map.zarr"),
+        pytest.raises(InputError, match="is being written by another run"),
+    ):
+        fill_store(tmp_path / "map.zarr", study(ONE, 300), "map", in_this_process(1))
+
+
+def test_a_full_disk_keeps_what_is_done(tmp_path, monkeypatch):
+    asked, path = study(ONE, 300), tmp_path / "map.zarr"
+
+    def full(store, blocks):
+        for number, block in enumerate(blocks):
+            if number == 2:
+                raise OSError(28, "No space left on device")
+            store.write(block, store.study.compute(block, 1))
+            yield block
+
+    with pytest.raises(
+        OSError, match=r"cannot be written \(No space left.*; 2 of .* blocks are in .*goes on"
+    ):
+        fill_store(path, asked, "map", full)
+    fill_store(path, asked, "map", in_this_process(1))
+    fill_store(tmp_path / "well.zarr", asked, "map", in_this_process(1))
+    same_files(path, tmp_path / "well.zarr")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+@pytest.mark.parametrize("number", ["SIGKILL", "SIGTERM"])
+def test_stopped_at_random_moments(tmp_path, number):
+    """Again and again, until it gets through."""
+    out, well = tmp_path / "out.zarr", tmp_path / "well.zarr"
+    subprocess.run([*command(tmp_path, "-o", well, "--quiet")], env=environment(), check=True, timeout=600)
+    began = time.monotonic()
+    subprocess.run([*command(tmp_path, "-o", well, "--quiet")], env=environment(), check=True, timeout=600)
+    usual = time.monotonic() - began
+    chance = random.Random(number)
+    for _ in range(3):
+        run = subprocess.Popen(
+            command(tmp_path, "-o", out, "--quiet"), env=environment(), stderr=subprocess.PIPE, text=True
+        )
+        time.sleep(usual * chance.uniform(0.5, 1.5))
+        run.send_signal(getattr(signal, number))
+        message = run.communicate(timeout=600)[1]
+        if number != "SIGKILL" and run.returncode == 130:
+            assert "nothing was written" in message or "the same command goes on" in message
+        assert "Traceback" not in message
+    subprocess.run(command(tmp_path, "-o", out, "--quiet"), env=environment(), check=True, timeout=600)
+    same_files(out, well)
+    assert sorted(os.listdir(tmp_path)) == ["out.zarr", "study.toml", "well.zarr"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--workers", "2"], "--workers and --scheduler must come with a store, -o OUT.zarr"),
+        (["--workers", "0", "-o", "x.zarr"], "must be >= 1"),
+        (["--workers", "2", "--scheduler", "tcp://x:1", "-o", "x.zarr"], "not allowed with"),
+    ],
+)
+def test_arguments(tmp_path, capsys, arguments, words):
+    try:
+        status = main(["map", str(config(tmp_path)), *arguments])
+    except SystemExit as stopped:
+        status = stopped.code
+    assert status == 2
+    assert words in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_two_workers_write_the_same_bytes(tmp_path):
+    pytest.importorskip("distributed")
+    one, two = tmp_path / "one.zarr", tmp_path / "two.zarr"
+    subprocess.run(command(tmp_path, "-o", one, "--quiet"), env=environment(), check=True, timeout=900)
+    done = subprocess.run(
+        command(tmp_path, "-o", two, "--workers", "2", "--quiet"),
+        env=environment(), capture_output=True, text=True, timeout=900,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    same_files(one, two)

@@ -67,13 +67,13 @@ def has_column(table: Table, role: str, measures: str, names: Mapping[str, str])
     return role in names or bool(_named_like(table, role, suffixes(measures)))
 
 
-def check_increasing(table: Table, column: Column, rows: np.ndarray, beyond: str = "later") -> None:
-    """Refuse values, such as times, that repeat or go back; `beyond` is the word for what they must be."""
-    wrong = np.flatnonzero(np.diff(column.values) <= 0.0)
+def check_increasing(table: Table, time: Column, rows: np.ndarray) -> None:
+    """Refuse times that repeat or go back."""
+    wrong = np.flatnonzero(np.diff(time.values) <= 0.0)
     if wrong.size:
-        before, after = column.values[wrong[0]], column.values[wrong[0] + 1]
+        before, after = time.values[wrong[0]], time.values[wrong[0] + 1]
         raise InputError(
-            f"{table.place(column.name, int(rows[wrong[0] + 1]))} must be {beyond} than the row before, "
+            f"{table.place(time.name, int(rows[wrong[0] + 1]))} must be later than the row before, "
             f"{before:g}; got {after:g} (rows are not sorted: mend the file)"
         )
 

@@ -112,6 +112,8 @@ def _checked_free(
     """What is fitted is what is not known: a list of it must say the same."""
     if free is None:
         return None
+    if not parameters:
+        raise InputError("fit.free must be left out for this kind: what [known] does not hold is fitted")
     if not isinstance(free, list) or not free:
         raise InputError(f"fit.free must be a list of parameters; got {checks.one_line(free)}")
     for index, name in enumerate(free):

@@ -7,6 +7,7 @@ import xarray as xr
 
 from .. import checks
 from ..errors import InputError
+from .cautions import bounded, coloured, trading
 from .decay_checks import checked_record, checked_turning_points, largest_gap, unclipped, within
 from .decay_fit import X_F, ZETA, Fit, fit_decay
 from .decay_motion import PARAMETERS
@@ -17,9 +18,6 @@ from .units import checked_unit, conversion
 
 #: Estimates so many standard errors above zero are found.
 _FOUND = 3.0
-
-#: Beyond this two estimates cannot well be told apart.
-_CORRELATED = 0.95
 
 #: Codes of what was found, in order.
 _VERDICTS = {
@@ -212,15 +210,6 @@ def _warnings(time: np.ndarray, good: np.ndarray, fit: Fit, found: Errors) -> li
         words.append(f"clipped: {1.0 - good.mean():.1%} of the samples are at the extremes and were left out")
     if gap := largest_gap(time):
         words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
-    if found.inflation > 1.0:
-        words.append(
-            f"residuals are not white (lag-1 correlation {found.lag_correlation:.2f}): "
-            f"errors are taken {found.inflation:.2f} times as large"
-        )
-    correlation = float(found.correlation[ZETA, X_F])
-    if abs(correlation) > _CORRELATED:
-        words.append(f"zeta and x_F trade: correlation {correlation:.2f}")
-    bounds = [name for name, at_bound in zip(PARAMETERS, fit.solution.at_bound, strict=True) if at_bound]
-    if bounds:
-        words.append(f"{' and '.join(bounds)} on the bound 0: the interval is one-sided")
-    return words
+    pair = np.ix_((ZETA, X_F), (ZETA, X_F))
+    words += coloured(found) + trading(("zeta", "x_F"), found.correlation[pair])
+    return words + bounded(PARAMETERS, np.zeros(len(PARAMETERS)), fit.solution.at_bound)

@@ -13,6 +13,12 @@ Residuals = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 #: 95 %: two-sided, and one-sided on a bound.
 _TWO_SIDED, _ONE_SIDED = 0.975, 0.95
 
+#: Singular values of slopes below this share of the largest are zero: half of all digits.
+_RANK = float(np.sqrt(np.finfo(float).eps))
+
+#: Shares of a direction in which no residual changes that are no rounding.
+_PART = 1e-4
+
 #: Lag-1 correlations beyond so many standard errors are no chance.
 _COLOURED = 3.0
 
@@ -95,7 +101,7 @@ def errors(problem: Problem, best: Solution, known_variance: float | None = None
     standard_error = deviation * np.sqrt(variance) * grown
     scale = np.where(free, deviation, 1.0)
     correlation = np.where(np.eye(free.size, dtype=bool), 1.0, inverse / np.outer(scale, scale))
-    reach = float(stdtrit(freedom, _TWO_SIDED)) * standard_error
+    reach = two_sided(freedom) * standard_error
     lower, upper = best.values - reach, best.values + reach
     lower = np.where(free, np.maximum(lower, problem.floor), lower)
     allowed = float(stdtrit(freedom, _ONE_SIDED)) ** 2 * variance * grown**2
@@ -103,6 +109,26 @@ def errors(problem: Problem, best: Solution, known_variance: float | None = None
         lower[index] = problem.floor[index]
         upper[index] = _profile_end(problem, best, int(index), allowed, float(standard_error[index]))
     return Errors(standard_error, lower, upper, correlation, reduced, lag, grown)
+
+
+def two_sided(freedom: int) -> float:
+    """Half the width of a 95 % interval, over the standard error."""
+    return float(stdtrit(freedom, _TWO_SIDED))
+
+
+def undetermined(problem: Problem, best: Solution) -> tuple[np.ndarray, int]:
+    """Indices of free parameters that the data cannot tell apart, and how many of them are too many.
+
+    The rank of the slopes, each over its length, is that of what the residuals see of the parameters.
+    """
+    free = np.flatnonzero(problem.free & ~best.at_bound)
+    slopes = best.slopes[:, free]
+    length = np.linalg.norm(slopes, axis=0)
+    unseen = length == 0.0
+    _, sizes, directions = np.linalg.svd(slopes / np.where(unseen, 1.0, length), full_matrices=False)
+    blind = directions[sizes <= _RANK * sizes[0]]
+    taking_part = (np.abs(blind) > _PART).any(axis=0) | unseen
+    return free[taking_part], len(blind)
 
 
 def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:

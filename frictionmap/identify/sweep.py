@@ -1,15 +1,6 @@
-"""Frequencies and ratios of two masses from the amplitude of the first one, base shaken, without friction.
+"""Masses, springs and damping of a chain from amplitudes over frequency, base shaken, without friction."""
 
-    X_1 = (f1 f2/f0)^2 (f0^2 - f^2)/((f1^2 - f^2)(f2^2 - f^2)),   f1 < f0 < f2
-    sqrt(k1/m1)/2 pi = f1 f2/f0,   gamma = m2/m1 = (f0^2 - f1^2)(f2^2 - f0^2)/f0^4,
-    kappa = k2/k1 = (f0^2 - f1^2)(f2^2 - f0^2)/(f1 f2)^2
-
-f1 and f2 are the natural frequencies, f0 is that of the second mass on its spring alone, where the first one
-stands still.  gamma and kappa are those of T(6.17) to T(6.19), in closed form.
-"""
-
-from collections.abc import Sequence
-from itertools import product
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,192 +9,180 @@ from scipy.special import gammaincc
 
 from .. import checks
 from ..errors import InputError
-from .estimates import estimates, verdict
-from .least_squares import Errors, Problem, Solution, errors, minimise
+from .cautions import bounded, coloured, trading
+from .chain_estimates import chain_estimates, chain_names
+from .chain_fit import SEARCHES, Found, Measured, fit_chain
+from .estimates import verdict
+from .least_squares import Errors, Problem, Solution, errors, undetermined
+from .sweep_data import MOST_MASSES, WORDS, Values, check_enough, checked_sweep
 
-_MEANINGS = {
-    "f0": "natural frequency of the second mass on its spring alone",
-    "f1": "first natural frequency",
-    "f2": "second natural frequency",
-    "f_k1m1": "natural frequency of the first mass on its spring alone",
-    "gamma": "mass ratio m2/m1",
-    "kappa": "stiffness ratio k2/k1",
-}
-_UNITS = ("Hz", "Hz", "Hz", "Hz", "1", "1")
-
-#: f0, f1 and f2; the rest follows.
-_FITTED = 3
+DAMPINGS = ("ground", "base")
+COSTS = ("logarithmic", "relative")
 
 #: Scatter that chance makes more rarely is beyond the errors that are given.
 _CHANCE = 1e-3
 
-_VERDICTS = {
-    "two_frequencies_found": "two natural frequencies found, and the one between them",
-    "scatter_beyond_errors": "two natural frequencies found, but residuals are larger than the errors given",
-}
+#: Answers whose sums of squares differ by less variances of a sample are as good.
+_AS_GOOD = 4.0
+
+#: Answers are others if a parameter differs by so many standard errors.
+_ELSEWHERE = 3.0
+
+#: Chains that differ by less are one, as far as a search goes.
+_SAME = 1e-6
 
 
-class Ratios(NamedTuple):
-    """What three frequencies say of two masses."""
-
-    f_k1m1: float  # Hz
-    gamma: float
-    kappa: float
-
-
-def ratios(f0: float, f1: float, f2: float) -> Ratios:
-    """Of two masses with natural frequencies f1 < f2, the first one at rest at f0 between them."""
-    split = (f0**2 - f1**2) * (f2**2 - f0**2)
-    return Ratios(f1 * f2 / f0, split / f0**4, split / (f1 * f2) ** 2)
-
-
-def _ratio_slopes(f0: float, f1: float, f2: float) -> np.ndarray:
-    """Derivatives of `ratios`, shape (3, 3), by f0, f1 and f2."""
-    f_k1m1, gamma, kappa = ratios(f0, f1, f2)
-    below, above = f0**2 - f1**2, f2**2 - f0**2
-    split = np.array([2.0 * f0 / below - 2.0 * f0 / above, -2.0 * f1 / below, 2.0 * f2 / above])  # of its log
-    product = np.array([0.0, 1.0 / f1, 1.0 / f2])
-    last = np.array([1.0 / f0, 0.0, 0.0])
-    return np.array(
-        [f_k1m1 * (product - last), gamma * (split - 4.0 * last), kappa * (split - 2.0 * product)]
-    )
-
-
-def log_amplitude(frequencies: np.ndarray, f: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """ln |X_1| at `f` and its derivatives by f0, f1 and f2."""
-    f0, f1, f2 = frequencies
-    zero, first, second = f0**2 - f**2, f1**2 - f**2, f2**2 - f**2
-    value = 2.0 * np.log(f1 * f2 / f0) + np.log(np.abs(zero)) - np.log(np.abs(first * second))
-    slopes = [
-        2.0 * f0 / zero - 2.0 / f0,
-        2.0 / f1 - 2.0 * f1 / first,
-        2.0 / f2 - 2.0 * f2 / second,
-    ]
-    return value, np.stack(slopes, axis=1)
+class _Fit(NamedTuple):
+    data: Measured
+    found: Found
+    problem: Problem
+    errors: Errors
+    names: tuple[str, ...]  # of all unknowns
+    given: bool  # whether errors of the data are
 
 
 def sweep(
     frequency: Sequence[float] | np.ndarray,
-    amplitude_ratio: Sequence[float] | np.ndarray,
+    amplitude_ratio: Values,
+    phase_lag: Values | None = None,
     *,
+    masses: int = 2,
+    damping: str | None = None,
+    known: Mapping[str, float] | None = None,
     sigma_amplitude: float | None = None,
+    sigma_phase: float | None = None,
+    cost: str = "logarithmic",
 ) -> xr.Dataset:
-    """Fit two masses without friction to amplitudes of the first one over that of the base.
+    """Fit a chain of masses on a shaken base, without friction, to amplitudes and lags over frequency.
 
     Parameters
     ----------
     frequency : array, shape (samples,)
-        Of the base [Hz], > 0, increasing.
-    amplitude_ratio : array, shape (samples,)
-        |X_1|/Y > 0; with a peak on either side of a least value.
-    sigma_amplitude : float
-        Relative error of the amplitudes, > 0; by default it is taken from the residuals.
+        Of the base [Hz], > 0, in any order.
+    amplitude_ratio : array, shape (samples,), or mapping of such
+        |X_k|/Y > 0 of mass 1, or by mass, counted from 1, such as {1: ..., 3: ...}.
+    phase_lag : array, shape (samples,), or mapping of such
+        Lags [deg] behind the base, the same way; they tell damping.
+    masses : int
+        Of the chain, 1 to 5.
+    damping : "ground" or "base"
+        Where the dampers are that give every mode its damping ratio; by default there is no damping, with
+        lags it is "ground".
+    known : mapping
+        Parameters to be held.  Others are fitted.
+    sigma_amplitude, sigma_phase : float
+        Relative error of the amplitudes, and error of the lags [deg], > 0; by default both are taken from the
+        residuals, 1 rad as a relative error of 1.
+    cost : "logarithmic" or "relative"
+        What is least: the squares of ln(X/measured), or of X/measured - 1, as T(6.16) has it.
 
     Returns
     -------
     xarray.Dataset
-        As of `free_decay`, on parameter (f0, f1, f2, f_k1m1, gamma, kappa), the last three from the first
-        three in closed form; data, model and residual are natural logarithms of the amplitude.
+        As of `free_decay`.  Parameters of two masses: f1 and f2, the natural frequencies [Hz], f0, that of
+        mass 2 on its spring alone, f_k1m1, that of mass 1 on its own, gamma = m_2/m_1, kappa = k_2/k_1; of
+        others f_k1m1, mass_ratio_2.., stiffness_ratio_2..; with damping zeta_1.., one a mode.  On sample:
+        frequency, mass, `quantity`; data, model and residual are natural logarithms of amplitudes, lags
+        [rad].
 
     Raises
     ------
     InputError
-        An argument is illegal, data are fewer than four, or there are not two peaks.
+        An argument is illegal, data or peaks are fewer than unknowns ask for, or data cannot tell unknowns
+        apart: they are named.
+
+    Notes
+    -----
+    T(6.15) to (6.19) and Appendix A for two masses; theory.md 10.
     """
-    f = checks.axis(frequency, "frequency", least=0.0)
-    amplitude = _checked_amplitudes(amplitude_ratio, f)
-    sigma = 1.0
-    if sigma_amplitude is not None:
-        sigma = checks.number(sigma_amplitude, "sigma_amplitude", above=0.0)
-    data = np.log(amplitude)
-    best, problem = _nearest(f, data, sigma)
-    found = errors(problem, best, 1.0 if sigma_amplitude is not None else None)
-    solution = best._replace(residual=sigma * best.residual)
-    ds = estimates(
-        _MEANINGS, _UNITS, *_all_six(solution, found), np.ones(6, dtype=bool), data, "1", sigma_amplitude
-    )
-    ds["frequency"] = xr.Variable("sample", f, {"long_name": "frequency of the base", "units": "Hz"})
-    beyond = sigma_amplitude is not None and gammaincc(0.5 * (f.size - _FITTED), 0.5 * best.sum) < _CHANCE
-    ds["verdict"] = verdict(int(beyond), _VERDICTS)
-    ds.attrs["title"] = "Sweep of two masses"
-    ds.attrs["warnings"] = ""
+    n = checks.whole(masses, "masses", least=1, most=MOST_MASSES)
+    data = checked_sweep(frequency, (amplitude_ratio, phase_lag), (sigma_amplitude, sigma_phase), n)
+    damped = damping is not None or phase_lag is not None
+    if damping is not None:
+        data = data._replace(base_damping=checks.choice(damping, "damping", DAMPINGS) == "base")
+    data = data._replace(relative=checks.choice(cost, "cost", COSTS) == "relative")
+    names = chain_names(n)
+    held = _held(known or {}, names, n, damped)
+    check_enough(data, held)
+    fit = _fit(data, held, names, sigma_amplitude is not None)
+    ds = chain_estimates(data, fit.found.best, fit.errors, fit.problem.free, fit.given, damped)
+    ds["verdict"] = _verdict(fit)
+    ds.attrs["title"] = f"Sweep of {WORDS[n - 1]} mass{'es' * (n > 1)}"
+    ds.attrs["warnings"] = "; ".join(_warnings(fit))
     return ds
 
 
-def _checked_amplitudes(values: object, f: np.ndarray) -> np.ndarray:
-    amplitude = np.atleast_1d(checks.array(values, "amplitude_ratio"))
-    if amplitude.dtype.kind not in "iuf" or amplitude.shape != f.shape:
+def _held(known: Mapping[str, float], names: tuple[str, ...], n: int, damped: bool) -> np.ndarray:
+    """Unknowns that are held, shape (3 n - 1,), NaN of the others."""
+    legal = names if damped else names[: 2 * n - 1]
+    held = np.full(len(names), np.nan)
+    for name, value in known.items():
+        place = names.index(checks.choice(name, "known", legal))
+        if place < 2 * n - 1:
+            held[place] = np.log(checks.number(value, f"known.{name}", above=0.0))
+        else:
+            held[place] = checks.number(value, f"known.{name}", least=0.0)
+    if not damped:
+        held[2 * n - 1 :] = 0.0
+    if not np.isnan(held).any():
+        raise InputError(f"known must leave something to fit; got all of {', '.join(legal)}")
+    return held
+
+
+def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool) -> _Fit:
+    found, problem = fit_chain(data, held)
+    unseen, too_many = undetermined(problem, found.best)
+    if too_many:
+        unknown = ", ".join(names[index] for index in unseen)
+        measured = ", ".join(str(mass + 1) for mass in np.unique(data.mass))
         raise InputError(
-            f"amplitude_ratio must be {f.size} numbers, one a frequency; got {checks.one_line(values)}"
+            f"amplitude_ratio of mass {measured} cannot tell {unknown} apart: {too_many} of them must be "
+            "known, or another mass measured"
         )
-    wrong = np.flatnonzero(~(np.isfinite(amplitude) & (amplitude > 0.0)))
-    if wrong.size:
-        raise InputError(
-            f"amplitude_ratio must be finite and > 0; got {amplitude[wrong[0]]} at index {wrong[0]}"
-        )
-    if f.size <= _FITTED:
-        raise InputError(f"frequency must have more values than there are unknowns, {_FITTED}; got {f.size}")
-    return amplitude.astype(float)
+    return _Fit(data, found, problem, errors(problem, found.best, 1.0 if given else None), names, given)
 
 
-def _nearest(f: np.ndarray, data: np.ndarray, sigma: float) -> tuple[Solution, Problem]:
-    """The least sum, and of what.
-
-    A logarithm is infinite where a peak, or the zero between them, passes a sample: each of the three lies
-    between two samples.  All intervals beside the highest and the lowest samples are tried.
-    """
-    tries = [_within(f, data, sigma, intervals) for intervals in product(*_intervals(f, data))]
-    return min(tries, key=lambda found: found[0].sum)
-
-
-def _within(
-    f: np.ndarray, data: np.ndarray, sigma: float, intervals: tuple[int, ...]
-) -> tuple[Solution, Problem]:
-    """The least sum with f0, f1 and f2 each between the sample of that index and the next."""
-
-    def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        model, slopes = log_amplitude(values, f)
-        return (model - data) / sigma, slopes / sigma
-
-    begin = np.array(intervals)
-    every, no_floor = np.ones(_FITTED, dtype=bool), np.full(_FITTED, -np.inf)
-    problem = Problem(residuals, every, no_floor, f[begin], f[begin + 1])
-    return minimise(problem, 0.5 * (f[begin] + f[begin + 1])), problem
+def _verdict(fit: _Fit) -> xr.Variable:
+    n = fit.data.n
+    found = f"{WORDS[n - 1]} natural frequenc{'ies' if n > 1 else 'y'} found"
+    words = f"{found}, and the one between them" if n == 2 else found
+    meanings = {
+        f"{WORDS[n - 1]}_frequenc{'ies' if n > 1 else 'y'}_found": words,
+        "scatter_beyond_errors": f"{found}, but residuals are larger than the errors given",
+    }
+    best = fit.found.best
+    freedom = best.residual.size - int(fit.problem.free.sum())
+    beyond = fit.given and gammaincc(0.5 * freedom, 0.5 * best.sum) < _CHANCE
+    return verdict(int(beyond), meanings)
 
 
-def _intervals(f: np.ndarray, data: np.ndarray) -> tuple[tuple[int, int], ...]:
-    """Intervals in which f0, f1 and f2 may lie: beside the least value, and beside the peaks around it."""
-    inner = np.arange(1, f.size - 1)
-    peaks = inner[(data[inner] > data[inner - 1]) & (data[inner] > data[inner + 1])]
-    dips = inner[(data[inner] < data[inner - 1]) & (data[inner] < data[inner + 1])]
-    if peaks.size < 2 or not dips.size:
-        raise InputError(
-            f"amplitude_ratio must have two peaks; it has {'one peak' if peaks.size else 'no peak'}: "
-            "two frequencies wanted"
-        )
-    zero = int(dips[np.argmin(data[dips])])
-    left, right = peaks[peaks < zero], peaks[peaks > zero]
-    if not left.size or not right.size:
-        raise InputError(
-            "amplitude_ratio must have a peak on either side of its least value; it has one peak only"
-        )
-    chosen = (zero, left[np.argmax(data[left])], right[np.argmax(data[right])])
-    return tuple((int(index) - 1, int(index)) for index in chosen)
+def _warnings(fit: _Fit) -> list[str]:
+    """What to mind, in words."""
+    words = coloured(fit.errors) + trading(fit.names, fit.errors.correlation)
+    words += bounded(fit.names, fit.problem.floor, fit.found.best.at_bound)
+    if fit.found.times == 1:
+        words.append(f"the least sum of squares was found in one of {SEARCHES} searches only")
+    return words + _other_answers(fit)
 
 
-def _all_six(solution: Solution, found: Errors) -> tuple[Solution, Errors]:
-    """The three frequencies, and what follows from them with its errors to first order."""
-    f0, f1, f2 = (float(value) for value in solution.values)
-    slopes = np.vstack((np.eye(_FITTED), _ratio_slopes(f0, f1, f2)))
-    covariance = found.correlation * np.outer(found.standard_error, found.standard_error)
-    all_six = slopes @ covariance @ slopes.T
-    deviation = np.sqrt(np.diag(all_six))
-    values = np.concatenate((solution.values, ratios(f0, f1, f2)))
-    reach = deviation * float(found.upper[0] - solution.values[0]) / float(found.standard_error[0])
-    wider = found._replace(
-        standard_error=deviation,
-        lower=values - reach,
-        upper=values + reach,
-        correlation=all_six / np.outer(deviation, deviation),
-    )
-    return solution._replace(values=values, at_bound=np.zeros(values.size, dtype=bool)), wider
+def _other_answers(fit: _Fit) -> list[str]:
+    """Chains elsewhere that the data cannot tell from the one that was found."""
+    best, ratios = fit.found.best, 2 * fit.data.n - 1
+    variance = 1.0 if fit.given else fit.errors.variance
+    words: list[str] = []
+    seen = [best]
+    for other in fit.found.others:
+        if other.sum > max(best.sum, fit.found.nothing) + _AS_GOOD * variance:
+            break
+        if all(_elsewhere(other, one, fit.errors) for one in seen):
+            seen.append(other)
+            values = ", ".join(
+                f"{fit.names[k]} {np.exp(other.values[k]):.5g}" for k in range(ratios) if fit.problem.free[k]
+            )
+            words.append(f"the data cannot tell this from {values}")
+    return words
+
+
+def _elsewhere(other: Solution, one: Solution, found: Errors) -> bool:
+    least = np.maximum(_ELSEWHERE * found.standard_error, _SAME)
+    return bool((np.abs(other.values - one.values) > least).any())

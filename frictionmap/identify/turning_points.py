@@ -40,14 +40,14 @@ def turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
     # normal deviates span about 2 sqrt(2 ln n) deviations, give or take one
     noise = (2.0 * np.sqrt(2.0 * np.log(max(x.size, 2))) + 1.0) * noise_level(x)
     swing = max(noise, _SHARE * float(np.ptp(x)))
-    refined = [_vertex(time, x, index) for index in _turns(x, swing)]
+    refined = [_vertex(time, x, index) for index in turns(x, swing)]
     return TurningPoints(np.array([t for t, _ in refined]), np.array([place for _, place in refined]))
 
 
 def samples_a_cycle(x: np.ndarray) -> float:
     """Samples in a cycle of the large swings; infinite if there are not two turning points."""
-    turns = _turns(x, _LARGE * float(np.ptp(x)))
-    return 2.0 * float(np.median(np.diff(turns))) if len(turns) > 1 else np.inf
+    found = turns(x, _LARGE * float(np.ptp(x)))
+    return 2.0 * float(np.median(np.diff(found))) if len(found) > 1 else np.inf
 
 
 def undersampled(x: np.ndarray) -> str:
@@ -76,7 +76,7 @@ def linear_decrement(points: TurningPoints) -> float | None:
     return float(abs(peaks[0] - peaks[-1])) / (4.0 * (peaks.size - 1)) if peaks.size > 1 else None
 
 
-def _turns(x: np.ndarray, swing: float) -> list[int]:
+def turns(x: np.ndarray, swing: float) -> list[int]:
     """Samples at which the motion turned back by more than `swing`; neither the first one nor the last."""
     found: list[int] = []
     low = high = 0  # the samples with the least and the largest value since the last turning point

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from ..errors import InputError
-from ..identify.sweep import log_amplitude
+from ..identify.two_masses import log_amplitude
 from .fit_data import FITTED, Samples, draw_data, draw_residuals, samples_of
 from .fit_picture import FitPicture
 from .fit_samples import RESIDUALS, VALUES
@@ -27,8 +27,11 @@ _BEYOND = 4.0
 
 
 def is_sweep(ds: xr.Dataset) -> bool:
-    """Whether all is there that the curve of two masses needs."""
-    return set(_FREQUENCIES) <= set(ds["parameter"].values.tolist()) and "frequency" in ds
+    """Whether these are amplitudes of the first of two masses without damping, and their frequencies."""
+    names = ds["parameter"].values.tolist()
+    if not set(_FREQUENCIES) <= set(names) or "zeta_1" in names or "frequency" not in ds:
+        return False
+    return "mass" not in ds or bool((ds["mass"] == 1).all())
 
 
 def sweep_picture(ds: xr.Dataset) -> FitPicture:
@@ -77,9 +80,7 @@ def _draw_curve(ax: Axes, samples: Samples, frequencies: np.ndarray) -> list[Han
     for name, place in zip(_FREQUENCIES, frequencies.tolist(), strict=True):
         if low < place < high:
             _name_frequency(ax, name, place)
-    return [
-        *ax.plot(f, np.exp(log_amplitude(frequencies, f)[0]), color=FITTED, linewidth=1.1, label="fitted")
-    ]
+    return [*ax.plot(f, np.exp(log_amplitude(frequencies, f)), color=FITTED, linewidth=1.1, label="fitted")]
 
 
 def _name_frequency(ax: Axes, name: str, place: float) -> None:

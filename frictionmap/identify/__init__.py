@@ -11,10 +11,17 @@ decay_checks     which samples can be a free decay
 decay_motion     the exact decay and its derivatives
 least_squares    least squares with bounds, standard errors, intervals, correlations
 phasors          harmonics of a record, by least squares on one frequency
+cautions         what to mind of any fit, in words
 decay_fit        the decay nearest to all samples
 estimates        estimates as a dataset
 free_decay       `free_decay`: from arrays to estimates
-sweep            `sweep`: two masses without friction, from amplitudes over frequency
+two_masses       two masses without friction in closed form
+chain_response   response of a chain of masses without friction, and its derivatives
+chain_inverse    a chain from where its first mass resonates and where it stands still
+chain_fit        the chain nearest to amplitudes and lags
+chain_estimates  the dataset of such a fit
+sweep_data       tables of sweeps, checked
+sweep            `sweep`: from amplitudes and lags over frequency to estimates
 forced_model     amplitudes and lags of forced responses, and their derivatives
 forced_data      tables of forced responses, checked
 forced_start     where the fit of forced responses begins

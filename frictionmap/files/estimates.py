@@ -66,7 +66,8 @@ def describe_estimates(ds: xr.Dataset) -> list[str]:
         "  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)).rstrip()
         for row in rows
     ]
-    singles = [name for name in ds.data_vars if name not in _SHOWN_ELSEWHERE and _is_number(ds[name])]
+    shown = {*_SHOWN_ELSEWHERE, *ds["parameter"].values.tolist()}
+    singles = [name for name in ds.data_vars if name not in shown and _is_number(ds[name])]
     lines += [
         f"{name}  {float(ds[name]):.5g} {unit_in_words(ds[name].attrs.get('units', '1'))}".rstrip()
         for name in singles

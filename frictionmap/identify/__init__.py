@@ -29,9 +29,15 @@ forced_fit       the steady states nearest to forced responses
 forced_told      what to mind of such a fit, in words
 forced_labels    the dataset of such a fit
 forced           `forced`: from amplitudes and lags to estimates
+record_motion    exact steady motions under the measured base, and their derivatives
+record_starts    where their fit starts
+record_fit       the steady motion nearest to all samples
+record_errors    errors of that, and of what follows from it
+record           `record`: from arrays to estimates
 rig              what a configuration says of measured data, and a kind of data of itself
 rig_decay        free decays from the file of a rig
 rig_forced       forced responses from the file of a rig
+rig_record       records of steady motion from the file of a rig
 rig_sweep        sweeps from the file of a rig
 configuration    configurations of rigs, for the command `identify`
 ===============  =======================================================================
@@ -39,6 +45,7 @@ configuration    configurations of rigs, for the command `identify`
 
 from .forced import forced
 from .free_decay import free_decay
+from .record import record
 from .sweep import sweep
 
-__all__ = ["forced", "free_decay", "sweep"]
+__all__ = ["forced", "free_decay", "record", "sweep"]

@@ -16,13 +16,11 @@ from .columns import MISSING
 from .rig import Kind, Rig
 from .rig_decay import FREE_DECAY
 from .rig_forced import FORCED
+from .rig_record import RECORD
 from .rig_sweep import SWEEP
 from .tables import read_table
 
-_KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "sweep": SWEEP}
-
-#: Kinds that have a name and are not fitted.
-_NOT_BUILT = ("record",)
+_KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "record": RECORD, "sweep": SWEEP}
 
 
 def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
@@ -38,7 +36,7 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     tree, text = read_tree(path, overrides)
     path = Path(path)
     data, known, fit = (_table(tree, name) for name in ("data", "known", "fit"))
-    name = _checked_kind(data)
+    name = checks.choice(data.get("kind"), "data.kind", tuple(_KINDS))
     kind = _KINDS[name]
     _check_keys(tree, kind)
     file = data.get("file")
@@ -80,13 +78,6 @@ def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
     if not isinstance(table, Mapping):
         raise InputError(f"{name} must be a table [{name}]; got {checks.one_line(table)}")
     return table
-
-
-def _checked_kind(data: Mapping[str, object]) -> str:
-    kind = data.get("kind")
-    if kind in _NOT_BUILT:
-        raise InputError(f"data.kind = {kind!r} cannot be fitted yet; {', '.join(_KINDS)} can")
-    return checks.choice(kind, "data.kind", tuple(_KINDS))
 
 
 def _check_keys(tree: Mapping[str, object], kind: Kind) -> None:

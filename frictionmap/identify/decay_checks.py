@@ -15,15 +15,15 @@ _CLIPPED_STEPS = 4.0
 _GAP = 3.0
 
 
-def checked_record(time: object, x: object) -> tuple[np.ndarray, np.ndarray]:
+def checked_record(time: object, x: object, name: str = "x") -> tuple[np.ndarray, np.ndarray]:
     """Times and displacements as arrays of one length, finite, times increasing."""
     times = checks.axis(time, "time", least=-np.inf)
-    places = np.atleast_1d(checks.array(x, "x"))
+    places = np.atleast_1d(checks.array(x, name))
     if places.dtype.kind not in "iuf" or places.shape != times.shape:
-        raise InputError(f"x must be {times.size} numbers, as many as times; got {checks.one_line(x)}")
+        raise InputError(f"{name} must be {times.size} numbers, as many as times; got {checks.one_line(x)}")
     wrong = np.flatnonzero(~np.isfinite(places))
     if wrong.size:
-        raise InputError(f"x must be finite; got {places[wrong[0]]} at index {wrong[0]}")
+        raise InputError(f"{name} must be finite; got {places[wrong[0]]} at index {wrong[0]}")
     return times, places.astype(float)
 
 

@@ -56,7 +56,7 @@ class _Linear(NamedTuple):
 
     coefficients: np.ndarray  # shape (columns, channels)
     residual: np.ndarray  # shape (samples, channels)
-    inverse: np.ndarray  # of the triangle of the QR decomposition
+    inverse: np.ndarray  # of the triangle R of the columns, Q R
     turned: np.ndarray  # shape (columns, channels): derivatives of the coefficients by the frequency
     curve: np.ndarray  # shape (samples, channels): derivatives of the residual, the coefficients following
 
@@ -122,6 +122,12 @@ def changes(time: np.ndarray, channels: np.ndarray, whole: Phasors) -> np.ndarra
         (_first_error(fit) * np.array([inflation(one)[1] for one in fit.residual.T])) ** 2 for fit in fits
     )
     return squares / variance
+
+
+def first_harmonics(time: np.ndarray, channels: np.ndarray, whole: Phasors) -> np.ndarray:
+    """X_1 of other channels at the same frequency, shape (channels,)."""
+    fit = _linear(time - whole.middle, channels, whole.frequency, whole.values.shape[1] - 1)
+    return _complex(fit.coefficients)[:, 1]
 
 
 def _first_error(fit: _Linear) -> np.ndarray:
@@ -213,7 +219,7 @@ def _complex(coefficients: np.ndarray) -> np.ndarray:
 
 
 def _linear(t: np.ndarray, channels: np.ndarray, f: float, harmonics: int) -> _Linear:
-    """Least squares at a frequency, by QR, and how it changes with the frequency."""
+    """Least squares at a frequency, and how it changes with the frequency."""
     order = np.arange(1, harmonics + 1)
     angle = 2.0 * np.pi * f * t[:, None] * order
     rate = 2.0 * np.pi * t[:, None] * order
@@ -222,8 +228,7 @@ def _linear(t: np.ndarray, channels: np.ndarray, f: float, harmonics: int) -> _L
     columns[:, 0], columns[:, 1] = 1.0, t
     columns[:, 2::2], columns[:, 3::2] = np.cos(angle), np.sin(angle)
     slopes[:, 2::2], slopes[:, 3::2] = -rate * columns[:, 3::2], rate * columns[:, 2::2]
-    orthogonal, triangle = np.linalg.qr(columns)
-    inverse = np.linalg.inv(triangle)
+    orthogonal, inverse = _orthonormal(columns)
     along = orthogonal.T @ channels
     coefficients = inverse @ along
     moved = slopes @ coefficients
@@ -232,3 +237,22 @@ def _linear(t: np.ndarray, channels: np.ndarray, f: float, harmonics: int) -> _L
         coefficients, channels - orthogonal @ along, inverse, -inverse @ moved_along,
         -(moved - orthogonal @ moved_along),
     )  # fmt: skip
+
+
+def _orthonormal(columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Q and the inverse of R: twice by Cholesky's decomposition, exact to rounding while columns differ.
+
+    Three products of matrices; LAPACK's decomposition of tall matrices waits for its threads at every column.
+    """
+    orthogonal, inverse = columns, np.eye(columns.shape[1])
+    for _ in range(2):
+        try:
+            triangle = np.linalg.cholesky(orthogonal.T @ orthogonal).T
+        except np.linalg.LinAlgError:
+            raise InputError(
+                "time must have no gap that harmonics of the base cannot bridge: at the times given, "
+                "some of them cannot be told from others"
+            ) from None
+        step = np.linalg.inv(triangle)
+        orthogonal, inverse = orthogonal @ step, inverse @ step
+    return orthogonal, inverse

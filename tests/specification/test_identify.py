@@ -235,8 +235,7 @@ def test_odd_measurements(measured, rig, capsys, name, warning):
 @pytest.mark.parametrize(
     ("override", "message"),
     [
-        ("data.kind=decay", "data.kind must be one of free-decay, forced, sweep; got 'decay'"),
-        ("data.kind=record", "data.kind = 'record' cannot be fitted yet; free-decay, forced, sweep can"),
+        ("data.kind=decay", "data.kind must be one of free-decay, forced, record, sweep; got 'decay'"),
         ("data.fil=a.csv", "unknown key data.fil (did you mean file?)"),
         ("known.beta=0.2", "unknown key known.beta"),
         ("known.zeta=1.2", "known.zeta must be < 1, or there are no extrema; got 1.2"),

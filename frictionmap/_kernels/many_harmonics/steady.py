@@ -75,6 +75,7 @@ def _find(mass, q, v, most, work, nowhere):
     last = math.inf
     ready = 1  # the first cycle from which a Newton step may be taken
     scale = 0.0
+    linear = mass.friction == 0.0
     for n in range(most):
         cycle = follow(mass, q, v, work, nowhere)
         if not cycle.whole:
@@ -85,7 +86,8 @@ def _find(mass, q, v, most, work, nowhere):
             return REPEATS, cycle.q, cycle.v, n
         step_q, step_v = _newton(cycle, q, v)
         size = max(abs(step_q), mass.r * abs(step_v))
-        if cycle.events == events and n >= ready and size < min(_SHORTER * last, _FARTHEST * scale):
+        near = cycle.events == events and n >= ready and size < min(_SHORTER * last, _FARTHEST * scale)
+        if near or (linear and math.isfinite(size)):
             if _largest_multiplier(cycle.tangent) > _STABLE:
                 ready = most  # what lies there is not where the motion goes
             elif size <= _TOLERANCE * scale:

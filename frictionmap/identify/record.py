@@ -1,0 +1,282 @@
+"""Natural frequency, damping, friction and mu of one mass from a record of its steady motion."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from .. import checks
+from ..errors import InputError
+from .decay_checks import checked_record, largest_gap, unclipped, within
+from .estimates import estimates, number, verdict
+from .least_squares import Errors
+from .phasors import Phasors, changes, phasors_of
+from .record_errors import DERIVED, derived_values, record_errors
+from .record_fit import Fit, fit_record
+from .record_motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
+from .turning_points import resolution
+from .units import checked_unit, conversion
+
+#: Estimates so many standard errors above zero are found, and drifts so many are no chance.
+_FOUND = 3.0
+
+#: Beyond this two estimates cannot well be told apart.
+_CORRELATED = 0.95
+
+#: Harmonics of the base beyond this share of the first one are much.
+_DISTORTED = 0.05
+
+#: Squared change of a phasor over its variance that chance makes in one of a thousand: -2 ln 0.001.
+_CHANGED = 13.8
+
+#: A first harmonic of the mass below so many standard errors is no motion.
+_MOVES = 5.0
+
+_VERDICTS = {
+    "no_friction_found": "no friction found",
+    "continuous": "friction found, and the mass never sticks: mu cannot be told beyond its interval",
+    "stick_slip": "friction found, and the mass sticks and slips",
+}
+
+_MEANINGS = {
+    "f_n": "natural frequency without friction and damping",
+    "zeta": "viscous damping ratio",
+    "x_F": "kinetic friction force over stiffness",
+    "mu": "static over kinetic friction force",
+    "offset_x": "place of the unloaded mass where the base is at its zero",
+    "beta": "friction ratio, x_F over the first harmonic of the base",
+    "lag_deg": "lag of the first harmonic of the mass behind that of the base, as measured",
+    "amplitude_ratio": "first harmonic of the mass over that of the base, as measured",
+    "stops_per_cycle": "stops that begin in a cycle of the fitted motion",
+}
+
+
+def record(
+    time: Sequence[float] | np.ndarray,
+    base: Sequence[float] | np.ndarray,
+    x: Sequence[float] | np.ndarray,
+    *,
+    unit: str = "mm",
+    contact: str = "fixed-wall",
+    damping_reference: str = "ground",
+    known: Mapping[str, float] | None = None,
+    stiffness: float | None = None,
+    window: object = None,
+) -> xr.Dataset:
+    """Fit the exact steady motion of one mass with friction, under the measured base, to all samples.
+
+    Parameters
+    ----------
+    time : array, shape (samples,)
+        Times [s], increasing; equal steps and whole cycles are not needed.
+    base, x : array, shape (samples,)
+        Displacements of the base and of the mass in space, in `unit`; in steady motion, 2 cycles or more.
+    unit : "mm", "m" or "um"
+        Of `base` and `x`, and of every length that is given or returned.
+    contact : "fixed-wall" or "joined-base-wall"
+        Whether the mass rubs on a wall that stands still, or on one that moves with the base.
+    damping_reference : "ground" or "base"
+        Whether the damper acts on the velocity of the mass, or on that relative to the base.
+    known : mapping
+        Parameters to be held: f_n [Hz] > 0, zeta >= 0, x_F >= 0, mu >= 1, offset_x.  Others are fitted.
+    stiffness : float
+        k [N/m] > 0; gives the friction force F = k x_F [N].
+    window : [begin, end]
+        Times [s] of the part to be fitted; default: all.
+
+    Returns
+    -------
+    xarray.Dataset
+        On parameter (f_n, zeta, x_F, mu, offset_x, and what follows: beta = x_F/Y_1, lag_deg and
+        amplitude_ratio of the measured first harmonics, stops_per_cycle of the fit): estimate,
+        standard_error, lower and upper (95 %, one-sided where `at_bound`), `known`, unit; `correlation`; on
+        sample: time, base, data, model, residual; on channel and harmonic: `phasor`, at the middle of the
+        record, and its error; scalars `base_frequency`, `cycles`, `base_distortion`, `drift`, `change`
+        (stationarity), `residual_rms`, `verdict` and others.  Attribute `warnings`.
+
+    Raises
+    ------
+    InputError
+        An argument is illegal; base or mass do not move; fewer than 2 cycles or 8 samples a cycle.
+
+    Notes
+    -----
+    The base moves the mass by its harmonics 0 to 5, which are measured with errors: these are part of the
+    fit and of the standard errors.  mu is told by how late the mass leaves its stops, as (mu - 1)^2: near 1
+    its interval is wide.  Where the mass never sticks, it has no part in the motion.
+    """
+    checked_unit(unit, "length", "unit")
+    checks.choice(contact, "contact", CONTACTS)
+    checks.choice(damping_reference, "damping_reference", DAMPING_REFERENCES)
+    held = checked_known(known or {})
+    times, places = checked_record(time, x)
+    shakes = checked_record(times, base, "base")[1]
+    inside = within(window, times)
+    times, channels = times[inside], np.column_stack((shakes, places))[inside]
+    good = unclipped(channels[:, 0]) & unclipped(channels[:, 1])
+    t, data = times[good], channels[good]
+    phasors = _checked_phasors(t, data)
+    fit = fit_record(contact, damping_reference, phasors, np.column_stack((t, data[:, 1])), held)
+    found = record_errors(fit, phasors, t)
+    ds = _dataset(fit, phasors, found, data[:, 1], unit)
+    ds["time"] = xr.Variable("sample", t, {"long_name": "time", "units": "s"})
+    ds["base"] = xr.Variable("sample", data[:, 0], {"long_name": "base, measured", "units": unit})
+    ds = ds.assign(_of_record(t, data, phasors, unit)).assign(_of_motion(fit, found, unit, stiffness))
+    ds.attrs["title"] = "Record of steady motion"
+    ds.attrs["warnings"] = "; ".join(_of_data(times, good, phasors, ds) + _of_fit(fit, found))
+    return ds
+
+
+def checked_known(known: Mapping[str, float]) -> dict[str, float]:
+    """Parameters to be held, if they are known by name and in range."""
+    ranges: dict[str, dict[str, float]] = {
+        "f_n": {"above": 0.0},
+        "zeta": {"least": 0.0, "most": checks.LARGEST_DAMPING},
+        "x_F": {"least": 0.0},
+        "mu": {"least": 1.0},
+    }
+    result = {}
+    for name, value in known.items():
+        checks.choice(name, "known", PARAMETERS)
+        result[name] = checks.number(value, f"known.{name}", **ranges.get(name, {}))
+    if len(result) == len(PARAMETERS):
+        raise InputError(f"known must leave something to fit; got all of {', '.join(PARAMETERS)}")
+    return result
+
+
+def _checked_phasors(time: np.ndarray, channels: np.ndarray) -> Phasors:
+    """Harmonics of a base and of a mass that move."""
+    for name, places in zip(("base", "x"), channels.T, strict=True):
+        if float(np.ptp(places)) <= 2.0 * resolution(places):
+            raise InputError(
+                f"{name} must move; there is no motion above its own resolution ({resolution(places):g})"
+            )
+    phasors = phasors_of(time, channels)
+    for k, name in enumerate(("base", "x")):
+        first, error = abs(phasors.values[k, 1]), float(phasors.errors[k, 1])
+        if first <= _MOVES * error:
+            raise InputError(
+                f"{name} must move with the base, at {phasors.frequency:.4g} Hz; its first harmonic there is "
+                f"{first:.3g}, of the size of its error, {error:.2g} (a mass that sticks for good tells "
+                "nothing of its motion)"
+            )
+    return phasors
+
+
+def _dataset(fit: Fit, phasors: Phasors, found: Errors, x: np.ndarray, unit: str) -> xr.Dataset:
+    """The estimates, residuals as they are measured."""
+    at_bound = fit.solution.at_bound.copy()
+    at_bound[MU] |= not fit.mu_told
+    further = np.array([at_bound[X_F], False, False, False])
+    solution = fit.solution._replace(
+        values=np.concatenate((fit.values, derived_values(fit, phasors))),
+        residual=fit.motion.places - x,
+        at_bound=np.concatenate((at_bound, further)),
+    )
+    free = fit.problem.free.copy()
+    free[MU] |= not fit.mu_told
+    units = ("Hz", "1", unit, "1", unit, "1", "deg", "1", "1")
+    every = np.concatenate((free, np.ones(len(DERIVED), dtype=bool)))
+    ds = estimates(_MEANINGS, units, solution, found, every, x, unit)
+    for name, one_unit in zip(DERIVED, units[len(PARAMETERS) :], strict=True):
+        ds[name] = number(float(ds["estimate"].sel(parameter=name)), _MEANINGS[name], one_unit)
+    friction = float(fit.values[X_F]) > _FOUND * float(found.standard_error[X_F])
+    ds["verdict"] = verdict(int(friction) * (1 + int(fit.motion.stops > 0)), _VERDICTS)
+    return ds
+
+
+def _of_record(time: np.ndarray, channels: np.ndarray, phasors: Phasors, unit: str) -> dict[str, xr.Variable]:
+    """What the record is, without any model."""
+    first = np.abs(phasors.values[:, 1])
+    parts = np.stack((phasors.values.real, phasors.values.imag), axis=-1)
+    dims = ("channel", "harmonic", "part")
+    cycles = (time[-1] - time[0]) * phasors.frequency
+    result = {
+        "base_frequency": number(phasors.frequency, "frequency of the base", "Hz"),
+        "base_frequency_standard_error": number(
+            phasors.frequency_error, "standard error of the frequency of the base", "Hz"
+        ),
+        "cycles": number(cycles, "cycles of the base in the record"),
+        "base_amplitude": number(first[0], "first harmonic of the base", unit),
+        "base_distortion": number(
+            np.linalg.norm(phasors.values[0, 2:]) / first[0],
+            "higher harmonics of the base over the first one",
+        ),
+        "base_residual_rms": number(phasors.rms[0], "root mean square of the base less its harmonics", unit),
+        "base_drift": number(phasors.drift[0], "drift of the base", f"{unit} s-1"),
+        "x_drift": number(phasors.drift[1], "drift of the mass", f"{unit} s-1"),
+        "phasor": xr.Variable(
+            dims,
+            parts,
+            {"long_name": "harmonics of base and mass at the middle of the record", "units": unit},
+        ),
+        "phasor_standard_error": xr.Variable(
+            dims[:2],
+            phasors.errors,
+            {"long_name": "standard error of either part of a phasor", "units": unit},
+        ),
+        "channel": xr.Variable("channel", ["base", "x"], {"long_name": "channel"}),
+        "part": xr.Variable("part", ["real", "imaginary"], {"long_name": "part of a phasor"}),
+    }
+    moved = changes(time, channels, phasors)
+    if moved.size:
+        result["change"] = number(
+            moved.max(),
+            "squared change of a first harmonic from the first to the last third of the record, over its "
+            "variance; 2 on average where nothing changes",
+        )
+    return result
+
+
+def _of_motion(fit: Fit, found: Errors, unit: str, stiffness: float | None) -> dict[str, xr.Variable]:
+    """What else the fitted motion is."""
+    result = {"stuck_fraction": number(fit.motion.stuck, "share of the cycle in which the fit sticks")}
+    if stiffness is not None:
+        newtons = checks.number(stiffness, "stiffness", above=0.0) * conversion(unit, "m")
+        error = newtons * float(found.standard_error[X_F])
+        words = "kinetic friction force k x_F"
+        result["friction_force"] = number(newtons * float(fit.values[X_F]), words, "N")
+        result["friction_force_standard_error"] = number(error, f"standard error of the {words}", "N")
+    return result
+
+
+def _of_data(time: np.ndarray, good: np.ndarray, phasors: Phasors, ds: xr.Dataset) -> list[str]:
+    """What to mind of the data, in words."""
+    words = []
+    if not good.all():
+        words.append(f"clipped: {1.0 - good.mean():.1%} of the samples are at the extremes and were left out")
+    if gap := largest_gap(time):
+        words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
+    distortion = float(ds["base_distortion"])
+    if distortion > _DISTORTED:
+        words.append(f"the base is distorted: its higher harmonics are {distortion:.1%} of the first one")
+    if "change" in ds and float(ds["change"]) > _CHANGED:
+        words.append("not steady: first and last third of the record differ beyond their errors")
+    for name, drift, error in zip(("base", "x"), phasors.drift, phasors.drift_errors, strict=True):
+        if abs(drift) > _FOUND * error:
+            words.append(f"{name} drifts by {drift:.3g} {ds['base_amplitude'].attrs['units']} a second")
+    return words
+
+
+def _of_fit(fit: Fit, found: Errors) -> list[str]:
+    """What to mind of the estimates, in words."""
+    words = []
+    if not fit.motion.repeats:
+        words.append("the fitted motion does not repeat after one cycle of the base")
+    if not fit.mu_told:
+        words.append(
+            f"mu cannot be told, as the fit never sticks: all from 1 to {found.upper[MU]:.4g} move alike"
+        )
+    if found.inflation > 1.0:
+        words.append(
+            f"residuals are not white (lag-1 correlation {found.lag_correlation:.2f}): "
+            f"errors are taken {found.inflation:.2f} times as large"
+        )
+    for one, other in ((ZETA, X_F), (ZETA, MU), (X_F, MU)):
+        correlation = float(found.correlation[one, other])
+        if abs(correlation) > _CORRELATED:
+            words.append(f"{PARAMETERS[one]} and {PARAMETERS[other]} trade: correlation {correlation:.2f}")
+    names = [PARAMETERS[index] for index in np.flatnonzero(fit.solution.at_bound)]
+    if names:
+        words.append(f"{' and '.join(names)} on the bound: the interval is one-sided")
+    return words

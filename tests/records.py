@@ -31,6 +31,7 @@ class Cycle(NamedTuple):
     parts: list  # (begin, end, place(t)), t in [0, 1/f]
     stops: int
     change: float  # of the state in it, in mm
+    state: np.ndarray  # x and its velocity at its end
 
 
 def base_at(truth, t, derivative=0):
@@ -120,16 +121,17 @@ def cycle(truth, state, stuck):
     return parts, stops, state, stuck
 
 
-def steady(truth, cycles=60, accuracy=1e-10):
+def steady(truth, cycles=60, accuracy=1e-10, start=None):
     """Integrated from a moving start until a cycle changes nothing, or as often as is allowed."""
-    state, stuck = np.array([truth.offset_x, 0.1 * truth.f * abs(truth.base[1])]), False
+    stuck = False
+    state = np.array([truth.offset_x, 0.1 * truth.f * abs(truth.base[1])]) if start is None else start
     for _ in range(cycles):
         parts, stops, after, stuck = cycle(truth, state, stuck)
         change = float(np.max(np.abs(after - state) / [1.0, 2.0 * np.pi * truth.f]))
         state = after
         if change < accuracy:
             break
-    return Cycle(parts, stops, change)
+    return Cycle(parts, stops, change, state)
 
 
 def places(truth, motion, time):

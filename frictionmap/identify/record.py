@@ -12,7 +12,7 @@ from .estimates import estimates, number, verdict
 from .least_squares import Errors
 from .phasors import Phasors, changes, phasors_of
 from .record_errors import DERIVED, derived_values, record_errors
-from .record_fit import Fit, fit_record
+from .record_fit import Fit, fit_record, places_at
 from .record_motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
 from .turning_points import resolution
 from .units import checked_unit, conversion
@@ -28,6 +28,9 @@ _DISTORTED = 0.05
 
 #: Squared change of a phasor over its variance that chance makes in one of a thousand: -2 ln 0.001.
 _CHANGED = 13.8
+
+#: Errors of the base's first harmonic so many times those of samples at all phases.
+_WORSE = 4.0
 
 #: A first harmonic of the mass below so many standard errors is no motion.
 _MOVES = 5.0
@@ -113,17 +116,23 @@ def record(
     shakes = checked_record(times, base, "base")[1]
     inside = within(window, times)
     times, channels = times[inside], np.column_stack((shakes, places))[inside]
-    good = unclipped(channels[:, 0]) & unclipped(channels[:, 1])
-    t, data = times[good], channels[good]
+    whole = unclipped(channels[:, 0])
+    t, data = times[whole], channels[whole]
+    good = unclipped(data[:, 1])
     phasors = _checked_phasors(t, data)
-    fit = fit_record(contact, damping_reference, phasors, np.column_stack((t, data[:, 1])), held)
-    found = record_errors(fit, phasors, t)
-    ds = _dataset(fit, phasors, found, data[:, 1], unit)
-    ds["time"] = xr.Variable("sample", t, {"long_name": "time", "units": "s"})
-    ds["base"] = xr.Variable("sample", data[:, 0], {"long_name": "base, measured", "units": unit})
+    used = np.column_stack((t, data[:, 1]))[good]
+    fit = fit_record(contact, damping_reference, phasors, used, held)
+    if not good.all():
+        data = np.column_stack((data[:, 0], np.where(good, data[:, 1], places_at(fit, phasors, t))))
+        phasors = phasors_of(t, data)
+    found = record_errors(fit, phasors, t, good)
+    ds = _dataset(fit, phasors, found, used[:, 1], unit)
+    ds["time"] = xr.Variable("sample", used[:, 0], {"long_name": "time", "units": "s"})
+    ds["base"] = xr.Variable("sample", data[good, 0], {"long_name": "base, measured", "units": unit})
     ds = ds.assign(_of_record(t, data, phasors, unit)).assign(_of_motion(fit, found, unit, stiffness))
     ds.attrs["title"] = "Record of steady motion"
-    ds.attrs["warnings"] = "; ".join(_of_data(times, good, phasors, ds) + _of_fit(fit, found))
+    left_out = 1.0 - good.sum() / times.size
+    ds.attrs["warnings"] = "; ".join(_of_data(times, left_out, phasors, ds) + _of_fit(fit, found))
     return ds
 
 
@@ -152,6 +161,12 @@ def _checked_phasors(time: np.ndarray, channels: np.ndarray) -> Phasors:
                 f"{name} must move; there is no motion above its own resolution ({resolution(places):g})"
             )
     phasors = phasors_of(time, channels)
+    ideal = phasors.inflation[0] * phasors.rms[0] * np.sqrt(2.0 / time.size)
+    if phasors.errors[0, 1] > _WORSE * ideal:
+        raise InputError(
+            "time must reach all phases of the cycle: harmonics of the base cannot be told where there are "
+            "no samples, as in a long gap or where the base is clipped"
+        )
     for k, name in enumerate(("base", "x")):
         first, error = abs(phasors.values[k, 1]), float(phasors.errors[k, 1])
         if first <= _MOVES * error:
@@ -240,11 +255,11 @@ def _of_motion(fit: Fit, found: Errors, unit: str, stiffness: float | None) -> d
     return result
 
 
-def _of_data(time: np.ndarray, good: np.ndarray, phasors: Phasors, ds: xr.Dataset) -> list[str]:
+def _of_data(time: np.ndarray, clipped: float, phasors: Phasors, ds: xr.Dataset) -> list[str]:
     """What to mind of the data, in words."""
     words = []
-    if not good.all():
-        words.append(f"clipped: {1.0 - good.mean():.1%} of the samples are at the extremes and were left out")
+    if clipped > 0.0:
+        words.append(f"clipped: {clipped:.1%} of the samples are at the extremes and were left out")
     if gap := largest_gap(time):
         words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
     distortion = float(ds["base_distortion"])

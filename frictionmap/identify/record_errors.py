@@ -42,10 +42,13 @@ def derived_values(fit: Fit, phasors: Phasors) -> np.ndarray:
     return np.array([fit.values[X_F] / abs(base), lag, abs(mass / base), float(fit.motion.stops)])
 
 
-def record_errors(fit: Fit, phasors: Phasors, time: np.ndarray) -> Errors:
-    """Errors of the parameters and of `DERIVED`, in this order."""
+def record_errors(fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray) -> Errors:
+    """Errors of the parameters and of `DERIVED`, in this order.
+
+    used : shape (samples,), bool: whether a sample is part of the fit, which takes the place of the others
+    """
     found = errors(fit.problem, fit.solution)
-    linear = _in_what_is_fitted(fit, phasors, time, found)
+    linear = _in_what_is_fitted(fit, phasors, time, used, found)
     of_fitted = found.standard_error
     # (mu - 1)^2 is told; where it is below its error, mu - 1 is known no better than to the root of that
     spread = max(2.0 * (float(fit.values[MU]) - 1.0), float(np.sqrt(of_fitted[MU])))
@@ -54,7 +57,7 @@ def record_errors(fit: Fit, phasors: Phasors, time: np.ndarray) -> Errors:
     deviation = np.sqrt(np.diag(covariance))
     scale = np.where(deviation > 0.0, deviation, 1.0)
     correlation = np.where(np.eye(deviation.size, dtype=bool), 1.0, covariance / np.outer(scale, scale))
-    reach = float(stdtrit(time.size - int(fit.problem.free.sum()), _TWO_SIDED))
+    reach = float(stdtrit(int(used.sum()) - int(fit.problem.free.sum()), _TWO_SIDED))
     values = np.concatenate((fit.values, derived_values(fit, phasors)))
     lower, upper = values - reach * deviation, values + reach * deviation
     lower[_POSITIVE] = np.maximum(lower[_POSITIVE], 0.0)
@@ -80,12 +83,16 @@ def _interval_of_mu(fit: Fit, reach: float, at_bound: float) -> tuple[float, flo
     return 1.0 + float(np.sqrt(max(square - reach, 0.0))), 1.0 + float(np.sqrt(square + reach))
 
 
-def _in_what_is_fitted(fit: Fit, phasors: Phasors, time: np.ndarray, found: Errors) -> _Linear:
+def _in_what_is_fitted(
+    fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray, found: Errors
+) -> _Linear:
     """What is fitted and `DERIVED`."""
     size, own = len(PARAMETERS), found.standard_error
     of_fit = found.correlation * np.outer(own, own)
     slopes = fit.whitening(fit.solution.slopes)
-    first = first_harmonics(time, slopes, phasors)
+    at_all = np.zeros((time.size, size))
+    at_all[used] = slopes
+    first = first_harmonics(time, at_all, phasors)
     of_base = base_errors(fit.mass, phasors) ** 2
     variance = found.variance * found.inflation**2
     by_base = -of_fit @ (slopes.T @ fit.by_base) * (of_base / variance if variance > 0.0 else 0.0)

@@ -96,6 +96,12 @@ def fit_record(
     return Fit(mass, problem, solution, whitening, by_base, found, mu_told)
 
 
+def places_at(fit: Fit, phasors: Phasors, time: np.ndarray) -> np.ndarray:
+    """The fitted motion at other times."""
+    mass = shaken(fit.mass.contact, fit.mass.damping_reference, phasors, time)
+    return motion(mass, fit.values).places
+
+
 def _within(problem: Problem) -> Problem:
     """The same with no straight line below the floors: a fit that ends near them will do for a start."""
     return problem._replace(lowest=np.maximum(problem.lowest, FLOOR))

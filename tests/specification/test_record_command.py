@@ -1,0 +1,217 @@
+"""Records of steady motion through the command `identify` and in Python: what comes out, what is refused."""
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+from records import Truth, base_at, steady, synthetic
+
+import frictionmap as fm
+from frictionmap.cli import main
+
+TRUTH = Truth(3.13, 0.01, 0.8, 1.0, -0.1, 1.001, (0.1, 1.8j, 0.02), rate=100.0, length=7.3)
+
+
+@pytest.fixture(scope="module")
+def measured_record():
+    """Times, base and mass, with two stops a cycle."""
+    return synthetic(TRUTH, steady(TRUTH), 4)
+
+
+@pytest.fixture
+def rig(tmp_path, monkeypatch):
+    """Writes a data file and its configuration; the path of the latter."""
+    monkeypatch.chdir(tmp_path)
+
+    def write(columns, more="", head="time_s,base_mm,x_mm"):
+        rows = [head, *(",".join(f"{value:.8g}" for value in row) for row in zip(*columns, strict=True))]
+        (tmp_path / "record.csv").write_text("\n".join(rows) + "\n")
+        path = tmp_path / "rig.toml"
+        system = '[system]\ncontact = "fixed-wall"\nexcitation = "base"\ndamping_reference = "base"\n'
+        path.write_text(f'[data]\nkind = "record"\nfile = "record.csv"\n{system}[known]\nmu = 1.0\n{more}\n')
+        return path
+
+    return write
+
+
+def refusal(capsys, *arguments):
+    """The one line on standard error of a command that is refused."""
+    assert main([str(argument) for argument in arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    return err
+
+
+def test_from_a_file_to_a_friction_force(rig, capsys, measured_record):
+    path = rig(measured_record, "stiffness = 1191.0")
+    assert main(["identify", str(path)]) == 0
+    out = capsys.readouterr().out
+    row = next(line.split() for line in out.splitlines() if line.split()[:1] == ["x_F"])
+    assert float(row[1]) == pytest.approx(TRUTH.x_F, abs=0.005)
+    assert row[-1] == "mm"
+    assert "friction found, and the mass sticks and slips" in out
+    assert len(re.findall("^ *stops_per_cycle", out, re.MULTILINE)) == 1
+    with xr.open_dataset("rig-identify.nc") as ds:
+        names = ["f_n", "zeta", "x_F", "mu", "offset_x"]
+        names += ["beta", "lag_deg", "amplitude_ratio", "stops_per_cycle"]
+        assert ds.parameter.values.tolist() == names
+        assert ds.unit.values.tolist() == ["Hz", "1", "mm", "1", "mm", "1", "deg", "1", "1"]
+        assert ds.known.values.tolist() == [0, 0, 0, 1, 0, 0, 0, 0, 0]
+        for name in names[5:]:
+            assert float(ds[name]) == float(ds.estimate.sel(parameter=name))
+        assert float(ds.friction_force) == pytest.approx(1.191 * float(ds.estimate.sel(parameter="x_F")))
+        np.testing.assert_allclose(ds.data, measured_record[2], rtol=1e-6)
+        np.testing.assert_allclose(ds.model - ds.data, ds.residual, atol=1e-12)
+        assert not any(np.isnan(ds[name]).any() for name in ds.data_vars if ds[name].dtype.kind == "f")
+        first = complex(*ds.phasor.sel(channel="base").isel(harmonic=1).values)
+        assert abs(first) == pytest.approx(float(ds.base_amplitude)) == pytest.approx(1.8, abs=0.001)
+    assert main(["info", "rig-identify.nc"]) == 0
+    assert "stops_per_cycle" in capsys.readouterr().out
+
+
+def test_units_of_the_columns(rig, measured_record):
+    """Lengths come in the unit of the mass, what is known is given in mm."""
+    time, base, x = measured_record
+    path = rig((1e3 * time, 1e3 * base, 1e-3 * x), "x_F = 0.8", "time_ms,base_um,x_m")
+    assert main(["identify", str(path), "--quiet"]) == 0
+    with xr.open_dataset("rig-identify.nc") as ds:
+        found = dict(zip(ds.parameter.values, ds.estimate.values, strict=True))
+        assert found["x_F"] == pytest.approx(0.8e-3)
+        assert found["beta"] == pytest.approx(0.8 / 1.8, rel=1e-3)
+        assert found["f_n"] == pytest.approx(TRUTH.f_n, abs=0.02)
+
+
+def warnings(measured_record, change, **arguments):
+    columns = change(*(column.copy() for column in measured_record))
+    return fm.identify.record(*columns, damping_reference="base", known={"mu": 1.0}, **arguments).warnings
+
+
+def without_some(time, base, x):
+    kept = np.delete(np.arange(time.size), slice(200, 250))
+    return time[kept], base[kept], x[kept]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (without_some, "a gap of 0.51 s in the times"),
+        (lambda time, base, x: (time, base, np.minimum(x, 1.5)), "clipped: "),
+        (lambda time, base, x: (time, base, x * (1.0 + 0.01 * time)), "not steady"),
+        (lambda time, base, x: (time, base, x + 0.01 * time), "x drifts by 0.01"),
+    ],
+)
+def test_what_is_to_be_minded(measured_record, change, words):
+    assert words in warnings(measured_record, change)
+
+
+def test_clipped_samples_are_left_out(measured_record):
+    time, base, x = measured_record
+    ds = fm.identify.record(time, base, np.minimum(x, 1.5), damping_reference="base", known={"mu": 1.0})
+    assert (ds.data < 1.5).all()
+    for name, exact in (("x_F", TRUTH.x_F), ("f_n", TRUTH.f_n), ("zeta", TRUTH.zeta)):
+        one = ds.sel(parameter=name)
+        assert abs(float(one.estimate) - exact) < 4.0 * float(one.standard_error), name
+    whole = fm.identify.record(time, base, x, damping_reference="base", known={"mu": 1.0})
+    for name in ("lag_deg", "amplitude_ratio"):
+        one = whole.sel(parameter=name)
+        assert float(ds[name]) == pytest.approx(float(one.estimate), abs=4.0 * float(one.standard_error))
+
+
+def test_a_distorted_base(measured_record):
+    truth = TRUTH._replace(base=(0.0, 1.8j, 0.15, 0.05))
+    ds = fm.identify.record(*synthetic(truth, steady(truth), 1), damping_reference="base", known={"mu": 1.0})
+    assert "the base is distorted: its higher harmonics are 8.8%" in ds.warnings
+    assert float(ds.estimate.sel(parameter="x_F")) == pytest.approx(truth.x_F, abs=0.005)
+    assert "distorted" not in warnings(measured_record, lambda *columns: columns)
+
+
+def test_rows_without_a_number_are_dropped_on_request_only(rig, capsys, measured_record):
+    time, base, x = (column.copy() for column in measured_record)
+    x[77] = np.nan
+    path = rig((time, base, x))
+    assert "column x_mm, line 79 must be a finite number; got 'nan' (data.missing = \"drop\"" in refusal(
+        capsys, "identify", path
+    )
+    assert main(["identify", str(path), "--set", "data.missing=drop"]) == 0
+    assert "warning: 1 of 731 rows of record.csv have no number" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda t, y, x: (t, np.full(t.size, 1.5), x), "base must move; there is no motion above its own"),
+        (lambda t, y, x: (t, y, np.full(t.size, 1.5)), "x must move; there is no motion above its own"),
+        (
+            lambda t, y, x: (t, y, np.random.default_rng(1).normal(0.0, 0.01, t.size)),
+            "x must move with the base, at 1.001 Hz; its first harmonic there is",
+        ),
+        (lambda t, y, x: (t, np.minimum(y, 1.3), x), "time must reach all phases of the cycle"),
+        (lambda t, y, x: (t[:150], y[:150], x[:150]), "time must span at least 2 cycles of the base"),
+        (lambda t, y, x: (t[::17], y[::17], x[::17]), "5.8 samples a cycle; 8 are needed"),
+        (lambda t, y, x: (t[::-1], y, x), "line 3 must be later than the row before, 7.3; got 7.29"),
+    ],
+)  # fmt: skip
+def test_bad_records(rig, capsys, measured_record, change, message):
+    found = refusal(capsys, "identify", rig(change(*measured_record)))
+    assert message in found
+    assert "record.csv" in found
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("system.contact=between-masses", "system.contact must be one of fixed-wall, joined-base-wall"),
+        ("system.excitation=force", "system.excitation must be one of base; got 'force'"),
+        ("system.contact_masses=[2]", "system.contact_masses must be [1], a record is of one mass; got [2]"),
+        ("system.zeta=0.1", "unknown key system.zeta"),
+        ("known.mu=0.9", "known.mu must be >= 1; got 0.9"),
+        ("known.zeta=-0.1", "known.zeta must be >= 0; got -0.1"),
+        ("known.f_n=0", "known.f_n must be > 0; got 0"),
+        ("known.beta=0.2", "unknown key known.beta"),
+        ('data.columns={ z = "z_mm" }', "unknown key data.columns.z"),
+        ("data.window=[3, 4]", "time must span at least 2 cycles of the base"),
+    ],
+)
+def test_bad_configurations(rig, capsys, measured_record, override, message):
+    assert message in refusal(capsys, "identify", rig(measured_record), "--set", override)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"base": [1.0, 2.0]}, "base must be 731 numbers, as many as times"),
+        ({"x": np.full(731, np.nan)}, "x must be finite; got nan at index 0"),
+        ({"unit": "inch"}, "unit must be one of mm, m, um; got 'inch'"),
+        ({"contact": "wall"}, "contact must be one of fixed-wall, joined-base-wall; got 'wall'"),
+        ({"damping_reference": "wall"}, "damping_reference must be one of ground, base; got 'wall'"),
+        ({"stiffness": -1.0}, "stiffness must be > 0; got -1"),
+        (
+            {"known": dict(f_n=3.0, zeta=0.0, x_F=0.5, mu=1.0, offset_x=0.0)},
+            "known must leave something to fit",
+        ),
+    ],
+)
+def test_bad_arguments(measured_record, arguments, message):
+    time, base, x = measured_record
+    with pytest.raises(fm.InputError, match=re.escape(message)):
+        fm.identify.record(**{"time": time, "base": base, "x": x} | arguments)
+
+
+def test_motion_without_friction():
+    """One harmonic motion: no friction is found, and mu has no part in it."""
+    f, r, zeta = 2.0, 0.6, 0.05
+    time = np.arange(800) / 100.0
+    truth = TRUTH._replace(f=f, base=(0.0, 1.5))
+    gain = (1.0 + 2j * zeta * r) / (1.0 - r**2 + 2j * zeta * r)
+    rng = np.random.default_rng(2)
+    x = (1.5 * gain * np.exp(2j * np.pi * f * time)).real + rng.normal(0.0, 0.01, time.size)
+    base = base_at(truth, time) + rng.normal(0.0, 0.003, time.size)
+    ds = fm.identify.record(time, base, x, damping_reference="base")
+    assert ds.verdict.flag_meanings.split()[int(ds.verdict)] == "no_friction_found"
+    friction, damping = ds.sel(parameter="x_F"), ds.sel(parameter="zeta")
+    assert float(friction.lower) == 0.0
+    assert float(friction.upper) < 0.1
+    assert float(damping.lower) - 1e-3 < zeta < float(damping.upper) + 1e-3
+    assert np.isfinite(ds.estimate).all()

@@ -5,6 +5,7 @@ A kind of data adds variables of its own, over no dimension or over samples; the
 
 import numpy as np
 
+from .. import checks
 from .labels import Label
 
 _PARAMETER, _SAMPLE = ("parameter",), ("sample",)
@@ -22,7 +23,9 @@ OF_PARAMETERS = {
     "at_bound": _FLAG,
 }
 
-_OF_SAMPLES = {name: Label(np.float64, name, _SAMPLE) for name in ("data", "model", "residual", "time")}
+_OF_SAMPLES = {
+    name: Label(np.float64, name, _SAMPLE) for name in ("data", "model", "residual", "time", "base")
+}
 
 ESTIMATES = {
     **OF_PARAMETERS,
@@ -30,6 +33,12 @@ ESTIMATES = {
     **_OF_SAMPLES,
     "sigma": Label(np.float64, "standard error of a sample", _SAMPLE, least=0.0),
     "frequency": Label(np.float64, "frequency", _SAMPLE, least=0.0),
+    "frequency_ratio": Label(np.float64, "frequency ratio", _SAMPLE, least=0.0, most=checks.LARGEST_RATIO),
+    "friction_ratio": Label(np.float64, "friction ratio", _SAMPLE, least=0.0),
+    "quantity": _FLAG._replace(dims=_SAMPLE),
+    "mass": Label(np.int16, "mass, counted from 1", _SAMPLE, least=1),
+    "set": Label(np.str_, "test, of one friction force", _SAMPLE),
+    "base_frequency": _NUMBER._replace(least=0.0),
     "reduced_chi_square": _NUMBER._replace(least=0.0),
     "residual_rms": _NUMBER._replace(least=0.0),
     "residual_correlation": _NUMBER,

@@ -23,7 +23,7 @@ _SIZE, _MANY_SIZE = 4.5, 2.8
 #: Dark beside light, also in grey.
 MEASURED, FITTED = LINES[3], LINES[2]
 
-_BAND: Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.7, "linewidth": 0.0}
+BAND: Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.7, "linewidth": 0.0}
 
 _OVER = {"time": "time [s]", "frequency": "frequency [Hz]"}
 
@@ -86,9 +86,9 @@ def draw_residuals(ax: Axes, samples: Samples, name: str) -> list[Handle]:
     if samples.few:
         ends = samples.residual - samples.sigma, samples.residual + samples.sigma
         return draw_data(ax, samples._replace(data=samples.residual), ends)
-    ax.fill_between(samples.x, -samples.sigma, samples.sigma, **_BAND)
+    ax.fill_between(samples.x, -samples.sigma, samples.sigma, **BAND)
     ax.plot(samples.x, samples.residual, "o", color=MEASURED, markersize=_MANY_SIZE, markeredgewidth=0.0)
-    return [Patch(**_BAND, label="standard error of a sample")] if samples.sigma.any() else []
+    return [Patch(**BAND, label="standard error of a sample")] if samples.sigma.any() else []
 
 
 def about_residuals(ds: xr.Dataset) -> str:

@@ -46,7 +46,7 @@ def decay_picture(ds: xr.Dataset) -> FitPicture:
     def residuals(ax: Axes) -> list[Handle]:
         return draw_residuals(ax, samples, f"residual{in_brackets(samples.unit)}")
 
-    return FitPicture([(VALUES, values), (RESIDUALS, residuals)], None, [])
+    return FitPicture([(VALUES, values), (RESIDUALS, residuals)], [], [])
 
 
 def _motion_of(ds: xr.Dataset) -> _Motion:

@@ -24,4 +24,4 @@ def samples_picture(ds: xr.Dataset) -> FitPicture:
     def residuals(ax: Axes) -> list[Handle]:
         return draw_residuals(ax, samples, f"residual{in_brackets(samples.unit)}")
 
-    return FitPicture([(VALUES, values), (RESIDUALS, residuals)], None, [])
+    return FitPicture([(VALUES, values), (RESIDUALS, residuals)], [], [])

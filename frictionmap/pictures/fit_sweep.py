@@ -46,7 +46,7 @@ def sweep_picture(ds: xr.Dataset) -> FitPicture:
     def residuals(ax: Axes) -> list[Handle]:
         return draw_residuals(ax, samples, "residual of ln")
 
-    return FitPicture([(VALUES, values), (RESIDUALS, residuals)], None, [])
+    return FitPicture([(VALUES, values), (RESIDUALS, residuals)], [], [])
 
 
 def _check(samples: Samples, frequencies: np.ndarray) -> None:

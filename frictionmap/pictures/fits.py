@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -12,7 +11,9 @@ from ..errors import InputError
 from ..files.estimates import estimates_in_short, verdict_in_words
 from .fit_data import about_residuals
 from .fit_decay import decay_picture, is_decay
+from .fit_forced import forced_picture, is_forced
 from .fit_picture import FitPicture
+from .fit_record import is_record, record_picture
 from .fit_samples import samples_picture
 from .fit_sweep import is_sweep, sweep_picture
 from .panels import distinct, given_axes, legend_below, legend_under, new_figure, title_figure
@@ -21,8 +22,8 @@ from .shapes import check_holds, check_range, to_draw
 if TYPE_CHECKING:
     from .panels import AxesArray
 
-#: Widths of the panels over one axis, and of the one beside them [inch].
-_WIDTH, _BESIDE = 7.2, 5.4
+#: Height of the title and of the names of an axis [inch].
+_REST = 0.6
 
 
 def plot_fit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":
@@ -56,8 +57,7 @@ def plot_fit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> 
     if ds.sizes["sample"] < 1:
         raise InputError("a dataset must have at least one sample for its fit to be drawn; it has none")
     picture = _picture(ds)
-    panels = [panel for _, panel in picture.panels]
-    panels += [picture.beside] if picture.beside else []
+    panels = picture.all
     axes = _new_axes(picture, ds) if ax is None else given_axes(ax, len(panels), "one for each panel")
     handles = distinct([handle for panel, one in zip(panels, axes, strict=True) for handle in panel(one)])
     if ax is None:
@@ -73,21 +73,16 @@ def plot_fit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> 
 def _picture(ds: xr.Dataset) -> FitPicture:
     if is_decay(ds):
         return decay_picture(ds)
+    if is_record(ds):
+        return record_picture(ds)
+    if is_forced(ds):
+        return forced_picture(ds)
     return sweep_picture(ds) if is_sweep(ds) else samples_picture(ds)
 
 
 def _new_axes(picture: FitPicture, ds: xr.Dataset) -> "AxesArray":
-    """Axes of a new figure: panels over one axis, and the one beside them."""
-    heights = [height for height, _ in picture.panels]
-    beside = [_BESIDE] if picture.beside else []
-    figure = new_figure(_WIDTH + sum(beside), sum(heights) + 0.6)
+    """Axes of a new figure with the title of the dataset."""
+    width, height = picture.size()
+    figure = new_figure(width, height + _REST)
     title_figure(figure, str(ds.attrs.get("title", "")))
-    grid = figure.add_gridspec(
-        len(heights), 1 + len(beside), height_ratios=heights, width_ratios=[_WIDTH, *beside]
-    )
-    axes = [figure.add_subplot(grid[0, 0])]
-    axes += [figure.add_subplot(grid[k, 0], sharex=axes[0]) for k in range(1, len(heights))]
-    for one in axes[:-1]:
-        one.tick_params(labelbottom=False)
-    axes += [figure.add_subplot(grid[:, 1])] if beside else []
-    return np.array(axes, dtype=object)
+    return picture.lay_out(figure)

@@ -159,8 +159,8 @@ def _ring(ax: Axes, cells: Cells) -> list[Handle]:
     return [drawn]
 
 
-def _draw(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
-    """Draw one mu; the entries for a legend that are not classes."""
+def draw_map(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
+    """Draw one mu without rings; the entries for a legend that are not classes."""
     ax.add_artist(CellImage(cells))
     curves = boundary_curves(panel, cells.r, cells.beta.limits[1])
     handles: list[Handle] = []
@@ -177,7 +177,6 @@ def _draw(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
                 label="several answers: the start decides",
             )
         )  # fmt: skip
-    handles += _ring(ax, cells)
     handles += mark_features(ax, features_of(panel), cells.r)
     _name_regions(ax, cells, curves.values())
     return handles
@@ -244,7 +243,7 @@ def plot_regimes(ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" 
     cells = [cells_of(panel) for panel in panels]
     others: list[Handle] = []
     for panel_ax, panel, part in zip(axes, panels, cells, strict=True):
-        others += _draw(panel_ax, panel, part)
+        others += draw_map(panel_ax, panel, part) + _ring(panel_ax, part)
     handles = _class_handles(panels, cells) + distinct(others)
     if ax is None:
         figure = axes[0].figure

@@ -1,0 +1,152 @@
+"""Synthetic measurements of rigs whose truth is known: `python -m frictionmap.examples FOLDER` writes them.
+
+They are computed by the models of the package and blurred by normal deviates from a seeded generator; nothing
+in them was measured.  `configs/rigs` holds what this module writes.
+"""
+
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from .identify.decay_motion import Decay, displacement
+from .identify.sweep import log_amplitude
+from .model.system import System
+from .steady.curves import curves
+
+#: What the estimates are to come near to, by the kind of data; in Hz, mm and s.
+TRUTHS: Mapping[str, Mapping[str, float]] = {
+    "free-decay": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.2, "X0": 9.5, "t0": -0.03, "centre": 0.25},
+    "forced": {"beta_1": 0.2, "beta_2": 0.4, "f_n": 3.12, "zeta": 0.008},
+    "sweep": {"f0": 3.1, "f1": 1.85, "f2": 4.9},
+}
+
+#: Samples of a decay: so many a second, for so many seconds, with this error [mm].
+_RATE, _LENGTH, _DECAY_ERROR = 200, 4, 0.03
+
+#: Amplitude of the base [mm], which makes beta of x_F; errors of lags [deg], and of amplitudes, relative.
+_BASE, _LAG_ERROR, _AMPLITUDE_ERROR = 1.75, 0.7, 0.01
+
+_SYNTHETIC = "# Synthetic: made by frictionmap.examples, not measured."
+
+
+def rig_files(seed: int = 1) -> dict[str, str]:
+    """Texts of all files by their names: a configuration and a table for each kind of data."""
+    files = {}
+    for index, (kind, table) in enumerate(_TABLES.items()):
+        rng = np.random.default_rng([seed, index])
+        files[f"{kind}.csv"] = f"{_SYNTHETIC}\n{table(rng, TRUTHS[kind])}"
+        files[f"{kind}.toml"] = _configuration(kind)
+    return files
+
+
+def write_rigs(folder: Path, seed: int = 1) -> None:
+    """Write all files into a folder, which is made if it is not there; files of these names are replaced."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in rig_files(seed).items():
+        (folder / name).write_text(text, encoding="utf-8", newline="\n")
+
+
+#: Title of each configuration, and what it says beside the kind and the file.
+_CONFIGURATIONS = {
+    "free-decay": (
+        "One storey of a frame, pulled aside and let go",
+        """
+[known]
+base_mm = 1.75            # the base motion for which beta = x_F/Y is wanted
+stiffness = 1191.0        # N/m: the friction force in N
+""",
+    ),
+    "forced": (
+        "One storey on a shaken base, with two friction forces",
+        """sigma_phase_deg = 0.7     # errors of the data; by default they are taken from the residuals
+sigma_amplitude = 0.01
+
+[system]
+contact = "fixed-wall"
+excitation = "base"
+damping_reference = "base"
+
+[known]
+mu = 1.0
+""",
+    ),
+    "sweep": (
+        "Two storeys without friction on a shaken base",
+        """sigma_amplitude = 0.02    # error of the data; by default it is taken from the residuals
+
+[system]
+excitation = "base"
+masses = 2
+""",
+    ),
+}
+
+
+def _configuration(kind: str) -> str:
+    title, rest = _CONFIGURATIONS[kind]
+    truth = ", ".join(f"{name} = {value:g}" for name, value in TRUTHS[kind].items())
+    head = f"{_SYNTHETIC}\n# The truth, in Hz, mm and s: {truth}\n"
+    return f'{head}title = "{title} (synthetic)"\n\n[data]\nkind = "{kind}"\nfile = "{kind}.csv"\n{rest}'
+
+
+def _decay(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
+    """A record that ends at rest."""
+    time = np.arange(_RATE * _LENGTH) / _RATE
+    decay = Decay(**truth)
+    halves = _half_cycles(decay)
+    x = displacement(decay, halves, time) + rng.normal(0.0, _DECAY_ERROR, time.size)
+    return _table("time_s,x_mm", (time, "g"), (x, ".4f"))
+
+
+def _half_cycles(decay: Decay) -> int:
+    """Until it rests, with mu = 1: A_{j+1} = q A_j - (1 + q) x_F."""
+    q = np.exp(-np.pi * decay.zeta / np.sqrt(1.0 - decay.zeta**2))
+    height, count = abs(decay.X0), 0
+    while height > decay.x_F:
+        height, count = q * height - (1.0 + q) * decay.x_F, count + 1
+    return count
+
+
+def _forced(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
+    """First harmonics at the same frequencies for two friction forces."""
+    system = System(excitation="base", damping_reference="base", damping_ratios=truth["zeta"])
+    r = np.array([0.55, 0.65, 0.75, 0.85, 0.92, 0.97, 1.03, 1.08, 1.15, 1.25, 1.4, 1.6, 1.8, 2.0])
+    beta = [truth["beta_1"], truth["beta_2"]]
+    ds = curves(system, r, beta, quantities=["first_harmonic"], threads=1).isel(mu=0, dof=0)
+    lag = np.degrees(ds["first_harmonic_phase"].values.T) + rng.normal(0.0, _LAG_ERROR, (2, r.size))
+    blur = np.exp(rng.normal(0.0, _AMPLITUDE_ERROR, (2, r.size)))
+    ratio = ds["first_harmonic_amplitude"].values.T * blur
+    return _table(
+        "set,frequency_Hz,phase_lag_deg,amplitude_ratio,base_mm",
+        (np.repeat([1, 2], r.size), "d"), (np.tile(truth["f_n"] * r, 2), ".4f"), (lag.ravel(), ".3f"),
+        (ratio.ravel(), ".5f"), (np.full(2 * r.size, _BASE), "g"),
+    )  # fmt: skip
+
+
+def _sweep(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
+    """Amplitudes of the first of two masses, beside both peaks and the zero between them."""
+    f = np.concatenate((np.linspace(0.6, 1.7, 7), np.linspace(2.0, 4.6, 14), np.linspace(5.2, 7.6, 6)))
+    logarithm = log_amplitude(np.array([truth[name] for name in ("f0", "f1", "f2")]), f)[0]
+    return _table(
+        "frequency_Hz,amplitude_ratio_1", (f, ".4f"),
+        (np.exp(logarithm + rng.normal(0.0, 2.0 * _AMPLITUDE_ERROR, f.size)), ".5f"),
+    )  # fmt: skip
+
+
+def _table(names: str, *columns: tuple[np.ndarray, str]) -> str:
+    """Rows of a table, every column in its format."""
+    rows = zip(*([format(value, how) for value in values.tolist()] for values, how in columns), strict=True)
+    return "\n".join([names, *(",".join(row) for row in rows)]) + "\n"
+
+
+#: What makes the table of each kind of data.
+_TABLES: Mapping[str, Callable[[np.random.Generator, Mapping[str, float]], str]] = {
+    "free-decay": _decay,
+    "forced": _forced,
+    "sweep": _sweep,
+}
+
+if __name__ == "__main__":
+    write_rigs(Path(sys.argv[1] if len(sys.argv) > 1 else "rigs"))

@@ -16,6 +16,7 @@ steady         steady states: cells, `sweep` (plan, run, label), `curves`, `resp
 files          configurations; places of output, storage, reading; files in words
 stores         maps block by block into a zarr store, in this process or on workers
 identify       measured data: files, fits, estimates with their errors
+examples       synthetic measurements of rigs whose truth is known
 pictures       palette, panels, and a module for each kind of picture; `plot` is the door
 cli            the command line; `arguments`, `progress`, `interrupts`
 =============  =========================================================================

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from .identify.decay_motion import Decay, displacement
-from .identify.sweep import log_amplitude
+from .identify.two_masses import log_amplitude
 from .model.system import System
 from .steady.curves import curves
 
@@ -128,7 +128,7 @@ def _forced(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
 def _sweep(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
     """Amplitudes of the first of two masses, beside both peaks and the zero between them."""
     f = np.concatenate((np.linspace(0.6, 1.7, 7), np.linspace(2.0, 4.6, 14), np.linspace(5.2, 7.6, 6)))
-    logarithm = log_amplitude(np.array([truth[name] for name in ("f0", "f1", "f2")]), f)[0]
+    logarithm = log_amplitude(np.array([truth[name] for name in ("f0", "f1", "f2")]), f)
     return _table(
         "frequency_Hz,amplitude_ratio_1", (f, ".4f"),
         (np.exp(logarithm + rng.normal(0.0, 2.0 * _AMPLITUDE_ERROR, f.size)), ".5f"),

@@ -101,6 +101,11 @@ def _axis_line(name: str, values: np.ndarray, most: float) -> str:
     return f"{name} = {value_text(values.tolist())}"
 
 
+def system_text(system: "System") -> str:
+    """The table [system] of a configuration that gives this system again."""
+    return "\n".join(["[system]", *_system_lines(system, "")]) + "\n"
+
+
 def _system_lines(system: "System", file: str) -> list[str]:
     matrices = system.matrices
     own = {key: getattr(system, key) for key in _SYSTEM}

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
+from ..datasets.provenance import system_text
 from ..errors import InputError
 from ..model.system import System
 from .estimates import verdict
@@ -103,6 +104,7 @@ def forced(
     ds["verdict"] = verdict(_verdict(fit), _VERDICTS)
     ds.attrs["title"] = "Forced responses"
     ds.attrs["system"] = fit.model.with_zeta(float(fit.solution.values[ZETA])).describe()
+    ds.attrs["config"] = system_text(system)
     ds.attrs["warnings"] = "; ".join(warnings + told(table, fit))
     return ds
 

@@ -28,6 +28,9 @@ fit_picture     what a picture of a fit consists of
 fit_samples     fits to any data
 fit_decay       free decays with their envelope
 fit_sweep       sweeps of two masses
+fit_position    where motions lie among the regimes of their structure
+fit_forced      forced responses with the curves of their sets
+fit_record      records in time, and their cycles over each other
 fits            which of these is drawn
 ==============  ==========================================================================
 """

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter
 
 from .. import checks
+from ..errors import InputError
 from ..model.system import System
 from ..steady.curves import curves
 from .curve_axes import Panel
@@ -26,6 +27,9 @@ _NEEDED = ("frequency", "quantity", "mass", "set", "sigma", "frequency_ratio", "
 #: Codes of what a sample is.
 _AMPLITUDE, _LAG = 0, 1
 _MARKERS = {_AMPLITUDE: "o", _LAG: "^"}
+
+#: Sets of one picture; more cannot be told apart.
+_MOST_SETS = 40
 
 #: Height of a panel [inch]; points of a curve; room beside the data, as a share of their frequencies.
 _HEIGHT, _POINTS, _MARGIN = 2.5, 300, 0.05
@@ -61,6 +65,7 @@ def is_forced(ds: xr.Dataset) -> bool:
 def forced_picture(ds: xr.Dataset) -> FitPicture:
     """Amplitudes and lags, mass by mass, residuals over their errors, and where motions lie on the map."""
     f_n = checks.number(fitted(ds, "f_n", 1.0), "f_n", above=0.0)
+    _check_amplitudes(ds)
     sets, system, mu = _sets(ds), fitted_system(ds), fitted(ds, "mu", 1.0)
     dense = None if system is None else _dense(ds, sets, system, f_n, mu)
     panels: list[Tall] = [(_HEIGHT, _values_panel(ds, sets, dense, which)) for which in _measured(ds)]
@@ -71,10 +76,19 @@ def forced_picture(ds: xr.Dataset) -> FitPicture:
     return FitPicture(panels, beside, _remarks(mu, dense))
 
 
+def _check_amplitudes(ds: xr.Dataset) -> None:
+    """Refuse amplitudes that have no place on a logarithmic axis."""
+    least = float(ds["data"].values[ds["quantity"].values == _AMPLITUDE].min(initial=np.inf))
+    if least <= 0.0:
+        raise InputError(f"amplitudes must be > 0 to be drawn; got {least:g}")
+
+
 def _sets(ds: xr.Dataset) -> list[_Set]:
     """The sets in the order of their samples, with the mean of their friction ratios."""
     labels = ds["set"].values.astype(str)
     names = list(dict.fromkeys(labels.tolist()))
+    if len(names) > _MOST_SETS:
+        raise InputError(f"a dataset must have at most {_MOST_SETS} sets to be drawn; got {len(names)}")
     beta = ds["friction_ratio"].values
     result = []
     for label, colour in zip(names, sequence(len(names)), strict=True):

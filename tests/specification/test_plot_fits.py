@@ -11,6 +11,8 @@ import pytest
 from decays import Truth, marched, synthetic
 from layouts import assert_inside_and_apart, rendered, words_of
 from matplotlib.figure import Figure
+from responses import Truth as Responses
+from responses import continuous, table
 from sweeps import F_K1M1, GAMMA, KAPPA, amplitudes, swept
 
 import frictionmap as fm
@@ -165,6 +167,97 @@ def test_peaks_and_zero_are_where_the_masses_have_them():
     natural = np.sqrt(np.sort(np.linalg.eigvals(np.diag([1.0, 1.0 / GAMMA]) @ K))) * F_K1M1
     expected = [natural[0], np.sqrt(KAPPA / GAMMA) * F_K1M1, natural[1]]
     np.testing.assert_allclose(places, expected, rtol=1e-6)
+
+
+# Forced responses
+
+RIG = Responses(3.1, 0.01, (0.2, 0.5), (0.62, 0.8, 0.95, 1.05, 1.3, 1.7, 2.1))
+
+
+@pytest.fixture(scope="module")
+def responses():
+    sets, frequency, lag, amplitude = table(RIG, 1)
+    return fm.identify.forced(
+        frequency, lag, amplitude, sets=sets, known={"mu": 1.0}, sigma_phase=0.7, sigma_amplitude=0.01
+    )
+
+
+def test_fitted_curves_of_forced_responses_are_steady_motions(responses):
+    """Every curve against half a period of the motion, solved from its equation."""
+    upper, lower, *_ = axes = fm.plot_fit(responses)
+    of = responses.estimate.sel(parameter=["f_n", "zeta", "beta_1", "beta_2"]).values
+    f_n, zeta, *beta = of.tolist()
+    for panel, told in ((upper, abs), (lower, lambda X: -np.degrees(np.angle(X)))):
+        solid = [
+            one.get_xydata()
+            for one in panel.lines
+            if one.get_linestyle() == "-" and one.get_label()[0] == "_"
+        ]
+        curves = [points[np.isfinite(points).all(axis=1)] for points in solid if len(points) > 50]
+        assert len(curves) == 2
+        for points, ratio in zip(curves, beta, strict=True):
+            some = points[::40]
+            expected = [told(continuous(f / f_n, ratio, zeta)) for f in some[:, 0]]
+            np.testing.assert_allclose(some[:, 1], expected, rtol=1e-7)
+    rendered(axes)
+
+
+def test_forced_responses_are_drawn_as_measured(responses):
+    upper, lower, residuals, _ = axes = fm.plot_fit(responses)
+    for panel, quantity in ((upper, 0), (lower, 1)):
+        for number, points in zip("12", dots(panel), strict=True):
+            chosen = (responses["set"].values == number) & (responses.quantity.values == quantity)
+            expected = np.column_stack((responses.frequency, responses.data))[chosen]
+            np.testing.assert_array_equal(points, expected[np.argsort(expected[:, 0])])
+    drawn = np.concatenate([one.get_ydata() for one in residuals.lines if one.get_marker() in "o^"])
+    np.testing.assert_allclose(np.sort(drawn), np.sort(responses.residual / responses.sigma), atol=1e-12)
+    assert {"set 1: β = 0.", "set 2: β = 0."} == {
+        words[:13] for words in words_of(axes) if words[:3] == "set"
+    }
+    assert [lower.get_ylabel(), residuals.get_xlabel()] == ["lag [deg]", "frequency [Hz]"]
+
+
+def test_the_place_on_the_map_is_that_of_the_fit(responses):
+    *_, regimes = axes = fm.plot_fit(responses)
+    places = np.concatenate([one.get_xydata() for one in regimes.lines if one.get_marker() == "o"])
+    f_n, *beta = responses.estimate.sel(parameter=["f_n", "beta_1", "beta_2"]).values.tolist()
+    expected = [(r * RIG.f_n / f_n, ratio) for ratio in beta for r in RIG.r]
+    np.testing.assert_allclose(places, expected, rtol=1e-12)
+    assert regimes.get_xlim()[1] > places[:, 0].max()
+    assert regimes.get_ylim()[1] > 1.0  # where it sticks, beta_stick = 1 of a fixed wall
+    assert {"continuous", "2 stops", "permanent sticking", r"$\beta_\mathrm{lim}$"} <= set(words_of(axes))
+
+
+def test_without_the_structure_fitted_values_are_joined(responses):
+    ds = responses.copy()
+    del ds.attrs["config"]
+    upper, _, _ = axes = fm.plot_fit(ds)
+    (first, _) = (
+        one.get_xydata() for one in upper.lines if one.get_linestyle() == "-" and len(one.get_xdata()) > 2
+    )
+    chosen = (ds["set"].values == "1") & (ds.quantity.values == 0)
+    np.testing.assert_array_equal(first, np.column_stack((ds.frequency, ds.model))[chosen])
+    assert "as the file does not tell the structure" in caption_of(axes)
+    rendered(axes)
+
+
+def test_lags_of_another_mass_may_turn_farther():
+    """Two masses, contact and load apart: the second one lags by more than half a turn."""
+    two = {"mass_ratios": [1.0, 1.0], "stiffness_ratios": [1.0, 1.0], "contact_masses": [2]}
+    system = fm.System(damping_ratios=0.02, **two)
+    r = np.array([0.5, 0.8, 1.2, 1.5, 1.9, 2.3])
+    ds = fm.curves(system, r, 0.1, quantities=["first_harmonic"]).isel(mu=0, beta=0)
+    lag = np.degrees(ds.first_harmonic_phase.values.T) % 360.0
+    fitted = fm.identify.forced(
+        3.0 * r, dict(enumerate(lag, 1)), dict(enumerate(ds.first_harmonic_amplitude.values.T, 1)),
+        system=fm.System(**two), known={"f_n": 3.0, "mu": 1.0}, sigma_phase=1.0, sigma_amplitude=0.02,
+    )  # fmt: skip
+    axes = fm.plot_fit(fitted)
+    assert [ax.get_ylabel() for ax in axes[:4]] == [
+        "amplitude of mass 1", "amplitude of mass 2", "lag of mass 1 [deg]", "lag of mass 2 [deg]"
+    ]  # fmt: skip
+    assert axes[3].get_ylim()[1] > lag.max() > 180.0
+    assert_inside_and_apart(axes[0].figure)
 
 
 # Slices, axes, refusals

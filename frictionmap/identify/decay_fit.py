@@ -20,6 +20,12 @@ _HIDDEN = 8
 #: Samples of which the search makes use; the fit takes all.
 _SEARCHED = 4000
 
+#: Sums of squares that differ by less variances of a sample are alike: three standard errors.
+_AS_GOOD = 9.0
+
+#: Shares of the motion that no measurement tells: sums of smaller residuals are zero.
+_ROUNDING = 1e-9
+
 #: The natural frequency is within this share of what the turning points tell.
 _FREQUENCY_RANGE = 0.2
 
@@ -65,7 +71,7 @@ def fit_decay(
 ) -> tuple[Fit, Problem]:
     """The least sum over all numbers of half cycles near what turning points tell.
 
-    A number that cannot be, as friction would have held the mass before, does not count.
+    Of several that fit alike, one counts only if friction would not have held the mass before.
     """
     starts = _starts(time, x, points, known)
     numbers = sorted(starts)
@@ -84,7 +90,15 @@ def fit_decay(
         while 0 <= place + step < len(numbers) and attempt(place + step) <= attempt(place):
             place += step
     attempt(len(numbers) - 1)  # not at rest in the record: this one always can be
-    return min(tried.values(), key=lambda found: (not _possible(found[0]), found[0].solution.sum))
+    return _best(list(tried.values()), time.size, float(np.ptp(x)))
+
+
+def _best(tried: list[tuple[Fit, Problem]], samples: int, size: float) -> tuple[Fit, Problem]:
+    """The least sum; among those that chance alone tells apart the least one of a motion that can be."""
+    tried = sorted(tried, key=lambda found: found[0].solution.sum)
+    least = max(tried[0][0].solution.sum, samples * (_ROUNDING * size) ** 2)
+    as_good = [found for found in tried if found[0].solution.sum <= least * (1.0 + _AS_GOOD / samples)]
+    return min(as_good, key=lambda found: not _possible(found[0]))
 
 
 def _fit(

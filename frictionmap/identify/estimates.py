@@ -84,7 +84,7 @@ def estimates(
         ),
         "reduced_chi_square": number(
             errors.variance,
-            "variance of a sample, from the residuals",
+            "reduced chi square: squares of residuals, over given errors if any, per degree of freedom",
             "1" if data_unit == "1" else f"{data_unit}2",
         ),
         "residual_rms": number(

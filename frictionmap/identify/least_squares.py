@@ -54,7 +54,7 @@ class Errors(NamedTuple):
     lower: np.ndarray
     upper: np.ndarray
     correlation: np.ndarray
-    variance: float  # of a sample, from the residuals, reduced chi square
+    variance: float  # reduced chi square: the mean square of residuals, per degree of freedom
     lag_correlation: float
     inflation: float  # of the errors, as residuals are correlated
 

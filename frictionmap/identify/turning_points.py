@@ -67,12 +67,14 @@ def grows(points: TurningPoints, noise: float) -> bool:
 
 
 def linear_decrement(points: TurningPoints) -> float | None:
-    """x_F as T(4.3) has it: a quarter of the mean drop of subsequent maxima, whatever damps.
+    """x_F as T(4.3) has it: a quarter of the drop between subsequent maxima, averaged over every pair.
 
-    Minima do as well where they are more.
+    Whatever damps counts as friction.  With viscous damping the drop gets smaller and smaller, so that the
+    average depends on which maxima are seen; all are taken.  If there is but one, minima are.
     """
     begins_low = bool(points.place[0] < points.place[1])
-    peaks = points.place[1 if begins_low and points.place.size % 2 == 0 else 0 :: 2]
+    maxima, minima = points.place[int(begins_low) :: 2], points.place[int(not begins_low) :: 2]
+    peaks = maxima if maxima.size > 1 else minima
     return float(abs(peaks[0] - peaks[-1])) / (4.0 * (peaks.size - 1)) if peaks.size > 1 else None
 
 

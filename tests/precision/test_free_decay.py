@@ -198,6 +198,42 @@ def test_the_linear_decrement_is_right_without_damping_and_wrong_with_it():
     assert float(mixed.linear_decrement) > 1.5 * MIXED.x_F
 
 
+def test_the_linear_decrement_takes_every_pair_of_maxima():
+    """T(4.3) and what follows (4.2): from the first maximum in the record to the last one that it left.
+
+    The first one, at t0 < 0, is not in it; the one at which the mass rests is no turning point.
+    """
+    q = np.exp(-np.pi * MIXED.zeta / np.sqrt(1.0 - MIXED.zeta**2))
+    heights = [MIXED.X0]
+    while heights[-1] > MIXED.x_F:
+        heights.append(q * heights[-1] - (1.0 + q) * MIXED.x_F)
+    maxima = np.array(heights[2:-1:2])
+    expected = np.mean(maxima[:-1] - maxima[1:]) / 4.0
+    assert expected == pytest.approx(0.2450, abs=1e-4)
+    ds = fm.identify.free_decay(*synthetic(MIXED._replace(noise=1e-4), 1))
+    assert float(ds.linear_decrement) == pytest.approx(expected, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("truth", "mu", "seed"),
+    [
+        (Truth(5.5577, 0.00215, 0.058705, -3.54844, -0.00025, 1.1903, 292.83, 2.524, 0.08078), 1.3345, 18),
+        (Truth(2.38278, 0.02629, 0.5217, 9.1799, -0.00968, -1.4152, 151.36, 1.5016, 0.07806), 1.078, 308),
+        (Truth(8.47412, 0.0, 0.199445, -10.703, -0.01284, 0.00261, 324.28, 1.6095, 0.0704), 1.3878, 334),
+        (Truth(2.25655, 0.0, 0.783792, 8.53337, -0.08176, -0.98198, 99.73, 1.1079, 0.02789), 1.599, 392),
+    ],
+)
+def test_a_better_sum_counts_more_than_a_motion_that_can_be(truth, mu, seed):
+    """Of 400 random decays these ended at residuals of 9 to 60 times the noise, as a worse n could be."""
+    ds = fm.identify.free_decay(*synthetic(truth, seed, mu))
+    count = ds.sizes["sample"] - 6
+    # a variance from so many residuals is known to sqrt(2/count)
+    assert float(ds.reduced_chi_square) / truth.noise**2 == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / count))
+    for name in ("f_n", "zeta", "x_F"):
+        one = ds.sel(parameter=name)
+        assert abs(float(one.estimate) - getattr(truth, name)) < 5.0 * float(one.standard_error) + 1e-12
+
+
 # Records as they come
 
 

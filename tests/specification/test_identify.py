@@ -185,7 +185,8 @@ def test_rows_without_a_number_are_dropped_on_request_only(rig, capsys):
     assert "warning: 1 of 800 rows of decay.csv have no number and were left out" in capsys.readouterr().out
     many = "\n".join(GOOD[:1] + [f"{line.split(',')[0]}," for line in GOOD[1:10]] + GOOD[10:])
     message = refusal(capsys, "identify", rig(many), "--overwrite", "--set", "data.missing=drop")
-    assert "9 of 800 rows" in message or "line 2" in message
+    assert "column x_mm, line 2 must be a finite number; got ''" in message
+    assert "9 of 800 rows are such, and no more than 1% may be left out" in message
 
 
 def test_gaps_and_clipped_samples_are_told(rig, capsys):

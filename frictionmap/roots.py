@@ -42,7 +42,7 @@ def with_poles(where: Stretch, poles: np.ndarray) -> Stretch:
     return where._replace(edges=np.union1d(where.edges, inside), poles=np.union1d(where.poles, inside))
 
 
-def _polish(
+def polish(
     f: Callable[[np.ndarray, np.ndarray], np.ndarray],
     which: np.ndarray,
     low: np.ndarray,
@@ -149,7 +149,7 @@ def find_roots(f: Callable[..., np.ndarray], where: Stretch) -> list[np.ndarray]
     k, which = np.nonzero((sign[1:] * sign[:-1] < 0.0) & ~cut[:, np.newaxis])
     changes = _Brackets(which, r[k], r[k + 1], values[k, which], values[k + 1, which])
     brackets = _joined([changes, _pairs(f, _dips(r, values, np.concatenate(([True], cut, [True]))))])
-    found = _polish(f, *brackets)
+    found = polish(f, *brackets)
     exact = (sign == 0.0) & (values != 0.0).any(axis=0)  # not of a function that is zero everywhere
     return [
         np.unique(np.concatenate((found[brackets.which == j], r[exact[:, j]])))

@@ -26,6 +26,8 @@ forced_model     amplitudes and lags of forced responses, and their derivatives
 forced_data      tables of forced responses, checked
 forced_start     where the fit of forced responses begins
 forced_fit       the steady states nearest to forced responses
+phase_inversion  `friction_ratio`: friction ratios from single lags
+forced_lags      what the lags of a table tell one by one
 forced_told      what to mind of such a fit, in words
 forced_labels    the dataset of such a fit
 forced           `forced`: from amplitudes and lags to estimates
@@ -45,7 +47,8 @@ configuration    configurations of rigs, for the command `identify`
 
 from .forced import forced
 from .free_decay import free_decay
+from .phase_inversion import friction_ratio
 from .record import record
 from .sweep import sweep
 
-__all__ = ["forced", "free_decay", "record", "sweep"]
+__all__ = ["forced", "free_decay", "friction_ratio", "record", "sweep"]

@@ -13,6 +13,7 @@ from .estimates import verdict
 from .forced_data import ForcedTable, Values, checked_table
 from .forced_fit import Fit, fit_forced
 from .forced_labels import labelled
+from .forced_lags import friction_ratios, impossible, refuse_impossible, without
 from .forced_model import F_N, MU, ZETA
 from .forced_told import told
 
@@ -44,8 +45,11 @@ def forced(
     known: Mapping[str, float] | None = None,
     sigma_phase: Error = None,
     sigma_amplitude: Error = None,
+    unreachable: object = "refuse",
 ) -> xr.Dataset:
     """Fit the exact steady states to first harmonics of forced responses, all friction forces at once.
+
+    Eleven arguments: the columns of a table, and what is known.
 
     Parameters
     ----------
@@ -67,6 +71,9 @@ def forced(
         Parameters to be held: beta (of all sets), f_n [Hz] > 0, zeta >= 0, mu >= 1.  Others are fitted.
     sigma_phase, sigma_amplitude : float or array, shape (rows,)
         Errors of the lags [deg], and relative ones of the amplitudes; by default from the residuals.
+    unreachable : "refuse" or "drop"
+        What is done about lags of one mass that no friction ratio gives, by five of their errors (5 deg if
+        they are not given).
 
     Returns
     -------
@@ -75,7 +82,9 @@ def forced(
         `quantity`: data and model are lags [deg] and amplitude ratios, residuals degrees and logarithms of
         ratios.  beta is the friction force over the mean load of its set.  Also on sample: frequency,
         mass, set, sigma, frequency_ratio, friction_ratio, `regime`, and `reached`, the starts from which the
-        motion is reached.  Attribute `warnings`.
+        motion is reached; `lag_status`, what a lag alone tells of friction, see `friction_ratio`.  On
+        answer: `lag_friction_ratio` with its error, and `lag_sample`, the sample that it is of.  Attribute
+        `warnings`.
 
     Raises
     ------
@@ -98,9 +107,14 @@ def forced(
         warnings.append(
             f"lags alone do not tell f_n: it is held at {held[F_N]:.6g} Hz, where they pass 90 deg"
         )
+    drop = checks.choice(unreachable, "unreachable", ("refuse", "drop")) == "drop"
+    table = _reachable(table, system, held[F_N], drop, warnings)
     _check_count(table, held)
     fit = fit_forced(table, system, held)
-    ds = labelled(table, fit, unit if load is not None else None)
+    possible = _reachable(table, system, float(fit.solution.values[F_N]), drop, warnings)
+    if possible is not table:
+        table, fit = possible, fit_forced(possible, system, held)
+    ds = labelled(table, fit, unit if load is not None else None).assign(friction_ratios(fit))
     ds["verdict"] = verdict(_verdict(fit), _VERDICTS)
     ds.attrs["title"] = "Forced responses"
     ds.attrs["system"] = fit.model.with_zeta(float(fit.solution.values[ZETA])).describe()
@@ -133,6 +147,21 @@ def _checked_known(known: Mapping[str, float], system: System, sets: int) -> np.
     if not np.isnan(held).any():
         raise InputError("known must leave something to fit; got all of beta, f_n, zeta, mu")
     return held
+
+
+def _reachable(
+    table: ForcedTable, system: System, f_n: float, drop: bool, warnings: list[str]
+) -> ForcedTable:
+    """The table without lags that no friction gives, if they may be left out; f_n may be unknown, NaN."""
+    if np.isnan(f_n):
+        return table
+    wrong = impossible(table, system, f_n)
+    if not wrong.size:
+        return table
+    if not drop:
+        refuse_impossible(table, system, f_n, int(wrong[0]))
+    warnings.append(f"{wrong.size} lags that no friction ratio gives were left out")
+    return without(table, wrong)
 
 
 def _check_count(table: ForcedTable, held: np.ndarray) -> None:

@@ -127,13 +127,19 @@ def check_lag(
     """
     if not _drives(system, mass):
         return
-    slack = _DEGREES if sigma is None else _ERRORS * sigma
+    slack = np.full(lag.size, _DEGREES) if sigma is None else _ERRORS * sigma
     wrong = np.flatnonzero((lag < -slack) | (lag > 180.0 + slack))
     if wrong.size:
         raise InputError(
             f"{places[wrong[0]]} must be in 0 to 180 deg; got {lag[wrong[0]]:g}: lags of the loaded mass "
             "are in 0..180; is it a lead, or another mass?"
         )
+
+
+def most_beyond(table: ForcedTable) -> np.ndarray:
+    """How far lags may be out of range [rad], sample by sample."""
+    given, sigma = table.given[0], table.samples.sigma
+    return _ERRORS * sigma if given else np.full(sigma.size, np.radians(_DEGREES))
 
 
 def _phases(

@@ -47,7 +47,7 @@ def _forced(rig: Rig, table: Table) -> xr.Dataset:
             _frequency(rig, picked), lags or None, ratios or None, system=system,
             load=None if load is None else load.values, unit="" if load is None else load.unit,
             sets=_sets(rig, table, picked.rows), known=rig.known, sigma_phase=sigmas[0],
-            sigma_amplitude=sigmas[1],
+            sigma_amplitude=sigmas[1], unreachable=rig.data.get("unreachable", "refuse"),
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"file {rig.file}: {error}") from None
@@ -149,5 +149,8 @@ def _sets(rig: Rig, table: Table, rows: np.ndarray) -> list[object] | None:
 
 
 FORCED = Kind(
-    _forced, ("beta", "f_n", "zeta", "mu"), data=("use", "sigma_phase_deg", "sigma_amplitude"), system=True
+    _forced,
+    ("beta", "f_n", "zeta", "mu"),
+    data=("use", "sigma_phase_deg", "sigma_amplitude", "unreachable"),
+    system=True,
 )

@@ -135,6 +135,31 @@ def test_no_stop_no_mu(rig, capsys):
     assert "warning: no motion that was fitted stops: the data do not tell mu, which is held at 1" in out
 
 
+def test_lags_that_no_friction_gives(rig, capsys):
+    """Refused by name; left out on request, with a warning."""
+    lines = [*LINES, "2,5.8332,60,1.0,1.5"]
+    known = RIG.replace("mu = 1.0", "mu = 1.0\nf_n = 3.0")
+    for text in (known, RIG):
+        message = refusal(capsys, rig(lines, text))
+        assert "no friction ratio gives a lag of 60 deg at r = 1.9" in message
+        assert "above resonance it is 90 to 180 deg (row 13 of the table" in message
+    path = rig(
+        lines, RIG.replace("sigma_amp", 'unreachable = "drop"\nuse = ["phase", "amplitude"]\nsigma_amp')
+    )
+    assert main(["identify", path]) == 0
+    assert "warning: 1 lags that no friction ratio gives were left out" in capsys.readouterr().out
+
+
+def test_lags_tell_friction_one_by_one(rig):
+    assert main(["identify", rig(), "--quiet"]) == 0
+    with xr.open_dataset("rig-identify.nc") as ds:
+        own = ds.isel(sample=ds.lag_sample.values)
+        pull = (ds.lag_friction_ratio.values - own.friction_ratio.values) / ds.lag_friction_ratio_error.values
+        assert ds.sizes["answer"] == 12
+        assert np.abs(pull).max() < 4.0
+        assert (ds.lag_status == 4).sum() == 12  # amplitudes
+
+
 def test_sets_by_any_name(rig):
     lines = [line.replace("1,", "loose,", 1) if line[0] == "1" else f"b{line}" for line in LINES]
     assert main(["identify", rig(lines), "--quiet"]) == 0
@@ -184,11 +209,13 @@ def test_bad_forced_files(measured, rig, capsys):
     words = {
         "phase-out-of-range": "lags of the loaded mass are in 0..180",
         "negative-frequency": "line 2 must be > 0; got -2",
+        "beyond-sliding": "no friction ratio gives a lag of 60 deg at r = 1.944: above resonance it is 90 to 180",
         "one-point": "more data than unknowns; got 2 data for 3 unknowns",
     }
     for name, message in words.items():
         path = str(measured / "bad" / f"{name}.csv")
-        found = refusal(capsys, rig(), "--set", f"data.file={path}")
+        known = ["--set", "known.f_n=3.086"] if name == "beyond-sliding" else []
+        found = refusal(capsys, rig(), "--set", f"data.file={path}", *known)
         assert message in found
         assert f"{name}.csv" in found
 

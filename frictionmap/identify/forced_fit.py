@@ -11,7 +11,7 @@ from ..model.system import System
 from .forced_data import ForcedTable
 from .forced_model import F_N, MU, ZETA, Fitted, ForcedModel, Samples, evaluate
 from .forced_start import starts
-from .least_squares import Errors, Problem, Solution, errors, minimise
+from .least_squares import Errors, Problem, Solution, errors, minimise, undetermined
 
 #: The natural frequency is within this share of where the fit begins.
 _FREQUENCY_RANGE = 0.2
@@ -22,8 +22,10 @@ _CHANCE = 1e-2
 #: Errors from residuals are found again and again until they change by less than this share.
 _SETTLED, _ROUNDS = 1e-3, 20
 
-#: Below this share of the largest effect on the data, one of parameters together is not told.
-_TOLD = 1e-6
+
+#: Singular values of slopes below this share of the largest are zero, as are changes of lags [rad] and of
+#: logarithms of amplitudes, per unit of a parameter: differences have some such errors.
+_RANK = 1e-5
 
 
 class Fit(NamedTuple):
@@ -51,7 +53,7 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray) -> Fit:
         known[MU] = 1.0
         model, solution, task = _with_errors(model, known, table.given)
         here = evaluate(model, solution.values, task.free)
-    _check_told(table, solution, task)
+    _check_told(table, model, solution, task)
     found = errors(task, solution, 1.0 if any(table.given) else None)
     return Fit(model, task, solution, found, here, idle)
 
@@ -110,34 +112,30 @@ def _best(model: ForcedModel, known: np.ndarray, sure: bool) -> tuple[Solution, 
     best: tuple[Solution, Problem] | None = None
     for start in starts(model, known):
         task = problem(model, free, float(start[F_N]))
-        if not np.isfinite(task.residuals(start)[0]).all():
-            continue
         found = minimise(task, start)
         if best is None or found.sum < best[0].sum:
             best = found, task
         if found.sum <= enough:
             break
-    if best is None:
+    if best is None or not np.isfinite(best[0].sum):
         raise InputError(
             "the data must be of masses that move; one that was measured is held, whatever the friction"
         )
     return best
 
 
-def _check_told(table: ForcedTable, solution: Solution, task: Problem) -> None:
+def _check_told(table: ForcedTable, model: ForcedModel, solution: Solution, task: Problem) -> None:
     """Refuse data that leave parameters, or some together, untold."""
-    slopes = solution.slopes[:, task.free]
-    names = [name for name, free in zip(parameter_names(table), task.free, strict=True) if free]
-    size = np.linalg.norm(slopes, axis=0)
-    for name, one in zip(names, size, strict=True):
-        if one == 0.0:
-            raise InputError(f"the data do not tell {name}, on which nothing that was measured depends")
-    _, shares, ways = np.linalg.svd(slopes / size)
-    if shares[-1] < _TOLD * shares[0]:
-        together = [name for name, part in zip(names, np.abs(ways[-1]), strict=True) if part > 0.1]
-        raise InputError(
-            f"the data do not tell {' and '.join(together)} apart; known may hold one, or measure more"
-        )
+    names = parameter_names(table)
+    unit = np.ones(task.free.size)
+    unit[F_N] = solution.values[F_N]
+    effect = np.linalg.norm(solution.slopes * model.samples.sigma[:, np.newaxis], axis=0) * unit
+    for index in np.flatnonzero(task.free & (effect < _RANK)):
+        raise InputError(f"the data do not tell {names[index]}, on which nothing that was measured depends")
+    together, _ = undetermined(task, solution, _RANK)
+    if together.size:
+        words = " and ".join(names[index] for index in together)
+        raise InputError(f"the data do not tell {words} apart; known may hold one, or measure more")
 
 
 def parameter_names(table: ForcedTable) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq, least_squares
+from scipy.optimize import least_squares
 from scipy.special import stdtrit
 
 #: Residuals and their derivatives by the parameters, shapes (samples,) and (samples, parameters).
@@ -18,6 +18,9 @@ _RANK = float(np.sqrt(np.finfo(float).eps))
 
 #: Shares of a direction in which no residual changes that are no rounding.
 _PART = 1e-4
+
+#: Ends of profiles are found to this share of the standard error.
+_PROFILE = 1e-3
 
 #: Lag-1 correlations beyond so many standard errors are no chance.
 _COLOURED = 3.0
@@ -116,23 +119,25 @@ def two_sided(freedom: int) -> float:
     return float(stdtrit(freedom, _TWO_SIDED))
 
 
-def undetermined(problem: Problem, best: Solution) -> tuple[np.ndarray, int]:
+def undetermined(problem: Problem, best: Solution, rank: float = _RANK) -> tuple[np.ndarray, int]:
     """Indices of free parameters that the data cannot tell apart, and how many of them are too many.
 
     The rank of the slopes, each over its length, is that of what the residuals see of the parameters.
+
+    rank : singular values below this share of the largest are zero; more than the errors of the slopes
     """
     free = np.flatnonzero(problem.free & ~best.at_bound)
     slopes = best.slopes[:, free]
     length = np.linalg.norm(slopes, axis=0)
     unseen = length == 0.0
     _, sizes, directions = np.linalg.svd(slopes / np.where(unseen, 1.0, length), full_matrices=False)
-    blind = directions[sizes <= _RANK * sizes[0]]
+    blind = directions[sizes <= rank * sizes[0]]
     taking_part = (np.abs(blind) > _PART).any(axis=0) | unseen
     return free[taking_part], len(blind)
 
 
 def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:
-    """The least sum over some parameters, bounds from below not heeded."""
+    """The least sum over some parameters, bounds from below not heeded; infinite if there is no model."""
     values = start.astype(float)
     last: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}  # residuals and slopes are asked for one by one
 
@@ -147,6 +152,8 @@ def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:
 
     if free.any():
         inside = np.clip(values[free], problem.lowest[free], problem.highest[free])
+        if not np.isfinite(at(inside)[0]).all():
+            return _no_model(values, at(inside)[0].size)
         found = least_squares(
             lambda part: at(part)[0],
             inside,
@@ -160,7 +167,16 @@ def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:
         )
         values[free] = found.x
     residual, slopes = problem.residuals(values)
+    if not np.isfinite(residual).all():
+        return _no_model(values, residual.size)
     return Solution(values.copy(), residual, slopes, np.zeros(values.size, dtype=bool))
+
+
+def _no_model(values: np.ndarray, samples: int) -> Solution:
+    """What stands for a fit that would begin where the model has no finite residuals: its sum is infinite."""
+    return Solution(
+        values.copy(), np.full(samples, np.inf), np.zeros((samples, values.size)), np.zeros(values.size, bool)
+    )
 
 
 def _hold(problem: Problem, start: np.ndarray, held: np.ndarray) -> Solution:
@@ -210,13 +226,21 @@ def _profile_end(problem: Problem, best: Solution, index: int, allowed: float, s
     if scale == 0.0:  # data without any noise
         return floor
 
-    def excess(value: float) -> float:
-        return _at(problem, best, index, value).sum - best.sum - allowed
-
-    highest = problem.highest[index]
-    reach = scale
-    while excess(end := min(floor + reach, highest)) < 0.0:
-        if end == highest:  # where the model ends
-            return float(highest)
-        reach *= 2.0
-    return float(brentq(excess, floor, end, xtol=1e-3 * scale))
+    highest = float(problem.highest[index])
+    inside, low, reach = best, floor, scale
+    while True:
+        high = min(floor + reach, highest)
+        found = _at(problem, inside, index, high)
+        if found.sum - best.sum > allowed:
+            break
+        if high == highest:  # where the model ends
+            return highest
+        inside, low, reach = found, high, 2.0 * reach
+    while high - low > _PROFILE * scale:  # halved, as there may be no model next to what is allowed
+        middle = 0.5 * (low + high)
+        found = _at(problem, inside, index, middle)
+        if found.sum - best.sum > allowed:
+            high = middle
+        else:
+            inside, low = found, middle
+    return high

@@ -82,9 +82,9 @@ def test_damping():
 @pytest.mark.parametrize(
     ("r", "lag", "system", "reason"),
     [
-        (6.0 / 3.086, 60.0, fm.System(), "no friction ratio gives a lag of 60 deg at r = 1.944: above resonance it is "
-         "90 to 180 deg"),
-        (0.7, 120.0, fm.System(), "no friction ratio gives a lag of 120 deg at r = 0.7: below resonance it is 0 to 108"),
+        (6.0 / 3.086, 60.0, fm.System(), "no friction ratio gives a lag of 60 deg at r = 1.944: above "
+         "resonance it is 90 to 180 deg"),
+        (0.7, 120.0, fm.System(), "a lag of 120 deg at r = 0.7: below resonance it is 0 to 108 deg"),
         (0.8, 20.0, BASE_WALL, "the lag at r = 0.8 rises and falls with friction: it does not tell beta"),
     ],
 )  # fmt: skip

@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from .identify.decay_motion import Decay, displacement
+from .identify.phasors import harmonics_at
+from .identify.record_motion import PARAMETERS, Shaken, motion
 from .identify.two_masses import log_amplitude
 from .model.system import System
 from .steady.curves import curves
@@ -20,6 +22,7 @@ TRUTHS: Mapping[str, Mapping[str, float]] = {
     "free-decay": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.2, "X0": 9.5, "t0": -0.03, "centre": 0.25},
     "forced": {"beta_1": 0.2, "beta_2": 0.4, "f_n": 3.12, "zeta": 0.008},
     "sweep": {"f0": 3.1, "f1": 1.85, "f2": 4.9},
+    "record": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.7, "mu": 1.2, "offset_x": -0.1},
 }
 
 #: Samples of a decay: so many a second, for so many seconds, with this error [mm].
@@ -27,6 +30,11 @@ _RATE, _LENGTH, _DECAY_ERROR = 200, 4, 0.03
 
 #: Amplitude of the base [mm], which makes beta of x_F; errors of lags [deg], and of amplitudes, relative.
 _BASE, _LAG_ERROR, _AMPLITUDE_ERROR = 1.75, 0.7, 0.01
+
+#: Frequency [Hz] and harmonics [mm] of the base of a record, and its samples: so many a second, for so many
+#: seconds, with these errors of mass and base [mm].
+_SHAKEN_AT, _HARMONICS = 1.0, (0.0, 1.75, 0.018j)
+_RECORD_RATE, _RECORD_LENGTH, _RECORD_ERRORS = 100, 8, (0.01, 0.003)
 
 _SYNTHETIC = "# Synthetic: made by frictionmap.examples, not measured."
 
@@ -79,6 +87,15 @@ mu = 1.0
 [system]
 excitation = "base"
 masses = 2
+""",
+    ),
+    "record": (
+        "One storey on a shaken base, which sticks and slips",
+        """
+[system]
+contact = "fixed-wall"
+excitation = "base"
+damping_reference = "base"
 """,
     ),
 }
@@ -135,6 +152,21 @@ def _sweep(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
     )  # fmt: skip
 
 
+def _record(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
+    """Base and mass in steady motion."""
+    time = np.arange(_RECORD_RATE * _RECORD_LENGTH) / _RECORD_RATE
+    phases = np.mod(2.0 * np.pi * _SHAKEN_AT * time, 2.0 * np.pi)
+    order = np.argsort(phases, kind="stable")
+    base = np.array(_HARMONICS)
+    mass = Shaken("fixed-wall", "base", _SHAKEN_AT, base, (0.0, 0.0), phases[order], order)
+    x = motion(mass, np.array([truth[name] for name in PARAMETERS])).places
+    channels = [
+        places + rng.normal(0.0, error, time.size)
+        for places, error in zip((x, harmonics_at(base, phases)), _RECORD_ERRORS, strict=True)
+    ]
+    return _table("time_s,base_mm,x_mm", (time, "g"), (channels[1], ".4f"), (channels[0], ".4f"))
+
+
 def _table(names: str, *columns: tuple[np.ndarray, str]) -> str:
     """Rows of a table, every column in its format."""
     rows = zip(*([format(value, how) for value in values.tolist()] for values, how in columns), strict=True)
@@ -146,6 +178,7 @@ _TABLES: Mapping[str, Callable[[np.random.Generator, Mapping[str, float]], str]]
     "free-decay": _decay,
     "forced": _forced,
     "sweep": _sweep,
+    "record": _record,
 }
 
 if __name__ == "__main__":

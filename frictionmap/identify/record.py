@@ -1,12 +1,15 @@
 """Natural frequency, damping, friction and mu of one mass from a record of its steady motion."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from .. import checks
+from ..datasets.provenance import system_text
 from ..errors import InputError
+from ..model.system import System
 from .decay_checks import checked_record, largest_gap, unclipped, within
 from .estimates import estimates, number, verdict
 from .least_squares import Errors
@@ -131,9 +134,16 @@ def record(
     ds["base"] = xr.Variable("sample", data[good, 0], {"long_name": "base, measured", "units": unit})
     ds = ds.assign(_of_record(t, data, phasors, unit)).assign(_of_motion(fit, found, unit, stiffness))
     ds.attrs["title"] = "Record of steady motion"
+    ds.attrs["config"] = system_text(_structure(contact, damping_reference))
     left_out = 1.0 - good.sum() / times.size
     ds.attrs["warnings"] = "; ".join(_of_data(times, left_out, phasors, ds) + _of_fit(fit, found))
     return ds
+
+
+def _structure(contact: str, damping_reference: str) -> System:
+    """One mass on a shaken base, whose words have been checked."""
+    words: dict[str, Any] = {"contact": contact, "damping_reference": damping_reference}
+    return System(excitation="base", **words)
 
 
 def checked_known(known: Mapping[str, float]) -> dict[str, float]:

@@ -11,6 +11,9 @@ import pytest
 from decays import Truth, marched, synthetic
 from layouts import assert_inside_and_apart, rendered, words_of
 from matplotlib.figure import Figure
+from records import Truth as Shaking
+from records import places, steady
+from records import synthetic as noisy
 from responses import Truth as Responses
 from responses import continuous, table
 from sweeps import F_K1M1, GAMMA, KAPPA, amplitudes, swept
@@ -258,6 +261,44 @@ def test_lags_of_another_mass_may_turn_farther():
     ]  # fmt: skip
     assert axes[3].get_ylim()[1] > lag.max() > 180.0
     assert_inside_and_apart(axes[0].figure)
+
+
+# Records
+
+STICKS = Shaking(3.1, 0.01, 0.7, 1.0, -0.1, 1.0, (0.0, 1.75, 0.02), rate=50.0, length=6.0)
+
+
+@pytest.fixture(scope="module")
+def shaken():
+    return fm.identify.record(*noisy(STICKS, steady(STICKS), 1), damping_reference="base", known={"mu": 1.0})
+
+
+def test_a_record_is_drawn_in_time_and_cycle_over_cycle(shaken):
+    """The fitted motion against the equation, integrated; errors of estimates move it by some 0.001 mm."""
+    upper, lower, cycle, _ = axes = fm.plot_fit(shaken)
+    np.testing.assert_array_equal(line(upper, "fitted"), np.column_stack((shaken.time, shaken.model)))
+    np.testing.assert_array_equal(line(upper, "base, measured"), np.column_stack((shaken.time, shaken.base)))
+    np.testing.assert_array_equal(dots(upper)[0], np.column_stack((shaken.time, shaken.data)))
+    np.testing.assert_array_equal(dots(lower)[0][:, 1], shaken.residual)
+    turns, place = line(cycle, "fitted").T
+    assert (np.diff(turns) >= 0.0).all()
+    assert 0.0 <= turns[0] < turns[-1] < 1.0
+    np.testing.assert_allclose(place, places(STICKS, steady(STICKS), turns / STICKS.f), atol=0.01)
+    assert_inside_and_apart(axes[0].figure)
+
+
+def test_the_place_of_a_record_on_the_map(shaken):
+    *_, regimes = fm.plot_fit(shaken)
+    ((r, beta),) = np.concatenate([one.get_xydata() for one in regimes.lines if one.get_marker() == "o"])
+    assert r == pytest.approx(STICKS.f / STICKS.f_n, abs=0.003)
+    assert beta == pytest.approx(0.7 / 1.75, abs=0.003)
+    assert regimes.get_title() == r"$\mu$ = 1"
+    assert len(fm.plot_fit(shaken.assign_attrs(config=""))) == 3
+
+
+def test_a_record_without_frequencies_cannot_be_drawn(shaken):
+    with pytest.raises(InputError, match=r"^base_frequency and f_n must be > 0 to be drawn; got 0, 3\."):
+        fm.plot_fit(shaken.assign(base_frequency=0.0))
 
 
 # Slices, axes, refusals

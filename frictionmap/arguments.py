@@ -92,6 +92,11 @@ def _takes_threads(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--threads", metavar="N", type=_threads, action=_Once, help=text)
 
 
+def _takes_choices(sub: argparse.ArgumentParser) -> None:
+    text = "the point of a further axis, e.g. --at damping_ratios=0.01; repeatable"
+    sub.add_argument("--at", metavar="NAME=VALUE", action="append", default=[], help=text)
+
+
 def _takes_workers(sub: argparse.ArgumentParser) -> None:
     where = sub.add_mutually_exclusive_group()
     text = "compute OUT.zarr on N processes of this machine (needs dask)"
@@ -136,16 +141,18 @@ def _parser() -> argparse.ArgumentParser:
     sub = command("identify", "friction, damping and frequency from measured data", text)
     _takes_config(sub, "RIG", "which data, and what is known", "data.window=[0.5,4]")
     sub = command("plot", "a picture of any file", "Draw any file that the other commands wrote.")
-    sub.add_argument("file", metavar="FILE.nc", type=Path, help="what to draw")
+    sub.add_argument("file", metavar="FILE", type=Path, help="what to draw: FILE.nc, or a store FILE.zarr")
     _takes_output(sub, "PICTURE", ".png, .pdf or .svg; default: FILE.png in the current folder")
     text = (
         "what to draw of response curves: amplitude (with the phase), first_harmonic, contact, harmonics, "
         "energy or transmitted_force (default: the first there is); of a response: history (default) or orbit"
     )
     sub.add_argument("--quantity", metavar="NAME", action=_Once, help=text)
+    _takes_choices(sub)
     sub.add_argument("--log", action="store_true", help="amplitudes of curves on a logarithmic axis")
     sub = command("info", "what is in a file", "Print what is in a file, in one screen.")
-    sub.add_argument("file", metavar="FILE.nc", type=Path, help="what to read")
+    sub.add_argument("file", metavar="FILE", type=Path, help="what to read: FILE.nc, or a store FILE.zarr")
+    _takes_choices(sub)
     return parser
 
 

@@ -156,10 +156,10 @@ def _store(options: Options) -> None:
     """Compute a map into a store, or go on with one."""
     from ._kernels.cache import listeners
     from .files.config import load_config
+    from .files.studies import describe_cells
     from .progress import Progress
     from .stores.run import fill_store, in_this_process
     from .stores.study import study_of
-    from .stores.summary import describe_store
 
     config = load_config(options.config, options.overrides, lambda *_: None)  # a block is all that is held
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
@@ -175,7 +175,7 @@ def _store(options: Options) -> None:
         store = fill_store(options.output, study, config.title, fill, options.overwrite, progress)
         listeners.remove(progress.compiling)
     if not options.quiet:
-        first, *others = describe_store(store)
+        first, *others = describe_cells(store.path)
         _print("\n  ".join((f"{first}; wrote {options.output}", *others)))
 
 
@@ -196,9 +196,10 @@ def _identify(options: Options) -> None:
 def _plot(options: Options) -> None:
     from .files.places import claimed
     from .files.reading import read
+    from .files.slices import parse_choices
     from .plot import PICTURED, check_picture, save_picture
 
-    ds = read(options.file, only=PICTURED)
+    ds = read(options.file, PICTURED, parse_choices(options.at))
     path = options.output or Path(f"{options.file.stem}.png")
     check_picture(path)
     with claimed(path, options.overwrite, [options.file]) as output:
@@ -209,9 +210,14 @@ def _plot(options: Options) -> None:
 
 def _info(options: Options) -> None:
     from .files.reading import read
+    from .files.slices import parse_choices
+    from .files.studies import describe_study, is_study
     from .files.summary import describe_file
 
-    _print(describe_file(read(options.file)))
+    if not options.at and is_study(options.file):
+        _print(describe_study(options.file))
+    else:
+        _print(describe_file(read(options.file, at=parse_choices(options.at))))
 
 
 def _print(text: str) -> None:

@@ -41,7 +41,9 @@ _FEATURES = ("natural_frequency", "held_frequency", "invariant_point")
 
 #: What pictures are made of, by the kind of file: no other variable need be read.
 PICTURED = {
-    "map": frozenset(("regime", "stops_per_cycle", "also_reachable", "period", *_BOUNDARIES, *_FEATURES)),
+    "map": frozenset(
+        ("regime", "stops_per_cycle", "status", "also_reachable", "period", *_BOUNDARIES, *_FEATURES)
+    ),
     "boundaries": frozenset((*_BOUNDARIES, *_FEATURES)),
     "response": frozenset(
         ("regime", "stops_per_cycle", "period", "status", *HISTORY_VARIABLES, *HARMONIC_VARIABLES)

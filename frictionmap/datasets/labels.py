@@ -22,6 +22,9 @@ REFERENCES = (
 )
 
 
+#: In stores: marks of blocks of rows that are computed, 1 where they are.
+MARKS = "block_done"
+
 #: Dimensions of what is told of every cell, of what depends on frequency only, and of motions on a boundary.
 CELL = ("mu", "r", "beta")
 CURVE = ("mu", "r")

@@ -1,6 +1,7 @@
 """Files that are read: checked against the schema, and brought into the form that they were written in."""
 
 import contextlib
+import importlib.util
 import warnings
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
@@ -9,18 +10,24 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
-from ..datasets.labels import CELL, COORDINATES, LABELS, coordinate, label_variable, labels_of
+from ..datasets.labels import CELL, COORDINATES, CURVES, LABELS, MARKS, coordinate, label_variable, labels_of
 from ..datasets.schema import check_structure, checked_values, in_brackets, kind, placed, standard_dims
 from ..errors import InputError
 from .estimates import estimates_form
+from .slices import choose, further_axes
 
 __all__ = ["kind", "read", "standard_form"]
 
 
-def read(path: Path, only: Mapping[str, Collection[str]] | None = None) -> xr.Dataset:
-    """Read a file that this package wrote, or a slice of it that xarray wrote (nothing is kept open).
+def read(
+    path: Path,
+    only: Mapping[str, Collection[str]] | None = None,
+    at: Mapping[str, float] | None = None,
+) -> xr.Dataset:
+    """Read a file or a store that this package wrote, or a slice that xarray wrote (nothing is kept open).
 
-    Of our variables those that `only` names for the file's kind, if they are there; by default all.
+    Of our variables those that `only` names for the file's kind, if they are there; by default all.  Of a
+    file with further axes the point `at` these values.
 
     Returns
     -------
@@ -32,13 +39,9 @@ def read(path: Path, only: Mapping[str, Collection[str]] | None = None) -> xr.Da
     InputError
         The file cannot be read, is not ours, or holds what it must not; one line that names the file.
     """
-    if not path.is_file():
-        wrong = "is not a file" if path.exists() else "does not exist"
-        raise InputError(f"file {path} {wrong}; give a file written by frictionmap")
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of a malformed file; what is wrong with it is said below
-            ds = _load(path, only)
+        with opened(path) as ds:
+            ds = _load(path, ds, only, at or {})
     except InputError:
         raise
     except Exception as error:  # the libraries raise anything over a file that is not what they expect
@@ -51,6 +54,31 @@ def read(path: Path, only: Mapping[str, Collection[str]] | None = None) -> xr.Da
 
 
 @contextlib.contextmanager
+def opened(path: Path) -> Iterator[xr.Dataset]:
+    """A file, or a store, as long as the context lasts; no values are read.
+
+    Raises
+    ------
+    InputError
+        There is none, or zarr is wanted and missing.
+    """
+    store = (path / "zarr.json").is_file()
+    if not store and not path.is_file():
+        wrong = "is not a file" if path.exists() else "does not exist"
+        raise InputError(f"file {path} {wrong}; give a file written by frictionmap")
+    # no value of ours is a time, whatever the units say
+    options: dict = {"engine": "netcdf4"}
+    if store:
+        if importlib.util.find_spec("zarr") is None:
+            raise InputError(f"store {path} can be read where zarr is: pip install 'frictionmap[zarr]'")
+        options = {"engine": "zarr", "consolidated": False, "chunks": None}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of a malformed file; what is wrong with it is said below
+        with xr.open_dataset(path, decode_times=False, **options) as ds:
+            yield ds
+
+
+@contextlib.contextmanager
 def _naming(path: Path) -> Iterator[None]:
     """The name of the file, put before what is wrong with it."""
     try:
@@ -59,23 +87,25 @@ def _naming(path: Path) -> Iterator[None]:
         raise InputError(f"file {path}: {error}") from None
 
 
-def _load(path: Path, only: Mapping[str, Collection[str]] | None) -> xr.Dataset:
+def _load(
+    path: Path, ds: xr.Dataset, only: Mapping[str, Collection[str]] | None, at: Mapping[str, float]
+) -> xr.Dataset:
     """The wanted variables of a file; their values are read once all else about them is known to be well."""
-    # no value of ours is a time, whatever the units say
-    with xr.open_dataset(path, engine="netcdf4", decode_times=False) as opened:
-        source = opened.attrs.get("source", "not given")
-        ours = LABELS.keys() & opened.variables.keys() or kind(opened) == "estimates"
-        if not str(source).startswith("frictionmap") or not ours:
-            raise InputError(f"file {path} must be written by frictionmap; its source is {source!r}")
-        with _naming(path):
-            check_structure(opened)
-        if kind(opened) == "estimates":  # small, and drawn of all that is there
-            return opened.load()
-        wanted = LABELS if only is None else only[kind(opened)]
-        part = _ours(opened)
-        return part.drop_vars(
-            [name for name in part.variables if name in LABELS and name not in wanted]
-        ).load()
+    source = ds.attrs.get("source", "not given")
+    ours = LABELS.keys() & ds.variables.keys() or kind(ds) == "estimates"
+    if not str(source).startswith("frictionmap") or not ours:
+        raise InputError(f"file {path} must be written by frictionmap; its source is {source!r}")
+    with _naming(path):
+        if at or further_axes(ds):
+            ds = choose(ds, at)
+        if MARKS in ds and not ds[MARKS].values.all():  # boundaries of blocks to come are not known
+            ds = ds.drop_vars([name for name in CURVES if name in ds])
+        check_structure(ds)
+    if kind(ds) == "estimates":  # small, and drawn of all that is there
+        return ds.load()
+    wanted = LABELS if only is None else only[kind(ds)]
+    part = _ours(ds)
+    return part.drop_vars([name for name in part.variables if name in LABELS and name not in wanted]).load()
 
 
 def _ours(ds: xr.Dataset) -> xr.Dataset:

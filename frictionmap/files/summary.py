@@ -99,14 +99,10 @@ def describe_file(ds: xr.Dataset) -> str:
     """
     ds = standard_form(ds)
     what = kind(ds)
-    texts = {name: _printable(ds.attrs.get(name, "")) for name in TEXTS}
-    lines = [textwrap.shorten(texts["title"], _WIDTH - len(what) - 3, placeholder="...") + f" [{what}]"]
-    for name in ("system", "source", "history"):
-        if texts[name]:
-            lines += _entry(name, texts[name])
+    lines = header_lines(ds, what)
     if what == "estimates":
         return "\n".join([*lines, *_estimates(ds)])
-    lines += ["axes", *(line for name in ds.coords for line in _entry(str(name), _axis(ds[name].values)))]
+    lines += axis_lines(ds)
     listed = [name for name in ds.data_vars if _is_list(ds[name])]
     lines += ["variables", *(_named(ds[name]) for name in ds.data_vars if name not in listed)]
     if listed:
@@ -116,6 +112,26 @@ def describe_file(ds: xr.Dataset) -> str:
         lines += [line for name in others for line in _entry(str(name), _values(ds[name]))]
     lines += list(_in_short(ds, what))
     return "\n".join(lines)
+
+
+def header_lines(ds: xr.Dataset, what: str) -> list[str]:
+    """Title and kind, system, source, history."""
+    texts = {name: _printable(ds.attrs.get(name, "")) for name in TEXTS}
+    lines = [textwrap.shorten(texts["title"], _WIDTH - len(what) - 3, placeholder="...") + f" [{what}]"]
+    for name in ("system", "source", "history"):
+        if texts[name]:
+            lines += _entry(name, texts[name])
+    return lines
+
+
+def axis_lines(ds: xr.Dataset) -> list[str]:
+    """Every axis, and what goes with one."""
+    return ["axes", *(line for name in ds.coords for line in _entry(str(name), _axis(ds[name].values)))]
+
+
+def variable_lines(ds: xr.Dataset) -> list[str]:
+    """Every variable with its dimensions and meaning."""
+    return ["variables", *(_named(ds[name]) for name in ds.data_vars)]
 
 
 def _estimates(ds: xr.Dataset) -> Iterator[str]:

@@ -6,7 +6,19 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from .palette import BROKEN, CLASSES, CONTINUOUS, MORE, NO_STOPS, ONE, STUCK, UNCOUNTED, UNRESOLVED
+from .palette import (  # fmt: skip
+    BROKEN,
+    CLASSES,
+    CONTINUOUS,
+    COUNT,
+    MORE,
+    NO_STOPS,
+    NOT_YET,
+    ONE,
+    STUCK,
+    UNCOUNTED,
+    UNRESOLVED,
+)
 
 #: Cells that are looked at together: a map of any size takes little memory beyond its own.
 _AT_ONCE = 1 << 19
@@ -49,20 +61,24 @@ def classes(ds: xr.Dataset) -> np.ndarray:
     continuous (no stops) from stick-slip, but not stuck from unresolved.  A map without numbers of stops
     has one class of stick-slip.
     """
-    regime, stops = (ds[name].values if name in ds else None for name in ("regime", "stops_per_cycle"))
+    regime, stops, status = (
+        ds[name].values if name in ds else None for name in ("regime", "stops_per_cycle", "status")
+    )
     found = np.empty((ds.sizes["r"], ds.sizes["beta"]), dtype=np.uint8)
     for block in blocks(found.shape):
         found[block] = _of_cells(
             None if regime is None else regime[block], None if stops is None else stops[block]
         )
+        if status is not None:
+            found[block][status[block] == regimes.NOT_COMPUTED] = NOT_YET
     return found
 
 
 def count(found: np.ndarray) -> np.ndarray:
     """How many cells every class has."""
-    counts = np.zeros(len(CLASSES), dtype=np.int64)
+    counts = np.zeros(COUNT, dtype=np.int64)
     for block in blocks(found.shape):
-        counts += np.bincount(found[block].ravel(), minlength=len(CLASSES))
+        counts += np.bincount(found[block].ravel(), minlength=COUNT)
     return counts
 
 

@@ -52,6 +52,12 @@ CLASSES = (
 )
 UNRESOLVED, STUCK, CONTINUOUS, ONE, MORE, BROKEN, UNCOUNTED, NO_STOPS = 0, 1, 2, 3, 7, 8, 9, 10
 
+#: Cells of blocks that a store has not yet: nothing is painted, and what lies behind is dotted.
+NOT_YET = len(CLASSES)
+NOT_YET_LABEL, NOT_YET_HATCH = "not computed yet", "..."
+#: Classes and cells that have none yet.
+COUNT = NOT_YET + 1
+
 #: Hatching says that two answers are possible, in all pictures.
 HATCH = "////"
 HATCH_COLOUR = "#404040"
@@ -97,8 +103,8 @@ def sequence(number: int) -> list[str]:
 
 
 def colour_table() -> np.ndarray:
-    """Red, green, blue and opacity of the classes, 0 to 255; one more row, transparent, for no cell."""
-    table = np.zeros((len(CLASSES) + 1, 4), dtype=np.uint8)
+    """Red, green, blue and opacity of the classes, 0 to 255; further rows, transparent, for no cell."""
+    table = np.zeros((COUNT + 1, 4), dtype=np.uint8)
     for row, look in zip(table, CLASSES, strict=False):
         row[:] = [int(look.colour[k : k + 2], 16) for k in (1, 3, 5)] + [255]
     return table

@@ -23,10 +23,14 @@ from .palette import (  # fmt: skip
     BROKEN,
     CLASSES,
     CONTINUOUS,
+    COUNT,
     HATCH,
     HATCH_COLOUR,
     LIM,
     MORE,
+    NOT_YET,
+    NOT_YET_HATCH,
+    NOT_YET_LABEL,
     STICK,
     STUCK,
     colour_table,
@@ -101,7 +105,7 @@ class CellImage(Artist):
         left, bottom = round(left), round(bottom)
         size = max(1, round((right - left) * scale)), max(1, round((top - bottom) * scale))
         edges = self._edges(scale, left, bottom)
-        image = paint(rasterise(self.cells.found, *edges, size, len(CLASSES)), colour_table())
+        image = paint(rasterise(self.cells.found, *edges, size, COUNT), colour_table())
         if self.cells.several is not None:
             self._hatch(image, rasterise(self.cells.several, *edges, size, 2) == 1, scale)
         gc = renderer.new_gc()
@@ -130,9 +134,9 @@ class CellImage(Artist):
 def _name_regions(ax: Axes, cells: Cells, curves: Iterable[tuple[np.ndarray, np.ndarray]]) -> None:
     """Write the names of the large regions into them, off the curves."""
     x_edges, y_edges = (COARSE * grid.share(grid.edges) for grid in (cells.r, cells.beta))
-    coarse = rasterise(cells.found, x_edges, y_edges, (COARSE, COARSE), len(CLASSES))
+    coarse = rasterise(cells.found, x_edges, y_edges, (COARSE, COARSE), COUNT)
     for x, y in curves:
-        coarse[trace(cells.r.share(x), cells.beta.share(y))] = len(CLASSES)
+        coarse[trace(cells.r.share(x), cells.beta.share(y))] = COUNT
     for index in (STUCK, CONTINUOUS):
         place = room_for(coarse == index, CLASSES[index].label, size_of(ax))
         if place:
@@ -162,6 +166,8 @@ def _ring(ax: Axes, cells: Cells) -> list[Handle]:
 def draw_map(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
     """Draw one mu without rings; the entries for a legend that are not classes."""
     ax.add_artist(CellImage(cells))
+    if cells.counts[NOT_YET]:
+        ax.patch.set(hatch=NOT_YET_HATCH, edgecolor=HATCH_COLOUR)
     curves = boundary_curves(panel, cells.r, cells.beta.limits[1])
     handles: list[Handle] = []
     name_axes(ax, cells.r, float(panel["mu"]))
@@ -186,7 +192,7 @@ def _class_handles(panels: Sequence[xr.Dataset], cells: Sequence[Cells]) -> list
     """Legend's entries of the classes that are there, with their numbers of cells."""
     counts = np.sum([part.counts for part in cells], axis=0)
     handles: list[Handle] = []
-    for index in np.flatnonzero(counts):
+    for index in np.flatnonzero(counts[:NOT_YET]):
         low, high = np.inf, -np.inf
         if index in (MORE, BROKEN):
             ends = [
@@ -195,6 +201,9 @@ def _class_handles(panels: Sequence[xr.Dataset], cells: Sequence[Cells]) -> list
             ]
             low, high = min(e[0] for e in ends), max(e[1] for e in ends)
         handles.append(patch(legend_label(int(index), int(counts[index]), low, high), CLASSES[index].colour))
+    if counts[NOT_YET]:
+        label = f"{NOT_YET_LABEL} ({counts[NOT_YET]:,})"
+        handles.append(Patch(facecolor="none", edgecolor=HATCH_COLOUR, hatch=NOT_YET_HATCH, label=label))
     return handles
 
 

@@ -6,11 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..datasets.labels import CELL_VARIABLES, coordinate
+from ..datasets.labels import CELL_VARIABLES, MARKS, coordinate
 from .study import Block, Study
-
-#: Marks of blocks that are done; 1 where they are.
-MARKS = "block_done"
 
 
 class Array(NamedTuple):

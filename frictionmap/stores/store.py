@@ -4,7 +4,7 @@ import contextlib
 import glob
 import secrets
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -66,14 +66,6 @@ class Store:
                 where = region(self.study, block, array)
                 self._group[name][where] = found[name].values.reshape(_shape(where, array.shape))
         self._group[MARKS][block.place] = 1
-
-    def blocks_of(self, name: str) -> Iterator[np.ndarray]:
-        """The values of a variable in every block that is done, if there is that variable."""
-        if name in self._arrays:
-            array = self._group[name]
-            for place in np.argwhere(self.marks()):
-                block = self.study.block(tuple(int(index) for index in place))
-                yield np.asarray(array[region(self.study, block, self._arrays[name])])
 
     @cached_property
     def _arrays(self) -> dict[str, Array]:

@@ -122,8 +122,8 @@ def test_one_folder(module, folder):
 ORDER = (
     "errors", "version", "regimes", "checks", "interrupts", "_kernels", "model", "datasets", "roots",
     "features",
-    "theory", "steady", "files", "stores", "identify", "examples", "pictures", "plot", "progress",
-    "arguments", "cli", "__main__",
+    "theory", "steady", "files", "probabilities", "stores", "identify", "examples", "pictures", "plot",
+    "progress", "arguments", "cli", "__main__",
 )  # fmt: skip
 
 

@@ -1,0 +1,131 @@
+"""One point of further axes, chosen from a dataset that has them."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from .. import checks
+from ..datasets.labels import COORDINATES, labels_of
+from ..datasets.provenance import configuration
+from ..datasets.schema import kind
+from ..errors import InputError
+from .config import Config, config_of
+
+#: A number that was typed is that of an axis if they differ by no more than this share.
+_SAME = 1e-9
+
+#: Values of an axis that a message lists.
+_LISTED = 8
+
+
+def parse_choices(texts: Sequence[str]) -> dict[str, float]:
+    """What was chosen on the command line, such as ``damping_ratios=0.01``."""
+    choices: dict[str, float] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        name = name.strip()
+        try:
+            number = float(value)
+        except ValueError:
+            number = np.nan
+        if not equals or not name or not np.isfinite(number):
+            raise InputError(f"--at must be NAME=VALUE, such as damping_ratios=0.01; got {text!r}")
+        if name in choices:
+            raise InputError(f"--at {name} must be given once; got {choices[name]:g} and {number:g}")
+        choices[name] = number
+    return choices
+
+
+def further_axes(ds: xr.Dataset) -> list[str]:
+    """Dimensions of our variables beside those that their labels have."""
+    labels = labels_of(kind(ds))
+    dims = (
+        str(dim)
+        for name, variable in ds.variables.items()
+        if name in labels
+        for dim in variable.dims
+        if dim not in labels[str(name)].dims and dim not in COORDINATES
+    )
+    return list(dict.fromkeys(dims))
+
+
+def choose(ds: xr.Dataset, choices: Mapping[str, float]) -> xr.Dataset:
+    """The part of a dataset with these values of its axes; further axes of one value are taken as they are.
+
+    Its configuration is that of the system there.
+
+    Raises
+    ------
+    InputError
+        There is no such axis or value, or more than one point.
+    """
+    further = further_axes(ds)
+    legal = [*further, *(str(n) for n in ds.coords if n not in further and _further(ds, str(n), further))]
+    legal += [name for name in ("mu", "r", "beta") if ds.sizes.get(name, 0) > 0]
+    places: dict[str, np.ndarray] = {}
+    for name, value in choices.items():
+        if name not in legal:
+            raise InputError(
+                f"--at must name an axis of the file: {', '.join(legal)}; "
+                f"got {name}{checks.nearest(name, legal)}"
+            )
+        dim, found = _found(ds, name, value)
+        places[dim] = np.intersect1d(found, places[dim]) if dim in places else found
+    point: dict[str, int] = {}
+    for dim in (*further, *(dim for dim in places if dim not in further)):
+        found = places.get(dim, np.arange(ds.sizes[dim]))
+        if found.size != 1:
+            raise InputError(f"--at {dim}=VALUE must choose one point of {_values(ds, dim)}")
+        point[dim] = int(found[0])
+    part = ds.isel(point)
+    return part.assign_attrs(_of_point(ds, point, further)) if further else part
+
+
+def _further(ds: xr.Dataset, name: str, further: Sequence[str]) -> bool:
+    """Whether a coordinate tells a number along one further axis."""
+    return ds[name].ndim == 1 and ds[name].dims[0] in further
+
+
+def _found(ds: xr.Dataset, name: str, value: float) -> tuple[str, np.ndarray]:
+    """The dimension of an axis, and the places where it has a value."""
+    if name not in ds.coords:
+        values, dim = np.arange(ds.sizes[name]), name
+    else:
+        values, dim = ds[name].values, str(ds[name].dims[0])
+    places = np.flatnonzero(np.abs(values - value) <= _SAME * np.abs(value))
+    if not places.size:
+        raise InputError(f"--at {name} must be one of {_values(ds, name)}; got {value:g}")
+    return dim, places
+
+
+def _values(ds: xr.Dataset, name: str) -> str:
+    """The values of an axis in words."""
+    values = ds[name].values if name in ds.coords else np.arange(ds.sizes[name])
+    if values.size > _LISTED:
+        return f"{name} = {values.min():g} to {values.max():g} ({values.size} values)"
+    return f"{name} = {', '.join(f'{value:g}' for value in values)}"
+
+
+def _of_point(ds: xr.Dataset, point: Mapping[str, int], further: Sequence[str]) -> dict[str, str]:
+    """Title, system and configuration of a point; the latter two are empty where the file does not tell."""
+    words = ", ".join(
+        f"{name} = {float(ds[name].values[point[str(ds[name].dims[0])]]):g}"
+        for name in map(str, ds.coords)
+        if _further(ds, name, further)
+    )
+    title = f"{ds.attrs.get('title', '')}, {words}".removeprefix(", ")
+    system = text = ""
+    config = _config(ds)
+    if config is not None and config.variations is not None:
+        chosen = config.variations.at([point[axis.name] for axis in config.variations.axes])
+        axes = {"r": config.r, "beta": config.beta, "mu": config.mu}
+        system, text = chosen.describe(), configuration(title, chosen, axes, config.solver)
+    return {"title": title, "system": system, "config": text}
+
+
+def _config(ds: xr.Dataset) -> Config | None:
+    try:
+        return config_of(str(ds.attrs.get("config", "")), {})
+    except InputError:  # matrices in a file of their own, or no configuration
+        return None

@@ -14,6 +14,7 @@ features       limits, peak thresholds, invariant points, quasi-static displacem
 theory         closed forms over frequency: `boundaries`, `continuous_motion`
 steady         steady states: cells, `sweep` (plan, run, label), `curves`, `response`; what a map costs
 files          configurations; places of output, storage, reading; files in words
+probabilities  many samples of an uncertain structure as probabilities
 stores         maps block by block into a zarr store, in this process or on workers
 identify       measured data: files, fits, estimates with their errors
 examples       synthetic measurements of rigs whose truth is known
@@ -36,7 +37,16 @@ if TYPE_CHECKING:
     from .files.config import load_config
     from .model.settings import Solver
     from .model.system import System
-    from .plot import plot_boundaries, plot_curves, plot_fit, plot_orbit, plot_regimes, plot_response
+    from .plot import (
+        plot_boundaries,
+        plot_curves,
+        plot_fit,
+        plot_orbit,
+        plot_regimes,
+        plot_response,
+        plot_shares,
+    )
+    from .probabilities import shares
     from .steady.curves import curves
     from .steady.response import response
     from .steady.sweep import sweep
@@ -61,7 +71,9 @@ __all__ = [
     "plot_orbit",
     "plot_regimes",
     "plot_response",
+    "plot_shares",
     "response",
+    "shares",
     "sweep",
 ]
 
@@ -80,7 +92,9 @@ _HOME = {
     "plot_orbit": "plot",
     "plot_regimes": "plot",
     "plot_response": "plot",
+    "plot_shares": "plot",
     "response": "steady.response",
+    "shares": "probabilities",
     "sweep": "steady.sweep",
 }
 

@@ -198,12 +198,32 @@ def _plot(options: Options) -> None:
     from .files.reading import read
     from .files.slices import parse_choices
     from .plot import PICTURED, check_picture, save_picture
+    from .probabilities import read_shares
 
-    ds = read(options.file, PICTURED, parse_choices(options.at))
+    choices = parse_choices(options.at)
+    if options.over is None:
+        ds = read(options.file, PICTURED, choices)
+    else:
+        ds = read_shares(options.file, options.over, choices)
     path = options.output or Path(f"{options.file.stem}.png")
     check_picture(path)
     with claimed(path, options.overwrite, [options.file]) as output:
         output.fill(lambda scratch: save_picture(ds, scratch, options.quantity, log=options.log))
+    if not options.quiet:
+        _print(f"wrote {path}")
+
+
+def _export(options: Options) -> None:
+    from .files.export import check_export, write_export
+    from .files.places import claimed
+    from .files.reading import read
+    from .files.slices import parse_choices
+
+    path = options.output or Path(f"{options.file.stem}.csv")
+    check_export(path)
+    with claimed(path, options.overwrite, [options.file]) as output:
+        ds = read(options.file, at=parse_choices(options.at))
+        output.fill(lambda scratch: write_export(ds, scratch, options.command_line))
     if not options.quiet:
         _print(f"wrote {path}")
 
@@ -250,7 +270,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = sys.argv[1:] if arguments is None else list(arguments)
     options = parse(given)
     options.command_line = f"frictionmap {shlex.join(given)}"
-    run = {"plot": _plot, "info": _info, "identify": _identify}.get(options.command, _compute)
+    run = {"plot": _plot, "info": _info, "identify": _identify, "export": _export}.get(
+        options.command, _compute
+    )
     try:
         _check_text(given)
         run(options)

@@ -17,6 +17,7 @@ from .pictures.harmonics import HARMONIC_VARIABLES
 from .pictures.history import plot_response
 from .pictures.orbit import plot_orbit
 from .pictures.regime_map import plot_regimes
+from .pictures.share_map import plot_shares
 
 if TYPE_CHECKING:
     from .pictures.panels import AxesArray
@@ -31,6 +32,7 @@ __all__ = [
     "plot_orbit",
     "plot_regimes",
     "plot_response",
+    "plot_shares",
     "save_picture",
 ]
 
@@ -62,6 +64,8 @@ def check_picture(path: Path) -> None:
 
 def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
     """A picture of a dataset of any kind; the first of what is drawn of its kind if no quantity is given."""
+    if "regime_share" in ds:
+        return plot_shares(ds)
     what = kind(ds)
     if what == "curves":
         return plot_curves(ds, quantity, log=log)

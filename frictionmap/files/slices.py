@@ -50,10 +50,10 @@ def further_axes(ds: xr.Dataset) -> list[str]:
     return list(dict.fromkeys(dims))
 
 
-def choose(ds: xr.Dataset, choices: Mapping[str, float]) -> xr.Dataset:
+def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None) -> xr.Dataset:
     """The part of a dataset with these values of its axes; further axes of one value are taken as they are.
 
-    Its configuration is that of the system there.
+    Its configuration is that of the system there, unless the axis `over` is left.
 
     Raises
     ------
@@ -72,14 +72,22 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float]) -> xr.Dataset:
             )
         dim, found = _found(ds, name, value)
         places[dim] = np.intersect1d(found, places[dim]) if dim in places else found
+    if over is not None and over not in further:
+        raise InputError(
+            f"--over must name a further axis of the file: {', '.join(further) or 'it has none'}; got {over}"
+        )
     point: dict[str, int] = {}
-    for dim in (*further, *(dim for dim in places if dim not in further)):
+    chosen = [dim for dim in further if dim != over]
+    for dim in (*chosen, *(dim for dim in places if dim not in further)):
         found = places.get(dim, np.arange(ds.sizes[dim]))
         if found.size != 1:
-            raise InputError(f"--at {dim}=VALUE must choose one point of {_values(ds, dim)}")
+            raise InputError(
+                f"--at {dim}=VALUE must choose one point of {_values(ds, dim)}; "
+                f"plot --over {dim} draws the shares of regimes over it"
+            )
         point[dim] = int(found[0])
     part = ds.isel(point)
-    return part.assign_attrs(_of_point(ds, point, further)) if further else part
+    return part.assign_attrs(_of_point(ds, point, further)) if chosen and over is None else part
 
 
 def _further(ds: xr.Dataset, name: str, further: Sequence[str]) -> bool:

@@ -26,6 +26,8 @@ def arrays_of(study: Study, sample: xr.Dataset) -> dict[str, Array]:
     dims = tuple(axis.name for axis in study.variations.axes)
     sizes = dict(zip(dims, study.variations.shape, strict=True))
     sizes |= {"mu": study.mu.size, "r": study.r.size, "beta": study.beta.size, "dof": study.system.n}
+    further = [name for name in study.coordinates() if name not in dims]
+    beside = {"coordinates": " ".join(further)} if further else {}  # CF: what goes with an axis
     arrays = {}
     for name, variable in sample.data_vars.items():
         own = (*dims, *map(str, variable.dims))
@@ -33,7 +35,7 @@ def arrays_of(study: Study, sample: xr.Dataset) -> dict[str, Array]:
         fill = CELL_VARIABLES[str(name)].unresolved if name in CELL_VARIABLES else np.nan
         arrays[str(name)] = Array(
             own, tuple(sizes[dim] for dim in own), tuple(chunk.get(dim, sizes[dim]) for dim in own),
-            variable.dtype, variable.dtype.type(fill), plain(variable.attrs),
+            variable.dtype, variable.dtype.type(fill), plain(variable.attrs) | beside,
         )  # fmt: skip
     marks = {"long_name": "1 if the block of rows is computed; the others hold no results yet"}
     arrays[MARKS] = Array(

@@ -1,0 +1,46 @@
+"""Slices of files and stores, written as NetCDF or as a table."""
+
+import math
+from pathlib import Path
+
+import xarray as xr
+
+from .. import checks
+from ..datasets.labels import COORDINATES, LABELS
+from ..errors import InputError
+from .storage import write_netcdf
+
+FORMATS = (".nc", ".csv")
+
+
+def check_export(path: Path) -> None:
+    """Refuse a name whose ending is no format."""
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(f"-o must end in {' or '.join(FORMATS)}; got {path}")
+
+
+def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
+    """Write a dataset; as CSV one row for every point of all its axes, with the names of codes."""
+    if path.suffix.lower() == ".nc":
+        write_netcdf(ds, path, command)
+        return
+    table = {}
+    dims = [str(name) for name in COORDINATES if name in ds.dims]
+    for name, variable in ds.data_vars.items():
+        if set(variable.dims) <= set(dims):
+            table[name] = _in_words(variable)
+    wide = xr.Dataset(table)
+    checks.cells(1, 1, math.prod(wide.sizes.values()), name="a table")
+    wide.to_dataframe(dim_order=[dim for dim in dims if dim in wide.dims]).to_csv(path)
+
+
+def _in_words(variable: xr.DataArray) -> xr.DataArray:
+    """Codes by their names."""
+    label = LABELS.get(str(variable.name))
+    if label is None or not label.codes or label.flags == "flag_masks":
+        return variable
+    names = {code.value: code.name for code in label.codes}
+    words = variable.astype(object)
+    for value, name in names.items():
+        words = words.where(variable != value, name)
+    return words

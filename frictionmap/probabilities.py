@@ -1,0 +1,126 @@
+"""Many samples of an uncertain structure as probabilities: shares of each regime, quantiles of boundaries."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from . import checks, regimes
+from .datasets.labels import CELL, CURVE, REFERENCES
+from .datasets.schema import check_structure, kind
+from .errors import InputError
+from .files.reading import opened
+from .files.slices import choose, further_axes
+from .version import __version__
+
+#: Cells of all samples that are held at a time.
+_AT_ONCE = 1 << 22
+
+
+def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0.95)) -> xr.Dataset:
+    """Shares of each regime, and quantiles of boundaries and amplitude, over a further axis of maps.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Maps along one further axis, as ``sweep(..., axes=...)`` returns them or a store holds them (other
+        axes chosen before, with `isel` or `sel`); read part by part.
+    over : str
+        That axis, such as ``sample``; its points count alike.
+    quantiles : sequence of float
+        Between 0 and 1, increasing.
+
+    Returns
+    -------
+    xarray.Dataset
+        `regime_share` (outcome, mu, r, beta): unresolved, permanent_sticking, stick_slip, continuous, adding
+        up to 1; `beta_lim_quantile`, `beta_stick_quantile` (quantile, mu, r) and, if the maps have it,
+        `contact_amplitude_quantile` (quantile, mu, r, beta), over the samples that have one (NaN: none).
+        Quantiles are interpolated between neighbours of the ordered samples.
+
+    Raises
+    ------
+    InputError
+        There is no such axis, there is another one, or no regime.
+    """
+    if not isinstance(ds, xr.Dataset):
+        raise InputError(f"ds must be an xarray.Dataset; got {type(ds).__name__}")
+    further = further_axes(ds)
+    if kind(ds) != "map" or over not in further:
+        raise InputError(
+            f"over must name a further axis of maps; they have {', '.join(further) or 'none'}; "
+            f"got {checks.one_line(over)}"
+        )
+    if len(further) > 1:
+        others = ", ".join(name for name in further if name != over)
+        raise InputError(f"ds must have no further axis but {over}: choose one point of {others}")
+    if "regime" not in ds:
+        raise InputError("ds must hold regime; it does not")
+    levels = checks.axis(quantiles, "quantiles", least=0.0, most=1.0)
+    names = [name for name in ("beta_lim", "beta_stick", "contact_amplitude") if name in ds]
+    found = {f"{name}_quantile": _quantiles(ds, name, over, levels) for name in names}
+    coords = {name: ds[name].variable for name in CELL}
+    coords["outcome"] = xr.Variable(
+        "outcome", [code.name for code in regimes.REGIMES], {"long_name": "regime"}
+    )
+    coords["quantile"] = xr.Variable(
+        "quantile", levels, {"long_name": "share of samples below", "units": "1"}
+    )
+    attributes = {
+        **{name: ds.attrs[name] for name in ("title", "system", "config") if name in ds.attrs},
+        "Conventions": "CF-1.11", "source": f"frictionmap {__version__}", "references": REFERENCES,
+        "samples": int(ds.sizes[over]),
+    }  # fmt: skip
+    return xr.Dataset({"regime_share": _shares(ds, over), **found}, coords, attributes)
+
+
+def read_shares(path: Path, over: str, choices: Mapping[str, float]) -> xr.Dataset:
+    """`shares` of a file or a store over one of its axes, `choices` of the others."""
+    with opened(path) as ds:
+        check_structure(ds)
+        return shares(choose(ds, choices, over), over)
+
+
+def _shares(ds: xr.Dataset, over: str) -> xr.Variable:
+    codes = [code.value for code in regimes.REGIMES]
+    counts = np.zeros((len(codes), *(ds.sizes[name] for name in CELL)), dtype=np.int64)
+    for k in range(ds.sizes[over]):
+        values = ds["regime"].isel({over: k}).transpose(*CELL).values
+        for count, code in zip(counts, codes, strict=True):
+            count += values == code
+    words = {"long_name": "share of the samples with this regime", "units": "1"}
+    return xr.Variable(("outcome", *CELL), counts / ds.sizes[over], words)
+
+
+def _quantiles(ds: xr.Dataset, name: str, over: str, levels: np.ndarray) -> xr.Variable:
+    dims = CELL if "beta" in ds[name].dims else CURVE
+    values = np.full((levels.size, *(ds.sizes[dim] for dim in dims)), np.nan)
+    variable = ds[name].variable
+    for m, rows in _parts(ds, variable.size):
+        part = variable.isel(mu=m, r=rows).transpose(over, *dims[1:]).values
+        values[:, m, rows] = _ordered(part, levels)
+    words = {"long_name": f"quantiles of {name} over the samples", "units": "1"}
+    return xr.Variable(("quantile", *dims), values, words)
+
+
+def _parts(ds: xr.Dataset, size: int) -> Iterator[tuple[int, slice]]:
+    """Values of mu, and rows in r, so few that all samples of them can be held."""
+    step = max(1, _AT_ONCE * ds.sizes["mu"] * ds.sizes["r"] // max(1, size))
+    for m in range(ds.sizes["mu"]):
+        for first in range(0, ds.sizes["r"], step):
+            yield m, slice(first, first + step)
+
+
+def _ordered(samples: np.ndarray, levels: np.ndarray) -> np.ndarray:
+    """Quantiles along the first axis; NaN are left out, infinite ones are the largest."""
+    ordered = np.sort(samples, axis=0)  # NaN last
+    last = np.count_nonzero(~np.isnan(samples), axis=0) - 1
+    place = levels.reshape(-1, *(1,) * last.ndim) * np.maximum(last, 0)
+    low = np.floor(place).astype(np.intp)
+    below = np.take_along_axis(ordered, low, axis=0)
+    above = np.take_along_axis(ordered, np.minimum(low + 1, np.maximum(last, 0)), axis=0)
+    share = place - low
+    with np.errstate(invalid="ignore"):  # between two infinite samples
+        between = np.where(share > 0.0, below + share * (above - below), below)
+    return np.where(below == above, below, between)

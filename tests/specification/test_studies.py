@@ -1,0 +1,214 @@
+"""Files with further axes and stores: told, drawn, cut, counted."""
+
+import csv
+import shutil
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import frictionmap as fm
+from frictionmap import InputError
+from frictionmap.cli import main
+from frictionmap.files.reading import read
+from frictionmap.files.slices import parse_choices
+from frictionmap.files.storage import write
+from frictionmap.files.stored import stored_system
+from frictionmap.pictures.classes import count
+from frictionmap.pictures.palette import NOT_YET
+from frictionmap.pictures.regime_map import cells_of
+
+CONFIG = """
+title = "Study"
+[system]
+mass_ratios = [1.0, 1.0]
+stiffness_ratios = [1.0, 1.0]
+[grid]
+r = [0.3, 0.9, 1.4]
+beta = [0.1, 0.5, 1.0]
+[axes]
+damping_ratios = [0.0, 0.05]
+sample = { "mass_ratios[2]" = [1.0, 1.5, 0.5], "stiffness_ratios[2]" = [1.0, 2.0, 0.5] }
+"""
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """A study as a file and, where zarr is, as a store."""
+    folder = tmp_path_factory.mktemp("studies")
+    (folder / "study.toml").write_text(CONFIG)
+    ends = [".nc", ".zarr"]
+    pytest.importorskip("zarr")
+    for end in ends:
+        assert main(["map", str(folder / "study.toml"), "-o", str(folder / f"study{end}"), "--quiet"]) == 0
+    return {end: folder / f"study{end}" for end in ends}
+
+
+@pytest.mark.parametrize("end", [".nc", ".zarr"])
+def test_a_point_is_the_map_of_its_system(files, end):
+    ds = read(files[end], at={"damping_ratios": 0.05, "mass_ratios_2": 1.5})
+    system = fm.System(mass_ratios=[1, 1.5], stiffness_ratios=[1, 2], damping_ratios=0.05)
+    one = fm.sweep(system, r=[0.3, 0.9, 1.4], beta=[0.1, 0.5, 1.0])
+    for name in one.data_vars:
+        np.testing.assert_array_equal(ds[name].values, one[name].values)
+    assert ds.attrs["system"] == system.describe()
+    assert "damping_ratios = 0.05" in ds.attrs["title"]
+    assert stored_system(ds) == system
+
+
+@pytest.mark.parametrize("end", [".nc", ".zarr"])
+@pytest.mark.parametrize(
+    ("at", "words"),
+    [
+        ({}, "--at damping_ratios=VALUE must choose one point of damping_ratios = 0, 0.05"),
+        ({"damping_ratios": 0.0}, "--at sample=VALUE must choose one point of sample = 0, 1, 2; plot --over"),
+        ({"damping_ratios": 0.02}, "--at damping_ratios must be one of damping_ratios = 0, 0.05; got 0.02"),
+        (
+            {"damping_ratio": 0.0},
+            r"must name an axis of the file: damping_ratios, .* got damping_ratio \(did",
+        ),
+        ({"sample": 1, "mass_ratios_2": 1.0, "damping_ratios": 0}, "--at sample=VALUE must choose one point"),
+    ],
+)
+def test_choices_that_are_refused(files, end, at, words):
+    with pytest.raises(InputError, match=words):
+        read(files[end], at=at)
+
+
+@pytest.mark.parametrize("text", ["x", "x=", "=1", "x=one", "x=nan", "x=inf"])
+def test_choices_that_make_no_sense(text):
+    with pytest.raises(InputError, match="--at must be NAME=VALUE"):
+        parse_choices([text])
+
+
+def test_a_choice_twice():
+    with pytest.raises(InputError, match="--at x must be given once; got 1 and 2"):
+        parse_choices(["x=1", "x=2"])
+
+
+@pytest.mark.parametrize("end", [".nc", ".zarr"])
+def test_info(files, end, capsys):
+    assert main(["info", str(files[end])]) == 0
+    told = capsys.readouterr().out
+    assert "sample                0, 1, 2" in told
+    assert "54 cells (" in told
+    assert ("6 of 6 blocks; all are computed" in told) == (end == ".zarr")
+    assert main(["info", str(files[end]), "--at", "damping_ratios=0.05", "--at", "sample=2"]) == 0
+    assert "modal damping ratios 0.05" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("end", [".nc", ".zarr"])
+def test_plot(files, end, tmp_path):
+    where = ["--at", "damping_ratios=0", "--at", "sample=1"]
+    assert main(["plot", str(files[end]), *where, "-o", str(tmp_path / "one.png"), "--quiet"]) == 0
+    over = ["--at", "damping_ratios=0", "--over", "sample"]
+    assert main(["plot", str(files[end]), *over, "-o", str(tmp_path / "all.png"), "--quiet"]) == 0
+    assert main(["plot", str(files[end]), "--over", "mass", "-o", str(tmp_path / "no.png")]) == 2
+
+
+def test_export(files, tmp_path):
+    cut = ["--at", "damping_ratios=0.05", "--at", "sample=1", "--at", "r=0.9"]
+    assert main(["export", str(files[".zarr"]), *cut, "-o", str(tmp_path / "cut.csv"), "--quiet"]) == 0
+    assert main(["export", str(files[".zarr"]), *cut, "-o", str(tmp_path / "cut.nc"), "--quiet"]) == 0
+    with open(tmp_path / "cut.csv", newline="") as opened:
+        rows = list(csv.DictReader(opened))
+    ds = read(tmp_path / "cut.nc")
+    assert [float(row["beta"]) for row in rows] == [0.1, 0.5, 1.0]
+    assert [float(row["contact_amplitude"]) for row in rows] == ds[
+        "contact_amplitude"
+    ].values.ravel().tolist()
+    names = dict(
+        zip(ds["regime"].attrs["flag_values"], ds["regime"].attrs["flag_meanings"].split(), strict=True)
+    )
+    assert [row["regime"] for row in rows] == [names[code] for code in ds["regime"].values.ravel()]
+    assert main(["export", str(files[".nc"]), *cut, "-o", str(tmp_path / "cut.txt")]) == 2
+
+
+def test_unfinished_blocks_are_told_and_drawn_as_such(files, tmp_path, capsys):
+    path = tmp_path / "part.zarr"
+    shutil.copytree(files[".zarr"], path)
+    shutil.rmtree(path / "block_done" / "c" / "1")
+    for name in ("regime", "status", "stops_per_cycle", "contact_amplitude", "beta_lim"):
+        shutil.rmtree(path / name / "c" / "1")
+    ds = read(path, at={"damping_ratios": 0.05, "sample": 0})
+    assert count(cells_of(ds.isel(mu=0)).found)[NOT_YET] == 9
+    ds = read(path, at={"damping_ratios": 0.0, "sample": 0})
+    assert count(cells_of(ds.isel(mu=0)).found)[NOT_YET] == 0
+    assert main(["info", str(path)]) == 0
+    told = capsys.readouterr().out
+    assert "3 of 6 blocks; run the command again to go on" in told
+    assert "27 cells not_computed" in told
+    arguments = ["plot", str(path), "--at", "damping_ratios=0.05", "--at", "sample=0"]
+    assert main([*arguments, "-o", str(tmp_path / "part.png"), "--quiet"]) == 0
+
+
+# Shares
+
+
+@pytest.fixture(scope="module")
+def samples():
+    """Maps of thirty random systems of two masses, and each of them alone."""
+    rng = np.random.default_rng(7)
+    changes = {"mass_ratios[2]": rng.uniform(0.8, 1.2, 30), "stiffness_ratios[2]": rng.uniform(0.8, 1.2, 30)}
+    system = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.01)
+    grid = {"r": np.linspace(0.2, 1.8, 9), "beta": np.linspace(0.0, 1.3, 7), "mu": [1.0, 1.5]}
+    return fm.sweep(system, **grid, axes={"sample": changes})
+
+
+def test_shares_are_shares(samples):
+    found = fm.shares(samples, "sample", quantiles=(0.0, 0.1, 0.5, 1.0))
+    share = found["regime_share"]
+    np.testing.assert_allclose(share.sum("outcome"), 1.0, rtol=0, atol=1e-15)
+    codes = dict(zip(share["outcome"].values, (-1, 0, 1, 2), strict=True))
+    for name, code in codes.items():
+        expected = (samples["regime"] == code).mean("sample")
+        np.testing.assert_allclose(share.sel(outcome=name), expected, rtol=0, atol=1e-15)
+    for name in ("beta_lim", "beta_stick", "contact_amplitude"):
+        expected = np.quantile(samples[name].values, [0.0, 0.1, 0.5, 1.0], axis=0)
+        finite = np.isfinite(expected)
+        values = found[f"{name}_quantile"].values
+        np.testing.assert_allclose(values[finite], expected[finite], rtol=1e-14)
+
+
+def test_quantiles_of_what_is_missing_or_infinite(samples):
+    some = samples.isel(r=[0], beta=[0], mu=[0], sample=slice(0, 4)).copy(deep=True)
+    some["contact_amplitude"].values[:, 0, 0, 0] = [np.nan, 1.0, np.inf, 3.0]
+    found = fm.shares(some, "sample", quantiles=(0.0, 0.25, 0.5, 0.75, 1.0))
+    assert found["contact_amplitude_quantile"].values.ravel().tolist() == [1.0, 2.0, 3.0, np.inf, np.inf]
+    some["contact_amplitude"].values[:] = np.nan
+    assert np.isnan(fm.shares(some, "sample")["contact_amplitude_quantile"].values).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda ds: (ds, "mu"), "over must name a further axis of maps; they have sample; got 'mu'"),
+        (lambda ds: (ds.isel(sample=0), "sample"), "they have none"),
+        (lambda ds: (ds.drop_vars("regime"), "sample"), "ds must hold regime"),
+        (
+            lambda ds: (ds.expand_dims(damping_ratios=[0.0, 0.1]), "sample"),
+            "choose one point of damping_ratios",
+        ),
+        (lambda ds: (7, "sample"), "ds must be an xarray.Dataset"),
+    ],
+)
+def test_shares_that_are_refused(samples, change, words):
+    with pytest.raises(InputError, match=words):
+        fm.shares(*change(samples))
+
+
+def test_a_picture_of_shares(samples, tmp_path):
+    found = fm.shares(samples, "sample")
+    axes = fm.plot_shares(found)
+    there = [name for name in found["outcome"].values if (found["regime_share"].sel(outcome=name) > 0).any()]
+    assert len(axes) == 2 * len(there)
+    shown = axes[0].collections[0].get_array().reshape(7, 9)
+    np.testing.assert_array_equal(shown, found["regime_share"].sel(outcome="continuous")[0].values.T)
+    with pytest.raises(InputError, match="plot_shares takes a dataset that shares returns"):
+        fm.plot_shares(samples)
+
+
+def test_a_study_survives_the_file(samples, tmp_path):
+    write(samples, tmp_path / "s.nc")
+    with xr.open_dataset(tmp_path / "s.nc") as opened:
+        xr.testing.assert_identical(fm.shares(opened, "sample"), fm.shares(samples, "sample"))

@@ -39,28 +39,20 @@ def read(
     InputError
         The file cannot be read, is not ours, or holds what it must not; one line that names the file.
     """
-    try:
-        with opened(path) as ds:
-            ds = _load(path, ds, only, at or {})
-    except InputError:
-        raise
-    except Exception as error:  # the libraries raise anything over a file that is not what they expect
-        raise InputError(
-            f"file {path} must be NetCDF written by frictionmap; it cannot be opened "
-            f"({checks.one_line(error) if not str(error) else error})"
-        ) from None
+    with opened(path) as ds:
+        ds = _load(path, ds, only, at or {})
     with _naming(path):
         return standard_form(ds)
 
 
 @contextlib.contextmanager
 def opened(path: Path) -> Iterator[xr.Dataset]:
-    """A file, or a store, as long as the context lasts; no values are read.
+    """A file, or a store, as long as the context lasts; no values are read before they are used.
 
     Raises
     ------
     InputError
-        There is none, or zarr is wanted and missing.
+        There is none, it is not ours, zarr is wanted and missing; or the file is damaged where it is read.
     """
     store = (path / "zarr.json").is_file()
     if not store and not path.is_file():
@@ -74,8 +66,24 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
         options = {"engine": "zarr", "consolidated": False, "chunks": None}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a malformed file; what is wrong with it is said below
-        with xr.open_dataset(path, decode_times=False, **options) as ds:
-            yield ds
+        try:
+            with xr.open_dataset(path, decode_times=False, **options) as ds:
+                _check_ours(path, ds)
+                yield ds
+        except InputError:
+            raise
+        except Exception as error:  # the libraries raise anything over a file that is not what they expect
+            raise InputError(
+                f"file {path} must be NetCDF written by frictionmap; it cannot be opened "
+                f"({checks.one_line(error) if not str(error) else error})"
+            ) from None
+
+
+def _check_ours(path: Path, ds: xr.Dataset) -> None:
+    source = ds.attrs.get("source", "not given")
+    ours = LABELS.keys() & ds.variables.keys() or kind(ds) == "estimates"
+    if not str(source).startswith("frictionmap") or not ours:
+        raise InputError(f"file {path} must be written by frictionmap; its source is {source!r}")
 
 
 @contextlib.contextmanager
@@ -91,10 +99,6 @@ def _load(
     path: Path, ds: xr.Dataset, only: Mapping[str, Collection[str]] | None, at: Mapping[str, float]
 ) -> xr.Dataset:
     """The wanted variables of a file; their values are read once all else about them is known to be well."""
-    source = ds.attrs.get("source", "not given")
-    ours = LABELS.keys() & ds.variables.keys() or kind(ds) == "estimates"
-    if not str(source).startswith("frictionmap") or not ours:
-        raise InputError(f"file {path} must be written by frictionmap; its source is {source!r}")
     with _naming(path):
         if at or further_axes(ds):
             ds = choose(ds, at)

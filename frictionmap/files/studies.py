@@ -10,6 +10,7 @@ import xarray as xr
 
 from .. import regimes
 from ..datasets.labels import CELL, MARKS
+from ..datasets.schema import check_structure
 from .reading import opened
 from .slices import further_axes
 from .summary import axis_lines, header_lines, in_causes, in_cells, variable_lines
@@ -18,6 +19,7 @@ from .summary import axis_lines, header_lines, in_causes, in_cells, variable_lin
 def is_study(path: Path) -> bool:
     """Whether a file is a store or has further axes."""
     with opened(path) as ds:
+        check_structure(ds)
         return MARKS in ds or bool(further_axes(ds))
 
 

@@ -252,5 +252,5 @@ def test_what_data_cannot_tell():
 
 def test_what_data_cannot_tell_apart():
     """Four amplitudes at one frequency: friction, frequency and damping trade without end."""
-    with pytest.raises(fm.InputError, match="the data do not tell .* apart; known may hold one"):
+    with pytest.raises(fm.InputError, match=r"the data do not tell .* apart; known may hold one"):
         fm.identify.forced(np.full(4, 2.0), None, [1.61, 1.6, 1.6, 1.59], known={"mu": 1.0})

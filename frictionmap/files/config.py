@@ -277,6 +277,10 @@ def system_in(text: str) -> System | None:
 
 def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None) -> Config:
     name = path.stem
+    if "data" in tree and "grid" not in tree:
+        raise InputError(
+            "the configuration must have [system] and [grid]; it is of a rig, for frictionmap identify"
+        )
     for key in tree:
         if key not in _SECTIONS:
             raise unknown_key(key, "", tuple(_SECTIONS))

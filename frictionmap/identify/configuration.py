@@ -13,7 +13,7 @@ from .. import checks
 from ..errors import InputError
 from ..files.config import read_tree, unknown_key
 from .columns import MISSING
-from .rig import Kind, Rig
+from .rig import Rig
 from .rig_decay import FREE_DECAY
 from .rig_forced import FORCED
 from .rig_record import RECORD
@@ -21,6 +21,10 @@ from .rig_sweep import SWEEP
 from .tables import read_table
 
 _KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "record": RECORD, "sweep": SWEEP}
+
+
+#: Endings of what is data, not a configuration.
+_DATA = (".csv", ".mat", ".npz", ".txt", ".uff", ".unv", ".tdms", ".xlsx")
 
 
 def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
@@ -33,17 +37,17 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     InputError
         The file cannot be read or is not TOML; a key is unknown, missing, of the wrong type or out of range.
     """
+    _refuse_data(path)
     tree, text = read_tree(path, overrides)
     path = Path(path)
     data, known, fit = (_table(tree, name) for name in ("data", "known", "fit"))
-    name = checks.choice(data.get("kind"), "data.kind", tuple(_KINDS))
+    name = _checked_kind(tree, data)
     kind = _KINDS[name]
-    _check_keys(tree, kind)
+    _check_keys(tree, name)
     file = data.get("file")
     if not isinstance(file, str) or not file:
-        raise InputError(
-            f"data.file must be the path of a file of measured data; got {checks.one_line(file)}"
-        )
+        given = f"got {checks.one_line(file)}" if "file" in data else "there is none"
+        raise InputError(f"data.file must be the path of a file of measured data; {given}")
     missing = checks.choice(data.get("missing", MISSING[0]), "data.missing", MISSING)
     title = tree.get("title", path.stem)
     if not isinstance(title, str):
@@ -80,8 +84,29 @@ def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
     return table
 
 
-def _check_keys(tree: Mapping[str, object], kind: Kind) -> None:
+def _refuse_data(path: object) -> None:
+    """Refuse measured data where their configuration is due."""
+    if isinstance(path, (str, Path)) and Path(path).suffix.lower() in _DATA:
+        raise InputError(
+            f"RIG.toml must be a configuration, which says with [data] kind and file what {path} holds; "
+            "got the file of data itself"
+        )
+
+
+def _checked_kind(tree: Mapping[str, object], data: Mapping[str, object]) -> str:
+    kinds = ", ".join(_KINDS)
+    if "kind" in data:
+        return checks.choice(data["kind"], "data.kind", tuple(_KINDS))
+    if "grid" in tree:
+        raise InputError(
+            f"the configuration must have data.kind, one of {kinds}; it is that of a map, for frictionmap map"
+        )
+    raise InputError(f"the configuration must have a table [data] with kind, one of {kinds}; it has none")
+
+
+def _check_keys(tree: Mapping[str, object], name: str) -> None:
     """Refuse what no key of the kind is; [system] is checked as in maps, where it is used."""
+    kind = _KINDS[name]
     sections = {
         "data": ("kind", "file", "columns", "missing", *kind.data),
         "known": (*kind.parameters, *kind.known),
@@ -90,11 +115,16 @@ def _check_keys(tree: Mapping[str, object], kind: Kind) -> None:
     legal = ("title", *sections, *(("system",) if kind.system else ()))
     for key in tree:
         if key not in legal:
-            raise unknown_key(key, "", legal)
-    for name, keys in sections.items():
-        for key in _table(tree, name):
+            raise _unknown(key, "", legal, name)
+    for section, keys in sections.items():
+        for key in _table(tree, section):
             if key not in keys:
-                raise unknown_key(key, name, keys)
+                raise _unknown(key, section, keys, name)
+
+
+def _unknown(key: str, section: str, legal: Sequence[str], kind: str) -> InputError:
+    """What is no key of a kind may well be one of another."""
+    return InputError(f"{unknown_key(key, section, legal)}, for data.kind = {kind!r}")
 
 
 def _checked_free(

@@ -56,6 +56,10 @@ def read_table(path: Path) -> Table:
 
 def _read_csv(path: Path) -> Table:
     content = path.read_bytes()
+    if b"\0" in content:
+        raise InputError(
+            f"file {path} must be text; it holds zero bytes (from UTF-16 it can be saved as UTF-8)"
+        )
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:  # what measuring programs of Windows write

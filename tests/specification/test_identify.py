@@ -249,10 +249,42 @@ def test_odd_measurements(measured, rig, capsys, name, warning):
         ("data.window=[1, nan]", "window must be finite"),
         ("data.window=[1]", "window must be two times; got [1]"),
         ("grid.r=1", "unknown key grid"),
+        ("system.contact=fixed-wall", "title, data, known, fit, for data.kind = 'free-decay'"),
     ],
 )
 def test_bad_configurations(rig, capsys, override, message):
     assert message in refusal(capsys, "identify", rig("\n".join(GOOD)), "--set", override)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "must have a table [data] with kind, one of free-decay, "),
+        ('kind = "free-decay"', "must have a table [data] with kind, one of free-decay, "),
+        ('[data]\nfile = "decay.csv"', "must have a table [data] with kind, one of free-decay, "),
+        (
+            '[data]\nkind = "free-decay"',
+            "data.file must be the path of a file of measured data; there is none",
+        ),
+        ("[system]\n[grid]\nr = 1.0", "it is that of a map, for frictionmap map"),
+    ],
+)
+def test_configurations_of_something_else(tmp_path, capsys, text, message):
+    path = tmp_path / "rig.toml"
+    path.write_text(text)
+    assert message in refusal(capsys, "identify", path)
+
+
+def test_commands_name_each_other(rig, capsys):
+    path = rig("\n".join(GOOD))
+    assert "it is of a rig, for frictionmap identify" in refusal(capsys, "map", path)
+    assert "got the file of data itself" in refusal(capsys, "identify", path.parent / "decay.csv")
+
+
+def test_text_of_two_bytes_a_letter(rig, capsys):
+    path = rig("")
+    (path.parent / "decay.csv").write_bytes("\n".join(GOOD).encode("utf-16"))
+    assert "must be text; it holds zero bytes" in refusal(capsys, "identify", path)
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ turning_points   extremes of a record, its noise, the linear decrement
 decay_checks     which samples can be a free decay
 decay_motion     the exact decay and its derivatives
 least_squares    least squares with bounds, standard errors, intervals, correlations
+robust           least squares in which outliers have little weight
 phasors          harmonics of a record, by least squares on one frequency
 cautions         what to mind of any fit, in words
 decay_fit        the decay nearest to all samples

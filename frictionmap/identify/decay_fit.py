@@ -7,7 +7,14 @@ import numpy as np
 
 from .decay_motion import PARAMETERS, Decay, amplitudes, displacement_and_slopes, half_period
 from .least_squares import Problem, Solution, minimise
+from .robust import softened
 from .turning_points import TurningPoints
+
+#: The measured place of the centre may change by so much a second.
+DRIFT = "drift"
+
+#: In these the motion is linear.
+_LINEAR = ("x_F", "X0", "centre", DRIFT)
 
 ZETA, X_F = PARAMETERS.index("zeta"), PARAMETERS.index("x_F")
 
@@ -33,6 +40,21 @@ _FREQUENCY_RANGE = 0.2
 _ZETA_RANGE = (-0.5, 0.99)
 
 
+class Record(NamedTuple):
+    """What was measured, and what is fitted to it."""
+
+    time: np.ndarray  # s
+    x: np.ndarray
+    known: Mapping[str, float]  # parameters that are held
+    names: tuple[str, ...]  # of all parameters: those of a decay, and perhaps the drift
+    outliers: float | None = None  # residuals beyond this have little weight
+
+    def thinned(self, most: int) -> "Record":
+        """The record with no more samples than `most`, or a few."""
+        every = max(1, self.time.size // most)
+        return self._replace(time=self.time[::every], x=self.x[::every])
+
+
 class Fit(NamedTuple):
     """A decay, and whether the mass came to rest within the record."""
 
@@ -43,7 +65,7 @@ class Fit(NamedTuple):
     @property
     def decay(self) -> Decay:
         """The parameters by their names."""
-        return Decay(*(float(value) for value in self.solution.values))
+        return Decay(*(float(value) for value in self.solution.values[: len(PARAMETERS)]))
 
     @property
     def heights(self) -> np.ndarray:
@@ -51,36 +73,44 @@ class Fit(NamedTuple):
         return amplitudes(self.decay, self.half_cycles - (not self.at_rest))
 
 
-def problem(time: np.ndarray, x: np.ndarray, n: int, start: Decay, known: Mapping[str, float]) -> Problem:
-    """Least squares of all samples on a decay that ends at turning point `n`."""
+def problem(record: Record, n: int, start: np.ndarray) -> Problem:
+    """Least squares of all samples on a decay that ends at turning point `n`; a drift is that of the zero."""
 
     def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        place, slopes = displacement_and_slopes(Decay(*values), n, time)
-        return place - x, slopes
+        return _model(record, n, values, record.x)
 
-    lowest, highest = np.full(len(PARAMETERS), -np.inf), np.full(len(PARAMETERS), np.inf)
-    lowest[0], highest[0] = start.f_n * (1.0 - _FREQUENCY_RANGE), start.f_n * (1.0 + _FREQUENCY_RANGE)
+    lowest, highest = np.full(start.size, -np.inf), np.full(start.size, np.inf)
+    lowest[0], highest[0] = start[0] * (1.0 - _FREQUENCY_RANGE), start[0] * (1.0 + _FREQUENCY_RANGE)
     lowest[ZETA], highest[ZETA] = _ZETA_RANGE
-    free = np.array([name not in known for name in PARAMETERS])
-    floor = np.array([0.0 if name in ("zeta", "x_F") else -np.inf for name in PARAMETERS])
+    free = np.array([name not in record.known for name in record.names])
+    floor = np.array([0.0 if name in ("zeta", "x_F") else -np.inf for name in record.names])
     return Problem(residuals, free, floor, lowest, highest)
 
 
-def fit_decay(
-    time: np.ndarray, x: np.ndarray, points: TurningPoints, known: Mapping[str, float]
-) -> tuple[Fit, Problem]:
+def _model(
+    record: Record, n: int, values: np.ndarray, less: np.ndarray | float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The model less something, and its slopes by all parameters."""
+    place, slopes = displacement_and_slopes(Decay(*values[: len(PARAMETERS)]), n, record.time)
+    if len(record.names) > len(PARAMETERS):
+        place = place + values[-1] * record.time
+        slopes = np.column_stack((slopes, record.time))
+    return place - less, slopes
+
+
+def fit_decay(record: Record, points: TurningPoints) -> tuple[Fit, Problem]:
     """The least sum over all numbers of half cycles near what turning points tell.
 
     Of several that fit alike, one counts only if friction would not have held the mass before.
     """
-    starts = _starts(time, x, points, known)
+    starts = _starts(record.thinned(_SEARCHED), points)
     numbers = sorted(starts)
     tried: dict[int, tuple[Fit, Problem]] = {}
 
     def attempt(place: int) -> float:
         n = numbers[place]
         if n not in tried:
-            tried[n] = _fit(time, x, n, starts[n][1], known)
+            tried[n] = _fit(record, n, starts[n][1])
         return tried[n][0].solution.sum
 
     # sums fall towards the right number from both sides; the search begins at the best start
@@ -90,7 +120,7 @@ def fit_decay(
         while 0 <= place + step < len(numbers) and attempt(place + step) <= attempt(place):
             place += step
     attempt(len(numbers) - 1)  # not at rest in the record: this one always can be
-    return _best(list(tried.values()), time.size, float(np.ptp(x)))
+    return _best(list(tried.values()), record.time.size, float(np.ptp(record.x)))
 
 
 def _best(tried: list[tuple[Fit, Problem]], samples: int, size: float) -> tuple[Fit, Problem]:
@@ -101,13 +131,11 @@ def _best(tried: list[tuple[Fit, Problem]], samples: int, size: float) -> tuple[
     return min(as_good, key=lambda found: not _possible(found[0]))
 
 
-def _fit(
-    time: np.ndarray, x: np.ndarray, n: int, start: Decay, known: Mapping[str, float]
-) -> tuple[Fit, Problem]:
-    task = problem(time, x, n, start, known)
-    solution = minimise(task, np.array(start))
-    decay = Decay(*solution.values)
-    in_record = int((time[-1] - decay.t0) / half_period(decay))
+def _fit(record: Record, n: int, start: np.ndarray) -> tuple[Fit, Problem]:
+    task = problem(record, n, start)
+    solution = minimise(task if record.outliers is None else softened(task, record.outliers), start)
+    decay = Decay(*solution.values[: len(PARAMETERS)])
+    in_record = int((record.time[-1] - decay.t0) / half_period(decay))
     return Fit(solution, min(n, in_record + 1), n <= in_record), task
 
 
@@ -117,16 +145,13 @@ def _possible(fit: Fit) -> bool:
     return bool((left > fit.decay.x_F).all()) or fit.decay.x_F == 0.0
 
 
-def _starts(
-    time: np.ndarray, x: np.ndarray, points: TurningPoints, known: Mapping[str, float]
-) -> dict[int, tuple[float, Decay]]:
+def _starts(record: Record, points: TurningPoints) -> dict[int, tuple[float, np.ndarray]]:
     """For every number of half cycles worth a try the sum and the parameters of a good start.
 
-    A decay is linear in x_F, X0 and the centre: frequency and t0 are taken from the turning points, zeta from
-    a list, and the rest is solved for.
+    A decay is linear in x_F, X0, the centre and the drift: frequency and t0 are taken from the turning
+    points, zeta from a list, and the rest is solved for.
     """
-    every = max(1, time.size // _SEARCHED)
-    time, x = time[::every], x[::every]
+    time, known = record.time, record.known
     half = _half_period(points)
     f_n = known.get("f_n", 0.5 / half)
     count = points.time.size
@@ -134,32 +159,31 @@ def _starts(
     up = 1.0 if points.place[0] > points.place[1] else -1.0
     if first < time[0]:  # noise at the beginning, not a turning point
         first, count, up = first + half, count - 1, -up
-    starts: dict[int, tuple[float, Decay]] = {}
+    starts: dict[int, tuple[float, np.ndarray]] = {}
     # either the record begins in a swing, or with the mass held at the first turning point
     for t0, sign, seen in ((first - half, -up, count), (first, up, count - 1)):
         in_record = int((time[-1] - t0) / half)
         resting = range(max(1, seen), min(seen + _HIDDEN, in_record) + 1) if known.get("x_F") != 0.0 else ()
         for n in {*resting, in_record + 2}:  # the last one: not at rest in the record
             for zeta in [known["zeta"]] if "zeta" in known else _DAMPINGS:
-                found = _linear(time, x, n, Decay(f_n, zeta, 0.0, sign, known.get("t0", t0), 0.0), known)
+                found = _linear(record, n, Decay(f_n, zeta, 0.0, sign, known.get("t0", t0), 0.0))
                 if n not in starts or found[0] < starts[n][0]:
                     starts[n] = found
     return starts
 
 
-def _linear(
-    time: np.ndarray, x: np.ndarray, n: int, unit: Decay, known: Mapping[str, float]
-) -> tuple[float, Decay]:
-    """Sum and parameters of the least squares over x_F, X0 and centre; `unit` holds the others."""
-    names = ("x_F", "X0", "centre")
-    slopes = displacement_and_slopes(unit, n, time)[1][:, [PARAMETERS.index(name) for name in names]]
-    wanted = [name not in known for name in names]
-    values = np.array([known.get(name, 0.0) for name in names])
-    rest = x - slopes @ values
+def _linear(record: Record, n: int, unit: Decay) -> tuple[float, np.ndarray]:
+    """Sum and parameters of the least squares over what the motion is linear in; `unit` holds the others."""
+    start = np.concatenate((unit, np.zeros(len(record.names) - len(unit))))
+    linear = np.isin(record.names, _LINEAR)
+    slopes = _model(record, n, start, 0.0)[1][:, linear]
+    values = np.array([record.known.get(name, 0.0) for name in record.names])[linear]
+    wanted = np.array([name not in record.known for name in record.names])[linear]
+    rest = record.x - slopes @ values
     values[wanted] = np.linalg.lstsq(slopes[:, wanted], rest, rcond=None)[0]
-    residual = x - slopes @ values
-    friction, first, centre = (float(value) for value in values)
-    start = unit._replace(x_F=max(friction, 0.0), X0=first, centre=centre)
+    residual = record.x - slopes @ values
+    start[linear] = values
+    start[X_F] = max(start[X_F], 0.0)
     return float(residual @ residual), start
 
 

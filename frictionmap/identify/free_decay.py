@@ -9,11 +9,12 @@ from .. import checks
 from ..errors import InputError
 from .cautions import bounded, coloured, trading
 from .decay_checks import checked_record, checked_turning_points, largest_gap, unclipped, within
-from .decay_fit import X_F, ZETA, Fit, fit_decay
+from .decay_fit import DRIFT, X_F, ZETA, Fit, Record, fit_decay
 from .decay_motion import PARAMETERS
 from .estimates import estimates, number, verdict
-from .least_squares import Errors, errors
-from .turning_points import TurningPoints, linear_decrement
+from .least_squares import Errors, Problem, Solution, errors
+from .robust import LOSSES, effective_variance, softened
+from .turning_points import TurningPoints, linear_decrement, noise_level, without_spikes
 from .units import checked_unit, conversion
 
 #: Estimates so many standard errors above zero are found.
@@ -36,6 +37,7 @@ _MEANINGS = {
     "X0": "turning point at t0, from the centre",
     "t0": "time of a turning point at the beginning",
     "centre": "place of the unloaded mass",
+    DRIFT: "of the measured place of the unloaded mass",
 }
 
 
@@ -48,6 +50,8 @@ def free_decay(
     base: float | None = None,
     stiffness: float | None = None,
     window: object = None,
+    drift: bool = False,
+    loss: str = "linear",
 ) -> xr.Dataset:
     """Fit the exact decay with Coulomb and viscous friction to all samples of a record.
 
@@ -67,14 +71,19 @@ def free_decay(
         k [N/m] > 0; gives the friction force F = k x_F [N].
     window : [begin, end]
         Times [s] of the part to be fitted; default: all.
+    drift : bool
+        Whether the zero of the measurement drifts: a parameter drift [`unit`/s], so that the centre is
+        centre + drift t.
+    loss : "linear" or "soft_l1"
+        What residuals cost: their squares, or less beyond the level of the noise, for outliers.
 
     Returns
     -------
     xarray.Dataset
-        On parameter (f_n, zeta, x_F, X0, t0, centre): estimate, standard_error, lower and upper (95 %,
-        one-sided where `at_bound`), `known`, unit; `correlation`; on sample: time, data, model, residual;
-        scalars `reduced_chi_square` (the variance of a sample, as no error of the data is given),
-        `residual_rms`, `verdict`, `half_cycles` before rest or the end, `at_rest`, and
+        On parameter (f_n, zeta, x_F, X0, t0, centre, perhaps drift): estimate, standard_error, lower and
+        upper (95 %, one-sided where `at_bound`), `known`, unit; `correlation`; on sample: time, data,
+        model, residual; scalars `reduced_chi_square` (the variance of a sample, as no error of the data is
+        given), `residual_rms`, `verdict`, `half_cycles` before rest or the end, `at_rest`, and
         `mu_lower` <= mu < `mu_upper` from where it came to rest and where it did not.  Attribute `warnings`.
 
     Raises
@@ -90,17 +99,25 @@ def free_decay(
     A_j <= mu x_F.  The number of half cycles before rest is an unknown of the fit.
     """
     checked_unit(unit, "length", "unit")
-    held = checked_known(known or {})
+    if not isinstance(drift, bool):
+        raise InputError(f"drift must be true or false; got {checks.one_line(drift)}")
+    checks.choice(loss, "loss", LOSSES)
+    names = (*PARAMETERS, DRIFT) if drift else PARAMETERS
+    held = checked_known(known or {}, names)
     times, places = checked_record(time, x)
     inside = within(window, times)
     times, places = times[inside], places[inside]
     good = unclipped(places)
     t, data = times[good], places[good]
-    points = checked_turning_points(t, data)
-    fit, problem = fit_decay(t, data, points, held)
-    found = errors(problem, fit.solution)
-    losses = _losses(t, data, points, held, fit, found)
-    ds = estimates(_MEANINGS, _units(unit), fit.solution, found, problem.free, data, unit)
+    points = checked_turning_points(t, without_spikes(data) if loss == "soft_l1" else data)
+    outliers = noise_level(data) if loss == "soft_l1" else 0.0
+    record = Record(t, data, held, names, outliers or None)  # exact data have none
+    fit, problem = fit_decay(record, points)
+    found, variance, solution = _errors(record, fit, problem)
+    losses = _losses(record, points, fit, variance * found.inflation**2)
+    meanings = {name: _MEANINGS[name] for name in names}
+    units = (*_units(unit), f"{unit}/s")[: len(names)]
+    ds = estimates(meanings, units, solution, found, problem.free, data, unit)
     ds["time"] = xr.Variable("sample", t, {"long_name": "time", "units": "s"})
     ds["verdict"] = verdict(_verdict(fit, found, losses), _VERDICTS)
     ds["likelihood_ratio_friction"] = number(losses["x_F"], _LOSS.format("friction"))
@@ -116,7 +133,7 @@ def free_decay(
     return ds
 
 
-def checked_known(known: Mapping[str, float]) -> dict[str, float]:
+def checked_known(known: Mapping[str, float], names: tuple[str, ...] = PARAMETERS) -> dict[str, float]:
     """Parameters to be held, if they are known by name and in range."""
     ranges: dict[str, dict[str, float]] = {
         "f_n": {"above": 0.0},
@@ -125,12 +142,12 @@ def checked_known(known: Mapping[str, float]) -> dict[str, float]:
     }
     result = {}
     for name, value in known.items():
-        checks.choice(name, "known", PARAMETERS)
+        checks.choice(name, "known", names)
         result[name] = checks.number(value, f"known.{name}", **ranges.get(name, {}))
     if result.get("zeta", 0.0) >= 1.0:
         raise InputError(f"known.zeta must be < 1, or there are no extrema; got {known['zeta']}")
-    if len(result) == len(PARAMETERS):
-        raise InputError(f"known must leave something to fit; got all of {', '.join(PARAMETERS)}")
+    if len(result) == len(names):
+        raise InputError(f"known must leave something to fit; got all of {', '.join(names)}")
     return result
 
 
@@ -138,18 +155,28 @@ def _units(unit: str) -> tuple[str, ...]:
     return ("Hz", "1", unit, unit, "s", unit)
 
 
-def _losses(
-    time: np.ndarray, x: np.ndarray, points: TurningPoints, held: Mapping[str, float], fit: Fit, found: Errors
-) -> dict[str, float]:
+def _errors(record: Record, fit: Fit, problem: Problem) -> tuple[Errors, float, Solution]:
+    """Errors, the variance of a sample that they rest on, and the solution with its plain residuals."""
+    if record.outliers is None:
+        found = errors(problem, fit.solution)
+        return found, found.variance, fit.solution
+    variance = effective_variance(problem, fit.solution, record.outliers)
+    found = errors(softened(problem, record.outliers), fit.solution, variance)
+    plain = fit.solution._replace(residual=problem.residuals(fit.solution.values)[0])
+    freedom = plain.residual.size - int(problem.free.sum())
+    return found._replace(variance=plain.sum / freedom), variance, plain
+
+
+def _losses(record: Record, points: TurningPoints, fit: Fit, variance: float) -> dict[str, float]:
     """Growth of the sum of squares without friction, and without damping, over the variance of a sample."""
     losses = {}
     for name in ("x_F", "zeta"):
-        if name in held:
+        if name in record.known:
             losses[name] = 0.0
             continue
-        without = fit_decay(time, x, points, {**held, name: 0.0})[0].solution.sum
+        without = fit_decay(record._replace(known={**record.known, name: 0.0}), points)[0].solution.sum
         # another number of half cycles may fit a little better where the least sum lies on the bound
-        losses[name] = max(without - fit.solution.sum, 0.0) / (found.variance * found.inflation**2)
+        losses[name] = max(without - fit.solution.sum, 0.0) / variance
     return losses
 
 
@@ -212,4 +239,5 @@ def _warnings(time: np.ndarray, good: np.ndarray, fit: Fit, found: Errors) -> li
         words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
     pair = np.ix_((ZETA, X_F), (ZETA, X_F))
     words += coloured(found) + trading(("zeta", "x_F"), found.correlation[pair])
-    return words + bounded(PARAMETERS, np.zeros(len(PARAMETERS)), fit.solution.at_bound)
+    names = (*PARAMETERS, DRIFT)[: fit.solution.values.size]
+    return words + bounded(names, np.zeros(len(names)), fit.solution.at_bound)

@@ -1,5 +1,7 @@
 """Free decays from the file of a rig."""
 
+from typing import Any
+
 import xarray as xr
 
 from ..errors import InputError
@@ -23,11 +25,12 @@ def _free_decay(rig: Rig, table: Table) -> xr.Dataset:
         key: value * conversion("mm", x.unit) if key in _LENGTHS else value
         for key, value in rig.known.items()
     }
+    options: dict[str, Any] = dict(rig.fit)
     base, stiffness = known.pop("base_mm", None), known.pop("stiffness", None)
     try:
         ds = free_decay(
             time.values * conversion(time.unit, "s"), x.values, unit=x.unit, known=known, base=base,
-            stiffness=stiffness, window=rig.data.get("window"),
+            stiffness=stiffness, window=rig.data.get("window"), **options,
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"file {rig.file}, columns {time.name} and {x.name}: {error}") from None
@@ -35,4 +38,6 @@ def _free_decay(rig: Rig, table: Table) -> xr.Dataset:
     return ds
 
 
-FREE_DECAY = Kind(_free_decay, PARAMETERS, known=("base_mm", "stiffness"), data=("window",))
+FREE_DECAY = Kind(
+    _free_decay, PARAMETERS, known=("base_mm", "stiffness"), data=("window",), fit=("drift", "loss")
+)

@@ -234,6 +234,58 @@ def test_a_better_sum_counts_more_than_a_motion_that_can_be(truth, mu, seed):
         assert abs(float(one.estimate) - getattr(truth, name)) < 5.0 * float(one.standard_error) + 1e-12
 
 
+# Drift and outliers
+
+
+def test_a_drift_is_told_and_leaves_the_rest_as_it_is():
+    drift = 0.08  # mm/s: half a millimetre over the record, 16 times the noise
+    time, x = synthetic(MIXED, 21)
+    ds = fm.identify.free_decay(time, x + drift * time, drift=True)
+    assert ds.parameter.values[-1] == "drift"
+    assert ds.unit.values[-1] == "mm/s"
+    truth = dict(zip(PARAMETERS, MIXED, strict=False)) | {"drift": drift}
+    for name, value in truth.items():
+        one = ds.sel(parameter=name)
+        assert abs(float(one.estimate) - value) < 4.0 * float(one.standard_error), name
+    for name, bound in zip(("f_n", "zeta", "x_F"), BOUNDS[MIXED], strict=True):
+        assert float(ds.standard_error.sel(parameter=name)) < 1.3 * bound  # one unknown more
+    without = fm.identify.free_decay(time, x + drift * time)
+    assert float(without.residual_rms) > 2.0 * float(ds.residual_rms)
+
+
+def test_outliers_have_little_weight():
+    """One sample in 50 is off by 30 times the noise: least squares is pulled, soft_l1 is not."""
+    names = ["f_n", "zeta", "x_F"]
+    truth = [MIXED.f_n, MIXED.zeta, MIXED.x_F]
+    pulled, soft = [], []
+    for seed in range(12):
+        time, x = synthetic(MIXED, seed)
+        rng = np.random.default_rng([seed, 1])
+        hit = rng.choice(x.size, x.size // 50, replace=False)
+        x[hit] += 30.0 * MIXED.noise * rng.choice([-1.0, 1.0], hit.size)
+        for loss, scaled in (("linear", pulled), ("soft_l1", soft)):
+            ds = fm.identify.free_decay(time, x, loss=loss).sel(parameter=names)
+            scaled.append((ds.estimate.values - truth) / np.array(BOUNDS[MIXED]))
+            if loss == "soft_l1":
+                ratio = ds.standard_error.values / np.array(BOUNDS[MIXED])
+                # the shoulders of the cost and the hits take a little more than the bound
+                assert (ratio > 0.9).all()
+                assert (ratio < 1.5).all()
+    assert np.sqrt(np.mean(np.square(soft))) < 1.6
+    assert np.sqrt(np.mean(np.square(pulled))) > 2.0 * np.sqrt(np.mean(np.square(soft)))
+
+
+def test_without_outliers_both_costs_tell_the_same():
+    """Of normal noise the soft cost is nearly as efficient: estimates differ by parts of their error."""
+    time, x = synthetic(COULOMB, 5)
+    linear, soft = (fm.identify.free_decay(time, x, loss=loss) for loss in ("linear", "soft_l1"))
+    difference = np.abs(linear.estimate - soft.estimate)
+    assert (difference < 0.6 * linear.standard_error).all()
+    ratio = (soft.standard_error / linear.standard_error).values
+    assert (ratio > 0.97).all()
+    assert (ratio < 1.15).all()
+
+
 # Records as they come
 
 

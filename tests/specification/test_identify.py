@@ -248,6 +248,8 @@ def test_odd_measurements(measured, rig, capsys, name, warning):
         ("data.missing=ignore", "data.missing must be one of refuse, drop; got 'ignore'"),
         ("data.window=[1, nan]", "window must be finite"),
         ("data.window=[1]", "window must be two times; got [1]"),
+        ("fit.drift=1", "drift must be true or false; got 1"),
+        ("fit.loss=cauchy", "loss must be one of linear, soft_l1; got 'cauchy'"),
         ("grid.r=1", "unknown key grid"),
         ("system.contact=fixed-wall", "title, data, known, fit, for data.kind = 'free-decay'"),
     ],

@@ -1,0 +1,36 @@
+"""Least squares in which outliers have little weight: the cost soft_l1 as squares of other residuals.
+
+With t = r/s the cost 2 s^2 (sqrt(1 + t^2) - 1) is the square of r sqrt(2/(1 + q)), q = sqrt(1 + t^2): within
+the scale s it is r^2, far beyond it grows like |r|.  What holds for least squares holds for these residuals,
+but for the variance, which is that of an M-estimator (Huber and Ronchetti, Robust Statistics, 2009, ch. 7).
+"""
+
+import numpy as np
+
+from .least_squares import Problem, Solution
+
+LOSSES = ("linear", "soft_l1")
+
+
+def softened(problem: Problem, scale: float) -> Problem:
+    """The problem with little weight of residuals beyond `scale` > 0."""
+
+    def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        plain, slopes = problem.residuals(values)
+        q = np.hypot(1.0, plain / scale)
+        return plain * np.sqrt(2.0 / (1.0 + q)), slopes * (np.sqrt(0.5 * (1.0 + q)) / q)[:, np.newaxis]
+
+    return problem._replace(residuals=residuals)
+
+
+def effective_variance(problem: Problem, best: Solution, scale: float) -> float:
+    """The variance of a sample by which the softened slopes give the errors of estimates.
+
+    problem : as it was before it was softened
+    """
+    plain = problem.residuals(best.values)[0]
+    q = np.hypot(1.0, plain / scale)
+    influence, change = plain / q, q**-3
+    weight = 0.5 * (1.0 + q) / q**2
+    freedom = plain.size - int(problem.free.sum())
+    return float(np.sum(influence**2) / freedom * np.mean(weight) / np.mean(change) ** 2)

@@ -26,6 +26,10 @@ _LEAST_SAMPLES = 8
 #: The spectrum is refined by so many values over its main lobe, the first of which may be the frequency.
 _REFINED = 17
 
+#: Samples in all, and in a cycle, of which the search makes use.
+_SAMPLES = 4000
+_SAMPLES_A_CYCLE = 16
+
 #: The frequency is found where it moves by less than this share of 1/length.
 _SETTLED = 1e-10
 _MAX_STEPS = 50
@@ -76,7 +80,9 @@ def phasors_of(time: np.ndarray, channels: np.ndarray) -> Phasors:
     t = time - middle
     start = _coarse_frequency(t, channels[:, 0])
     harmonics = _checked_harmonics(t, start)
-    return _refine(t, channels, start, harmonics)._replace(middle=float(middle))
+    few = slice(None, None, _stride(t, start))
+    near = _refine(t[few], channels[few], start, 1)[0] if few.step > 1 else start
+    return _with_errors(*_refine(t, channels, near, harmonics))._replace(middle=float(middle))
 
 
 def harmonics_at(values: np.ndarray, angle: np.ndarray) -> np.ndarray:
@@ -151,7 +157,8 @@ def _coarse_frequency(t: np.ndarray, base: np.ndarray) -> float:
     near = near[near > 0.5 / length]
     if not near.size:
         return peak
-    sums = [float(np.sum(_linear(t, base[:, None], float(f), 1).residual ** 2)) for f in near]
+    few = slice(None, None, _stride(t, peak))
+    sums = [float(np.sum(_linear(t[few], base[few, None], float(f), 1).residual ** 2)) for f in near]
     return float(near[int(np.argmin(sums))])
 
 
@@ -176,7 +183,13 @@ def _checked_harmonics(t: np.ndarray, frequency: float) -> int:
     return harmonics
 
 
-def _refine(t: np.ndarray, channels: np.ndarray, start: float, harmonics: int) -> Phasors:
+def _stride(t: np.ndarray, frequency: float) -> int:
+    """Every so many samples will do for a start: enough a cycle, and enough of them."""
+    a_cycle = 1.0 / (float(np.median(np.diff(t))) * frequency)
+    return max(1, min(t.size // _SAMPLES, int(a_cycle / _SAMPLES_A_CYCLE)))
+
+
+def _refine(t: np.ndarray, channels: np.ndarray, start: float, harmonics: int) -> tuple[float, _Linear]:
     """Gauss-Newton for the frequency, channels weighted by their own residuals."""
     length = float(t[-1] - t[0])
     f = start
@@ -189,7 +202,7 @@ def _refine(t: np.ndarray, channels: np.ndarray, start: float, harmonics: int) -
         fit = _linear(t, channels, f, harmonics)
         if abs(step) * length < _SETTLED:
             break
-    return _with_errors(f, fit)
+    return f, fit
 
 
 def _with_errors(f: float, fit: _Linear) -> Phasors:

@@ -77,11 +77,12 @@ def fit_record(
     samples : shape (samples, 2), times [s] and displacements
     """
     few = samples[:: max(1, samples.shape[0] // _SAMPLES)]
-    free = np.array([name not in known for name in PARAMETERS])
+    free = _free(known)
     coarse = shaken(contact, damping_reference, phasors, few[:, 0])
-    candidates = [inner(start) for start in starts(contact, damping_reference, phasors, known)[:_FOLLOWED]]
-    tries = [minimise(_within(_problem(coarse, few[:, 1], free, start)), start) for start in candidates]
-    near = min(tries, key=lambda found: found.sum)
+    near = _nearest(coarse, few[:, 1], phasors, known)
+    if free[MU]:  # near mu = 1 the motion hardly tells mu, and other parameters lead astray with it
+        simple = _nearest(coarse, few[:, 1], phasors, {**known, "mu": 1.0})
+        near = min(near, simple, key=lambda found: found.sum)
     mass = shaken(contact, damping_reference, phasors, samples[:, 0])
     by_base = base_slopes(mass, outer(near.values))
     whitening = _whitening(by_base, base_errors(mass, phasors), np.sqrt(near.sum / few.shape[0]))
@@ -94,6 +95,18 @@ def fit_record(
         solution = minimise(problem, np.where(np.arange(free.size) == MU, 0.0, solution.values))
         found = motion(mass, outer(solution.values))
     return Fit(mass, problem, solution, whitening, by_base, found, mu_told)
+
+
+def _nearest(mass: Shaken, x: np.ndarray, phasors: Phasors, known: Mapping[str, float]) -> Solution:
+    """The least sum from several starts."""
+    free = _free(known)
+    candidates = starts(mass.contact, mass.damping_reference, phasors, known)[:_FOLLOWED]
+    problems = [(_problem(mass, x, free, inner(start)), inner(start)) for start in candidates]
+    return min((minimise(_within(task), start) for task, start in problems), key=lambda found: found.sum)
+
+
+def _free(known: Mapping[str, float]) -> np.ndarray:
+    return np.array([name not in known for name in PARAMETERS])
 
 
 def places_at(fit: Fit, phasors: Phasors, time: np.ndarray) -> np.ndarray:

@@ -37,6 +37,7 @@ record_starts    where their fit starts
 record_fit       the steady motion nearest to all samples
 record_errors    errors of that, and of what follows from it
 record           `record`: from arrays to estimates
+likelihood       the likelihood of the data of a fit, for samplers
 rig              what a configuration says of measured data, and a kind of data of itself
 rig_decay        free decays from the file of a rig
 rig_forced       forced responses from the file of a rig
@@ -48,8 +49,9 @@ configuration    configurations of rigs, for the command `identify`
 
 from .forced import forced
 from .free_decay import free_decay
+from .likelihood import log_likelihood
 from .phase_inversion import friction_ratio
 from .record import record
 from .sweep import sweep
 
-__all__ = ["forced", "free_decay", "friction_ratio", "record", "sweep"]
+__all__ = ["forced", "free_decay", "friction_ratio", "log_likelihood", "record", "sweep"]

@@ -107,6 +107,7 @@ def sweep(
     fit = _fit(data, held, names, sigma_amplitude is not None)
     ds = chain_estimates(data, fit.found.best, fit.errors, fit.problem.free, fit.given, damped)
     ds["verdict"] = _verdict(fit)
+    ds.attrs |= {"damping": DAMPINGS[data.base_damping] if damped else "none", "cost": cost}
     ds.attrs["title"] = f"Sweep of {WORDS[n - 1]} mass{'es' * (n > 1)}"
     ds.attrs["warnings"] = "; ".join(_warnings(fit))
     return ds

@@ -1,0 +1,137 @@
+"""The likelihood of what was measured, for samplers: normal errors about the fitted model."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from .. import checks
+from ..errors import InputError
+from .chain_estimates import chain_names
+from .chain_fit import Measured
+from .chain_fit import problem as chain_problem
+from .decay_fit import DRIFT, Record
+from .decay_fit import problem as decay_problem
+from .decay_motion import PARAMETERS
+from .least_squares import Problem
+
+#: Half cycles of a decay that does not come to rest within any record.
+_NO_REST = 2
+
+
+@dataclass(frozen=True)
+class LogLikelihood:
+    """ln p(data | theta) of normal errors, with the errors of the samples that the fit had.
+
+    Called with theta, shape (parameters,): values of `names`, in this order and in the units of the dataset.
+    It is -inf where a parameter is beyond its bound.
+    """
+
+    names: tuple[str, ...]
+    _problem: Problem
+    _start: np.ndarray  # all unknowns of the fit
+    _logarithmic: np.ndarray  # which of them are logarithms
+    _level: float  # ln p of no residuals
+
+    def __call__(self, theta: np.ndarray) -> float:
+        free = self._problem.free
+        given = np.atleast_1d(checks.array(theta, "theta"))
+        if given.shape != (len(self.names),) or given.dtype.kind not in "iuf":
+            raise InputError(
+                f"theta must be {len(self.names)} numbers: {', '.join(self.names)}; "
+                f"got {checks.one_line(theta)}"
+            )
+        natural = given.astype(float)
+        logarithmic = self._logarithmic[free]
+        if not np.isfinite(natural).all() or (natural[logarithmic] <= 0.0).any():
+            return -np.inf
+        part = np.where(logarithmic, np.log(np.where(logarithmic, natural, 1.0)), natural)
+        lowest = np.maximum(self._problem.lowest, self._problem.floor)[free]
+        if (part < lowest).any() or (part > self._problem.highest[free]).any():
+            return -np.inf
+        values = self._start.copy()
+        values[free] = part
+        residual, _ = self._problem.residuals(values)
+        return self._level - 0.5 * float(residual @ residual)
+
+
+def log_likelihood(ds: xr.Dataset) -> LogLikelihood:
+    """The likelihood of the data of a fit, as a function of the parameters that were fitted.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Of `free_decay` or `sweep`, also read from a file.
+
+    Returns
+    -------
+    LogLikelihood
+        A function of theta; its attribute `names` says which parameters theta holds.  Errors of the samples
+        are those of the variable `sigma`.  A decay has as many half cycles before rest as the fit found.
+
+    Raises
+    ------
+    InputError
+        The dataset is of another kind, or lacks something.
+    """
+    if not isinstance(ds, xr.Dataset):
+        raise InputError(f"ds must be a dataset of estimates; got {checks.one_line(ds)}")
+    for needed in ("estimate", "known", "data", "sigma"):
+        if needed not in ds:
+            raise InputError(f"a dataset of estimates must hold {needed}; it does not")
+    if {"time", "half_cycles", "at_rest"} <= set(ds.variables):
+        return _of_decay(ds)
+    if {"frequency", "mass", "quantity"} <= set(ds.variables) and "f_k1m1" in ds["parameter"]:
+        return _of_chain(ds)
+    raise InputError("a likelihood must be that of a free decay or of a sweep; this dataset is of neither")
+
+
+def _function(
+    names: tuple[str, ...], problem: Problem, start: np.ndarray, logarithmic: np.ndarray, sigma: np.ndarray
+) -> LogLikelihood:
+    if not (sigma > 0.0).all():
+        raise InputError("sigma must be > 0 for a likelihood: data without errors have none")
+    level = -float(np.sum(np.log(sigma))) - 0.5 * sigma.size * np.log(2.0 * np.pi)
+    fitted = tuple(name for name, free in zip(names, problem.free, strict=True) if free)
+    return LogLikelihood(fitted, problem, start, logarithmic, level)
+
+
+def _of_decay(ds: xr.Dataset) -> LogLikelihood:
+    names = (*PARAMETERS, DRIFT)[: ds.sizes["parameter"]]
+    values = ds["estimate"].sel(parameter=list(names)).values.astype(float)
+    held = ds["known"].sel(parameter=list(names)).values == 1
+    known = {name: float(value) for name, value, is_held in zip(names, values, held, strict=True) if is_held}
+    record = Record(ds["time"].values, ds["data"].values, known, names)
+    n = int(ds["half_cycles"]) + (0 if int(ds["at_rest"]) else _NO_REST)
+    sigma = ds["sigma"].values
+    plain = decay_problem(record, n, values)
+
+    def residuals(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        found, slopes = plain.residuals(at)
+        return found / sigma, slopes / sigma[:, np.newaxis]
+
+    return _function(
+        names, plain._replace(residuals=residuals), values, np.zeros(values.size, dtype=bool), sigma
+    )
+
+
+def _of_chain(ds: xr.Dataset) -> LogLikelihood:
+    shown = ds["parameter"].values.tolist()
+    n = sum(name in ("f_k1m1", "gamma") or name.startswith("mass_ratio") for name in shown)
+    names = chain_names(n)
+    estimate, known = (
+        {name: float(ds[key].sel(parameter=name)) for name in shown} for key in ("estimate", "known")
+    )
+    natural = np.array(
+        [estimate.get(name, 0.0) for name in names]
+    )  # damping ratios that are not shown are zero
+    logarithmic = np.arange(natural.size) < 2 * n - 1
+    values = np.where(logarithmic, np.log(np.where(logarithmic, natural, 1.0)), natural)
+    data = Measured(
+        ds["frequency"].values, ds["mass"].values.astype(int) - 1, ds["quantity"].values == 1,
+        ds["data"].values, ds["sigma"].values, n, ds.attrs.get("damping") == "base",
+        ds.attrs.get("cost") == "relative",
+    )  # fmt: skip
+    held = np.array([known.get(name, 1.0) == 1.0 for name in names])
+    problem = chain_problem(data, np.where(held, values, np.nan))
+    return _function(names, problem, values, logarithmic, data.sigma)

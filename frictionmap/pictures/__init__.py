@@ -29,6 +29,8 @@ fit_samples     fits to any data
 fit_decay       free decays with their envelope
 fit_sweep       sweeps of two masses
 fit_position    where motions lie among the regimes of their structure
+fit_responses   panels of amplitudes and lags over frequency
+fit_chain       sweeps of chains
 fit_forced      forced responses with the curves of their sets
 fit_record      records in time, and their cycles over each other
 fits            which of these is drawn

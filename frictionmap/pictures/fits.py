@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from ..errors import InputError
 from ..files.estimates import estimates_in_short, verdict_in_words
+from .fit_chain import chain_picture, is_chain
 from .fit_data import about_residuals
 from .fit_decay import decay_picture, is_decay
 from .fit_forced import forced_picture, is_forced
@@ -79,7 +80,9 @@ def _picture(ds: xr.Dataset) -> FitPicture:
         return record_picture(ds)
     if is_forced(ds):
         return forced_picture(ds)
-    return sweep_picture(ds) if is_sweep(ds) else samples_picture(ds)
+    if is_sweep(ds):
+        return sweep_picture(ds)
+    return chain_picture(ds) if is_chain(ds) else samples_picture(ds)
 
 
 def _new_axes(picture: FitPicture, ds: xr.Dataset) -> "AxesArray":

@@ -16,6 +16,7 @@ from records import places, steady
 from records import synthetic as noisy
 from responses import Truth as Responses
 from responses import continuous, table
+from scipy.linalg import eigh
 from sweeps import F_K1M1, GAMMA, KAPPA, amplitudes, swept
 
 import frictionmap as fm
@@ -299,6 +300,61 @@ def test_the_place_of_a_record_on_the_map(shaken):
 def test_a_record_without_frequencies_cannot_be_drawn(shaken):
     with pytest.raises(InputError, match=r"^base_frequency and f_n must be > 0 to be drawn; got 0, 3\."):
         fm.plot_fit(shaken.assign(base_frequency=0.0))
+
+
+# Sweeps of chains
+
+MASSES, SPRINGS, ZETA, F_K1M1_OF_THREE = [1.0, 0.8, 1.2], [1.0, 1.1, 0.9], [0.01, 0.015, 0.02], 2.9
+
+
+def chain(f, masses, springs, zeta, f_k1m1, sees_base):
+    """X_k/Y of a chain on a shaken base, by its modes: (samples, masses)."""
+    M, n = np.diag(masses), len(masses)
+    K = np.diag(np.add(springs, [*springs[1:], 0.0])) - np.diag(springs[1:], 1) - np.diag(springs[1:], -1)
+    squares, shapes = eigh(K, M)
+    w, r = np.sqrt(squares), np.asarray(f)[:, None] / f_k1m1
+    damper = 2j * np.array(zeta) * w * r
+    answers = (squares + damper * sees_base) / (squares - r**2 + damper)
+    return (answers * (shapes.T @ M @ np.ones(n))) @ shapes.T
+
+
+@pytest.mark.parametrize("sees_base", [True, False])
+def test_the_curves_of_a_chain_are_those_of_its_modes(sees_base):
+    f = np.concatenate((np.linspace(0.6, 2.0, 14), np.linspace(2.1, 4.0, 20), np.linspace(4.1, 7.0, 20)))
+    exact = chain(f, MASSES, SPRINGS, ZETA, F_K1M1_OF_THREE, sees_base)
+    rng = np.random.default_rng(1)
+    amplitude = {k + 1: np.abs(exact[:, k]) * np.exp(rng.normal(0.0, 0.02, f.size)) for k in (0, 2)}
+    lag = {1: -np.degrees(np.angle(exact[:, 0])) + rng.normal(0.0, 1.0, f.size)}
+    ds = fm.identify.sweep(
+        f, amplitude, lag, masses=3, damping="base" if sees_base else "ground", sigma_amplitude=0.02,
+        sigma_phase=1.0,
+    )  # fmt: skip
+    axes = fm.plot_fit(ds)
+    assert [ax.get_ylabel() for ax in axes] == [
+        "amplitude of mass 1", "amplitude of mass 3", "lag of mass 1 [deg]", "residual / error"
+    ]  # fmt: skip
+    f_k1m1, m2, m3, k2, k3, *zeta = ds.estimate.values.tolist()
+    for ax, mass, told in zip(
+        axes, (0, 2, 0), (np.abs, np.abs, lambda X: -np.degrees(np.angle(X))), strict=False
+    ):
+        (points,) = (one.get_xydata() for one in ax.lines if len(one.get_xdata()) > 900)
+        points = points[np.isfinite(points).all(axis=1)]
+        expected = chain(points[:, 0], [1.0, m2, m3], [1.0, k2, k3], zeta, f_k1m1, sees_base)[:, mass]
+        np.testing.assert_allclose(points[:, 1], told(expected), rtol=1e-7, atol=1e-7)
+    for ax, given in zip(axes, (amplitude[1], amplitude[3], lag[1]), strict=False):
+        np.testing.assert_allclose(dots(ax)[0], np.column_stack((f, given)), rtol=1e-12)
+    assert_inside_and_apart(axes[0].figure)
+
+
+def test_chains_that_cannot_be_drawn():
+    f = np.linspace(0.5, 8.0, 61)
+    exact = np.abs(chain(f, [1.0, 0.9], [1.0, 1.1], [0.0, 0.0], 3.0, True))
+    ds = fm.identify.sweep(f, dict(enumerate(exact.T, 1)))
+    rendered(fm.plot_fit(ds))
+    with pytest.raises(InputError, match=r"^frequency and ratios must be > 0 to be drawn; got -"):
+        fm.plot_fit(ds.assign(estimate=-ds.estimate))
+    with pytest.raises(InputError, match=r"^data must be logarithms of at most 600 to be drawn; got "):
+        fm.plot_fit(ds.assign(data=1e4 + ds.data))
 
 
 # Slices, axes, refusals

@@ -4,7 +4,8 @@
 module           what is in it, in the order in which data flows
 ===============  =======================================================================
 units            units that names of columns end in
-tables           files of measured data: CSV, MAT, NPZ
+lab_tables       files of measuring programs, through the extra `lab`
+tables           files of measured data: CSV, MAT, NPZ, and those
 columns          columns by what they are, checked value by value
 turning_points   extremes of a record, its noise, the linear decrement
 decay_checks     which samples can be a free decay

@@ -1,4 +1,4 @@
-"""Files of measured data as tables of named columns: CSV of data loggers, MAT (v5, v7), NPZ."""
+"""Files of measured data as tables of named columns: CSV, MAT, NPZ, and those of `lab_tables`."""
 
 import csv
 import re
@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import InputError
+from .lab_tables import read_mat_73, read_tdms, read_uff
 
 _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*")
 
@@ -44,7 +45,14 @@ def read_table(path: Path) -> Table:
     InputError
         There is no such file, it is of no known form, or its rows differ in length; one line with the file.
     """
-    forms: dict[str, Callable[[Path], Table]] = {".csv": _read_csv, ".npz": _read_npz, ".mat": _read_mat}
+    forms: dict[str, Callable[[Path], Table]] = {
+        ".csv": _read_csv,
+        ".npz": _read_npz,
+        ".mat": _read_mat,
+        ".uff": lambda path: _from_arrays(path, read_uff(path), "UFF"),
+        ".unv": lambda path: _from_arrays(path, read_uff(path), "UFF"),
+        ".tdms": lambda path: _from_arrays(path, read_tdms(path), "TDMS"),
+    }
     read = forms.get(path.suffix.lower())
     if read is None:
         raise InputError(f"data.file must end in {', '.join(forms)}; got {path}")
@@ -120,7 +128,7 @@ def _read_mat(path: Path) -> Table:
     try:
         stored = loadmat(path)
     except NotImplementedError:
-        raise InputError(f"file {path} is MAT v7.3; save it as v7: save('{path.name}', '-v7')") from None
+        return _from_arrays(path, read_mat_73(path), "MAT v7.3")
     except (MatReadError, ValueError, TypeError, KeyError, IndexError) as error:
         raise InputError(f"file {path} must be a MAT file; it cannot be read ({error})") from None
     return _from_arrays(path, {k: v for k, v in stored.items() if not k.startswith("__")}, "MAT")

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+import records
 from scipy.linalg import expm
 
 
@@ -44,3 +45,21 @@ def table(truth, seed, sigma_phase=0.7, sigma_amplitude=0.01):
     )
     lag = -np.degrees(np.angle(X)) + sigma_phase * rng.normal(size=r.size)
     return sets, r * truth.f_n, lag, np.abs(X) * np.exp(sigma_amplitude * rng.normal(size=r.size))
+
+
+def integrated(r, beta, zeta, mu):
+    """X_1 of the steady motion that `records` integrates, of one mass under a base of amplitude 1.
+
+    A continuous motion it would take long to settle in, and has its own formula.
+    """
+    truth = records.Truth(1.0, zeta, beta, mu, 0.0, r, (0.0, 1.0))
+    motion = records.steady(truth, cycles=200, accuracy=1e-9)
+    assert motion.change < 1e-6
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    total = 0j
+    for begin, end, place in motion.parts:
+        if end > begin:
+            t = 0.5 * (begin + end) + 0.5 * (end - begin) * nodes
+            wave = np.exp(-2j * np.pi * r * t)
+            total += 0.5 * (end - begin) * np.sum(weights * place(t) * wave)
+    return 2.0 * r * total

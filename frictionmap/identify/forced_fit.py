@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..model.system import System
 from .forced_data import ForcedTable
 from .forced_model import F_N, MU, ZETA, Fitted, ForcedModel, Samples, evaluate
-from .forced_start import starts
+from .forced_start import closer, starts
 from .least_squares import Errors, Problem, Solution, errors, minimise, undetermined
 
 #: The natural frequency is within this share of where the fit begins.
@@ -18,6 +18,9 @@ _FREQUENCY_RANGE = 0.2
 
 #: Sums that chance makes larger this rarely end the search for a better one.
 _CHANCE = 1e-2
+
+#: Looks around the least sum, where chance does not explain it and motions come and go with friction.
+_CLOSER_LOOKS = 2
 
 #: Errors from residuals are found again and again until they change by less than this share.
 _SETTLED, _ROUNDS = 1e-3, 20
@@ -109,15 +112,20 @@ def _best(model: ForcedModel, known: np.ndarray, sure: bool) -> tuple[Solution, 
     free = np.isnan(known)
     freedom = model.samples.row.size - int(free.sum())
     enough = 2.0 * float(gammainccinv(0.5 * freedom, _CHANCE)) if sure else 0.0
+    begun = starts(model, known)
+    looks = _CLOSER_LOOKS if np.isnan(known[MU]) else 0
     best: tuple[Solution, Problem] | None = None
-    for start in starts(model, known):
+    while begun and (best is None or best[0].sum > enough):
+        start = begun.pop(0)
         task = problem(model, free, float(start[F_N]))
         found = minimise(task, start)
         if best is None or found.sum < best[0].sum:
             best = found, task
-        if found.sum <= enough:
-            break
-    if best is None or not np.isfinite(best[0].sum):
+            if looks and found.sum > enough:
+                begun = closer(model, found.values, known) + begun
+                looks -= 1
+    assert best is not None  # there is a start at least
+    if not np.isfinite(best[0].sum):
         raise InputError(
             "the data must be of masses that move; one that was measured is held, whatever the friction"
         )

@@ -30,6 +30,12 @@ _DAMPINGS = (0.003, 0.03)
 _TRIED, _APART = 3, 0.06
 _MU = (1.05, 1.4)
 
+#: A closer look: errors so many times as large, and values beside those that were found.
+_CLOSER = 3.0
+_F_BESIDE = np.array([0.97, 0.985, 1.0, 1.015, 1.03])
+_MU_BESIDE = np.arange(-0.2, 0.25, 0.05)
+_BETA_BESIDE = np.linspace(0.8, 1.25, 19)
+
 
 def starts(model: ForcedModel, known: np.ndarray) -> list[np.ndarray]:
     """Values to begin with, the most promising first.
@@ -44,7 +50,7 @@ def starts(model: ForcedModel, known: np.ndarray) -> list[np.ndarray]:
         values = known.copy()
         values[F_N], values[ZETA] = f_n, zeta
         values[MU] = 1.0 if np.isnan(known[MU]) else known[MU]
-        looked.append(_best_frictions(tempered, values, np.isnan(known[:F_N])))
+        looked.append(_best_frictions(tempered, values, _everywhere(model, values, known)))
     looked.sort(key=lambda one: one[0])
     chosen: list[np.ndarray] = []
     for _, values in looked:
@@ -57,7 +63,7 @@ def starts(model: ForcedModel, known: np.ndarray) -> list[np.ndarray]:
     for values, mu in product(chosen, _MU):
         other = values.copy()
         other[MU] = mu
-        looked.append(_best_frictions(tempered, other, np.isnan(known[:F_N])))
+        looked.append(_best_frictions(tempered, other, _everywhere(model, other, known)))
     return [values for _, values in sorted(looked, key=lambda one: one[0])]
 
 
@@ -74,30 +80,53 @@ def _candidates(model: ForcedModel) -> np.ndarray:
     return np.geomspace(low, high, count + 1)
 
 
-def _best_frictions(model: ForcedModel, values: np.ndarray, free: np.ndarray) -> tuple[float, np.ndarray]:
-    """The sum with the best friction ratio of every set, and the values with these.
+def closer(model: ForcedModel, near: np.ndarray, known: np.ndarray) -> list[np.ndarray]:
+    """Values around others to begin with anew, the most promising first.
 
-    free : (sets,) whether its friction ratio is looked for
+    Motions come and go with friction where mu > 1, and the sum has steps that no slope tells of.
     """
-    rows = model.rows
-    r = rows.frequency / values[F_N]
-    system = model.with_zeta(float(values[ZETA]))
+    samples = model.samples._replace(sigma=_CLOSER * model.samples.sigma)
+    frequencies = near[F_N] * _F_BESIDE if np.isnan(known[F_N]) else known[F_N:ZETA]
+    looked = []
+    for f_n, mu in product(frequencies, near[MU] + _MU_BESIDE):
+        if mu >= 1.0:
+            values = np.append(near[:F_N], [f_n, near[ZETA], mu])
+            looked.append(_best_frictions(model._replace(samples=samples), values, _around(values, known)))
+    looked.sort(key=lambda one: one[0])
+    return [values for _, values in looked[:_TRIED]]
+
+
+def _around(values: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """Friction ratios of every set beside its own, (tried, sets)."""
+    return np.where(np.isnan(known[:F_N]), values[:F_N] * _BETA_BESIDE[:, np.newaxis], values[:F_N])
+
+
+def _everywhere(model: ForcedModel, values: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """Friction ratios of every set up to where all sticks, (tried, sets)."""
+    system, r = model.with_zeta(float(values[ZETA])), model.rows.frequency / values[F_N]
     stick = np.abs(system.modes.held_load(np.unique(r)))
     top = float(stick[np.isfinite(stick)].max(initial=1.0))
-    grid = np.append(np.geomspace(_LEAST_SHARE * top, top, _BETAS), 0.0)
-    tried = np.where(free[rows.member], grid[:, np.newaxis], values[:F_N][rows.member])
-    beta = (tried / rows.share).ravel()
-    states = steady_states(system, np.tile(r, grid.size), beta, float(values[MU]))
-    sums = np.min([_sums(model, state.phasors.reshape(grid.size, r.size, -1)) for state in states], axis=0)
-    best = sums.argmin(axis=0)
+    grid = np.append(np.geomspace(_LEAST_SHARE * top, top, _BETAS), 0.0)[:, np.newaxis]
+    return np.where(np.isnan(known[:F_N]), grid, known[:F_N])
+
+
+def _best_frictions(model: ForcedModel, values: np.ndarray, tried: np.ndarray) -> tuple[float, np.ndarray]:
+    """The sum with the best friction ratio of every set, of (tried, sets), and the values with these."""
+    rows = model.rows
+    r = np.tile(rows.frequency / values[F_N], tried.shape[0])
+    beta = (tried[:, rows.member] / rows.share).ravel()
+    states = steady_states(model.with_zeta(float(values[ZETA])), r, beta, float(values[MU]))
+    shape = (len(states), *tried.shape[:1], rows.frequency.size)
+    sums = _sums(model, np.array([state.phasors for state in states]).reshape(*shape, -1))
     found = values.copy()
-    found[:F_N] = np.where(free, grid[best], values[:F_N])
+    found[:F_N] = tried[sums.argmin(axis=0), np.arange(model.sets)]
     return float(sums.min(axis=0).sum()), found
 
 
 def _sums(model: ForcedModel, phasors: np.ndarray) -> np.ndarray:
-    """Sums of squares by friction ratio and set, (tried, sets)."""
+    """Sums of squares (tried, sets) of the nearest of several motions, (motions, tried, rows, n)."""
     found = np.abs(residuals(model.samples, phasors))
     squares = np.where(np.isfinite(found), np.minimum(found, _MOST) ** 2, _AT_REST)
-    member = model.rows.member[model.samples.row]
-    return np.stack([squares[:, member == one].sum(axis=1) for one in range(model.sets)], axis=1)
+    rows = np.arange(model.rows.frequency.size)
+    nearest = (squares @ (model.samples.row[:, np.newaxis] == rows).astype(float)).min(axis=0)
+    return nearest @ (model.rows.member[:, np.newaxis] == np.arange(model.sets)).astype(float)

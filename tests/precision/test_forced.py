@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
-from responses import Truth, table
+from responses import Truth, integrated, table
 
 import frictionmap as fm
 from frictionmap.cli import main
@@ -56,3 +56,49 @@ def test_intervals_hold_the_truth():
         ds = fitted(WALL, seed, sigma_phase=0.7, sigma_amplitude=0.01).sel(parameter=names)
         inside += (ds.lower.values <= truth) & (truth <= ds.upper.values)
     assert 450 <= inside.sum() <= 495, inside
+
+
+#: r, beta and X_1 of one mass on a wall with zeta = 0.02, mu = 1.15, by `responses.integrated`.
+STOPPING = np.array([
+    (0.15, 0.3, 0.8244784651, -0.2967664885),
+    (0.22, 0.3, 0.8597893130, -0.3360008732),
+    (0.28, 0.3, 0.9342530005, -0.3160825043),
+    (0.36, 0.3, 1.1302592912, -0.3981437910),
+    (0.44, 0.3, 1.2713064364, -0.4717727315),
+    (0.55, 0.3, 1.3498951192, -0.5546375100),
+    (0.15, 0.5, 0.6028360723, -0.4097911541),
+    (0.22, 0.5, 0.6409231120, -0.3883727462),
+    (0.28, 0.5, 0.7897523928, -0.4907091152),
+    (0.36, 0.5, 0.9614515404, -0.6226589306),
+    (0.44, 0.5, 1.0948927388, -0.7463180627),
+    (0.55, 0.5, 1.2029284961, -0.8965120525),
+])  # fmt: skip
+
+
+def stopping(seed, sigma_phase, sigma_amplitude):
+    """The fit of motions that stop, f_n = 3 Hz, with nothing known."""
+    r, beta, real, imaginary = STOPPING.T
+    X, rng = real + 1j * imaginary, np.random.default_rng(seed)
+    lag = -np.degrees(np.angle(X)) + sigma_phase * rng.normal(size=r.size)
+    ratio = np.abs(X) * np.exp(sigma_amplitude * rng.normal(size=r.size))
+    sigmas = {"sigma_phase": sigma_phase or 1e-3, "sigma_amplitude": sigma_amplitude or 1e-5}
+    return fm.identify.forced(3.0 * r, lag, ratio, sets=[f"{one:.1f}" for one in beta], **sigmas)
+
+
+@pytest.mark.slow
+def test_the_table_of_motions_that_stop():
+    r, beta, real, imaginary = STOPPING[2]
+    assert integrated(r, beta, 0.02, 1.15) == pytest.approx(real + 1j * imaginary, abs=1e-9)
+
+
+def test_motions_that_stop_tell_static_friction():
+    ds = stopping(1, 0.0, 0.0)
+    np.testing.assert_allclose(ds.estimate, [0.3, 0.5, 3.0, 0.02, 1.15], rtol=1e-6)
+    assert (ds.regime.values == 1).sum() > 12
+
+
+def test_motions_that_stop_with_noise():
+    truth = np.array([0.3, 0.5, 3.0, 0.02, 1.15])
+    for seed in range(3):
+        ds = stopping(seed, 0.3, 0.005)
+        assert np.abs((ds.estimate - truth) / ds.standard_error).max() < 4.0

@@ -3,9 +3,9 @@ what bad input, interrupts and damaged files do.
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
-NAME is accuracy, peers, scaling, startup, stress, steady, structures, bound or faults: each one is a module
-of that name in `measures`.  It prints tables, and writes JSON and a figure.  `python -m benchmarks readme`
-puts the numbers of the committed results into README.md.
+NAME is accuracy, peers, scaling, startup, stress, steady, structures, bound, faults or large: each one is a
+module of that name in `measures`.  It prints tables, and writes JSON and a figure.
+`python -m benchmarks readme` puts the numbers of the committed results into README.md.
 
 =============================  ========================================================================
 `measures/`                    one module for each sub-command
@@ -22,6 +22,7 @@ puts the numbers of the committed results into README.md.
   structures                   cost against the number of masses; five masses against the peers
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
   faults                       bad input, interrupts, malformed files, damaged caches: what a user sees
+  large                        stores: overhead, memory, workers, random variations, kills
 `peers/`                       other ways to do the same job: each for one mass and for chains of masses
   solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: one on many cells at a time
   fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean

@@ -14,7 +14,18 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
 #: Sub-commands: each has a module of its name in `measures` with a `run`, imported only when it is asked for.
-BENCHMARKS = ("accuracy", "peers", "scaling", "startup", "stress", "steady", "structures", "bound", "faults")
+BENCHMARKS = (
+    "accuracy",
+    "peers",
+    "scaling",
+    "startup",
+    "stress",
+    "steady",
+    "structures",
+    "bound",
+    "faults",
+    "large",
+)
 
 
 def _run(name: str, quick: bool, results: Path, **more: Path) -> float:

@@ -114,7 +114,7 @@ def make_store(path: Path, study: Study, title: str) -> None:
 def _make_array(group: "zarr.Group", name: str, array: Array) -> "zarr.Array":
     from zarr.codecs import BloscCodec
 
-    codec = BloscCodec(cname="zstd", clevel=1, shuffle="shuffle", typesize=array.dtype.itemsize)
+    codec = BloscCodec(cname="lz4", clevel=5, shuffle="shuffle", typesize=array.dtype.itemsize)
     return group.create_array(
         name, shape=array.shape, chunks=array.chunks, dtype=array.dtype, fill_value=array.fill,
         compressors=codec, dimension_names=array.dims, attributes=dict(array.attributes),

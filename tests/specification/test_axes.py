@@ -1,5 +1,7 @@
 """Further axes: maps over numbers of the system, alone and together."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -148,3 +150,12 @@ def test_too_many_cells_are_refused(two_masses):
     grid = {"r": np.linspace(0.1, 2, 2000), "beta": np.linspace(0, 1, 1000)}
     with pytest.raises(InputError, match=r"at most 1e\+09 cells in memory; got 2e\+09 .* x 1000 points"):
         fm.sweep(two_masses, **grid, axes=axes)
+
+
+@pytest.mark.parametrize("name", ["five-masses", "two-masses"])
+def test_studies_among_the_configurations(name):
+    config = fm.load_config(Path(__file__).parents[2] / "configs" / "studies" / f"{name}.toml")
+    assert config.variations.count == {"five-masses": 1000, "two-masses": 24}[name]
+    last = config.variations.at([size - 1 for size in config.variations.shape])
+    ds = fm.sweep(last, config.r[::20], config.beta[::20], config.mu, solver=config.solver)
+    assert (ds["regime"] >= 0).any()

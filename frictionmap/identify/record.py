@@ -13,7 +13,7 @@ from ..model.system import System
 from .decay_checks import checked_record, largest_gap, unclipped, within
 from .estimates import estimates, number, verdict
 from .least_squares import Errors
-from .phasors import Phasors, changes, phasors_of
+from .phasors import Phasors, amplitude_and_lag, changes, phasors_of, ratio_error
 from .record_errors import DERIVED, derived_values, record_errors
 from .record_fit import Fit, fit_record, places_at
 from .record_motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
@@ -34,6 +34,9 @@ _CHANGED = 13.8
 
 #: Errors of the base's first harmonic so many times those of samples at all phases.
 _WORSE = 4.0
+
+#: A lead of so many degrees may come from higher harmonics of the base.
+_LEAD = 1.0
 
 #: A first harmonic of the mass below so many standard errors is no motion.
 _MOVES = 5.0
@@ -185,7 +188,18 @@ def _checked_phasors(time: np.ndarray, channels: np.ndarray) -> Phasors:
                 f"{first:.3g}, of the size of its error, {error:.2g} (a mass that sticks for good tells "
                 "nothing of its motion)"
             )
+    _check_lag(phasors)
     return phasors
+
+
+def _check_lag(phasors: Phasors) -> None:
+    """Energy flows from the base to the mass: its first harmonic lags by 0 to 180 degrees."""
+    lag = np.degrees(amplitude_and_lag(phasors)[1])
+    if lag < -(_LEAD + _FOUND * np.degrees(ratio_error(phasors))):
+        raise InputError(
+            "x must lag behind the base by 0 to 180 degrees, as energy comes from it; "
+            f"it leads by {-lag:.4g} (are the columns exchanged, or is one of opposite sign?)"
+        )
 
 
 def _dataset(fit: Fit, phasors: Phasors, found: Errors, x: np.ndarray, unit: str) -> xr.Dataset:

@@ -27,7 +27,7 @@ DAMPING_REFERENCES = ("ground", "base")
 BASE_HARMONICS = 5
 
 #: Cycles after which a motion that has not repeated is given up.
-_CYCLES = 400
+_CYCLES = 150
 
 #: What is fitted cannot be below; see `inner`.
 FLOOR = np.array([-np.inf, 0.0, 0.0, 0.0, -np.inf])

@@ -81,6 +81,12 @@ def test_held_for_good():
     assert (found == 0.1).all()
 
 
+def test_an_undamped_resonance_has_no_steady_state():
+    state, found = motion(1.0, 0.0, 0.0, 1.0, [0.0, 1.0], np.linspace(0.0, 6.0, 9), most=100)
+    assert state.status == NO_REPEAT
+    assert np.abs(found).max() < 400.0  # it grows by pi a cycle
+
+
 def test_cycles_allowed_are_kept():
     state, found = motion(0.95, 0.0, 0.7, 1.0, [0.0, 1.0], np.linspace(0.0, 6.0, 9), most=2)
     assert (state.status, state.cycles) == (NO_REPEAT, 2)

@@ -147,6 +147,8 @@ def test_rows_without_a_number_are_dropped_on_request_only(rig, capsys, measured
             lambda t, y, x: (t, y, np.random.default_rng(1).normal(0.0, 0.01, t.size)),
             "x must move with the base, at 1.001 Hz; its first harmonic there is",
         ),
+        (lambda t, y, x: (t, y, -x), "it leads by 15"),
+        (lambda t, y, x: (t, x, y), "are the columns exchanged"),
         (lambda t, y, x: (t, np.minimum(y, 1.3), x), "time must reach all phases of the cycle"),
         (lambda t, y, x: (t[:150], y[:150], x[:150]), "time must span at least 2 cycles of the base"),
         (lambda t, y, x: (t[::17], y[::17], x[::17]), "5.8 samples a cycle; 8 are needed"),

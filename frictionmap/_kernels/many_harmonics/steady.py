@@ -24,6 +24,9 @@ _NO_CHANGE = 1e-14
 #: A multiplier above 1 by rounding alone is not above 1.
 _STABLE = 1.0 + 1e-9
 
+#: A determinant of terms of size 1 below this is rounding: an undamped resonance has no steady state.
+_SINGULAR = 1e-13
+
 #: A Newton step is taken if it is shorter than this share of the last one, and not long; else cycles follow.
 _SHORTER = 0.5
 _FARTHEST = 0.3  # of the motion: beyond, the map is not linear
@@ -49,7 +52,7 @@ def _newton(cycle, q, v):
     rest_q = cycle.q - q
     rest_v = cycle.v - v
     determinant = (1.0 - t.q_q) * (1.0 - t.v_v) - t.q_v * t.v_q
-    if determinant == 0.0 or not math.isfinite(determinant):
+    if not _SINGULAR < abs(determinant) < math.inf:
         return math.inf, math.inf
     return (
         ((1.0 - t.v_v) * rest_q + t.q_v * rest_v) / determinant,

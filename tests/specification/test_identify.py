@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from decays import Truth, synthetic
+from refusals import refusal
 from scipy.io import savemat
 
 import frictionmap as fm
@@ -35,15 +36,6 @@ def csv_of(time, x, head="time_s,x_mm", separator=",", comma=False):
     rows = [f"{t:.6g}{separator}{place:.6g}" for t, place in zip(time, x, strict=True)]
     text = "\n".join(rows)
     return head + "\n" + (text.replace(".", ",") if comma else text) + "\n"
-
-
-def refusal(capsys, *arguments):
-    """The one line on standard error of a command that is refused."""
-    assert main([str(argument) for argument in arguments]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err.count("\n") == 1
-    return err
 
 
 # What comes out

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import refusal
 from responses import Truth, table
 
 import frictionmap as fm
@@ -39,15 +40,6 @@ def rig(tmp_path, monkeypatch):
         return "rig.toml"
 
     return write
-
-
-def refusal(capsys, *arguments):
-    """The one line on standard error of a command that is refused."""
-    assert main(["identify", *arguments]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err.count("\n") == 1
-    return err
 
 
 def columns(line, *kept):
@@ -114,7 +106,7 @@ def test_errors_by_row_and_from_the_residuals(rig, capsys):
         assert 0.3 < float(ds.sigma[ds.quantity == 1][0]) < 1.2  # 12 lags of which the fit takes some
         assert float(ds.reduced_chi_square) == pytest.approx(1.0, abs=0.01)
     path = rig(lines, head=f"{HEAD},sigma_phase_deg,sigma_amplitude")
-    assert "data.sigma_phase_deg must be left out" in refusal(capsys, path, "--overwrite")
+    assert "data.sigma_phase_deg must be left out" in refusal(capsys, "identify", path, "--overwrite")
 
 
 def test_lags_alone_do_not_tell_the_frequency(rig, capsys):
@@ -140,7 +132,7 @@ def test_lags_that_no_friction_gives(rig, capsys):
     lines = [*LINES, "2,5.8332,60,1.0,1.5"]
     known = RIG.replace("mu = 1.0", "mu = 1.0\nf_n = 3.0")
     for text in (known, RIG):
-        message = refusal(capsys, rig(lines, text))
+        message = refusal(capsys, "identify", rig(lines, text))
         assert "no friction ratio gives a lag of 60 deg at r = 1.9" in message
         assert "above resonance it is 90 to 180 deg (row 13 of the table" in message
     path = rig(
@@ -184,7 +176,7 @@ def test_sets_by_any_name(rig):
     ],
 )  # fmt: skip
 def test_bad_tables(rig, capsys, lines, head, message):
-    found = refusal(capsys, rig(lines, head=head))
+    found = refusal(capsys, "identify", rig(lines, head=head))
     assert message in found
 
 
@@ -202,7 +194,7 @@ def test_bad_tables(rig, capsys, lines, head, message):
     ],
 )
 def test_bad_configurations(rig, capsys, override, message):
-    assert message in refusal(capsys, rig(), "--set", override)
+    assert message in refusal(capsys, "identify", rig(), "--set", override)
 
 
 def test_bad_forced_files(measured, rig, capsys):
@@ -215,7 +207,7 @@ def test_bad_forced_files(measured, rig, capsys):
     for name, message in words.items():
         path = str(measured / "bad" / f"{name}.csv")
         known = ["--set", "known.f_n=3.086"] if name == "beyond-sliding" else []
-        found = refusal(capsys, rig(), "--set", f"data.file={path}", *known)
+        found = refusal(capsys, "identify", rig(), "--set", f"data.file={path}", *known)
         assert message in found
         assert f"{name}.csv" in found
 

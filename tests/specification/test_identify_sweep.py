@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import refusal
 from sweeps import responses
 
 from frictionmap.cli import main
@@ -43,15 +44,6 @@ def rig(tmp_path, monkeypatch):
     return write
 
 
-def refusal(capsys, *arguments):
-    """The one line on standard error of a command that is refused."""
-    assert main(["identify", *arguments]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err.count("\n") == 1
-    return err
-
-
 def test_from_a_file_to_two_masses(rig, capsys):
     assert main(["identify", rig(LINES)]) == 0
     out = capsys.readouterr().out
@@ -83,7 +75,7 @@ def test_three_masses_with_lags(rig):
 
 
 def test_what_cannot_be_told_is_named(rig, capsys):
-    message = refusal(capsys, rig(LINES, head="frequency_Hz,amplitude_ratio_2"))
+    message = refusal(capsys, "identify", rig(LINES, head="frequency_Hz,amplitude_ratio_2"))
     assert "amplitude_ratio_2" in message
     assert "cannot tell f_k1m1, gamma, kappa apart: 1 of them must be known" in message
 
@@ -105,7 +97,9 @@ def test_synthetic_sweeps(measured, tmp_path, folder):
 
 def test_one_peak(measured, rig, capsys):
     rig([])
-    message = refusal(capsys, "rig.toml", "--set", f"data.file={measured / 'bad' / 'sweep-one-peak.csv'}")
+    message = refusal(
+        capsys, "identify", "rig.toml", "--set", f"data.file={measured / 'bad' / 'sweep-one-peak.csv'}"
+    )
     assert "one peak: two frequencies wanted" in message
     assert "sweep-one-peak.csv" in message
 
@@ -120,7 +114,7 @@ def test_one_peak(measured, rig, capsys):
     ],
 )
 def test_bad_rows(rig, capsys, lines, message):
-    assert message in refusal(capsys, rig(lines))
+    assert message in refusal(capsys, "identify", rig(lines))
 
 
 @pytest.mark.parametrize(
@@ -138,7 +132,7 @@ def test_bad_rows(rig, capsys, lines, message):
     ],
 )
 def test_bad_names(rig, capsys, head, message):
-    assert message in refusal(capsys, rig(LINES, head=head))
+    assert message in refusal(capsys, "identify", rig(LINES, head=head))
 
 
 @pytest.mark.parametrize(
@@ -160,9 +154,9 @@ def test_bad_names(rig, capsys, head, message):
     ],
 )
 def test_bad_configurations(rig, capsys, override, message):
-    assert message in refusal(capsys, rig(LINES), "--set", override)
+    assert message in refusal(capsys, "identify", rig(LINES), "--set", override)
 
 
 def test_masses_are_asked_for(rig, capsys):
     text = SWEEP.replace("masses = 2", "")
-    assert "system.masses must be given for a sweep" in refusal(capsys, rig(LINES, text))
+    assert "system.masses must be given for a sweep" in refusal(capsys, "identify", rig(LINES, text))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from records import Truth, base_at, steady, synthetic
+from refusals import refusal
 
 import frictionmap as fm
 from frictionmap.cli import main
@@ -33,15 +34,6 @@ def rig(tmp_path, monkeypatch):
         return path
 
     return write
-
-
-def refusal(capsys, *arguments):
-    """The one line on standard error of a command that is refused."""
-    assert main([str(argument) for argument in arguments]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err.count("\n") == 1
-    return err
 
 
 def test_from_a_file_to_a_friction_force(rig, capsys, measured_record):

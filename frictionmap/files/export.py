@@ -6,7 +6,9 @@ from pathlib import Path
 import xarray as xr
 
 from .. import checks
+from ..datasets.estimate_labels import OF_PARAMETERS
 from ..datasets.labels import COORDINATES, LABELS
+from ..datasets.schema import kind
 from ..errors import InputError
 from .storage import write_netcdf
 
@@ -20,9 +22,15 @@ def check_export(path: Path) -> None:
 
 
 def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
-    """Write a dataset; as CSV one row for every point of all its axes, with the names of codes."""
+    """Write a dataset; as CSV one row for every point of all its axes, with the names of codes.
+
+    Of estimates it is a row for every parameter.
+    """
     if path.suffix.lower() == ".nc":
         write_netcdf(ds, path, command)
+        return
+    if kind(ds) == "estimates":
+        ds[list(OF_PARAMETERS)].to_dataframe().to_csv(path)
         return
     table = {}
     dims = [str(name) for name in COORDINATES if name in ds.dims]

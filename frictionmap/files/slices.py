@@ -38,7 +38,9 @@ def parse_choices(texts: Sequence[str]) -> dict[str, float]:
 
 
 def further_axes(ds: xr.Dataset) -> list[str]:
-    """Dimensions of our variables beside those that their labels have."""
+    """Dimensions of our variables beside those that their labels have; estimates have none."""
+    if kind(ds) == "estimates":
+        return []
     labels = labels_of(kind(ds))
     dims = (
         str(dim)
@@ -67,7 +69,7 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
     for name, value in choices.items():
         if name not in legal:
             raise InputError(
-                f"--at must name an axis of the file: {', '.join(legal)}; "
+                f"--at must name an axis of the file: {', '.join(legal) or 'it has none'}; "
                 f"got {name}{checks.nearest(name, legal)}"
             )
         dim, found = _found(ds, name, value)

@@ -1,5 +1,6 @@
 """Files of estimates: what `info` says of them, slices, and one line for everything that makes no sense."""
 
+import csv
 import re
 
 import mutants
@@ -79,6 +80,23 @@ def test_errors_of_samples_are_those_given_or_those_of_the_residuals(datasets):
     decay = datasets["free-decay"]
     expected = np.sqrt(np.sum(decay.residual.values**2) / (800 - 6))
     np.testing.assert_allclose(decay.sigma, expected, rtol=1e-12)
+
+
+def test_other_commands_take_them_or_say_why_not(files, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    path = str(files["free-decay"])
+    assert main(["export", path, "-o", "table.csv", "--quiet"]) == 0
+    with (tmp_path / "table.csv").open() as table:
+        rows = list(csv.DictReader(table))
+    with xr.open_dataset(path) as ds:
+        assert [row["parameter"] for row in rows] == ds.parameter.values.tolist()
+        assert [float(row["estimate"]) for row in rows] == ds.estimate.values.tolist()
+        assert [row["unit"] for row in rows] == ds.unit.values.tolist()
+    assert main(["export", path, "-o", "copy.nc", "--quiet"]) == 0
+    xr.testing.assert_equal(read(tmp_path / "copy.nc"), read(files["free-decay"]))
+    for command in (["plot", path, "--at", "sample=1"], ["plot", path, "--over", "sample"]):
+        assert main(command) == 2
+        assert "it has none; got sample" in capsys.readouterr().err
 
 
 # Slices

@@ -21,7 +21,7 @@ BEGIN = "<!-- from benchmarks/results by `python -m benchmarks readme`: do not e
 END = "<!-- end of the results -->"
 
 #: The benchmarks whose results are quoted.
-QUOTED = ("peers", "structures", "accuracy", "stress", "steady", "scaling", "startup", "faults")
+QUOTED = ("peers", "structures", "accuracy", "stress", "steady", "scaling", "startup", "faults", "large")
 
 #: What `faults` found in an earlier state, quoted beside what it finds.
 BEFORE = "faults-before"
@@ -196,6 +196,37 @@ def _scaling_rows(scaling: dict) -> Iterator[tuple[str, ...]]:
     )
 
 
+def _large_rows(large: dict) -> Iterator[tuple[str, ...]]:
+    last = large["size"][-1]
+    yield (
+        f"a store of {last['n'] ** 2:,} cells of T Fig. 3.12, mu = 1",
+        f"{duration(last['store']['seconds'])}, {last['store']['MB']:.0f} MB of memory, "
+        f"{last['store']['disk MB']:.0f} MB on disk",
+    )
+    yield "a store over the same map in memory, CPU", f"{two_digits(large['overhead']['ratio'])} times"
+    study = large["study"]
+    each = study["cells"] // study["samples"]
+    yield (
+        f"{study['samples']:,} random variations of five masses, {each:,} cells each",
+        duration(study["seconds"]),
+    )
+    if "speed-up" in large["workers"]:
+        yield (
+            "two worker processes",
+            f"{two_digits(large['workers']['speed-up'])} times as fast as one, the same bytes",
+        )
+    kills = large["kills"]
+    yield (
+        "runs killed at random moments",
+        f"{kills['killed']} killed; {kills['finished']} got through, {kills['different']} with other bytes",
+    )
+    ahead = large["ahead"]["minutes of 1e10 cells on 100 machines"]
+    yield (
+        "10^10 cells on 100 machines like this one, computed from the above",
+        ", ".join(f"{name} {two_digits(minutes)} min" for name, minutes in ahead.items()),
+    )
+
+
 def _mass_rows(structures: dict) -> Iterator[tuple[str, ...]]:
     cost = structures["cost"]
     line = cost["ns a scan step, line over masses"]
@@ -255,6 +286,7 @@ def block(results: Path) -> str:
         lines += faults_lines(found["faults"], found.get(BEFORE))
     growth = list(_scaling_rows(found["scaling"])) if "scaling" in found else []
     growth += _mass_rows(structures) if structures else []
+    growth += _large_rows(found["large"]) if "large" in found else []
     if growth or "startup" in found:
         lines += ["", "### How cost grows"]
     lines += markdown(("how cost grows", "time"), growth)

@@ -14,6 +14,7 @@ from ..model.modes import wrapped
 from .chain_inverse import chain_of
 from .chain_response import modes, response_and_slopes
 from .least_squares import Problem, Solution, minimise
+from .robust import softened
 from .turning_points import turns
 
 #: Mass and stiffness ratios are within this factor of one; so are frequencies of what the peaks tell.
@@ -42,6 +43,9 @@ _ROUNDING = 1e-8
 
 #: A search that ends so many times above the least sum, with more unknowns free, is not followed.
 _HOPELESS = 3.0
+
+#: Half of all normal deviates are within so many standard deviations.
+_NORMAL_MEDIAN = 0.6745
 
 #: A peak stands out by this factor, by its logarithm: more than noise makes.
 _PEAK = 0.3
@@ -105,11 +109,26 @@ class Found(NamedTuple):
     others: list[Solution]
     times: int
     nothing: float  # sums below this are zero
+    outliers: float | None = None  # residuals beyond this, over their errors, have little weight
 
 
-def fit_chain(data: Measured, known: np.ndarray) -> tuple[Found, Problem]:
-    """The least sum over searches from many starts, always the same ones."""
-    task = problem(data, known)
+def fit_robust_chain(data: Measured, known: np.ndarray, given: bool) -> tuple[Found, Problem]:
+    """The same with little weight of outliers: of residuals beyond the errors that are given, or usual."""
+    if given:
+        return fit_chain(data, known, 1.0)
+    found, task = fit_chain(data, known)
+    for _ in range(2):  # the first errors are those of a fit that outliers pull
+        usual = float(np.median(np.abs(task.residuals(found.best.values)[0]))) / _NORMAL_MEDIAN
+        if usual == 0.0:  # exact data have none
+            break
+        found, task = fit_chain(data, known, usual)
+    return found, task
+
+
+def fit_chain(data: Measured, known: np.ndarray, outliers: float | None = None) -> tuple[Found, Problem]:
+    """The least sum over searches from many starts, always the same ones; the problem is the plain one."""
+    plain = problem(data, known)
+    task = plain if outliers is None else softened(plain, outliers)
     minima: list[Solution] = []
     times, nothing = 0, float(np.sum((_ROUNDING / data.sigma) ** 2))
     for start in _starts(data, known):
@@ -127,7 +146,7 @@ def fit_chain(data: Measured, known: np.ndarray) -> tuple[Found, Problem]:
         # the first mass has one answer only; others may have several, which are looked for
         if times >= _FOUND_AGAIN and 0 in data.mass and _usual_error(data, minima[0]) < _OUTLIER:
             break
-    return Found(minima[0], minima[1:], times, nothing), task
+    return Found(minima[0], minima[1:], times, nothing, outliers), plain
 
 
 def _usual_error(data: Measured, found: Solution) -> float:

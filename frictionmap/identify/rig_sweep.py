@@ -11,6 +11,7 @@ from ..files.config import unknown_key
 from .chain_estimates import chain_names
 from .columns import Column, Columns, check_positive, has_column, pick_columns
 from .rig import Kind, Rig, check_columns, dropped_rows
+from .robust import LOSSES
 from .sweep import COSTS, DAMPINGS, sweep
 from .sweep_data import MOST_MASSES
 from .tables import Table
@@ -71,6 +72,8 @@ def _options(rig: Rig) -> dict[str, Any]:
         )
     if "cost" in rig.fit:
         options["cost"] = checks.choice(rig.fit["cost"], "fit.cost", COSTS)
+    if "loss" in rig.fit:
+        options["loss"] = checks.choice(rig.fit["loss"], "fit.loss", LOSSES)
     return options
 
 
@@ -93,5 +96,5 @@ def _checked_system(rig: Rig) -> int:
 _KNOWN = tuple(dict.fromkeys(name for n in range(1, MOST_MASSES + 1) for name in chain_names(n)))
 
 SWEEP = Kind(
-    _sweep, (), known=_KNOWN, data=("sigma_amplitude", "sigma_phase_deg"), fit=("cost",), system=True
+    _sweep, (), known=_KNOWN, data=("sigma_amplitude", "sigma_phase_deg"), fit=("cost", "loss"), system=True
 )

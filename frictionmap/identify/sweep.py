@@ -11,9 +11,10 @@ from .. import checks
 from ..errors import InputError
 from .cautions import bounded, coloured, trading
 from .chain_estimates import chain_estimates, chain_names
-from .chain_fit import SEARCHES, Found, Measured, fit_chain
+from .chain_fit import SEARCHES, Found, Measured, fit_chain, fit_robust_chain
 from .estimates import verdict
 from .least_squares import Errors, Problem, Solution, errors, undetermined
+from .robust import LOSSES, effective_variance, softened
 from .sweep_data import MOST_MASSES, WORDS, Values, check_enough, checked_sweep
 
 DAMPINGS = ("ground", "base")
@@ -52,8 +53,11 @@ def sweep(
     sigma_amplitude: float | None = None,
     sigma_phase: float | None = None,
     cost: str = "logarithmic",
+    loss: str = "linear",
 ) -> xr.Dataset:
     """Fit a chain of masses on a shaken base, without friction, to amplitudes and lags over frequency.
+
+    Of its eleven arguments the first three are the data; the others say what is known and wanted.
 
     Parameters
     ----------
@@ -75,6 +79,8 @@ def sweep(
         residuals, 1 rad as a relative error of 1.
     cost : "logarithmic" or "relative"
         What is least: the squares of ln(X/measured), or of X/measured - 1, as T(6.16) has it.
+    loss : "linear" or "soft_l1"
+        What residuals cost: their squares, or less beyond their errors, for outliers.
 
     Returns
     -------
@@ -104,7 +110,8 @@ def sweep(
     names = chain_names(n)
     held = _held(known or {}, names, n, damped)
     check_enough(data, held)
-    fit = _fit(data, held, names, sigma_amplitude is not None)
+    robust = checks.choice(loss, "loss", LOSSES) == "soft_l1"
+    fit = _fit(data, held, names, sigma_amplitude is not None, robust)
     ds = chain_estimates(data, fit.found.best, fit.errors, fit.problem.free, fit.given, damped)
     ds["verdict"] = _verdict(fit)
     ds.attrs |= {"damping": DAMPINGS[data.base_damping] if damped else "none", "cost": cost}
@@ -130,8 +137,8 @@ def _held(known: Mapping[str, float], names: tuple[str, ...], n: int, damped: bo
     return held
 
 
-def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool) -> _Fit:
-    found, problem = fit_chain(data, held)
+def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool, robust: bool) -> _Fit:
+    found, problem = fit_robust_chain(data, held, given) if robust else fit_chain(data, held)
     unseen, too_many = undetermined(problem, found.best)
     if too_many:
         unknown = ", ".join(names[index] for index in unseen)
@@ -140,7 +147,14 @@ def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool) 
             f"amplitude_ratio of mass {measured} cannot tell {unknown} apart: {too_many} of them must be "
             "known, or another mass measured"
         )
-    return _Fit(data, found, problem, errors(problem, found.best, 1.0 if given else None), names, given)
+    if found.outliers is None:
+        return _Fit(data, found, problem, errors(problem, found.best, 1.0 if given else None), names, given)
+    variance = effective_variance(problem, found.best, found.outliers)
+    of_estimates = errors(softened(problem, found.outliers), found.best, variance)
+    plain = found.best._replace(residual=problem.residuals(found.best.values)[0])
+    freedom = plain.residual.size - int(problem.free.sum())
+    of_estimates = of_estimates._replace(variance=plain.sum / freedom)
+    return _Fit(data, found._replace(best=plain, others=[]), problem, of_estimates, names, given)
 
 
 def _verdict(fit: _Fit) -> xr.Variable:

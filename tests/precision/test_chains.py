@@ -156,6 +156,25 @@ def test_the_relative_cost_is_that_of_the_thesis():
     assert cost(*fm.identify.sweep(f, x).estimate.values[:3]) > least
 
 
+def test_outliers_of_a_sweep_have_little_weight():
+    """Two amplitudes of 54 are twice and half what they are: 35 times the noise."""
+    f = band(2)
+    exact = np.abs(responses(f, *chain(2), [0.0, 0.0], F_K1M1)[:, 0])
+    truth = np.array([F_K1M1, MASSES[1], SPRINGS[1]])
+    names = ["f_k1m1", "gamma", "kappa"]
+    pulled, soft = [], []
+    for seed in range(6):
+        x = exact * np.exp(np.random.default_rng(seed).normal(0.0, 0.02, f.size))
+        bound = fm.identify.sweep(f, x).standard_error.sel(parameter=names).values
+        x[[8 + seed, 30 - seed]] *= [2.0, 0.5]
+        for loss, scaled in (("linear", pulled), ("soft_l1", soft)):
+            ds = fm.identify.sweep(f, x, loss=loss).sel(parameter=names)
+            scaled.append((ds.estimate.values - truth) / bound)
+    assert np.sqrt(np.mean(np.square(soft))) < 1.8
+    assert np.sqrt(np.mean(np.square(pulled))) > 2.0 * np.sqrt(np.mean(np.square(soft)))
+    assert (ds.standard_error.values < 2.0 * bound).all()
+
+
 # What cannot be told
 
 

@@ -46,11 +46,10 @@ def starts(model: ForcedModel, known: np.ndarray) -> list[np.ndarray]:
     frequencies = _candidates(model) if np.isnan(known[F_N]) else [known[F_N]]
     dampings = _DAMPINGS if np.isnan(known[ZETA]) else [known[ZETA]]
     looked = []
-    for f_n, zeta in product(frequencies, dampings):
-        values = known.copy()
-        values[F_N], values[ZETA] = f_n, zeta
-        values[MU] = 1.0 if np.isnan(known[MU]) else known[MU]
-        looked.append(_best_frictions(tempered, values, _everywhere(model, values, known)))
+    for zeta in dampings:
+        mu = 1.0 if np.isnan(known[MU]) else known[MU]
+        several = [np.append(known[:F_N], [f_n, zeta, mu]) for f_n in frequencies]
+        looked += _best_frictions(tempered, several, [_everywhere(model, one, known) for one in several])
     looked.sort(key=lambda one: one[0])
     chosen: list[np.ndarray] = []
     for _, values in looked:
@@ -63,7 +62,7 @@ def starts(model: ForcedModel, known: np.ndarray) -> list[np.ndarray]:
     for values, mu in product(chosen, _MU):
         other = values.copy()
         other[MU] = mu
-        looked.append(_best_frictions(tempered, other, _everywhere(model, other, known)))
+        looked += _best_frictions(tempered, [other], [_everywhere(model, other, known)])
     return [values for _, values in sorted(looked, key=lambda one: one[0])]
 
 
@@ -88,10 +87,11 @@ def closer(model: ForcedModel, near: np.ndarray, known: np.ndarray) -> list[np.n
     samples = model.samples._replace(sigma=_CLOSER * model.samples.sigma)
     frequencies = near[F_N] * _F_BESIDE if np.isnan(known[F_N]) else known[F_N:ZETA]
     looked = []
-    for f_n, mu in product(frequencies, near[MU] + _MU_BESIDE):
+    for mu in near[MU] + _MU_BESIDE:
         if mu >= 1.0:
-            values = np.append(near[:F_N], [f_n, near[ZETA], mu])
-            looked.append(_best_frictions(model._replace(samples=samples), values, _around(values, known)))
+            several = [np.append(near[:F_N], [f_n, near[ZETA], mu]) for f_n in frequencies]
+            tried = [_around(values, known) for values in several]
+            looked += _best_frictions(model._replace(samples=samples), several, tried)
     looked.sort(key=lambda one: one[0])
     return [values for _, values in looked[:_TRIED]]
 
@@ -104,23 +104,33 @@ def _around(values: np.ndarray, known: np.ndarray) -> np.ndarray:
 def _everywhere(model: ForcedModel, values: np.ndarray, known: np.ndarray) -> np.ndarray:
     """Friction ratios of every set up to where all sticks, (tried, sets)."""
     system, r = model.with_zeta(float(values[ZETA])), model.rows.frequency / values[F_N]
-    stick = np.abs(system.modes.held_load(np.unique(r)))
+    stick = np.abs(system.contact_load(np.unique(r)))
     top = float(stick[np.isfinite(stick)].max(initial=1.0))
     grid = np.append(np.geomspace(_LEAST_SHARE * top, top, _BETAS), 0.0)[:, np.newaxis]
     return np.where(np.isnan(known[:F_N]), grid, known[:F_N])
 
 
-def _best_frictions(model: ForcedModel, values: np.ndarray, tried: np.ndarray) -> tuple[float, np.ndarray]:
-    """The sum with the best friction ratio of every set, of (tried, sets), and the values with these."""
+def _best_frictions(
+    model: ForcedModel, several: list[np.ndarray], tried: list[np.ndarray]
+) -> list[tuple[float, np.ndarray]]:
+    """Of several values of one zeta and mu: the sum with the best friction ratio of every set, and with it.
+
+    tried : (tried, sets) for each of the values
+    """
     rows = model.rows
-    r = np.tile(rows.frequency / values[F_N], tried.shape[0])
-    beta = (tried[:, rows.member] / rows.share).ravel()
-    states = steady_states(model.with_zeta(float(values[ZETA])), r, beta, float(values[MU]))
-    shape = (len(states), *tried.shape[:1], rows.frequency.size)
-    sums = _sums(model, np.array([state.phasors for state in states]).reshape(*shape, -1))
-    found = values.copy()
-    found[:F_N] = tried[sums.argmin(axis=0), np.arange(model.sets)]
-    return float(sums.min(axis=0).sum()), found
+    r = np.concatenate(
+        [np.tile(rows.frequency / one[F_N], grid.shape[0]) for one, grid in zip(several, tried, strict=True)]
+    )
+    beta = np.concatenate([(grid[:, rows.member] / rows.share).ravel() for grid in tried])
+    states = steady_states(model.with_zeta(float(several[0][ZETA])), r, beta, float(several[0][MU]))
+    phasors = np.array([state.phasors for state in states])
+    ends = np.cumsum([grid.shape[0] * rows.frequency.size for grid in tried])[:-1]
+    found = []
+    for one, grid, part in zip(several, tried, np.split(phasors, ends, axis=1), strict=True):
+        sums = _sums(model, part.reshape(len(states), grid.shape[0], rows.frequency.size, -1))
+        best = grid[sums.argmin(axis=0), np.arange(model.sets)]
+        found.append((float(sums.min(axis=0).sum()), np.append(best, one[F_N:])))
+    return found
 
 
 def _sums(model: ForcedModel, phasors: np.ndarray) -> np.ndarray:

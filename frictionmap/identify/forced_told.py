@@ -41,7 +41,7 @@ def _near_sticking(fit: Fit) -> list[str]:
     """Rows whose friction is near that which holds the contact, beta_stick = |F|/mu, theory.md 4."""
     values = fit.solution.values
     r, beta = points_of(fit.model.rows, values)
-    held = np.abs(fit.model.with_zeta(float(values[ZETA])).modes.held_load(r))
+    held = np.abs(fit.model.with_zeta(float(values[ZETA])).contact_load(r))
     near = int((beta * values[MU] > _NEAR_STICKING * held).sum())
     if not near:
         return []

@@ -170,7 +170,7 @@ def _lag(system: System, r: np.ndarray, beta: np.ndarray, mass: np.ndarray) -> n
 
 def _look(system: System, r: np.ndarray, mass: np.ndarray) -> _Lags:
     """Lags over all friction; where a closed form tells beta in continuous motion, at 0 and beyond it."""
-    stick = np.abs(system.modes.held_load(r))
+    stick = np.abs(system.contact_load(r))
     # a load that feeds a resonance of the held structure moves it whatever the friction
     stick = np.where(np.isfinite(stick), stick, 1.0 / np.finfo(float).eps)
     low = np.zeros_like(r)

@@ -16,7 +16,7 @@ from .maps import allocate
 from .quantity_data import asked_for
 
 #: Points that are followed at a time: arrays are over all pairs of their frequencies and friction ratios.
-_AT_ONCE = 256
+_AT_ONCE = 512
 
 
 class States(NamedTuple):

@@ -46,18 +46,6 @@ def test_synthetic_responses(measured, tmp_path, folder, kind):
             assert 0.8 < float(one.standard_error) / truth["crb"][name] < 1.25, name
 
 
-@pytest.mark.slow
-def test_intervals_hold_the_truth():
-    """95 % intervals of 100 seeds: 90 to 99 % hold it, of every parameter."""
-    names = ["beta_1", "beta_2", "beta_3", "f_n", "zeta"]
-    truth = np.array([*WALL.beta, WALL.f_n, WALL.zeta])
-    inside = np.zeros(truth.size)
-    for seed in range(100):
-        ds = fitted(WALL, seed, sigma_phase=0.7, sigma_amplitude=0.01).sel(parameter=names)
-        inside += (ds.lower.values <= truth) & (truth <= ds.upper.values)
-    assert 450 <= inside.sum() <= 495, inside
-
-
 #: r, beta and X_1 of one mass on a wall with zeta = 0.02, mu = 1.15, by `responses.integrated`.
 STOPPING = np.array([
     (0.15, 0.3, 0.8244784651, -0.2967664885),

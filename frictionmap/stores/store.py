@@ -2,6 +2,7 @@
 
 import contextlib
 import glob
+import hashlib
 import secrets
 import shutil
 from collections.abc import Mapping
@@ -54,6 +55,14 @@ class Store:
     @cached_property
     def _group(self) -> "zarr.Group":
         return _zarr().open_group(self.path, mode="r+", use_consolidated=False)
+
+    @property
+    def digest(self) -> str:
+        """What tells a store from one of another study."""
+        text = str(self._group.attrs["config"])
+        matrices = _matrices(self.study.system.matrices)
+        content = [text.encode(), *(array.tobytes() for array in matrices.values())]
+        return hashlib.sha256(b"".join(content)).hexdigest()
 
     def marks(self) -> np.ndarray:
         """Which blocks are done; bool, in the shape of `study.shape`."""

@@ -41,15 +41,14 @@ def _distributed() -> Any:
 
 
 @lru_cache(maxsize=4)
-def _store(path: str) -> Store:
-    """The store, opened once a process."""
-    return opened(Path(path))
-
-
-def warm(path: str) -> None:
-    """Have the kernels compiled by one process of this host; the others wait for it."""
+def _store(path: str, digest: str) -> Store:
+    """The store of a study, opened once a process; of a host one process compiles, the others wait for it."""
+    store = opened(Path(path))
+    if store.digest != digest:
+        raise OSError(f"{path} must be the same store for all workers; a worker found another there")
     with _alone():
-        _store(path).study.sample()
+        store.study.sample()
+    return store
 
 
 @contextlib.contextmanager
@@ -67,9 +66,9 @@ def _alone() -> Iterator[None]:
         yield
 
 
-def compute(path: str, place: tuple[int, ...]) -> tuple[int, ...]:
+def compute(path: str, digest: str, place: tuple[int, ...]) -> tuple[int, ...]:
     """Compute and write a block."""
-    store = _store(path)
+    store = _store(path, digest)
     block = store.study.block(place)
     store.write(block, store.study.compute(block, threads=1))
     return place
@@ -113,14 +112,13 @@ def running(address: str) -> Fill:
 
 def _on(client: "Client", store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
     """Blocks as they are done; a few more are under way than there are workers."""
-    path = str(store.path.resolve())
-    client.run(warm, path)
+    path, digest = str(store.path.resolve()), store.digest
     waiting = iter(blocks)
     places: dict[str, tuple[int, ...]] = {}
     losses: Counter[tuple[int, ...]] = Counter()
 
     def submit(place: tuple[int, ...]) -> "Future":
-        future = client.submit(compute, path, place, pure=False)
+        future = client.submit(compute, path, digest, place, pure=False)
         places[future.key] = place
         return future
 

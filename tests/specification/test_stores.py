@@ -250,3 +250,33 @@ def test_two_workers_write_the_same_bytes(tmp_path):
     )  # fmt: skip
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     same_files(one, two)
+
+
+@pytest.mark.slow
+def test_lost_workers_cost_no_block(tmp_path):
+    """Workers are killed again and again; others take their place."""
+    pytest.importorskip("distributed")
+    import psutil  # distributed brings it
+
+    one, two = tmp_path / "one.zarr", tmp_path / "two.zarr"
+    subprocess.run(command(tmp_path, "-o", one, "--quiet"), env=environment(), check=True, timeout=900)
+    run = subprocess.Popen(command(tmp_path, "-o", two, "--workers", "2", "--quiet"), env=environment())
+    chance = random.Random(5)
+    for _ in range(4):
+        time.sleep(chance.uniform(0.5, 2.0))
+        family = psutil.Process(run.pid).children(recursive=True) if run.poll() is None else []
+        for worker in [child for child in family if "spawn_main" in " ".join(child.cmdline())][:1]:
+            worker.kill()
+    assert run.wait(900) == 0
+    same_files(one, two)
+
+
+def test_a_worker_with_another_store(tmp_path):
+    pytest.importorskip("distributed")
+    from frictionmap.stores.workers import compute
+
+    fill_store(tmp_path / "map.zarr", study(ONE, 300), "map", in_this_process(1))
+    digest = opened(tmp_path / "map.zarr").digest
+    assert compute(str(tmp_path / "map.zarr"), digest, (0, 0)) == (0, 0)
+    with pytest.raises(OSError, match="must be the same store for all workers"):
+        compute(str(tmp_path / "map.zarr"), "another", (0, 0))

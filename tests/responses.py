@@ -1,5 +1,6 @@
 """Forced responses of one mass for tests: half a period solved from the equation of motion, noise on top."""
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -35,14 +36,18 @@ def continuous(r, beta, zeta):
     return V + 2.0 / np.pi * (free + pushed) * np.exp(-1j * turn)
 
 
+@functools.cache
+def phasors(truth):
+    """X_1 of every set at every r."""
+    return np.array([continuous(r, beta, truth.zeta) for beta in truth.beta for r in truth.r])
+
+
 def table(truth, seed, sigma_phase=0.7, sigma_amplitude=0.01):
     """Set, frequency [Hz], lag [deg] and amplitude of every set at every r; noise of its own for a seed."""
     rng = np.random.default_rng(seed)
     sets = np.repeat(np.arange(1, len(truth.beta) + 1), len(truth.r))
     r = np.tile(truth.r, len(truth.beta))
-    X = np.array(
-        [continuous(*pair, truth.zeta) for pair in zip(r, np.repeat(truth.beta, len(truth.r)), strict=True)]
-    )
+    X = phasors(truth)
     lag = -np.degrees(np.angle(X)) + sigma_phase * rng.normal(size=r.size)
     return sets, r * truth.f_n, lag, np.abs(X) * np.exp(sigma_amplitude * rng.normal(size=r.size))
 

@@ -117,7 +117,7 @@ def test_lags_alone_do_not_tell_the_frequency(rig, capsys):
     assert "warning: lags alone do not tell f_n: it is held at" in out
     below = [line for line in lines if float(line.split(",")[2]) < 90.0]
     assert "known.f_n must be given: lags alone do not tell f_n" in refusal(
-        capsys, rig(below, head=head), "--overwrite"
+        capsys, "identify", rig(below, head=head), "--overwrite"
     )
 
 

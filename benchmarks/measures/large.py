@@ -65,11 +65,11 @@ def run(quick: bool, results: Path) -> dict:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         content = {
-            "overhead": overhead(folder, quick),
-            "size": size(folder, quick),
+            "size": size(folder, quick),  # first: what this process holds counts for those it starts
             "workers": workers(folder, quick),
             "study": study(folder, quick),
             "kills": kills(folder, quick),
+            "overhead": overhead(folder, quick),
         }
     content["ahead"] = ahead(content, quick)
     save("large", content, results)

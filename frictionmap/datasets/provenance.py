@@ -50,7 +50,7 @@ def made_by(
     curves: Mapping[str, object] | None = None,
     study: Mapping[str, object] | None = None,
 ) -> dict[str, str]:
-    """Global attributes `history` and `config` of what a function of the package computed; see there."""
+    """Global attributes `history` and `config` of what a function computed; see `configuration`."""
     call = ", ".join(f"{name} = {_in_words(np.atleast_1d(values))}" for name, values in axes.items())
     return {
         "history": f"{now()} frictionmap.{function} of {system.contact}, {call}",

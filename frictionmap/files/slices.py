@@ -99,19 +99,22 @@ def _further(ds: xr.Dataset, name: str, further: Sequence[str]) -> bool:
 
 def _found(ds: xr.Dataset, name: str, value: float) -> tuple[str, np.ndarray]:
     """The dimension of an axis, and the places where it has a value."""
-    if name not in ds.coords:
-        values, dim = np.arange(ds.sizes[name]), name
-    else:
-        values, dim = ds[name].values, str(ds[name].dims[0])
+    values = _numbers(ds, name)
+    dim = str(ds[name].dims[0]) if name in ds.coords else name
     places = np.flatnonzero(np.abs(values - value) <= _SAME * np.abs(value))
     if not places.size:
         raise InputError(f"--at {name} must be one of {_values(ds, name)}; got {value:g}")
     return dim, places
 
 
+def _numbers(ds: xr.Dataset, name: str) -> np.ndarray:
+    """The values of an axis; its places where it has none."""
+    return ds[name].values if name in ds.coords else np.arange(ds.sizes[name])
+
+
 def _values(ds: xr.Dataset, name: str) -> str:
     """The values of an axis in words."""
-    values = ds[name].values if name in ds.coords else np.arange(ds.sizes[name])
+    values = _numbers(ds, name)
     if values.size > _LISTED:
         return f"{name} = {values.min():g} to {values.max():g} ({values.size} values)"
     return f"{name} = {', '.join(f'{value:g}' for value in values)}"

@@ -78,7 +78,7 @@ class Store:
 
     @cached_property
     def _arrays(self) -> dict[str, Array]:
-        return arrays_of(self.study, self.study.sample())
+        return arrays_of(self.study, self.study.sample)
 
 
 def _shape(where: tuple[slice | int, ...], shape: tuple[int, ...]) -> list[int]:
@@ -95,7 +95,7 @@ def make_store(path: Path, study: Study, title: str) -> None:
     zarr = _zarr()
     away = path.with_name(_being_made(path) + secrets.token_hex(8))
     try:
-        sample = study.sample()
+        sample = study.sample
         text = _configuration(study, title)
         attributes = {
             "Conventions": "CF-1.11", "title": title, "source": _SOURCE, "references": REFERENCES,

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -88,8 +89,9 @@ class Study:
         }  # fmt: skip
         return regime_map(self.variations.at(block.point), grid, self.solver, threads, None)
 
+    @cached_property
     def sample(self) -> xr.Dataset:
-        """One cell of the study: which variables there are, and all kernels compiled."""
+        """One cell of the study, computed once: which variables there are, and all kernels compiled."""
         grid = {"mu": self.mu[-1:], "r": self.r[-1:], "beta": self.beta[-1:]}
         return regime_map(self.system, grid, self.solver, 1, None)
 

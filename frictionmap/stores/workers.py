@@ -47,7 +47,7 @@ def _store(path: str, digest: str) -> Store:
     if store.digest != digest:
         raise OSError(f"{path} must be the same store for all workers; a worker found another there")
     with _alone():
-        store.study.sample()
+        _ = store.study.sample
     return store
 
 

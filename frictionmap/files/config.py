@@ -17,32 +17,16 @@ from ..errors import InputError
 from ..model.settings import CurveSettings, Solver, curve_settings
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
+from .keys import AXES, KEYS, names
 
 #: Values of one axis; more are surely a slip of the keyboard, and would not fit in memory with the others.
 _MOST_VALUES = checks.MOST_CELLS
 
-_SYSTEM_KEYS = (
-    "contact",
-    "contact_masses",
-    "load_mass",
-    "load",
-    "mass_ratios",
-    "stiffness_ratios",
-    "damping_ratios",
-    "matrices",
-    "frequency_scale",
-    "stiffness_scale",
-    "excitation",
-    "damping_reference",
-)
-_SOLVER_KEYS = ("start", "cycles", "tolerance", "steps", "skip", "steady", "outputs")
+#: Keys by table; those of [axes] are named by keys of [system].
 _SECTIONS: dict[str, tuple[str, ...] | None] = {
     "title": (),
-    "system": _SYSTEM_KEYS,
-    "grid": ("r", "beta", "mu"),
-    "solver": _SOLVER_KEYS,
-    "curves": ("harmonics", "quantities"),
-    "axes": None,  # named by the keys of [system]
+    **{section: names(section) for section in KEYS if section},
+    "axes": None,
 }
 _AXIS_KEYS = ("start", "stop", "step", "num", "values")
 #: Ways to give an axis exclude each other: on the command line, a key takes the place of these.
@@ -304,11 +288,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     (room or _fits)({**counts, "points": points}, system, solver, curves)
     axes = {
         key: checks.axis(_values(grid.get(key, [1.0]), f"grid.{key}"), f"grid.{key}", **bounds)
-        for key, bounds in (
-            ("r", {"least": 0.0, "most": checks.LARGEST_RATIO}),
-            ("beta", {"least": 0.0}),
-            ("mu", {"least": 1.0}),
-        )
+        for key, bounds in AXES.items()
     }
     matrices = described.get("matrices")
     files = (path, matrices) if isinstance(matrices, Path) else (path,)

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Literal, TypedDict, get_args
+from typing import Any, Literal, TypedDict, get_args
 
 from .. import checks
 from ..errors import InputError
@@ -40,7 +40,14 @@ Quantity = Literal[
 #: What they hold if nobody says, and the highest harmonic then; rounding grows with their number.
 QUANTITIES: tuple[Quantity, ...] = ("amplitude", "phase", "first_harmonic", "energy", "harmonics")
 HARMONICS = 7
-_MOST_HARMONICS = 1000
+
+#: Least and most value of each setting that is a number.
+RANGES: dict[str, dict[str, Any]] = {
+    "cycles": {"least": 1, "most": 10**9},
+    "tolerance": {"least": 1e-15, "most": 1e-3},
+    "steps": {"least": 2, "most": 1000},
+    "harmonics": {"least": 0, "most": 1000},
+}
 
 Start = Literal["rest", "moving"]
 Skip = Literal["exact", "none"]
@@ -85,9 +92,9 @@ class Solver:
 
     def __post_init__(self) -> None:
         checks.choice(self.start, "start", get_args(Start))
-        checks.whole(self.cycles, "cycles", least=1, most=10**9)
-        checks.number(self.tolerance, "tolerance", least=1e-15, most=1e-3)
-        checks.whole(self.steps, "steps", least=2, most=1000)
+        checks.whole(self.cycles, "cycles", **RANGES["cycles"])
+        checks.number(self.tolerance, "tolerance", **RANGES["tolerance"])
+        checks.whole(self.steps, "steps", **RANGES["steps"])
         checks.choice(self.skip, "skip", get_args(Skip))
         checks.choice(self.steady, "steady", get_args(Steady))
         if isinstance(self.outputs, str) or not isinstance(self.outputs, Sequence):
@@ -159,6 +166,6 @@ def curve_settings(
         raise InputError(f"quantities must name at least one of {', '.join(legal)}; got none")
     if harmonics is None:
         harmonics = HARMONICS if "harmonics" in given else 0
-    harmonics = checks.whole(harmonics, "harmonics", least=0, most=_MOST_HARMONICS)
+    harmonics = checks.whole(harmonics, "harmonics", **RANGES["harmonics"])
     kept = {*given, "harmonics"} if harmonics else {*given} - {"harmonics"}
     return CurveSettings(harmonics, tuple(name for name in legal if name in kept))

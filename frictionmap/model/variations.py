@@ -17,13 +17,13 @@ from ..errors import InputError
 from .system import System
 
 #: What may change as one number, and what as one of a list; with what a value means.
-_NUMBERS = {
+NUMBERS = {
     "damping_ratios": "damping ratio of all modes",
     "load_mass": "mass that the load acts on",
     "frequency_scale": "frequency of r = 1, in the units of sqrt(K/M)",
     "stiffness_scale": "stiffness that displacements are over, in the units of K",
 }
-_LISTS = {
+LISTS = {
     "mass_ratios": "mass ratio m_{0}/m_1",
     "stiffness_ratios": "stiffness ratio k_{0}/k_1",
     "damping_ratios": "damping ratio of mode {0}",
@@ -57,7 +57,7 @@ class Number:
     @property
     def meaning(self) -> str:
         """What it is, in words."""
-        return _NUMBERS[self.key] if self.place is None else _LISTS[self.key].format(self.place)
+        return NUMBERS[self.key] if self.place is None else LISTS[self.key].format(self.place)
 
     def in_system(self, system: System, value: float) -> Any:
         """The value of the key with this number in it."""
@@ -183,7 +183,7 @@ def _axis(name: object, values: object) -> Axis:
     if not isinstance(name, str) or not name:
         raise InputError(f"axes must have texts as names; got {checks.one_line(name)}")
     if isinstance(values, Mapping):
-        if not re.fullmatch("[a-z][a-z0-9_]*", name) or name in (*_NUMBERS, *_LISTS):
+        if not re.fullmatch("[a-z][a-z0-9_]*", name) or name in (*NUMBERS, *LISTS):
             raise InputError(
                 f"axes must give keys that change together a name of their own, of small letters, such as "
                 f"sample; got {name!r}"
@@ -211,12 +211,12 @@ def _column(name: str, values: object) -> np.ndarray:
 
 
 def _number(key: object, where: str) -> Number:
-    if key in _NUMBERS:
+    if key in NUMBERS:
         return Number(str(key), None)
     matched = _INDEXED.fullmatch(key) if isinstance(key, str) else None
-    if matched and matched[1] in _LISTS:
+    if matched and matched[1] in LISTS:
         return Number(matched[1], int(matched[2]))
-    legal = (*_NUMBERS, *(f"{name}[i]" for name in _LISTS))
+    legal = (*NUMBERS, *(f"{name}[i]" for name in LISTS))
     raise InputError(
         f"{where} must name a number of the system, i counted from 1: {', '.join(legal)}; "
         f"got {checks.one_line(key)}{checks.nearest(str(key), legal)}"

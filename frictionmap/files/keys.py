@@ -1,0 +1,238 @@
+"""The keys of a configuration: what each means, its default, and what is legal, as JSON Schema says it.
+
+`config` takes from here which keys there are, `template` writes them with their meanings, `json_schema` makes
+of them what editors check by.  The checks themselves are those of `System`, `Solver`, `curve_settings` and
+`checks.axis`; ranges and words stand with them and are taken from there.
+"""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple, get_args
+
+from .. import checks
+from ..model.settings import OUTPUTS, RANGES, Quantity, Skip, Solver, Start, Steady, curve_settings
+from ..model.system import CONTACTS, DAMPING_REFERENCES, EXCITATIONS, System
+
+Legal = Mapping[str, Any]
+
+#: Least and most value of the axes of a grid.
+AXES: dict[str, dict[str, float]] = {
+    "r": {"least": 0.0, "most": checks.LARGEST_RATIO},
+    "beta": {"least": 0.0},
+    "mu": {"least": 1.0},
+}
+
+
+class Key(NamedTuple):
+    """One key of a table."""
+
+    name: str
+    meaning: str
+    legal: Legal  # JSON Schema
+    default: Any = None  # None: there is none that a file could say
+    example: str = ""  # TOML, where there is no default
+    words: str = ""  # what is legal, where the schema alone is hard to read
+
+
+def number(*, least: float | None = None, most: float | None = None, above: float | None = None) -> Legal:
+    """A number in a range."""
+    ends = {"minimum": least, "maximum": most, "exclusiveMinimum": above}
+    return {"type": "number", **{name: end for name, end in ends.items() if end is not None}}
+
+
+def whole(**ends: float) -> Legal:
+    """A whole number in a range."""
+    return {**number(**ends), "type": "integer"}
+
+
+def word(*legal: str) -> Legal:
+    """One of these words."""
+    return {"enum": list(legal)}
+
+
+def several(item: Legal, least: int = 1, **more: Any) -> Legal:
+    """A list."""
+    return {"type": "array", "items": item, "minItems": least, **more}
+
+
+def either(*kinds: Legal) -> Legal:
+    """Any of these."""
+    return {"anyOf": list(kinds)}
+
+
+def table(keys: Mapping[str, Legal], required: tuple[str, ...] = ()) -> Legal:
+    """A table with no other keys."""
+    return {
+        "type": "object", "properties": dict(keys), "required": list(required),
+        "additionalProperties": False,
+    }  # fmt: skip
+
+
+def axis(**ends: float) -> Legal:
+    """Values, or a range of them."""
+    value = number(**ends)
+    edges = {"start": value, "stop": value}
+    return either(
+        value,
+        several(value),
+        table({"values": several(value)}, ("values",)),
+        table({**edges, "step": number(above=0.0)}, ("start", "stop", "step")),
+        table({**edges, "num": whole(least=1, most=checks.MOST_CELLS)}, ("start", "stop", "num")),
+    )
+
+
+_TEXT: Legal = {"type": "string"}
+_NAME: Legal = {"type": "string", "minLength": 1}
+_RATIOS = several(number(above=0.0), prefixItems=[{"type": "number", "const": 1}])
+_ZETA = number(least=0.0, most=checks.LARGEST_DAMPING)
+_MATRIX = several(several(number()))
+_MATRICES = table({"M": _MATRIX, "K": _MATRIX, "C": _MATRIX}, ("M", "K"))
+_RANGE = "a number, a list, { start, stop, step }, { start, stop, num } or { values }; ends included"
+
+_ONE_MASS, _SOLVER, _CURVES = System(), Solver(), curve_settings()
+
+
+def _setting(name: str, meaning: str, legal: Legal) -> Key:
+    return Key(name, meaning, legal, getattr(_SOLVER, name))
+
+
+def _of_system(name: str, meaning: str, legal: Legal, **more: Any) -> Key:
+    default = getattr(_ONE_MASS, name)
+    return Key(name, meaning, legal, list(default) if isinstance(default, tuple) else default, **more)
+
+
+#: Keys by table; "" is no table.
+KEYS: dict[str, tuple[Key, ...]] = {
+    "": (Key("title", "what pictures and files are called", _TEXT, example='"A title"'),),
+    "system": (
+        _of_system("contact", "where the friction acts", word(*CONTACTS)),
+        _of_system(
+            "contact_masses",
+            "the mass in contact, or the two for between-masses, A < B; counted from 1",
+            several(whole(least=1), maxItems=2),
+        ),
+        _of_system("load_mass", "the mass that the harmonic load acts on, counted from 1", whole(least=1)),
+        Key(
+            "load",
+            "instead of load_mass, one load a mass, over P",
+            several(either(number(), several(number(), 2, maxItems=2))),
+            example="[1.0]",
+            words="a number, or [real part, imaginary part], for every mass",
+        ),
+        _of_system(
+            "mass_ratios", "gamma_i = m_i/m_1 of a chain, the first one 1", _RATIOS, words="numbers > 0"
+        ),
+        _of_system(
+            "stiffness_ratios",
+            "kappa_i = k_i/k_1 of its springs, the first one 1; spring 1 ties mass 1 to the ground",
+            _RATIOS,
+            words="numbers > 0",
+        ),
+        Key(
+            "damping_ratios",
+            "zeta of every mode, or a list, one a mode",
+            either(_ZETA, several(_ZETA)),
+            0.0,
+            words=f"numbers from 0 to {checks.LARGEST_DAMPING:g}",
+        ),
+        Key(
+            "matrices",
+            "instead of the ratios, any structure: arrays M and K, and optionally C instead of damping_ratios",
+            either(_NAME, _MATRICES),
+            example='"frame.npz"',
+            words="the path of an .npz file, or { M = [[...]], K = [[...]] }",
+        ),
+        Key(
+            "frequency_scale",
+            "with matrices, what r = 1 is, in the units of sqrt(K/M); the first natural frequency if left out",
+            number(above=0.0),
+            example="12.3",
+        ),
+        _of_system(
+            "stiffness_scale",
+            "with matrices, displacements are over P/stiffness_scale, in the units of K",
+            number(above=0.0),
+        ),
+        _of_system(
+            "excitation",
+            "what shakes it: a force, or the base; always the base with a joined base-wall",
+            word(*EXCITATIONS),
+        ),
+        _of_system(
+            "damping_reference",
+            "whether damping acts on velocities in space or relative to the base, which must move for that",
+            word(*DAMPING_REFERENCES),
+        ),
+    ),
+    "grid": (
+        Key("r", "excitation over natural frequency", axis(**AXES["r"]), example="1.0", words=_RANGE),
+        Key("beta", "kinetic friction force over load", axis(**AXES["beta"]), example="1.0", words=_RANGE),
+        Key("mu", "static over kinetic friction, >= 1", axis(**AXES["mu"]), [1.0], words=_RANGE),
+    ),
+    "solver": (
+        _setting("start", "at rest, or in a large sliding motion; matters for mu > 1", word(*get_args(Start))),
+        _setting("cycles", "give up after so many excitation periods", whole(**RANGES["cycles"])),
+        _setting("tolerance", "on the state after one return", number(**RANGES["tolerance"])),
+        _setting("steps", "scan steps a period; changes speed only", whole(**RANGES["steps"])),
+        _setting(
+            "skip",
+            "integrate only the cells that no proof decides, or every cell with friction",
+            word(*get_args(Skip)),
+        ),
+        _setting(
+            "steady",
+            "solve for the periodic orbit, or march until the motion returns",
+            word(*get_args(Steady)),
+        ),
+        Key(
+            "outputs",
+            "what is computed and kept of every cell",
+            several(word(*OUTPUTS)),
+            list(_SOLVER.outputs),
+        ),
+    ),
+    "curves": (
+        Key(
+            "quantities",
+            "what response curves hold",
+            several(word(*get_args(Quantity))),
+            list(_CURVES.quantities),
+        ),
+        Key("harmonics", "the highest harmonic kept; 0: none", whole(**RANGES["harmonics"]), _CURVES.harmonics),
+    ),
+}  # fmt: skip
+
+#: What is said of a table as a whole.
+TABLES = {
+    "system": "The structure, its contact and its load.",
+    "grid": "The map: rows, columns, and one map for every mu.",
+    "solver": "How steady states are found, and what is kept of them.",
+    "curves": "For `frictionmap curves` only: beta is then a short list.",
+    "axes": "Further axes: numbers of [system] that change, alone or several together from a CSV.",
+}
+
+
+def names(section: str) -> tuple[str, ...]:
+    """The keys of a table."""
+    return tuple(key.name for key in KEYS[section])
+
+
+def in_words(key: Key) -> str:
+    """What is legal for a key, in a few words."""
+    return key.words or _in_words(key.legal)
+
+
+def _in_words(legal: Legal) -> str:
+    if "enum" in legal:
+        *others, last = (f'"{one}"' for one in legal["enum"])
+        return f"{', '.join(others)} or {last}" if others else last
+    if "anyOf" in legal:
+        return " or ".join(_in_words(one) for one in legal["anyOf"])
+    if legal["type"] == "array":
+        return f"a list of {_in_words(legal['items'])}"
+    words = {"integer": "a whole number", "number": "a number", "string": "text"}[legal["type"]]
+    ends = [
+        f"{sign} {legal[name]:g}"
+        for name, sign in (("exclusiveMinimum", ">"), ("minimum", ">="), ("maximum", "<="))
+        if name in legal
+    ]
+    return " ".join((words, " and ".join(ends))).strip()

@@ -136,14 +136,14 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         Key(
             "matrices",
-            "instead of the ratios, any structure: arrays M and K, and optionally C instead of damping_ratios",
+            "instead of the ratios, any structure: arrays M, K, optionally C instead of damping_ratios",
             either(_NAME, _MATRICES),
             example='"frame.npz"',
             words="the path of an .npz file, or { M = [[...]], K = [[...]] }",
         ),
         Key(
             "frequency_scale",
-            "with matrices, what r = 1 is, in the units of sqrt(K/M); the first natural frequency if left out",
+            "with matrices, what r = 1 is, in the units of sqrt(K/M); else the first natural frequency",
             number(above=0.0),
             example="12.3",
         ),
@@ -169,7 +169,9 @@ KEYS: dict[str, tuple[Key, ...]] = {
         Key("mu", "static over kinetic friction, >= 1", axis(**AXES["mu"]), [1.0], words=_RANGE),
     ),
     "solver": (
-        _setting("start", "at rest, or in a large sliding motion; matters for mu > 1", word(*get_args(Start))),
+        _setting(
+            "start", "at rest, or in a large sliding motion; matters for mu > 1", word(*get_args(Start))
+        ),
         _setting("cycles", "give up after so many excitation periods", whole(**RANGES["cycles"])),
         _setting("tolerance", "on the state after one return", number(**RANGES["tolerance"])),
         _setting("steps", "scan steps a period; changes speed only", whole(**RANGES["steps"])),
@@ -197,9 +199,11 @@ KEYS: dict[str, tuple[Key, ...]] = {
             several(word(*get_args(Quantity))),
             list(_CURVES.quantities),
         ),
-        Key("harmonics", "the highest harmonic kept; 0: none", whole(**RANGES["harmonics"]), _CURVES.harmonics),
+        Key(
+            "harmonics", "the highest harmonic kept; 0: none", whole(**RANGES["harmonics"]), _CURVES.harmonics
+        ),
     ),
-}  # fmt: skip
+}
 
 #: What is said of a table as a whole.
 TABLES = {

@@ -97,6 +97,13 @@ def _takes_choices(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--at", metavar="NAME=VALUE", action="append", default=[], help=text)
 
 
+def _takes_over(sub: argparse.ArgumentParser, what: str) -> None:
+    text = (
+        f"{what} the shares of regimes over a further axis, such as sample, and quantiles of the boundaries"
+    )
+    sub.add_argument("--over", metavar="NAME", action=_Once, help=text)
+
+
 def _takes_workers(sub: argparse.ArgumentParser) -> None:
     where = sub.add_mutually_exclusive_group()
     text = "compute OUT.zarr on N processes of this machine (needs dask)"
@@ -149,14 +156,14 @@ def _parser() -> argparse.ArgumentParser:
     )
     sub.add_argument("--quantity", metavar="NAME", action=_Once, help=text)
     _takes_choices(sub)
-    text = "draw the shares of regimes over a further axis, such as sample, and quantiles of the boundaries"
-    sub.add_argument("--over", metavar="NAME", action=_Once, help=text)
+    _takes_over(sub, "draw")
     sub.add_argument("--log", action="store_true", help="amplitudes of curves on a logarithmic axis")
     text = "Write a map, or a slice of one, as NetCDF or as a table (CSV)."
     sub = command("export", "a slice of a file or a store as NetCDF or CSV", text)
     sub.add_argument("file", metavar="FILE", type=Path, help="what to read: FILE.nc, or a store FILE.zarr")
     _takes_output(sub, "OUT", "OUT.nc or OUT.csv; default: FILE.csv in the current folder")
     _takes_choices(sub)
+    _takes_over(sub, "write")
     sub = command("info", "what is in a file", "Print what is in a file, in one screen.")
     sub.add_argument("file", metavar="FILE", type=Path, help="what to read: FILE.nc, or a store FILE.zarr")
     _takes_choices(sub)

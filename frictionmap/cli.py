@@ -4,7 +4,7 @@ import contextlib
 import shlex
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -193,18 +193,23 @@ def _identify(options: Options) -> None:
     _tell(options, output, rig.title, *describe_estimates(ds))
 
 
-def _plot(options: Options) -> None:
-    from .files.places import claimed
+def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None) -> "xr.Dataset":
+    """The point of a file, or its shares over an axis, that the arguments choose; `only`: see `read`."""
     from .files.reading import read
     from .files.slices import parse_choices
-    from .plot import PICTURED, check_picture, save_picture
     from .probabilities import read_shares
 
     choices = parse_choices(options.at)
     if options.over is None:
-        ds = read(options.file, PICTURED, choices)
-    else:
-        ds = read_shares(options.file, options.over, choices)
+        return read(options.file, only, choices)
+    return read_shares(options.file, options.over, choices)
+
+
+def _plot(options: Options) -> None:
+    from .files.places import claimed
+    from .plot import PICTURED, check_picture, save_picture
+
+    ds = _chosen(options, PICTURED)
     path = options.output or Path(f"{options.file.stem}.png")
     check_picture(path)
     with claimed(path, options.overwrite, [options.file]) as output:
@@ -216,13 +221,11 @@ def _plot(options: Options) -> None:
 def _export(options: Options) -> None:
     from .files.export import check_export, write_export
     from .files.places import claimed
-    from .files.reading import read
-    from .files.slices import parse_choices
 
     path = options.output or Path(f"{options.file.stem}.csv")
     check_export(path)
     with claimed(path, options.overwrite, [options.file]) as output:
-        ds = read(options.file, at=parse_choices(options.at))
+        ds = _chosen(options)
         output.fill(lambda scratch: write_export(ds, scratch, options.command_line))
     if not options.quiet:
         _print(f"wrote {path}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from .datasets.labels import HISTORY_VARIABLES
+from .datasets.labels import HISTORY_VARIABLES, SHARES
 from .errors import InputError
 from .files.reading import kind
 from .pictures.boundary_map import plot_boundaries
@@ -51,6 +51,7 @@ PICTURED = {
         ("regime", "stops_per_cycle", "period", "status", *HISTORY_VARIABLES, *HARMONIC_VARIABLES)
     ),
     "curves": CURVE_VARIABLES,
+    "shares": frozenset(SHARES),
 }
 
 _DPI = 160
@@ -64,8 +65,6 @@ def check_picture(path: Path) -> None:
 
 def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
     """A picture of a dataset of any kind; the first of what is drawn of its kind if no quantity is given."""
-    if "regime_share" in ds:
-        return plot_shares(ds)
     what = kind(ds)
     if what == "curves":
         return plot_curves(ds, quantity, log=log)
@@ -74,6 +73,7 @@ def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
         "boundaries": {"boundaries": plot_boundaries},
         "response": {"history": plot_response, "orbit": plot_orbit},
         "estimates": {"fit": plot_fit},
+        "shares": {"shares": plot_shares},
     }
     legal = drawn_of[what]
     if log:

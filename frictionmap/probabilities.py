@@ -1,13 +1,13 @@
 """Many samples of an uncertain structure as probabilities: shares of each regime, quantiles of boundaries."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from . import checks, regimes
-from .datasets.labels import CELL, CURVE, REFERENCES
+from .datasets.labels import CELL, CURVE, MARKS, REFERENCES, coordinate, label_variable
 from .datasets.schema import check_structure, kind
 from .errors import InputError
 from .files.reading import opened
@@ -60,13 +60,9 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     levels = checks.axis(quantiles, "quantiles", least=0.0, most=1.0)
     names = [name for name in ("beta_lim", "beta_stick", "contact_amplitude") if name in ds]
     found = {f"{name}_quantile": _quantiles(ds, name, over, levels) for name in names}
-    coords = {name: ds[name].variable for name in CELL}
-    coords["outcome"] = xr.Variable(
-        "outcome", [code.name for code in regimes.REGIMES], {"long_name": "regime"}
-    )
-    coords["quantile"] = xr.Variable(
-        "quantile", levels, {"long_name": "share of samples below", "units": "1"}
-    )
+    outcomes = np.array([code.name for code in regimes.REGIMES])
+    axes = {"outcome": outcomes, "quantile": levels, **{name: ds[name].values for name in CELL}}
+    coords = {name: coordinate(name, values) for name, values in axes.items()}
     attributes = {
         **{name: ds.attrs[name] for name in ("title", "system", "config") if name in ds.attrs},
         "Conventions": "CF-1.11", "source": f"frictionmap {__version__}", "references": REFERENCES,
@@ -76,10 +72,24 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
 
 
 def read_shares(path: Path, over: str, choices: Mapping[str, float]) -> xr.Dataset:
-    """`shares` of a file or a store over one of its axes, `choices` of the others."""
+    """`shares` of a file or a store over one of its axes, `choices` of the others.
+
+    Of a store that is not finished only the samples that are.
+    """
     with opened(path) as ds:
         check_structure(ds)
-        return shares(choose(ds, choices, over), over)
+        part = choose(ds, choices, over)
+        if MARKS in part:
+            done = part[MARKS].values.all(axis=tuple(part[MARKS].get_axis_num(_others(part[MARKS], over))))
+            if not done.any():
+                raise InputError(f"store {path} must have at least one point of {over} finished; it has none")
+            part = part.isel({over: np.flatnonzero(done)})
+        return shares(part, over)
+
+
+def _others(variable: xr.DataArray, name: str) -> list[Hashable]:
+    """The dimensions of a variable but one."""
+    return [dim for dim in variable.dims if dim != name]
 
 
 def _shares(ds: xr.Dataset, over: str) -> xr.Variable:
@@ -89,8 +99,7 @@ def _shares(ds: xr.Dataset, over: str) -> xr.Variable:
         values = ds["regime"].isel({over: k}).transpose(*CELL).values
         for count, code in zip(counts, codes, strict=True):
             count += values == code
-    words = {"long_name": "share of the samples with this regime", "units": "1"}
-    return xr.Variable(("outcome", *CELL), counts / ds.sizes[over], words)
+    return label_variable("regime_share", counts / ds.sizes[over])
 
 
 def _quantiles(ds: xr.Dataset, name: str, over: str, levels: np.ndarray) -> xr.Variable:
@@ -100,8 +109,7 @@ def _quantiles(ds: xr.Dataset, name: str, over: str, levels: np.ndarray) -> xr.V
     for m, rows in _parts(ds, variable.size):
         part = variable.isel(mu=m, r=rows).transpose(over, *dims[1:]).values
         values[:, m, rows] = _ordered(part, levels)
-    words = {"long_name": f"quantiles of {name} over the samples", "units": "1"}
-    return xr.Variable(("quantile", *dims), values, words)
+    return label_variable(f"{name}_quantile", values)
 
 
 def _parts(ds: xr.Dataset, size: int) -> Iterator[tuple[int, slice]]:

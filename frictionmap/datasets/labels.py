@@ -67,6 +67,8 @@ COORDINATES = {
         np.int64, "harmonic of the excitation frequency; 0 is the mean", ("harmonic",), least=0
     ),
     "part": Label(np.str_, "part of a complex number", ("part",), texts=("real", "imaginary")),
+    "outcome": Label(np.str_, "regime", ("outcome",), texts=tuple(code.name for code in regimes.REGIMES)),
+    "quantile": Label(np.float64, "share of the samples below", ("quantile",), least=0.0, most=1.0),
 }
 
 _PER_CYCLE = "per excitation cycle, over P^2/k1"
@@ -442,7 +444,32 @@ HISTORY_VARIABLES = {
 #: In a response `phase` is the sense of the motion; the lag of a mass has another name there.
 LAG = {"phase_lag": CYCLE_VARIABLES["phase"]}
 
-LABELS = {**CELL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES, **LAG}
+
+def _quantiles(name: str) -> Label:
+    """Quantiles of a variable of a map over samples of a structure."""
+    label = {**CELL_VARIABLES, **CURVES}[name]
+    return Label(
+        np.float64,
+        f"quantiles over the samples of the {label.long_name}",
+        ("quantile", *label.dims),
+        comment="between neighbours of the ordered samples; NaN where no sample has one",
+        least=label.least,
+        nan=True,
+        inf=True,
+    )
+
+
+#: Probabilities: of many samples of a structure.
+SHARES = {
+    "regime_share": Label(
+        np.float64, "share of the samples with this regime", ("outcome", *CELL), least=0.0, most=1.0
+    ),
+    "beta_lim_quantile": _quantiles("beta_lim"),
+    "beta_stick_quantile": _quantiles("beta_stick"),
+    "contact_amplitude_quantile": _quantiles("contact_amplitude"),
+}
+
+LABELS = {**CELL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES, **LAG, **SHARES}
 
 
 def labels_of(what: str) -> dict[str, Label]:

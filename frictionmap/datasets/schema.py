@@ -16,6 +16,7 @@ from .labels import (
     HISTORY_VARIABLES,
     LABELS,
     LIMIT,
+    SHARES,
     Label,
     labels_of,
 )
@@ -40,9 +41,14 @@ def _on_limit(name: object) -> bool:
 
 
 def kind(ds: xr.Dataset) -> str:
-    """What a dataset, or a slice of one, holds: "map", "curves", "response", "boundaries" or "estimates"."""
+    """What a dataset, or a slice of one, holds.
+
+    "map", "curves", "response", "boundaries", "estimates" or "shares".
+    """
     if "estimate" in ds.variables:
         return "estimates"
+    if any(name in SHARES for name in ds.variables):
+        return "shares"
     if any(_is_history(ds, name) for name in ds.variables):
         return "response"
     if any(name in CYCLE_VARIABLES or _on_limit(name) for name in ds.variables):

@@ -24,7 +24,7 @@ def check_export(path: Path) -> None:
 def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
     """Write a dataset; as CSV one row for every point of all its axes, with the names of codes.
 
-    Of estimates it is a row for every parameter.
+    Of estimates it is a row for every parameter; of shares every outcome and quantile has a column.
     """
     if path.suffix.lower() == ".nc":
         write_netcdf(ds, path, command)
@@ -32,6 +32,8 @@ def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
     if kind(ds) == "estimates":
         ds[list(OF_PARAMETERS)].to_dataframe().to_csv(path)
         return
+    if kind(ds) == "shares":
+        ds = _in_columns(_in_columns(ds, "outcome"), "quantile")
     table = {}
     dims = [str(name) for name in COORDINATES if name in ds.dims]
     for name, variable in ds.data_vars.items():
@@ -40,6 +42,18 @@ def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
     wide = xr.Dataset(table)
     checks.cells(1, 1, math.prod(wide.sizes.values()), name="a table")
     wide.to_dataframe(dim_order=[dim for dim in dims if dim in wide.dims]).to_csv(path)
+
+
+def _in_columns(ds: xr.Dataset, dim: str) -> xr.Dataset:
+    """A variable for every value along a dimension, in the place of one that has it."""
+    columns: dict[str, xr.DataArray] = {}
+    for name, variable in ds.data_vars.items():
+        if dim not in variable.dims:
+            columns[str(name)] = variable
+            continue
+        for k, value in enumerate(ds[dim].values):
+            columns[f"{name}_{value}"] = variable.isel({dim: k}, drop=True)
+    return xr.Dataset(columns)
 
 
 def _in_words(variable: xr.DataArray) -> xr.DataArray:

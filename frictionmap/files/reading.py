@@ -118,7 +118,7 @@ def _ours(ds: xr.Dataset) -> xr.Dataset:
 
 
 def standard_form(ds: xr.Dataset) -> xr.Dataset:
-    """A map, curves, a response, boundaries or estimates, or any slice, in the form that it was computed in.
+    """A dataset of any kind (`schema.kind`), or any slice of one, in the form that it was computed in.
 
     Works by names.  A value of mu, r, beta or of a mass that was chosen (`isel`, `sel`) becomes an axis of
     one value again; dimensions come in their order (mu, r, beta, dof, harmonic, part), axes increase, types

@@ -84,13 +84,26 @@ def describe_response(ds: xr.Dataset) -> str:
     return ", ".join(words)
 
 
+def describe_shares(ds: xr.Dataset) -> str:
+    """One line: how many samples, and the share of each regime over all cells."""
+    words = f"{ds.attrs.get('samples', 'unknown')} samples"
+    if "regime_share" in ds:
+        means = ds["regime_share"].mean(CELL)
+        parts = (
+            f"{100.0 * float(mean):.3g} % {name}"
+            for name, mean in zip(means["outcome"].values, means.values, strict=True)
+        )
+        words += f"; over all cells {', '.join(part.replace('_', ' ') for part in parts)}"
+    return words
+
+
 def describe_file(ds: xr.Dataset) -> str:
     """One screen: title, system, axes, variables, values, regimes and causes of unresolved cells.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        A map, curves, a response, boundaries or estimates, or a slice of one.
+        A map, curves, a response, boundaries, estimates or shares, or a slice of one.
 
     Raises
     ------
@@ -209,6 +222,8 @@ def _in_short(ds: xr.Dataset, what: str) -> Iterator[str]:
     """The last lines: what came out, and what to mind."""
     if what in ("map", "curves"):
         yield describe_map(ds)
+    elif what == "shares":
+        yield describe_shares(ds)
     elif what == "response":
         yield describe_response(ds)
         yield from _motion(ds)

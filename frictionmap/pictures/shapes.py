@@ -17,6 +17,7 @@ _MAKERS = {
     "curves": "curves returns, over mu, r and beta",
     "response": "response returns, over tau",
     "estimates": "the functions of identify return, over parameter",
+    "shares": "shares returns, over outcome, mu, r and beta",
 }
 _DRAWN_BY = {
     "map": "plot_regimes",
@@ -24,6 +25,7 @@ _DRAWN_BY = {
     "curves": "plot_curves",
     "response": "plot_response",
     "estimates": "plot_fit",
+    "shares": "plot_shares",
 }
 
 

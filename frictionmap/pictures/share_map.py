@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
-from ..errors import InputError
 from .grids import Grid
 from .panels import Handle, distinct, halo, legend_below, name_axes, table_of_panels
+from .shapes import check_holds, to_draw
 from .words import system_words
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def plot_shares(ds: xr.Dataset) -> "AxesArray":
     Parameters
     ----------
     ds : xarray.Dataset
-        As `shares` returns it.
+        As `shares` returns it, or a slice of one.
 
     Returns
     -------
@@ -43,10 +43,11 @@ def plot_shares(ds: xr.Dataset) -> "AxesArray":
     InputError
         The dataset is none of `shares`.
     """
-    if not isinstance(ds, xr.Dataset) or "regime_share" not in ds:
-        raise InputError("plot_shares takes a dataset that shares returns, with regime_share")
+    ds = to_draw(ds, "plot_shares", "shares")
+    check_holds(ds, ["regime_share"], "shares")
     share = ds["regime_share"]
-    there = [name for name in _OUTCOMES if bool((share.sel(outcome=name) > 0.0).any())]
+    seen = share["outcome"].values[(share.values > 0.0).any(axis=(1, 2, 3))].tolist()
+    there = [name for name in _OUTCOMES if name in (seen or share["outcome"].values)]
     title = str(ds.attrs.get("title", ""))
     axes = table_of_panels(ds.sizes["mu"], len(there), 3.6, title)
     r, beta = Grid(ds["r"].values), Grid(ds["beta"].values)

@@ -16,7 +16,7 @@ from frictionmap.files.storage import write
 from frictionmap.model.settings import OUTPUTS
 
 TWO = fm.System(mass_ratios=[1.0, 0.5], stiffness_ratios=[1.0, 2.0], damping_ratios=0.02)
-KINDS = ("map", "curves", "boundaries", "response")
+KINDS = ("map", "curves", "boundaries", "response", "shares")
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,10 @@ def datasets():
     undamped = fm.System(mass_ratios=[1.0, 0.5], stiffness_ratios=[1.0, 2.0])
     r, mu = np.linspace(0.0, 3.0, 31), np.array([1.0, 1.5])
     quantities = ["amplitude", "phase", "first_harmonic", "energy", "harmonics", "transmitted_force"]
+    samples = {"mass_ratios[2]": [0.4, 0.5, 0.6]}
+    uncertain = fm.sweep(TWO, [0.0, 0.3, 2.0], [0.0, 0.5], [1.0, 1.5], axes={"sample": samples})
     return {
+        "shares": fm.shares(uncertain, "sample"),
         "map": fm.sweep(TWO, [0.0, 0.3, 0.5, 2.0], [0.0, 0.05, 0.5, 2.0, 5.0], [1.0, 1.5], outputs=OUTPUTS),
         "curves": fm.curves(
             TWO, [0.0, 0.3, 0.5, 2.0], [0.0, 0.05, 0.5], [1.0, 1.5], harmonics=2, quantities=quantities

@@ -17,6 +17,7 @@ from frictionmap.files.stored import stored_system
 from frictionmap.pictures.classes import count
 from frictionmap.pictures.palette import NOT_YET
 from frictionmap.pictures.regime_map import cells_of
+from frictionmap.probabilities import read_shares
 
 CONFIG = """
 title = "Study"
@@ -142,6 +143,22 @@ def test_unfinished_blocks_are_told_and_drawn_as_such(files, tmp_path, capsys):
     assert main([*arguments, "-o", str(tmp_path / "part.png"), "--quiet"]) == 0
 
 
+def test_shares_of_what_is_finished(files, tmp_path, capsys):
+    path = tmp_path / "part.zarr"
+    shutil.copytree(files[".zarr"], path)
+    shutil.rmtree(path / "block_done" / "c" / "1" / "2")
+    at = {"damping_ratios": 0.05}
+    whole = read(files[".nc"], at={**at, "sample": 0}), read(files[".nc"], at={**at, "sample": 1})
+    found = read_shares(path, "sample", at)
+    assert found.attrs["samples"] == 2
+    for name, code in {"permanent_sticking": 0, "stick_slip": 1, "continuous": 2}.items():
+        expected = np.mean([ds["regime"].values == code for ds in whole], axis=0)
+        np.testing.assert_array_equal(found["regime_share"].sel(outcome=name), expected)
+    shutil.rmtree(path / "block_done" / "c" / "1")
+    assert main(["plot", str(path), "--at", "damping_ratios=0.05", "--over", "sample"]) == 2
+    assert "must have at least one point of sample finished; it has none" in capsys.readouterr().err
+
+
 # Shares
 
 
@@ -204,8 +221,40 @@ def test_a_picture_of_shares(samples, tmp_path):
     assert len(axes) == 2 * len(there)
     shown = axes[0].collections[0].get_array().reshape(7, 9)
     np.testing.assert_array_equal(shown, found["regime_share"].sel(outcome="continuous")[0].values.T)
-    with pytest.raises(InputError, match="plot_shares takes a dataset that shares returns"):
+    with pytest.raises(InputError, match="plot_shares takes a dataset such as shares returns"):
         fm.plot_shares(samples)
+
+
+def test_shares_as_a_file(samples, tmp_path, capsys):
+    write(samples, tmp_path / "samples.nc")
+    out = tmp_path / "shares.nc"
+    over = ["export", str(tmp_path / "samples.nc"), "--over", "sample", "--quiet"]
+    assert main([*over, "-o", str(out)]) == 0
+    found = fm.shares(samples, "sample")
+    xr.testing.assert_equal(read(out), found)
+    assert main(["info", str(out)]) == 0
+    told = capsys.readouterr().out
+    assert "[shares]" in told
+    means = found["regime_share"].mean(("mu", "r", "beta"))
+    assert f"30 samples; over all cells {100 * float(means[0]):.3g} % unresolved" in told
+    assert main(["plot", str(out), "-o", str(tmp_path / "shares.png"), "--quiet"]) == 0
+    xr.open_dataset(out).isel(mu=1).sel(outcome=["continuous"]).to_netcdf(tmp_path / "slice.nc")
+    assert main(["plot", str(tmp_path / "slice.nc"), "-o", str(tmp_path / "slice.png"), "--quiet"]) == 0
+    with pytest.raises(InputError, match="use plot_shares"):
+        fm.plot_regimes(found)
+    assert main([*over, "-o", str(tmp_path / "shares.csv")]) == 0
+    with open(tmp_path / "shares.csv", newline="") as opened:
+        rows = list(csv.DictReader(opened))
+    assert len(rows) == 2 * 9 * 7
+    for name, column in (
+        ("regime_share", {"outcome": "stick_slip"}),
+        ("contact_amplitude_quantile", {"quantile": 0.95}),
+        ("beta_lim_quantile", {"quantile": 0.5}),
+    ):
+        expected = found[name].sel(column).broadcast_like(found["regime_share"][0].drop_vars("outcome"))
+        (value,) = column.values()
+        told = [float(row[f"{name}_{value}"]) for row in rows]
+        assert told == expected.transpose("mu", "r", "beta").values.ravel().tolist()
 
 
 def test_a_study_survives_the_file(samples, tmp_path):

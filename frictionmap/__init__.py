@@ -19,7 +19,7 @@ stores         maps block by block into a zarr store, in this process or on work
 identify       measured data: files, fits, estimates with their errors
 examples       synthetic measurements of rigs whose truth is known
 pictures       palette, panels, and a module for each kind of picture; `plot` is the door
-cli            the command line; `arguments`, `progress`, `interrupts`
+cli            the command line; `arguments`, `completion`, `progress`, `interrupts`
 =============  =========================================================================
 
 The names in `__all__`, and what is written into files, may grow and not change: people have scripts and

@@ -2,13 +2,20 @@
 
 import argparse
 from argparse import Namespace as Options
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 from .version import __version__
 
-__all__ = ["Options", "one_line", "parse"]
+__all__ = ["CONTACTS", "RIGS", "SHELLS", "Argument", "Command", "Options", "described", "one_line", "parse"]
+
+#: Contacts of `System` and kinds of data of `identify`, held to them by a test:
+#: importing them would take longer than all of `--help`.
+CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
+RIGS = ("free-decay", "forced", "record", "sweep")
+
+SHELLS = ("bash", "zsh", "fish")
 
 _DESCRIPTION = """\
 Exact regime maps of a vibrating structure with one dry-friction contact: does it slide without stopping,
@@ -65,6 +72,10 @@ _threads.__name__ = "whole number"  # what argparse calls it
 
 def _takes_output(sub: argparse.ArgumentParser, metavar: str, text: str) -> None:
     sub.add_argument("-o", dest="output", metavar=metavar, type=_file, action=_Once, help=text)
+    _takes_replacement(sub)
+
+
+def _takes_replacement(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--overwrite", action="store_true", help="replace an existing output")
     sub.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
@@ -167,7 +178,65 @@ def _parser() -> argparse.ArgumentParser:
     sub = command("info", "what is in a file", "Print what is in a file, in one screen.")
     sub.add_argument("file", metavar="FILE", type=Path, help="what to read: FILE.nc, or a store FILE.zarr")
     _takes_choices(sub)
+    _takes_beginnings(command)
     return parser
+
+
+def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:
+    """What helps to write configurations and command lines."""
+    text = "Write a configuration to begin with, every key explained; it runs as it stands."
+    sub = command("init", "a commented configuration to begin with", text)
+    text = "file to write; default: map.toml, or rig.toml with --rig, in the current folder"
+    sub.add_argument("config", metavar="NAME.toml", type=_file, nargs="?", help=text)
+    which = sub.add_mutually_exclusive_group()
+    text = f"where the friction acts: {', '.join(CONTACTS)} (default: {CONTACTS[0]})"
+    which.add_argument("--contact", choices=CONTACTS, metavar="CONTACT", action=_Once, help=text)
+    text = f"of measured data instead, with synthetic data beside it: {', '.join(RIGS)}"
+    which.add_argument("--rig", choices=RIGS, metavar="KIND", action=_Once, help=text)
+    _takes_replacement(sub)
+    text = "Print what a configuration may hold as JSON Schema, by which editors complete and check it."
+    sub = command("schema", "a JSON schema of configurations, for editors", text)
+    sub.add_argument("--rig", action="store_true", help="of configurations for identify")
+    text = "Print what lets a shell complete the command line, for it to read when it starts."
+    sub = command("completion", "completion for bash, zsh or fish", text)
+    sub.add_argument("shell", choices=SHELLS, metavar="SHELL", help=f"one of {', '.join(SHELLS)}")
+
+
+class Argument(NamedTuple):
+    """An argument of a command, as its help tells it."""
+
+    flags: tuple[str, ...]  # none: by its place
+    metavar: str  # empty: takes no value
+    choices: tuple[str, ...]
+    help: str
+
+
+class Command(NamedTuple):
+    """A command, as its help tells it."""
+
+    name: str
+    help: str
+    description: str
+    usage: str
+    arguments: tuple[Argument, ...]
+
+
+def described() -> Iterator[Command]:
+    """Every command with its arguments: for completion and for the manual."""
+    parser = _parser()
+    (commands,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    for listed in commands._choices_actions:
+        sub = commands.choices[listed.dest]
+        usage = " ".join(sub.format_usage().removeprefix("usage: ").split())
+        arguments = tuple(_described(action) for action in sub._actions)
+        yield Command(listed.dest, str(listed.help), str(sub.description), usage, arguments)
+
+
+def _described(action: argparse.Action) -> Argument:
+    takes_value = action.nargs != 0
+    metavar = str(action.metavar or action.dest.upper()) if takes_value else ""
+    choices = tuple(str(choice) for choice in action.choices or ())
+    return Argument(tuple(action.option_strings), metavar, choices, str(action.help))
 
 
 def parse(arguments: Sequence[str]) -> Options:

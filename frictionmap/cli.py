@@ -1,6 +1,7 @@
 """The command line: parses, calls, writes; no logic of its own."""
 
 import contextlib
+import functools
 import shlex
 import sys
 import time
@@ -8,7 +9,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .arguments import Options, one_line, parse
+from .arguments import CONTACTS, Options, described, one_line, parse
 from .errors import InputError, NoSteadyState
 
 if TYPE_CHECKING:
@@ -243,6 +244,57 @@ def _info(options: Options) -> None:
         _print(describe_file(read(options.file, at=parse_choices(options.at))))
 
 
+def _init(options: Options) -> None:
+    """Write a configuration to begin with; that of a rig with the data that it reads beside it."""
+    from .files.places import claimed
+
+    path = options.config or Path("rig.toml" if options.rig else "map.toml")
+    if path.suffix != ".toml":
+        raise InputError(f"NAME.toml must end in .toml; got {path}")
+    if options.rig:
+        from .examples import starting_rig
+
+        text, data = starting_rig(options.rig)
+        texts = {path: text, path.parent / f"{options.rig}.csv": data}
+        then = f"frictionmap identify {path}"
+    else:
+        from .files.template import starting_configuration
+
+        texts = {path: starting_configuration(path.stem, options.contact or CONTACTS[0])}
+        then = f"frictionmap map {path} && frictionmap plot {path.stem}.nc"
+    with contextlib.ExitStack() as places:
+        outputs = [
+            places.enter_context(claimed(place, options.overwrite, name="NAME.toml")) for place in texts
+        ]
+        for output, text in zip(outputs, texts.values(), strict=True):
+            output.fill(functools.partial(_write, text=text))
+    if not options.quiet:
+        _print(f"wrote {', '.join(map(str, texts))}; next: {then}")
+
+
+def _write(scratch: Path, text: str) -> None:
+    scratch.write_text(text, encoding="utf-8", newline="\n")
+
+
+def _schema(options: Options) -> None:
+    import json
+
+    if options.rig:
+        from .identify.rig_keys import rig_schema as schema
+    else:
+        from .files.json_schema import map_schema as schema
+    _print(json.dumps(schema(), indent=2))
+
+
+def _completion(options: Options) -> None:
+    from .completion import completion
+    from .files.keys import KEYS
+    from .identify.rig_keys import rig_settings
+
+    settings = [f"{section}.{key.name}" for section, keys in KEYS.items() if section for key in keys]
+    _print(completion(options.shell, list(described()), {"identify": rig_settings(), "": settings}))
+
+
 def _print(text: str) -> None:
     """Print, so that it has arrived."""
     try:
@@ -268,14 +320,24 @@ def _check_text(arguments: Sequence[str]) -> None:
             raise InputError(f"arguments must be text in {encoding}; got {argument!r}") from None
 
 
+#: What runs a command; others compute what a configuration says.
+_COMMANDS: dict[str, Callable[[Options], None]] = {
+    "plot": _plot,
+    "info": _info,
+    "identify": _identify,
+    "export": _export,
+    "init": _init,
+    "schema": _schema,
+    "completion": _completion,
+}
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program; the exit status."""
     given = sys.argv[1:] if arguments is None else list(arguments)
     options = parse(given)
     options.command_line = f"frictionmap {shlex.join(given)}"
-    run = {"plot": _plot, "info": _info, "identify": _identify, "export": _export}.get(
-        options.command, _compute
-    )
+    run = _COMMANDS.get(options.command, _compute)
     try:
         _check_text(given)
         run(options)

@@ -10,9 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
+from .datasets.provenance import value_text
+from .files.config import parse
+from .files.template import section_text
+from .identify.chain_estimates import chain_names
 from .identify.decay_motion import Decay, displacement
 from .identify.phasors import harmonics_at
 from .identify.record_motion import PARAMETERS, Shaken, motion
+from .identify.rig_keys import TABLES, rig_keys
 from .identify.two_masses import log_amplitude
 from .model.system import System
 from .steady.curves import curves
@@ -36,17 +41,41 @@ _BASE, _LAG_ERROR, _AMPLITUDE_ERROR = 1.75, 0.7, 0.01
 _SHAKEN_AT, _HARMONICS = 1.0, (0.0, 1.75, 0.018j)
 _RECORD_RATE, _RECORD_LENGTH, _RECORD_ERRORS = 100, 8, (0.01, 0.003)
 
+_HEAD = """\
+# Above each key: what it means, and what is legal.  A line that begins with # and a key shows the default,
+# where there is one, else an example.
+"""
+
 _SYNTHETIC = "# Synthetic: made by frictionmap.examples, not measured."
 
 
 def rig_files(seed: int = 1) -> dict[str, str]:
     """Texts of all files by their names: a configuration and a table for each kind of data."""
     files = {}
-    for index, (kind, table) in enumerate(_TABLES.items()):
-        rng = np.random.default_rng([seed, index])
-        files[f"{kind}.csv"] = f"{_SYNTHETIC}\n{table(rng, TRUTHS[kind])}"
+    for kind in _TABLES:
+        files[f"{kind}.csv"] = rig_table(kind, seed)
         files[f"{kind}.toml"] = _configuration(kind)
     return files
+
+
+def starting_rig(kind: str) -> tuple[str, str]:
+    """A configuration of a rig with every key and its meaning, and the table that it reads, `KIND.csv`."""
+    said = parse(_configuration(kind))
+    parts = [_HEAD]
+    tables = rig_keys(kind)
+    if kind == "sweep":  # of as many masses as it has
+        tables["known"] = tuple(key for key in tables["known"] if key.name in chain_names(2))
+    for section, keys in tables.items():
+        table = {"title": said["title"]} if section == "" else said.get(section, {})
+        texts = {key: value_text(value) for key, value in table.items()}
+        parts.append(section_text(section, keys, texts, TABLES.get(section, "")))
+    return "".join(parts), rig_table(kind)
+
+
+def rig_table(kind: str, seed: int = 1) -> str:
+    """The synthetic measurements of a kind, as CSV."""
+    rng = np.random.default_rng([seed, list(_TABLES).index(kind)])
+    return f"{_SYNTHETIC}\n{_TABLES[kind](rng, TRUTHS[kind])}"
 
 
 def write_rigs(folder: Path, seed: int = 1) -> None:

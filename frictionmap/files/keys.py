@@ -86,7 +86,7 @@ _RATIOS = several(number(above=0.0), prefixItems=[{"type": "number", "const": 1}
 _ZETA = number(least=0.0, most=checks.LARGEST_DAMPING)
 _MATRIX = several(several(number()))
 _MATRICES = table({"M": _MATRIX, "K": _MATRIX, "C": _MATRIX}, ("M", "K"))
-_RANGE = "a number, a list, { start, stop, step }, { start, stop, num } or { values }; ends included"
+_RANGE = "a number, a list, { start, stop, step } or { start, stop, num }, ends included, or { values }"
 
 _ONE_MASS, _SOLVER, _CURVES = System(), Solver(), curve_settings()
 
@@ -100,6 +100,10 @@ def _of_system(name: str, meaning: str, legal: Legal, **more: Any) -> Key:
     return Key(name, meaning, legal, list(default) if isinstance(default, tuple) else default, **more)
 
 
+def _of_grid(name: str, meaning: str, **more: Any) -> Key:
+    return Key(name, meaning, axis(**AXES[name]), words=_RANGE, **more)
+
+
 #: Keys by table; "" is no table.
 KEYS: dict[str, tuple[Key, ...]] = {
     "": (Key("title", "what pictures and files are called", _TEXT, example='"A title"'),),
@@ -109,6 +113,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "contact_masses",
             "the mass in contact, or the two for between-masses, A < B; counted from 1",
             several(whole(least=1), maxItems=2),
+            words="a list of one whole number >= 1, or of two",
         ),
         _of_system("load_mass", "the mass that the harmonic load acts on, counted from 1", whole(least=1)),
         Key(
@@ -164,9 +169,17 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
     ),
     "grid": (
-        Key("r", "excitation over natural frequency", axis(**AXES["r"]), example="1.0", words=_RANGE),
-        Key("beta", "kinetic friction force over load", axis(**AXES["beta"]), example="1.0", words=_RANGE),
-        Key("mu", "static over kinetic friction, >= 1", axis(**AXES["mu"]), [1.0], words=_RANGE),
+        Key(
+            "r", "excitation frequency over natural frequency", axis(**AXES["r"]), example="1.0", words=_RANGE
+        ),
+        Key(
+            "beta",
+            "kinetic friction force over load amplitude",
+            axis(**AXES["beta"]),
+            example="1.0",
+            words=_RANGE,
+        ),
+        _of_grid("mu", "static over kinetic friction force, >= 1", default=[1.0]),
     ),
     "solver": (
         _setting(
@@ -232,7 +245,8 @@ def _in_words(legal: Legal) -> str:
     if "anyOf" in legal:
         return " or ".join(_in_words(one) for one in legal["anyOf"])
     if legal["type"] == "array":
-        return f"a list of {_in_words(legal['items'])}"
+        some = "some of " if "enum" in legal["items"] else ""
+        return f"a list of {some}{_in_words(legal['items'])}"
     words = {"integer": "a whole number", "number": "a number", "string": "text"}[legal["type"]]
     ends = [
         f"{sign} {legal[name]:g}"

@@ -121,8 +121,12 @@ class Output:
 
 
 @contextlib.contextmanager
-def claimed(path: Path, overwrite: bool = False, inputs: Sequence[Path] = ()) -> Iterator[Output]:
+def claimed(
+    path: Path, overwrite: bool = False, inputs: Sequence[Path] = (), name: str = "-o"
+) -> Iterator[Output]:
     """A place for a file, refused now if it cannot be had, and kept until the end of the context.
+
+    name : of the argument that gave it, for messages
 
     Raises
     ------
@@ -130,11 +134,11 @@ def claimed(path: Path, overwrite: bool = False, inputs: Sequence[Path] = ()) ->
         `path` is one of the `inputs`, exists (without `overwrite`), is no ordinary file, cannot be written
         to, or another run is writing it.
     """
-    _check(path, overwrite, inputs)
+    _check(path, overwrite, inputs, name)
     output = Output(path, overwrite)
     try:
         output.claim()
-        _check(path, overwrite, inputs)  # again: a run that ended since may have made it
+        _check(path, overwrite, inputs, name)  # again: a run that ended since may have made it
         yield output
     finally:
         output.release()
@@ -162,29 +166,29 @@ def claimed_folder(path: Path) -> Iterator[Output]:
         output.release()
 
 
-def _check(path: Path, overwrite: bool, inputs: Sequence[Path]) -> None:
+def _check(path: Path, overwrite: bool, inputs: Sequence[Path], name: str) -> None:
     try:
         target = Path(os.path.realpath(path))
         if not target.parent.is_dir():
-            raise InputError(f"-o must lie in a folder that exists; got {path}")
+            raise InputError(f"{name} must lie in a folder that exists; got {path}")
         try:
             mode = os.lstat(target).st_mode
         except FileNotFoundError:
             return
         if stat.S_ISDIR(mode):
-            raise InputError(f"-o must be a file; got the folder {path}")
+            raise InputError(f"{name} must be a file; got the folder {path}")
         if not stat.S_ISREG(mode):  # /dev/null, say: it would be replaced by a file
-            raise InputError(f"-o must be an ordinary file; got {path}")
+            raise InputError(f"{name} must be an ordinary file; got {path}")
         for given in inputs:
             if os.path.samefile(given, target):
-                raise InputError(f"-o must not be a file that is read; got {path}, which is {given}")
+                raise InputError(f"{name} must not be a file that is read; got {path}, which is {given}")
         if not overwrite:
-            raise InputError(f"output {path} exists already; use --overwrite or another -o")
+            raise InputError(f"output {path} exists already; use --overwrite or another {name}")
         if not os.access(target, os.W_OK):
-            raise InputError(f"output {path} is protected from writing; use another -o")
+            raise InputError(f"output {path} is protected from writing; use another {name}")
     except OSError as error:
         raise InputError(
-            f"-o must be a place that can be written to; got {path} ({error.strerror})"
+            f"{name} must be a place that can be written to; got {path} ({error.strerror})"
         ) from None
 
 

@@ -1,7 +1,7 @@
 """Configurations of rigs: which file is read, what is known, what is fitted.
 
 A kind of data is a `Kind`: what may be said of it, and the function that fits it.  To build another, write
-one like `rig_decay` and add it to `_KINDS`.
+one like `rig_decay` and add it to `KINDS`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,7 +20,8 @@ from .rig_record import RECORD
 from .rig_sweep import SWEEP
 from .tables import read_table
 
-_KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "record": RECORD, "sweep": SWEEP}
+#: What is known of every kind of data.
+KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "record": RECORD, "sweep": SWEEP}
 
 
 #: Endings of what is data, not a configuration.
@@ -42,7 +43,7 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     path = Path(path)
     data, known, fit = (_table(tree, name) for name in ("data", "known", "fit"))
     name = _checked_kind(tree, data)
-    kind = _KINDS[name]
+    kind = KINDS[name]
     _check_keys(tree, name)
     file = data.get("file")
     if not isinstance(file, str) or not file:
@@ -70,7 +71,7 @@ def identify(rig: Rig) -> xr.Dataset:
         The data cannot be read or fitted; one line with the file.
     """
     table = read_table(rig.file)
-    ds = _KINDS[rig.kind].identify(rig, table)
+    ds = KINDS[rig.kind].identify(rig, table)
     ds.attrs |= {
         "title": rig.title, "config": rig.text, "data_file": rig.file.as_posix(), "data_form": table.form,
     }  # fmt: skip
@@ -94,9 +95,9 @@ def _refuse_data(path: object) -> None:
 
 
 def _checked_kind(tree: Mapping[str, object], data: Mapping[str, object]) -> str:
-    kinds = ", ".join(_KINDS)
+    kinds = ", ".join(KINDS)
     if "kind" in data:
-        return checks.choice(data["kind"], "data.kind", tuple(_KINDS))
+        return checks.choice(data["kind"], "data.kind", tuple(KINDS))
     if "grid" in tree:
         raise InputError(
             f"the configuration must have data.kind, one of {kinds}; it is that of a map, for frictionmap map"
@@ -106,7 +107,7 @@ def _checked_kind(tree: Mapping[str, object], data: Mapping[str, object]) -> str
 
 def _check_keys(tree: Mapping[str, object], name: str) -> None:
     """Refuse what no key of the kind is; [system] is checked as in maps, where it is used."""
-    kind = _KINDS[name]
+    kind = KINDS[name]
     sections = {
         "data": ("kind", "file", "columns", "missing", *kind.data),
         "known": (*kind.parameters, *kind.known),

@@ -17,7 +17,7 @@ _WANTED = {"time": "time", "base": "length", "x": "length"}
 #: What is given in mm, whatever the unit of the data.
 _LENGTHS = ("x_F", "offset_x")
 
-_SYSTEM_KEYS = ("contact", "damping_reference", "excitation", "contact_masses")
+SYSTEM_KEYS = ("contact", "damping_reference", "excitation", "contact_masses")
 
 
 def _record(rig: Rig, table: Table) -> xr.Dataset:
@@ -47,8 +47,8 @@ def _record(rig: Rig, table: Table) -> xr.Dataset:
 def _checked_system(rig: Rig) -> tuple[str, str]:
     """Contact and damping reference of one mass on a shaken base."""
     for key in rig.system:
-        if key not in _SYSTEM_KEYS:
-            raise unknown_key(key, "system", _SYSTEM_KEYS)
+        if key not in SYSTEM_KEYS:
+            raise unknown_key(key, "system", SYSTEM_KEYS)
     if rig.system.get("contact_masses", [1]) != [1]:
         masses = checks.one_line(rig.system["contact_masses"])
         raise InputError(f"system.contact_masses must be [1], a record is of one mass; got {masses}")

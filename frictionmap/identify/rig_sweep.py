@@ -17,7 +17,7 @@ from .sweep_data import MOST_MASSES
 from .tables import Table
 from .units import conversion
 
-_SYSTEM_KEYS = ("masses", "excitation", "damping_reference")
+SYSTEM_KEYS = ("masses", "excitation", "damping_reference")
 _MEASURES = {"amplitude_ratio": "ratio", "phase_lag": "angle"}
 
 
@@ -85,8 +85,8 @@ def _by_mass(picked: Columns, role: str, masses: int) -> Mapping[int, Column]:
 def _checked_system(rig: Rig) -> int:
     """How many masses there are on the shaken base."""
     for key in rig.system:
-        if key not in _SYSTEM_KEYS:
-            raise unknown_key(key, "system", _SYSTEM_KEYS)
+        if key not in SYSTEM_KEYS:
+            raise unknown_key(key, "system", SYSTEM_KEYS)
     if "masses" not in rig.system:
         raise InputError(f"system.masses must be given for a sweep, 1 to {MOST_MASSES}; got none")
     checks.choice(rig.system.get("excitation", "base"), "system.excitation", ("base",))

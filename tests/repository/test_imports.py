@@ -123,7 +123,7 @@ ORDER = (
     "errors", "version", "regimes", "checks", "interrupts", "_kernels", "model", "datasets", "roots",
     "features",
     "theory", "steady", "files", "probabilities", "stores", "identify", "examples", "pictures", "plot",
-    "progress", "arguments", "cli", "__main__",
+    "progress", "arguments", "completion", "cli", "__main__",
 )  # fmt: skip
 
 

@@ -1,0 +1,91 @@
+"""A configuration as JSON Schema, by which editors complete, explain and check it.
+
+It refuses nothing that the program takes.  What needs arithmetic is left to the program: increasing values,
+one number a mass, stop after start, files that are there; and JSON has no difference between 9 and 9.0.
+"""
+
+from typing import Any
+
+from ..model.variations import LISTS, NUMBERS
+from .keys import KEYS, TABLES, Key, Legal, axis, in_words, number, several
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+#: What keys of [system] say of each other, in the words of the errors of `System`.
+_TOGETHER: list[Legal] = [
+    {"dependentSchemas": {"matrices": {"properties": {"mass_ratios": False, "stiffness_ratios": False}}}},
+    {"dependentSchemas": {"load": {"properties": {"load_mass": False, "excitation": {"const": "force"}}}}},
+    {"dependentRequired": {"frequency_scale": ["matrices"]}},
+    {
+        "if": {"properties": {"contact": {"const": "between-masses"}}, "required": ["contact"]},
+        "then": {"properties": {"contact_masses": {"minItems": 2}}, "required": ["contact_masses"]},
+        "else": {"properties": {"contact_masses": {"maxItems": 1}}},
+    },
+    {
+        "if": {"properties": {"contact": {"const": "joined-base-wall"}}, "required": ["contact"]},
+        "then": {"properties": {"excitation": {"const": "base"}, "load": False, "load_mass": {"const": 1}}},
+        "else": {
+            "if": {"not": {"properties": {"excitation": {"const": "base"}}, "required": ["excitation"]}},
+            "then": {"properties": {"damping_reference": {"const": "ground"}}},
+        },
+    },
+]
+
+
+def map_schema() -> dict[str, Any]:
+    """The schema of what `map`, `curves`, `boundaries` and `response` read."""
+    sections = {name: keyed_table(name, keys) for name, keys in KEYS.items() if name}
+    sections["system"]["allOf"] = _TOGETHER
+    sections["grid"]["required"] = ["r", "beta"]
+    return {
+        "$schema": DIALECT,
+        "title": "Configuration of frictionmap",
+        "type": "object",
+        "properties": {**described(KEYS[""]), **sections, "axes": _further_axes()},
+        "required": ["system", "grid"],
+        "additionalProperties": False,
+    }
+
+
+def keyed_table(name: str, keys: tuple[Key, ...], what: str = "") -> dict[str, Any]:
+    """A table with these keys and no other."""
+    return {
+        "description": what or TABLES[name], "type": "object", "properties": described(keys),
+        "additionalProperties": False,
+    }  # fmt: skip
+
+
+def described(keys: tuple[Key, ...]) -> dict[str, Any]:
+    """The schema of every key, with its meaning and default in words."""
+    return {key.name: _described(key) for key in keys}
+
+
+def _described(key: Key) -> dict[str, Any]:
+    text = f"{key.meaning}; {in_words(key)}"
+    if key.default is None:
+        return {"description": text, **key.legal}
+    return {"description": text, "default": key.default, **key.legal}
+
+
+def _further_axes() -> dict[str, Any]:
+    """[axes]: numbers of the system by their names, and names of what changes together."""
+    numbers, lists = "|".join(NUMBERS), "|".join(LISTS)
+    indexed = rf"({lists})\[[1-9][0-9]*\]"
+    columns = {
+        "type": "object", "minProperties": 1, "additionalProperties": False,
+        "patternProperties": {f"^({numbers}|{indexed})$": several(number())},
+    }  # fmt: skip
+    file = {
+        "type": "object", "required": ["file"], "additionalProperties": False,
+        "properties": {"file": {"type": "string", "minLength": 1}},
+    }  # fmt: skip
+    return {
+        "description": TABLES["axes"],
+        "type": "object",
+        "minProperties": 1,
+        "patternProperties": {
+            f"^({numbers}|{indexed})$": axis(),
+            f"^(?!({numbers}|{lists})$)[a-z][a-z0-9_]*$": {"anyOf": [file, columns]},
+        },
+        "additionalProperties": False,
+    }

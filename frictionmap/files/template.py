@@ -1,0 +1,96 @@
+"""Configurations to begin with: every key with its meaning, what is legal, and its default."""
+
+import textwrap
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from ..datasets.provenance import value_text
+from .keys import KEYS, TABLES, Key, in_words
+
+_WIDTH = 100
+
+
+class _Start(NamedTuple):
+    """What a configuration to begin with says of a contact."""
+
+    title: str
+    system: Mapping[str, str]  # TOML, by keys
+    beta: str
+
+
+_DAMPED = {"damping_ratios": "0.01"}
+_CHAIN = {"mass_ratios": "[1.0, 0.5]", "stiffness_ratios": "[1.0, 0.5]"}
+
+_STARTS = {
+    "fixed-wall": _Start("One mass against a fixed wall", _DAMPED, "1.2"),
+    "joined-base-wall": _Start(
+        "One mass against a wall that moves with the shaken base",
+        {**_DAMPED, "excitation": '"base"'},
+        "4.0",
+    ),
+    "between-masses": _Start(
+        "Two masses that rub on each other", {"contact_masses": "[1, 2]", **_CHAIN, **_DAMPED}, "1.2"
+    ),
+}
+
+_HEAD = """\
+# Try it as it stands:
+#
+#     frictionmap map {name}.toml && frictionmap plot {name}.nc
+#
+# Above each key: what it means, and what is legal.  A line such as #cycles = 2000 shows the default, where
+# there is one, else an example.  `frictionmap schema` prints what editors complete and check this file by.
+"""
+
+_AXES = """\
+
+# ---- [axes]: {what}
+#[axes]
+#damping_ratios = [0.0, 0.01, 0.05]
+#"stiffness_ratios[2]" = {{ start = 0.5, stop = 2.0, num = 4 }}    # one of a list, counted from 1
+#sample = {{ file = "variants.csv" }}    # columns named like the keys above
+"""
+
+
+def starting_configuration(name: str, contact: str = "fixed-wall") -> str:
+    """The text of a configuration of a map, which runs as it stands.
+
+    name : of the file, without its ending
+    contact : one of `System`
+    """
+    start = _STARTS[contact]
+    said = {
+        "": {"title": f'"{start.title}"'},
+        "system": {"contact": f'"{contact}"', **start.system},
+        "grid": {
+            "r": "{ start = 0.02, stop = 2.5, step = 0.02 }",
+            "beta": f"{{ start = 0.0, stop = {start.beta}, num = 121 }}",
+            "mu": "[1.0, 1.5]",
+        },
+    }
+    tables = [section_text(section, keys, said.get(section, {})) for section, keys in KEYS.items()]
+    return "".join([_HEAD.format(name=name), *tables, _AXES.format(what=TABLES["axes"])])
+
+
+def section_text(section: str, keys: tuple[Key, ...], said: Mapping[str, str], what: str = "") -> str:
+    """A table with all its keys; what is not said is a comment."""
+    lines = ["", f"# ---- [{section}]: {what or TABLES[section]}", f"[{section}]"] if section else []
+    for key in keys:
+        lines += ["", *_explained(key), _line(key, said)]
+    return "\n".join(lines) + "\n"
+
+
+def _explained(key: Key) -> list[str]:
+    return [*_comment(key.meaning, "# "), *_comment(in_words(key), "#   ")]
+
+
+def _comment(text: str, indent: str) -> list[str]:
+    return textwrap.wrap(
+        text, _WIDTH, initial_indent=indent, subsequent_indent="#   ", break_on_hyphens=False
+    )
+
+
+def _line(key: Key, said: Mapping[str, str]) -> str:
+    if key.name in said:
+        return f"{key.name} = {said[key.name]}"
+    return f"#{key.name} = {key.example or value_text(key.default)}"

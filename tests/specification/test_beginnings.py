@@ -1,0 +1,313 @@
+"""What helps to begin: `init`, `schema`, `completion`; they say what the checks of the program say."""
+
+import json
+import re
+import shutil
+import subprocess
+import tomllib
+
+import jsonschema
+import numpy as np
+import pytest
+from conftest import ROOT
+from hypothesis import given
+from hypothesis import strategies as st
+from test_cli import BAD_CONFIGURATIONS, listing, toml
+
+from frictionmap import InputError, load_config
+from frictionmap.arguments import CONTACTS, RIGS, SHELLS, described
+from frictionmap.cli import main
+from frictionmap.completion import completion
+from frictionmap.examples import TRUTHS, starting_rig
+from frictionmap.files.json_schema import map_schema
+from frictionmap.files.keys import KEYS
+from frictionmap.files.template import starting_configuration
+from frictionmap.identify.configuration import KINDS, load_rig
+from frictionmap.identify.rig_keys import rig_keys, rig_schema
+from frictionmap.identify.rig_record import SYSTEM_KEYS as RECORD_SYSTEM
+from frictionmap.identify.rig_sweep import SYSTEM_KEYS as SWEEP_SYSTEM
+from frictionmap.model import system
+
+MAPS = sorted([*(ROOT / "configs").glob("*.toml"), *(ROOT / "configs" / "studies").glob("*.toml")])
+RIG_FILES = sorted((ROOT / "configs" / "rigs").glob("*.toml"))
+SCHEMA = jsonschema.Draft202012Validator(map_schema())
+RIG_SCHEMA = jsonschema.Draft202012Validator(rig_schema())
+
+
+def loaded(folder, text):
+    path = folder / "map.toml"
+    path.write_text(text, encoding="utf-8")
+    return load_config(path)
+
+
+def same(one, other):
+    axes = ("r", "beta", "mu")
+    return (one.system, one.solver, one.curves) == (other.system, other.solver, other.curves) and all(
+        np.array_equal(getattr(one, name), getattr(other, name)) for name in axes
+    )
+
+
+# init
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_a_configuration_to_begin_with_runs_as_it_stands(contact, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "--contact", contact]) == 0
+    told = capsys.readouterr().out
+    assert told == "wrote map.toml; next: frictionmap map map.toml && frictionmap plot map.nc\n"
+    assert load_config("map.toml").system.contact == contact
+    coarse = ["--set", "grid.r.step=0.31", "--set", "grid.beta.num=4"]  # seconds of it, not all
+    assert main(["map", "map.toml", *coarse]) == 0
+    assert main(["plot", "map.nc"]) == 0
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_every_key_is_there_once_and_shows_its_default(contact, tmp_path):
+    text = starting_configuration("map", contact)
+    before = loaded(tmp_path, text)
+    for section, keys in KEYS.items():
+        start = text.index(f"[{section}]\n") if section else 0
+        for key in keys:
+            (line,) = re.findall(rf"^#?{key.name} = .*$", text[start:].split("\n[")[0], re.MULTILINE)
+            if line.startswith("#") and key.default is not None and key.name not in ("stiffness_scale",):
+                head, tail = text[:start], text[start:]
+                assert same(loaded(tmp_path, head + tail.replace(line, line[1:], 1)), before), line
+
+
+def test_what_is_legal_stands_above_each_key():
+    text = starting_configuration("map")
+    for keys in KEYS.values():
+        for key in keys:
+            assert re.search(rf"^# .*\n(?:#   .*\n)+#?{key.name} = ", text, re.MULTILINE), key.name
+
+
+@pytest.mark.parametrize("kind", RIGS)
+def test_a_rig_to_begin_with_runs_as_it_stands(kind, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "--rig", kind]) == 0
+    assert sorted(listing(tmp_path)) == sorted(["rig.toml", f"{kind}.csv"])
+    committed = ROOT / "configs" / "rigs" / f"{kind}.csv"
+    assert (tmp_path / f"{kind}.csv").read_text() == committed.read_text()
+    assert load_rig("rig.toml")._replace(text="", name="", file="", files=()) == load_rig(
+        committed.with_suffix(".toml")
+    )._replace(text="", name="", file="", files=())
+
+
+def test_nothing_is_overwritten_unasked(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.toml").write_text("mine")
+    (tmp_path / "free-decay.csv").write_text("mine")
+    before = listing(tmp_path)
+    assert main(["init", "mine.toml"]) == 2
+    assert main(["init", "--rig", "free-decay"]) == 2  # its data are there, so not even rig.toml is written
+    assert main(["init", "mine.txt"]) == 2
+    assert main(["init", "nowhere/map.toml"]) == 2
+    errors = capsys.readouterr().err.splitlines()
+    assert errors == [
+        "frictionmap: output mine.toml exists already; use --overwrite or another NAME.toml",
+        "frictionmap: output free-decay.csv exists already; use --overwrite or another NAME.toml",
+        "frictionmap: NAME.toml must end in .toml; got mine.txt",
+        "frictionmap: NAME.toml must lie in a folder that exists; got nowhere/map.toml",
+    ]
+    assert listing(tmp_path) == before
+    assert main(["init", "mine.toml", "--overwrite", "--quiet"]) == 0
+    assert load_config("mine.toml")
+    assert capsys.readouterr().out == ""
+
+
+def test_words_of_the_command_line_are_those_of_the_program():
+    assert CONTACTS == system.CONTACTS
+    assert tuple(KINDS) == RIGS
+
+
+# schema
+
+
+@pytest.mark.parametrize("path", MAPS, ids=lambda path: path.stem)
+def test_every_committed_configuration_obeys_the_schema(path):
+    SCHEMA.validate(tomllib.loads(path.read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize("path", RIG_FILES, ids=lambda path: path.stem)
+def test_every_committed_rig_obeys_the_schema(path):
+    RIG_SCHEMA.validate(tomllib.loads(path.read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_what_init_writes_obeys_the_schema(contact):
+    SCHEMA.validate(tomllib.loads(starting_configuration("map", contact)))
+
+
+@pytest.mark.parametrize("kind", TRUTHS)
+def test_rigs_that_init_writes_obey_the_schema(kind):
+    RIG_SCHEMA.validate(tomllib.loads(starting_rig(kind)[0]))
+
+
+#: What a schema cannot say, beside what is no TOML at all: these it takes, and the program refuses.
+BEYOND = {
+    "not TOML", "TOML with a key given twice", "brackets without end", "a number of thousands of digits",
+    "zeta not finite", "nan in an axis", "inf in an axis", "inf for an axis", "nan as a start",
+    "an integer beyond all doubles", "unsorted axis", "a value twice", "stop < start",
+    "springs and masses differ", "between masses, of one", "a second mass in contact",
+    "a load on a second mass", "matrices that are not there", "a damping ratio too many",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", sorted(set(BAD_CONFIGURATIONS) - BEYOND))
+def test_bad_configurations_break_the_schema(name):
+    with pytest.raises(jsonschema.ValidationError):
+        SCHEMA.validate(tomllib.loads(BAD_CONFIGURATIONS[name][0]))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        toml(top="[axes]\ndamping = [0.1]"),
+        toml(top="[axes]\nsample = { file = 5 }"),
+        toml(top="[axes]"),
+        toml(top="[curves]\nharmonics = -1"),
+        toml(top='[curves]\nquantities = ["amplitud"]'),
+        toml(system='contact = "joined-base-wall"\nexcitation = "force"'),
+        toml(system='damping_reference = "base"'),
+        toml(system="frequency_scale = 2.0"),
+        toml(system="load = [1.0]\nload_mass = 1"),
+        toml(system="load = [[1.0, 2.0, 3.0]]"),
+        toml(system="mass_ratios = [1]\nmatrices = { M = [[1]], K = [[1]] }"),
+    ],
+)
+def test_the_program_and_the_schema_refuse_alike(text, tmp_path):
+    with pytest.raises(jsonschema.ValidationError):
+        SCHEMA.validate(tomllib.loads(text))
+    with pytest.raises(InputError):
+        loaded(tmp_path, text)
+
+
+#: Values at the ends of ranges and just beyond, and some that are far off.
+NUMBERS = st.sampled_from(
+    [-1, -1e-300, 0, 1e-300, 1e-15, 0.9e-15, 1e-3, 1.1e-3, 0.5, 1, 2, 24, 99.9, 100, 100.1, 1000, 1001, 10**9]
+) | st.floats(-2.0, 2.0)
+
+
+@given(key=st.sampled_from([("solver", "cycles"), ("solver", "tolerance"), ("solver", "steps"),
+                            ("curves", "harmonics"), ("system", "damping_ratios"), ("grid", "beta"),
+                            ("grid", "mu"), ("grid", "r")]), value=NUMBERS)  # fmt: skip
+def test_ranges_are_the_same_in_both(key, value, tmp_path_factory):
+    section, name = key
+    tables = {"system": {}, "grid": {"r": 1.0, "beta": 1.0}, "solver": {}, "curves": {}}
+    tables[section][name] = int(value) if value == int(value) else value  # JSON has one kind of 9 and 9.0
+    text = "\n".join(
+        line
+        for title, table in tables.items()
+        for line in (f"[{title}]", *(f"{key} = {one!r}" for key, one in table.items()))
+    )
+    try:
+        loaded(tmp_path_factory.getbasetemp(), text)
+        taken = True
+    except InputError:
+        taken = False
+    assert SCHEMA.is_valid(tomllib.loads(text)) == taken, text
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_keys_of_rigs_are_those_of_their_kinds(kind):
+    tables = {name: [key.name for key in keys] for name, keys in rig_keys(kind).items()}
+    of = KINDS[kind]
+    assert set(tables["data"]) == {"kind", "file", "columns", "missing", *of.data}
+    assert set(tables["known"]) == {*of.parameters, *of.known}
+    assert set(tables.get("fit", ())) == {*of.fit, *(["free"] if of.parameters else [])}
+    systems = {"record": RECORD_SYSTEM, "sweep": SWEEP_SYSTEM, "forced": [key.name for key in KEYS["system"]]}
+    assert set(tables.get("system", ())) == set(systems.get(kind, ()))
+    assert of.system == ("system" in tables)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '[data]\nkind = "decay"\nfile = "a.csv"',
+        '[data]\nkind = "sweep"\n[system]\nmasses = 2',
+        '[data]\nkind = "sweep"\nfile = "a.csv"',
+        '[data]\nkind = "sweep"\nfile = "a.csv"\nwindow = [0, 1]\n[system]\nmasses = 2',
+        '[data]\nkind = "record"\nfile = "a.csv"\n[known]\nX0 = 1.0',
+        '[data]\nkind = "free-decay"\nfile = "a.csv"\n[known]\nx_F = "1"',
+    ],
+)
+def test_bad_rigs_break_the_schema(text):
+    assert not RIG_SCHEMA.is_valid(tomllib.loads(text))
+
+
+@pytest.mark.parametrize(("arguments", "schema"), [([], map_schema), (["--rig"], rig_schema)])
+def test_the_schema_is_printed_and_is_a_schema(arguments, schema, capsys):
+    assert main(["schema", *arguments]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed == schema()
+    jsonschema.Draft202012Validator.check_schema(printed)
+
+
+# completion
+
+
+def bash(words, folder):
+    """What bash offers in place of the last of these words."""
+    quoted = " ".join(f"'{word}'" for word in words)
+    script = f"""
+        eval "$(cat completion)"
+        compopt() {{ :; }}
+        COMP_WORDS=(frictionmap {quoted}); COMP_CWORD={len(words)}
+        _frictionmap; printf '%s\\n' "${{COMPREPLY[@]}}"
+    """
+    return offered(["bash", "-c", script], folder)
+
+
+def fish(words, folder):
+    """What fish offers."""
+    line = " ".join(["frictionmap", *words])
+    found = offered(["fish", "-c", f'source completion; complete -C "{line}"'], folder)
+    return {one.split("\t")[0] for one in found}
+
+
+def offered(command, folder):
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600, check=True)
+    assert done.stderr == ""
+    return set(done.stdout.splitlines()) - {""}
+
+
+@pytest.mark.parametrize(("shell", "ask"), [("bash", bash), ("fish", fish)])
+def test_completion(shell, ask, tmp_path, capsys):
+    if shutil.which(shell) is None:
+        pytest.skip(f"{shell} is not installed")
+    for name in ("one.toml", "map.nc", "other.txt"):
+        (tmp_path / name).touch()
+    (tmp_path / "folder").mkdir()
+    assert main(["completion", shell]) == 0
+    (tmp_path / "completion").write_text(capsys.readouterr().out)
+    assert ask(["bound"], tmp_path) == {"boundaries"}
+    assert ask(["map", "--over"], tmp_path) == {"--overwrite"}
+    assert ask(["init", "--contact", "f"], tmp_path) == {"fixed-wall"}
+    assert ask(["map", "--set", "solver.st"], tmp_path) == {
+        "solver.start=",
+        "solver.steps=",
+        "solver.steady=",
+    }
+    assert ask(["identify", "--set", "known.x_"], tmp_path) == {"known.x_F="}
+    assert {one.rstrip("/") for one in ask(["map", ""], tmp_path)} == {"one.toml", "folder"}
+    assert {one.rstrip("/") for one in ask(["plot", ""], tmp_path)} == {"map.nc", "folder"}
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_completion_is_a_script_of_its_shell_and_names_every_option(shell):
+    script = completion(shell, list(described()), {"": ["grid.r"]})
+    for command in described():
+        assert command.name in script
+        for argument in command.arguments:
+            for flag in argument.flags:
+                assert (flag if shell != "fish" else flag.lstrip("-")) in script
+    if shutil.which(shell):
+        assert subprocess.run([shell, "-n", "-c", script], check=False).returncode == 0
+
+
+def test_an_unknown_shell_is_refused(capsys):
+    with pytest.raises(SystemExit) as stop:
+        main(["completion", "tcsh"])
+    assert stop.value.code == 2
+    assert "invalid choice: 'tcsh'" in capsys.readouterr().err

@@ -1,6 +1,7 @@
 """Files with further axes, and stores, in words; read part by part, finished or not."""
 
 import math
+import string
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from ..datasets.labels import CELL, MARKS
+from ..datasets.labels import CELL, COORDINATES, LABELS, MARKS
 from ..datasets.schema import check_structure
 from .reading import opened
 from .slices import further_axes
@@ -25,11 +26,24 @@ def is_study(path: Path) -> bool:
 
 def describe_study(path: Path) -> str:
     """One screen: title, system, axes, variables, blocks that are done, regimes of the cells in them."""
-    with opened(path) as ds:
+    with opened(path) as found:
+        ds = _in_order(found)
         lines = [*header_lines(ds, "map"), *axis_lines(ds), *variable_lines(ds)]
         lines += _blocks(ds)
         cells, *causes = cell_lines(ds)
         return "\n".join([*lines, cells, *(f"  {line}" for line in causes)])
+
+
+def _in_order(ds: xr.Dataset) -> xr.Dataset:
+    """Axes and variables as a map has them: a store lists them in any order."""
+    numbers = sorted(
+        (str(name) for name in ds.coords if name not in COORDINATES),
+        key=lambda name: (name.rstrip(string.digits), len(name), name),  # ratios_2 before ratios_10
+    )
+    known = dict.fromkeys((*further_axes(ds), *numbers, *COORDINATES))
+    coords = {name: ds.variables[name] for name in known if name in ds.coords}
+    variables = {name: ds.variables[name] for name in (*LABELS, MARKS) if name in ds.data_vars}
+    return xr.Dataset(variables, coords, ds.attrs)
 
 
 def describe_cells(path: Path) -> list[str]:

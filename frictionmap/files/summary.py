@@ -11,6 +11,7 @@ from ..datasets.labels import CELL, LABELS
 from ..datasets.schema import TEXTS, kind
 from .estimates import describe_estimates, source_of_data
 from .reading import standard_form
+from .slices import further_axes
 
 _WIDTH = 99
 _INDENT = 24
@@ -143,8 +144,9 @@ def axis_lines(ds: xr.Dataset) -> list[str]:
 
 
 def variable_lines(ds: xr.Dataset) -> list[str]:
-    """Every variable with its dimensions and meaning."""
-    return ["variables", *(_named(ds[name]) for name in ds.data_vars)]
+    """Every variable with its dimensions, further ones as three dots, and meaning."""
+    further = further_axes(ds)
+    return ["variables", *(_named(ds[name], further) for name in ds.data_vars)]
 
 
 def _estimates(ds: xr.Dataset) -> Iterator[str]:
@@ -179,8 +181,9 @@ def _entry(name: str, text: str) -> list[str]:
     )
 
 
-def _named(variable: xr.DataArray) -> str:
-    dims = f"({', '.join(map(str, variable.dims))})"
+def _named(variable: xr.DataArray, further: Sequence[str] = ()) -> str:
+    own = [str(dim) for dim in variable.dims if dim not in further]
+    dims = f"({', '.join(own if len(own) == variable.ndim else ['...', *own])})"
     begin = f"  {variable.name!s:<{_INDENT - 3}} {dims:<16} "
     meaning = textwrap.shorten(variable.attrs["long_name"], _WIDTH - len(begin), placeholder="...")
     return begin + meaning

@@ -120,6 +120,11 @@ class Variations:
             described |= {axis.name: columns} if axis.zipped else columns
         return described
 
+    def describe(self) -> str:
+        """The system in words, and which of its numbers change."""
+        keys = dict.fromkeys(number.key for axis in self.axes for number in axis.numbers)
+        return self.system.describe() + (f"; varied: {', '.join(keys)}" if keys else "")
+
     def points(self) -> Iterator[tuple[int, ...]]:
         """Every point, the last axis first."""
         return iter(np.ndindex(self.shape))

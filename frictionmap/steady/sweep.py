@@ -82,7 +82,7 @@ def sweep(
     if "status" not in solver.outputs and not ds["status"].values.any():
         ds = ds.drop_vars("status")  # else no cell is unresolved, or averaged, without a word
     title = "Motion regimes and stops per cycle"
-    return stamp(
+    stamp(
         ds,
         "sweep",
         title,
@@ -91,6 +91,7 @@ def sweep(
         solver,
         study=None if variations is None else variations.described,
     )
+    return ds if variations is None else ds.assign_attrs(system=variations.describe())
 
 
 def _study(

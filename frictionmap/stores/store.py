@@ -99,7 +99,7 @@ def make_store(path: Path, study: Study, title: str) -> None:
         text = _configuration(study, title)
         attributes = {
             "Conventions": "CF-1.11", "title": title, "source": _SOURCE, "references": REFERENCES,
-            "system": study.system.describe(), "config": text,
+            "system": study.variations.describe(), "config": text,
         }  # fmt: skip
         group = zarr.create_group(away, attributes=attributes)
         for name, array in arrays_of(study, sample).items():

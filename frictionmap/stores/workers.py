@@ -20,10 +20,13 @@ from .store import Store, opened
 from .study import Block
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client, Future, LocalCluster
 
 #: Blocks that wait at a worker, beside the one it computes: it is never idle, and a stop leaves few behind.
 _WAITING = 2
+
+#: Starts of the workers of this machine: one that is lost while it starts makes an end of all.
+_STARTS = 3
 
 #: A block whose workers are lost so many times is what kills them.
 _LOSSES = 20
@@ -82,15 +85,27 @@ def local(workers: int) -> Fill:
     def fill(store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
         with (
             dask.config.set({"distributed.scheduler.allowed-failures": _LOSSES}),
-            distributed.LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
-                silence_logs="CRITICAL",
-            ) as cluster,
+            _cluster(workers) as cluster,
             distributed.Client(cluster) as client,
-        ):  # fmt: skip
+        ):
             yield from _on(client, store, blocks)
 
     return fill
+
+
+def _cluster(workers: int) -> "LocalCluster":
+    """So many processes with one thread each."""
+    starts = 0
+    while True:
+        starts += 1
+        try:
+            return _distributed().LocalCluster(
+                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
+                silence_logs="CRITICAL",
+            )  # fmt: skip
+        except RuntimeError as error:
+            if starts == _STARTS:
+                raise OSError(f"the {workers} workers of --workers cannot be started ({error})") from error
 
 
 def running(address: str) -> Fill:

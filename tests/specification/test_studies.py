@@ -92,6 +92,11 @@ def test_info(files, end, capsys):
     assert main(["info", str(files[end])]) == 0
     told = capsys.readouterr().out
     assert "sample                0, 1, 2" in told
+    assert "varied: damping_ratios, mass_ratios, stiffness_ratios" in " ".join(told.split())
+    axes = ["damping_ratios", "sample", "mass_ratios_2", "stiffness_ratios_2", "mu", "r", "beta"]
+    lines = [line.split() for line in told.split("variables")[0].split("axes\n")[1].splitlines()]
+    assert [line[0] for line in lines] == axes
+    assert "regime                (..., mu, r, beta) motion regime of the steady state" in told
     assert "54 cells (" in told
     assert ("6 of 6 blocks; all are computed" in told) == (end == ".zarr")
     assert main(["info", str(files[end]), "--at", "damping_ratios=0.05", "--at", "sample=2"]) == 0

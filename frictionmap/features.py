@@ -252,8 +252,8 @@ def mass_invariant_points(
     fixed wall they are those of `invariant_points`.  Damping is left out: with it they are approximate,
     T 7.4.3.  The load must have one phase.
     """
-    mass = checks.whole(mass, "mass", least=1, most=system.n)
-    return all_mass_invariant_points(system, low, high, most)[mass - 1]
+    mass = system.dofs.number(mass, "mass")
+    return all_mass_invariant_points(system, low, high, most)[system.dofs.row(mass)]
 
 
 class FirstHarmonicPoints(NamedTuple):
@@ -303,5 +303,5 @@ def first_harmonic_invariant_points(
     system: System, mass: int, low: float, high: float, most: int = MOST_POINTS
 ) -> np.ndarray:
     """All `first_harmonic_points` of one mass.  In T 4.4 the inversion of frequency-based curves."""
-    mass = checks.whole(mass, "mass", least=1, most=system.n)
-    return first_harmonic_points(system, low, high, most)[mass - 1].all
+    mass = system.dofs.number(mass, "mass")
+    return first_harmonic_points(system, low, high, most)[system.dofs.row(mass)].all

@@ -118,8 +118,7 @@ def _system_lines(system: "System", file: str) -> list[str]:
         return [*lines, f"matrices = {quoted(file)}"]
     if matrices.n > _MOST_MASSES:
         return [*lines, f"# matrices = {matrices.n} by {matrices.n}, too large to be put here"]
-    arrays = {"M": matrices.mass, "K": matrices.stiffness, "C": matrices.damping}
-    table = {name: array.tolist() for name, array in arrays.items() if array is not None}
+    table = {name: array.tolist() for name, array in matrices.arrays.items()}
     return [*lines, f"matrices = {value_text(table)}"]
 
 

@@ -222,12 +222,23 @@ def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]
     matrices = table.get("matrices", {})
     if isinstance(matrices, str) and matrices:
         table["matrices"] = folder / matrices
+    elif isinstance(matrices, Mapping) and any(isinstance(one, str) for one in matrices.values()):
+        table["matrices"] = {
+            name: folder / one if isinstance(one, str) and one else one for name, one in matrices.items()
+        }
     elif not isinstance(matrices, Mapping):
         raise InputError(
             f"system.matrices must be the path of an .npz file, or a table of arrays M, K and optionally C; "
             f"got {matrices!r}"
         )
     return table
+
+
+def _matrix_files(table: Mapping[str, Any]) -> list[Path]:
+    """The files that the matrices are in."""
+    matrices = table.get("matrices")
+    every = matrices.values() if isinstance(matrices, Mapping) else [matrices]
+    return [one for one in every if isinstance(one, Path)]
 
 
 def _load(value: object, name: str) -> object:
@@ -252,7 +263,7 @@ def system_in(text: str) -> System | None:
     try:
         tree = parse(text)
         table = _system_table(tree, Path())
-        if "system" not in tree or isinstance(table.get("matrices"), Path):
+        if "system" not in tree or _matrix_files(table):
             return None
         return _build(System, table, "system")
     except InputError:
@@ -290,8 +301,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
         key: checks.axis(_values(grid.get(key, [1.0]), f"grid.{key}"), f"grid.{key}", **bounds)
         for key, bounds in AXES.items()
     }
-    matrices = described.get("matrices")
-    files = (path, matrices) if isinstance(matrices, Path) else (path,)
+    files = (path, *_matrix_files(described))
     return Config(
         title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, name, variations, files
     )  # fmt: skip

@@ -163,4 +163,4 @@ def _drives(system: System, mass: int) -> bool:
         return True
     if system.base_motion or system.matrices is not None or system.damping_reference == "base":
         return False
-    return system.load_mass is not None and mass == system.load_mass - 1
+    return isinstance(system.load_mass, int) and mass == system.dofs.row(system.load_mass)

@@ -1,16 +1,16 @@
-"""Files of measuring programs: UFF/UNV (set 58), MAT v7.3 and TDMS, through packages of the extra `lab`.
+"""Files of measuring programs: UFF/UNV (set 58) and TDMS, through packages of the extra `lab`.
 
 Columns are named by what the file says, with the unit that it gives; where it gives none, none is made up.
 """
 
-import importlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
+from ..packages import package, read_by
 from .units import UNITS, ending
 
 #: Columns by their names.
@@ -26,8 +26,8 @@ def read_uff(path: Path) -> Columns:
 
     A response is X_k over its reference: amplitude_ratio_k and phase_lag_k_deg, k the node of the response.
     """
-    pyuff = _package("pyuff", path)
-    sets = _read(path, "universal file", lambda: pyuff.UFF(str(path)).read_sets())
+    pyuff = package("pyuff", path, "lab")
+    sets = read_by(path, "universal file", lambda: pyuff.UFF(str(path)).read_sets())
     sets = [one for one in (sets if isinstance(sets, list) else [sets]) if one.get("type") == 58]
     if not sets:
         raise InputError(f"file {path} must have a set 58, a record or a frequency response; it has none")
@@ -57,24 +57,9 @@ def _of_set(one: dict[str, Any]) -> Iterator[tuple[str, np.ndarray]]:
         yield f"phase_lag_{one['rsp_node']}_deg", -np.degrees(np.angle(data))
 
 
-def read_mat_73(path: Path) -> Columns:
-    """Numbers of a MAT file of version 7.3, which is HDF5; texts and structures are left out."""
-    h5py = _package("h5py", path)
-
-    def read() -> Columns:
-        with h5py.File(path, "r") as stored:
-            return {
-                str(name): np.asarray(one)
-                for name, one in stored.items()
-                if isinstance(one, h5py.Dataset) and one.attrs.get("MATLAB_class") != b"char"
-            }
-
-    return _read(path, "MAT file", read)
-
-
 def read_tdms(path: Path) -> Columns:
     """Channels of a LabVIEW file; a waveform without a channel of times gets its own, time_s."""
-    tdms = _package("nptdms", path)
+    tdms = package("nptdms", path, "lab")
 
     def read() -> Columns:
         columns: Columns = {}
@@ -86,26 +71,7 @@ def read_tdms(path: Path) -> Columns:
                     columns.setdefault("time_s", channel.time_track())
         return columns
 
-    return _read(path, "TDMS file", read)
-
-
-def _package(name: str, path: Path) -> Any:
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        raise InputError(
-            f"file {path} needs the package {name}; install it with: pip install 'frictionmap[lab]'"
-        ) from None
-
-
-def _read(path: Path, form: str, read: Callable[[], Any]) -> Any:
-    try:
-        return read()
-    except FileNotFoundError:
-        raise
-    except Exception as error:  # of a file that is none these packages raise whatever comes
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(f"file {path} must be a {form}; it cannot be read ({reason})") from None
+    return read_by(path, "TDMS file", read)
 
 
 def _text(value: object) -> str:

@@ -94,7 +94,7 @@ def friction_ratio(
     0.2
     """
     system = System() if system is None else checks.instance(system, "system", System)
-    mass = checks.whole(mass, "mass", least=1, most=system.n)
+    mass = system.dofs.number(mass, "mass")
     at, lag = (np.atleast_1d(checks.array(one, name)) for one, name in ((r, "r"), (phase_lag, "phase_lag")))
     for values, name in ((at, "r"), (lag, "phase_lag")):
         if values.dtype.kind not in "iuf" or values.ndim != 1 or not np.isfinite(values).all():
@@ -103,7 +103,7 @@ def friction_ratio(
         raise InputError(f"phase_lag must be {at.size} numbers, one a frequency; got {lag.size}")
     if not (at > 0.0).all():
         raise InputError(f"r must be > 0; got {at[at <= 0.0][0]:g}")
-    return invert(system, at.astype(float), np.radians(lag), np.full(at.size, mass - 1))
+    return invert(system, at.astype(float), np.radians(lag), np.full(at.size, system.dofs.row(mass)))
 
 
 def invert(system: System, r: np.ndarray, lag: np.ndarray, mass: np.ndarray) -> list[FrictionRatios]:

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import InputError
-from .lab_tables import read_mat_73, read_tdms, read_uff
+from ..mat_files import read_mat
+from .lab_tables import read_tdms, read_uff
 
 _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*")
 
@@ -48,7 +49,7 @@ def read_table(path: Path) -> Table:
     forms: dict[str, Callable[[Path], Table]] = {
         ".csv": _read_csv,
         ".npz": _read_npz,
-        ".mat": _read_mat,
+        ".mat": lambda path: _from_arrays(path, *read_mat(path)),
         ".uff": lambda path: _from_arrays(path, read_uff(path), "UFF"),
         ".unv": lambda path: _from_arrays(path, read_uff(path), "UFF"),
         ".tdms": lambda path: _from_arrays(path, read_tdms(path), "TDMS"),
@@ -121,19 +122,6 @@ def _read_npz(path: Path) -> Table:
         raise InputError(f"file {path} must be an NPZ file of NumPy; it cannot be read ({error})") from None
 
 
-def _read_mat(path: Path) -> Table:
-    from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
-
-    try:
-        stored = loadmat(path)
-    except NotImplementedError:
-        return _from_arrays(path, read_mat_73(path), "MAT v7.3")
-    except (MatReadError, ValueError, TypeError, KeyError, IndexError) as error:
-        raise InputError(f"file {path} must be a MAT file; it cannot be read ({error})") from None
-    return _from_arrays(path, {k: v for k, v in stored.items() if not k.startswith("__")}, "MAT")
-
-
 def _from_arrays(path: Path, arrays: Arrays, form: str) -> Table:
     """What is a list of real numbers is a column; whatever else a file holds is not."""
     columns = {name: np.ravel(array).astype(float) for name, array in arrays.items() if _is_column(array)}
@@ -141,4 +129,8 @@ def _from_arrays(path: Path, arrays: Arrays, form: str) -> Table:
 
 
 def _is_column(array: np.ndarray) -> bool:
-    return array.dtype.kind in "iuf" and array.size == max(array.shape, default=0)
+    return (
+        isinstance(array, np.ndarray)
+        and array.dtype.kind in "iuf"
+        and array.size == max(array.shape, default=0)
+    )

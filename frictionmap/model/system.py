@@ -11,7 +11,9 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from .matrices import Matrices, read_matrices
+from ..structures.dofs import Dofs
+from ..structures.structure import Structure, read_structure
+from .matrices import Matrices, whole
 from .modes import ModalModel, damped_modes, gather_contact, modal_damping, solve_chain_modes, solve_modes
 
 CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
@@ -46,17 +48,15 @@ def _ratios(values: object, name: str) -> tuple[float, ...]:
     return ratios
 
 
-def _contact_masses(values: object, contact: str, n: int) -> tuple[int, ...]:
+def _contact_masses(values: object, contact: str, dofs: Dofs) -> tuple[int, ...]:
     values = _sequence(values, "contact_masses", "whole numbers")
     count = 2 if contact == "between-masses" else 1
     if len(values) != count:
         wanted = "two masses [A, B]" if count == 2 else "one mass"
         raise InputError(f"contact_masses must name {wanted} for {contact}; got {list(values)}")
-    masses = tuple(
-        checks.whole(value, f"contact_masses[{index}]", least=1, most=n) for index, value in enumerate(values)
-    )
+    masses = tuple(dofs.number(value, f"contact_masses[{index}]") for index, value in enumerate(values))
     if count == 2 and masses[0] >= masses[1]:
-        raise InputError(f"contact_masses must be [A, B] with A < B; got {list(masses)}")
+        raise InputError(f"contact_masses must be [A, B] with A < B; got {list(values)}")
     return masses
 
 
@@ -107,19 +107,24 @@ class System:
     contact : {"fixed-wall", "joined-base-wall", "between-masses"}
         Where the friction acts: between a mass and the ground, between a mass and a wall that moves with
         the shaken base, or between two masses.
-    contact_masses : sequence of int
-        The mass in contact, or the two, A < B; counted from 1.  Masses are degrees of freedom.
-    load_mass : int, optional
-        The mass the harmonic load acts on, counted from 1; default 1.  Always 1 with base excitation.
+    contact_masses : sequence of int or str
+        The mass in contact, or the two, A < B; counted from 1.  Masses are degrees of freedom.  Of matrices
+        from a file with labels a label NODE.DOF, such as "112.1", may take the place of a number.
+    load_mass : int or str, optional
+        The mass the harmonic load acts on, counted from 1, or its label; default the first.  Always the first
+        with base excitation.
     mass_ratios, stiffness_ratios : sequence of float, optional
         gamma_i = m_i/m_1 and kappa_i = k_i/k_1 [-] of a chain, > 0, the first one 1; default one mass.
     damping_ratios : float or sequence of float, optional
         Damping ratio zeta [-] of every mode, or one a mode in the order of the natural frequencies, 0 to
         100; 1 and more is legal.  Default 0.
     matrices : path or mapping, optional
-        Instead of the ratios: the path of an .npz file, or a mapping, with arrays M and K and optionally C,
-        shape (n, n), in consistent units.  Real and symmetric; M and K positive definite.  C takes the
-        place of damping_ratios: it is positive semi-definite and diagonal in the undamped modes.
+        Instead of the ratios: M and K and optionally C, shape (n, n), in consistent units.  The path of a
+        file with all of them (.npz, .mat; .op4 and .pch of Nastran), or a mapping, of arrays, also sparse
+        ones, or of paths: Matrix Market or Abaqus (.mtx), Harwell-Boeing (.hb, .rb, .rsa, .rua).  An array
+        `dofs` (n,) beside M and K has numbers that degrees of freedom are called by instead of 1 to n.  Real
+        and symmetric; M and K positive definite.  C takes the place of damping_ratios: it is positive
+        semi-definite and diagonal in the undamped modes.
     frequency_scale : float, optional
         With matrices: r = omega/frequency_scale, in the units of sqrt(K/M); default the first natural
         frequency.  A chain's is sqrt(k_1/m_1).
@@ -147,13 +152,13 @@ class System:
     """
 
     contact: Literal["fixed-wall", "joined-base-wall", "between-masses"] = "fixed-wall"
-    contact_masses: Sequence[int] = (1,)
-    load_mass: int | None = None
+    contact_masses: Sequence[int | str] = (1,)
+    load_mass: int | str | None = None
     mass_ratios: Sequence[float] | None = None
     stiffness_ratios: Sequence[float] | None = None
     damping_ratios: float | Sequence[float] | None = None
     _: KW_ONLY
-    matrices: str | os.PathLike | Mapping[str, Any] | Matrices | None = None
+    matrices: str | os.PathLike | Mapping[str, Any] | Structure | Matrices | None = None
     frequency_scale: float | None = None
     stiffness_scale: float = 1.0
     excitation: Literal["force", "base"] | None = None
@@ -165,9 +170,11 @@ class System:
             self._check_chain()
         else:
             self._check_matrices()
-        self._check_damping()
         self._check_contact()
         self._check_load()
+        if isinstance(self.matrices, Structure):
+            self._set("matrices", whole(self.matrices))
+        self._check_damping()
         if self.n > 1 or self.matrices is not None:
             _ = self.modes  # what only they can tell is told at the door, too
 
@@ -201,7 +208,8 @@ class System:
                 raise InputError(
                     f"{name} must be left out if matrices are given; got {checks.one_line(given)}"
                 )
-        self._set("matrices", read_matrices(self.matrices))
+        if not isinstance(self.matrices, Matrices):
+            self._set("matrices", read_structure(self.matrices))
         if self.frequency_scale is not None:
             self._set("frequency_scale", checks.number(self.frequency_scale, "frequency_scale", above=0.0))
         self._set("stiffness_scale", checks.number(self.stiffness_scale, "stiffness_scale", above=0.0))
@@ -222,7 +230,7 @@ class System:
             raise InputError(
                 "contact must be fixed-wall or joined-base-wall for one mass; got 'between-masses'"
             )
-        self._set("contact_masses", _contact_masses(self.contact_masses, self.contact, self.n))
+        self._set("contact_masses", _contact_masses(self.contact_masses, self.contact, self.dofs))
 
     def _check_load(self) -> None:
         if self.excitation is None:
@@ -249,21 +257,27 @@ class System:
                     raise InputError(f"load must be left out {reason}; got {checks.one_line(self.load)}")
             self._set("load", _load(self.load, self.n))
             return
-        mass = 1 if self.load_mass is None else self.load_mass
-        self._set("load_mass", checks.whole(mass, "load_mass", least=1, most=self.n))
-        if base and self.load_mass != 1:
+        first = self.dofs.numbers[0]
+        mass = first if self.load_mass is None else self.load_mass
+        self._set("load_mass", self.dofs.number(mass, "load_mass"))
+        if base and self.load_mass != first:
             cause = "joined-base-wall" if self.base_motion else "base excitation"
             raise InputError(
-                f"load_mass must be 1 for {cause}: the base loads the structure through its springs to the "
-                f"ground; got {self.load_mass}"
+                f"load_mass must be {first} for {cause}: the base loads the structure through its springs to "
+                f"the ground; got {self.load_mass}"
             )
 
     @property
     def n(self) -> int:
         """Number of masses (degrees of freedom)."""
-        if isinstance(self.matrices, Matrices):
-            return self.matrices.n
-        return len(self.mass_ratios)  # type: ignore[arg-type]
+        return self.dofs.n
+
+    @property
+    def dofs(self) -> Dofs:
+        """What the masses are called: numbers from 1, with gaps where a file's are left out."""
+        if isinstance(self.matrices, (Structure, Matrices)):
+            return self.matrices.dofs
+        return Dofs.counted(len(self.mass_ratios))  # type: ignore[arg-type]
 
     @property
     def zeta(self) -> float:
@@ -276,12 +290,18 @@ class System:
         return int(self.contact == "joined-base-wall")
 
     @property
+    def contact_rows(self) -> list[int]:
+        """Rows of the masses in contact, counted from 0."""
+        return self.dofs.rows(self.contact_masses)  # type: ignore[arg-type]
+
+    @property
     def contact_vector(self) -> np.ndarray:
         """c, shape (n,): z = c.x - s cos(tau)."""
         c = np.zeros(self.n)
-        c[self.contact_masses[-1] - 1] = 1.0
+        rows = self.contact_rows
+        c[rows[-1]] = 1.0
         if self.contact == "between-masses":
-            c[self.contact_masses[0] - 1] = -1.0
+            c[rows[0]] = -1.0
         return c
 
     @property
@@ -331,7 +351,7 @@ class System:
         if self.excitation == "base" and self.matrices is not None:
             return stiffness.sum(axis=1).astype(complex)
         load = np.zeros(self.n, dtype=complex)  # of a chain's springs the first only ends at the base
-        load[self.load_mass - 1] = 1.0  # type: ignore[operator]
+        load[self.dofs.row(self.load_mass)] = 1.0  # type: ignore[arg-type]
         return load
 
     def _checked_damping(
@@ -415,7 +435,8 @@ class System:
         return f"chain of {self.n} masses ({masses}), springs ({springs})"
 
     def _contact_in_words(self) -> str:
-        a, b = self.contact_masses[0], self.contact_masses[-1]
+        masses = [self.dofs.word(number) for number in self.contact_masses]  # type: ignore[arg-type]
+        a, b = masses[0], masses[-1]
         mass = "the mass" if self.n == 1 else f"mass {b}"
         return {
             "fixed-wall": f"friction between {mass} and a fixed wall",
@@ -435,7 +456,9 @@ class System:
         if self.load is not None:
             where = "the mass" if one else "the masses"
             return f"harmonic load ({_in_words(self.load)}) on {where}"
-        return "harmonic load on the mass" if one else f"harmonic load on mass {self.load_mass}"
+        return (
+            "harmonic load on the mass" if one else f"harmonic load on mass {self.dofs.word(self.load_mass)}"  # type: ignore[arg-type]
+        )
 
     def _damping_in_words(self) -> str:
         if not self.modes.zeta.any():

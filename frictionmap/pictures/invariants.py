@@ -25,7 +25,9 @@ def _is_contact(system: System, dof: int) -> bool:
 def _frequencies(system: System, quantity: str, dof: int | None, low: float, high: float) -> np.ndarray:
     """Invariant points of a mass, or of the motion in the contact (None)."""
     if quantity == "first_harmonic":
-        return features.first_harmonic_points(system, low, high)[-1 if dof is None else dof - 1].all
+        return features.first_harmonic_points(system, low, high)[
+            -1 if dof is None else system.dofs.row(dof)
+        ].all
     if dof is None:
         return features.invariant_points(system, low, high)
     return features.mass_invariant_points(system, dof, low, high)

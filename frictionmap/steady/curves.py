@@ -120,7 +120,7 @@ def curves(
     variables = {name: label_variable(name, value, "curves") for name, value in values.items()}
     variables |= boundary_variables(cells.curves) | _over_frequency(system, axes, cells.curves)
     grid = {name: axes[name] for name in ("r", "beta", "mu")}
-    axes["dof"] = np.arange(1, system.n + 1)
+    axes["dof"] = np.array(system.dofs.numbers)
     if asked.harmonics:
         axes |= {"harmonic": np.arange(asked.harmonics + 1), "part": PARTS}
     coords = {name: coordinate(name, values) for name, values in axes.items()}

@@ -218,6 +218,6 @@ def regime_map(
         )
         for name in names
     }
-    sizes = {"dof": np.arange(1, system.n + 1)} if "amplitude" in solver.outputs else {}
+    sizes = {"dof": np.array(system.dofs.numbers)} if "amplitude" in solver.outputs else {}
     coords = {name: coordinate(name, values) for name, values in {**axes, **sizes}.items()}
     return xr.Dataset(variables | boundary_variables(cells.curves), coords=coords)

@@ -122,7 +122,7 @@ def results(cells: tuple[int, int, int], masses: int, asked: Asked) -> Results:
 
 def _at_wall(system: System) -> int:
     """The mass whose displacement is that in the contact, counted from 0; -1 if there is none."""
-    return system.contact_masses[0] - 1 if system.contact == "fixed-wall" else -1
+    return system.contact_rows[0] if system.contact == "fixed-wall" else -1
 
 
 def _with_force(shapes: Shapes, found: Structures, modes: ModalModel) -> Shapes:

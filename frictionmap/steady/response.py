@@ -387,7 +387,7 @@ def response(
     variables |= {name: value for name, value in cycle.items() if name not in solver.outputs}
     own = {
         "tau": history.tau,
-        "dof": np.arange(1, system.n + 1),
+        "dof": np.array(system.dofs.numbers),
         "harmonic": np.arange(HARMONICS + 1),
         "part": PARTS,
     }

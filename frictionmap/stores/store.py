@@ -112,7 +112,12 @@ def make_store(path: Path, study: Study, title: str) -> None:
             _make_array(group, name, like)[...] = values
         for name, matrix in _matrices(study.system.matrices).items():
             like = Array(
-                ("row", "column"), matrix.shape, matrix.shape, matrix.dtype, matrix.dtype.type(0), {}
+                ("row", "column")[: matrix.ndim],
+                matrix.shape,
+                matrix.shape,
+                matrix.dtype,
+                matrix.dtype.type(0),
+                {},
             )
             _make_array(group, f"{_MATRICES}/{name}", like)[...] = matrix
         away.rename(path)
@@ -134,8 +139,7 @@ def _matrices(matrices: object) -> dict[str, np.ndarray]:
     """Those of a structure, if it is given by matrices, by their names."""
     if not isinstance(matrices, Matrices):
         return {}
-    arrays = {"M": matrices.mass, "K": matrices.stiffness, "C": matrices.damping}
-    return {name: array for name, array in arrays.items() if array is not None}
+    return matrices.arrays
 
 
 def _configuration(study: Study, title: str) -> str:

@@ -310,6 +310,6 @@ def boundaries(system: System, r: ArrayLike, mu: ArrayLike = 1.0) -> xr.Dataset:
     variables = boundary_variables(found)
     variables |= {name: label_variable(name, v) for name, v in functions.items()}
     variables |= _feature_variables(system, r, mu)
-    axes = {"mu": mu, "r": r, "dof": np.arange(1, system.n + 1)}
+    axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
     ds = xr.Dataset(variables, coords={name: coordinate(name, axis) for name, axis in axes.items()})
     return stamp(ds, "boundaries", "Boundaries of the motion regimes", system, {"r": r, "mu": mu})

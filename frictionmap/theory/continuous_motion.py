@@ -294,7 +294,7 @@ def inversion_points(
     """
     from scipy.optimize import brentq
 
-    mass = checks.whole(mass, "mass", least=1, most=system.n)
+    row = system.dofs.row(system.dofs.number(mass, "mass"))
     beta = checks.number(beta, "beta", above=0.0)
     low = checks.number(low, "low", above=0.0)
     high = checks.number(high, "high", above=low, most=checks.LARGEST_RATIO)
@@ -302,8 +302,8 @@ def inversion_points(
     modes = system.modes
 
     def gain(r: float) -> float:
-        frictionless = abs(modes.response(np.array([r]), modes.phi[mass - 1])[0])
-        return float(continuous_motion(system, r, beta).amplitude[mass - 1] - frictionless)
+        frictionless = abs(modes.response(np.array([r]), modes.phi[row])[0])
+        return float(continuous_motion(system, r, beta).amplitude[row] - frictionless)
 
     def gain_or_none(r: float) -> float:
         try:

@@ -161,7 +161,10 @@ def test_no_system_in_the_text(text):
             "matrices = { M = [[1.0]] }",
             "system.matrices must have arrays M, K and optionally C; K is missing",
         ),
-        ('matrices = { M = "m.mtx", K = [[1.0]] }', "system.matrices: M must be an array of real numbers"),
+        (
+            'matrices = { M = "m.mtx", K = [[1.0]] }',
+            "system.matrices must be files, such as .*, or arrays, all of them",
+        ),
         ("matrices = 3", "system.matrices must be the path of an .npz file, or a table of arrays"),
     ],
 )

@@ -1,0 +1,35 @@
+"""Files that hold several arrays by their names: NPZ and MAT."""
+
+import zipfile
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError
+from ..mat_files import read_mat
+
+#: What a file that is not an .npz, or a damaged one, makes numpy raise.
+_NOT_NPZ = (ValueError, EOFError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
+
+
+def read_npz(path: Path) -> dict[str, Any]:
+    """The arrays of an .npz file; never a pickled object, which could run any program."""
+    try:
+        # opened here, since numpy leaves what it cannot read open
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as opened:
+            return {name: opened[name] for name in opened.files}
+    except OSError as error:
+        reason = error.strerror or "it is not an .npz file"
+    except _NOT_NPZ:
+        reason = "it is not an .npz file of plain arrays"
+    except (AttributeError, TypeError):  # one array, as numpy.save writes it, has no names
+        reason = "it is not an .npz file but one array"
+    raise InputError(f"matrices must be an .npz file with arrays M, K and optionally C; {path}: {reason}")
+
+
+def read_mat_arrays(path: Path) -> dict[str, Any]:
+    """The arrays of a MAT file, sparse ones among them."""
+    arrays, _ = read_mat(path)
+    return {name: np.ravel(one) if name == "dofs" else one for name, one in arrays.items()}

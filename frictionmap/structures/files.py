@@ -1,0 +1,140 @@
+"""The matrices of a structure from whatever they were given as: a file with all, one file each, or arrays."""
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .. import checks
+from ..errors import InputError
+from .abaqus import held, read_abaqus
+from .arrays import read_mat_arrays, read_npz
+from .entries import Label, Matrix, in_one_order
+from .harwell_boeing import read_harwell_boeing
+from .market import BANNER, read_market
+from .nastran import read_op4, read_punch
+
+#: Names of the matrices, and of an array with numbers that degrees of freedom are called by.
+NAMES = ("M", "K", "C")
+DOFS = "dofs"
+
+_SEVERAL: dict[str, Callable[[Path], dict[str, Matrix]]] = {
+    ".op4": read_op4,
+    ".pch": read_punch,
+    ".punch": read_punch,
+    ".dmig": read_punch,
+}
+_BOEING = (".hb", ".rb", ".rsa", ".rua")
+
+#: Endings of files with one matrix, or with several by names.
+_ENDINGS = (".mtx", *_BOEING, *_SEVERAL)
+
+_ONE_EACH = 'matrices = { M = "m.mtx", K = "k.mtx" }'
+
+
+class Found(NamedTuple):
+    """What was given, not checked but for names and labels."""
+
+    arrays: dict[str, Any]  # M, K and perhaps C: whatever it is, or sparse
+    dofs: Any  # their numbers, if they were given, else None
+    labels: tuple[Label, ...] | None
+    held: np.ndarray | None  # rows that a boundary condition holds, bool (n,)
+    source: str  # names of the files, or ""
+
+
+def read_files(given: object) -> Found:
+    """The arrays from the path of a file, or from a mapping of arrays or of paths.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or is not what it says; an array is missing or has an unknown name.
+    """
+    if isinstance(given, (str, os.PathLike)):
+        return _from_path(Path(given))
+    if isinstance(given, Mapping):
+        return _from_mapping(given)
+    raise InputError(
+        f"matrices must be the path of an .npz file or a mapping with arrays M, K and optionally C; "
+        f"got {checks.one_line(given)}"
+    )
+
+
+def _known_names(names: Iterable[Any]) -> None:
+    listed = [name for name in names if name != DOFS]
+    for name in listed:
+        if name not in NAMES:
+            raise InputError(f"matrices must have arrays M, K and optionally C, no others; got {name!r}")
+    for name in ("M", "K"):
+        if name not in listed:
+            raise InputError(
+                f"matrices must have arrays M, K and optionally C; {name} is missing, "
+                f"got {', '.join(listed) or 'none'}"
+            )
+
+
+def _from_path(path: Path) -> Found:
+    ending = path.suffix.lower()
+    if ending == ".mtx" or ending in _BOEING:
+        raise InputError(
+            f"matrices must be given one by one, {_ONE_EACH}: a file {ending} has one; got {path.name}"
+        )
+    if ending in _SEVERAL:
+        matrices = _opened(path, _SEVERAL[ending])
+        _known_names(matrices)
+        arrays, labels = in_one_order(matrices)
+        return Found(arrays, None, labels, None, path.name)
+    read = read_mat_arrays if ending == ".mat" else read_npz
+    arrays = _opened(path, read)
+    _known_names(arrays)
+    return Found(arrays, arrays.pop(DOFS, None), None, None, path.name)
+
+
+def _from_mapping(given: Mapping[Any, Any]) -> Found:
+    _known_names(given)
+    arrays = {name: given[name] for name in NAMES if name in given}
+    paths = {name: Path(one) for name, one in arrays.items() if isinstance(one, (str, os.PathLike))}
+    if not paths:
+        return Found(arrays, given.get(DOFS), None, None, "")
+    if len(paths) < len(arrays) or DOFS in given:
+        raise InputError(f"matrices must be files, such as {_ONE_EACH}, or arrays, all of them")
+    matrices = {name: _one(path, name) for name, path in paths.items()}
+    whole, labels = in_one_order(matrices)
+    abaqus = paths["K"].suffix.lower() == ".mtx" and not _is_market(paths["K"])
+    fixed = held(whole["K"]) if abaqus else None
+    return Found(whole, None, labels, fixed, ", ".join(dict.fromkeys(path.name for path in paths.values())))
+
+
+def _one(path: Path, name: str) -> Matrix:
+    """The matrix of that name in a file."""
+    ending = path.suffix.lower()
+    if ending in _SEVERAL:
+        found = _opened(path, _SEVERAL[ending])
+        if name not in found:
+            raise InputError(f"matrices: file {path} must have a matrix {name}; it has {', '.join(found)}")
+        return found[name]
+    if ending in _BOEING:
+        return _opened(path, read_harwell_boeing)
+    if ending == ".mtx":
+        return _opened(path, lambda file: read_market(file) if _is_market(file) else read_abaqus(file))
+    raise InputError(f"matrices: {name} must be a file that ends in {', '.join(_ENDINGS)}; got {path.name!r}")
+
+
+def _is_market(path: Path) -> bool:
+    with open(path, "rb") as file:
+        return file.read(len(BANNER)).decode("ascii", errors="replace") == BANNER
+
+
+def _opened(path: Path, read: Callable[[Path], Any]) -> Any:
+    """What a file holds; what is said of one that is refused begins with the key."""
+    try:
+        return read(path)
+    except InputError as error:
+        key = "" if str(error).startswith("matrices") else "matrices: "
+        raise InputError(f"{key}{error}") from None
+    except OSError as error:
+        raise InputError(f"matrices: file {path} cannot be read ({error.strerror or error})") from None
+    except ValueError as error:  # a null character in the name
+        raise InputError(f"matrices: file {path} cannot be read ({error})") from None

@@ -1,0 +1,95 @@
+"""Harwell-Boeing and Rutherford-Boeing files: assembled real matrices, symmetric or not.
+
+Numbers stand in columns of fixed width, as the Fortran formats of the header say.
+"""
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import InputError
+from .entries import Matrix, as_number, assembled, mirrored, refuse, text_of
+
+_FORMAT = re.compile(r"(?:\d+P,?)?(\d*)([IEDFG])(\d+)(?:\.\d+)?(?:E\d+)?", re.IGNORECASE)
+
+
+class _Card(NamedTuple):
+    """How numbers stand on a line."""
+
+    most: int
+    kind: str
+    width: int
+
+
+def read_harwell_boeing(path: Path) -> Matrix:
+    """A matrix; of one that the file calls symmetric the lower triangle is there.
+
+    Raises
+    ------
+    InputError
+        It is not an assembled, real, square matrix, or a line is not as the header says.
+    """
+    lines = text_of(path).splitlines()
+    if len(lines) < 4:
+        raise InputError(
+            f"file {path} must begin with four lines of a Harwell-Boeing header; it has {len(lines)}"
+        )
+    cards = _whole(path, lines, 1)[:5]
+    kind, sizes = lines[2][:3].upper(), _whole(path, lines, 2, 3)
+    right_sides = cards[4] if len(cards) > 4 else 0
+    if not re.fullmatch("[RI][SU]A", kind) or len(sizes) < 3 or len(cards) < 4 or right_sides:
+        refuse(path, 3, "an assembled real matrix (RSA or RUA), without right-hand sides", lines[2])
+    if sizes[0] != sizes[1]:
+        refuse(path, 3, "a square matrix", lines[2])
+    formats = [_card(path, lines[3], word) for word in lines[3].upper().split()[:3]]
+    if len(formats) < 3:
+        refuse(path, 4, "the formats of pointers, rows and entries", lines[3])
+    begin, parts = 4, []
+    for size, count, card in zip((sizes[1] + 1, sizes[2], sizes[2]), cards[1:4], formats, strict=True):
+        parts.append(_numbers(path, lines, begin, count, card, size))
+        begin += count
+    pointers, rows = (part.astype(np.int64) - 1 for part in parts[:2])
+    legal = pointers[0] == 0 and pointers[-1] == sizes[2] and (np.diff(pointers) >= 0).all()
+    if not legal or rows.min() < 0 or rows.max() >= sizes[0]:
+        raise InputError(f"file {path} must have pointers and rows of a {sizes[0]} by {sizes[0]} matrix")
+    columns = np.repeat(np.arange(sizes[1]), np.diff(pointers))
+    if kind[1] == "S" and (rows < columns).any():
+        raise InputError(f"file {path} must have only the lower triangle of a symmetric matrix; it has more")
+    matrix = assembled(path, sizes[0], rows, columns, parts[2])
+    return Matrix(mirrored(matrix) if kind[1] == "S" else matrix)
+
+
+def _whole(path: Path, lines: list[str], index: int, begin: int = 0) -> list[int]:
+    """Whole numbers of a line of the header."""
+    try:
+        return [int(word) for word in lines[index][begin:].split()]
+    except ValueError:
+        refuse(path, index + 1, "whole numbers of a Harwell-Boeing header", lines[index])
+
+
+def _card(path: Path, line: str, word: str) -> _Card:
+    matched = _FORMAT.fullmatch(word.strip("()"))
+    if not matched:
+        refuse(path, 4, "Fortran formats such as (10I8) and (3E25.17)", line)
+    return _Card(int(matched[1] or 1), matched[2], int(matched[3]))
+
+
+def _numbers(path: Path, lines: list[str], begin: int, count: int, card: _Card, size: int) -> np.ndarray:
+    """So many numbers from so many lines."""
+    found: list[float] = []
+    for index in range(begin, begin + count):
+        line = lines[index].rstrip() if index < len(lines) else ""
+        fields = [line[k : k + card.width] for k in range(0, len(line), card.width)]
+        try:
+            found += [int(field) if card.kind == "I" else as_number(field) for field in fields]
+        except ValueError:
+            refuse(path, index + 1, f"{card.most} numbers of {card.width} characters", line)
+        if not line or len(fields) > card.most:
+            refuse(path, index + 1, f"{card.most} numbers of {card.width} characters", line)
+    if len(found) != size:
+        raise InputError(
+            f"file {path} must have {size} numbers from line {begin + 1} on; it has {len(found)}"
+        )
+    return np.array(found, dtype=float)

@@ -1,0 +1,140 @@
+"""The matrices of a structure, checked: square, real, finite, symmetric, of one size, dense or sparse."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .. import checks
+from ..errors import InputError
+from .dofs import Dofs
+from .files import Found, read_files
+
+#: Of the largest entry: a matrix is symmetric up to this.  Assembly leaves some units of rounding; a slip
+#: leaves more.
+TOLERANCE = 1e-12
+
+#: Entries of all matrices must lie within 1/this to this: then squares and products stay within doubles.
+LARGEST = 1e100
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """Matrices (n, n) by M, K and perhaps C; arrays, or sparse ones with their rows one after the other."""
+
+    arrays: dict[str, Any]
+    dofs: Dofs
+    source: str  # names of the files, or ""
+    held: int  # degrees of freedom left out, as a boundary condition holds them
+
+    @property
+    def n(self) -> int:
+        """Number of degrees of freedom."""
+        return self.dofs.n
+
+    def massless(self) -> list[int]:
+        """Numbers of degrees of freedom without any mass, rows of zeros in M."""
+        rows = abs(self.arrays["M"]).sum(axis=1)
+        return [self.dofs.numbers[row] for row in np.flatnonzero(np.asarray(rows) == 0.0)]
+
+
+def read_structure(given: object) -> Structure:
+    """The structure of a path or a mapping, see `files.read_files`.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read; an array is missing, has an unknown name, or is not a real, finite,
+        symmetric matrix of the size of the others.
+    """
+    found = read_files(given)
+    arrays = {name: _symmetric(_square(one, name), name) for name, one in found.arrays.items()}
+    n = arrays["M"].shape[0]
+    for name, array in arrays.items():
+        if array.shape[0] != n:
+            raise InputError(f"matrices: {name} must have the shape of M, ({n}, {n}); got {array.shape}")
+    dofs = _dofs(found, n)
+    if found.held is None or not found.held.any():
+        return Structure(arrays, dofs, found.source, 0)
+    free = np.flatnonzero(~found.held)
+    if not free.size:
+        raise InputError("matrices: K must leave a degree of freedom free; boundary conditions hold all")
+    arrays = {name: one[free][:, free] for name, one in arrays.items()}
+    return Structure(arrays, dofs.at(free), found.source, n - free.size)
+
+
+def _dofs(found: Found, n: int) -> Dofs:
+    if found.dofs is None:
+        return Dofs.counted(n, found.labels)
+    numbers = np.atleast_1d(checks.array(found.dofs, "matrices: dofs"))
+    whole = (
+        numbers.dtype.kind in "iuf" and numbers.shape == (n,) and np.array_equal(numbers, np.round(numbers))
+    )
+    if not whole or (np.diff(numbers) <= 0).any() or numbers[0] < 1:
+        raise InputError(
+            f"matrices: dofs must be {n} whole numbers, increasing, from 1; got {checks.one_line(found.dofs)}"
+        )
+    return Dofs(tuple(int(number) for number in numbers))
+
+
+def in_range(array: Any, name: str) -> bool:
+    """Whether the largest entry is of a size to calculate with; C may be zero."""
+    largest = float(abs(array).max())
+    return 1.0 / LARGEST <= largest <= LARGEST or (name == "C" and largest == 0.0)
+
+
+def _square(given: Any, name: str) -> Any:
+    """`given` as a new float64 array, dense or sparse, if it is a square matrix of finite real numbers."""
+    array = given if _is_sparse(given) else checks.array(given, f"matrices: {name}")
+    if array.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false
+        kind = f"numbers of type {array.dtype}" if array.dtype.kind == "c" else f"type {array.dtype}"
+        raise InputError(f"matrices: {name} must be an array of real numbers; got {kind}")
+    if array.ndim != 2 or array.shape[0] != array.shape[1] or array.shape[0] == 0:
+        raise InputError(f"matrices: {name} must be square, (n, n); got shape {array.shape}")
+    result = _as_rows(array) if _is_sparse(given) else array.astype(np.float64)
+    numbers = result.data if _is_sparse(given) else result
+    if not np.isfinite(numbers).all():
+        i, j, value = _first_wrong(result)
+        raise InputError(f"matrices: {name} must be finite; got {value} at [{i}, {j}]")
+    if not in_range(result, name):
+        raise InputError(
+            f"matrices: {name} must have a largest entry of {1.0 / LARGEST:g} to {LARGEST:g}; "
+            f"got {abs(result).max():g}"
+        )
+    return result
+
+
+def _is_sparse(given: object) -> bool:
+    """Whether it is a sparse matrix or array, told without loading what they come from."""
+    return hasattr(given, "tocsr") and hasattr(given, "nnz")
+
+
+def _as_rows(array: Any) -> Any:
+    from scipy.sparse import csr_array
+
+    rows = csr_array(array).astype(np.float64)
+    rows.sum_duplicates()
+    return rows
+
+
+def _first_wrong(array: Any) -> tuple[int, int, float]:
+    """Row, column and value of the first entry that is not finite."""
+    if not _is_sparse(array):
+        i, j = np.argwhere(~np.isfinite(array))[0]
+        return int(i), int(j), float(array[i, j])
+    entries = array.tocoo()
+    k = int(np.flatnonzero(~np.isfinite(entries.data))[0])
+    return int(entries.coords[0][k]), int(entries.coords[1][k]), float(entries.data[k])
+
+
+def _symmetric(array: Any, name: str) -> Any:
+    """The symmetric part, if the rest of it is rounding."""
+    difference = abs(array - array.T)
+    i, j = np.unravel_index(difference.argmax(), array.shape)
+    if difference[i, j] > TOLERANCE * abs(array).max():
+        raise InputError(
+            f"matrices: {name} must be symmetric; got {float(array[i, j])!r} at [{i}, {j}] and "
+            f"{float(array[j, i])!r} at [{j}, {i}]"
+        )
+    whole = 0.5 * (array + array.T)
+    return whole.tocsr() if _is_sparse(whole) else whole

@@ -1,0 +1,326 @@
+"""Structures from the files of finite-element programs: the same maps as arrays, labels, and refusals."""
+
+import sys
+
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse
+import structure_files as written
+import xarray as xr
+from structures import CHAIN
+
+import frictionmap as fm
+from frictionmap.cli import main
+from frictionmap.datasets.provenance import to_toml
+
+LABELS = [(3, 1), (3, 2), (17, 1)]
+M = CHAIN["M"] / 3.0  # entries that need all digits
+K = CHAIN["K"] / 7.0
+C = 0.01 * M + 0.02 * K
+FEW = {"M": CHAIN["M"], "K": CHAIN["K"]}  # nine digits are enough
+MATRICES = {"M": M, "K": K, "C": C}
+
+
+def each(folder, write, ending):
+    """One file a matrix."""
+    for name, matrix in MATRICES.items():
+        write(folder / f"{name}{ending}", matrix)
+    return {name: f"{name}{ending}" for name in MATRICES}
+
+
+def op4(folder, **how):
+    writer = pytest.importorskip("pyyeti.nastran.op4")
+    names = {"MAAX": M, "KAAX": K, "BAAX": C, "PHIX": np.ones((3, 2))}
+    writer.write(str(folder / "frame.op4"), names, **how)
+    return "frame.op4"
+
+
+def mat(folder, kind):
+    scipy.io.savemat(folder / "frame.mat", {name: kind(matrix) for name, matrix in MATRICES.items()})
+    return "frame.mat"
+
+
+def mat_73(folder):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(folder / "frame.mat", "w", userblock_size=512) as file:
+        file["M"] = M
+        for name, matrix in (("K", K), ("C", C)):
+            sparse = scipy.sparse.csc_array(matrix)
+            group = file.create_group(name)
+            group.attrs["MATLAB_sparse"] = np.uint64(3)
+            group["data"], group["ir"], group["jc"] = sparse.data, sparse.indices, sparse.indptr
+    with open(folder / "frame.mat", "r+b") as file:
+        file.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
+    return "frame.mat"
+
+
+def npz(folder):
+    np.savez(folder / "frame.npz", **MATRICES)
+    return "frame.npz"
+
+
+def labelled(part):
+    return lambda path, matrix: written.abaqus(path, matrix, LABELS, part)
+
+
+def counted(part):
+    return lambda path, matrix: written.abaqus_coordinates(path, matrix, part)
+
+
+FORMS = {
+    "NPZ": npz,
+    "MAT": lambda folder: mat(folder, np.asarray),
+    "MAT, sparse": lambda folder: mat(folder, scipy.sparse.csc_array),
+    "MAT 7.3": mat_73,
+    "Matrix Market, symmetric": lambda folder: each(folder, written.market, ".mtx"),
+    "Matrix Market, general": lambda folder: each(
+        folder, lambda path, matrix: written.market(path, matrix, False), ".mtx"
+    ),
+    "Matrix Market, array": lambda folder: each(folder, written.market_array, ".mtx"),
+    "Abaqus, lower": lambda folder: each(folder, labelled(np.tril), ".mtx"),
+    "Abaqus, upper": lambda folder: each(folder, labelled(np.triu), ".mtx"),
+    "Abaqus, all": lambda folder: each(folder, labelled(np.array), ".mtx"),
+    "Abaqus, coordinates": lambda folder: each(folder, counted(np.triu), ".mtx"),
+    "Harwell-Boeing, RSA": lambda folder: each(folder, written.harwell_boeing, ".rsa"),
+    "Harwell-Boeing, RUA": lambda folder: each(
+        folder, lambda path, matrix: written.harwell_boeing(path, matrix, False), ".hb"
+    ),
+    "OP4": lambda folder: op4(folder, binary=True),
+    "OP4, sparse": lambda folder: op4(folder, binary=True, sparse="bigmat"),
+    "OP4, text": lambda folder: op4(folder, binary=False),
+}
+
+
+def mapped(folder, system):
+    """The map of these keys of [system], by the command line."""
+    grid = {"r": [0.4, 1.0, 1.7], "beta": [0.05, 0.2, 0.6]}
+    (folder / "c.toml").write_text(to_toml({"system": system, "grid": grid}))
+    assert main(["map", str(folder / "c.toml"), "-o", str(folder / "o.nc"), "--quiet", "--overwrite"]) == 0
+    return xr.load_dataset(folder / "o.nc")
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("expected")
+    return mapped(folder, {"matrices": {name: matrix.tolist() for name, matrix in MATRICES.items()}})
+
+
+@pytest.mark.parametrize("write", FORMS.values(), ids=FORMS)
+def test_every_form_gives_the_map_of_the_arrays(write, tmp_path, expected):
+    found = mapped(tmp_path, {"matrices": write(tmp_path)})
+    xr.testing.assert_identical(found.drop_attrs(), expected.drop_attrs())
+
+
+def test_a_punch_file(tmp_path, expected):
+    pytest.importorskip("pyyeti")
+    written.punch(tmp_path / "frame.pch", {"MAAX": CHAIN["M"], "KAAX": CHAIN["K"]}, LABELS)
+    found = mapped(tmp_path, {"matrices": "frame.pch", "contact_masses": ["17.1"], "load_mass": "3.2"})
+    arrays = {name: matrix.tolist() for name, matrix in FEW.items()}
+    there = mapped(tmp_path, {"matrices": arrays, "contact_masses": [3], "load_mass": 2})
+    xr.testing.assert_identical(found.drop_attrs(), there.drop_attrs())
+    assert not expected.equals(found)
+    assert "friction between mass 3 (17.1) and a fixed wall; harmonic load on mass 2 (3.2)" in found.system
+
+
+def test_sparse_arrays_are_arrays():
+    sparse = {name: scipy.sparse.coo_array(matrix) for name, matrix in MATRICES.items()}
+    assert fm.System(matrices=sparse) == fm.System(matrices=MATRICES)
+
+
+def test_degrees_of_freedom_by_labels(tmp_path):
+    """Rows are in the order of the labels, whatever the order in the file; M may lack some without mass."""
+    order = [2, 0, 1]
+    shuffled = [LABELS[k] for k in order]
+    for name in ("M", "K"):
+        written.abaqus(tmp_path / f"{name}.mtx", MATRICES[name][np.ix_(order, order)], shuffled)
+    files = {"M": tmp_path / "M.mtx", "K": tmp_path / "K.mtx"}
+    system = fm.System("between-masses", ["3.2", "17.1"], "3.1", matrices=files)
+    assert system == fm.System("between-masses", [2, 3], 1, matrices={"M": M, "K": K})
+    assert fm.System("between-masses", [2, 3], 1, matrices=files) == system
+    light = M.copy()
+    light[1, 1] = 0.0
+    written.abaqus(tmp_path / "M.mtx", light, LABELS)
+    with pytest.raises(fm.InputError, match=r"M must be positive definite.* 2 \(3.2\) has no mass"):
+        fm.System(matrices=files)
+
+
+def test_boundary_conditions_of_abaqus_are_left_out(tmp_path):
+    fixed = K.copy()
+    fixed[1, 1] = 1e36
+    written.abaqus(tmp_path / "M.mtx", M, LABELS)
+    written.abaqus(tmp_path / "K.mtx", fixed, LABELS)
+    system = fm.System(matrices={"M": tmp_path / "M.mtx", "K": tmp_path / "K.mtx"}, contact_masses=["17.1"])
+    free = np.ix_([0, 2], [0, 2])
+    alone = fm.System(matrices={"M": M[free], "K": K[free]}, contact_masses=[2])
+    assert system.contact_masses == (3,)
+    ds, there = (fm.sweep(one, [0.5], [0.1], outputs=["amplitude"]) for one in (system, alone))
+    assert ds.dof.values.tolist() == [1, 3]
+    np.testing.assert_array_equal(ds.amplitude, there.amplitude)
+    with pytest.raises(fm.InputError, match=r"contact_masses\[0\] must be one of 1, 3; got 2"):
+        fm.System(matrices=system.matrices, contact_masses=[2])
+
+
+def test_numbers_of_degrees_of_freedom(tmp_path):
+    """An array of them stands beside the others; a dataset has them, and its configuration."""
+    system = fm.System(matrices={**MATRICES, "dofs": [4, 17, 112]}, contact_masses=[112], load_mass=17)
+    ds = fm.curves(system, [0.5], [0.1], quantities=["amplitude"])
+    there = fm.curves(fm.System(matrices=MATRICES, contact_masses=[3], load_mass=2), [0.5], [0.1],
+                      quantities=["amplitude"])  # fmt: skip
+    assert ds.dof.values.tolist() == [4, 17, 112]
+    np.testing.assert_array_equal(ds.amplitude, there.amplitude)
+    (tmp_path / "again.toml").write_text(ds.attrs["config"])
+    assert fm.load_config(tmp_path / "again.toml").system == system
+    assert fm.System(matrices={**MATRICES, "dofs": [1, 2, 3]}) == fm.System(matrices=MATRICES)
+    assert fm.System(matrices={**MATRICES, "dofs": [1, 2, 4]}) != fm.System(matrices=MATRICES)
+
+
+# Refusals
+
+
+BANNER = "%%MatrixMarket matrix coordinate"
+
+BAD_FILES = {
+    "unsymmetric": (f"{BANNER} real general\n2 2 2\n1 1 1.0\n2 1 0.5\n", ["must be symmetric", "[0, 1]"]),
+    "complex": (f"{BANNER} complex general\n1 1 1\n1 1 1.0 2.0\n", ["a real matrix", "complex"]),
+    "a pattern": (f"{BANNER} pattern general\n1 1 1\n1 1\n", ["a real matrix", "pattern"]),
+    "not square": (f"{BANNER} real general\n1 2 1\n1 1 1.0\n", ["square", "1 by 2"]),
+    "an entry twice": (f"{BANNER} real general\n1 1 2\n1 1 1.0\n1 1 1.0\n", ["once", "row 1, column 1"]),
+    "symmetric, both triangles": (
+        f"{BANNER} real symmetric\n2 2 4\n1 1 1.0\n2 2 1.0\n1 2 0.5\n2 1 0.5\n", ["once", "row 2, column 1"]
+    ),
+    "cut short": (f"{BANNER} real general\n2 2 4\n1 1 1.0\n", ["Matrix Market file", "cannot be read"]),
+    "no number": (f"{BANNER} real general\n1 1 1\n1 1 one\n", ["Matrix Market file", "Line 3"]),
+    "not a number": (f"{BANNER} real general\n1 1 1\n1 1 nan\n", ["M must be finite", "[0, 0]"]),
+    "words": ("mass\n", ["line 1", "node, dof, node, dof, entry or row column entry", "'mass'"]),
+    "Abaqus, no number": ("1,1, 1,1, 2.0\n1,2, 1,1, x\n", ["line 2", "node, dof, node, dof, entry"]),
+    "Abaqus, a field too few": ("1,1, 1,1, 2.0\n1,2, 1, 2.0\n", ["line 2", "node, dof, node, dof, entry"]),
+    "Abaqus, unsymmetric": ("*MATRIX INPUT, TYPE=UNSYMMETRIC\n1 1 1 1 1.\n", ["line 1", "symmetric"]),
+    "Abaqus, another keyword": ("*NODE\n1, 1., 1.\n", ["line 1", "no other keyword", "*NODE"]),
+    "Abaqus, row 0": ("0 0 1.0\n", ["line 1", "counted from 1"]),
+    "Abaqus, an entry twice": ("1 1 1.0\n1 1 1.0\n", ["every entry once", "row 1, column 1"]),
+    "Abaqus, half of some": (
+        "1 1 4.\n2 2 4.\n3 3 4.\n1 2 1.\n2 1 1.\n1 3 1.\n", ["must be symmetric", "[0, 2]"]
+    ),
+    "Abaqus, nothing": ("** nothing\n", ["a line for every entry", "none"]),
+    "zero bytes": ("1 1\0 1.0", ["must be text"]),
+}  # fmt: skip
+
+
+def refused(capsys, folder, matrices, words, status=2):
+    (folder / "c.toml").write_text(
+        to_toml({"system": {"matrices": matrices}, "grid": {"r": [1], "beta": [1]}})
+    )
+    assert main(["map", str(folder / "c.toml"), "-o", str(folder / "o.nc")]) == status
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert message.startswith("frictionmap: system.matrices")
+    for word in words:
+        assert word in message, message
+
+
+@pytest.mark.parametrize(("text", "words"), BAD_FILES.values(), ids=BAD_FILES)
+def test_bad_texts(text, words, tmp_path, capsys):
+    (tmp_path / "M.mtx").write_text(text)
+    (tmp_path / "K.mtx").write_text("1 1 1.0\n")
+    refused(capsys, tmp_path, {"M": "M.mtx", "K": "K.mtx"}, words)
+
+
+HEADER = f"{'title':<80}\n{5:14d}{1:14d}{1:14d}{1:14d}{0:14d}\n"
+BAD_BOEING = {
+    "empty": ("", ["four lines", "it has 0"]),
+    "complex": (f"{HEADER}CUA{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (3E25.16)\n", ["line 3", "real"]),
+    "elements": (f"{HEADER}RUE{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (3E25.16)\n", ["line 3"]),
+    "a format": (f"{HEADER}RUA{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (list)\n", ["line 4", "Fortran"]),
+    "a number": (
+        f"{HEADER}RUA{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (3E25.16)\n{1:10d}{2:10d}\n{1:10d}\n    x\n",
+        ["line 7", "3 numbers of 25 characters"],
+    ),
+    "pointers": (
+        f"{HEADER}RUA{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (3E25.16)\n{1:10d}{9:10d}\n{1:10d}\n"
+        f"{2.0:25e}\n",
+        ["pointers and rows of a 1 by 1 matrix"],
+    ),
+    "too few": (
+        f"{HEADER}RUA{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (3E25.16)\n{1:10d}\n{1:10d}\n{2.0:25e}\n",
+        ["2 numbers from line 5"],
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "words"), BAD_BOEING.values(), ids=BAD_BOEING)
+def test_bad_files_of_harwell_boeing(text, words, tmp_path, capsys):
+    (tmp_path / "M.hb").write_text(text)
+    refused(capsys, tmp_path, {"M": "M.hb", "K": "M.hb"}, words)
+
+
+@pytest.mark.parametrize(
+    ("matrices", "words"),
+    [
+        ("K.mtx", ["one by one", "matrices = { M = "]),
+        ("K.rsa", ["one by one", ".rsa"]),
+        ({"M": "K.mtx", "K": "missing.mtx"}, ["missing.mtx", "No such file"]),
+        ({"M": "K.mtx", "K": "K.txt"}, ["K must be a file that ends in .mtx", "K.txt"]),
+        ({"M": "K.mtx", "K": [[1.0]]}, ["files", "or arrays, all of them"]),
+        ({"M": "K.mtx"}, ["K is missing"]),
+        ({"M": "K.mtx", "K": "L.mtx"}, ["labels of nodes or none", "M has none beside K"]),
+        ("broken.mat", ["must be a MAT file"]),
+        ("missing.mat", ["missing.mat", "No such file"]),
+        ("more.mat", ["M, K and optionally C, no others", "'D'"]),
+        ({"M": [[1.0]], "K": [[1.0]], "dofs": [0]}, ["dofs must be 1 whole numbers", "[0]"]),
+        ({"M": [[1.0]], "K": [[1.0]], "dofs": [1.5]}, ["dofs must be 1 whole numbers"]),
+        ({"M": [[1.0]], "K": [[1.0]], "dofs": [1, 2]}, ["dofs must be 1 whole numbers"]),
+    ],
+)
+def test_bad_choices(matrices, words, tmp_path, capsys):
+    written.market(tmp_path / "K.mtx", K)
+    written.harwell_boeing(tmp_path / "K.rsa", K)
+    written.abaqus(tmp_path / "L.mtx", K, LABELS)
+    (tmp_path / "K.txt").write_text("1 1 1.0")
+    (tmp_path / "broken.mat").write_bytes(b"no MATLAB")
+    scipy.io.savemat(tmp_path / "more.mat", {**MATRICES, "D": K})
+    refused(capsys, tmp_path, matrices, words)
+
+
+def test_bad_files_of_nastran(tmp_path, capsys):
+    pytest.importorskip("pyyeti")
+    from pyyeti.nastran import op4 as writer
+
+    writer.write(str(tmp_path / "two.op4"), {"MAA": M, "MGG": M, "KAA": K})
+    refused(capsys, tmp_path, "two.op4", ["one matrix M", "MAA, MGG"])
+    writer.write(str(tmp_path / "none.op4"), {"PHIX": M})
+    refused(capsys, tmp_path, "none.op4", ["called M, K and C", "it has PHIX"])
+    writer.write(str(tmp_path / "half.op4"), {"MAA": M})
+    refused(capsys, tmp_path, "half.op4", ["K is missing", "got M"])
+    refused(capsys, tmp_path, {"M": "half.op4", "K": "half.op4"}, ["must have a matrix K", "it has M"])
+    (tmp_path / "text.op4").write_text("no matrix at all, but words\n" * 4)
+    refused(capsys, tmp_path, "text.op4", ["OP4 file of Nastran"])
+    (tmp_path / "text.pch").write_text("GRID,1\n")
+    refused(capsys, tmp_path, "text.pch", ["DMIG cards", "none"])
+
+
+def test_without_the_extra(tmp_path, monkeypatch, capsys):
+    (tmp_path / "frame.op4").write_bytes(b"anything")
+    monkeypatch.setitem(sys.modules, "pyyeti.nastran.op4", None)
+    refused(capsys, tmp_path, "frame.op4", ["frame.op4 needs the package pyyeti", "frictionmap[fe]"])
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"contact_masses": ["9.9"]}, r"label NODE.DOF of the file such as 3.1 or 17.1; got '9.9'"),
+        ({"contact_masses": [17.1]}, r"contact_masses\[0\] must be a whole number, or a label in quotes"),
+        ({"load_mass": "3.3"}, r"load_mass must be a number, or a label .*; got '3.3' \(did you mean"),
+        ({"contact": "between-masses", "contact_masses": ["17.1", "3.1"]}, "with A < B; got"),
+    ],
+)
+def test_bad_labels(settings, message, tmp_path):
+    for name in ("M", "K"):
+        written.abaqus(tmp_path / f"{name}.mtx", MATRICES[name], LABELS)
+    with pytest.raises(fm.InputError, match=message):
+        fm.System(matrices={"M": tmp_path / "M.mtx", "K": tmp_path / "K.mtx"}, **settings)
+
+
+def test_labels_that_the_matrices_have_not():
+    with pytest.raises(fm.InputError, match=r"contact_masses\[0\] must be a whole number; got '3.1'"):
+        fm.System(matrices=MATRICES, contact_masses=["3.1"])

@@ -1,0 +1,153 @@
+"""The figures of the gallery as numbers: what each picture shows, on a coarse part of its grid.
+
+`gallery/data` holds them.  A picture of the gallery is drawn only if what it shows is what is there, and a
+test computes the coarse grids anew.  After a change that is meant to change pictures,
+
+    python docs/picture_data.py
+
+writes them again.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+import frictionmap as fm
+from frictionmap import regimes
+from frictionmap.files.config import Config
+from frictionmap.pictures.classes import classes
+
+CONFIGS = Path(__file__).resolve().parent.parent / "configs"
+DATA = Path(__file__).resolve().parent / "gallery" / "data"
+
+#: Every figure of the thesis that has a configuration, the rig, and where the start decides.
+FIGURES = tuple(sorted(path.stem for path in CONFIGS.glob("*.toml")))
+
+#: About as many values of r and of beta are kept.
+_KEPT = 30
+
+#: The class of cells without one answer that every machine must find: motions that repeat in no 8 periods,
+#: that are too slow, one of a continuum; and cells that rounding decides, see `write`.
+ANY = 255
+_SETTLED = (regimes.RESOLVED, regimes.QUASI_STATIC)
+
+#: Numbers are kept with 24 bits; the exact ones agree to 1e-10 on any machine.
+_RELATIVE, _ABSOLUTE = 1e-6, 1e-7
+
+#: Far above rounding, far below what a picture shows.
+_PUSH = 1e-13
+
+_MAPPED = ("contact_amplitude", "also_reachable")
+_BOUNDARIES = ("beta_lim", "beta_stick")
+_PHASES = ("phase", "first_harmonic_phase")
+_DRAWN = ("amplitude", "first_harmonic_amplitude", *_PHASES)
+_CODES = ("class", "also_reachable")
+_OF_CELLS = ("class", *_MAPPED, *_DRAWN)
+
+
+def computed(name: str) -> xr.Dataset:
+    """The map or the curves of `configs/NAME.toml`, which show what they are known to show.
+
+    Raises
+    ------
+    ValueError
+        They do not; the message says where.
+    """
+    config = fm.load_config(CONFIGS / f"{name}.toml")
+    ds = compute(config, config.r, config.beta)
+    different = differences(name, ds)
+    if different:
+        raise ValueError(f"{name} has changed: {'; '.join(different)}")
+    return ds.assign_attrs(title=config.title)
+
+
+def compute(config: Config, r: np.ndarray, beta: np.ndarray) -> xr.Dataset:
+    """What a configuration asks for, on this grid."""
+    if "[curves]" not in config.text:
+        return fm.sweep(config.system, r, beta, config.mu, solver=config.solver)
+    return fm.curves(
+        config.system, r, beta, config.mu, harmonics=config.curves.harmonics,
+        quantities=config.curves.quantities, solver=config.solver,
+    )  # fmt: skip
+
+
+def coarse(name: str) -> xr.Dataset:
+    """The same on the part of the grid that is kept."""
+    config = fm.load_config(CONFIGS / f"{name}.toml")
+    return compute(config, _some(config.r), _some(config.beta))
+
+
+def _some(values: np.ndarray) -> np.ndarray:
+    """Every so many, the first and the second half of a step apart, so that edges of all kinds are met."""
+    step = max(1, values.size // _KEPT)
+    return values[step // 2 :: step]
+
+
+def shown(ds: xr.Dataset) -> dict[str, np.ndarray]:
+    """What a picture of a dataset shows: classes of cells, boundaries, heights of curves."""
+    settled = np.ones([ds.sizes[name] for name in ("mu", "r", "beta")], dtype=bool)
+    if "status" in ds:
+        settled = np.isin(ds["status"].values, _SETTLED)
+    found = np.stack([classes(ds.isel(mu=index)) for index in range(ds.sizes["mu"])])
+    numbers = {"r": ds["r"].values, "beta": ds["beta"].values, "class": np.where(settled, found, ANY)}
+    for name in _BOUNDARIES:
+        numbers[name] = ds[name].values.astype(np.float32)
+    for name in (*_MAPPED, *_DRAWN):
+        if name in ds:
+            values = ds[name].values
+            numbers[name] = np.where(_spread(settled, values.ndim), values, 0).astype(np.float32)
+    return numbers
+
+
+def _spread(cells: np.ndarray, ndim: int) -> np.ndarray:
+    """Something of cells, for all numbers of each."""
+    return cells.reshape(cells.shape + (1,) * (ndim - cells.ndim))
+
+
+def differences(name: str, ds: xr.Dataset) -> list[str]:
+    """What differs between a dataset and the figure of this name, a line for each quantity; none is good."""
+    with np.load(DATA / f"{name}.npz") as known:
+        kept = dict(known)
+    missing = [axis for axis in ("r", "beta") if not np.isin(kept[axis], ds[axis].values).all()]
+    if missing:
+        return [f"its axis {axis} lacks values" for axis in missing]
+    now = shown(ds.sel(r=kept["r"], beta=kept["beta"]))
+    if now.keys() != kept.keys():
+        return [f"it has {', '.join(now)} where {', '.join(kept)} were"]
+    open_to_any = (now["class"] == ANY) | (kept["class"] == ANY)
+    return [text for key in kept for text in _different(key, now[key], kept[key], open_to_any)]
+
+
+def _different(name: str, now: np.ndarray, kept: np.ndarray, open_to_any: np.ndarray) -> list[str]:
+    if now.shape != kept.shape:
+        return [f"{name} has the shape {now.shape} where it was {kept.shape}"]
+    with np.errstate(invalid="ignore"):  # of infinities
+        off = np.abs(now.astype(float) - kept)
+    if name in _PHASES:
+        off = np.minimum(off, np.abs(off - 2.0 * np.pi))
+    near = off <= (0.0 if name in _CODES else _ABSOLUTE + _RELATIVE * np.abs(kept))
+    same = (now == kept) | (np.isnan(now) & np.isnan(kept)) | near
+    if name in _OF_CELLS:
+        same |= _spread(open_to_any, same.ndim)
+    if same.all():
+        return []
+    first = tuple(int(index) for index in np.argwhere(~same)[0])
+    return [f"{name} differs in {np.count_nonzero(~same)} places, at {first} {now[first]} was {kept[first]}"]
+
+
+def write(name: str) -> None:
+    """Write what a figure shows now; cells that a push by rounding moves elsewhere are left open."""
+    ds = coarse(name)
+    kept = shown(ds)
+    config = fm.load_config(CONFIGS / f"{name}.toml")
+    for push in (1.0 - _PUSH, 1.0 + _PUSH):
+        pushed = shown(compute(config, push * kept["r"], push * kept["beta"]))
+        kept["class"][pushed["class"] != kept["class"]] = ANY
+    DATA.mkdir(exist_ok=True)
+    np.savez_compressed(DATA / f"{name}.npz", **kept)
+
+
+if __name__ == "__main__":
+    for figure in FIGURES:
+        write(figure)

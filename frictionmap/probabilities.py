@@ -1,13 +1,13 @@
 """Many samples of an uncertain structure as probabilities: shares of each regime, quantiles of boundaries."""
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from . import checks, regimes
-from .datasets.labels import CELL, CURVE, MARKS, REFERENCES, coordinate, label_variable
+from .datasets.labels import CELL, LABELS, MARKS, REFERENCES, coordinate, label_variable
 from .datasets.schema import check_structure, kind
 from .errors import InputError
 from .files.reading import opened
@@ -25,7 +25,8 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     ----------
     ds : xarray.Dataset
         Maps along one further axis, as ``sweep(..., axes=...)`` returns them or a store holds them (other
-        axes chosen before, with `isel` or `sel`); read part by part.
+        axes chosen before, with `isel` or `sel`); read part by part.  Of a store that is not finished only
+        the samples that are.
     over : str
         That axis, such as ``sample``; its points count alike.
     quantiles : sequence of float
@@ -42,7 +43,7 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     Raises
     ------
     InputError
-        There is no such axis, there is another one, or no regime.
+        There is no such axis, there is another one, no regime, or no sample that is finished.
     """
     if not isinstance(ds, xr.Dataset):
         raise InputError(f"ds must be an xarray.Dataset; got {type(ds).__name__}")
@@ -57,11 +58,20 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
         raise InputError(f"ds must have no further axis but {over}: choose one point of {others}")
     if "regime" not in ds:
         raise InputError("ds must hold regime; it does not")
+    for name in CELL:
+        if name not in ds.coords:
+            raise InputError(f"ds must hold the coordinate {name}; it does not")
+    if MARKS in ds:
+        ds = _finished(ds, over)
     levels = checks.axis(quantiles, "quantiles", least=0.0, most=1.0)
     names = [name for name in ("beta_lim", "beta_stick", "contact_amplitude") if name in ds]
     found = {f"{name}_quantile": _quantiles(ds, name, over, levels) for name in names}
     outcomes = np.array([code.name for code in regimes.REGIMES])
-    axes = {"outcome": outcomes, "quantile": levels, **{name: ds[name].values for name in CELL}}
+    axes = {
+        "outcome": outcomes,
+        "quantile": levels,
+        **{name: np.atleast_1d(ds[name].values) for name in CELL},
+    }
     coords = {name: coordinate(name, values) for name, values in axes.items()}
     attributes = {
         **{name: ds.attrs[name] for name in ("title", "system", "config") if name in ds.attrs},
@@ -72,51 +82,52 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
 
 
 def read_shares(path: Path, over: str, choices: Mapping[str, float]) -> xr.Dataset:
-    """`shares` of a file or a store over one of its axes, `choices` of the others.
-
-    Of a store that is not finished only the samples that are.
-    """
+    """`shares` of a file or a store over one of its axes, `choices` of the others."""
     with opened(path) as ds:
-        check_structure(ds)
-        part = choose(ds, choices, over)
-        if MARKS in part:
-            done = part[MARKS].values.all(axis=tuple(part[MARKS].get_axis_num(_others(part[MARKS], over))))
-            if not done.any():
-                raise InputError(f"store {path} must have at least one point of {over} finished; it has none")
-            part = part.isel({over: np.flatnonzero(done)})
-        return shares(part, over)
+        check_structure(ds, in_parts=True)
+        return shares(choose(ds, choices, over), over)
 
 
-def _others(variable: xr.DataArray, name: str) -> list[Hashable]:
-    """The dimensions of a variable but one."""
-    return [dim for dim in variable.dims if dim != name]
+def _finished(ds: xr.Dataset, over: str) -> xr.Dataset:
+    """The samples of a store all of whose blocks are computed."""
+    others = [dim for dim in ds[MARKS].dims if dim != over]
+    done = np.flatnonzero((ds[MARKS] != 0).all(others).values)
+    if not done.size:
+        raise InputError(f"a store must have at least one point of {over} finished; it has none")
+    return ds.isel({over: done})
 
 
 def _shares(ds: xr.Dataset, over: str) -> xr.Variable:
     codes = [code.value for code in regimes.REGIMES]
-    counts = np.zeros((len(codes), *(ds.sizes[name] for name in CELL)), dtype=np.int64)
+    counts = np.zeros((len(codes), *(ds[name].size for name in CELL)), dtype=np.int64)
     for k in range(ds.sizes[over]):
-        values = ds["regime"].isel({over: k}).transpose(*CELL).values
+        values = _along(ds["regime"].variable.isel({over: k}), CELL)
         for count, code in zip(counts, codes, strict=True):
             count += values == code
     return label_variable("regime_share", counts / ds.sizes[over])
 
 
 def _quantiles(ds: xr.Dataset, name: str, over: str, levels: np.ndarray) -> xr.Variable:
-    dims = CELL if "beta" in ds[name].dims else CURVE
-    values = np.full((levels.size, *(ds.sizes[dim] for dim in dims)), np.nan)
+    dims = LABELS[name].dims
+    values = np.full((levels.size, *(ds[dim].size for dim in dims)), np.nan)
     variable = ds[name].variable
     for m, rows in _parts(ds, variable.size):
-        part = variable.isel(mu=m, r=rows).transpose(over, *dims[1:]).values
-        values[:, m, rows] = _ordered(part, levels)
+        part = variable.isel(mu=slice(m, m + 1), r=rows, missing_dims="ignore")
+        values[:, m : m + 1, rows] = _ordered(_along(part, (over, *dims)), levels)
     return label_variable(f"{name}_quantile", values)
+
+
+def _along(variable: xr.Variable, dims: tuple[str, ...]) -> np.ndarray:
+    """Values along these dimensions; of those that were chosen there is one."""
+    missing = [dim for dim in dims if dim not in variable.dims]
+    return variable.set_dims([*missing, *map(str, variable.dims)]).transpose(*dims).values
 
 
 def _parts(ds: xr.Dataset, size: int) -> Iterator[tuple[int, slice]]:
     """Values of mu, and rows in r, so few that all samples of them can be held."""
-    step = max(1, _AT_ONCE * ds.sizes["mu"] * ds.sizes["r"] // max(1, size))
-    for m in range(ds.sizes["mu"]):
-        for first in range(0, ds.sizes["r"], step):
+    step = max(1, _AT_ONCE * ds["mu"].size * ds["r"].size // max(1, size))
+    for m in range(ds["mu"].size):
+        for first in range(0, ds["r"].size, step):
             yield m, slice(first, first + step)
 
 

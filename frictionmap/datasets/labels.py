@@ -472,6 +472,12 @@ SHARES = {
 LABELS = {**CELL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES, **LAG, **SHARES}
 
 
+#: What no other axis or variable may be called.
+NAMES = frozenset(
+    (*LABELS, *COORDINATES, MARKS, "row_block", *(dim for label in LABELS.values() for dim in label.dims))
+)
+
+
 def labels_of(what: str) -> dict[str, Label]:
     """The labels of a kind of dataset, see `schema.kind`."""
     if what != "curves":

@@ -68,8 +68,10 @@ def standard_dims(name: str, what: str) -> tuple[str, ...]:
     return tuple(dim for dim in dims if dim not in CELL) if what == "response" else dims
 
 
-def check_structure(ds: xr.Dataset) -> None:
+def check_structure(ds: xr.Dataset, in_parts: bool = False) -> None:
     """Names, types, sizes, units and codes; no value but the axes' is read.
+
+    in_parts : the values will be read part by part, so that they may be too many to be held at once
 
     Raises
     ------
@@ -88,6 +90,8 @@ def check_structure(ds: xr.Dataset) -> None:
     for name, variable in ds.variables.items():
         if name in known:
             _check_type(str(name), variable, known[str(name)])
+            if not in_parts:
+                _check_size(str(name), variable)
             if what != "estimates":  # their units are those of the data
                 _check_attributes(str(name), variable, known[str(name)])
 
@@ -98,10 +102,15 @@ def _check_type(name: str, variable: xr.Variable, label: Label) -> None:
         raise InputError(f"{name} must be numbers; got type {variable.dtype.name}")
     if len(set(variable.dims)) < len(variable.dims):
         raise InputError(f"{name} must have every dimension once; got {in_brackets(variable.dims)}")
-    if variable.size > checks.MOST_CELLS:
-        raise InputError(f"{name} must have at most {checks.MOST_CELLS:.0e} values; got {variable.size:.3g}")
     if label.dtype is np.str_:
         _check_texts(name, variable, label)
+
+
+def _check_size(name: str, variable: xr.Variable) -> None:
+    if variable.size > checks.MOST_CELLS:
+        raise InputError(
+            f"{name} must have at most {checks.MOST_CELLS:.0e} values in memory; got {variable.size:.3g}"
+        )
 
 
 def _check_texts(name: str, variable: xr.Variable, label: Label) -> None:

@@ -1,5 +1,6 @@
 """One point of further axes, chosen from a dataset that has them."""
 
+import string
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -10,6 +11,7 @@ from ..datasets.labels import COORDINATES, labels_of
 from ..datasets.provenance import configuration
 from ..datasets.schema import kind
 from ..errors import InputError
+from ..model.variations import Axis, Variations
 from .config import Config, config_of
 
 #: A number that was typed is that of an axis if they differ by no more than this share.
@@ -55,7 +57,7 @@ def further_axes(ds: xr.Dataset) -> list[str]:
 def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None) -> xr.Dataset:
     """The part of a dataset with these values of its axes; further axes of one value are taken as they are.
 
-    Its configuration is that of the system there, unless the axis `over` is left.
+    Title, system and configuration are those of the system there; the axis `over` is left.
 
     Raises
     ------
@@ -79,6 +81,7 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
             f"--over must name a further axis of the file: {', '.join(further) or 'it has none'}; got {over}"
         )
     point: dict[str, int] = {}
+    rows: dict[str, list[int]] = {}
     chosen = [dim for dim in further if dim != over]
     for dim in (*chosen, *(dim for dim in places if dim not in further)):
         found = places.get(dim, np.arange(ds.sizes[dim]))
@@ -87,9 +90,12 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
                 f"--at {dim}=VALUE must choose one point of {_values(ds, dim)}; "
                 f"plot --over {dim} draws the shares of regimes over it"
             )
-        point[dim] = int(found[0])
-    part = ds.isel(point)
-    return part.assign_attrs(_of_point(ds, point, further)) if chosen and over is None else part
+        if dim in further:
+            point[dim] = int(found[0])
+        else:
+            rows[dim] = [int(found[0])]  # an axis yet
+    part = ds.isel({**point, **rows})
+    return part.assign_attrs(_of_point(ds, point)) if point else part
 
 
 def _further(ds: xr.Dataset, name: str, further: Sequence[str]) -> bool:
@@ -120,21 +126,38 @@ def _values(ds: xr.Dataset, name: str) -> str:
     return f"{name} = {', '.join(f'{value:g}' for value in values)}"
 
 
-def _of_point(ds: xr.Dataset, point: Mapping[str, int], further: Sequence[str]) -> dict[str, str]:
+def _of_point(ds: xr.Dataset, point: Mapping[str, int]) -> dict[str, str]:
     """Title, system and configuration of a point; the latter two are empty where the file does not tell."""
-    words = ", ".join(
-        f"{name} = {float(ds[name].values[point[str(ds[name].dims[0])]]):g}"
-        for name in map(str, ds.coords)
-        if _further(ds, name, further)
-    )
+    names = sorted((str(name) for name in ds.coords if _further(ds, str(name), [*point])), key=natural)
+    words = ", ".join(f"{name} = {float(ds[name].values[point[str(ds[name].dims[0])]]):g}" for name in names)
     title = f"{ds.attrs.get('title', '')}, {words}".removeprefix(", ")
     system = text = ""
     config = _config(ds)
     if config is not None and config.variations is not None:
-        chosen = config.variations.at([point[axis.name] for axis in config.variations.axes])
-        axes = {"r": config.r, "beta": config.beta, "mu": config.mu}
-        system, text = chosen.describe(), configuration(title, chosen, axes, config.solver)
+        left = _in_file(config.variations, ds)
+        if left is not None:
+            left = left.chosen(point)
+            axes = {"r": config.r, "beta": config.beta, "mu": config.mu}
+            system = left.describe()
+            text = configuration(title, left.system, axes, config.solver, study=left.described or None)
     return {"title": title, "system": system, "config": text}
+
+
+def _in_file(variations: Variations, ds: xr.Dataset) -> Variations | None:
+    """The variations that a dataset has: a slice of a file has fewer values, or only one."""
+    if any(number.dimension not in ds.coords for axis in variations.axes for number in axis.numbers):
+        return None
+    axes = [
+        Axis(axis.name, axis.numbers, tuple(np.atleast_1d(ds[n.dimension].values) for n in axis.numbers))
+        for axis in variations.axes
+    ]
+    gone = {axis.name: 0 for axis in axes if axis.name not in ds.dims}
+    return Variations(variations.system, tuple(axes)).chosen(gone)
+
+
+def natural(name: str) -> tuple[str, int, str]:
+    """A key to sort names by: ratios_2 before ratios_10."""
+    return name.rstrip(string.digits), len(name), name
 
 
 def _config(ds: xr.Dataset) -> Config | None:

@@ -1,7 +1,6 @@
 """Files with further axes, and stores, in words; read part by part, finished or not."""
 
 import math
-import string
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,17 +9,20 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from ..datasets.labels import CELL, COORDINATES, LABELS, MARKS
+from ..datasets.labels import CELL, CELL_VARIABLES, COORDINATES, LABELS, MARKS
 from ..datasets.schema import check_structure
 from .reading import opened
-from .slices import further_axes
+from .slices import further_axes, natural
 from .summary import axis_lines, header_lines, in_causes, in_cells, variable_lines
+
+#: Cells that are read at a time: those of a block of a store.
+_AT_ONCE = 1 << 20
 
 
 def is_study(path: Path) -> bool:
     """Whether a file is a store or has further axes."""
     with opened(path) as ds:
-        check_structure(ds)
+        check_structure(ds, in_parts=True)
         return MARKS in ds or bool(further_axes(ds))
 
 
@@ -36,10 +38,7 @@ def describe_study(path: Path) -> str:
 
 def _in_order(ds: xr.Dataset) -> xr.Dataset:
     """Axes and variables as a map has them: a store lists them in any order."""
-    numbers = sorted(
-        (str(name) for name in ds.coords if name not in COORDINATES),
-        key=lambda name: (name.rstrip(string.digits), len(name), name),  # ratios_2 before ratios_10
-    )
+    numbers = sorted((str(name) for name in ds.coords if name not in COORDINATES), key=natural)
     known = dict.fromkeys((*further_axes(ds), *numbers, *COORDINATES))
     coords = {name: ds.variables[name] for name in known if name in ds.coords}
     variables = {name: ds.variables[name] for name in (*LABELS, MARKS) if name in ds.data_vars}
@@ -60,7 +59,7 @@ def cell_lines(ds: xr.Dataset) -> list[str]:
         counter = count_codes(ds, name)
         found[name] = [(code, counter[code.value]) for code in known if counter[code.value]]
     dims = (*further_axes(ds), *CELL)
-    cells = math.prod(ds.sizes[dim] for dim in dims)
+    cells = math.prod(ds.sizes.get(dim, 1) for dim in dims)
     return [in_cells(cells, found["regime"]), *in_causes(found["status"])]
 
 
@@ -73,13 +72,26 @@ def _blocks(ds: xr.Dataset) -> Iterator[str]:
 
 
 def count_codes(ds: xr.Dataset, name: str) -> Counter[int]:
-    """How many cells have each code; read row by row of the further axes and mu."""
+    """How many cells have each code; read part by part, and not where no block is computed."""
     counter: Counter[int] = Counter()
-    if name in ds:
-        variable = ds[name]
-        outer = [dim for dim in variable.dims if dim not in ("r", "beta")]
-        for place in np.ndindex(*(variable.sizes[dim] for dim in outer)):
-            part = variable.isel(dict(zip(outer, place, strict=True)))
+    if name not in ds:
+        return counter
+    variable = ds[name]
+    outer = [str(dim) for dim in variable.dims if dim not in ("r", "beta")]
+    begun = (ds[MARKS] != 0).any("row_block").transpose(*outer).values if MARKS in ds else None
+    for place in np.ndindex(*(variable.sizes[dim] for dim in outer)):
+        one = variable.isel(dict(zip(outer, place, strict=True)))
+        if begun is not None and not begun[place]:
+            counter[int(CELL_VARIABLES[name].unresolved)] += one.size
+            continue
+        for part in _in_rows(one):
             values, counts = np.unique(part.values, return_counts=True)
             counter.update(dict(zip(values.tolist(), counts.tolist(), strict=True)))
     return counter
+
+
+def _in_rows(one: xr.DataArray) -> Iterator[xr.DataArray]:
+    """The cells of one map, whole rows of them at a time."""
+    step = max(1, _AT_ONCE // one.sizes.get("beta", 1))
+    for first in range(0, one.sizes.get("r", 1), step):
+        yield one.isel(r=slice(first, first + step), missing_dims="ignore")

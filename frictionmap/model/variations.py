@@ -33,9 +33,6 @@ LISTS = {
 _WHOLE = ("load_mass", "contact_masses")
 _INDEXED = re.compile(r"([a-z_]+)\[([1-9][0-9]*)\]")
 
-#: Dimensions that a dataset has already.
-_TAKEN = ("mu", "r", "beta", "dof", "mode", "harmonic", "part", "tau", "parameter", "row_block")
-
 
 @dataclass(frozen=True)
 class Number:
@@ -59,12 +56,12 @@ class Number:
         """What it is, in words."""
         return NUMBERS[self.key] if self.place is None else LISTS[self.key].format(self.place)
 
-    def in_system(self, system: System, value: float) -> Any:
+    def put_into(self, before: Any, value: float) -> Any:
         """The value of the key with this number in it."""
         given = int(value) if self.key in _WHOLE and value == int(value) else float(value)
         if self.place is None:
             return given
-        values = list(getattr(system, self.key) or ())
+        values = list(before or ())
         if self.place > len(values):
             raise InputError(
                 f"axes.{self.text} must be one of the {len(values)} numbers of {self.key}, counted from 1"
@@ -137,17 +134,24 @@ class Variations:
         InputError
             There is no such system; the message names the point.
         """
-        system = self.system
+        changed: dict[str, Any] = {}
         where: list[str] = []
-        for axis, index in zip(self.axes, point, strict=True):
-            for number, values in zip(axis.numbers, axis.values, strict=True):
-                value = float(values[index])
-                where.append(f"{number.dimension} = {value:g}")
-                try:
-                    system = replace(system, **{number.key: number.in_system(system, value)})
-                except InputError as error:
-                    raise InputError(f"axes, at {', '.join(where)}: {error}") from None
-        return system
+        try:
+            for axis, index in zip(self.axes, point, strict=True):
+                for number, values in zip(axis.numbers, axis.values, strict=True):
+                    value = float(values[index])
+                    where.append(f"{number.dimension} = {value:g}")
+                    before = changed.get(number.key, getattr(self.system, number.key))
+                    changed[number.key] = number.put_into(before, value)
+            return replace(self.system, **changed)  # at once: one alone may make no sense
+        except InputError as error:
+            raise InputError(f"axes, at {', '.join(where)}: {error}") from None
+
+    def chosen(self, places: Mapping[str, int]) -> "Variations":
+        """What is left if these axes have the values at these places."""
+        gone = [axis for axis in self.axes if axis.name in places]
+        system = Variations(self.system, tuple(gone)).at([places[axis.name] for axis in gone])
+        return Variations(system, tuple(axis for axis in self.axes if axis.name not in places))
 
 
 def checked_variations(system: System, axes: "Mapping[str, Any] | Variations") -> Variations:
@@ -167,9 +171,6 @@ def checked_variations(system: System, axes: "Mapping[str, Any] | Variations") -
         )
     found = tuple(_axis(name, values) for name, values in axes.items())
     numbers = [number for axis in found for number in axis.numbers]
-    for name in (*(axis.name for axis in found), *(number.dimension for number in numbers)):
-        if name in _TAKEN:
-            raise InputError(f"axes must not name {name}, which is a dimension of its own")
     for number in numbers:
         rivals = [other for other in numbers if other.key == number.key and other is not number]
         if any(other == number or other.place is None or number.place is None for other in rivals):
@@ -188,7 +189,7 @@ def _axis(name: object, values: object) -> Axis:
     if not isinstance(name, str) or not name:
         raise InputError(f"axes must have texts as names; got {checks.one_line(name)}")
     if isinstance(values, Mapping):
-        if not re.fullmatch("[a-z][a-z0-9_]*", name) or name in (*NUMBERS, *LISTS):
+        if not re.fullmatch("[a-z][a-z0-9_]*", name) or re.sub("_[0-9]+$", "", name) in (*NUMBERS, *LISTS):
             raise InputError(
                 f"axes must give keys that change together a name of their own, of small letters, such as "
                 f"sample; got {name!r}"

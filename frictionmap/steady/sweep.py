@@ -8,7 +8,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
-from ..datasets.labels import coordinate_of_study, stamp
+from ..datasets.labels import NAMES, coordinate_of_study, stamp
+from ..errors import InputError
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
@@ -102,11 +103,11 @@ def _study(
     count = variations.count
     dims = [axis.name for axis in variations.axes]
     whole: dict[str, xr.Variable] = {}
-    coords: dict[str, xr.Variable] = {}
+    coords = study_coordinates(variations)
     for done, point in enumerate(variations.points()):
         ds = regime_map(variations.at(point), grid, solver, threads, _share(progress, done, count))
         if not whole:
-            coords = study_coordinates(variations) | {str(name): ds[name].variable for name in ds.coords}
+            coords |= {str(name): ds[name].variable for name in ds.coords}
             whole = {
                 str(name): _room(variable.variable, dims, variations.shape)
                 for name, variable in ds.data_vars.items()
@@ -130,9 +131,14 @@ def _share(progress: Progress | None, done: int, count: int) -> Progress | None:
 
 
 def study_coordinates(variations: Variations) -> dict[str, xr.Variable]:
-    """The further axes: numbers that change alone are their own; others are counted, and stand beside."""
+    """The further axes: numbers that change alone are their own; others are counted, and stand beside.
+
+    Refused is an axis that is called like what a map has already.
+    """
     coords = {}
     for axis in variations.axes:
+        if axis.name in NAMES:
+            raise InputError(f"axes must not name {axis.name}, which a map has already; give it another name")
         if axis.zipped:
             counted = np.arange(axis.size)
             coords[axis.name] = coordinate_of_study(axis.name, "points of several numbers", counted)

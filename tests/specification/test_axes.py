@@ -49,6 +49,14 @@ def test_numbers_that_change_together(two_masses):
         is_point(ds, {"sample": k}, fm.System(mass_ratios=[1, gamma], stiffness_ratios=[1, kappa]))
 
 
+def test_numbers_that_make_sense_only_together():
+    """One contact mass alone would pass the other."""
+    chain = {"mass_ratios": [1] * 4, "stiffness_ratios": [1] * 4, "contact": "between-masses"}
+    pairs = {"contact_masses[1]": [1, 3], "contact_masses[2]": [2, 4]}
+    ds = fm.sweep(fm.System(contact_masses=[1, 2], **chain), **GRID, axes={"pair": pairs})
+    is_point(ds, {"pair": 1}, fm.System(contact_masses=[3, 4], **chain))
+
+
 @pytest.mark.parametrize(
     ("axes", "words"),
     [
@@ -67,6 +75,9 @@ def test_numbers_that_change_together(two_masses):
         ({"r": [1]}, "axes must name a number of the system"),
         ({"dof": {"load_mass": [1]}}, "axes must not name dof"),
         ({"Case 1": {"load_mass": [1]}}, "a name of their own, of small letters"),
+        ({"mass_ratios_2": {"load_mass": [1]}}, "a name of their own, of small letters"),
+        ({"regime": {"load_mass": [1]}}, "axes must not name regime, which a map has already"),
+        ({"block_done": {"load_mass": [1]}}, "axes must not name block_done"),
         ({"sample": {}}, "as many values of every key; got none"),
         ({"sample": {"load_mass": [1], "damping_ratios": [0, 1]}}, "load_mass 1, damping_ratios 2"),
         ({"sample": {"damping_ratios": [0, np.nan]}}, r"axes.sample.damping_ratios\[1\] must be finite"),

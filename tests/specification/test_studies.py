@@ -17,6 +17,7 @@ from frictionmap.files.stored import stored_system
 from frictionmap.pictures.classes import count
 from frictionmap.pictures.palette import NOT_YET
 from frictionmap.pictures.regime_map import cells_of
+from frictionmap.plot import save_picture
 from frictionmap.probabilities import read_shares
 
 CONFIG = """
@@ -112,6 +113,50 @@ def test_plot(files, end, tmp_path):
     assert main(["plot", str(files[end]), "--over", "mass", "-o", str(tmp_path / "no.png")]) == 2
 
 
+@pytest.mark.parametrize("end", [".nc", ".zarr"])
+@pytest.mark.parametrize("cut", [{"mu": 1.0}, {"r": 0.9}, {"beta": 0.5}, {"mu": 1.0, "r": 0.9, "beta": 0.5}])
+def test_shares_of_a_cut(files, tmp_path, end, cut):
+    whole = read_shares(files[end], "sample", {"damping_ratios": 0.05})
+    part = read_shares(files[end], "sample", {"damping_ratios": 0.05, **cut})
+    xr.testing.assert_equal(part, whole.sel({name: [value] for name, value in cut.items()}))
+    with xr.open_dataset(files[".nc"]) as ds:
+        xr.testing.assert_equal(fm.shares(ds.isel(damping_ratios=1).sel(cut), "sample"), part)
+    save_picture(part, tmp_path / "shares.png")
+
+
+@pytest.mark.parametrize("end", [".nc", ".zarr"])
+def test_shares_tell_their_system(files, end):
+    found = read_shares(files[end], "sample", {"damping_ratios": 0.05})
+    assert found.attrs["title"] == "Study, damping_ratios = 0.05"
+    assert "modal damping ratios 0.05; varied: mass_ratios, stiffness_ratios" in found.attrs["system"]
+    assert stored_system(found) == fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.05)
+
+
+def test_a_point_of_a_slice(files, tmp_path, capsys):
+    """What xarray has left of a file tells its systems by values, not by places."""
+    with xr.open_dataset(files[".nc"]) as ds:
+        ds.isel(sample=[1, 2], damping_ratios=1, r=0).to_netcdf(tmp_path / "slice.nc")
+    expected = fm.System(mass_ratios=[1, 0.5], stiffness_ratios=[1, 0.5], damping_ratios=0.05)
+    assert stored_system(read(tmp_path / "slice.nc", at={"sample": 2})) == expected
+    assert main(["info", str(tmp_path / "slice.nc")]) == 0
+    assert "6 cells (" in capsys.readouterr().out
+
+
+def test_a_store_beyond_memory_is_told(tmp_path, capsys, monkeypatch):
+    from frictionmap import checks
+
+    path = tmp_path / "study.toml"
+    path.write_text(CONFIG)
+    out = str(tmp_path / "study.zarr")
+    monkeypatch.setattr(checks, "MOST_CELLS", 20)
+    assert main(["map", str(path), "-o", out, "--quiet"]) == 0
+    assert main(["info", out]) == 0
+    assert "54 cells (" in capsys.readouterr().out
+    at = ["--at", "damping_ratios=0"]
+    assert main(["export", out, *at, "--over", "sample", "-o", str(tmp_path / "s.nc"), "--quiet"]) == 0
+    assert main(["export", out, *at, "--at", "sample=0", "-o", str(tmp_path / "one.nc"), "--quiet"]) == 0
+
+
 def test_export(files, tmp_path):
     cut = ["--at", "damping_ratios=0.05", "--at", "sample=1", "--at", "r=0.9"]
     assert main(["export", str(files[".zarr"]), *cut, "-o", str(tmp_path / "cut.csv"), "--quiet"]) == 0
@@ -159,6 +204,8 @@ def test_shares_of_what_is_finished(files, tmp_path, capsys):
     for name, code in {"permanent_sticking": 0, "stick_slip": 1, "continuous": 2}.items():
         expected = np.mean([ds["regime"].values == code for ds in whole], axis=0)
         np.testing.assert_array_equal(found["regime_share"].sel(outcome=name), expected)
+    with xr.open_zarr(path, consolidated=False, chunks=None) as ds:
+        xr.testing.assert_equal(fm.shares(ds.isel(damping_ratios=1), "sample"), found)
     shutil.rmtree(path / "block_done" / "c" / "1")
     assert main(["plot", str(path), "--at", "damping_ratios=0.05", "--over", "sample"]) == 2
     assert "must have at least one point of sample finished; it has none" in capsys.readouterr().err

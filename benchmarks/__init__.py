@@ -3,8 +3,8 @@ what bad input, interrupts and damaged files do.
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
-NAME is accuracy, peers, scaling, startup, stress, steady, structures, bound, faults or large: each one is a
-module of that name in `measures`.  It prints tables, and writes JSON and a figure.
+NAME is accuracy, peers, scaling, startup, stress, steady, structures, bound, faults, large or coupling:
+each one is a module of that name in `measures`.  It prints tables, and writes JSON and a figure.
 `python -m benchmarks readme` puts the numbers of the committed results into README.md.
 
 =============================  ========================================================================
@@ -23,6 +23,7 @@ module of that name in `measures`.  It prints tables, and writes JSON and a figu
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
   faults                       bad input, interrupts, malformed files, damaged caches: what a user sees
   large                        stores: overhead, memory, workers, random variations, kills
+  coupling                     what it costs to leave out the coupling of modes by damping
 `peers/`                       other ways to do the same job: each for one mass and for chains of masses
   solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: one on many cells at a time
   fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean

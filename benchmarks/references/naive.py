@@ -5,7 +5,7 @@ The equations of motion, with tau = omega t, ' = d/dtau, r the frequency ratio, 
     r^2 G x'' + r C1 x' + K x + c f = p cos(tau),        z = c.x - b cos(tau),
 
 f = beta sgn(z') while the contact slides, |f| <= mu beta while it sticks (z' = 0), and b = 1 for a
-joined base-wall contact, 0 otherwise. Damping is modal and relative to the ground.
+joined base-wall contact, 0 otherwise. Damping is modal, or any, and relative to the ground.
 
 Each phase (slide up, slide down, stick) is an autonomous linear equation y' = A y for
 y = (x, x', cos tau, sin tau, f), f being the sliding friction force and 0 in a stop. Powers of the
@@ -71,7 +71,7 @@ class Segment(NamedTuple):
 class Structure:
     """Matrices of the structure, its contact and its load at one frequency ratio."""
 
-    def __init__(self, gamma, kappa, contact, load, zeta, r):
+    def __init__(self, gamma, kappa, contact, load, zeta, r, damping=None):
         n = len(gamma)
         self.n, self.r = n, r
         self.mass = np.asarray(gamma, float)
@@ -80,7 +80,8 @@ class Structure:
         self.w = np.sqrt(w2)
         self.zeta = np.broadcast_to(np.asarray(zeta, float), (n,))
         momenta = self.mass[:, None] * phi
-        self.C1 = momenta @ np.diag(2.0 * self.zeta * self.w) @ momenta.T
+        modal = momenta @ np.diag(2.0 * self.zeta * self.w) @ momenta.T
+        self.C1 = modal if damping is None else np.asarray(damping, float)
         self.c, self.base, load = contact_vector(contact, n, load)
         self.p = np.eye(n)[load - 1]
         self.m_eff = 1.0 / np.sum(self.c**2 / self.mass)
@@ -230,7 +231,10 @@ class Flow:
         rate[np.abs(rate) <= 1e-12 * np.max(np.abs(rate))] = 0.0  # zero by construction
         for k in np.flatnonzero(rate[:-1] * rate[1:] < 0.0):
             a = (row @ (self.taylor @ (self.power[k] @ y)).T).tolist()
-            yield polynomial(a)(brentq(polynomial(derivative(a)), 0.0, min(1.0, end - k)))
+            slope, last = polynomial(derivative(a)), min(1.0, end - k)
+            # the series may round to no change of sign where the turn is at a node
+            turn = brentq(slope, 0.0, last) if slope(0.0) * slope(last) < 0.0 else 0.0
+            yield polynomial(a)(turn)
         for k in np.flatnonzero(rate[1:-1] == 0.0):
             yield float(row @ (self.power[k + 1] @ y))
 
@@ -392,7 +396,7 @@ class Held:
         self.w, self.modes = np.sqrt(w2), across @ modes
         load = s.m_eff * s.c / s.mass
         self.spring, self.damper = load @ s.K @ self.modes, load @ s.C1 @ self.modes
-        self.undamped = not np.any(s.zeta)
+        self.undamped = not np.any(s.C1)
 
     def largest_load(self, y: np.ndarray) -> float:
         """Bound of |load| for the motion held from y, a state at tau = 0 in a stop.
@@ -549,6 +553,7 @@ def naive_steady_state(
     contact: Sequence = ("wall", 1),
     load: int = 1,
     zeta: float | Sequence[float] = 0.0,
+    damping: np.ndarray | None = None,
     r: float,
     beta: float,
     mu: float = 1.0,
@@ -560,8 +565,8 @@ def naive_steady_state(
     """Steady state of a chain of masses with one contact.
 
     contact: ("wall", j), ("masses", A, B) or ("base", j), masses counted from 1; zeta: of every
-    mode, or one for each mode by ascending frequency; start: "rest" or (x, x') at tau = 0; points:
-    grid steps per period of the fastest part of the motion.
+    mode, or one for each mode by ascending frequency; damping: in its place any matrix C1; start:
+    "rest" or (x, x') at tau = 0; points: grid steps per period of the fastest part of the motion.
 
     status   "ok"; "stuck" (it never moves again; Z is then the offset of z); "unconverged"
              (after `cycles` periods; the rest is that of the last one; period is 0)
@@ -576,7 +581,7 @@ def naive_steady_state(
     """
     if not (r > 0.0 and beta >= 0.0 and mu >= 1.0 and points >= 24):
         raise ValueError("needs r > 0, beta >= 0, mu >= 1, points >= 24")
-    s = Structure(gamma, kappa, contact, load, zeta, r)
+    s = Structure(gamma, kappa, contact, load, zeta, r, damping)
     motion = Motion(s, beta, mu, points)
     motion.begin(*starting_state(s, start))
     held = Held(s)

@@ -55,8 +55,8 @@ class _Once(argparse.Action):
 
 
 def _file(text: str) -> Path:
-    """The name of a file to write."""
-    if text in ("", "-") or text.endswith(("/", "\\")):
+    """The name of a file to write, or of a store, which is a folder."""
+    if text in ("", "-") or (text.endswith(("/", "\\")) and not text.rstrip("/\\").endswith(".zarr")):
         raise argparse.ArgumentTypeError(f"must be the name of a file; got {text!r}")
     return Path(text)
 
@@ -68,6 +68,12 @@ def _threads(text: str) -> int:
 
 
 _threads.__name__ = "whole number"  # what argparse calls it
+
+
+def _address(text: str) -> str:
+    if not text:
+        raise argparse.ArgumentTypeError("must be an address such as tcp://10.0.0.1:8786; got ''")
+    return text
 
 
 def _takes_output(sub: argparse.ArgumentParser, metavar: str, text: str) -> None:
@@ -120,7 +126,7 @@ def _takes_workers(sub: argparse.ArgumentParser) -> None:
     text = "compute OUT.zarr on N processes of this machine (needs dask)"
     where.add_argument("--workers", metavar="N", type=_threads, action=_Once, help=text)
     text = "compute OUT.zarr on the workers of a dask scheduler that is running"
-    where.add_argument("--scheduler", metavar="ADDRESS", action=_Once, help=text)
+    where.add_argument("--scheduler", metavar="ADDRESS", type=_address, action=_Once, help=text)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -150,6 +150,8 @@ def _is_store(options: Options) -> bool:
     stored = options.output is not None and options.output.suffix == ".zarr"
     if not stored and (options.workers or options.scheduler):
         raise InputError("--workers and --scheduler must come with a store, -o OUT.zarr")
+    if options.threads and (options.workers or options.scheduler):
+        raise InputError("--threads must be left out with --workers and --scheduler: a worker has one thread")
     return stored
 
 

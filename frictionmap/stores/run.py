@@ -1,6 +1,6 @@
 """Filling a store: what is missing is computed block by block, wherever a run was stopped."""
 
-import shutil
+import os
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
@@ -45,14 +45,15 @@ def fill_store(
     OSError
         A block cannot be written; those before it are kept.
     """
+    if path.is_symlink():
+        path = path.resolve()
     with claimed_folder(path) as claim:
-        if overwrite and path.exists():
-            _remove(path)
-        if path.exists():
+        if path.exists() and not overwrite:
             check_same(path, study, title)
-        remove_strays(path)
-        if not path.exists():
+        else:
+            _check_replaceable(path)
             make_store(path, study, title)
+        remove_strays(path)
         store = Store(path, study)
         done = store.marks()
         count = int(np.count_nonzero(done))
@@ -67,8 +68,11 @@ def fill_store(
         return store
 
 
-def _remove(path: Path) -> None:
-    """Remove a store; nothing else that is in a folder."""
+def _check_replaceable(path: Path) -> None:
+    """Refuse to replace a folder that is no store, or one that is protected from writing."""
+    if not path.exists():
+        return
     if not (path / "zarr.json").is_file():
         raise InputError(f"-o must be a store to be overwritten; the folder {path} holds something else")
-    shutil.rmtree(path)
+    if not os.access(path, os.W_OK):
+        raise InputError(f"output {path} is protected from writing; use another -o")

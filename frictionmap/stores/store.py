@@ -65,8 +65,25 @@ class Store:
         return hashlib.sha256(b"".join(content)).hexdigest()
 
     def marks(self) -> np.ndarray:
-        """Which blocks are done; bool, in the shape of `study.shape`."""
-        return np.asarray(self._group[MARKS][...]) != 0
+        """Which blocks are done; bool, in the shape of `study.shape`.
+
+        Raises
+        ------
+        InputError
+            An array of the store is missing or damaged.
+        """
+        name = MARKS
+        try:
+            for name in self._arrays:
+                _ = self._group[name]
+            return np.asarray(self._group[MARKS][...]) != 0
+        except OSError:
+            raise
+        except Exception as error:  # the library raises anything over files that are not its own
+            raise InputError(
+                f"store {self.path} must be whole to go on with; its {name} cannot be read "
+                f"({checks.one_line(error)}); use --overwrite or another -o"
+            ) from None
 
     def write(self, block: Block, found: xr.Dataset) -> None:
         """Write a block, whole chunks only, and then its mark."""
@@ -91,9 +108,17 @@ def _shape(where: tuple[slice | int, ...], shape: tuple[int, ...]) -> list[int]:
 
 
 def make_store(path: Path, study: Study, title: str) -> None:
-    """Make the store of a study, without any block; it appears whole or not at all."""
+    """Make the store of a study, without any block; it appears whole or not at all.
+
+    One that is there is put away, in one step as well: a stray.
+
+    Raises
+    ------
+    OSError
+        It cannot be written.
+    """
     zarr = _zarr()
-    away = path.with_name(_being_made(path) + secrets.token_hex(8))
+    away = _away(path)
     try:
         sample = study.sample
         text = _configuration(study, title)
@@ -120,7 +145,11 @@ def make_store(path: Path, study: Study, title: str) -> None:
                 {},
             )
             _make_array(group, f"{_MATRICES}/{name}", like)[...] = matrix
+        if path.exists():
+            path.rename(_away(path))
         away.rename(path)
+    except OSError as error:
+        raise OSError(f"{path} cannot be written ({error.strerror or error})") from error
     finally:
         shutil.rmtree(away, ignore_errors=True)
 
@@ -164,9 +193,10 @@ def opened(path: Path) -> Store:
 
 def _config(path: Path) -> Config:
     """The configuration of a store; refused is what is no store of ours, or of another version."""
+    zarr = _zarr()
     source: object = "something else"
     with contextlib.suppress(Exception):  # whatever the library makes of files that are not its own
-        group = _zarr().open_group(path, mode="r", use_consolidated=False)
+        group = zarr.open_group(path, mode="r", use_consolidated=False)
         source = group.attrs.get("source", source)
         if source == _SOURCE:
             found = {name: np.asarray(array[...]) for name, array in _arrays_in(group, _MATRICES)}
@@ -211,12 +241,17 @@ def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def _being_made(path: Path) -> str:
-    """How the name of a store begins while it is made."""
+    """How the name of a store begins before and after it is one."""
     return f".{path.name}-"
 
 
+def _away(path: Path) -> Path:
+    """A name for a store that is being made, or put away."""
+    return path.with_name(_being_made(path) + secrets.token_hex(8))
+
+
 def remove_strays(path: Path) -> None:
-    """Remove what was being made or written when a run was stopped; no other may be at it."""
+    """Remove what was being made, written or replaced when a run was stopped; no other may be at it."""
     for folder in path.parent.glob(glob.escape(_being_made(path)) + 16 * "[0-9a-f]"):
         shutil.rmtree(folder, ignore_errors=True)
     for stray in path.rglob(_PARTIAL):

@@ -6,11 +6,11 @@ that is lost is done again, to the same bytes.
 
 import contextlib
 import sys
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from itertools import islice
 from pathlib import Path
+from socket import gethostname
 from typing import TYPE_CHECKING, Any
 
 from .._kernels.cache_folders import folders
@@ -46,12 +46,20 @@ def _distributed() -> Any:
 @lru_cache(maxsize=4)
 def _store(path: str, digest: str) -> Store:
     """The store of a study, opened once a process; of a host one process compiles, the others wait for it."""
+    if not Path(path).exists():
+        raise OSError(
+            f"{path} must be where all workers see it under this path; one on {gethostname()} does not"
+        )
     store = opened(Path(path))
-    if store.digest != digest:
-        raise OSError(f"{path} must be the same store for all workers; a worker found another there")
+    _check_same(store, digest)
     with _alone():
         _ = store.study.sample
     return store
+
+
+def _check_same(store: Store, digest: str) -> None:
+    if store.digest != digest:
+        raise OSError(f"{store.path} must be the same store for all workers; a worker found another there")
 
 
 @contextlib.contextmanager
@@ -73,7 +81,9 @@ def compute(path: str, digest: str, place: tuple[int, ...]) -> tuple[int, ...]:
     """Compute and write a block."""
     store = _store(path, digest)
     block = store.study.block(place)
-    store.write(block, store.study.compute(block, threads=1))
+    found = store.study.compute(block, threads=1)
+    _check_same(Store(store.path, store.study), digest)  # a run that has ended since may have been followed
+    store.write(block, found)
     return place
 
 
@@ -128,27 +138,30 @@ def running(address: str) -> Fill:
 def _on(client: "Client", store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
     """Blocks as they are done; a few more are under way than there are workers."""
     path, digest = str(store.path.resolve()), store.digest
-    waiting = iter(blocks)
+    waiting = deque(block.place for block in blocks)
     places: dict[str, tuple[int, ...]] = {}
     losses: Counter[tuple[int, ...]] = Counter()
+    under_way = _distributed().as_completed(raise_errors=False)
 
-    def submit(place: tuple[int, ...]) -> "Future":
-        future = client.submit(compute, path, digest, place, pure=False)
-        places[future.key] = place
-        return future
+    def top_up() -> None:
+        """As many as the workers there are now take; they may come and go."""
+        threads = max(1, sum(client.nthreads().values()))
+        while waiting and len(places) < (1 + _WAITING) * threads:
+            place = waiting.popleft()
+            future = client.submit(compute, path, digest, place, pure=False)
+            places[future.key] = place
+            under_way.add(future)
 
-    first = islice(waiting, (1 + _WAITING) * max(1, len(client.nthreads())))
-    under_way = _distributed().as_completed([submit(block.place) for block in first], raise_errors=False)
+    top_up()
     for future in under_way:
         place = places.pop(future.key)
         if future.status == "finished":
             yield store.study.block(place)
-            for block in islice(waiting, 1):
-                under_way.add(submit(block.place))
         else:
             losses[place] += 1
             _check_lost(future, losses[place])
-            under_way.add(submit(place))
+            waiting.appendleft(place)
+        top_up()
 
 
 def _check_lost(future: "Future", times: int) -> None:

@@ -4,6 +4,7 @@ import filecmp
 import os
 import random
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -120,6 +121,15 @@ def config(tmp_path, text=CONFIG):
     return path
 
 
+def test_a_name_that_the_shell_completed(tmp_path):
+    """A store is a folder: shells put a slash behind it."""
+    single = ["--set", "axes.damping_ratios=[0.0]"]
+    for end in ("", "/"):
+        arguments = ["map", str(config(tmp_path)), "-o", f"{tmp_path}/out.zarr{end}", "--quiet", *single]
+        assert main(arguments) == 0
+    assert sorted(os.listdir(tmp_path)) == ["out.zarr", "study.toml"]
+
+
 def command(tmp_path, *further):
     return [sys.executable, "-m", "frictionmap", "map", str(config(tmp_path)), *further]
 
@@ -168,6 +178,63 @@ def test_what_is_no_store_is_left_alone(tmp_path):
             fill_store(tmp_path / f"{name}.zarr", asked, "map", in_this_process(1), overwrite)
     assert (tmp_path / "file.zarr").read_text() == "mine"
     assert (tmp_path / "folder.zarr" / "thesis.tex").read_text() == "mine"
+
+
+def test_a_stop_while_a_store_is_replaced(tmp_path, monkeypatch):
+    """What is left of the old one is not taken for the new one, which may be of the same configuration."""
+    asked, path = study(ONE, 300), tmp_path / "map.zarr"
+    fill_store(path, asked, "map", in_this_process(1))
+    fill_store(tmp_path / "well.zarr", asked, "map", in_this_process(1))
+
+    def stops(folder, **_):
+        if folder.exists():
+            (folder / "regime").rename(tmp_path / "regime")
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(shutil, "rmtree", stops)
+        with pytest.raises(KeyboardInterrupt):
+            fill_store(path, asked, "map", in_this_process(1), overwrite=True)
+    fill_store(path, asked, "map", in_this_process(1))
+    same_files(path, tmp_path / "well.zarr")
+    assert sorted(os.listdir(tmp_path)) == ["map.zarr", "regime", "well.zarr"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="symbolic links")
+def test_a_link_to_a_store(tmp_path):
+    asked, link, path = study(ONE, 300), tmp_path / "link.zarr", tmp_path / "elsewhere" / "map.zarr"
+    path.parent.mkdir()
+    link.symlink_to(path)
+    for overwrite in (False, True):
+        fill_store(link, asked, "map", in_this_process(1), overwrite)
+        assert link.is_symlink()
+        assert opened(path).marks().all()
+    assert sorted(os.listdir(path.parent)) == ["map.zarr"]
+
+
+@pytest.mark.parametrize("gone", ["regime/zarr.json", "block_done", "block_done/c/0/1"])
+def test_a_damaged_store_is_refused(tmp_path, gone):
+    asked, path = study(ONE, 300), tmp_path / "map.zarr"
+    fill_store(path, asked, "map", in_this_process(1))
+    if gone.endswith("1"):
+        (path / gone).write_bytes(b"")  # an empty mark
+    else:
+        (path / gone).rename(tmp_path / "gone")
+    with pytest.raises(InputError, match=f"its {gone.split('/')[0]} cannot be read .*; use --overwrite"):
+        fill_store(path, asked, "map", in_this_process(1))
+    fill_store(path, asked, "map", in_this_process(1), overwrite=True)
+    assert opened(path).marks().all()
+
+
+def test_without_zarr_a_store_is_left_alone(tmp_path, monkeypatch):
+    asked, path = study(ONE, 300), tmp_path / "map.zarr"
+    fill_store(path, asked, "map", in_this_process(1))
+    with monkeypatch.context() as patched:
+        patched.setitem(sys.modules, "zarr", None)
+        for overwrite in (False, True):
+            with pytest.raises(InputError, match=r"pip install 'frictionmap\[zarr\]'"):
+                fill_store(path, asked, "map", in_this_process(1), overwrite)
+    assert opened(path).marks().all()
 
 
 def test_one_run_at_a_time(tmp_path):
@@ -228,6 +295,9 @@ def test_stopped_at_random_moments(tmp_path, number):
         (["--workers", "2"], "--workers and --scheduler must come with a store, -o OUT.zarr"),
         (["--workers", "0", "-o", "x.zarr"], "must be >= 1"),
         (["--workers", "2", "--scheduler", "tcp://x:1", "-o", "x.zarr"], "not allowed with"),
+        (["--scheduler", "", "-o", "x.zarr"], "must be an address such as tcp://"),
+        (["--workers", "2", "--threads", "2", "-o", "x.zarr"], "--threads must be left out with --workers"),
+        (["-o", "x.nc/"], "must be the name of a file; got 'x.nc/'"),
     ],
 )
 def test_arguments(tmp_path, capsys, arguments, words):
@@ -280,3 +350,47 @@ def test_a_worker_with_another_store(tmp_path):
     assert compute(str(tmp_path / "map.zarr"), digest, (0, 0)) == (0, 0)
     with pytest.raises(OSError, match="must be the same store for all workers"):
         compute(str(tmp_path / "map.zarr"), "another", (0, 0))
+
+
+def test_a_store_that_was_replaced_meanwhile(tmp_path):
+    """A worker of a run that has ended leaves the store of the one that followed alone."""
+    pytest.importorskip("distributed")
+    from frictionmap.stores.workers import compute
+
+    path, other = tmp_path / "map.zarr", study(ONE, 300, outputs=("regime",))
+    fill_store(path, study(ONE, 300), "map", in_this_process(1))
+    digest = opened(path).digest
+    compute(str(path), digest, (0, 0))
+    fill_store(path, other, "map", lambda store, blocks: iter(()), overwrite=True)
+    with pytest.raises(OSError, match="must be the same store for all workers"):
+        compute(str(path), digest, (0, 0))
+    assert not opened(path).marks().any()
+    shutil.rmtree(path)
+    with pytest.raises(OSError, match="must be where all workers see it under this path"):
+        compute(str(path), "another", (0, 0))
+
+
+def test_workers_that_come_later_have_work(tmp_path):
+    distributed = pytest.importorskip("distributed")
+    from frictionmap.stores.workers import _on
+
+    path, asked = tmp_path / "map.zarr", study(ONE, 40)
+    fill_store(path, asked, "map", lambda store, blocks: iter(()))
+    submitted = []
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        submit = client.submit
+        client.submit = lambda *task, **how: submitted.append(task) or submit(*task, **how)
+        done = _on(client, opened(path), [asked.block(place) for place in asked.places()])
+        next(done)
+        assert len(submitted) == 3
+        cluster.scale(4)
+        client.wait_for_workers(4)
+        next(done)
+        assert len(submitted) == 3 + 10
+        assert len(list(done)) == asked.blocks - 2
+    assert opened(path).marks().all()

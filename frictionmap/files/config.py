@@ -1,10 +1,9 @@
 """Configuration files (TOML): read, overridden, checked key by key."""
 
-import csv
 import os
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import ROUND_CEILING, Decimal
 from pathlib import Path
 from typing import Any, TypeVar
@@ -18,6 +17,7 @@ from ..model.settings import CurveSettings, Solver, curve_settings
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
 from .keys import AXES, KEYS, names
+from .variants import put_variants
 
 #: Values of one axis; more are surely a slip of the keyboard, and would not fit in memory with the others.
 _MOST_VALUES = checks.MOST_CELLS
@@ -83,7 +83,9 @@ def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | No
         range.  The message names the key.
     """
     tree, text = read_tree(path, overrides)
-    return _check(tree, text, Path(path), room)
+    files = put_variants(tree.get("axes"), Path(path).parent)
+    config = _check(tree, to_toml(tree) if files else text, Path(path), room)
+    return replace(config, files=(*config.files, *files))
 
 
 def config_of(text: str, system: Mapping[str, object]) -> Config:
@@ -152,7 +154,7 @@ def _override_all(tree: dict, overrides: Sequence[str]) -> None:
 def _key_and_value(override: str) -> tuple[str, object]:
     """A dotted key and a TOML value; a bare word counts as a string."""
     key, equals, text = override.partition("=")
-    parts = [part.strip() for part in key.split(".")]
+    parts = [part.strip().strip("\"'") for part in key.split(".")]  # quoted as in the file, or not
     text = text.strip()
     if not equals or not all(parts) or not text:
         raise InputError(f"--set must be KEY=VALUE, such as grid.r.step=0.01; got {override!r}")
@@ -173,7 +175,9 @@ def _undoes(key: str, before: str) -> bool:
     if f"{before}.".startswith(f"{key}."):
         return True
     axis, _, last = key.rpartition(".")
-    return axis.startswith("grid.") and before in {f"{axis}.{rival}" for rival in _RIVALS.get(last, ())}
+    return axis.startswith(("grid.", "axes.")) and before in {
+        f"{axis}.{rival}" for rival in _RIVALS.get(last, ())
+    }
 
 
 def _override(tree: dict, parts: list[str], value: object, override: str) -> None:
@@ -183,7 +187,7 @@ def _override(tree: dict, parts: list[str], value: object, override: str) -> Non
         if not isinstance(branch, dict):
             name = ".".join(parts[:depth])
             raise InputError(f"--set {override}: {name} must be a table to have keys; it is {branch!r}")
-    if parts[0] == "grid" and len(parts) == 3:
+    if parts[0] in ("grid", "axes") and len(parts) == 3:
         for rival in _RIVALS.get(parts[-1], ()):
             branch.pop(rival, None)
     branch[parts[-1]] = value
@@ -293,7 +297,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
         if key not in grid:
             raise InputError(f"grid.{key} must be given; it is missing")
     counts = {key: _count(grid.get(key, [1.0]), f"grid.{key}") for key in ("mu", "r", "beta")}
-    further = _further_axes(tree, path.parent)
+    further = _further_axes(tree)
     variations = None if further is None else checked_variations(system, further)
     points = 1 if variations is None else variations.count
     (room or _fits)({**counts, "points": points}, system, solver, curves)
@@ -307,7 +311,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     )  # fmt: skip
 
 
-def _further_axes(tree: Mapping[str, object], folder: Path) -> dict[str, Any] | None:
+def _further_axes(tree: Mapping[str, object]) -> dict[str, Any] | None:
     """The table [axes] as `sweep` takes it: numbers, or for a dimension of several keys a mapping of them."""
     if "axes" not in tree:
         return None
@@ -316,8 +320,6 @@ def _further_axes(tree: Mapping[str, object], folder: Path) -> dict[str, Any] | 
         if not isinstance(given, Mapping) or set(given) & set(_AXIS_KEYS):
             _count(given, f"axes.{key}")
             axes[key] = _values(given, f"axes.{key}")
-        elif set(given) == {"file"}:
-            axes[key] = _columns(folder, given["file"], f"axes.{key}.file")
         else:
             axes[key] = {name: _listed(values, f"axes.{key}.{name}") for name, values in given.items()}
     return axes
@@ -326,28 +328,6 @@ def _further_axes(tree: Mapping[str, object], folder: Path) -> dict[str, Any] | 
 def _listed(values: object, name: str) -> object:
     _count_list(values, name)
     return values
-
-
-def _columns(folder: Path, file: object, name: str) -> dict[str, list[float]]:
-    """The columns of a CSV file of numbers, by the names in its first row."""
-    if not isinstance(file, str) or not file:
-        raise InputError(f"{name} must be the path of a CSV file; got {checks.one_line(file)}")
-    try:
-        with open(folder / file, encoding="utf-8-sig", newline="") as opened:
-            header, *rows = [row for row in csv.reader(opened) if row]
-    except (OSError, ValueError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or "no rows of text with commas"
-        raise InputError(f"{name}, {folder / file}, cannot be read ({reason})") from None
-    columns: dict[str, list[float]] = {key.strip(): [] for key in header}
-    for number, row in enumerate(rows, start=2):
-        for key, text in zip(columns, row, strict=False):
-            try:
-                columns[key].append(float(text))
-            except ValueError:
-                raise InputError(f"{name}, row {number}, {key} must be a number; got {text!r}") from None
-        if len(row) != len(columns):
-            raise InputError(f"{name}, row {number} must have {len(columns)} numbers; got {len(row)}")
-    return columns
 
 
 def _is_number(value: object) -> bool:

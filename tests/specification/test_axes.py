@@ -7,6 +7,9 @@ import pytest
 
 import frictionmap as fm
 from frictionmap import InputError
+from frictionmap.cli import main
+from frictionmap.files.reading import read
+from frictionmap.files.stored import stored_system
 
 GRID = {"r": [0.3, 0.9, 1.4], "beta": [0.1, 0.5, 1.0], "mu": [1.0, 1.5]}
 
@@ -130,6 +133,10 @@ def test_a_file_of_variants(tmp_path):
     [
         (None, "cannot be read"),
         ("load_mass,damping_ratios\n1,0\n1\n", "row 3 must have 2 numbers; got 1"),
+        ("load_mass,damping_ratios\n\n1,0,0,1\n", "row 3 must have 2 numbers; got 4: commas stand between"),
+        ("load_mass,load_mass\n1,1\n", "must name every number once in its first row; got load_mass,load_m"),
+        ("load_mass,damping_ratios\n1,nan\n", "row 2, damping_ratios must be a number; got 'nan'"),
+        ("load_mass,damping_ratios\n1,1_0\n", "row 2, damping_ratios must be a number; got '1_0'"),
         ("load_mass\none\n", "row 2, load_mass must be a number; got 'one'"),
         ("mass\n1\n", "axes.sample must name a number of the system"),
         ("load_mass\n", "axes.sample.load_mass must be a list of numbers"),
@@ -150,6 +157,40 @@ def test_the_configuration_in_the_file_makes_it_again(tmp_path, two_masses):
     config = fm.load_config(path)
     assert config.variations.described == {name: _lists(values) for name, values in axes.items()}
     assert config.system == two_masses
+
+
+def test_a_file_of_variants_is_part_of_the_configuration(tmp_path, monkeypatch):
+    """Another file of that name, where the map is looked at, tells nothing."""
+    (tmp_path / "v.csv").write_text("\ufeffmass_ratios[2], damping_ratios\r\n1.5, 0.01\r\n , \r\n0.5,0\r\n")
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "v.csv").write_text("mass_ratios[2],damping_ratios\n7,0.07\n7,0.07\n")
+    config = loaded(tmp_path, '[axes]\nsample = { file = "v.csv" }\n')
+    assert config.files == (tmp_path / "study.toml", tmp_path / "v.csv")
+    before = (tmp_path / "v.csv").read_bytes()
+    command = ["map", str(tmp_path / "study.toml"), "--quiet", "--overwrite", "-o"]
+    assert main([*command, str(tmp_path / "v.csv")]) == 2
+    assert (tmp_path / "v.csv").read_bytes() == before
+    assert main([*command, str(tmp_path / "study.nc")]) == 0
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    system = stored_system(read(tmp_path / "study.nc", at={"sample": 0}))
+    assert system == fm.System(mass_ratios=[1, 1.5], stiffness_ratios=[1, 1], damping_ratios=0.01)
+    (tmp_path / "again.toml").write_text(config.text)
+    assert fm.load_config(tmp_path / "again.toml").variations.described == config.variations.described
+
+
+@pytest.mark.parametrize(
+    ("override", "expected"),
+    [
+        ("axes.damping_ratios.num=3", [0.0, 0.05, 0.1]),
+        ("axes.damping_ratios.values=[0.0, 0.3]", [0.0, 0.3]),
+        ('axes."damping_ratios"=[0.2]', [0.2]),
+    ],
+)
+def test_axes_are_overridden_as_grids_are(tmp_path, override, expected):
+    path = tmp_path / "study.toml"
+    path.write_text(CONFIG + "[axes]\ndamping_ratios = { start = 0.0, stop = 0.1, step = 0.1 }\n")
+    ((values,),) = (axis.values for axis in fm.load_config(path, [override]).variations.axes)
+    assert values.tolist() == expected
 
 
 def _lists(values):

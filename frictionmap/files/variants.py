@@ -1,0 +1,64 @@
+"""CSV files of numbers that change together: the first row names them, every other row is a point."""
+
+import csv
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+from .. import checks
+from ..errors import InputError
+
+#: What is most often meant by a row of another length.
+_HINT = "commas stand between numbers, points in them"
+
+
+def put_variants(axes: object, folder: Path) -> tuple[Path, ...]:
+    """Put the numbers of files in the place of their names in a table [axes]; the files.
+
+    So a configuration tells its systems wherever it is read, whatever becomes of the files.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or is no table of numbers; the message names the row.
+    """
+    files: list[Path] = []
+    if isinstance(axes, dict):
+        for key, given in axes.items():
+            if isinstance(given, Mapping) and set(given) == {"file"}:
+                name, file = f"axes.{key}.file", given["file"]
+                if not isinstance(file, str) or not file:
+                    raise InputError(f"{name} must be the path of a CSV file; got {checks.one_line(file)}")
+                files.append(folder / file)
+                axes[key] = _columns(files[-1], name)
+    return tuple(files)
+
+
+def _columns(path: Path, name: str) -> dict[str, list[float]]:
+    """The columns of a file by the names in its first row."""
+    try:
+        with open(path, encoding="utf-8-sig", newline="") as opened:
+            reader = csv.reader(opened)
+            (_, header), *rows = [(reader.line_num, row) for row in reader if any(map(str.strip, row))]
+    except (OSError, ValueError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or "no rows of text with commas"
+        raise InputError(f"{name}, {path}, cannot be read ({reason})") from None
+    columns: dict[str, list[float]] = {key.strip(): [] for key in header}
+    if len(columns) < len(header):
+        raise InputError(f"{name} must name every number once in its first row; got {','.join(header)}")
+    for line, row in rows:
+        if len(row) != len(columns):
+            raise InputError(f"{name}, row {line} must have {len(columns)} numbers; got {len(row)}: {_HINT}")
+        for key, text in zip(columns, row, strict=True):
+            columns[key].append(_number(text, f"{name}, row {line}, {key}"))
+    return columns
+
+
+def _number(text: str, name: str) -> float:
+    try:
+        value = math.nan if "_" in text else float(text)  # 1_000 is a number of Python only
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"{name} must be a number; got {text!r}")
+    return value

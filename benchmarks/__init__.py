@@ -5,7 +5,7 @@ python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
 NAME is accuracy, peers, scaling, startup, stress, steady, structures, bound, faults, large or coupling:
 each one is a module of that name in `measures`.  It prints tables, and writes JSON and a figure.
-`python -m benchmarks readme` puts the numbers of the committed results into README.md.
+`python -m benchmarks page` puts the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
 `measures/`                    one module for each sub-command
@@ -38,7 +38,7 @@ each one is a module of that name in `measures`.  It prints tables, and writes J
 `report/`                      what is made of the measurements
   record                       machine, versions, medians, tables; results as JSON; one processor
   figures                      drawn without a display, written beside the numbers they show
-  readme                       the tables of README.md, made from the committed results
+  page                         the tables of docs/results.md, made from the committed results
   quoted_errors                of these the ones about errors; `quoted_faults`: about bad input and bad days
   quoting                      how numbers are quoted in them
 `results/`                     the committed results, and `results/local` of runs on this machine

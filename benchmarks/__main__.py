@@ -41,20 +41,20 @@ def _run(name: str, quick: bool, results: Path, **more: Path) -> float:
 def main() -> None:
     """Parse and run."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("benchmark", choices=[*BENCHMARKS, "all", "readme"])
+    parser.add_argument("benchmark", choices=[*BENCHMARKS, "all", "page"])
     parser.add_argument("--quick", action="store_true", help="few cells and runs: does it work?")
     parser.add_argument(
         "--results",
         type=Path,
-        help="folder of the results (default: benchmarks/results/local; readme: benchmarks/results)",
+        help="folder of the results (default: benchmarks/results/local; page: benchmarks/results)",
     )
     parser.add_argument("--package", type=Path, help="faults: the checkout to try (default: this one)")
     options = parser.parse_args()
     if options.package and options.benchmark != "faults":
         parser.error("--package goes with faults only")
     more = {"package": options.package} if options.package else {}
-    if options.benchmark == "readme":  # quotes what is there
-        from .report.readme import rewrite
+    if options.benchmark == "page":  # quotes what is there
+        from .report.results_page import rewrite
 
         rewrite(options.results or RESULTS)
         return

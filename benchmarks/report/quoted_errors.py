@@ -1,4 +1,4 @@
-"""Tables of README.md that say how good numbers are: of `accuracy`, `stress` and `steady`."""
+"""Tables of docs/results.md that say how good numbers are: of `accuracy`, `stress` and `steady`."""
 
 import statistics
 from collections.abc import Iterator
@@ -170,7 +170,7 @@ def accuracy_lines(accuracy: dict) -> list[str]:
         "",
         *(f"- {note}" for note in _accuracy_notes(accuracy)),
         "",
-        "![Error against run time](benchmarks/results/accuracy.png)",
+        "![Error against run time](../benchmarks/results/accuracy.png)",
     ]
 
 
@@ -265,7 +265,7 @@ def stress_lines(stress: dict) -> list[str]:
         "",
         *(f"- {note}" for note in _stress_notes(stress)),
         "",
-        "![Digits lost at singular points](benchmarks/results/stress.png)",
+        "![Digits lost at singular points](../benchmarks/results/stress.png)",
     ]
 
 

@@ -1,4 +1,4 @@
-"""Table of README.md that says what bad input and bad days do: of `faults`."""
+"""Table of docs/results.md that says what bad input and bad days do: of `faults`."""
 
 from collections.abc import Iterator
 
@@ -43,5 +43,5 @@ def faults_lines(faults: dict, before: dict | None) -> list[str]:
         "",
         f"- {_beyond(now)}",
         "",
-        "![Trials that went wrong](benchmarks/results/faults.png)",
+        "![Trials that went wrong](../benchmarks/results/faults.png)",
     ]

@@ -1,4 +1,4 @@
-"""How numbers are quoted in README.md: two digits of a time or a ratio, the third is noise."""
+"""How numbers are quoted in docs/results.md: two digits of a time or a ratio, the third is noise."""
 
 from collections.abc import Sequence
 

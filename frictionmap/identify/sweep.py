@@ -64,7 +64,7 @@ def sweep(
     frequency : array, shape (samples,)
         Of the base [Hz], > 0, in any order.
     amplitude_ratio : array, shape (samples,), or mapping of such
-        |X_k|/Y > 0 of mass 1, or by mass, counted from 1, such as {1: ..., 3: ...}.
+        X_k/Y > 0 of mass 1, or by mass, counted from 1, such as {1: ..., 3: ...}.
     phase_lag : array, shape (samples,), or mapping of such
         Lags [deg] behind the base, the same way; they tell damping.
     masses : int

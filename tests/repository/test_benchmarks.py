@@ -1,4 +1,4 @@
-"""The benchmarks run, write what they say they write, and README.md quotes the committed results."""
+"""The benchmarks run, write what they say they write, and the manual quotes the committed results."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from conftest import ROOT
 
 from benchmarks.__main__ import BENCHMARKS
 from benchmarks.measures.faults.verdict import SLOW as TOO_SLOW
-from benchmarks.report import quoting, readme, record
+from benchmarks.report import quoting, record, results_page
 
 RESULTS = ROOT / "benchmarks" / "results"
 
@@ -92,7 +92,7 @@ def test_quick_form(name, quick):
 @pytest.mark.slow
 def test_quick_results_can_be_quoted(quick):
     folder, _ = quick
-    lines = readme.block(folder).splitlines()
+    lines = results_page.block(folder).splitlines()
     tables = [line.count("|") for line in lines if line.startswith("|")]
     assert len(tables) > 40
     assert not {"nan", "inf", "None"} & set(" ".join(lines).replace("(", " ").split())
@@ -147,19 +147,20 @@ def test_a_benchmark_is_imported_only_when_it_is_asked_for():
 
 def test_what_can_be_asked_for():
     said = python("-m", "benchmarks", "--help")
-    assert all(name in said for name in (*BENCHMARKS, "all", "readme", "--quick"))
+    assert all(name in said for name in (*BENCHMARKS, "all", "page", "--quick"))
 
 
 # The committed results
 
 
-def test_readme_quotes_the_committed_results():
-    _, quoted, _ = readme.parts(readme.README.read_text(encoding="utf-8"))
-    assert quoted == readme.block(RESULTS), "run python -m benchmarks readme"
+def test_the_manual_quotes_the_committed_results():
+    _, quoted, _ = results_page.parts(results_page.PAGE.read_text(encoding="utf-8"))
+    assert quoted == results_page.block(RESULTS), "run python -m benchmarks page"
 
 
-def test_readme_has_no_timing_outside_the_quoted_results():
-    before, _, after = readme.parts(readme.README.read_text(encoding="utf-8"))
+def test_there_is_no_timing_outside_the_quoted_results():
+    before, _, after = results_page.parts(results_page.PAGE.read_text(encoding="utf-8"))
+    before += (ROOT / "README.md").read_text(encoding="utf-8")
     units = {"ns", "us", "µs", "ms", "s", "seconds"}
     words = [word.strip("().,;:|") for word in f"{before} {after}".split()]
     for number, unit in pairwise(words):
@@ -167,7 +168,7 @@ def test_readme_has_no_timing_outside_the_quoted_results():
         assert not timing, f"{number} {unit}"
 
 
-@pytest.mark.parametrize("name", readme.QUOTED)
+@pytest.mark.parametrize("name", results_page.QUOTED)
 def test_committed_results_are_whole(name):
     content = json.loads((RESULTS / f"{name}.json").read_text())
     assert {"processor", "system", "python", "versions"} <= set(content["machine"])
@@ -257,24 +258,24 @@ def test_two_digits(value, text):
 
 
 def test_the_block_replaces_the_block_and_nothing_else(tmp_path):
-    page = tmp_path / "README.md"
-    page.write_text(f"before\n{readme.BEGIN}\nold\n{readme.END}\nafter\n")
-    readme.rewrite(RESULTS, page)
-    before, inside, after = readme.parts(page.read_text())
+    page = tmp_path / "page.md"
+    page.write_text(f"before\n{results_page.BEGIN}\nold\n{results_page.END}\nafter\n")
+    results_page.rewrite(RESULTS, page)
+    before, inside, after = results_page.parts(page.read_text())
     assert (before, after) == ("before\n", "\nafter\n")
-    assert inside == readme.block(RESULTS)
-    readme.rewrite(RESULTS, page)
-    assert readme.parts(page.read_text()) == (before, inside, after)
+    assert inside == results_page.block(RESULTS)
+    results_page.rewrite(RESULTS, page)
+    assert results_page.parts(page.read_text()) == (before, inside, after)
 
 
 def test_a_page_without_markers():
     with pytest.raises(ValueError, match="needs the lines"):
-        readme.parts("no markers")
+        results_page.parts("no markers")
 
 
 def test_what_was_not_measured_is_not_quoted(tmp_path):
     (tmp_path / "startup.json").write_text((RESULTS / "startup.json").read_text())
-    text = readme.block(tmp_path)
+    text = results_page.block(tmp_path)
     assert "frictionmap --help" in text
     assert "fresh process" in text
     assert "heyoka" not in text

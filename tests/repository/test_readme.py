@@ -1,4 +1,4 @@
-"""What the README shows runs as it stands, and a type checker agrees with it."""
+"""What README and guides show runs as it stands, type checkers agree with README, links lead somewhere."""
 
 import importlib.util
 import os
@@ -13,7 +13,15 @@ from conftest import ROOT
 from frictionmap.arguments import parse
 
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
-BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
+GUIDES = [path for path in sorted((ROOT / "docs").rglob("*.md")) if path.parent.name != "reference"]
+
+
+def blocks(text):
+    """Language and text of every block of code."""
+    return re.findall(r"^```(\w*)\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+BLOCKS = blocks(TEXT)
 CODE = "\n".join(text for language, text in BLOCKS if language == "python")
 
 #: Slips that a type checker has to find, each in place of what the README says.
@@ -28,13 +36,13 @@ SLIPS = {
 }
 
 
-def commands():
+def commands(shown):
     """Command lines of frictionmap in blocks that are not Python, without their comments."""
-    for language, text in BLOCKS:
+    for language, text in shown:
         if language in ("", "sh"):
             for line in text.splitlines():
                 for part in line.partition("#")[0].split("&&"):
-                    words = shlex.split(part)
+                    words = shlex.split(part.partition(">")[0])
                     if words and words[0].split("/")[-1] == "frictionmap":
                         yield words[1:]
 
@@ -42,21 +50,41 @@ def commands():
 def test_python_blocks_run(tmp_path):
     """In order, in one program, in an empty folder."""
     assert CODE.count("import frictionmap as fm") == 1
+    run_python(CODE, tmp_path)
+    assert (tmp_path / "map.png").stat().st_size > 1000
+
+
+def test_python_blocks_of_guides_run(tmp_path):
+    """Those of a page in order; those that need another package are left out."""
+    codes = {path.name: "\n".join(python_of(path)) for path in GUIDES}
+    programs = [code for code in codes.values() if code and "dask_jobqueue" not in code]
+    assert len(programs) >= 3
+    code = "\n".join(f"exec(compile({code!r}, '<guide>', 'exec'), {{}})" for code in programs)
+    run_python(code, tmp_path)
+
+
+def python_of(path):
+    return [text for language, text in blocks(path.read_text(encoding="utf-8")) if language == "python"]
+
+
+def run_python(code, folder):
+    """Run a program in a folder; a warning is an error."""
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", CODE],
-        cwd=tmp_path,
+        [sys.executable, "-W", "error", "-c", code],
+        cwd=folder,
         env=os.environ | {"PYTHONPATH": str(ROOT)},
         capture_output=True,
         text=True,
         timeout=6000,
     )
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "map.png").stat().st_size > 1000
 
 
 def test_command_lines_parse():
-    found = list(commands())
-    assert {words[0] for words in found} >= {"map", "boundaries", "response", "plot", "info"}
+    found = list(commands(BLOCKS))
+    assert {words[0] for words in found} >= {"init", "map", "boundaries", "response", "plot", "info"}
+    for path in GUIDES:
+        found += commands(blocks(path.read_text(encoding="utf-8")))
     for words in found:
         assert parse(words).command == words[0]
 
@@ -66,6 +94,14 @@ def test_shell_blocks_are_shell():
     assert texts
     for text in texts:
         assert subprocess.run(["sh", "-n"], input=text, text=True).returncode == 0, text
+
+
+@pytest.mark.parametrize("path", [ROOT / "README.md", *GUIDES], ids=lambda path: path.name)
+def test_links_lead_somewhere(path):
+    """To files; pages that are made when the manual is built, and addresses, are left out."""
+    for target in re.findall(r"\]\(([^)#]+)[^)]*\)", path.read_text(encoding="utf-8")):
+        made = re.match(r"(\.\./)?(reference|figures)/", target)
+        assert made or "://" in target or (path.parent / target).is_file(), target
 
 
 def errors(checker, programs, folder):

@@ -1,7 +1,7 @@
-"""The numbers in README.md: tables made from the results, between two marker comments.
+"""The numbers in docs/results.md: tables made from the results, between two marker comments.
 
     python -m benchmarks all --results benchmarks/results
-    python -m benchmarks readme
+    python -m benchmarks page
 
 measures everything and writes the tables anew; a test compares them with the committed results.  A benchmark
 whose results are not there is left out.
@@ -16,8 +16,8 @@ from .quoted_errors import accuracy_lines, steady_lines, stress_lines
 from .quoted_faults import faults_lines
 from .quoting import duration, markdown, rounded_off, two_digits
 
-README = ROOT / "README.md"
-BEGIN = "<!-- from benchmarks/results by `python -m benchmarks readme`: do not edit -->"
+PAGE = ROOT / "docs" / "results.md"
+BEGIN = "<!-- from benchmarks/results by `python -m benchmarks page`: do not edit -->"
 END = "<!-- end of the results -->"
 
 #: The benchmarks whose results are quoted.
@@ -269,7 +269,7 @@ def _machine(found: dict[str, dict]) -> str:
 
 
 def block(results: Path) -> str:
-    """The part of README.md between the markers."""
+    """The part of the page between the markers."""
     found = {
         name: json.loads((results / f"{name}.json").read_text(encoding="utf-8"))
         for name in (*QUOTED, BEFORE)
@@ -296,17 +296,17 @@ def block(results: Path) -> str:
 
 
 def parts(text: str) -> tuple[str, str, str]:
-    """README before the block, the block, and what comes after."""
+    """The page before the block, the block, and what comes after."""
     before, begin, rest = text.partition(f"{BEGIN}\n")
     inside, end, after = rest.partition(END)
     if not begin or not end:
-        raise ValueError(f"README.md needs the lines\n{BEGIN}\n{END}")
+        raise ValueError(f"docs/results.md needs the lines\n{BEGIN}\n{END}")
     return before, inside.removesuffix("\n"), after
 
 
-def rewrite(results: Path, readme: Path = README) -> None:
-    """Put the block of these results into README.md."""
-    before, _, after = parts(readme.read_text(encoding="utf-8"))
+def rewrite(results: Path, page: Path = PAGE) -> None:
+    """Put the block of these results into the page."""
+    before, _, after = parts(page.read_text(encoding="utf-8"))
     text = f"{before}{BEGIN}\n{block(results)}\n{END}{after}"
-    readme.write_text(text, encoding="utf-8")
-    print(f"written: {readme}")
+    page.write_text(text, encoding="utf-8")
+    print(f"written: {page}")

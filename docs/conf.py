@@ -1,0 +1,52 @@
+"""The manual: `python -m sphinx -W docs OUT`, with the extra `docs`; `-t quick` leaves the figures out."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent), str(HERE)]
+
+import generated  # noqa: E402  # pages made of the program itself
+
+import frictionmap  # noqa: E402
+
+generated.write(HERE / "reference")
+
+project = "frictionmap"
+author = "The frictionmap authors"
+copyright = "the frictionmap authors; MIT licence"
+version = release = frictionmap.__version__
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
+exclude_patterns = ["_build", "gallery/*"]
+suppress_warnings = ["config.cache"]  # the settings of the gallery cannot be pickled
+myst_heading_anchors = 3
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # the docstrings say it, with shapes, units and ranges
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+napoleon_use_ivar = True
+napoleon_preprocess_types = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": "gallery",
+    "gallery_dirs": "figures",
+    "filename_pattern": "/plot_",
+    "within_subsection_order": "FileNameSortKey",
+    "abort_on_example_error": True,
+    "remove_config_comments": True,
+    "download_all_examples": False,
+    "show_memory": False,
+    "write_computation_times": False,  # its pages fetch scripts from elsewhere
+    "min_reported_time": 1,
+    "image_scrapers": ("matplotlib",),
+    "plot_gallery": not tags.has("quick"),  # noqa: F821  # what Sphinx gives to this file
+}
+
+html_theme = "furo"
+html_title = f"frictionmap {release}"
+html_theme_options = {"navigation_with_keys": True}
+html_show_sphinx = False
+html_copy_source = False
+html_static_path: list[str] = []

@@ -1,0 +1,29 @@
+"""
+First harmonics, as they are measured
+=====================================
+
+Transmissibility and phase of the first harmonic, from integrals in closed form over the exact motion,
+not from samples.
+"""
+
+from picture_data import computed
+
+import frictionmap as fm
+
+# %%
+# **T Fig. 4.7 and 4.8**, fixed wall, shaken base: above resonance the phase hardly depends on
+# frequency, which is what friction is measured by.
+fixed = computed("fig-4-7")
+fm.plot_curves(fixed)
+
+# %%
+# The other harmonics, in dB beside the first: only odd ones.
+fm.plot_curves(fixed, "harmonics")
+
+# %%
+# **T Fig. 4.9 and 4.10**, wall joined to the base: all curves cross at r = 1.506.
+fm.plot_curves(computed("fig-4-9"))
+
+# %%
+# **T Fig. 6.21**, the two-storey rig with the wall on its second mass.
+fm.plot_curves(computed("fig-6-21"))

@@ -1,0 +1,161 @@
+"""Pages of the manual that the program writes itself: commands, keys, variables of files, API."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+import frictionmap as fm
+from frictionmap.arguments import Command, described
+from frictionmap.datasets.labels import LABELS
+from frictionmap.datasets.provenance import value_text
+from frictionmap.files.keys import KEYS, TABLES, Key, in_words
+from frictionmap.identify.configuration import KINDS
+from frictionmap.identify.rig_keys import TABLES as RIG_TABLES
+from frictionmap.identify.rig_keys import rig_keys
+
+#: The public names by what they are for; a name that is in none of these goes to the last.
+_GROUPS: Mapping[str, tuple[str, ...]] = {
+    "Systems and settings": ("System", "Solver", "Units", "load_config"),
+    "Maps, curves, motions": ("sweep", "boundaries", "curves", "response", "continuous_motion", "shares"),
+    "Pictures": (
+        "plot_regimes", "plot_boundaries", "plot_curves", "plot_response", "plot_orbit", "plot_fit",
+        "plot_shares", "explore",
+    ),
+    "Errors, and others": ("InputError", "NoSteadyState"),
+}  # fmt: skip
+
+
+def write(folder: Path) -> None:
+    """Write all pages, each only if it has changed: else all would be built anew."""
+    folder.mkdir(exist_ok=True)
+    pages = {
+        "commands.md": commands(),
+        "configuration.md": configuration(),
+        "variables.md": variables(),
+        "api.rst": api(),
+    }
+    for name, lines in pages.items():
+        text = "\n".join(lines) + "\n"
+        path = folder / name
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+
+
+def _table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> Iterator[str]:
+    header = list(header)
+    for cells in (header, ["---"] * len(header), *rows):
+        yield f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
+
+
+# commands
+
+
+def commands() -> Iterator[str]:
+    """Every command with its arguments, as `--help` tells them."""
+    yield "# Commands\n"
+    yield "Exit status: 0 done; 2 the input is at fault, told in one line; 130 interrupted; 1 anything else."
+    for command in described():
+        yield from _command(command)
+
+
+def _command(command: Command) -> Iterator[str]:
+    yield f"\n## frictionmap {command.name}\n\n{command.description}\n"
+    yield f"```text\n{command.usage}\n```\n"
+    rows = (
+        (
+            f"`{', '.join(argument.flags)} {argument.metavar}`".replace(" `", "`")
+            if argument.flags
+            else f"`{argument.metavar}`",
+            argument.help,
+        )
+        for argument in command.arguments
+        if "--help" not in argument.flags
+    )
+    yield from _table(("argument", "meaning"), rows)
+
+
+# configurations
+
+
+def configuration() -> Iterator[str]:
+    """Every key, from the table that the checks use."""
+    yield "# Keys of a configuration\n"
+    yield "`frictionmap init` writes a file with all of them, `frictionmap schema` the same for editors.\n"
+    yield "## Maps, curves, boundaries, responses"
+    for section, keys in KEYS.items():
+        yield from _keys(section, keys, TABLES.get(section, ""))
+    yield f"\n### [axes]\n\n{TABLES['axes']} See [large maps](../large-maps.md)."
+    yield "\n## Measured data"
+    for kind in KINDS:
+        yield f'\n### kind = "{kind}"'
+        for section, keys in rig_keys(kind).items():
+            yield from _keys(section, keys, RIG_TABLES.get(section, ""), "####")
+
+
+def _keys(section: str, keys: Iterable[Key], what: str, level: str = "###") -> Iterator[str]:
+    yield f"\n{level} [{section}]\n\n{what}\n" if section else ""
+    rows = (
+        (
+            f"`{key.name}`",
+            key.meaning,
+            in_words(key),
+            "" if key.default is None else f"`{value_text(key.default)}`",
+        )
+        for key in keys
+    )
+    yield from _table(("key", "meaning", "legal", "default"), rows)
+
+
+# files
+
+
+def variables() -> Iterator[str]:
+    """Every variable that a file can hold."""
+    yield "# Variables of files\n"
+    yield "All are dimensionless unless a unit is named. `frictionmap info` tells which a file holds.\n"
+    rows = (
+        (f"`{name}`", ", ".join(label.dims), label.dtype.__name__, label.long_name)
+        for name, label in LABELS.items()
+    )
+    yield from _table(("variable", "dimensions", "type", "content"), rows)
+
+
+# API
+
+
+def api() -> Iterator[str]:
+    """The public names with their docstrings."""
+    yield "Python API\n==========\n\n``import frictionmap as fm``"
+    named = [name for names in _GROUPS.values() for name in names]
+    public = [name for name in fm.__all__ if name not in ("__version__", "features", "identify")]
+    others = [name for name in public if name not in named]
+    for title, names in _GROUPS.items():
+        yield f"\n{title}\n{'-' * len(title)}\n"
+        last = title == list(_GROUPS)[-1]
+        for name in (*names, *(others if last else ())):
+            if name in public:
+                yield _documented("frictionmap", name)
+    for module in ("features", "identify"):
+        yield f"\nfrictionmap.{module}\n{'-' * (12 + len(module))}\n"
+        yield f".. automodule:: frictionmap.{module}\n   :no-members:\n" if module == "features" else ""
+        for name in _public(module):
+            yield _documented(f"frictionmap.{module}", name)
+
+
+def _public(module: str) -> list[str]:
+    found = getattr(fm, module)
+    if hasattr(found, "__all__"):
+        return list(found.__all__)
+    own = vars(found).items()
+    return [
+        name
+        for name, value in own
+        if callable(value) and not name.startswith("_") and getattr(value, "__module__", "") == found.__name__
+    ]
+
+
+def _documented(module: str, name: str) -> str:
+    kind = "class" if name[0].isupper() else "function"
+    if name in ("InputError", "NoSteadyState"):
+        kind = "exception"
+    members = "   :members:\n" if kind == "class" else ""
+    return f".. auto{kind}:: {module}.{name}\n{members}"

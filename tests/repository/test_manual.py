@@ -1,0 +1,88 @@
+"""The manual is built without a warning, names every command, key and function, and fetches nothing."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+from conftest import ROOT
+
+import frictionmap as fm
+from frictionmap.arguments import described
+from frictionmap.files.keys import KEYS
+from frictionmap.model.settings import OUTPUTS
+
+
+@pytest.fixture(scope="module")
+def manual(tmp_path_factory):
+    """The folder of its pages, the figures left out."""
+    pytest.importorskip("sphinx_gallery")
+    pytest.importorskip("myst_parser")
+    pytest.importorskip("furo")
+    folder = tmp_path_factory.mktemp("manual")
+    copy = folder / "docs"  # pages are made beside the others
+    for name in ("docs", "configs", "benchmarks/results", "CHANGELOG.md"):
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).symlink_to(ROOT / name) if name != "docs" else copy_of(ROOT / name, copy)
+    done = subprocess.run(
+        [sys.executable, "-m", "sphinx", "-q", "-W", "-t", "quick", copy, folder / "pages"],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=3000,
+    )
+    assert done.returncode == 0, done.stderr
+    return folder / "pages"
+
+
+def copy_of(folder, place):
+    """The files of a folder that are kept, without what a build has made."""
+    made = {"figures", "reference", "_build"}
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and path.relative_to(folder).parts[0] not in made:
+            target = place / path.relative_to(folder)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(path.read_bytes())
+
+
+def text(manual, page):
+    return (manual / page).read_text(encoding="utf-8")
+
+
+def test_every_command_and_option_is_told(manual):
+    page = text(manual, "reference/commands.html")
+    for command in described():
+        assert f"frictionmap {command.name}" in page
+        flags = {flag for argument in command.arguments for flag in argument.flags} - {"-h", "--help"}
+        assert not {flag for flag in flags if flag not in page}
+
+
+def test_every_key_and_output_is_told(manual):
+    page = text(manual, "reference/configuration.html")
+    assert all(f">{key.name}<" in page for keys in KEYS.values() for key in keys)
+    variables = text(manual, "reference/variables.html")
+    assert all(f">{name}<" in variables for name in OUTPUTS)
+
+
+def test_every_public_name_is_told(manual):
+    page = text(manual, "reference/api.html")
+    for name in set(fm.__all__) - {"__version__", "features", "identify"}:
+        assert f'id="frictionmap.{name}"' in page, name
+    for name in fm.identify.__all__:
+        assert f'id="frictionmap.identify.{name}"' in page, name
+
+
+def test_every_guide_can_be_found(manual):
+    index = text(manual, "index.html")
+    for path in (ROOT / "docs" / "guides").glob("*.md"):
+        assert f'href="guides/{path.stem}.html"' in index
+    assert len(list(manual.glob("figures/plot_*.html"))) == len(list((ROOT / "docs/gallery").glob("*.py")))
+
+
+def test_nothing_is_fetched_from_elsewhere(manual):
+    for page in manual.rglob("*.html"):
+        tags = re.findall(r"<(?:script|link|img|iframe|source)\b[^>]*>", page.read_text(encoding="utf-8"))
+        assert not [tag for tag in tags if re.search(r'(?:src|href)="(?:https?:)?//', tag)], page
+    for sheet in manual.rglob("*.css"):
+        assert not re.search(r"(?:url\(|@import)\s*['\"]?(?:https?:)?//", sheet.read_text(encoding="utf-8"))

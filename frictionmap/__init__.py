@@ -20,6 +20,7 @@ stores         maps block by block into a zarr store, in this process or on work
 identify       measured data: files, fits, estimates with their errors
 examples       synthetic measurements of rigs whose truth is known
 pictures       palette, panels, and a module for each kind of picture; `plot` is the door
+explorer       the map in a browser: a server for this machine, and the page
 cli            the command line; `arguments`, `completion`, `progress`, `interrupts`
 =============  =========================================================================
 
@@ -35,6 +36,7 @@ from .version import __version__
 
 if TYPE_CHECKING:
     from . import features, identify
+    from .explorer.notebook import explore
     from .files.config import load_config
     from .model.settings import Solver
     from .model.system import System
@@ -63,6 +65,7 @@ __all__ = [
     "boundaries",
     "continuous_motion",
     "curves",
+    "explore",
     "features",
     "identify",
     "load_config",
@@ -86,6 +89,7 @@ _HOME = {
     "boundaries": "theory.boundaries",
     "continuous_motion": "theory.continuous_motion",
     "curves": "steady.curves",
+    "explore": "explorer.notebook",
     "load_config": "files.config",
     "plot_boundaries": "plot",
     "plot_curves": "plot",

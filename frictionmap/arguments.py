@@ -67,7 +67,13 @@ def _threads(text: str) -> int:
     return number
 
 
-_threads.__name__ = "whole number"  # what argparse calls it
+def _port(text: str) -> int:
+    if not 0 <= (number := int(text)) <= 65535:
+        raise argparse.ArgumentTypeError(f"must be 0 to 65535; got {text}")
+    return number
+
+
+_threads.__name__ = _port.__name__ = "whole number"  # what argparse calls it
 
 
 def _address(text: str) -> str:
@@ -95,6 +101,12 @@ def _takes_config(
 ) -> None:
     sub.add_argument("config", metavar=f"{name}.toml", type=Path, help=what)
     _takes_output(sub, out, f"file to write; default: named after {name}, in the current folder")
+    _takes_overrides(sub, name, key)
+
+
+def _takes_overrides(
+    sub: argparse.ArgumentParser, name: str = "CONFIG", key: str = "grid.r.step=0.01"
+) -> None:
     text = f"override a key of {name}, e.g. --set {key}; repeatable, each key once"
     sub.add_argument("--set", dest="overrides", metavar="KEY=VALUE", action="append", default=[], help=text)
 
@@ -119,6 +131,18 @@ def _takes_over(sub: argparse.ArgumentParser, what: str) -> None:
         f"{what} the shares of regimes over a further axis, such as sample, and quantiles of the boundaries"
     )
     sub.add_argument("--over", metavar="NAME", action=_Once, help=text)
+
+
+def _takes_page(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("config", metavar="CONFIG.toml", type=Path, help="what to explore, and where to begin")
+    _takes_overrides(sub)
+    text = "port of this machine to serve the page at (default: 8712, or any that is free)"
+    sub.add_argument("--port", metavar="N", type=_port, action=_Once, help=text)
+    text = "print the address and open no browser"
+    sub.add_argument("--no-browser", action="store_true", help=text)
+    text = "write the page as one file, with maps computed for its sliders, and serve nothing"
+    sub.add_argument("--export", dest="output", metavar="PAGE.html", type=_file, action=_Once, help=text)
+    _takes_replacement(sub)
 
 
 def _takes_workers(sub: argparse.ArgumentParser) -> None:
@@ -161,6 +185,8 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("--beta", type=float, required=True, action=_Once, help="friction ratio, >= 0")
     text = "static over kinetic friction, >= 1 (default: grid.mu of CONFIG if that is one value, else needed)"
     sub.add_argument("--mu", type=float, action=_Once, help=text)
+    text = "Show the map in a browser, to move about in; on this machine only."
+    _takes_page(command("explore", "the map in a browser", text))
     text = "Fit friction, damping and frequency to measured data; print estimates with errors, write NetCDF."
     sub = command("identify", "friction, damping and frequency from measured data", text)
     _takes_config(sub, "RIG", "which data, and what is known", "data.window=[0.5,4]")

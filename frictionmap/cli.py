@@ -15,6 +15,7 @@ from .errors import InputError, NoSteadyState
 if TYPE_CHECKING:
     import xarray as xr
 
+    from .explorer.scene import Scene
     from .files.config import Config
     from .files.places import Output
     from .progress import Progress
@@ -182,6 +183,43 @@ def _store(options: Options) -> None:
         _print("\n  ".join((f"{first}; wrote {options.output}", *others)))
 
 
+def _explore(options: Options) -> None:
+    """Serve the page until an interrupt, or write it as a file."""
+    from .explorer.scene import scene_of
+    from .files.config import load_config
+
+    config = load_config(options.config, options.overrides, lambda *_: None)  # the page has its own grid
+    scene = scene_of(config)
+    if options.output is not None:
+        _export_page(options, scene)
+        return
+    from .explorer.server import open_server, show
+
+    server = open_server(scene, options.port)
+    _print(f"{scene.title} at {server.url} until Ctrl-C")
+    if not options.no_browser:
+        show(server.url)
+    server.serve_forever()
+
+
+def _put(content: bytes, path: Path) -> None:
+    path.write_bytes(content)
+
+
+def _export_page(options: Options, scene: "Scene") -> None:
+    from .explorer.stored import check_page, write_page
+    from .files.places import claimed
+    from .progress import Progress
+
+    check_page(options.output)
+    with claimed(options.output, options.overwrite, scene.files) as output:
+        with Progress(f"maps of {scene.title}", options.quiet) as progress:
+            page = write_page(scene, progress)
+        output.fill(lambda scratch: _put(page, scratch))
+    if not options.quiet:
+        _print(f"wrote {options.output} ({len(page) / 1e6:.2g} MB)")
+
+
 def _identify(options: Options) -> None:
     from .files.estimates import describe_estimates
     from .files.places import claimed
@@ -328,6 +366,7 @@ _COMMANDS: dict[str, Callable[[Options], None]] = {
     "info": _info,
     "identify": _identify,
     "export": _export,
+    "explore": _explore,
     "init": _init,
     "schema": _schema,
     "completion": _completion,

@@ -40,7 +40,8 @@ def _of_stops(stops: np.ndarray) -> np.ndarray:
     return found
 
 
-def _of_cells(regime: np.ndarray | None, stops: np.ndarray | None) -> np.ndarray:
+def of_cells(regime: np.ndarray | None, stops: np.ndarray | None) -> np.ndarray:
+    """The class of every cell by its regime and its number of stops, one of which may be missing; uint8."""
     if regime is None:
         assert stops is not None
         found = np.where(stops == 0.0, CONTINUOUS, NO_STOPS).astype(np.uint8)
@@ -66,7 +67,7 @@ def classes(ds: xr.Dataset) -> np.ndarray:
     )
     found = np.empty((ds.sizes["r"], ds.sizes["beta"]), dtype=np.uint8)
     for block in blocks(found.shape):
-        found[block] = _of_cells(
+        found[block] = of_cells(
             None if regime is None else regime[block], None if stops is None else stops[block]
         )
         if status is not None:

@@ -7,8 +7,6 @@ with the number of stops.  They also stay apart for readers who do not see red o
 from typing import Literal, NamedTuple, TypedDict
 
 import numpy as np
-from matplotlib import colormaps
-from matplotlib.colors import to_hex
 
 from .. import regimes
 
@@ -99,6 +97,9 @@ _LIGHT, _DARK = 0.88, 0.0
 
 def sequence(number: int) -> list[str]:
     """Colours of an ordered family of lines, from light to dark."""
+    from matplotlib import colormaps  # here: a page that explores maps has these colours without it
+    from matplotlib.colors import to_hex
+
     return [to_hex(colormaps["viridis"](share)) for share in np.linspace(_DARK, _LIGHT, number)[::-1]]
 
 

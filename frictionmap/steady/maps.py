@@ -39,6 +39,12 @@ Arrays = namedtuple("Arrays", _NAMES)  # type: ignore[misc]
 
 Progress = Callable[[int, int], None]
 
+#: Called now and then while cells are worked on; what it raises ends the work.
+Watch = Callable[[], None]
+
+#: Seconds between two calls of it.
+_WATCHED = 0.02
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -115,7 +121,7 @@ def default_threads() -> int:
     return os.cpu_count() or 1
 
 
-def _run(jobs: Sequence[Job], threads: int, done: Callable) -> None:
+def _run(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None) -> None:
     """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
 
     This thread only waits, so that an interrupt reaches it at once.
@@ -129,16 +135,19 @@ def _run(jobs: Sequence[Job], threads: int, done: Callable) -> None:
                 running[pool.submit(function, *arguments)] = index
             if not running:
                 return
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
+            pause = None if watch is None else _WATCHED
+            for future in wait(running, pause, return_when=FIRST_COMPLETED).done:
                 future.result()
                 done(running.pop(future))
+            if watch is not None:
+                watch()
     finally:
         pool.shutdown(wait=not running, cancel_futures=True)
 
 
 def _fill(
     cells: Cells, work: Plan, shape: tuple[int, int, int], smooth: np.ndarray, out: Any, threads: int,
-    progress: Progress | None,
+    progress: Progress | None, watch: Watch | None,
 ) -> None:  # fmt: skip
     """`smooth` (n_mu,): where mu = 1."""
     n_rows, columns = work.low.size, shape[2]
@@ -169,7 +178,7 @@ def _fill(
             progress(spent, total)
 
     try:
-        _run(jobs, threads, done)
+        _run(jobs, threads, done, watch)
     except BaseException:
         cancel[0] = 1  # the kernels look at it at every event
         raise
@@ -187,7 +196,7 @@ def checked_axes(r: ArrayLike, beta: ArrayLike, mu: ArrayLike, per_cell: int) ->
 
 def compute(
     system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: Asked | None, threads: int | None,
-    progress: Progress | None,
+    progress: Progress | None, watch: Watch | None = None,
 ) -> tuple[Cells, Any]:  # fmt: skip
     """The cells of a grid and their arrays, filled; `asked`: what else, in the results of the cells."""
     threads = default_threads() if threads is None else checks.whole(threads, "threads", least=1)
@@ -197,7 +206,7 @@ def compute(
     cells = Cells(system, r, beta, mu, solver, asked)
     out = allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
     work = plan(cells, r, mu, beta, solver)
-    _fill(cells, work, (mu.size, r.size, beta.size), mu == 1.0, out, threads, progress)
+    _fill(cells, work, (mu.size, r.size, beta.size), mu == 1.0, out, threads, progress, watch)
     return cells, out
 
 
@@ -207,10 +216,13 @@ def regime_map(
     solver: Solver,
     threads: int | None,
     progress: Progress | None,
+    watch: Watch | None = None,
 ) -> xr.Dataset:
     """Outputs, `status` and boundaries of one system over the axes mu, r and beta."""
     of_cycle = [name for name in solver.outputs if CELL_VARIABLES[name].needs == "cycle"]
-    cells, out = compute(system, axes, solver, asked_for(of_cycle) if of_cycle else None, threads, progress)
+    cells, out = compute(
+        system, axes, solver, asked_for(of_cycle) if of_cycle else None, threads, progress, watch
+    )
     names = dict.fromkeys((*solver.outputs, "status"))
     variables = {
         name: label_variable(

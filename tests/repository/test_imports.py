@@ -124,7 +124,7 @@ ORDER = (
     "_kernels", "model", "datasets", "roots",
     "features",
     "theory", "steady", "files", "probabilities", "stores", "identify", "examples", "pictures", "plot",
-    "progress", "arguments", "completion", "cli", "__main__",
+    "explorer", "progress", "arguments", "completion", "cli", "__main__",
 )  # fmt: skip
 
 

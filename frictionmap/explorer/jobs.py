@@ -1,0 +1,103 @@
+"""What is being computed, what is outdated, whether kernels are being compiled.
+
+Every page has a lane for each kind of work: whoever enters it makes what is still in it outdated.
+"""
+
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+#: Lanes that are remembered: pages that were closed leave theirs behind.
+_MOST_LANES = 256
+
+
+class Outdated(Exception):
+    """Nobody waits for the answer any more."""
+
+
+class Job:
+    """A piece of work that somebody waits for."""
+
+    def __init__(self, gone: Callable[[], bool]) -> None:
+        self._gone = gone
+        self.outdated = False
+        self.compiles_since: float | None = None
+        self.kernels = 0
+
+    def watch(self) -> None:
+        """Called while cells are worked on.
+
+        Raises
+        ------
+        Outdated
+            Another request has taken its place, or the page has gone.
+        """
+        if self.outdated or self._gone():
+            raise Outdated
+
+    def progress(self, done: float, total: float) -> None:
+        """Cells come in: what they need has been compiled."""
+        self.compiles_since = None
+        self.watch()
+
+
+class Jobs:
+    """All work that is under way."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._lanes: OrderedDict[str, Job] = OrderedDict()
+        self._running: set[Job] = set()
+
+    def listen(self) -> None:
+        """Hear of kernels that are compiled, from now on; it takes the import of the compiler."""
+        from .._kernels.cache import listeners
+
+        listeners.append(self._compiling)
+
+    def close(self) -> None:
+        """No more is heard of compiling; everything is outdated."""
+        from .._kernels.cache import listeners
+
+        if self._compiling in listeners:
+            listeners.remove(self._compiling)
+        with self._lock:
+            for job in self._running:
+                job.outdated = True
+
+    @contextmanager
+    def enter(self, lane: str, gone: Callable[[], bool] = lambda: False) -> Iterator[Job]:
+        """A job in a lane; the one before it there is outdated from now on."""
+        job = Job(gone)
+        with self._lock:
+            if lane in self._lanes:
+                self._lanes.pop(lane).outdated = True
+            self._lanes[lane] = job
+            while len(self._lanes) > _MOST_LANES:
+                self._lanes.popitem(last=False)
+            self._running.add(job)
+        try:
+            yield job
+        finally:
+            with self._lock:
+                self._running.discard(job)
+
+    def _compiling(self) -> None:
+        """A kernel is about to be compiled, for one of the jobs that are under way."""
+        now = time.monotonic()
+        with self._lock:
+            for job in self._running:
+                job.compiles_since = job.compiles_since or now
+                job.kernels += 1
+
+    def state(self) -> dict[str, float]:
+        """Whether kernels are being compiled: for how long [s], and how many so far; empty if not."""
+        with self._lock:
+            compiling = [job for job in self._running if job.compiles_since is not None]
+            if not compiling:
+                return {}
+            since = min(job.compiles_since or 0.0 for job in compiling)
+            kernels = max(job.kernels for job in compiling)
+        return {"seconds": time.monotonic() - since, "kernels": kernels}

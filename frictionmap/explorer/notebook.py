@@ -1,0 +1,107 @@
+"""The page in a notebook, or beside any other work in Python."""
+
+import html
+import threading
+from collections.abc import Sequence
+from typing import SupportsFloat
+
+from ..model.settings import Start
+from ..model.system import System
+from .scene import scene_of_system
+from .server import Server, open_server
+
+#: Height of the page in a notebook [pixels].
+_HEIGHT = 860
+
+
+class Explorer:
+    """A page that is served until it is closed, or Python ends; a notebook shows it."""
+
+    def __init__(self, server: Server) -> None:
+        self._server = server
+        self._thread = threading.Thread(target=server.serve_forever, daemon=True)
+        self._thread.start()
+
+    @property
+    def url(self) -> str:
+        """The address of the page on this machine."""
+        return self._server.url
+
+    def close(self) -> None:
+        """End the page; once is enough."""
+        if self._thread.is_alive():
+            self._server.shutdown()
+            self._thread.join()
+            self._server.close()
+
+    def __enter__(self) -> "Explorer":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return (
+            f"<frictionmap page at {self.url}>" if self._thread.is_alive() else "<frictionmap page, closed>"
+        )
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        if not self._thread.is_alive():
+            return html.escape(repr(self))
+        return f'<iframe src="{self.url}" width="100%" height="{_HEIGHT}" style="border:0"></iframe>'
+
+
+def explore(
+    system: System,
+    r: Sequence[float] = (0.0, 2.5),
+    beta: Sequence[float] = (0.0, 2.0),
+    mu: SupportsFloat = 1.0,
+    *,
+    start: Start = "rest",
+    title: str = "Regimes of motion",
+    port: int | None = None,
+) -> Explorer:
+    """The map of a system as a page in a browser, or in a notebook, to be moved about in.
+
+    Parameters
+    ----------
+    system : System
+    r, beta : sequence of float
+        Ranges of the frequency ratio (>= 0) and of the friction ratio (>= 0) [-] that the page begins with:
+        the first and the last value of what is given, increasing.
+    mu : float
+        Static over kinetic friction [-], >= 1, that it begins with.
+    start : {"rest", "moving"}
+        The starting state that it begins with, see `Solver`.
+    title : str
+        What stands above it.
+    port : int, optional
+        Where it is served on this machine; default 8712 if that is free, or another.
+
+    Returns
+    -------
+    Explorer
+        In a notebook it shows the page; `url` is its address, `close()` ends it.
+
+    Raises
+    ------
+    InputError
+        An argument is of the wrong kind or out of range, or the port is taken.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> page = fm.explore(fm.System(), r=(0.0, 2.5), beta=(0.0, 1.2), mu=1.5)
+    >>> page.url.startswith("http://127.0.0.1:")
+    True
+    >>> page.close()
+    """
+    scene = scene_of_system(system, r, beta, mu, start, title)
+    return Explorer(open_server(scene, _port(port)))
+
+
+def _port(port: object) -> int | None:
+    from .. import checks
+
+    return None if port is None else checks.whole(port, "port", least=0, most=65535)

@@ -1,0 +1,119 @@
+// Choices and sliders: what is shown, and with which numbers.
+
+import { short } from "./axes.js";
+
+/** Steps of a slider from its least to its most. */
+const STEPS = 1000;
+
+/** Where on a slider a value lies, from 0 to 1; the other way round `valueAt`. */
+function shareAt(slider, value) {
+  const { least, most, scale } = slider;
+  if (scale === "log") return Math.log(value / least) / Math.log(most / least);
+  const share = (value - least) / (most - least);
+  return scale === "square" ? Math.sqrt(Math.max(0, share)) : share;
+}
+
+function valueAt(slider, share) {
+  const { least, most, scale } = slider;
+  if (scale === "log") return Number((least * (most / least) ** share).toPrecision(3));
+  const value = least + (most - least) * (scale === "square" ? share ** 2 : share);
+  return scale === "square" ? Number(value.toPrecision(2)) : Number(value.toFixed(2));
+}
+
+export class Controls {
+  /**
+   * @param {HTMLFormElement} form
+   * @param {object} scene
+   * @param {(change: object) => void} onChange  a part of a view, or {number: [key, value]}
+   * @param {{values: Object<string, number[]>} | null} fixed  places that sliders have, if not all
+   */
+  constructor(form, scene, onChange, fixed) {
+    [this.form, this.scene, this.onChange, this.fixed] = [form, scene, onChange, fixed];
+    form.addEventListener("submit", (event) => event.preventDefault());
+    this.sliders = new Map();
+    this.#choice("quantity", "colour", scene.quantities);
+    if (!fixed) {
+      if (scene.contacts.length > 1) this.#choice("contact", "contact", scene.contacts);
+      this.#starts();
+    }
+    const shown = scene.sliders.filter((slider) => !fixed || fixed.values[slider.key]);
+    for (const slider of shown.filter((one) => one.scale !== "log")) this.#slider(form, slider);
+    const ratios = shown.filter((one) => one.scale === "log");
+    if (ratios.length) this.#ratios(ratios);
+    if (!fixed) this.#cuts();
+  }
+
+  #add(parent, html, name = "control") {
+    const made = document.createElement("div");
+    made.className = name;
+    made.innerHTML = html;
+    parent.append(made);
+    return made;
+  }
+
+  #choice(key, label, options) {
+    const made = this.#add(this.form, `<label for="${key}">${label}</label><select id="${key}"></select>`);
+    const select = made.querySelector("select");
+    for (const option of options) select.add(new Option(option.label, option.key));
+    select.addEventListener("change", () => this.onChange({ [key]: select.value }));
+  }
+
+  #starts() {
+    const made = this.#add(this.form, `<span id="start-name">start</span><div class="row" role="group" aria-labelledby="start-name">
+      <button type="button" data-start="rest" title="z = z′ = 0 at the beginning">at rest</button>
+      <button type="button" data-start="moving" title="a large sliding motion at the beginning">moving</button></div>`);
+    for (const button of made.querySelectorAll("button")) {
+      button.addEventListener("click", () => this.onChange({ start: button.dataset.start }));
+    }
+  }
+
+  #cuts() {
+    const made = this.#add(this.form, `<span id="cut-name">response curve</span><div class="row" role="group" aria-labelledby="cut-name">
+      <button type="button" data-cut="r" title="through the kept cell, over frequency (r)">along r</button>
+      <button type="button" data-cut="beta" title="through the kept cell, over friction (b)">along β</button></div>`);
+    for (const button of made.querySelectorAll("button")) {
+      button.addEventListener("click", () => this.onChange({ cut: button.ariaPressed === "true" ? "" : button.dataset.cut }));
+    }
+  }
+
+  #ratios(ratios) {
+    const made = document.createElement("details");
+    made.open = true;
+    made.innerHTML = "<summary>masses and springs</summary><div></div>";
+    this.form.append(made);
+    for (const slider of ratios) this.#slider(made.lastElementChild, slider);
+  }
+
+  #slider(parent, slider) {
+    const places = this.fixed?.values[slider.key];
+    const id = `slider-${slider.key}`;
+    const most = places ? places.length - 1 : STEPS;
+    const made = this.#add(parent, `<label></label><input type="number" step="any"><input type="range" min="0" max="${most}">`, "control slider");
+    const [label, number, range] = made.children;
+    [label.textContent, label.htmlFor, range.id, number.ariaLabel] = [slider.label, id, id, `${slider.label}, as a number`];
+    [range.name, number.name, number.readOnly] = [slider.key, slider.key, Boolean(places)];
+    const tell = (value) => this.onChange({ number: [slider.key, value] });
+    range.addEventListener("input", () => tell(places ? places[range.value] : valueAt(slider, range.value / STEPS)));
+    range.addEventListener("dblclick", () => tell(slider.value));
+    number.addEventListener("change", () => (Number.isFinite(number.valueAsNumber) ? tell(number.valueAsNumber) : this.set(this.view)));
+    this.sliders.set(slider.key, { slider, number, range, places });
+  }
+
+  /** Show what a view has. */
+  set(view) {
+    this.view = view;
+    for (const key of ["quantity", "contact"]) {
+      const select = this.form.querySelector(`#${key}`);
+      if (select) select.value = view[key];
+    }
+    for (const key of ["start", "cut"]) {
+      for (const button of this.form.querySelectorAll(`[data-${key}]`)) button.ariaPressed = String(button.dataset[key] === view[key]);
+    }
+    for (const [key, { slider, number, range, places }] of this.sliders) {
+      const value = key === "mu" ? view.mu : view.numbers[key] ?? slider.value;
+      range.value = places ? places.indexOf(value) : Math.round(STEPS * shareAt(slider, value));
+      range.ariaValueText = short(value);
+      if (document.activeElement !== number) number.value = Number(value.toPrecision(8));
+    }
+  }
+}

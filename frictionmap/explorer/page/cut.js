@@ -1,0 +1,98 @@
+// A response curve under the map: a line through it along r or beta.
+
+import { DRAWN, colour, massColour, short } from "./axes.js";
+import { around, draw } from "./chart.js";
+import { keyLine } from "./dom.js";
+import { row } from "./packet.js";
+
+const SHOWN = {
+  amplitude: "amplitude",
+  work: "energy that friction takes",
+  phase: "lag of the contact's first harmonic",
+};
+
+/** Share of values that an axis of amplitudes holds: a resonance goes beyond it. */
+const HELD = 0.97;
+
+export class CutPanel {
+  /** @param {HTMLElement} panel */
+  constructor(panel, scene, onClose) {
+    [this.panel, this.scene] = [panel, scene];
+    panel.innerHTML = `<div><span class="what"></span><label>show <select aria-label="What the curve shows"></select></label>
+      <span class="key"></span><button type="button" title="Close the curve" aria-label="Close the curve">×</button></div>
+      <canvas role="img" aria-label="response curve"></canvas>`;
+    this.select = panel.querySelector("select");
+    for (const [key, label] of Object.entries(SHOWN)) this.select.add(new Option(label, key));
+    this.select.addEventListener("change", () => this.draw());
+    panel.querySelector("button").addEventListener("click", onClose);
+    this.curves = null;
+    this.room = { left: 64, right: 16 };
+  }
+
+  /** @param {object} curves  as the server sends them  @param {{left: number, right: number}} room  of the map */
+  show(curves, room) {
+    [this.curves, this.room] = [curves, room];
+    this.panel.hidden = false;
+    this.draw();
+  }
+
+  hide() {
+    this.curves = null;
+    this.panel.hidden = true;
+  }
+
+  draw() {
+    if (!this.curves) return;
+    const { along, at, ends, classes } = this.curves;
+    const count = classes.length;
+    const step = (ends[1] - ends[0]) / count;
+    const x = Float64Array.from({ length: count }, (_, k) => ends[0] + (k + 0.5) * step);
+    const lines = this.#lines(x);
+    this.panel.querySelector(".what").textContent = along === "r" ? `along r at β = ${short(at)}` : `along β at r = ${short(at)}`;
+    const unit = { amplitude: this.scene.units.length, work: this.scene.units.energy, phase: "rad" }[this.select.value];
+    draw(this.panel.querySelector("canvas"), {
+      x: ends, y: this.#range(lines), lines, bands: this.#bands(x, step), left: this.room.left, right: this.room.right,
+      xName: along === "r" ? "frequency ratio r" : "friction ratio β", yName: `${this.select.value} / ${unit}`,
+    });
+    const named = lines.filter((line) => line.name);
+    this.panel.querySelector(".key").replaceChildren(...named.map((line) => keyLine(line.colour, line.name, line.dash ? "dashed" : "solid")));
+  }
+
+  #lines(x) {
+    const { curves } = this;
+    const ink = colour("ink");
+    if (this.select.value === "work") return [{ x, y: curves.work_friction, colour: ink, width: 2, name: "energy per cycle" }];
+    if (this.select.value === "phase") return [{ x, y: curves.contact_phase, colour: ink, width: 2, name: "z" }];
+    const lines = [];
+    const masses = Math.min(curves.amplitude.shape[0], DRAWN);
+    for (let k = 0; k < masses; k += 1) {
+      if (curves.held) lines.push({ x, y: row(curves.held, k), colour: massColour(k), width: 1, dash: [2, 3] });
+    }
+    for (let k = 0; k < masses; k += 1) {
+      lines.push({ x, y: row(curves.amplitude, k), colour: massColour(k), width: 1.5, name: masses === 1 ? "mass" : `x${k + 1}` });
+    }
+    lines.push({ x, y: curves.contact_amplitude, colour: ink, width: 2.2, dash: masses === 1 ? [6, 4] : undefined, name: "z, contact" });
+    if (curves.held) lines.push({ x: [], y: [], colour: "#888", dash: [2, 3], name: "contact held" });
+    return lines;
+  }
+
+  #range(lines) {
+    if (this.select.value !== "amplitude") return around(...lines.map((line) => line.y));
+    const own = lines.filter((line) => line.name && line.y.length).flatMap((line) => [...line.y]).filter(Number.isFinite);
+    own.sort((one, other) => one - other);
+    const top = own.length ? own[Math.floor(HELD * (own.length - 1))] : 1;
+    return [0, 1.25 * Math.max(top, 1e-9)];
+  }
+
+  /** Classes of the motion behind the curve, as strips of their colours. */
+  #bands(x, step) {
+    const { classes } = this.curves;
+    const bands = [];
+    for (let k = 0; k < classes.length; k += 1) {
+      const last = bands.at(-1);
+      if (last && last.index === classes[k]) last.to = x[k] + step / 2;
+      else bands.push({ index: classes[k], from: x[k] - step / 2, to: x[k] + step / 2, colour: `${this.scene.classes[classes[k]].colour}40` });
+    }
+    return bands;
+  }
+}

@@ -1,0 +1,34 @@
+// Elements of the page, made in one call.  Styles are set one by one: the page's policy allows no style attributes.
+
+/**
+ * @param {string} tag
+ * @param {object} [properties]  of the element; `style` is an object
+ * @param {...(Node | string)} children
+ */
+export function make(tag, properties = {}, ...children) {
+  const { style = {}, ...others } = properties;
+  const made = Object.assign(document.createElement(tag), others);
+  Object.assign(made.style, style);
+  made.append(...children);
+  return made;
+}
+
+/** A line and what it means. */
+export function keyLine(ink, text, dash = "solid", width = 2) {
+  return make("span", {}, make("span", { className: "key-line", style: { borderTop: `${width}px ${dash} ${ink}` } }), text);
+}
+
+/** A sentence of its own; what follows β_ is set below the line. */
+export function paragraph(text) {
+  return make("p", {}, ...lowered(text));
+}
+
+/** Text whose β_lim and β_stick are set as they should be. */
+export function lowered(text) {
+  return text.split(/_(lim|stick)\b/).map((piece, k) => (k % 2 ? make("sub", {}, piece) : piece));
+}
+
+/** A row of a table: a name and a value. */
+export function tableRow(name, value) {
+  return make("tr", {}, make("th", {}, ...lowered(name)), make("td", {}, value));
+}

@@ -1,0 +1,58 @@
+// What the colours and lines of the map mean.
+
+import { short } from "./axes.js";
+import { CLASS, rampColour } from "./colours.js";
+import { keyLine, make } from "./dom.js";
+import { LINES } from "./map.js";
+
+/** Name of a class, with the numbers of stops that its colour does not tell. */
+function nameOf(picture, index, look) {
+  const ends = picture.stops[index];
+  if (!ends) return look.label;
+  const range = ends[0] === ends[1] ? short(ends[0]) : `${short(ends[0])} to ${short(ends[1])}`;
+  return index === CLASS.more ? `${range} stops` : `not whole, ${range} stops`;
+}
+
+function swatch(ink) {
+  return make("i", { style: { background: ink } });
+}
+
+/** Share of cells in words. */
+function percent(share) {
+  const value = 100 * share;
+  return value >= 0.1 ? `${value.toFixed(value < 10 ? 1 : 0)} %` : "< 0.1 %";
+}
+
+/** Entries of the classes of a picture: all, or those that a quantity has no number for. */
+export function classesOf(picture, classes) {
+  const counts = picture.counts();
+  const all = picture.filled * picture.rows;
+  const shown = picture.values ? [CLASS.stuck, CLASS.unresolved] : [...counts.keys()];
+  return shown
+    .filter((index) => counts[index])
+    .map((index) => ({ colour: classes[index].colour, text: `${nameOf(picture, index, classes[index])}, ${percent(counts[index] / all)}` }));
+}
+
+/** Lay out the legend of a picture. */
+export function legend(element, picture, scene, view, marks) {
+  const entries = picture.scale ? [scaleEntry(picture.scale)] : [];
+  for (const { index, dash, meaning } of Object.values(LINES)) {
+    const name = make("span", {}, "β", make("sub", {}, index));
+    entries.push(make("span", {}, keyLine("currentColor", name, dash.length ? "dashed" : "solid"), meaning));
+  }
+  entries.push(...classesOf(picture, scene.classes).map(({ colour, text }) => make("span", {}, swatch(colour), text)));
+  for (const [name, places] of Object.entries(marks)) {
+    if (places.length) entries.push(make("span", {}, name.includes("held") ? "▽" : "▼", name));
+  }
+  element.replaceChildren(...entries);
+}
+
+function scaleEntry({ low, high, log }) {
+  const stops = Array.from({ length: 12 }, (_, k) => rampColour(k / 11)).join(", ");
+  const middle = log ? Math.sqrt(low * high) : (low + high) / 2;
+  const bar = make("i", {
+    title: `${short(middle, 2)} in the middle`,
+    style: { width: "8rem", background: `linear-gradient(to right, ${stops})` },
+  });
+  return make("span", {}, short(low, 2), bar, `${short(high, 2)}${log ? " (logarithmic)" : ""}`);
+}

@@ -1,0 +1,390 @@
+// The page: what it shows is one view; whatever changes that, here it is followed up.
+
+import { firstView, hashOf, queryOf, tidy, viewOf } from "./address.js";
+import { colour, short } from "./axes.js";
+import { classTable } from "./colours.js";
+import { Controls } from "./controls.js";
+import { CutPanel } from "./cut.js";
+import { ZOOM, listen, moved, zoomed } from "./gestures.js";
+import { legend } from "./legend.js";
+import { RegimeMap } from "./map.js";
+import { MotionPanel } from "./motion.js";
+import { Refiner } from "./refine.js";
+import { copy, picture, save } from "./save.js";
+import { Server } from "./source.js";
+import { Stored } from "./stored.js";
+
+const part = (id) => document.getElementById(id);
+
+/** Milliseconds after which what waits is said to wait, and between two looks at it. */
+const PATIENCE = 350;
+
+/** Milliseconds that a view stands still before what is less urgent follows: address, words, other starts. */
+const STILL = 180;
+
+/** Work of which only the newest counts: one at a time, and what comes meanwhile waits, the last of it. */
+function newest(work, onError) {
+  let [running, waiting] = [false, null];
+  const run = async (...asked) => {
+    if (running) {
+      waiting = asked;
+      return;
+    }
+    running = true;
+    try {
+      await work(...asked);
+    } catch (error) {
+      if (error.name !== "AbortError") onError(error);
+    }
+    running = false;
+    if (waiting) {
+      const next = waiting;
+      waiting = null;
+      run(...next);
+    }
+  };
+  return run;
+}
+
+/** Do something once nobody has asked for it for a while. */
+function later(work, milliseconds) {
+  let timer = 0;
+  return (...asked) => {
+    clearTimeout(timer);
+    timer = setTimeout(() => work(...asked), milliseconds);
+  };
+}
+
+class Page {
+  constructor(source, scene) {
+    [this.source, this.scene] = [source, scene];
+    this.view = viewOf(location.hash, scene);
+    this.table = classTable(scene.classes);
+    this.map = new RegimeMap(part("stage"));
+    this.map.names = { r: "frequency ratio r = ω/ω₁", beta: `friction ratio β = ${scene.units.beta}` };
+    this.marks = scene.marks;
+    this.motion = new MotionPanel(part("motion"), scene);
+    this.cut = new CutPanel(part("cut"), scene, () => this.change({ cut: "" }));
+    this.refiner = new Refiner(source, (found, view) => this.#onPicture(found, view), (state) => this.#onState(state));
+    this.controls = new Controls(part("controls"), scene, (change) => this.#onControl(change), source.fixed);
+    this.askMotion = newest((cell, kept) => this.#fetchMotion(cell, kept), (error) => this.#wrong(error));
+    this.askOthers = newest((cell) => this.#fetchOthers(cell), () => {});
+    this.askCut = newest(() => this.#fetchCut(), (error) => this.#wrong(error));
+    this.settle = later(() => this.#settled(), STILL);
+    this.rest = later((cell) => this.askOthers(cell), STILL);
+    this.pending = new Map();
+    this.told = part("told");
+    part("title").textContent = document.title = scene.title;
+    part("system").textContent = scene.system;
+    document.title += " – frictionmap";
+  }
+
+  begin() {
+    listen(this.map, {
+      zoom: (factors, point) => this.change(zoomed(this.view, factors, point)),
+      pan: (shares) => this.change(moved(this.view, shares)),
+      frame: (box) => this.#frame(box),
+      hover: (x, y) => this.#hover(x, y),
+      leave: () => this.#point(null),
+      pick: (x, y) => this.#pick(this.map.cellAt(x, y)),
+      step: (columns, rows) => this.#step(columns, rows),
+      release: () => this.#pick(null),
+      home: () => this.home(),
+      key: (letter) => this.#key(letter),
+    });
+    part("zoom").addEventListener("click", (event) => this.#zoomButton(event.target.dataset.zoom));
+    part("save").addEventListener("click", (event) => event.target.dataset.save && this.#save(event.target.dataset.save));
+    part("help").addEventListener("click", () => part("keys").showModal());
+    document.addEventListener("click", (event) => part("save").contains(event.target) || part("save").removeAttribute("open"));
+    window.addEventListener("hashchange", () => this.#onAddress());
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#redraw());
+    new ResizeObserver(() => this.update()).observe(this.map.stage);
+    setInterval(() => this.#lookAtWaiting(), PATIENCE);
+    this.update(true);
+  }
+
+  /** Show another view. @param {Partial<import("./address.js").View>} change */
+  change(change) {
+    const ranges = ["r", "beta"].filter((axis) => change[axis]).map((axis) => [axis, tidy(change[axis])]);
+    const cells = Object.keys(change).some((key) => !["r", "beta", "quantity", "cell", "cut"].includes(key));
+    this.view = { ...this.view, ...change, ...Object.fromEntries(ranges) };
+    this.update(cells || "cell" in change);
+  }
+
+  /** Follow up what the view has become; `motion`: whether the cell that is kept may move otherwise now. */
+  update(motion = false) {
+    const { map, view, scene } = this;
+    map.view = view;
+    map.kept = view.cell;
+    map.marks = this.marks;
+    this.controls.set(view);
+    map.draw();
+    const { columns, rows } = map.size;
+    const kind = scene.quantities.find((quantity) => quantity.key === view.quantity).scale;
+    this.map.stage.dataset.state = "refining";
+    this.refiner.ask({ view, scene, columns, rows, table: this.table, kind, scale: null });
+    if (motion && view.cell && this.source.live) this.askMotion(view.cell, true);
+    if (view.cut) this.askCut();
+    else this.cut.hide();
+    this.settle();
+  }
+
+  home() {
+    this.change({ r: this.scene.r, beta: this.scene.beta });
+  }
+
+  #onControl(change) {
+    if (!change.number) {
+      this.change(change);
+      return;
+    }
+    const [key, value] = change.number;
+    if (key === "mu") {
+      this.change({ mu: value });
+      return;
+    }
+    const numbers = { ...this.view.numbers, [key]: value };
+    if (value === this.scene.sliders.find((slider) => slider.key === key).value) delete numbers[key];
+    this.change({ numbers });
+  }
+
+  /** The view has stood still: address, words and marks follow. */
+  async #settled() {
+    const hash = hashOf(this.view, this.scene);
+    if (hash !== location.hash) history.replaceState(null, "", hash);
+    this.hash = location.hash;
+    if (!this.source.live) return;
+    try {
+      const told = await this.source.scene(queryOf(this.view, this.scene));
+      part("system").textContent = told.system;
+      this.map.marks = this.marks = told.marks;
+      this.map.drawOver();
+    } catch {
+      // what is wrong with the view the map says
+    }
+  }
+
+  #onAddress() {
+    if (location.hash === this.hash) return;
+    this.view = viewOf(location.hash, this.scene);
+    this.update(true);
+  }
+
+  #redraw() {
+    this.map.draw();
+    this.motion.draw();
+    this.cut.draw();
+  }
+
+  #onPicture(found, view) {
+    this.map.show(found);
+    if (found.whole) legend(part("legend"), found, this.scene, view, this.marks);
+    const detail = { columns: found.columns, rows: found.rows, whole: found.whole };
+    requestAnimationFrame(() => this.map.stage.dispatchEvent(new CustomEvent("painted", { detail })));
+  }
+
+  #onState(state) {
+    if (state.error) {
+      this.#wrong(state.error);
+    } else if (state.held) {
+      this.#tell(`finer would take about ${this.#duration(state.held)}`, "compute it", () => this.refiner.more());
+      this.map.stage.dataset.state = "done";
+    } else if (state.done !== undefined) {
+      this.#tell("");
+      this.map.stage.dataset.state = "done";
+    } else if (state.share < 1) {
+      const spent = performance.now() - state.since;
+      if (spent > PATIENCE) this.#tell(`${Math.round(100 * state.share)} %, about ${this.#duration((spent * (1 - state.share)) / state.share)} left`);
+    }
+  }
+
+  #duration(milliseconds) {
+    const seconds = milliseconds / 1000;
+    return seconds < 90 ? `${Math.max(1, Math.round(seconds))} s` : `${Math.round(seconds / 60)} min`;
+  }
+
+  #wrong(error) {
+    this.#tell(error.message, "", null, true);
+    this.map.stage.dataset.state = "wrong";
+  }
+
+  #tell(text, action = "", does = null, wrong = false) {
+    this.told.hidden = !text;
+    this.told.classList.toggle("wrong", wrong);
+    this.told.textContent = text;
+    if (!action) return;
+    const button = document.createElement("button");
+    [button.type, button.textContent] = ["button", action];
+    button.addEventListener("click", does);
+    this.told.append(button);
+  }
+
+  /** Keep track of what is waited for. */
+  async #waiting(promise) {
+    this.pending.set(promise, performance.now());
+    try {
+      return await promise;
+    } finally {
+      this.pending.delete(promise);
+    }
+  }
+
+  /** If something is waited for, say what: kernels are compiled once on a machine, and that takes a while. */
+  async #lookAtWaiting() {
+    const waits = this.map.stage.dataset.state === "refining" || this.pending.size;
+    if (!waits || !this.source.live || this.looking) return;
+    this.looking = true;
+    try {
+      const { compiling } = await this.source.state();
+      if (compiling.seconds) {
+        this.compiled = true;
+        this.#tell(`compiling kernels, once on this machine: ${Math.round(compiling.seconds)} s`);
+      } else if (this.compiled) {
+        this.compiled = false;
+        this.#tell("");
+      }
+    } catch {
+      // the request that waits will say so
+    }
+    this.looking = false;
+  }
+
+  // the cell that is pointed at
+
+  #point(cell) {
+    this.map.hovered = cell;
+    this.map.drawOver();
+  }
+
+  #hover(x, y) {
+    const cell = this.map.cellAt(x, y);
+    const before = this.map.hovered;
+    if (cell?.r === before?.r && cell?.beta === before?.beta) return;
+    this.#point(cell);
+    if (!cell || this.view.cell) return;
+    if (this.source.live) this.askMotion([cell.r, cell.beta], false);
+    else this.#tellStored(cell);
+  }
+
+  #pick(cell) {
+    if (cell && !this.source.live) this.#tellStored(cell);
+    this.change({ cell: cell && [cell.r, cell.beta], cut: cell ? this.view.cut : "" });
+    if (!cell && this.source.live) this.motion.tell("Point at the map to see the motion there; click to keep it.");
+  }
+
+  /** The next cell by keys: some pixels on from the one that is kept, or from the middle. */
+  #step(across, up) {
+    const { map, view } = this;
+    const size = { r: (view.r[1] - view.r[0]) / map.area.width, beta: (view.beta[1] - view.beta[0]) / map.area.height };
+    const from = view.cell ?? [(view.r[0] + view.r[1]) / 2, (view.beta[0] + view.beta[1]) / 2];
+    this.#pick(map.cellAt(map.x(from[0] + 5 * across * size.r), map.y(from[1] + 5 * up * size.beta)));
+  }
+
+  /** The class of a cell as it is coloured on the map. */
+  #lookAt([r, beta]) {
+    for (const found of [...this.map.pictures].reverse()) {
+      const cell = found.cellAt([r, beta]);
+      if (cell) return this.scene.classes[cell.class];
+    }
+    return { colour: colour("rule") };
+  }
+
+  async #fetchMotion(cell, kept) {
+    const motion = await this.#waiting(this.source.motion(this.view, this.scene, cell));
+    if (kept !== Boolean(this.view.cell)) return;
+    this.motion.show(motion, this.#lookAt(cell), kept);
+    requestAnimationFrame(() => part("motion").dispatchEvent(new CustomEvent("painted", { detail: { r: motion.r, beta: motion.beta } })));
+    this.rest(cell);
+  }
+
+  async #fetchOthers(cell) {
+    this.motion.add(await this.#waiting(this.source.others(this.view, this.scene, cell)));
+  }
+
+  #tellStored(cell) {
+    const value = cell.value === null ? "" : ` Value: about ${short(cell.value, 3)}.`;
+    this.motion.tell(`r = ${short(cell.r)}, β = ${short(cell.beta)}: ${this.scene.classes[cell.class].label}.${value} ` +
+      "This file holds maps; to see motions, run frictionmap explore on the configuration.");
+  }
+
+  async #fetchCut() {
+    const { view, scene, map } = this;
+    if (!view.cut) return;
+    const place = (view.cell ?? [(view.r[0] + view.r[1]) / 2, (view.beta[0] + view.beta[1]) / 2])[view.cut === "r" ? 1 : 0];
+    const found = await this.#waiting(this.source.cut(view, scene, view.cut, place, Math.max(2, Math.round(map.area.width))));
+    if (!this.view.cut) return;
+    const { width } = map.stage.getBoundingClientRect();
+    this.cut.show(found, { left: map.area.x, right: width - map.area.x - map.area.width });
+  }
+
+  // keys and buttons
+
+  #frame({ x, y, width, height }) {
+    this.map.drawOver();
+    if (width < 8 || height < 8) return;
+    const [left, bottom] = this.map.at(Math.max(x, this.map.area.x), y + height);
+    const [right, top] = this.map.at(x + width, y);
+    this.change({ r: [Math.max(0, left), right], beta: [Math.max(0, bottom), top] });
+  }
+
+  #zoomButton(way) {
+    if (way === "home") this.home();
+    else if (way) this.change(zoomed(this.view, way === "in" ? [1 / ZOOM, 1 / ZOOM] : [ZOOM, ZOOM], null));
+  }
+
+  #key(letter) {
+    if (letter === "?") {
+      part("keys").showModal();
+    } else if (letter === "q") {
+      const keys = this.scene.quantities.map((quantity) => quantity.key);
+      this.change({ quantity: keys[(keys.indexOf(this.view.quantity) + 1) % keys.length] });
+    } else if (this.source.live) {
+      const along = letter === "r" ? "r" : "beta";
+      this.change({ cut: this.view.cut === along ? "" : along });
+    }
+  }
+
+  async #save(what) {
+    const { view, scene, map, source } = this;
+    part("save").removeAttribute("open");
+    try {
+      if (what === "link") {
+        await copy(location.href.split("#")[0] + hashOf(view, scene));
+        this.#toast("The link to this view is copied.");
+      } else if (what === "configuration") {
+        await copy(await source.configuration(view, scene, map.size));
+        this.#toast("The configuration of this view is copied: paste it into a .toml file.");
+      } else if (what === "picture") {
+        const subtitle = [part("system").textContent, `μ = ${short(view.mu)}`].join("; ");
+        map.hovered = null;
+        map.drawOver();
+        save(await picture(map, scene, subtitle), "map.png");
+      } else {
+        save(source.file(view, scene, map.size, what), `map.${what}`);
+      }
+    } catch (error) {
+      this.#toast(error.message);
+    }
+  }
+
+  #toast(text) {
+    const toast = part("toast");
+    [toast.textContent, toast.hidden] = [text, false];
+    clearTimeout(this.fading);
+    this.fading = setTimeout(() => (toast.hidden = true), 3500);
+  }
+}
+
+async function begin() {
+  const stored = part("stored");
+  const source = stored ? await Stored.open(stored.textContent) : new Server();
+  try {
+    const scene = await source.scene();
+    new Page(source, scene).begin();
+  } catch (error) {
+    [part("told").textContent, part("told").hidden] = [error.message, false];
+    part("told").classList.add("wrong");
+  }
+}
+
+begin();

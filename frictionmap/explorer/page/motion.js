@@ -1,0 +1,192 @@
+// The motion in a cell: in words, over time, as portrait, loop and spectrum, in numbers; and from other starts.
+
+import { DRAWN, colour, massColour, short } from "./axes.js";
+import { around, draw } from "./chart.js";
+import { keyLine, make, paragraph, tableRow } from "./dom.js";
+import { row } from "./packet.js";
+
+const REGIMES = {
+  unresolved: "Not resolved",
+  permanent_sticking: "Permanent sticking",
+  stick_slip: "Stick-slip",
+  continuous: "Continuous sliding",
+};
+
+/** Decades that a spectrum shows. */
+const DECADES = 5;
+
+const TEMPLATE = `
+  <h2><i></i><span class="regime"></span><small class="where"></small></h2>
+  <div class="words"></div>
+  <figure class="moves">
+    <figcaption class="names"></figcaption>
+    <canvas class="displacement" role="img" aria-label="displacements over time"></canvas>
+    <canvas class="force" role="img" aria-label="friction force over time"></canvas>
+  </figure>
+  <div class="pair moves">
+    <figure><figcaption><b>phase portrait</b> z′ over z</figcaption>
+      <canvas class="portrait" role="img" aria-label="velocity over displacement in the contact"></canvas></figure>
+    <figure><figcaption><b>friction loop</b> force over z</figcaption>
+      <canvas class="loop" role="img" aria-label="friction force over displacement in the contact"></canvas></figure>
+  </div>
+  <figure class="moves"><figcaption class="spectrum-names"></figcaption>
+    <canvas class="spectrum" role="img" aria-label="harmonics of displacement and friction force"></canvas></figure>
+  <div class="others" hidden></div>
+  <table><tbody></tbody></table>`;
+
+export class MotionPanel {
+  /** @param {HTMLElement} panel */
+  constructor(panel, scene) {
+    [this.panel, this.scene] = [panel, scene];
+    this.motion = null;
+    this.other = null;
+  }
+
+  #part(name) {
+    return this.panel.querySelector(name);
+  }
+
+  /** Say why there is no motion to be seen. */
+  tell(text) {
+    this.motion = null;
+    this.panel.replaceChildren(make("p", { className: "hint" }, text));
+  }
+
+  /**
+   * @param {object} motion  as the server sends it
+   * @param {{colour: string}} look  of the cell's class
+   * @param {boolean} kept   whether the cell is kept
+   */
+  show(motion, look, kept) {
+    if (!this.#part("h2")) this.panel.innerHTML = TEMPLATE;
+    [this.motion, this.other] = [motion, null];
+    const none = "none" in motion;
+    this.#part("h2 i").style.background = look.colour;
+    this.#part(".regime").textContent = none ? REGIMES.unresolved : REGIMES[motion.regime];
+    this.#part(".where").textContent = `${kept ? "kept: " : ""}r = ${short(motion.r)}, β = ${short(motion.beta)}`;
+    this.#part(".words").replaceChildren(...(none ? [motion.none] : [...motion.told, motion.comment]).filter(Boolean).map(paragraph));
+    for (const figure of this.panel.querySelectorAll(".moves")) figure.hidden = none;
+    this.#part(".others").hidden = true;
+    this.#part("tbody").replaceChildren(...(none ? [] : motion.entries.map((entry, k) => this.#entry(entry, motion.numbers[k]))));
+    if (!none) this.draw();
+  }
+
+  #entry(entry, value) {
+    const unit = { length: this.scene.units.length, energy: this.scene.units.energy }[entry.unit] ?? entry.unit;
+    return tableRow(entry.label, `${short(value, 6)}${Number.isFinite(value) && unit ? ` ${unit}` : ""}`);
+  }
+
+  /** What else is known of the cell that is shown. */
+  add(others) {
+    if (!this.motion || others.r !== this.motion.r || others.beta !== this.motion.beta) return;
+    const words = this.#part(".others");
+    const start = others.start === "moving" ? "a large sliding motion" : "rest";
+    const told = others.same
+      ? [`From ${start} it ends in the same motion.`]
+      : [`From ${start} it ends otherwise (dashed): ${others.told.map(uncapped).join(" ")}`];
+    if (others.reachable.length > 1) {
+      told.push(`Found stable here: ${others.reachable.map((name) => REGIMES[name].toLowerCase()).join(", ")}.`);
+    }
+    words.replaceChildren(...told.map(paragraph));
+    words.hidden = false;
+    if (Number.isFinite(others.multiplier[0])) {
+      const rate = others.multiplier[0];
+      const told = `${short(rate, 4)} (${rate < 1 ? "stable" : "not attracting"})`;
+      this.#part("tbody").append(tableRow("largest Floquet multiplier", told));
+    }
+    this.other = others.tau ? others : null;
+    if (this.other) this.draw();
+  }
+
+  /** Draw again, in the colours and the size that the page has now. */
+  draw() {
+    if (!this.motion?.tau) return;
+    this.#drawTime();
+    this.#drawLoops();
+    this.#drawSpectrum();
+  }
+
+  /** Times in excitation periods, and stops as bands behind them. */
+  #time() {
+    const { tau, phase } = this.motion;
+    const time = Float32Array.from(tau, (value) => value / (2 * Math.PI));
+    const bands = [];
+    let from = null;
+    for (let k = 0; k <= phase.length; k += 1) {
+      const stuck = k < phase.length && phase[k] === 0;
+      if (stuck && from === null) from = time[k];
+      if (!stuck && from !== null) {
+        bands.push({ from, to: time[Math.min(k, time.length - 1)], colour: colour("stop") });
+        from = null;
+      }
+    }
+    return { time, bands };
+  }
+
+  /** The other start's motion, as long as this one is. */
+  #otherLine(name, time) {
+    const { other } = this;
+    const x = Float32Array.from(other.tau, (value) => value / (2 * Math.PI));
+    const [length, end] = [x.at(-1), time.at(-1)];
+    const [xs, ys] = [[], []];
+    for (let shift = 0; shift < end; shift += length) {
+      for (let k = 0; k < x.length && x[k] + shift <= end * 1.0001; k += 1) {
+        xs.push(x[k] + shift);
+        ys.push(other[name][k]);
+      }
+    }
+    return { x: xs, y: ys, colour: colour("second"), dash: [5, 3], width: 1.5 };
+  }
+
+  #drawTime() {
+    const { motion, other } = this;
+    const { time, bands } = this.#time();
+    const ink = colour("ink");
+    const masses = Math.min(motion.x.shape[0], DRAWN);
+    const lines = [];
+    for (let k = 0; k < masses; k += 1) lines.push({ x: time, y: row(motion.x, k), colour: massColour(k), width: 1.3 });
+    lines.push({ x: time, y: motion.z, colour: ink, width: 2.1, dash: masses === 1 ? [1, 3] : [] });
+    if (other) lines.push(this.#otherLine("z", time));
+    const x = [0, time.at(-1)];
+    draw(this.#part(".displacement"), { x, y: around(...lines.map((line) => line.y)), lines, bands, yName: this.scene.units.length });
+    const forces = [{ x: time, y: motion.friction, colour: colour("warm"), width: 1.8 }];
+    if (other) forces.push(this.#otherLine("friction", time));
+    draw(this.#part(".force"), {
+      x, y: around(...forces.map((line) => line.y)), lines: forces, bands, xName: "time / excitation period", yName: this.scene.units.force,
+    });
+    const names = [];
+    for (let k = 0; k < masses; k += 1) names.push(keyLine(massColour(k), masses === 1 ? "x, mass" : `x${k + 1}`));
+    names.push(keyLine(ink, "z, contact", masses === 1 ? "dotted" : "solid"), keyLine(colour("warm"), "friction"));
+    if (bands.length) names.push(keyLine(colour("stop"), "stuck", "solid", 9));
+    if (other) names.push(keyLine(colour("second"), other.start === "moving" ? "from moving" : "from rest", "dashed"));
+    this.#part(".names").replaceChildren(...names);
+  }
+
+  #drawLoops() {
+    const { motion, other } = this;
+    const second = (name) => (other ? [{ x: other.z, y: other[name], colour: colour("second"), dash: [5, 3], width: 1.5 }] : []);
+    const loop = (canvas, name, ink) => {
+      const lines = [{ x: motion.z, y: motion[name], colour: ink, width: 1.8 }, ...second(name)];
+      draw(this.#part(canvas), { x: around(...lines.map((line) => line.x)), y: around(...lines.map((line) => line.y)), lines, left: 38 });
+    };
+    loop(".portrait", "z_rate", colour("accent"));
+    loop(".loop", "friction", colour("warm"));
+  }
+
+  #drawSpectrum() {
+    const { z_harmonics: z, friction_harmonics: friction } = this.motion;
+    const [one, other] = [colour("accent"), colour("warm")];
+    const top = Math.max(1e-12, ...[...z, ...friction].filter(Number.isFinite)) * 1.6;
+    const bars = [];
+    z.forEach((value, n) => bars.push({ x: n - 0.17, y: value, colour: one }, { x: n + 0.17, y: friction[n], colour: other }));
+    draw(this.#part(".spectrum"), {
+      x: [-0.6, z.length - 0.4], y: [top / 10 ** DECADES, top], log: true, bars: bars.filter((bar) => bar.y > 0),
+      xTicks: Array.from(z, (_, n) => ({ value: n, text: String(n) })), xName: "harmonic of the excitation; 0 is the mean",
+    });
+    this.#part(".spectrum-names").replaceChildren(make("b", {}, "spectrum"), keyLine(one, "z"), keyLine(other, "friction"));
+  }
+}
+
+function uncapped(text) {
+  return text.charAt(0).toLowerCase() + text.slice(1);
+}

@@ -1,0 +1,141 @@
+// A coarse picture first, then finer ones; what is outdated is given up at once.
+
+import { Picture } from "./picture.js";
+
+/** Milliseconds that a first picture may take, that a piece of a finer one should take, and that all may take. */
+const FIRST = 70;
+const PIECE = 160;
+const LONGEST = 30000;
+
+/** Milliseconds after which a first picture that is outdated is given up: until then it is worth seeing. */
+const PATIENCE = 400;
+
+/** Pixels that a cell of the first picture has at most, each way. */
+const COARSEST = 32;
+
+/** How fast a guess of the cost of a cell follows what is seen. */
+const SWAY = 0.6;
+
+export class Refiner {
+  /** @type {Map<string, number>} milliseconds a cell, by what it depends on */
+  #costs = new Map();
+  #running = null;
+  #waiting = null;
+  #last = null;
+
+  /**
+   * @param {object} source        where maps come from
+   * @param {(picture: Picture) => void} onPicture  called when cells have come in
+   * @param {(state: object) => void} onState      called with what is under way
+   */
+  constructor(source, onPicture, onState) {
+    [this.source, this.onPicture, this.onState] = [source, onPicture, onState];
+  }
+
+  /**
+   * Ask for pictures of a view; what was asked for before is outdated.
+   * @param {object} asked  {view, scene, columns, rows, table, kind, scale}
+   */
+  ask(asked) {
+    this.#waiting = asked;
+    const running = this.#running;
+    if (!running) {
+      this.#next();
+    } else if (running.seen || performance.now() - running.began > PATIENCE) {
+      running.control.abort();
+    }
+  }
+
+  /** Go on with finer pictures, however long they take. */
+  more() {
+    if (this.#last) this.ask({ ...this.#last, patient: true });
+  }
+
+  async #next() {
+    const asked = this.#waiting;
+    this.#waiting = null;
+    if (!asked) return;
+    const run = { control: new AbortController(), began: performance.now(), seen: false };
+    this.#running = run;
+    this.#last = asked;
+    try {
+      await this.#refine(asked, run);
+    } catch (error) {
+      if (error.name !== "AbortError") this.onState({ error });
+    }
+    this.#running = null;
+    this.#next();
+  }
+
+  /** What the cost of a cell depends on. */
+  #kind({ view }) {
+    return [view.mu > 1, view.quantity, view.start, view.contact].join();
+  }
+
+  #cost(asked) {
+    return this.#costs.get(this.#kind(asked)) ?? (asked.scene.masses > 1 ? 0.02 : 0.001);
+  }
+
+  /** Pixels of a cell in the pictures to come. */
+  #blocks(asked) {
+    if (this.source.fixed) return [1];
+    const cells = asked.columns * asked.rows;
+    const most = FIRST / this.#cost(asked);
+    let block = 1;
+    while (cells / block ** 2 > 1.5 * most && block < COARSEST) block *= 2;
+    const blocks = [block];
+    while (block > 1) {
+      block = block > 4 ? block / 4 : 1;
+      blocks.push(block);
+    }
+    return blocks;
+  }
+
+  async #refine(asked, run) {
+    const blocks = this.#blocks(asked);
+    for (const [level, block] of blocks.entries()) {
+      const size = this.source.fixed ?? {
+        columns: Math.ceil(asked.columns / block),
+        rows: Math.ceil(asked.rows / block),
+      };
+      const expected = size.columns * size.rows * this.#cost(asked);
+      if (level && expected > LONGEST && !asked.patient) {
+        this.onState({ held: expected });
+        return;
+      }
+      await this.#fill(asked, run, size, level === 0);
+      if (this.#waiting) return;
+    }
+    this.onState({ done: performance.now() - run.began });
+  }
+
+  /** One picture, in pieces. */
+  async #fill(asked, run, { columns, rows }, first) {
+    const ranges = this.source.fixed ?? asked.view;
+    const picture = new Picture(ranges, columns, rows, asked.table, asked.kind, asked.scale);
+    const began = performance.now();
+    while (!picture.whole) {
+      const at = picture.filled;
+      const width = Math.max(1, Math.floor((first ? 2 * PIECE : PIECE) / (this.#cost(asked) * rows)));
+      const last = Math.min(columns, columns - at - width < width / 2 ? columns : at + width);
+      const sent = performance.now();
+      const packet = await this.source.map(asked.view, asked.scene, { columns, rows, first: at, last }, run.control.signal);
+      picture.put(packet, at);
+      if (!packet.compiled) this.#learn(asked, performance.now() - sent, (last - at) * rows);
+      asked.scale = picture.scale;
+      run.seen = true;
+      this.onPicture(picture, asked.view);
+      this.onState({ share: picture.filled / columns, since: began });
+      if (this.#waiting) run.control.abort();
+      run.control.signal.throwIfAborted();
+    }
+  }
+
+  /** A guess of what a cell costs. */
+  #learn(asked, milliseconds, cells) {
+    const kind = this.#kind(asked);
+    const seen = Math.max(1e-6, (milliseconds - 4) / cells);
+    const known = this.#costs.get(kind);
+    this.#costs.set(kind, known === undefined ? seen : known + SWAY * (seen - known));
+  }
+}

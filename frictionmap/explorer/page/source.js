@@ -1,0 +1,76 @@
+// Where maps and motions come from: the server on this machine.
+
+import { queryOf } from "./address.js";
+import { unpack } from "./packet.js";
+
+/** What the server refused, in its one line. */
+export class Refused extends Error {}
+
+/** The server of this page. */
+export class Server {
+  /** @type {null} Maps come at any resolution. */
+  fixed = null;
+  live = true;
+  /** Whatever this page asks for makes what it asked for before outdated. */
+  #page = Math.random().toString(36).slice(2);
+
+  async #get(path, query, signal) {
+    let response;
+    try {
+      response = await fetch(`${path}?${query}`, { signal });
+    } catch (error) {
+      if (error.name === "AbortError") throw error;
+      throw new Refused("frictionmap does not answer: has it been ended? Start it again and reload this page.");
+    }
+    if (response.status === 204) throw new DOMException("outdated", "AbortError");
+    if (!response.ok) throw new Refused((await response.text()).trim());
+    return response;
+  }
+
+  /** The scene, with the system as a view changes it. */
+  async scene(query = "", signal) {
+    return (await this.#get("scene", query, signal)).json();
+  }
+
+  /** What is being compiled. */
+  async state() {
+    return (await this.#get("state", "")).json();
+  }
+
+  async #packet(path, view, scene, further, signal) {
+    const query = queryOf(view, scene, { ...further, page: this.#page });
+    const response = await this.#get(path, query, signal);
+    return unpack(await response.arrayBuffer());
+  }
+
+  /** Columns `first` to before `last` of a picture of a view. */
+  map(view, scene, piece, signal) {
+    return this.#packet("map", view, scene, { ...piece, quantity: view.quantity }, signal);
+  }
+
+  /** The motion in a cell. */
+  motion(view, scene, cell, signal) {
+    return this.#packet("motion", view, scene, { at: cell.join(",") }, signal);
+  }
+
+  /** What else is known of a cell. */
+  others(view, scene, cell, signal) {
+    return this.#packet("others", view, scene, { at: cell.join(",") }, signal);
+  }
+
+  /** A response curve through a cell. */
+  cut(view, scene, along, place, count, signal) {
+    return this.#packet("cut", view, scene, { along, place, count }, signal);
+  }
+
+  /** The configuration of a view. */
+  async configuration(view, scene, size) {
+    const query = queryOf(view, scene, { ...size, quantity: view.quantity });
+    return (await this.#get("configuration.toml", query)).text();
+  }
+
+  /** The address of a view's cells as a file. */
+  file(view, scene, size, ending) {
+    return `map.${ending}?${queryOf(view, scene, { ...size, quantity: view.quantity })}`;
+  }
+}

@@ -1,0 +1,154 @@
+"""What the page asks for, checked as a configuration is: every key known, once, and of the right kind."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple, get_args
+from urllib.parse import parse_qsl
+
+from .. import checks
+from ..errors import InputError
+from ..model.settings import Start
+from .cut import Along
+from .scene import Scene, checked_range
+from .views import Piece, Quantity, View, quantities
+
+#: Keys of a query; a page of many masses has some tens.
+_MOST_KEYS = 100
+
+#: Points of a cut.
+_MOST_POINTS = 8192
+
+_VIEW = ("r", "beta", "mu", "start", "contact")
+
+
+class Query(NamedTuple):
+    """A checked query: the view, and what else was given."""
+
+    view: View
+    given: Mapping[str, str]
+
+
+def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
+    """The view that a query asks for; what it leaves out is as the page begins.
+
+    Parameters
+    ----------
+    text : the query of an address, such as "r=0.5,1.5&mu=1.2&damping_ratios=0.01"
+    further : keys that are legal beside those of a view
+
+    Raises
+    ------
+    InputError
+        A key is unknown or given twice, or a value is illegal.
+    """
+    numbers = tuple(slider.key for slider in scene.sliders if slider.key != "mu")
+    given = _read(text, (*_VIEW, *numbers, *further))
+    start = given.get("start", scene.solver.start)
+    checks.choice(start, "start", get_args(Start))
+    changes = tuple((key, number(given[key], key)) for key in numbers if key in given)
+    view = View(
+        system=scene.changed(given.get("contact", ""), changes),
+        r=_range(given, "r", scene.r),
+        beta=_range(given, "beta", scene.beta),
+        mu=checks.number(number(given["mu"], "mu"), "mu", least=1.0) if "mu" in given else scene.mu,
+        solver=replace(scene.solver, start=start),  # type: ignore[arg-type]
+    )
+    return Query(view, given)
+
+
+def _read(text: str, legal: Sequence[str]) -> dict[str, str]:
+    try:
+        pairs = parse_qsl(text, keep_blank_values=True, strict_parsing=bool(text), max_num_fields=_MOST_KEYS,
+                          errors="strict")  # fmt: skip
+    except ValueError as error:
+        raise InputError(f"the query must be KEY=VALUE&...; got {checks.one_line(text)} ({error})") from None
+    given: dict[str, str] = {}
+    for key, value in pairs:
+        if key not in legal:
+            hint = checks.nearest(key, legal)
+            raise InputError(f"unknown key {key}{hint}; the keys are {', '.join(legal)}")
+        if key in given:
+            raise InputError(f"{key} must be given once; got {given[key]!r} and {value!r}")
+        given[key] = value
+    return given
+
+
+def number(text: str, name: str) -> float:
+    """A number as a query has it."""
+    try:
+        if "_" in text:
+            raise ValueError
+        value = float(text)
+    except ValueError:
+        raise InputError(f"{name} must be a number; got {checks.one_line(text)}") from None
+    return checks.number(value, name)
+
+
+def _whole(given: Mapping[str, str], name: str, default: int | None = None) -> int:
+    if name not in given and default is not None:
+        return default
+    text = needed(given, name)
+    value = number(text, name)
+    if value != int(value):
+        raise InputError(f"{name} must be a whole number; got {text}")
+    return int(value)
+
+
+def needed(given: Mapping[str, str], name: str) -> str:
+    """What was given under a key that must be there."""
+    if name not in given:
+        raise InputError(f"{name} must be given; it is missing")
+    return given[name]
+
+
+def _range(given: Mapping[str, str], name: str, default: tuple[float, float]) -> tuple[float, float]:
+    if name not in given:
+        return default
+    parts = given[name].split(",")
+    if len(parts) != 2:
+        raise InputError(f"{name} must be two numbers with a comma; got {checks.one_line(given[name])}")
+    return checked_range([number(part, name) for part in parts], name)
+
+
+#: Keys of a piece of a map, of a cell, and of a cut.
+PIECE = ("columns", "rows", "first", "last", "quantity", "page")
+CELL = ("at", "page")
+CUT = ("along", "place", "count", "page")
+
+
+def piece_of(query: Query) -> tuple[Quantity, Piece]:
+    """Which part of a picture, and coloured by what."""
+    given = query.given
+    columns, rows = _whole(given, "columns"), _whole(given, "rows")
+    piece = Piece(columns, rows, _whole(given, "first", 0), _whole(given, "last", columns))
+    piece.check()
+    known = quantities(query.view.system)
+    key = checks.choice(given.get("quantity", known[0].key), "quantity", tuple(one.key for one in known))
+    return next(one for one in known if one.key == key), piece
+
+
+def cell_of(query: Query) -> tuple[float, float]:
+    """r and beta of a cell."""
+    parts = needed(query.given, "at").split(",")
+    if len(parts) != 2:
+        raise InputError(f"at must be r and beta with a comma; got {checks.one_line(query.given['at'])}")
+    r, beta = (number(part, name) for part, name in zip(parts, ("r", "beta"), strict=True))
+    r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
+    return r, checks.number(beta, "beta", least=0.0)
+
+
+def cut_of(query: Query) -> tuple[Along, float, int]:
+    """Along what a cut goes, at which value of the other axis, with how many points."""
+    legal: tuple[Along, ...] = get_args(Along)
+    along: Any = checks.choice(needed(query.given, "along"), "along", legal)
+    place = checks.number(number(needed(query.given, "place"), "place"), "place", least=0.0)
+    count = _whole(query.given, "count")
+    return along, place, checks.whole(count, "count", least=2, most=_MOST_POINTS)
+
+
+def page_of(query: Query) -> str:
+    """The page that asks: a later request of it makes this one outdated."""
+    page = query.given.get("page", "")
+    if len(page) > 64 or not page.isascii():
+        raise InputError(f"page must be a short word; got {checks.one_line(page)}")
+    return page

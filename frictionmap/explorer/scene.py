@@ -1,0 +1,214 @@
+"""What is explored: the system, where the view begins, what can be changed."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import combinations
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
+
+from .. import checks
+from ..errors import InputError
+from ..model.settings import Solver, Start
+from ..model.system import CONTACTS, System
+from ..model.variations import Number
+
+if TYPE_CHECKING:
+    from ..files.config import Config
+
+#: Masses up to which every one, and every pair of them, is offered as a contact; and up to which every ratio
+#: has a slider.  Beyond it a list is no choice any more.
+_OFFERED_PAIRS, _OFFERED_MASSES, _OFFERED_RATIOS = 6, 24, 8
+
+#: Systems that are kept: a slider that is moved to and fro comes back to them.
+_KEPT = 32
+
+#: Ratios of a slider to the value that it begins with; where a slider for mu, and one for zeta, ends.
+_RATIO, _MOST_MU, _MOST_ZETA = 10.0, 3.0, 1.0
+
+
+class Slider(NamedTuple):
+    """A number that can be changed; its key is that of a further axis of a configuration, or mu."""
+
+    key: str
+    label: str
+    least: float
+    most: float
+    value: float
+    scale: str  # how the slider runs from least to most: "linear", "square" (fine near least) or "log"
+
+
+class Contact(NamedTuple):
+    """A contact that can be chosen."""
+
+    key: str
+    label: str
+    kind: str
+    masses: tuple[int | str, ...]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What a page is about."""
+
+    title: str
+    system: System
+    r: tuple[float, float]
+    beta: tuple[float, float]
+    mu: float
+    solver: Solver
+    config: "Config | None" = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "changed", lru_cache(_KEPT)(self._changed))
+
+    @property
+    def files(self) -> Sequence[Path]:
+        """What it was read from."""
+        return () if self.config is None else self.config.files
+
+    @property
+    def sliders(self) -> tuple[Slider, ...]:
+        """What can be changed as a number."""
+        mu = Slider("mu", "μ", 1.0, max(_MOST_MU, 2.0 * self.mu), self.mu, "linear")
+        return (mu, *_of_damping(self.system), *_of_ratios(self.system))
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """The contact as it is, and what others the system can have."""
+        own = _contact(self.system.contact, tuple(self.system.contact_masses), self.system.n)
+        return (own, *(other for other in _others(self.system) if other.key != own.key))
+
+    def _changed(self, contact: str, numbers: tuple[tuple[str, float], ...]) -> System:
+        """The system with another contact, and with other numbers; "": as it is.
+
+        Raises
+        ------
+        InputError
+            A key is unknown, or there is no such system.
+        """
+        system = self.system
+        if contact and contact != self.contacts[0].key:
+            keys = tuple(known.key for known in self.contacts)
+            checks.choice(contact, "contact", keys)
+            system = _with_contact(system, self.contacts[keys.index(contact)])
+        changed: dict[str, Any] = {}
+        for text, value in numbers:
+            number = number_of(text)
+            before = changed.get(number.key, getattr(system, number.key))
+            changed[number.key] = number.put_into(before, value)
+        return replace(system, **changed)  # at once: one alone may make no sense
+
+    changed: Any = None  # `_changed`, with what it found kept
+
+
+def number_of(key: str) -> Number:
+    """The number of a system that a slider moves."""
+    name, _, place = key.rstrip("]").partition("[")
+    return Number(name, int(place) if place else None)
+
+
+def _of_damping(system: System) -> tuple[Slider, ...]:
+    given = system.damping_ratios
+    if given is None:  # a matrix C
+        return ()
+    ratios = tuple(given)  # type: ignore[arg-type]
+    alike = len(set(ratios)) == 1
+    if not alike and len(ratios) > _OFFERED_RATIOS:
+        return ()
+    keys = ("damping_ratios",) if alike else tuple(f"damping_ratios[{k + 1}]" for k in range(len(ratios)))
+    of_one = system.n == 1
+    labels = ("ζ" if of_one else "ζ of all modes",) if alike else tuple(f"ζ{k + 1}" for k in range(system.n))
+    return tuple(
+        Slider(key, label, 0.0, max(_MOST_ZETA, 2.0 * value), value, "square")
+        for key, label, value in zip(keys, labels, ratios, strict=False)
+    )
+
+
+def _of_ratios(system: System) -> tuple[Slider, ...]:
+    if system.matrices is not None or not 1 < system.n <= _OFFERED_RATIOS:
+        return ()
+    return tuple(
+        Slider(f"{key}[{k}]", f"{letter}{k} / {letter}1", value / _RATIO, value * _RATIO, value, "log")
+        for key, letter in (("mass_ratios", "m"), ("stiffness_ratios", "k"))
+        for k, value in enumerate(getattr(system, key)[1:], start=2)
+    )
+
+
+def _contact(kind: str, masses: tuple[int | str, ...], n: int) -> Contact:
+    where = {
+        "fixed-wall": "fixed wall",
+        "joined-base-wall": "wall on the moving base",
+        "between-masses": "",
+    }[kind]
+    names = f"masses {masses[0]} and {masses[-1]}" if len(masses) > 1 else f"mass {masses[0]}"
+    label = where if n == 1 else ", ".join(part for part in (names, where) if part)
+    return Contact(f"{kind}:{','.join(map(str, masses))}", label, kind, masses)
+
+
+def _others(system: System) -> list[Contact]:
+    """Contacts that the system can have."""
+    n = system.n
+    own = tuple(system.contact_masses)
+    masses: list[tuple[int | str, ...]] = (
+        [(k,) for k in range(1, n + 1)] if n <= _OFFERED_MASSES else [own[:1]]
+    )
+    pairs: list[tuple[int | str, ...]] = list(combinations(range(1, n + 1), 2)) if n <= _OFFERED_PAIRS else []
+    if system.matrices is not None:  # only its own degrees of freedom are known to be what they should
+        masses, pairs = [own] if len(own) == 1 else [], []
+    found = []
+    for kind in CONTACTS:
+        for chosen in pairs if kind == "between-masses" else masses:
+            contact = _contact(kind, tuple(chosen), n)
+            try:
+                _with_contact(system, contact)
+            except InputError:
+                continue
+            found.append(contact)
+    return found
+
+
+def _with_contact(system: System, contact: Contact) -> System:
+    """The system with another contact; a wall that moves with the base needs a base that moves."""
+    changes: dict[str, Any] = {"contact": contact.kind, "contact_masses": contact.masses}
+    if contact.kind == "joined-base-wall" and system.excitation != "base":
+        changes |= {"excitation": "base", "load": None, "load_mass": 1}
+    return replace(system, **changes)
+
+
+def _ends(values: Any) -> tuple[float, float]:
+    """The range of an axis; about its only value."""
+    first, last = float(values[0]), float(values[-1])
+    return (first, last) if last > first else (0.5 * first, 1.5 * first or 1.0)
+
+
+def scene_of(config: "Config") -> Scene:
+    """What a configuration asks to explore: of further axes the first point, of several mu the first."""
+    system = config.system
+    if config.variations is not None:
+        system = config.variations.at([0] * len(config.variations.axes))
+    return Scene(
+        config.title, system, _ends(config.r), _ends(config.beta), float(config.mu[0]), config.solver, config
+    )
+
+
+def checked_range(values: object, name: str) -> tuple[float, float]:
+    """The two ends of a range of r or beta."""
+    most = checks.LARGEST_RATIO if name == "r" else float("inf")
+    ends = checks.axis(values, name, least=0.0, most=most)
+    if ends.size < 2:
+        raise InputError(f"{name} must be a range of two numbers, or more; got {ends.size}")
+    return float(ends[0]), float(ends[-1])
+
+
+def scene_of_system(
+    system: System, r: object, beta: object, mu: object, start: object, title: object
+) -> Scene:
+    """What a system is explored with from Python, checked."""
+    checks.instance(system, "system", System)
+    if not isinstance(title, str):
+        raise InputError(f"title must be text; got {checks.one_line(title)}")
+    checks.choice(start, "start", get_args(Start))
+    mu = checks.number(mu, "mu", least=1.0)
+    settings: Mapping[str, Any] = {"start": start}
+    return Scene(title, system, checked_range(r, "r"), checked_range(beta, "beta"), mu, Solver(**settings))

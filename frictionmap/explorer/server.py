@@ -1,0 +1,328 @@
+"""The page's server: the standard library's, for this machine only.
+
+It listens on 127.0.0.1 and answers whoever names it so: a page of another host that has its name point
+here, and pages that ask from elsewhere, are refused (403).  What it is asked is checked (400, one line), and
+nothing that it does changes anything.
+"""
+
+import contextlib
+import errno
+import json
+import os
+import select
+import socket
+import sys
+import threading
+from collections.abc import Callable
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, NamedTuple
+from urllib.parse import urlsplit
+
+from ..errors import InputError
+from .jobs import Jobs, Outdated
+from .packets import pack
+from .scene import Scene
+
+if TYPE_CHECKING:
+    from .queries import Query
+
+#: The port if nobody names one and it is free: a link to a view then outlives the program.
+PORT = 8712
+
+_HOST = "127.0.0.1"
+_NAMES = (_HOST, "localhost", "[::1]")
+
+#: Seconds that a connection may be silent.
+_SILENCE = 120.0
+
+_KINDS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
+_TEXT, _JSON, _BYTES = "text/plain", "application/json", "application/octet-stream"
+
+#: Everything is ours; notebooks may show the page in a frame.
+_POLICY = (
+    "default-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'self' http://localhost:* http://127.0.0.1:* vscode-webview:"
+)
+_HEADERS = {
+    "Content-Security-Policy": _POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
+
+
+class Answer(NamedTuple):
+    """What is sent back."""
+
+    status: int
+    kind: str
+    body: bytes
+    file: str = ""  # the name to save it under
+
+
+def page_files() -> dict[str, bytes]:
+    """The page as it is written, by the names of its files."""
+    folder = files(__package__) / "page"
+    return {
+        entry.name: entry.read_bytes()
+        for entry in folder.iterdir()
+        if "." + entry.name.rpartition(".")[2] in _KINDS
+    }
+
+
+def _text(status: int, message: object) -> Answer:
+    return Answer(status, _TEXT, (" ".join(str(message).split()) + "\n").encode())
+
+
+class Page:
+    """What is behind the addresses; it computes, and knows nothing of connections."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.jobs = Jobs()
+        self._files = page_files()
+        self._warm = threading.Event()
+        self._work: dict[str, Callable[[str, Callable[[], bool]], Answer]] = {
+            "/scene": self._scene,
+            "/state": self._state,
+            "/map": self._map,
+            "/motion": self._motion,
+            "/others": self._others,
+            "/cut": self._cut,
+            "/configuration.toml": self._configuration,
+            "/map.nc": self._saved(".nc"),
+            "/map.csv": self._saved(".csv"),
+        }
+
+    def warm(self) -> None:
+        """Import what computes: it takes longer than the browser needs to ask for the page."""
+        try:
+            from . import cell, cut, queries, told, views  # noqa: F401
+
+            self.jobs.listen()
+        finally:
+            self._warm.set()
+
+    def answer(self, target: str, gone: Callable[[], bool]) -> Answer:
+        """The answer to an address; `gone` tells whether anybody still waits for it."""
+        parts = urlsplit(target)
+        name = parts.path.removeprefix("/") or "index.html"
+        if name in self._files:
+            return Answer(200, _KINDS["." + name.rpartition(".")[2]], self._files[name])
+        if parts.path not in self._work:
+            return _text(404, f"there is nothing at {parts.path[:80]!r}")
+        self._warm.wait()
+        try:
+            return self._work[parts.path](parts.query, gone)
+        except InputError as error:
+            return _text(400, error)
+        except Outdated:
+            return Answer(204, _TEXT, b"")
+        except MemoryError:
+            return _text(500, "too little memory for this view")
+
+    def _scene(self, query: str, gone: Callable[[], bool]) -> Answer:
+        from .queries import read_query
+        from .told import told
+
+        return _json(told(self.scene, read_query(self.scene, query)))
+
+    def _state(self, query: str, gone: Callable[[], bool]) -> Answer:
+        return _json({"compiling": self.jobs.state()})
+
+    def _enter(self, kind: str, query: "Query", gone: Callable[[], bool]) -> Any:
+        """A job in the lane of the page for work of a kind; pages without a name have none in common."""
+        from .queries import page_of
+
+        page = page_of(query)
+        return self.jobs.enter(f"{kind} {page}" if page else f"{kind} {id(query)}", gone)
+
+    def _map(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from . import queries
+        from .views import piece_of_map
+
+        query = queries.read_query(self.scene, text, queries.PIECE)
+        quantity, piece = queries.piece_of(query)
+        with self._enter("map", query, gone) as job:
+            header, arrays = piece_of_map(query.view, quantity, piece, job)
+        return _packet(({**header, "compiled": job.kernels > 0}, arrays))
+
+    def _motion(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from .cell import motion
+
+        return self._of_cell("motion", motion, text, gone)
+
+    def _others(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from .cell import others
+
+        return self._of_cell("others", others, text, gone)
+
+    def _of_cell(self, kind: str, work: Callable, text: str, gone: Callable[[], bool]) -> Answer:
+        from . import queries
+
+        query = queries.read_query(self.scene, text, queries.CELL)
+        cell = queries.cell_of(query)
+        with self._enter(kind, query, gone) as job:
+            job.watch()
+            return _packet(work(query.view, *cell))
+
+    def _cut(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from . import queries
+        from .cut import cut
+
+        query = queries.read_query(self.scene, text, queries.CUT)
+        line = queries.cut_of(query)
+        with self._enter("cut", query, gone) as job:
+            return _packet(cut(query.view, *line, job.watch))
+
+    def _configuration(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from . import queries
+        from .downloads import configuration_text
+
+        query = queries.read_query(self.scene, text, queries.PIECE)
+        found = configuration_text(self.scene, query.view, *queries.piece_of(query))
+        return Answer(200, "application/toml", found.encode(), "view.toml")
+
+    def _saved(self, ending: str) -> Callable[[str, Callable[[], bool]], Answer]:
+        def save(text: str, gone: Callable[[], bool]) -> Answer:
+            from . import queries
+            from .downloads import saved_map
+
+            query = queries.read_query(self.scene, text, queries.PIECE)
+            quantity, piece = queries.piece_of(query)
+            with self._enter(f"save{ending}", query, gone) as job:
+                body = saved_map(self.scene, query.view, quantity, piece, ending, job)
+            return Answer(200, "text/csv" if ending == ".csv" else _BYTES, body, f"map{ending}")
+
+        return save
+
+
+def _json(content: object) -> Answer:
+    return Answer(200, _JSON, json.dumps(content, ensure_ascii=False, allow_nan=False).encode())
+
+
+def _packet(found: tuple[dict, dict]) -> Answer:
+    return Answer(200, _BYTES, pack(*found))
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """One connection."""
+
+    protocol_version = "HTTP/1.1"
+    server_version, sys_version = "frictionmap", ""
+    disable_nagle_algorithm = True
+    timeout = _SILENCE
+    server: "Server"
+
+    def do_GET(self) -> None:
+        self._reply(self._refusal() or self._answer())
+
+    def do_HEAD(self) -> None:
+        self.do_GET()
+
+    def _refusal(self) -> Answer | None:
+        """Why somebody else than our own page must not be answered."""
+        port = self.server.server_address[1]
+        own = {f"{name}:{port}" for name in _NAMES} | ({*_NAMES} if port == 80 else set())
+        host, origin = self.headers.get_all("Host") or [], self.headers.get("Origin")
+        if len(host) != 1 or host[0].lower() not in own:
+            return _text(403, f"this page is for this machine only, at http://{_HOST}:{port}")
+        if origin is not None and origin.removeprefix("http://").lower() not in own:
+            return _text(403, "pages of other hosts are not answered")
+        document = self.headers.get("Sec-Fetch-Mode") == "navigate"
+        if not document and self.headers.get("Sec-Fetch-Site", "none") not in ("same-origin", "none"):
+            return _text(403, "pages of other hosts are not answered")
+        return None
+
+    def _answer(self) -> Answer:
+        try:
+            return self.server.page.answer(self.path, self._gone)
+        except Exception as error:  # whatever it is, the page hears of it in a line
+            return _text(500, f"frictionmap failed: {type(error).__name__}: {error}")
+
+    def _gone(self) -> bool:
+        """Whether whoever asked has closed the connection."""
+        try:
+            readable, _, _ = select.select([self.connection], [], [], 0.0)
+            return bool(readable) and not self.connection.recv(1, socket.MSG_PEEK)
+        except (OSError, ValueError):
+            return True
+
+    def _reply(self, answer: Answer) -> None:
+        self.send_response(answer.status)
+        kind = answer.kind if answer.kind == _BYTES else f"{answer.kind}; charset=utf-8"
+        headers = {"Content-Type": kind, "Content-Length": str(len(answer.body)), **_HEADERS}
+        if answer.file:
+            headers["Content-Disposition"] = f'attachment; filename="{answer.file}"'
+        for name, value in headers.items():
+            self.send_header(name, value)
+        with contextlib.suppress(OSError):  # it has gone in the meantime
+            self.end_headers()
+            if self.command != "HEAD":
+                self.wfile.write(answer.body)
+
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
+        """One line for what the library itself refuses: other methods, lines too long."""
+        self.close_connection = True
+        self._reply(_text(code, message or HTTPStatus(code).phrase))
+
+    def log_message(self, format: str, *args: object) -> None:
+        """Nothing: the terminal is the user's."""
+
+
+class Server(ThreadingHTTPServer):
+    """The page of a scene at an address of this machine."""
+
+    daemon_threads = True
+    allow_reuse_address = sys.platform != "win32"  # there it would let two programs have one port
+    request_queue_size = 64
+
+    def __init__(self, scene: Scene, port: int) -> None:
+        super().__init__((_HOST, port), _Handler)
+        self.page = Page(scene)
+        threading.Thread(target=self.page.warm, daemon=True).start()
+
+    @property
+    def url(self) -> str:
+        """The address of the page."""
+        return f"http://{_HOST}:{self.server_address[1]}/"
+
+    def handle_error(self, request: object, client_address: object) -> None:
+        """A connection that broke is no concern of the terminal."""
+
+    def close(self) -> None:
+        """Stop listening, and whatever is under way."""
+        self.page.jobs.close()
+        self.server_close()
+
+
+def open_server(scene: Scene, port: int | None = None) -> Server:
+    """A server that listens; without a port on the usual one, or any that is free.
+
+    Raises
+    ------
+    InputError
+        The port is taken, or may not be had.
+    """
+    tried = (PORT, 0) if port is None else (port,)
+    for number in tried:
+        try:
+            return Server(scene, number)
+        except (OSError, OverflowError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            free = getattr(error, "errno", None) in (errno.EADDRINUSE, errno.EACCES)
+            if number == tried[-1] or not free:
+                raise InputError(f"--port must be one that is free; got {number} ({reason})") from None
+    raise AssertionError("there is always a last one")
+
+
+def show(url: str) -> None:
+    """Open the page in the user's browser, where there is a screen for one."""
+    import webbrowser
+
+    if sys.platform not in ("win32", "darwin") and not {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ):
+        return
+    threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()

@@ -1,0 +1,187 @@
+"""The page as one file, with maps that are computed beforehand for places of its sliders.
+
+The file asks nothing of any host: style, modules and maps are in it, and it opens without a server.  Maps are
+coloured classes, and quantities in 255 steps, as fine as colours are told apart; deflated, as text.
+"""
+
+import base64
+import json
+import re
+import zlib
+from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from ..errors import InputError
+from .queries import read_query
+from .scene import Scene, Slider
+from .server import page_files
+from .told import told
+from .views import Piece, Quantity, View, piece_of_map, quantities
+
+#: Cells of every map.
+_COLUMNS, _ROWS = 360, 270
+
+#: Places of each slider: two sliders are moved together, further ones by themselves.
+_PLACES, _TOGETHER = 7, 2
+
+#: Steps of a quantity; 0 is no number.
+_STEPS = 255
+
+#: What holds the page together.  Styles are set by its modules.
+_POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline' data:; style-src 'unsafe-inline'; img-src data: blob:"
+)
+
+
+class Progress(Protocol):
+    """Who is told how far the maps are."""
+
+    def __call__(self, done: float, total: float) -> None: ...
+
+
+class _Unwatched:
+    """Nobody ends the computation of a map that is written."""
+
+    def watch(self) -> None:
+        """Go on."""
+
+    def progress(self, done: float, total: float) -> None:
+        """Maps are counted, not their cells."""
+
+
+class _Kept(NamedTuple):
+    """What a file has maps of."""
+
+    values: dict[str, list[float]]  # places of sliders
+    points: list[tuple[float, ...]]  # of all those sliders
+
+
+def check_page(path: Path) -> None:
+    """Refuse a name that browsers would not take for a page."""
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise InputError(f"--export must end in .html; got {path}")
+
+
+def places_of(slider: Slider) -> list[float]:
+    """Values of a slider that maps are computed for, its own among them."""
+    shares = np.linspace(0.0, 1.0, _PLACES)
+    if slider.scale == "log":
+        found = slider.least * (slider.most / slider.least) ** shares
+    else:
+        found = slider.least + (slider.most - slider.least) * (
+            shares**3 if slider.scale == "square" else shares
+        )
+    rounded = {float(f"{value:.3g}") for value in found}
+    return sorted({*rounded, slider.value})
+
+
+def _kept(sliders: tuple[Slider, ...]) -> _Kept:
+    values = {slider.key: places_of(slider) for slider in sliders}
+    own = [slider.value for slider in sliders]
+    points = [(*pair, *own[_TOGETHER:]) for pair in product(*list(values.values())[:_TOGETHER])]
+    for k, slider in enumerate(sliders[_TOGETHER:], start=_TOGETHER):
+        others = [value for value in values[slider.key] if value != slider.value]
+        points += [(*own[:k], value, *own[k + 1 :]) for value in others]
+    return _Kept(values, points)
+
+
+def _deflated(values: np.ndarray) -> str:
+    return base64.b64encode(zlib.compress(values.tobytes(), 9)).decode()
+
+
+def _stepped(values: np.ndarray, log: bool) -> dict[str, Any]:
+    """A quantity in steps between its ends, evenly or by equal factors; what is infinite is at the last."""
+    known = values[np.isfinite(values) & ((values > 0.0) | (not log))]
+    low, high = (float(known.min()), float(known.max())) if known.size else (1.0, 1.0)
+    high = high if high > low else low + 1.0
+    share = np.log(values / low) / np.log(high / low) if log else (values - low) / (high - low)
+    steps = 1.0 + np.rint((_STEPS - 1) * np.clip(share, 0.0, 1.0))
+    steps[np.isnan(values)] = 0.0
+    return {"low": low, "high": high, "log": log, "steps": _deflated(steps.astype(np.uint8))}
+
+
+def _map(view: View, offered: tuple[Quantity, ...]) -> dict[str, Any]:
+    """The map of a view, with all quantities."""
+    piece = Piece(_COLUMNS, _ROWS, 0, _COLUMNS)
+    kept: dict[str, Any] = {"values": {}}
+    for quantity in offered:
+        header, arrays = piece_of_map(view, quantity, piece, _Unwatched())
+        if not quantity.output:
+            limits = np.concatenate((arrays["beta_lim"], arrays["beta_stick"]))
+            kept |= {
+                "classes": _deflated(arrays["classes"]),
+                "stops": header["stops"],
+                "limits": _deflated(limits),
+            }
+            continue
+        with np.errstate(divide="ignore", invalid="ignore"):
+            kept["values"][quantity.key] = _stepped(arrays["values"].astype(float), quantity.scale == "log")
+    return kept
+
+
+def _name(kept: _Kept, point: tuple[float, ...]) -> str:
+    """The name of a map: the places of its sliders, counted from 0."""
+    places = (values.index(value) for values, value in zip(kept.values.values(), point, strict=True))
+    return ",".join(map(str, places))
+
+
+def _content(scene: Scene, progress: Progress) -> dict[str, Any]:
+    """What the page finds in its file."""
+    kept = _kept(scene.sliders)
+    first = read_query(scene, "")
+    offered = quantities(scene.system)
+    maps = {}
+    for done, point in enumerate(kept.points):
+        text = "&".join(f"{key}={value!r}" for key, value in zip(kept.values, point, strict=True))
+        query = read_query(scene, text)
+        maps[_name(kept, point)] = _map(query.view, offered)
+        progress(done + 1, len(kept.points))
+    own = tuple(slider.value for slider in scene.sliders)
+    return {
+        "scene": told(scene, first), "r": scene.r, "beta": scene.beta, "columns": _COLUMNS, "rows": _ROWS,
+        "values": kept.values, "first": _name(kept, own), "maps": maps,
+    }  # fmt: skip
+
+
+def _modules(files: dict[str, bytes]) -> Iterator[tuple[str, str]]:
+    """Modules by bare names: what is imported by a file's name has none in a page that is one file."""
+    for name, body in files.items():
+        if name.endswith(".js"):
+            text = re.sub(r'from "\./([a-z]+)\.js"', r'from "\1"', body.decode())
+            yield name.removesuffix(".js"), text
+
+
+def _page(content: dict[str, Any]) -> str:
+    files = page_files()
+    modules = dict(_modules(files))
+    main = modules.pop("main")
+    where = {
+        name: f"data:text/javascript;base64,{base64.b64encode(text.encode()).decode()}"
+        for name, text in modules.items()
+    }
+    # "<" begins a tag wherever it stands in a script
+    data, imports = (
+        json.dumps(part, ensure_ascii=False).replace("<", "\\u003c") for part in (content, {"imports": where})
+    )
+    head = (
+        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">\n'
+        f"<style>{files['page.css'].decode()}</style>\n"
+        f'<script type="application/json" id="stored">{data}</script>\n'
+        f'<script type="importmap">{imports}</script>\n'
+        f'<script type="module">{main}</script>'
+    )
+    links = re.compile(r'  <link rel="stylesheet".*?</script>', re.DOTALL)
+    return links.sub(lambda _: head, files["index.html"].decode(), count=1)
+
+
+def write_page(scene: Scene, progress: Progress) -> bytes:
+    """The page of a scene as one file.
+
+    Places of sliders: all of mu together with all of the next slider; of further ones each by itself, with
+    the others where the scene has them.  The page shows the nearest.
+    """
+    return _page(_content(scene, progress)).encode()

@@ -1,0 +1,149 @@
+"""One view: a system as changed, ranges of r and beta, mu; its map, piece by piece."""
+
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple, Protocol, cast
+
+import numpy as np
+import xarray as xr
+
+from .. import checks
+from ..errors import InputError
+from ..model.settings import Output, Solver
+from ..model.system import System
+from ..pictures.classes import of_cells, stops_range
+from ..pictures.palette import BROKEN, MORE
+from ..steady.maps import regime_map
+
+#: Pixels of a picture each way, and together: those of the largest screens.
+MOST_PIXELS, MOST_CELLS = 8192, 2**25
+
+#: Frequencies of a kind that are marked.
+_MOST_MARKS = 200
+
+#: Masses whose amplitudes are offered one by one.
+_OFFERED_MASSES = 12
+
+
+class Quantity(NamedTuple):
+    """What the cells of a map can be coloured by."""
+
+    key: str
+    label: str
+    output: str  # of a map; "" for the classes of regimes and stops
+    scale: str  # of the colours: "classes", "linear" or "log"
+    mass: int = 0  # the one that is meant, counted from 1
+
+
+_QUANTITIES = (
+    Quantity("regime", "regime and stops", "", "classes"),
+    Quantity("contact_amplitude", "amplitude in the contact", "contact_amplitude", "log"),
+    Quantity("multiplier", "Floquet multiplier", "multiplier", "linear"),
+    Quantity("stuck_fraction", "share of time stuck", "stuck_fraction", "linear"),
+    Quantity("work_friction", "energy that friction takes", "work_friction", "log"),
+)
+
+
+def quantities(system: System) -> tuple[Quantity, ...]:
+    """What the cells of maps of a system can be coloured by."""
+    masses = range(1, min(system.n, _OFFERED_MASSES) + 1)
+    amplitudes = tuple(
+        Quantity(f"amplitude_{k}", f"amplitude of mass {k}" if system.n > 1 else "amplitude of the mass",
+                 "amplitude", "log", k)
+        for k in masses
+    )  # fmt: skip
+    return (*_QUANTITIES[:2], *amplitudes, *_QUANTITIES[2:])
+
+
+@dataclass(frozen=True)
+class View:
+    """What a page shows."""
+
+    system: System
+    r: tuple[float, float]
+    beta: tuple[float, float]
+    mu: float
+    solver: Solver
+
+    def axes(self, columns: int, rows: int) -> dict[str, np.ndarray]:
+        """The middles of a picture's pixels: axes r and beta, and mu, of a map."""
+        return {
+            "mu": np.array([self.mu]),
+            "r": middles(self.r, columns, "columns"),
+            "beta": middles(self.beta, rows, "rows"),
+        }
+
+
+def middles(ends: tuple[float, float], count: int, name: str) -> np.ndarray:
+    """The middles of so many equal parts of a range, as `start`, `stop` and `num` of an axis give them."""
+    half = 0.5 * (ends[1] - ends[0]) / count
+    found = np.linspace(ends[0] + half, ends[1] - half, count)
+    if count > 1 and not (np.diff(found) > 0.0).all():
+        raise InputError(f"{name} must be fewer in so narrow a range, {ends[0]!r} to {ends[1]!r}")
+    return found
+
+
+class Piece(NamedTuple):
+    """Columns of a picture of a view."""
+
+    columns: int
+    rows: int
+    first: int
+    last: int  # the one after the last
+
+    def check(self) -> None:
+        """Refuse what is no piece of a picture."""
+        checks.whole(self.columns, "columns", least=1, most=MOST_PIXELS)
+        checks.whole(self.rows, "rows", least=1, most=MOST_PIXELS)
+        checks.whole(self.first, "first", least=0, most=self.columns - 1)
+        checks.whole(self.last, "last", least=self.first + 1, most=self.columns)
+        cells = (self.last - self.first) * self.rows
+        if cells > MOST_CELLS:
+            raise InputError(f"columns times rows must be <= {MOST_CELLS}; got {cells}")
+
+
+class Follower(Protocol):
+    """Who waits for a map, and may wait no more: then `watch` raises."""
+
+    def watch(self) -> None: ...
+
+    def progress(self, done: float, total: float) -> None: ...
+
+
+def solve_piece(view: View, quantity: Quantity, piece: Piece, follower: Follower) -> xr.Dataset:
+    """The cells of a piece as `sweep` gives them: regime, stops per cycle, and the quantity."""
+    piece.check()
+    wanted = dict.fromkeys(("regime", "stops_per_cycle", *filter(None, (quantity.output,))))
+    solver = replace(view.solver, outputs=cast(tuple[Output, ...], tuple(wanted)))
+    axes = view.axes(piece.columns, piece.rows)
+    axes["r"] = axes["r"][piece.first : piece.last]
+    return regime_map(view.system, axes, solver, None, follower.progress, follower.watch)
+
+
+def piece_of_map(
+    view: View, quantity: Quantity, piece: Piece, follower: Follower
+) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """A piece of a picture for the page: what to know of it, and its arrays.
+
+    `classes` (columns, rows) are indices into the palette, `values` (columns, rows) float32 those of the
+    quantity; `beta_lim` and `beta_stick` (columns,).
+    """
+    ds = solve_piece(view, quantity, piece, follower)
+    stops = ds["stops_per_cycle"].values[0]
+    classes = of_cells(ds["regime"].values[0], stops)
+    arrays = {"classes": classes}
+    if quantity.output:
+        values = ds[quantity.output].values[0]
+        arrays["values"] = (values[..., quantity.mass - 1] if quantity.mass else values).astype(np.float32)
+    arrays |= {name: ds[name].values[0] for name in ("beta_lim", "beta_stick")}
+    ranges = {index: stops_range(classes, stops, index) for index in (MORE, BROKEN)}
+    counted = {str(index): ends for index, ends in ranges.items() if ends[0] <= ends[1]}
+    return {"first": piece.first, "last": piece.last, "stops": counted}, arrays
+
+
+def marks(system: System) -> dict[str, list[float]]:
+    """Frequencies of a system that are marked."""
+    modes = system.modes
+    known = {"natural frequency": modes.w}
+    if system.n > 1:
+        known["natural frequency, contact held"] = modes.held_frequencies()
+    return {name: places[:_MOST_MARKS].tolist() for name, places in known.items()}

@@ -1,0 +1,717 @@
+"""The page that explores maps, without a browser: what its server answers, refuses, gives up; its files."""
+
+import base64
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+import zlib
+from html.parser import HTMLParser
+from urllib.parse import quote
+
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import ROOT
+from pages import HANG, ask, packet, scene_from, served, solver
+from refusals import refusal
+
+import frictionmap as fm
+from frictionmap import InputError, regimes
+from frictionmap._kernels.cache import listeners
+from frictionmap.explorer import stored
+from frictionmap.explorer.jobs import Jobs, Outdated
+from frictionmap.explorer.packets import pack, unpack
+from frictionmap.files.config import config_of
+from frictionmap.pictures.classes import classes
+
+ONE = """\
+title = "One mass"
+[system]
+contact = "fixed-wall"
+[grid]
+r = { start = 0.0, stop = 2.0, step = 0.1 }
+beta = { start = 0.0, stop = 1.2, step = 0.1 }
+mu = [1.5, 1.75]
+[solver]
+outputs = ["period"]
+"""
+TWO = """\
+[system]
+contact = "between-masses"
+contact_masses = [1, 2]
+mass_ratios = [1.0, 0.5]
+stiffness_ratios = [1.0, 2.0]
+damping_ratios = 0.02
+[grid]
+r = [0.1, 2.5]
+beta = [0.0, 2.0]
+"""
+
+
+@pytest.fixture(scope="module")
+def one(tmp_path_factory):
+    """A server of one mass."""
+    with served(scene_from(tmp_path_factory.mktemp("one"), ONE)) as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def two(tmp_path_factory):
+    """A server of two masses."""
+    with served(scene_from(tmp_path_factory.mktemp("two"), TWO)) as server:
+        yield server
+
+
+def middles(low, high, count):
+    half = (high - low) / (2 * count)
+    return np.linspace(low + half, high - half, count)
+
+
+# What it computes
+
+
+@pytest.mark.parametrize("mu", [1.0, 1.5])
+def test_a_map_is_that_of_sweep_to_the_bit(one, mu):
+    r, beta = middles(0.2, 1.4, 40), middles(0.0, 1.1, 30)
+    ds = fm.sweep(fm.System(), r, beta, mu, solver=solver())
+    header, arrays = packet(one, f"/map?r=0.2,1.4&beta=0,1.1&mu={mu}&columns=40&rows=30")
+    np.testing.assert_array_equal(arrays["classes"], classes(ds.isel(mu=0)))
+    for name in ("beta_lim", "beta_stick"):
+        np.testing.assert_array_equal(arrays[name], ds[name].values[0])
+    assert (header["first"], header["last"]) == (0, 40)
+    assert np.unique(arrays["classes"]).size > 2
+
+
+@pytest.mark.parametrize(
+    "name", ["contact_amplitude", "multiplier", "stuck_fraction", "work_friction", "amplitude_2"]
+)
+def test_pieces_of_a_quantity_are_those_of_sweep(two, name):
+    r, beta = middles(0.1, 2.5, 12), middles(0.0, 2.0, 9)
+    system = fm.System(
+        "between-masses", [1, 2], mass_ratios=[1, 0.5], stiffness_ratios=[1, 3.0], damping_ratios=0.02
+    )
+    output = "amplitude" if name == "amplitude_2" else name
+    ds = fm.sweep(system, r, beta, outputs=[output])
+    whole = ds[output].values[0, ..., 1] if name == "amplitude_2" else ds[output].values[0]
+    query = f"/map?quantity={name}&columns=12&rows=9&{quote('stiffness_ratios[2]')}=3"
+    parts = [packet(two, f"{query}&first={first}&last={last}")[1] for first, last in ((0, 5), (5, 12))]
+    joined = np.concatenate([part["values"] for part in parts])
+    np.testing.assert_array_equal(joined, whole.astype(np.float32))
+
+
+def test_a_cell_moves_as_response_says(one):
+    _, arrays = packet(one, "/motion?at=0.3,0.5&mu=1")
+    header, _ = packet(one, "/motion?at=0.3,0.5&mu=1")
+    ds = fm.response(fm.System(), 0.3, 0.5, points=arrays["tau"].size - 1)
+    for name in ("tau", "z", "friction", "x"):
+        np.testing.assert_array_equal(arrays[name], ds[name].values.astype(np.float32))
+    sliding = arrays["phase"] != 0
+    np.testing.assert_array_equal(arrays["z_rate"][sliding], ds["v"].values[0, sliding].astype(np.float32))
+    assert not arrays["z_rate"][~sliding].any()
+    numbers = dict(zip([entry["name"] for entry in header["entries"]], arrays["numbers"], strict=True))
+    assert numbers["contact_amplitude"] == ds["contact_amplitude"].item()
+    assert numbers["stuck_fraction"] == 100.0 * ds["stuck_fraction"].item()
+    assert header["regime"] == "stick_slip"
+
+
+@pytest.mark.parametrize(
+    ("at", "mu", "regime", "words"),
+    [
+        ("0.3,0.5", 1.0, "stick_slip", ["The contact slides and stops: 2 stops per cycle", "lies between"]),
+        ("0.3,1.1", 1.0, "permanent_sticking", ["The contact never slides", "reaches β_stick = 1:"]),
+        ("1.5,0.1", 1.0, "continuous", ["The contact slides to and fro", "lies below β_lim"]),
+        ("0.5,0.2", 1.0, "continuous", ["to and fro", "lies below", "Undamped at an even sub-multiple"]),
+    ],
+)
+def test_a_cell_is_told_in_words(one, at, mu, regime, words):
+    header, _ = packet(one, f"/motion?at={at}&mu={mu}")
+    assert header["regime"] == regime
+    for sentence, begin in zip(header["told"], words, strict=True):
+        assert begin in sentence
+
+
+def test_the_velocity_in_a_moving_contact(one):
+    """A joined base-wall: z = x - cos tau, so that z' = v + sin tau."""
+    _, arrays = packet(one, "/motion?at=1.3,0.2&mu=1&contact=joined-base-wall:1")
+    step = arrays["tau"][1].astype(float)
+    rate = np.gradient(arrays["z"].astype(float), step)
+    np.testing.assert_allclose(arrays["z_rate"][1:-1], rate[1:-1], atol=2e-3)
+
+
+def test_a_cell_without_a_steady_state_says_why(one):
+    header, arrays = packet(one, "/motion?at=1,0.1&mu=1")
+    assert "undamped resonance" in header["none"]
+    assert arrays == {}
+
+
+def test_what_other_starts_give(one):
+    """Fixed wall, r = 0.303, beta = 0.76, mu = 1.5: stuck from rest, else two stops with Z = 0.853."""
+    header, arrays = packet(one, "/others?at=0.303,0.76&mu=1.5")
+    assert header["reachable"] == ["permanent_sticking", "stick_slip"]
+    assert header["start"] == "moving"
+    assert not header["same"]
+    assert "2 stops per cycle" in header["told"][0]
+    assert np.abs(arrays["z"]).max() == pytest.approx(0.853, abs=5e-4)
+    back, _ = packet(one, "/others?at=0.303,0.76&mu=1.5&start=moving")
+    assert (back["start"], back["same"]) == ("rest", False)
+    same, arrays = packet(one, "/others?at=0.303,0.5&mu=1")
+    assert same["same"]
+    assert list(arrays) == ["multiplier"]
+
+
+@pytest.mark.parametrize(("along", "place"), [("r", 0.4), ("beta", 0.55)])
+def test_a_cut_is_that_of_curves(two, along, place):
+    _, arrays = packet(two, f"/cut?along={along}&place={place}&count=110&r=0.2,2.2&beta=0.1,1.9")
+    system = fm.System(
+        "between-masses", [1, 2], mass_ratios=[1, 0.5], stiffness_ratios=[1, 2], damping_ratios=0.02
+    )
+    r = middles(0.2, 2.2, 110) if along == "r" else place
+    beta = place if along == "r" else middles(0.1, 1.9, 110)
+    ds = fm.curves(system, r, beta, quantities=["amplitude", "energy", "first_harmonic"])
+    flat = ds.isel({"mu": 0, "beta" if along == "r" else "r": 0})
+    np.testing.assert_array_equal(arrays["amplitude"], flat["amplitude"].values.T.astype(np.float32))
+    np.testing.assert_array_equal(arrays["contact_amplitude"], flat["contact_amplitude"].astype(np.float32))
+    np.testing.assert_array_equal(arrays["work_friction"], flat["work_friction"].astype(np.float32))
+    assert ("held" in arrays) == (along == "r")
+
+
+# What it begins with
+
+
+def test_a_scene_tells_what_can_be_changed(one, two):
+    first = json.loads(ask(one, "/scene")[1])
+    assert first["title"] == "One mass"
+    assert (first["r"], first["beta"], first["mu"]) == ([0.0, 2.0], [0.0, 1.2], 1.5)
+    assert [slider["key"] for slider in first["sliders"]] == ["mu", "damping_ratios"]
+    assert [contact["key"] for contact in first["contacts"]] == ["fixed-wall:1", "joined-base-wall:1"]
+    second = json.loads(ask(two, "/scene?contact=fixed-wall:2")[1])
+    keys = ["mu", "damping_ratios", "mass_ratios[2]", "stiffness_ratios[2]"]
+    assert [slider["key"] for slider in second["sliders"]] == keys
+    assert second["contacts"][0] == {"key": "between-masses:1,2", "label": "masses 1 and 2"}
+    assert len(second["contacts"]) == 5
+    assert "mass 2 and a fixed wall" in second["system"]
+    assert len(second["marks"]["natural frequency"]) == 2
+
+
+def test_further_axes_begin_at_their_first_point(tmp_path):
+    text = f"{ONE}[axes]\ndamping_ratios = [0.05, 0.1]\n"
+    assert scene_from(tmp_path, text).system.zeta == 0.05
+
+
+def test_a_structure_given_by_matrices(tmp_path):
+    mass, stiffness = np.diag([1.0, 2.0]), np.array([[3.0, -1.0], [-1.0, 1.0]])
+    system = fm.System("fixed-wall", [2], matrices={"M": mass, "K": stiffness})
+    with fm.explore(system, r=[0.1, 2.0], beta=[0, 1]) as page:
+        port = int(page.url.rstrip("/").rpartition(":")[2])
+        with socket.create_connection(("127.0.0.1", port)) as connection:
+            connection.sendall(
+                f"GET /scene HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nConnection: close\r\n\r\n".encode()
+            )
+            body = b"".join(iter(lambda: connection.recv(65536), b""))
+    told = json.loads(body.partition(b"\r\n\r\n")[2])
+    assert [slider["key"] for slider in told["sliders"]] == ["mu", "damping_ratios"]
+    assert [contact["key"] for contact in told["contacts"]] == ["fixed-wall:2", "joined-base-wall:2"]
+
+
+# Who is answered
+
+
+def test_it_listens_on_this_machine_only(one):
+    assert one.server_address[0] == "127.0.0.1"
+
+
+@pytest.mark.parametrize("target", ["/", "/scene", "/map?columns=2&rows=2", "/nothing"])
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Host": "evil.example"},
+        {"Host": "evil.example:PORT"},
+        {"Host": "127.0.0.1"},
+        {"Host": "127.0.0.1:1"},
+        {"Host": ""},
+        {"Origin": "http://evil.example"},
+        {"Origin": "null"},
+        {"Origin": "https://127.0.0.1:PORT"},
+        {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "no-cors"},
+        {"Sec-Fetch-Site": "same-site", "Sec-Fetch-Mode": "cors"},
+    ],
+)
+def test_others_are_refused(one, target, headers):
+    port = str(one.server_address[1])
+    status, body, _ = ask(one, target, {name: value.replace("PORT", port) for name, value in headers.items()})
+    assert status == 403
+    assert body.count(b"\n") == 1
+
+
+def test_two_hosts_are_refused(one):
+    port = one.server_address[1]
+    with socket.create_connection(("127.0.0.1", port)) as connection:
+        connection.sendall(
+            f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nHost: x\r\nConnection: close\r\n\r\n".encode()
+        )
+        assert connection.recv(64).startswith(b"HTTP/1.1 403")
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {},
+        {"Host": "localhost:PORT"},
+        {"Host": "LOCALHOST:PORT"},
+        {"Origin": "http://127.0.0.1:PORT"},
+        {"Sec-Fetch-Site": "same-origin", "Sec-Fetch-Mode": "cors"},
+        {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "navigate"},  # a link in a letter
+    ],
+)
+def test_our_own_page_is_answered(one, headers):
+    port = str(one.server_address[1])
+    given = {name: value.replace("PORT", port) for name, value in headers.items()}
+    assert ask(one, "/scene", given)[0] == 200
+
+
+# What it refuses
+
+VIEW_KEYS = "r, beta, mu, start, contact, damping_ratios"
+
+
+@pytest.mark.parametrize(
+    ("query", "words"),
+    [
+        ("map?rows=5", "columns must be given; it is missing"),
+        ("map?columns=0&rows=5", "columns must be >= 1; got 0"),
+        ("map?columns=5.5&rows=5", "columns must be a whole number; got 5.5"),
+        ("map?columns=9000&rows=5", "columns must be <= 8192; got 9000"),
+        ("map?columns=8192&rows=8192", "columns times rows must be <= 33554432; got 67108864"),
+        ("map?columns=5&rows=5&first=5", "first must be <= 4; got 5"),
+        ("map?columns=5&rows=5&first=3&last=3", "last must be >= 4; got 3"),
+        ("map?columns=5&rows=5&mu=0.5", "mu must be >= 1; got 0.5"),
+        ("map?columns=5&rows=5&mu=1,2", "mu must be a number; got '1,2'"),
+        ("map?columns=5&rows=5&mu=nan", "mu must be finite; got nan"),
+        ("map?columns=5&rows=5&mu=1_5", "mu must be a number; got '1_5'"),
+        ("map?columns=5&rows=5&r=1", "r must be two numbers with a comma; got '1'"),
+        ("map?columns=5&rows=5&r=2,1", "r must be increasing; got 1.0 at index 1"),
+        ("map?columns=5&rows=5&r=-1,1", "r must be >= 0; got -1.0 at index 0"),
+        ("map?columns=5&rows=5&beta=0,inf", "beta must be finite; got inf"),
+        ("map?columns=5&rows=5&r=1,1.0000000000000004", "columns must be fewer in so narrow a range"),
+        ("map?columns=5&rows=5&start=left", "start must be one of rest, moving; got 'left'"),
+        ("map?columns=5&rows=5&contact=fixed-wall:2", "contact must be one of fixed-wall:1, joined"),
+        ("map?columns=5&rows=5&quantity=colour", "quantity must be one of regime, contact_amplitude"),
+        ("map?columns=5&rows=5&damping_ratios=-1", "damping_ratios must be >= 0; got -1.0"),
+        ("map?columns=5&rows=5&damping_ratios=1e3", "damping_ratios must be <= 100; got 1000.0"),
+        ("map?columns=5&columns=6&rows=5", "columns must be given once; got '5' and '6'"),
+        ("map?colums=5&rows=5", f"unknown key colums (did you mean columns?); the keys are {VIEW_KEYS}"),
+        ("map?columns", "the query must be KEY=VALUE&"),
+        ("map?columns=%ff", "the query must be KEY=VALUE&"),
+        ("map?" + "&".join(f"k{k}=1" for k in range(200)), "the query must be KEY=VALUE&"),
+        (f"map?columns=5&rows=5&page={'x' * 65}", "page must be a short word"),
+        ("motion?at=1", "at must be r and beta with a comma; got '1'"),
+        ("motion?at=0,1", "r must be > 0; got 0.0"),
+        ("motion?at=1,-1", "beta must be >= 0; got -1.0"),
+        ("motion", "at must be given; it is missing"),
+        ("others?at=x,1", "r must be a number; got 'x'"),
+        ("cut?along=z&place=1&count=9", "along must be one of r, beta; got 'z'"),
+        ("cut?along=r&place=1&count=1", "count must be >= 2; got 1"),
+        ("configuration.toml?columns=3", "rows must be given; it is missing"),
+        ("map.nc?columns=3&rows=3&quantity=x", "quantity must be one of"),
+        ("scene?mu=x", "mu must be a number; got 'x'"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_refused_in_a_line(one, query, words):
+    status, body, headers = ask(one, f"/{query}")
+    assert status == 400
+    assert words in body.decode()
+    assert body.count(b"\n") == 1
+    assert headers["Content-Type"].startswith("text/plain")
+
+
+@pytest.mark.parametrize(
+    "target",
+    ["/nothing", "/page", "/../cli.py", "/%2e%2e/cli.py", "/map/", "/server.py", "/__init__.py"],
+)
+def test_what_is_not_there(one, target):
+    status, body, _ = ask(one, target)
+    assert status == 404
+    assert body.count(b"\n") == 1
+
+
+@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS", "CONNECT"])
+def test_other_methods_are_refused(one, method):
+    status, body, _ = ask(one, "/scene", method=method)
+    assert status == 501
+    assert body.count(b"\n") == 1
+
+
+def test_an_address_that_is_too_long(one):
+    status, body, _ = ask(one, f"/map?r={'1' * 70000}")
+    assert status == 414
+    assert body.count(b"\n") == 1
+
+
+def test_trouble_of_ours_is_told_in_a_line(one, monkeypatch):
+    def fail(*_):
+        raise ZeroDivisionError("of ours")
+
+    monkeypatch.setitem(one.page._work, "/state", fail)
+    status, body, _ = ask(one, "/state")
+    assert (status, body) == (500, b"frictionmap failed: ZeroDivisionError: of ours\n")
+
+
+# The page's files
+
+
+def test_the_page_asks_only_our_own_server(one):
+    status, body, headers = ask(one, "/")
+    assert status == 200
+    assert headers["Content-Security-Policy"].startswith("default-src 'self';")
+    assert headers["Content-Type"] == "text/html; charset=utf-8"
+    assert ask(one, "/", method="HEAD")[1] == b""
+    seen, waiting = set(), {"index.html"}
+    while waiting:
+        name = waiting.pop()
+        seen.add(name)
+        status, body, headers = ask(one, f"/{name}")
+        assert status == 200, name
+        text = body.decode()
+        assert not re.search(r"https?://", text), name
+        found = re.findall(r'(?:from|href|src)[ =]"(?:\./)?([a-z.]+\.(?:js|css))"', text)
+        waiting |= set(found) - seen
+    assert seen == {"index.html", *(path.name for path in (ROOT / "frictionmap/explorer/page").iterdir())}
+
+
+# What is outdated
+
+
+SLOW = "contact=between-masses:1,2&mu=1.9&columns=700&rows=700&r=0.02,0.2&beta=0.01,0.9&damping_ratios=0"
+
+
+def in_background(server, target, done):
+    def run():
+        began = time.perf_counter()
+        done.append((*ask(server, target)[:2], time.perf_counter() - began))
+
+    thread = threading.Thread(target=run, daemon=True)
+    thread.start()
+    return thread
+
+
+def waits_for(condition):
+    end = time.perf_counter() + HANG
+    while not condition():
+        assert time.perf_counter() < end
+        time.sleep(0.005)
+
+
+def test_the_newest_request_of_a_page_wins(two):
+    packet(two, "/map?columns=3&rows=3&mu=1.9")
+    done = []
+    thread = in_background(two, f"/map?{SLOW}&page=a", done)
+    waits_for(lambda: two.page.jobs._running)
+    time.sleep(0.3)
+    assert not done
+    asked = time.perf_counter()
+    packet(two, "/map?columns=3&rows=3&page=b")  # another page
+    assert not done
+    packet(two, "/map?columns=3&rows=3&page=a")
+    thread.join(HANG)
+    took = time.perf_counter() - asked
+    (answer,) = done
+    assert answer[:2] == (204, b"")
+    assert took < HANG / 10
+
+
+def test_a_page_that_has_gone_is_worked_for_no_more(two):
+    packet(two, "/map?columns=3&rows=3&mu=1.9")
+    port = two.server_address[1]
+    connection = socket.create_connection(("127.0.0.1", port))
+    connection.sendall(f"GET /map?{SLOW} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
+    waits_for(lambda: two.page.jobs._running)
+    time.sleep(0.2)
+    assert two.page.jobs._running
+    connection.close()
+    began = time.perf_counter()
+    waits_for(lambda: not two.page.jobs._running)
+    assert time.perf_counter() - began < HANG / 10
+
+
+def test_lanes():
+    jobs = Jobs()
+    with jobs.enter("map a") as first:
+        first.watch()
+        with jobs.enter("motion a"), jobs.enter("map b"):
+            first.watch()
+        with jobs.enter("map a") as second:
+            with pytest.raises(Outdated):
+                first.watch()
+            second.watch()
+    with jobs.enter("map a", lambda: True) as gone, pytest.raises(Outdated):
+        gone.watch()
+    for k in range(1000):
+        with jobs.enter(f"map {k}"):
+            pass
+    assert len(jobs._lanes) < 1000
+
+
+def test_compiling_is_told():
+    jobs = Jobs()
+    jobs.listen()
+    listener = listeners[-1]
+    assert jobs.state() == {}
+    with jobs.enter("map a") as job:
+        listener()
+        listener()
+        state = jobs.state()
+        assert state["kernels"] == 2
+        assert 0.0 <= state["seconds"] < HANG
+        job.progress(1, 2)  # cells have come in
+        assert jobs.state() == {}
+        listener()
+        assert jobs.state()["kernels"] == 3
+    assert jobs.state() == {}
+    before = len(listeners)
+    jobs.close()
+    assert len(listeners) == before - 1
+
+
+# What is taken along
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "",
+        "r=0.123456,0.9&beta=0.1,0.31&mu=1.25&start=moving&quantity=multiplier",
+        "contact=fixed-wall:2&mass_ratios%5B2%5D=0.731&damping_ratios=0.1",
+        "contact=joined-base-wall:1&stiffness_ratios%5B2%5D=3.3&quantity=amplitude_2",
+    ],
+)
+def test_a_configuration_gives_the_view_again(two, query):
+    status, body, headers = ask(two, f"/configuration.toml?{query}&columns=31&rows=17".replace("?&", "?"))
+    assert status == 200
+    assert headers["Content-Disposition"] == 'attachment; filename="view.toml"'
+    config = config_of(body.decode(), {})
+    _, arrays = packet(two, f"/map?{query}&columns=31&rows=17".replace("?&", "?"))
+    ds = fm.sweep(config.system, config.r, config.beta, config.mu, solver=config.solver)
+    np.testing.assert_array_equal(arrays["classes"], classes(ds.isel(mu=0)))
+    if "multiplier" in query:
+        np.testing.assert_array_equal(arrays["values"], ds["multiplier"].values[0].astype(np.float32))
+
+
+def test_cells_as_files(one, tmp_path):
+    query = "columns=9&rows=8&mu=1.2&quantity=work_friction"
+    r, beta = middles(0.0, 2.0, 9), middles(0.0, 1.2, 8)
+    ds = fm.sweep(fm.System(), r, beta, 1.2, outputs=[*fm.Solver().outputs, "work_friction"])
+    status, body, headers = ask(one, f"/map.nc?{query}")
+    assert (status, headers["Content-Disposition"]) == (200, 'attachment; filename="map.nc"')
+    (tmp_path / "map.nc").write_bytes(body)
+    with xr.open_dataset(tmp_path / "map.nc") as written:
+        for name in ds.data_vars:
+            np.testing.assert_array_equal(written[name].values, ds[name].values)
+        assert written.attrs["title"] == "One mass"
+    status, body, _ = ask(one, f"/map.csv?{query}")
+    lines = body.decode().splitlines()
+    assert lines[0].startswith("mu,r,beta,regime")
+    assert len(lines) == 1 + 72
+
+
+def test_numbers_travel_as_they_are():
+    arrays = {
+        "a": np.array([np.inf, -0.0, np.nan, 5e-324]),
+        "b": np.arange(6, dtype=np.uint8).reshape(2, 3)[:, ::-1],
+        "c": np.array([-1], dtype=np.int8),
+        "d": np.float32([[1.5]]),
+        "e": np.empty((0, 4)),
+    }
+    header, found = unpack(pack({"word": "β"}, arrays))
+    assert header == {"word": "β"}
+    for name, values in arrays.items():
+        np.testing.assert_array_equal(found[name], values)
+        assert found[name].dtype == values.dtype
+        assert found[name].shape == values.shape
+
+
+# The page as a file
+
+
+class Scripts(HTMLParser):
+    """The contents of scripts by their ids or types, and every address that is asked for."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.found, self.asked, self._inside = {}, [], None
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        given = dict(attrs)
+        self.asked += [given[key] for key in ("src", "href") if key in given]
+        self._inside = given.get("id", given.get("type")) if tag == "script" else None
+
+    def handle_data(self, data):
+        if self._inside:
+            self.found[self._inside] = self.found.get(self._inside, "") + data
+
+    def handle_endtag(self, tag):
+        self._inside = None
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    """A page as a file, with few and coarse maps, and its scene."""
+    scene = scene_from(tmp_path_factory.mktemp("small"), ONE)
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in {"_COLUMNS": 12, "_ROWS": 10, "_PLACES": 3}.items():
+            patch.setattr(stored, name, value)
+        told = []
+        page = stored.write_page(scene, lambda done, total: told.append((done, total)))
+    assert told == [(k, 12) for k in range(1, 13)]
+    return scene, page.decode()
+
+
+def test_a_page_as_a_file_asks_nothing_of_any_host(small):
+    page = Scripts(small[1])
+    assert page.asked == ["data:,"]
+    assert set(page.found) == {"stored", "importmap", "module"}
+    assert "default-src 'none'" in small[1]
+    imports = json.loads(page.found["importmap"])["imports"]
+    texts = [base64.b64decode(where.partition(",")[2]).decode() for where in imports.values()]
+    for text in (*texts, page.found["module"]):
+        assert set(re.findall(r'from "([^"]+)"', text)) <= set(imports)
+
+
+def test_a_page_as_a_file_holds_the_maps_of_its_sliders(small):
+    content = json.loads(Scripts(small[1]).found["stored"])
+    assert content["values"]["mu"] == [1.0, 1.5, 2.0, 3.0]
+    assert content["values"]["damping_ratios"] == [0.0, 0.125, 1.0]
+    assert len(content["maps"]) == 12
+    assert content["first"] == "1,0"
+    kept = content["maps"]["1,1"]
+    system = fm.System(damping_ratios=0.125)
+    r, beta = middles(0.0, 2.0, 12), middles(0.0, 1.2, 10)
+    ds = fm.sweep(system, r, beta, 1.5, outputs=["regime", "stops_per_cycle", "contact_amplitude"])
+    found = np.frombuffer(zlib.decompress(base64.b64decode(kept["classes"])), np.uint8).reshape(12, 10)
+    np.testing.assert_array_equal(found, classes(ds.isel(mu=0)))
+    limits = np.frombuffer(zlib.decompress(base64.b64decode(kept["limits"])))
+    np.testing.assert_array_equal(
+        limits, np.concatenate((ds["beta_lim"].values[0], ds["beta_stick"].values[0]))
+    )
+    amplitude = kept["values"]["contact_amplitude"]
+    steps = np.frombuffer(zlib.decompress(base64.b64decode(amplitude["steps"])), np.uint8).reshape(12, 10)
+    values = amplitude["low"] * (amplitude["high"] / amplitude["low"]) ** ((steps - 1.0) / 254.0)
+    moving = ds["regime"].values[0] > regimes.PERMANENT_STICKING
+    half_step = (amplitude["high"] / amplitude["low"]) ** (0.5 / 254.0) - 1.0
+    np.testing.assert_allclose(
+        values[moving],
+        ds["contact_amplitude"].values[0][moving].astype(np.float32),
+        rtol=1.01 * half_step + 1e-6,
+    )
+
+
+# The command, and Python
+
+
+def start(folder, *arguments):
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
+    (folder / "one.toml").write_text(ONE)
+    command = [sys.executable, "-m", "frictionmap", "explore", "one.toml", "--no-browser", *arguments]
+    return subprocess.Popen(
+        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_the_command_serves_until_an_interrupt(tmp_path, sent):
+    process = start(tmp_path, "--port", "0", "--set", "grid.mu=1.25")
+    line = process.stdout.readline()
+    url = re.fullmatch(r"One mass at (http://127.0.0.1:(\d+)/) until Ctrl-C\n", line)
+    assert url, line
+    with socket.create_connection(("127.0.0.1", int(url[2]))) as connection:
+        connection.sendall(
+            f"GET /scene HTTP/1.1\r\nHost: 127.0.0.1:{url[2]}\r\nConnection: close\r\n\r\n".encode()
+        )
+        body = b"".join(iter(lambda: connection.recv(65536), b""))
+    assert b'"mu": 1.25' in body
+    process.send_signal(sent)
+    out, err = process.communicate(timeout=HANG)
+    assert (process.returncode, out) == (130, "")
+    assert err == "frictionmap: interrupted; nothing was written\n"
+
+
+def test_a_port_that_is_taken(tmp_path, capsys, one):
+    (tmp_path / "one.toml").write_text(ONE)
+    port = one.server_address[1]
+    said = refusal(capsys, "explore", tmp_path / "one.toml", "--no-browser", "--port", port)
+    assert f"--port must be one that is free; got {port} (Address already in use)" in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--export", "page.txt"], "--export must end in .html; got page.txt"),
+        (["--set", "grid.mu=0.5"], "grid.mu must be >= 1"),
+        (["--set", "axes.damping_ratios=[-1.0]"], "damping_ratios must be >= 0"),
+    ],
+)
+def test_the_command_refuses_in_a_line(tmp_path, capsys, monkeypatch, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "one.toml").write_text(ONE)
+    assert words in refusal(capsys, "explore", "one.toml", "--no-browser", *arguments)
+
+
+def test_the_command_writes_a_page(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name, value in {"_COLUMNS": 4, "_ROWS": 3, "_PLACES": 2}.items():
+        monkeypatch.setattr(stored, name, value)
+    (tmp_path / "one.toml").write_text(ONE)
+    from frictionmap.cli import main
+
+    assert main(["explore", "one.toml", "--export", "page.html"]) == 0
+    assert re.fullmatch(r"wrote page.html \(0\.\d+ MB\)\n", capsys.readouterr().out)
+    assert (tmp_path / "page.html").read_text().startswith("<!doctype html>")
+    assert "output page.html exists already" in refusal(
+        capsys, "explore", "one.toml", "--export", "page.html"
+    )
+
+
+def test_python_serves_the_same_page():
+    page = fm.explore(
+        fm.System(), r=np.linspace(0.1, 2.0, 50), beta=[0.0, 0.5], mu=1.5, start="moving", title="It <b>"
+    )
+    other = fm.explore(fm.System())
+    try:
+        assert page.url != other.url
+        assert repr(page) == f"<frictionmap page at {page.url}>"
+        assert f'<iframe src="{page.url}"' in page._repr_html_()
+        told = json.loads(ask(page._server, "/scene")[1])
+        assert (told["r"], told["mu"], told["start"], told["title"]) == ([0.1, 2.0], 1.5, "moving", "It <b>")
+    finally:
+        page.close()
+        other.close()
+    page.close()
+    assert repr(page) == "<frictionmap page, closed>"
+    assert page._repr_html_() == "&lt;frictionmap page, closed&gt;"
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection(page._server.server_address, timeout=1.0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"system": "chain"}, "system must be a frictionmap.System; got 'chain'"),
+        ({"r": 1.0}, "r must be a range of two numbers, or more; got 1"),
+        ({"beta": [1.0, 0.0]}, "beta must be increasing"),
+        ({"mu": 0.9}, "mu must be >= 1; got 0.9"),
+        ({"start": "left"}, "start must be one of rest, moving"),
+        ({"title": 3}, "title must be text; got 3"),
+        ({"port": 70000}, "port must be <= 65535; got 70000"),
+        ({"port": "80"}, "port must be a whole number; got '80'"),
+    ],
+)
+def test_python_refuses(arguments, words):
+    with pytest.raises(InputError, match=re.escape(words)):
+        fm.explore(**{"system": fm.System(), **arguments})

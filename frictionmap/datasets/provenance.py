@@ -25,10 +25,11 @@ _SYSTEM = {
     "contact": None,
     "contact_masses": (1,),
     "load_mass": 1,
-    "load": None,
+    "loads": None,
     "mass_ratios": (1.0,),
     "stiffness_ratios": (1.0,),
     "damping_ratios": None,
+    "rayleigh": None,
     "frequency_scale": None,
     "stiffness_scale": 1.0,
     "excitation": "force",
@@ -109,9 +110,13 @@ def system_text(system: "System") -> str:
 def _system_lines(system: "System", file: str) -> list[str]:
     matrices = system.matrices
     own = {key: getattr(system, key) for key in _SYSTEM}
+    own["load"] = own.pop("loads")  # of a reduced structure those on the masses that are left
     lines = [
-        f"{key} = {value_text(value)}" for key, value in own.items() if value not in (None, _SYSTEM[key])
+        f"{key} = {value_text(value)}" for key, value in own.items() if value not in (None, _SYSTEM.get(key))
     ]
+    if system.reduction is not None:
+        asked = system.reduction.asked._asdict()
+        lines.append(f"# reduced from {system.reduction.structure.n}: reduce = {value_text(asked)}")
     if not isinstance(matrices, Matrices):
         return lines
     if file:

@@ -305,6 +305,10 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
         key: checks.axis(_values(grid.get(key, [1.0]), f"grid.{key}"), f"grid.{key}", **bounds)
         for key, bounds in AXES.items()
     }
+    try:
+        (variations or system).accuracy(axes["r"])
+    except InputError as error:
+        raise InputError(f"system.{error}") from None
     files = (path, *_matrix_files(described))
     return Config(
         title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, name, variations, files

@@ -85,7 +85,14 @@ _NAME: Legal = {"type": "string", "minLength": 1}
 _RATIOS = several(number(above=0.0), prefixItems=[{"type": "number", "const": 1}])
 _ZETA = number(least=0.0, most=checks.LARGEST_DAMPING)
 _MATRIX = several(several(number()))
-_MATRICES = table({"M": _MATRIX, "K": _MATRIX, "C": _MATRIX}, ("M", "K"))
+_DOF = either(whole(least=1), {"type": "string", "pattern": r"^\d+\.\d+$"})
+_MATRICES = either(
+    table(
+        {"M": _MATRIX, "K": _MATRIX, "C": _MATRIX, "dofs": several(whole(least=1))},
+        ("M", "K"),
+    ),
+    table({"M": _NAME, "K": _NAME, "C": _NAME}, ("M", "K")),
+)
 _RANGE = "a number, a list, { start, stop, step } or { start, stop, num }, ends included, or { values }"
 
 _ONE_MASS, _SOLVER, _CURVES = System(), Solver(), curve_settings()
@@ -112,10 +119,10 @@ KEYS: dict[str, tuple[Key, ...]] = {
         _of_system(
             "contact_masses",
             "the mass in contact, or the two for between-masses, A < B; counted from 1",
-            several(whole(least=1), maxItems=2),
-            words="a list of one whole number >= 1, or of two",
+            several(_DOF, maxItems=2),
+            words='a list of one whole number >= 1, or of two; or of labels of a file, "NODE.DOF"',
         ),
-        _of_system("load_mass", "the mass that the harmonic load acts on, counted from 1", whole(least=1)),
+        _of_system("load_mass", "the mass that the harmonic load acts on, counted from 1", _DOF),
         Key(
             "load",
             "instead of load_mass, one load a mass, over P",
@@ -144,7 +151,28 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "instead of the ratios, any structure: arrays M, K, optionally C instead of damping_ratios",
             either(_NAME, _MATRICES),
             example='"frame.npz"',
-            words="the path of an .npz file, or { M = [[...]], K = [[...]] }",
+            words='the path of a file with all, or { M = "m.mtx", K = "k.mtx" }, or { M = [[...]], ... }',
+        ),
+        Key(
+            "reduce",
+            "with matrices, reduce them to contact, load, the degrees of freedom kept and so many modes",
+            table(
+                {
+                    "keep": several(_DOF, 0),
+                    "modes": whole(least=0),
+                    "allow": number(above=0.0, most=1.0),
+                },
+                ("modes",),
+            ),
+            example="{ keep = [17, 112], modes = 16 }",
+            words="{ keep, modes, allow }; allow is the relative error, 0.001 if left out",
+        ),
+        Key(
+            "rayleigh",
+            "with matrices, instead of damping_ratios, [a, b] of C = a M + b K",
+            several(number(least=0.0), 2, maxItems=2),
+            example="[0.1, 1e-5]",
+            words="two numbers >= 0",
         ),
         Key(
             "frequency_scale",

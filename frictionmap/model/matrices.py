@@ -1,12 +1,13 @@
 """Mass, stiffness and damping matrices that a structure is computed with: few, dense, definite."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..errors import InputError
 from ..structures.dofs import Dofs
 from ..structures.files import NAMES
+from ..structures.reduction import Reduction
 from ..structures.structure import LARGEST, TOLERANCE, Structure, in_range
 
 #: Beyond so many degrees of freedom all modes take minutes and gigabytes.
@@ -22,6 +23,7 @@ class Matrices:
     damping: np.ndarray | None
     source: str  # names of the files, or ""
     dofs: Dofs  # what the rows are called
+    reduction: Reduction | None = None  # how a larger structure became these
 
     @property
     def n(self) -> int:
@@ -91,6 +93,13 @@ def whole(structure: Structure) -> Matrices:
             f"reduce can take"
         )
     return definite(dense, structure.dofs, structure.source)
+
+
+def of_reduction(reduction: Reduction) -> Matrices:
+    """The matrices of a reduced structure."""
+    structure, reduced = reduction.structure, reduction.reduced
+    small = definite(reduced.arrays, structure.dofs.at(reduced.rows), structure.source)
+    return replace(small, reduction=reduction)
 
 
 def definite(arrays: dict[str, np.ndarray], dofs: Dofs, source: str) -> Matrices:

@@ -3,7 +3,7 @@
 import math
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
@@ -11,9 +11,12 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
+from ..structures.accuracy import Accuracy
+from ..structures.craig_bampton import Reduce, checked_reduce
 from ..structures.dofs import Dofs
+from ..structures.reduction import Reduction, reduce_structure
 from ..structures.structure import Structure, read_structure
-from .matrices import Matrices, whole
+from .matrices import Matrices, of_reduction, whole
 from .modes import ModalModel, damped_modes, gather_contact, modal_damping, solve_chain_modes, solve_modes
 
 CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
@@ -138,6 +141,14 @@ class System:
         Whether the damping acts on velocities in space or relative to the base, which must move for that.
     load : sequence of complex, optional
         Instead of load_mass: the phasors p_k [P] of loads Re(p_k e^{i tau}) on all n masses.
+    reduce : mapping, optional
+        With matrices: ``{"keep": [17, 112], "modes": 16}`` reduces them, after Craig and Bampton, to these
+        degrees of freedom, those in contact and under load, and so many modes with all these held.
+        Contact, load and results keep the numbers of the file.  In the range of r that is asked for,
+        natural frequencies and compliances must be within "allow", by default 0.001, of the whole
+        structure's: else there is an InputError, which says how many modes would do.
+    rayleigh : sequence of float, optional
+        With matrices, instead of damping_ratios and of C: [a, b] of C = a M + b K, >= 0, in their units.
 
     Raises
     ------
@@ -164,8 +175,12 @@ class System:
     excitation: Literal["force", "base"] | None = None
     damping_reference: Literal["ground", "base"] = "ground"
     load: Sequence[complex] | None = None
+    # reduced matrices say all that this does
+    reduce: Mapping[str, Any] | Reduce | None = field(default=None, compare=False)
+    rayleigh: Sequence[float] | None = None
 
     def __post_init__(self) -> None:
+        previous = self.matrices.reduction if isinstance(self.matrices, Matrices) else None
         if self.matrices is None:
             self._check_chain()
         else:
@@ -173,7 +188,9 @@ class System:
         self._check_contact()
         self._check_load()
         if isinstance(self.matrices, Structure):
-            self._set("matrices", whole(self.matrices))
+            self._set(
+                "matrices", self._reduced(self.matrices, previous) if self.reduce else whole(self.matrices)
+            )
         self._check_damping()
         if self.n > 1 or self.matrices is not None:
             _ = self.modes  # what only they can tell is told at the door, too
@@ -182,6 +199,10 @@ class System:
         object.__setattr__(self, name, value)
 
     def _check_chain(self) -> None:
+        for name in ("reduce", "rayleigh"):
+            if getattr(self, name) is not None:
+                given = checks.one_line(getattr(self, name))
+                raise InputError(f"{name} must be left out without matrices; got {given}")
         for name, default in (("frequency_scale", None), ("stiffness_scale", 1.0)):
             given = getattr(self, name)
             if isinstance(given, bool) or given != default:  # True == 1.0
@@ -208,20 +229,58 @@ class System:
                 raise InputError(
                     f"{name} must be left out if matrices are given; got {checks.one_line(given)}"
                 )
-        if not isinstance(self.matrices, Matrices):
-            self._set("matrices", read_structure(self.matrices))
+        given = self.matrices
+        if isinstance(given, Matrices):
+            if given.reduction is not None:
+                self._set("matrices", given.reduction.structure)
+                self._set("reduce", self.reduce or given.reduction.asked)
+            elif self.reduce is not None:
+                self._set("matrices", Structure(given.arrays, given.dofs, given.source, 0))
+        elif not isinstance(given, Structure):
+            self._set("matrices", read_structure(given))
+        if self.reduce is not None:
+            self._set("reduce", checked_reduce(self.reduce, self.dofs))
         if self.frequency_scale is not None:
             self._set("frequency_scale", checks.number(self.frequency_scale, "frequency_scale", above=0.0))
         self._set("stiffness_scale", checks.number(self.stiffness_scale, "stiffness_scale", above=0.0))
 
+    def _reduced(self, structure: Structure, previous: Reduction | None) -> Matrices:
+        """The matrices of the structure, reduced; as before if that is how they were."""
+        assert isinstance(self.reduce, Reduce)
+        base = self.excitation == "base"
+        loaded: list[int] = []
+        if self.load is not None:
+            loaded = [number for number, load in zip(self.dofs.numbers, self.load, strict=True) if load]
+        elif not base:
+            loaded = [self.load_mass]  # type: ignore[list-item]
+        kept: set[int] = {*self.contact_masses, *self.reduce.keep, *loaded}  # type: ignore[arg-type]
+        asked = self.reduce, tuple(sorted(kept)), self.contact_vector, base
+        if previous is not None and previous.like(*asked):
+            return of_reduction(previous)
+        return of_reduction(reduce_structure(structure, *asked))
+
+    def _check_rayleigh(self) -> None:
+        if self.rayleigh is None:
+            return
+        values = _sequence(self.rayleigh, "rayleigh", "two numbers")
+        if len(values) != 2:
+            raise InputError(f"rayleigh must be two numbers [a, b], C = a M + b K; got {list(values)}")
+        if self.damping_ratios is not None:
+            given = checks.one_line(self.damping_ratios)
+            raise InputError(f"damping_ratios must be left out if rayleigh is given; got {given}")
+        pair = tuple(checks.number(one, f"rayleigh[{k}]", least=0.0) for k, one in enumerate(values))
+        self._set("rayleigh", pair)
+
     def _check_damping(self) -> None:
+        self._check_rayleigh()
         given = self.damping_ratios
         if isinstance(self.matrices, Matrices) and self.matrices.damping is not None:
-            if given is not None:
-                raise InputError(
-                    f"damping_ratios must be left out if matrices has C; got {checks.one_line(given)}"
-                )
-        else:
+            for name, ratios in (("damping_ratios", given), ("rayleigh", self.rayleigh)):
+                if ratios is not None:
+                    raise InputError(
+                        f"{name} must be left out if matrices has C; got {checks.one_line(ratios)}"
+                    )
+        elif self.rayleigh is None:
             self._set("damping_ratios", _damping(0.0 if given is None else given, self.n))
 
     def _check_contact(self) -> None:
@@ -290,6 +349,31 @@ class System:
         return int(self.contact == "joined-base-wall")
 
     @property
+    def reduction(self) -> Reduction | None:
+        """How a larger structure was reduced to this one."""
+        return self.matrices.reduction if isinstance(self.matrices, Matrices) else None
+
+    @property
+    def loads(self) -> tuple[complex, ...] | None:
+        """`load` on the masses that there are: a reduced structure has fewer than its file."""
+        if self.load is None or self.reduction is None:
+            return self.load  # type: ignore[return-value]
+        return tuple(self.load[row] for row in self.reduction.reduced.rows)
+
+    def accuracy(self, r: np.ndarray) -> Accuracy | None:
+        """What the reduction of a structure costs in the range of r; None of one that is not reduced.
+
+        Raises
+        ------
+        InputError
+            More than is allowed.
+        """
+        if self.reduction is None:
+            return None
+        low, high = (float(end) * self._frequency_scale for end in (r[0], r[-1]))
+        return self.reduction.checked(low, high)
+
+    @property
     def contact_rows(self) -> list[int]:
         """Rows of the masses in contact, counted from 0."""
         return self.dofs.rows(self.contact_masses)  # type: ignore[arg-type]
@@ -347,12 +431,23 @@ class System:
     def _load_vector(self, stiffness: np.ndarray) -> np.ndarray:
         """The part of p that does not depend on r, complex (n,)."""
         if self.load is not None:
-            return np.array(self.load)
+            return np.array(self.loads)
         if self.excitation == "base" and self.matrices is not None:
             return stiffness.sum(axis=1).astype(complex)
         load = np.zeros(self.n, dtype=complex)  # of a chain's springs the first only ends at the base
         load[self.dofs.row(self.load_mass)] = 1.0  # type: ignore[arg-type]
         return load
+
+    def _rayleigh_ratios(self, w: np.ndarray) -> np.ndarray:
+        """Damping ratios of C = a M + b K."""
+        a, b = self.rayleigh  # type: ignore[misc]
+        omega = w * self._frequency_scale
+        zeta = 0.5 * (a / omega + b * omega)
+        if zeta.max() > checks.LARGEST_DAMPING:
+            raise InputError(
+                f"rayleigh must make damping ratios <= {checks.LARGEST_DAMPING:g}; got {zeta.max():.3g}"
+            )
+        return zeta
 
     def _checked_damping(
         self, damping: np.ndarray, w: np.ndarray, phi: np.ndarray
@@ -378,7 +473,9 @@ class System:
         """Modes and participation factors; they do not depend on r."""
         mass, stiffness, given = self._structure()
         w, phi = self._solve(mass, stiffness)
-        if given is None:
+        if self.rayleigh is not None:
+            zeta = self._rayleigh_ratios(w)
+        elif given is None:
             zeta = np.array(self.damping_ratios)
         else:
             zeta, phi = self._checked_damping(given, w, phi)
@@ -425,6 +522,11 @@ class System:
         if isinstance(self.matrices, Matrices):
             plural = "s" if self.n > 1 else ""
             source = f" from {self.matrices.source}" if self.matrices.source else ""
+            if self.reduction is not None:
+                modes = self.reduction.asked.modes
+                source = (
+                    f" reduced from {self.reduction.structure.n}{source} with {modes} fixed-interface modes"
+                )
             first = " (the first natural frequency)" if self.frequency_scale is None else ""
             return (
                 f"structure of {self.n} degree{plural} of freedom{source}, r = omega/"
@@ -465,6 +567,9 @@ class System:
             return "no viscous damping"
         if self.n == 1:
             return f"damping ratio {self.zeta:g}"
+        if self.rayleigh is not None:
+            zeta, (a, b) = self.modes.zeta, self.rayleigh
+            return f"modal damping ratios {zeta.min():g} to {zeta.max():g}, from C = {a:g} M + {b:g} K"
         if self.damping_ratios is None:
             zeta = self.modes.zeta
             return f"modal damping ratios {zeta.min():g} to {zeta.max():g}, from C"

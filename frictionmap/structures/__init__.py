@@ -11,5 +11,9 @@ nastran         OP4 and punch (DMIG), through the extra `fe`
 arrays          several arrays in a file: NPZ and MAT
 files           the door: M, K and C of whatever was given, their rows in one order
 dofs            degrees of freedom by the numbers and labels of a file
+structure       what was given, checked
+craig_bampton   reduction to a few degrees of freedom
+accuracy        what it costs
+reduction       both together: a reduction held to its promise
 ==============  ====================================================================
 """

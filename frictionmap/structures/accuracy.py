@@ -1,0 +1,172 @@
+"""What a reduction costs: natural frequencies and compliances against those of the whole structure.
+
+Both without damping, which would hide errors, and both with the contact free and held.  Compliances are those
+between all kept degrees of freedom, away from resonances, each in the unit of its static ones.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .craig_bampton import Reduced, factor, slowest
+
+#: Compliances are compared at so many frequencies at most, none nearer to a resonance than this share of it:
+#: there the error is that of the resonance's frequency.
+_SAMPLES = 60
+_NEAR = 0.05
+
+#: Frequencies, evenly spaced, beside those between resonances.
+_EVEN = 9
+
+#: Frequencies of the whole structure that are asked for beyond those that the reduced one has in the range.
+_FURTHER = 3
+
+
+class Accuracy(NamedTuple):
+    """Largest relative errors in a range of frequency."""
+
+    frequencies: float
+    compliances: float
+
+    @property
+    def worst(self) -> float:
+        """The larger one."""
+        return max(self)
+
+    def words(self) -> str:
+        """In words."""
+        return (
+            f"natural frequencies within {self.frequencies:.1e} of the whole structure's, compliances within "
+            f"{self.compliances:.1e}"
+        )
+
+
+class Whole:
+    """A structure with sparse matrices, as far as reduced ones are compared with it."""
+
+    def __init__(self, mass: Any, stiffness: Any, contact: np.ndarray, forces: np.ndarray) -> None:
+        """contact: c (n,); forces (n, k): the loads whose works on each other are the compliances."""
+        self.contact = contact
+        self.forces = forces
+        self._mass, self._stiffness = mass, stiffness
+        held = _held(contact)
+        self._pairs = ((mass, stiffness), (held.T @ mass @ held, held.T @ stiffness @ held))
+        static = factor(stiffness).solve(forces)
+        self.units = np.sqrt(np.einsum("ij,ij->j", forces, static))
+
+    def frequencies(self, held: bool, most: float, guess: int) -> np.ndarray:
+        """Natural frequencies up to `most`, increasing; `guess`: how many they may be."""
+        mass, stiffness = self._pairs[int(held)]
+        n = mass.shape[0]
+        count = min(guess + _FURTHER, n)
+        while True:
+            found, _ = slowest(mass, stiffness, count)
+            if count == n or found[-1] > most:
+                return found[found <= most]
+            count = min(2 * count, n)
+
+    def compliances(self, omega: float) -> np.ndarray:
+        """Works of the forces on each other's motions, (k, k)."""
+        from scipy.sparse.linalg import splu
+
+        dynamic = (self._stiffness - omega * omega * self._mass).tocsc()
+        return self.forces.T @ splu(dynamic).solve(self.forces)
+
+
+def _held(contact: np.ndarray) -> Any:
+    """Motions (n, n - 1) that leave the contact alone, sparse."""
+    from scipy.sparse import coo_array
+
+    rows = np.flatnonzero(contact)
+    free = np.setdiff1d(np.arange(contact.size), rows[:1])
+    place = np.arange(free.size)
+    at_row, at_column = free, place
+    if rows.size > 1:  # the first of two goes with the second
+        at_row, at_column = np.append(free, rows[0]), np.append(place, np.searchsorted(free, rows[1]))
+    return coo_array((np.ones(at_row.size), (at_row, at_column)), shape=(contact.size, free.size)).tocsr()
+
+
+class Comparison:
+    """Reduced structures against a whole one, from one frequency to another; the whole is solved once."""
+
+    def __init__(self, whole: Whole, low: float, high: float) -> None:
+        self._whole = whole
+        self._range = low, high
+        self._frequencies: tuple[np.ndarray, ...] = ()
+        self._samples: list[tuple[float, np.ndarray]] = []
+
+    def accuracy(self, reduced: Reduced) -> Accuracy:
+        """The errors of a reduced structure."""
+        mass, stiffness = reduced.arrays["M"], reduced.arrays["K"]
+        contact = reduced.motions.T @ self._whole.contact
+        forces = reduced.motions.T @ self._whole.forces
+        own = _own_frequencies(mass, stiffness, contact)
+        high = self._range[1]
+        if not self._frequencies:
+            self._frequencies = tuple(
+                self._whole.frequencies(bool(k), high, int((one <= high).sum())) for k, one in enumerate(own)
+            )
+            self._samples = [(at, self._whole.compliances(at)) for at in self._places()]
+
+        def compliances(omega: float) -> np.ndarray:
+            return forces.T @ np.linalg.solve(stiffness - omega * omega * mass, forces)
+
+        frequencies = max(_difference(w, one) for w, one in zip(self._frequencies, own, strict=True))
+        return Accuracy(frequencies, self._compliance_error(compliances, contact, forces))
+
+    def _places(self) -> np.ndarray:
+        """Frequencies at which compliances are compared."""
+        low, high = self._range
+        poles = np.unique(np.concatenate(self._frequencies))
+        between = 0.5 * (poles[1:] + poles[:-1])
+        places = np.unique(np.concatenate((between[between >= low], np.linspace(low, high, _EVEN))))
+        if poles.size:
+            nearest = np.abs(places[:, np.newaxis] - poles).min(axis=1)
+            places = places[nearest > _NEAR * places]
+        return places[:: max(1, -(-places.size // _SAMPLES))]
+
+    def _compliance_error(
+        self, compliances: Callable[[float], np.ndarray], contact: np.ndarray, forces: np.ndarray
+    ) -> float:
+        units = np.outer(self._whole.units, self._whole.units)
+        pull = np.linalg.lstsq(forces, contact, rcond=None)[0]  # the contact's force as one of these
+        worst = 0.0
+        for omega, true in self._samples:
+            found = compliances(omega)
+            for one, other in ((found, true), (_with_held(found, pull), _with_held(true, pull))):
+                worst = max(
+                    worst, float(np.linalg.norm((one - other) / units) / np.linalg.norm(other / units))
+                )
+        return worst
+
+
+def _with_held(compliances: np.ndarray, pull: np.ndarray) -> np.ndarray:
+    """Compliances with the contact held by the force that leaves it no motion; zero if all do only that."""
+    across = compliances @ pull
+    left = compliances - np.outer(across, across) / (pull @ across)
+    nothing = np.linalg.norm(left) <= 1e-9 * np.linalg.norm(compliances)
+    return compliances if nothing else left
+
+
+def _own_frequencies(
+    mass: np.ndarray, stiffness: np.ndarray, contact: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Natural frequencies of reduced matrices, free and held."""
+    from scipy.linalg import eigh
+
+    basis = np.linalg.svd(contact[np.newaxis])[2][1:].T  # motions that leave the contact alone
+    found = [eigh(stiffness, mass, eigvals_only=True)]
+    if basis.size:
+        found.append(eigh(basis.T @ stiffness @ basis, basis.T @ mass @ basis, eigvals_only=True))
+    else:
+        found.append(np.empty(0))
+    free, held = (np.sqrt(np.maximum(one, 0.0)) for one in found)
+    return free, held
+
+
+def _difference(true: np.ndarray, found: np.ndarray) -> float:
+    """Largest relative difference, one by one; infinite if some are missing."""
+    if found.size < true.size:
+        return np.inf
+    return float(np.max(np.abs(found[: true.size] / true - 1.0), initial=0.0))

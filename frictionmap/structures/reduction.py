@@ -1,0 +1,106 @@
+"""A structure and its reduction: made, and held to its promise in the range of frequency."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError
+from .accuracy import Accuracy, Comparison, Whole
+from .craig_bampton import FixedInterface, Reduce, Reduced, fixed_interface, project
+from .structure import Structure
+
+#: Of the modes asked for: so many more are tried for a number that would do, in such steps.
+_MORE = 8
+_STEP = 1.25
+
+
+@dataclass(frozen=True, eq=False)
+class Reduction:
+    """How a structure was reduced."""
+
+    asked: Reduce
+    structure: Structure  # the whole one
+    kept: tuple[int, ...]  # numbers of the degrees of freedom kept for their own sake
+    contact: np.ndarray  # c (n,) of the whole one
+    base: bool  # whether its base moves
+    reduced: Reduced
+    _found: dict[tuple[float, float], Accuracy] = field(default_factory=dict)
+
+    def like(self, asked: Reduce, kept: tuple[int, ...], contact: np.ndarray, base: bool) -> bool:
+        """Whether this is the reduction that is asked for."""
+        same = self.asked == asked and self.kept == kept and self.base == base
+        return same and bool(np.array_equal(self.contact, contact))
+
+    def checked(self, low: float, high: float) -> Accuracy:
+        """Its accuracy from one angular frequency to another, in the units of sqrt(K/M).
+
+        Raises
+        ------
+        InputError
+            It is worse than allowed; how many modes would do is told.
+        """
+        if (low, high) not in self._found:
+            comparison = Comparison(self._whole(), low, high)
+            accuracy = comparison.accuracy(self.reduced)
+            if not accuracy.worst <= self.asked.allow:
+                self._refuse(comparison, accuracy)
+            self._found[low, high] = accuracy
+        return self._found[low, high]
+
+    def _whole(self) -> Whole:
+        arrays = _sparse(self.structure)
+        rows = self.structure.dofs.rows(self.kept)
+        forces = np.zeros((self.structure.n, len(rows)))
+        forces[rows, np.arange(len(rows))] = 1.0
+        if self.base:  # what a base shakes
+            forces = np.column_stack((forces, arrays["M"].sum(axis=1)))
+        return Whole(arrays["M"], arrays["K"], self.contact, forces)
+
+    def _refuse(self, comparison: Comparison, accuracy: Accuracy) -> None:
+        whole = _with_sparse(self.structure)
+        most = int(np.count_nonzero(whole.arrays["M"].diagonal())) - len(self.kept)
+        tried = min(_MORE * max(self.asked.modes, 8), most)
+        fixed = fixed_interface(whole, whole.dofs.rows(self.kept), tried)
+        modes, enough = self.asked.modes, False
+        while modes < tried and not enough:
+            modes = min(max(modes + 1, round(_STEP * modes)), tried)
+            enough = comparison.accuracy(project(whole, fixed, modes, self.base)).worst <= self.asked.allow
+        advice = f"{modes} would do" if enough else f"{tried} would not do either"
+        raise InputError(
+            f"reduce.modes must leave errors <= {self.asked.allow:g} in the range of r (or give reduce.allow)"
+            f"; got {self.asked.modes}, with {accuracy.words()}; {advice}"
+        )
+
+
+def _sparse(structure: Structure) -> dict[str, Any]:
+    """The matrices, sparse."""
+    from scipy.sparse import csr_array
+
+    return {name: csr_array(one) for name, one in structure.arrays.items()}
+
+
+def _with_sparse(structure: Structure) -> Structure:
+    return Structure(_sparse(structure), structure.dofs, structure.source, structure.held)
+
+
+def reduce_structure(
+    structure: Structure, asked: Reduce, kept: tuple[int, ...], contact: np.ndarray, base: bool
+) -> Reduction:
+    """Reduce a structure to kept degrees of freedom (numbers, increasing) and modes.
+
+    Raises
+    ------
+    InputError
+        One of the kept has no mass, or see `fixed_interface`.
+    """
+    massless = set(structure.massless())
+    for number in kept:
+        if number in massless:
+            raise InputError(
+                f"matrices: M must give mass to every degree of freedom in contact, loaded or kept; "
+                f"{structure.dofs.word(number)} has none"
+            )
+    whole = _with_sparse(structure)
+    fixed: FixedInterface = fixed_interface(whole, whole.dofs.rows(kept), asked.modes)
+    return Reduction(asked, structure, kept, contact, base, project(whole, fixed, asked.modes, base))

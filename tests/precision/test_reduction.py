@@ -1,0 +1,273 @@
+"""Reduction after Craig and Bampton: against the textbook's matrices, dense, and against whole structures."""
+
+import dataclasses
+import re
+
+import numpy as np
+import pytest
+import structure_files as written
+import xarray as xr
+from scipy.linalg import eigh
+from scipy.sparse import csr_array, diags_array, eye_array, kron
+from structures import chain_matrices
+
+import frictionmap as fm
+from frictionmap.cli import main
+from frictionmap.datasets.provenance import to_toml
+
+RNG = np.random.default_rng(20)
+CHAIN = chain_matrices(RNG.uniform(0.5, 2.0, 40), RNG.uniform(0.5, 2.0, 40))
+CONTACT, LOAD, KEPT = 27, 5, 14
+SYSTEM = {"contact_masses": [CONTACT], "load_mass": LOAD}
+
+
+def membrane(nx=25, ny=22):
+    """Masses joined by springs in a rectangle, held along its edges: 550, too many to be solved densely."""
+
+    def line(n):
+        return diags_array([2.0, -1.0, -1.0], offsets=[0, 1, -1], shape=(n, n))
+
+    stiffness = kron(line(nx), eye_array(ny)) + 1.37 * kron(eye_array(nx), line(ny))
+    return {"M": diags_array(1.0 + 0.3 * np.sin(np.arange(nx * ny))).tocsr(), "K": stiffness.tocsr()}
+
+
+def textbook(matrices, kept, modes):
+    """Matrices of Craig and Bampton in kept displacements and modal coordinates."""
+    M, K = (np.asarray(matrices[name]) for name in "MK")
+    others = np.setdiff1d(np.arange(len(K)), kept)
+    follow = -np.linalg.solve(K[np.ix_(others, others)], K[np.ix_(others, kept)])
+    shapes = eigh(K[np.ix_(others, others)], M[np.ix_(others, others)])[1][:, :modes]
+    columns = np.zeros((len(K), len(kept) + modes))
+    columns[kept, np.arange(len(kept))] = 1.0
+    columns[others, : len(kept)], columns[others, len(kept) :] = follow, shapes
+    return columns.T @ M @ columns, columns.T @ K @ columns
+
+
+def reduced(matrices=CHAIN, modes=8, **settings):
+    given = {"keep": [KEPT], "modes": modes, "allow": 1.0} | settings.pop("reduce", {})
+    return fm.System(matrices=matrices, reduce=given, **(SYSTEM | settings))
+
+
+@pytest.mark.parametrize("modes", [0, 1, 8, 37])
+def test_the_matrices_are_those_of_the_textbook(modes):
+    """Their natural frequencies are, free and with the contact held, whatever the coordinates."""
+    system = reduced(modes=modes, frequency_scale=1.0)
+    kept = [LOAD - 1, KEPT - 1, CONTACT - 1]
+    M, K = textbook(CHAIN, kept, modes)
+    assert system.n == 3 + modes
+    np.testing.assert_allclose(system.modes.w**2, eigh(K, M, eigvals_only=True), rtol=1e-9)
+    held = np.delete(np.arange(3 + modes), 2)
+    squares = eigh(K[np.ix_(held, held)], M[np.ix_(held, held)], eigvals_only=True)
+    np.testing.assert_allclose(system.modes.held_frequencies() ** 2, squares, rtol=1e-9)
+
+
+def test_many_degrees_of_freedom_are_solved_as_few():
+    """The sparse way to the modes against the dense one."""
+    matrices = membrane()
+    system = reduced(matrices, modes=10, contact_masses=[260], frequency_scale=1.0)
+    dense = {name: matrix.toarray() for name, matrix in matrices.items()}
+    M, K = textbook(dense, [LOAD - 1, KEPT - 1, 259], 10)
+    np.testing.assert_allclose(system.modes.w**2, eigh(K, M, eigvals_only=True), rtol=1e-8)
+    again = reduced(matrices, modes=10, contact_masses=[260], frequency_scale=1.0)
+    assert again == system
+
+
+SETTINGS = {
+    "wall": {},
+    "between masses": {"contact": "between-masses", "contact_masses": [9, CONTACT]},
+    "base": {"contact": "joined-base-wall", "load_mass": None},
+    "base and wall": {"excitation": "base", "load_mass": None},
+    "loads": {"load_mass": None, "load": [0.0] * 10 + [1.0, 0.5j] + [0.0] * 28},
+}
+
+
+@pytest.mark.parametrize("settings", SETTINGS.values(), ids=SETTINGS)
+def test_all_modes_are_the_whole_structure(settings):
+    settings = SYSTEM | settings
+    modes = 39 - (settings["load_mass"] is not None) - (settings.get("contact") == "between-masses")
+    modes -= 2 * ("load" in settings)
+    whole = fm.System(matrices=CHAIN, damping_ratios=0.01, **settings)
+    system = fm.System(matrices=CHAIN, damping_ratios=0.01, reduce={"modes": modes}, **settings)
+    r = np.linspace(0.3, 12.0, 9)
+    assert system.n == 40
+    assert system.accuracy(r).worst < 1e-9
+    for name in ("beta_lim", "beta_stick"):
+        found, expected = (fm.boundaries(one, r)[name].values for one in (system, whole))
+        np.testing.assert_allclose(found, expected, rtol=1e-8)
+
+
+@pytest.mark.parametrize("settings", SETTINGS.values(), ids=SETTINGS)
+def test_some_modes_are_as_good_as_is_said(settings):
+    """Motions of the contact, held and free, of the whole structure; the base shakes all masses."""
+    settings = SYSTEM | settings
+    whole = fm.System(matrices=CHAIN, frequency_scale=1.0, **settings)
+    system = fm.System(matrices=CHAIN, frequency_scale=1.0, reduce={"modes": 20, "allow": 0.01}, **settings)
+    r = np.linspace(0.0, 0.4, 7)
+    accuracy = system.accuracy(r)
+    w, held = whole.modes.w, whole.modes.held_frequencies()
+    pairs = ((w, system.modes.w), (held, system.modes.held_frequencies()))
+    errors = [np.abs(own[: sum(true <= 0.4)] / true[true <= 0.4] - 1.0).max() for true, own in pairs]
+    assert accuracy.frequencies == pytest.approx(max(errors), rel=1e-3, abs=1e-11)
+    assert max(errors) < 0.01
+    assert accuracy.compliances < 0.01
+    far = r[np.abs(r[:, np.newaxis] - np.concatenate((w, held))).min(axis=1) > 0.05 * r]
+    assert far.size > 2
+    for name in ("contact_response", "held_load"):
+        found, expected = (getattr(one.modes, name)(far) for one in (system, whole))
+        scale = np.abs(expected).max()
+        np.testing.assert_allclose(found, expected, rtol=0.02, atol=0.002 * scale)
+
+
+def test_degrees_of_freedom_without_mass_follow_exactly():
+    light = {"M": CHAIN["M"].copy(), "K": CHAIN["K"]}
+    some = [2, 16, 17, 33]
+    light["M"][some, some] = 0.0
+    others = np.setdiff1d(np.arange(40), some)
+    K = CHAIN["K"]
+    condensed = K[np.ix_(others, others)] - K[np.ix_(others, some)] @ np.linalg.solve(
+        K[np.ix_(some, some)], K[np.ix_(some, others)]
+    )
+    own = {"M": light["M"][np.ix_(others, others)], "K": condensed, "dofs": others + 1}
+    system, exact = reduced(light, modes=33), fm.System(matrices=own, **SYSTEM)
+    assert system.n == 36
+    np.testing.assert_allclose(system.modes.w, exact.modes.w, rtol=1e-9)
+    r = np.linspace(0.2, 20.0, 7)
+    np.testing.assert_allclose(system.contact_load(r), exact.contact_load(r), rtol=1e-7)
+    with pytest.raises(fm.InputError, match=r"reduce.modes must be at most 33, .*; got 34"):
+        reduced(light, modes=34)
+    with pytest.raises(
+        fm.InputError, match=r"M must give mass to every degree of freedom in contact.*; 17 has"
+    ):
+        reduced(light, contact_masses=[17])
+    with pytest.raises(fm.InputError, match="degree of freedom 3 has no mass, which only reduce can take"):
+        fm.System(matrices=light)
+
+
+def test_damping_matrices_are_reduced_alike():
+    """C = a M + b K: by the matrix, reduced; by its numbers; and mode by mode."""
+    a, b = 0.003, 0.04
+    by_matrix = reduced({**CHAIN, "C": a * CHAIN["M"] + b * CHAIN["K"]})
+    by_numbers = reduced(rayleigh=[a, b])
+    w = reduced(frequency_scale=1.0).modes.w
+    np.testing.assert_allclose(by_numbers.modes.zeta, 0.5 * (a / w + b * w), rtol=1e-12)
+    np.testing.assert_allclose(by_matrix.modes.zeta, by_numbers.modes.zeta, rtol=1e-9)
+    again = dataclasses.replace(by_numbers, rayleigh=[0.0, b])
+    assert again.reduction.reduced is by_numbers.reduction.reduced
+    assert "from C = 0.003 M + 0.04 K" in by_numbers.describe()
+
+
+def test_too_few_modes_are_refused_and_enough_are_told(tmp_path, capsys):
+    keys = {"matrices": {name: matrix.tolist() for name, matrix in CHAIN.items()}, **SYSTEM}
+    tree = {"system": {**keys, "reduce": {"modes": 3}}, "grid": {"r": [0.5, 6.0], "beta": [0.1]}}
+    (tmp_path / "c.toml").write_text(to_toml(tree))
+    assert main(["map", str(tmp_path / "c.toml")]) == 2
+    message = capsys.readouterr().err
+    found = re.fullmatch(
+        r"frictionmap: system\.reduce\.modes must leave errors <= 0\.001 in the range of r .*; got 3, with "
+        r"natural frequencies within .*, compliances within .*; (\d+) would do\n",
+        message,
+    )
+    assert found, message
+    system = fm.System(matrices=CHAIN, reduce={"modes": 3}, **SYSTEM)
+    with pytest.raises(fm.InputError, match=r"reduce.modes must leave errors"):
+        fm.sweep(system, [0.5, 6.0], [0.1])
+    with pytest.raises(fm.InputError, match=r"reduce.modes must leave errors"):
+        fm.boundaries(system, [0.5, 6.0])
+    with pytest.raises(fm.InputError, match=r"reduce.modes must leave errors"):
+        fm.response(system, 6.0, 0.1)
+    assert fm.System(matrices=CHAIN, reduce={"modes": int(found[1])}, **SYSTEM).accuracy(np.array([0.5, 6.0]))
+    coarse = fm.System(matrices=CHAIN, reduce={"modes": 3, "allow": 1.0}, frequency_scale=1.0, **SYSTEM)
+    assert coarse.accuracy(np.array([0.0, 0.02])).worst < coarse.accuracy(np.array([0.0, 0.1])).worst
+
+
+def test_a_dataset_names_the_degrees_of_freedom_of_the_file(tmp_path):
+    labels = [(node, dof) for node in range(101, 121) for dof in (1, 2)]
+    for name in "MK":
+        written.abaqus(tmp_path / f"{name}.mtx", CHAIN[name], labels)
+    tree = {
+        "system": {
+            "matrices": {"M": "M.mtx", "K": "K.mtx"}, "contact_masses": ["114.1"], "load_mass": "103.1",
+            "reduce": {"keep": ["107.2"], "modes": 9}, "rayleigh": [0.001, 0.0],
+        },
+        "grid": {"r": [0.4, 1.3], "beta": [0.1, 0.4]},
+        "solver": {"outputs": ["regime", "stops_per_cycle", "amplitude"]},
+    }  # fmt: skip
+    (tmp_path / "c.toml").write_text(to_toml(tree))
+    assert main(["map", str(tmp_path / "c.toml"), "-o", str(tmp_path / "o.nc"), "--quiet"]) == 0
+    ds = xr.load_dataset(tmp_path / "o.nc")
+    assert {CONTACT, LOAD, KEPT} <= set(ds.dof.values.tolist())
+    assert ds.sizes["dof"] == 12
+    assert re.search(r"natural frequencies within .*e-.* for r = 0.4 to 1.3", ds.attrs["reduction"])
+    assert "reduced from 40 from M.mtx, K.mtx with 9 fixed-interface modes" in ds.attrs["system"]
+    python = fm.System(matrices=CHAIN, reduce={"keep": [KEPT], "modes": 9}, rayleigh=[0.001, 0.0], **SYSTEM)
+    there = fm.sweep(python, [0.4, 1.3], [0.1, 0.4], outputs=["regime", "stops_per_cycle", "amplitude"])
+    xr.testing.assert_equal(ds.drop_attrs(), there.drop_attrs())
+    (tmp_path / "again.toml").write_text(there.attrs["config"])
+    again = fm.load_config(tmp_path / "again.toml").system
+    assert again == python
+    np.testing.assert_array_equal(fm.boundaries(again, [0.4]).beta_lim, fm.boundaries(python, [0.4]).beta_lim)
+
+
+def test_a_store_goes_on_with_reduced_matrices(tmp_path, capsys):
+    pytest.importorskip("zarr")
+    np.savez(tmp_path / "chain.npz", **CHAIN)
+    keys = {"matrices": "chain.npz", **SYSTEM, "reduce": {"modes": 12}}
+    tree = {"system": keys, "grid": {"r": [0.4, 1.3], "beta": [0.1, 0.4]}}
+    (tmp_path / "c.toml").write_text(to_toml(tree))
+    for name in ("o.zarr", "o.zarr", "o.nc"):
+        assert main(["map", str(tmp_path / "c.toml"), "-o", str(tmp_path / name), "--quiet"]) == 0
+    with (
+        xr.open_zarr(tmp_path / "o.zarr", consolidated=False) as store,
+        xr.open_dataset(tmp_path / "o.nc") as ds,
+    ):
+        np.testing.assert_array_equal(store.regime, ds.regime)
+        assert "within" in store.attrs["reduction"]
+    assert main(["info", str(tmp_path / "o.nc")]) == 0
+    assert "reduction" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"reduce": 16}, r"reduce must be \{ keep = \[...\], modes = 16 \}; got 16"),
+        ({"reduce": {"keep": [1]}}, "reduce must be .*modes = 16"),
+        ({"reduce": {"modes": 2, "mods": 2}}, "reduce must have the keys keep, modes, allow; got 'mods'"),
+        ({"reduce": {"modes": 2.5}}, "reduce.modes must be a whole number; got 2.5"),
+        ({"reduce": {"modes": -1}}, "reduce.modes must be >= 0; got -1"),
+        ({"reduce": {"modes": 39}}, "reduce.modes must be at most 38, as many as there are; got 39"),
+        ({"reduce": {"modes": 2, "keep": 7}}, "reduce.keep must be a list of degrees of freedom; got 7"),
+        ({"reduce": {"modes": 2, "keep": [41]}}, r"reduce.keep\[0\] must be <= 40; got 41"),
+        ({"reduce": {"modes": 2, "allow": 0}}, "reduce.allow must be > 0; got 0"),
+        ({"rayleigh": [0.1]}, r"rayleigh must be two numbers \[a, b\], C = a M \+ b K; got \[0.1\]"),
+        ({"rayleigh": [0.1, -1]}, r"rayleigh\[1\] must be >= 0; got -1"),
+        ({"rayleigh": [1e6, 0]}, r"rayleigh must make damping ratios <= 100; got"),
+        (
+            {"rayleigh": [0, 0.1], "damping_ratios": 0.1},
+            "damping_ratios must be left out if rayleigh is given",
+        ),
+    ],
+)
+def test_what_is_refused(settings, message):
+    with pytest.raises(fm.InputError, match=message) as caught:
+        fm.System(matrices=CHAIN, **SYSTEM, **settings)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("key", ["reduce", "rayleigh"])
+def test_a_chain_is_not_reduced(key):
+    with pytest.raises(fm.InputError, match=f"{key} must be left out without matrices"):
+        fm.System(**{key: {"modes": 3}})
+
+
+def test_matrices_that_cannot_be_reduced():
+    K = CHAIN["K"].copy()
+    K[20, 20] = -1.0
+    with pytest.raises(fm.InputError, match="K must be positive definite"):
+        reduced({"M": CHAIN["M"], "K": K})
+    M = CHAIN["M"].copy()
+    M[20, 20] = -1.0
+    with pytest.raises(fm.InputError, match=r"M must be positive definite; it is negative at .* 21"):
+        reduced({"M": M, "K": CHAIN["K"]})
+    large = csr_array(eye_array(3000))
+    with pytest.raises(fm.InputError, match="at most 2000 degrees of freedom, unless they are reduced"):
+        fm.System(matrices={"M": large, "K": large})

@@ -522,12 +522,6 @@ def label_variable(name: str, values: np.ndarray | float, what: str = "") -> xr.
     return xr.Variable(label.dims[len(label.dims) - np.ndim(values) :], values, attributes(label))
 
 
-def reduction_text(system: System, r: np.ndarray) -> dict[str, str]:
-    """The attribute `reduction` of a reduced structure: what that costs in the range of r."""
-    accuracy = system.accuracy(r)
-    return {} if accuracy is None else {"reduction": f"{accuracy.words()}, for r = {r[0]:g} to {r[-1]:g}"}
-
-
 def stamp(
     ds: xr.Dataset,
     function: str,
@@ -545,7 +539,7 @@ def stamp(
         "source": f"frictionmap {__version__}",
         "references": REFERENCES,
         "system": system.describe(),
-        **reduction_text(system, np.atleast_1d(axes["r"])),
+        **system.costs(np.atleast_1d(axes["r"])),
         **made_by(function, title, system, axes, solver, curves, study),
     }
     return ds

@@ -30,6 +30,7 @@ _SYSTEM = {
     "stiffness_ratios": (1.0,),
     "damping_ratios": None,
     "rayleigh": None,
+    "decouple": None,
     "frequency_scale": None,
     "stiffness_scale": 1.0,
     "excitation": "force",

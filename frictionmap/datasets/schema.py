@@ -22,7 +22,7 @@ from .labels import (
 )
 
 #: Global attributes that are text, if they are there.
-TEXTS = ("title", "system", "source", "history", "references", "config", "reduction")
+TEXTS = ("title", "system", "source", "history", "references", "config", "reduction", "decoupling")
 
 
 def _known(what: str) -> dict[str, Label]:

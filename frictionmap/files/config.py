@@ -306,7 +306,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
         for key, bounds in AXES.items()
     }
     try:
-        (variations or system).accuracy(axes["r"])
+        (variations or system).costs(axes["r"])
     except InputError as error:
         raise InputError(f"system.{error}") from None
     files = (path, *_matrix_files(described))

@@ -15,7 +15,11 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _TOGETHER: list[Legal] = [
     {"dependentSchemas": {"matrices": {"properties": {"mass_ratios": False, "stiffness_ratios": False}}}},
     {"dependentSchemas": {"load": {"properties": {"load_mass": False, "excitation": {"const": "force"}}}}},
-    {"dependentRequired": {name: ["matrices"] for name in ("frequency_scale", "reduce", "rayleigh")}},
+    {
+        "dependentRequired": {
+            name: ["matrices"] for name in ("frequency_scale", "reduce", "rayleigh", "decouple")
+        }
+    },
     {"dependentSchemas": {"rayleigh": {"properties": {"damping_ratios": False}}}},
     {
         "if": {"properties": {"contact": {"const": "between-masses"}}, "required": ["contact"]},

@@ -175,6 +175,12 @@ KEYS: dict[str, tuple[Key, ...]] = {
             words="two numbers >= 0",
         ),
         Key(
+            "decouple",
+            "with a C that couples the modes, take its diagonal, if linear responses change by no more",
+            number(above=0.0, most=1.0),
+            example="0.02",
+        ),
+        Key(
             "frequency_scale",
             "with matrices, what r = 1 is, in the units of sqrt(K/M); else the first natural frequency",
             number(above=0.0),

@@ -16,6 +16,7 @@ from ..structures.craig_bampton import Reduce, checked_reduce
 from ..structures.dofs import Dofs
 from ..structures.reduction import Reduction, reduce_structure
 from ..structures.structure import Structure, read_structure
+from .decoupling import Decoupling
 from .matrices import Matrices, of_reduction, whole
 from .modes import ModalModel, damped_modes, gather_contact, modal_damping, solve_chain_modes, solve_modes
 
@@ -150,6 +151,10 @@ class System:
     rayleigh : sequence of float, optional
         With matrices, instead of damping_ratios and of C: [a, b] of C = a M + b K, >= 0, in their units.
 
+    decouple : float, optional
+        With a C that couples the undamped modes: its diagonal in the modes takes its place, if that changes
+        linear responses, free and with the contact held, by no more than this in the range of r.
+
     Raises
     ------
     InputError
@@ -178,6 +183,7 @@ class System:
     # reduced matrices say all that this does
     reduce: Mapping[str, Any] | Reduce | None = field(default=None, compare=False)
     rayleigh: Sequence[float] | None = None
+    decouple: float | None = None
 
     def __post_init__(self) -> None:
         previous = self.matrices.reduction if isinstance(self.matrices, Matrices) else None
@@ -199,7 +205,7 @@ class System:
         object.__setattr__(self, name, value)
 
     def _check_chain(self) -> None:
-        for name in ("reduce", "rayleigh"):
+        for name in ("reduce", "rayleigh", "decouple"):
             if getattr(self, name) is not None:
                 given = checks.one_line(getattr(self, name))
                 raise InputError(f"{name} must be left out without matrices; got {given}")
@@ -273,6 +279,8 @@ class System:
 
     def _check_damping(self) -> None:
         self._check_rayleigh()
+        if self.decouple is not None:
+            self._set("decouple", checks.number(self.decouple, "decouple", above=0.0, most=1.0))
         given = self.damping_ratios
         if isinstance(self.matrices, Matrices) and self.matrices.damping is not None:
             for name, ratios in (("damping_ratios", given), ("rayleigh", self.rayleigh)):
@@ -373,6 +381,45 @@ class System:
         low, high = (float(end) * self._frequency_scale for end in (r[0], r[-1]))
         return self.reduction.checked(low, high)
 
+    def decoupling(self, r: np.ndarray) -> float | None:
+        """What it costs in the range of r that C is taken by its diagonal; None if it is diagonal.
+
+        Raises
+        ------
+        InputError
+            More than is allowed.
+        """
+        left_out = self._damped_modes[3]
+        if left_out is None:
+            return None
+        error = left_out.error(self.modes, r)
+        allowed: float = self.decouple  # type: ignore[assignment]
+        if not error <= allowed:
+            raise InputError(
+                f"decouple must be at least {error:.2g}, by which linear responses change in the range of r "
+                f"if C is taken by its diagonal; got {allowed:g}"
+            )
+        return error
+
+    def costs(self, r: np.ndarray) -> dict[str, str]:
+        """In words, what the structure that is computed differs from the one given, in the range of r.
+
+        Raises
+        ------
+        InputError
+            More than is allowed.
+        """
+        words = {}
+        reduced, decoupled = self.accuracy(r), self.decoupling(r)
+        where = f", for r = {r[0]:g} to {r[-1]:g}"
+        if reduced is not None:
+            words["reduction"] = reduced.words() + where
+        if decoupled is not None:
+            words["decoupling"] = (
+                f"C, taken by its diagonal in the modes, changes linear responses by {decoupled:.1e}{where}"
+            )
+        return words
+
     @property
     def contact_rows(self) -> list[int]:
         """Rows of the masses in contact, counted from 0."""
@@ -451,14 +498,15 @@ class System:
 
     def _checked_damping(
         self, damping: np.ndarray, w: np.ndarray, phi: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Damping ratios by a matrix C1, and the modes that it leaves apart."""
+    ) -> tuple[np.ndarray, np.ndarray, Decoupling | None]:
+        """Damping ratios by a matrix C1, the modes that it leaves apart, and what is left out of it."""
         zeta, phi, coupling = damped_modes(damping, w, phi)
-        if coupling > _MOST_COUPLING:
+        coupled = coupling > _MOST_COUPLING
+        if coupled and (self.decouple is None or not np.isfinite(coupling)):
             raise InputError(
                 f"matrices: C must be diagonal in the undamped modes, such as modal or Rayleigh damping, "
                 f"a M + b K (or leave C out and give damping_ratios); it couples modes by {coupling:.1e} of "
-                f"their own damping"
+                f"their own damping (decouple = 0.02 takes its diagonal if responses change by no more)"
             )
         worst = int(np.argmax(zeta))
         if zeta[worst] > checks.LARGEST_DAMPING:
@@ -466,19 +514,24 @@ class System:
                 f"matrices: C must make damping ratios <= {checks.LARGEST_DAMPING:g}; got "
                 f"{zeta[worst]:.3g} of mode {worst + 1}"
             )
-        return zeta, phi
+        return zeta, phi, Decoupling(damping) if coupled else None
+
+    @cached_property
+    def _damped_modes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, Decoupling | None]:
+        """Frequencies, modes, damping ratios, and what is left out of C."""
+        mass, stiffness, given = self._structure()
+        w, phi = self._solve(mass, stiffness)
+        if given is not None:
+            zeta, phi, left_out = self._checked_damping(given, w, phi)
+            return w, phi, zeta, left_out
+        zeta = np.array(self.damping_ratios) if self.rayleigh is None else self._rayleigh_ratios(w)
+        return w, phi, zeta, None
 
     @cached_property
     def modes(self) -> ModalModel:
         """Modes and participation factors; they do not depend on r."""
-        mass, stiffness, given = self._structure()
-        w, phi = self._solve(mass, stiffness)
-        if self.rayleigh is not None:
-            zeta = self._rayleigh_ratios(w)
-        elif given is None:
-            zeta = np.array(self.damping_ratios)
-        else:
-            zeta, phi = self._checked_damping(given, w, phi)
+        mass, stiffness, _ = self._structure()
+        w, phi, zeta, _ = self._damped_modes
         contact = self.contact_vector
         phi = gather_contact(w, zeta, phi, contact)
         damping = modal_damping(mass, w, phi, zeta)

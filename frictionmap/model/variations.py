@@ -122,11 +122,11 @@ class Variations:
         keys = dict.fromkeys(number.key for axis in self.axes for number in axis.numbers)
         return self.system.describe() + (f"; varied: {', '.join(keys)}" if keys else "")
 
-    def accuracy(self, r: np.ndarray) -> None:
-        """Refuse a reduction that costs too much somewhere in the range of r, see `System.accuracy`."""
-        if self.system.reduction is not None:
+    def costs(self, r: np.ndarray) -> None:
+        """Refuse what costs too much somewhere in the range of r, see `System.costs`."""
+        if self.system.costs(r):
             for point in self.points():
-                self.at(point).accuracy(r)
+                self.at(point).costs(r)
 
     def points(self) -> Iterator[tuple[int, ...]]:
         """Every point, the last axis first."""

@@ -112,7 +112,7 @@ def curves(
     asked = curve_settings(harmonics, quantities)
     axes = checked_axes(r, beta, mu, system.n * (asked.harmonics + 1))
     basic, names = plain_outputs(asked), cycle_variables(asked)
-    system.accuracy(axes["r"])
+    system.costs(axes["r"])
     cells, out = compute(
         system, axes, replace(solver, outputs=basic), asked_for(names, asked.harmonics), threads, progress
     )

@@ -75,7 +75,7 @@ def sweep(
     solver = merged(solver, settings)
     grid = checked_axes(r, beta, mu, system.n if "amplitude" in solver.outputs else 1)
     variations = None if axes is None else checked_variations(system, axes)
-    (variations or system).accuracy(grid["r"])
+    (variations or system).costs(grid["r"])
     if variations is None:
         ds = regime_map(system, grid, solver, threads, progress)
     else:

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
-from ..datasets.labels import REFERENCES, reduction_text
+from ..datasets.labels import REFERENCES
 from ..datasets.provenance import configuration
 from ..errors import InputError
 from ..files.config import Config, config_of, parse
@@ -125,7 +125,7 @@ def make_store(path: Path, study: Study, title: str) -> None:
         attributes = {
             "Conventions": "CF-1.11", "title": title, "source": _SOURCE, "references": REFERENCES,
             "system": study.variations.describe(), "config": text,
-            **reduction_text(study.system, study.r),
+            **study.system.costs(study.r),
         }  # fmt: skip
         group = zarr.create_group(away, attributes=attributes)
         for name, array in arrays_of(study, sample).items():

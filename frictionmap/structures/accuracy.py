@@ -1,10 +1,11 @@
 """What a reduction costs: natural frequencies and compliances against those of the whole structure.
 
 Both without damping, which would hide errors, and both with the contact free and held.  Compliances are those
-between all kept degrees of freedom, away from resonances, each in the unit of its static ones.
+between all kept degrees of freedom, away from resonances, each in the unit of its static ones; their error is
+that of all together, over the larger of those free and held.
 """
 
-from collections.abc import Callable
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -102,7 +103,7 @@ class Comparison:
         contact = reduced.motions.T @ self._whole.contact
         forces = reduced.motions.T @ self._whole.forces
         own = _own_frequencies(mass, stiffness, contact)
-        high = self._range[1]
+        high = (1.0 + _NEAR) * self._range[1]  # a resonance just beyond the range is felt in it
         if not self._frequencies:
             self._frequencies = tuple(
                 self._whole.frequencies(bool(k), high, int((one <= high).sum())) for k, one in enumerate(own)
@@ -113,7 +114,9 @@ class Comparison:
             return forces.T @ np.linalg.solve(stiffness - omega * omega * mass, forces)
 
         frequencies = max(_difference(w, one) for w, one in zip(self._frequencies, own, strict=True))
-        return Accuracy(frequencies, self._compliance_error(compliances, contact, forces))
+        pull = np.linalg.lstsq(forces, contact, rcond=None)[0]
+        pairs = ((compliances(omega), true) for omega, true in self._samples)
+        return Accuracy(frequencies, largest_error(pairs, self._whole.units, pull))
 
     def _places(self) -> np.ndarray:
         """Frequencies at which compliances are compared."""
@@ -126,19 +129,24 @@ class Comparison:
             places = places[nearest > _NEAR * places]
         return places[:: max(1, -(-places.size // _SAMPLES))]
 
-    def _compliance_error(
-        self, compliances: Callable[[float], np.ndarray], contact: np.ndarray, forces: np.ndarray
-    ) -> float:
-        units = np.outer(self._whole.units, self._whole.units)
-        pull = np.linalg.lstsq(forces, contact, rcond=None)[0]  # the contact's force as one of these
-        worst = 0.0
-        for omega, true in self._samples:
-            found = compliances(omega)
-            for one, other in ((found, true), (_with_held(found, pull), _with_held(true, pull))):
-                worst = max(
-                    worst, float(np.linalg.norm((one - other) / units) / np.linalg.norm(other / units))
-                )
-        return worst
+
+def largest_error(
+    pairs: Iterable[tuple[np.ndarray, np.ndarray]], units: np.ndarray, pull: np.ndarray
+) -> float:
+    """Largest relative difference of compliances (k, k), found and true, free and with the contact held.
+
+    units : (k,) roots of the static compliances; pull : (k,) the contact's force as a sum of the forces
+    """
+    scale = np.outer(units, units)
+    worst = 0.0
+    for found, true in pairs:
+        free, held = found / scale, _with_held(found, pull) / scale
+        true_free, true_held = true / scale, _with_held(true, pull) / scale
+        # either may vanish at an antiresonance
+        size = max(np.linalg.norm(true_free), np.linalg.norm(true_held))
+        off = max(np.linalg.norm(free - true_free), np.linalg.norm(held - true_held))
+        worst = max(worst, float(off / size))
+    return worst
 
 
 def _with_held(compliances: np.ndarray, pull: np.ndarray) -> np.ndarray:

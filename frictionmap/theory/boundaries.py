@@ -298,7 +298,7 @@ def boundaries(system: System, r: ArrayLike, mu: ArrayLike = 1.0) -> xr.Dataset:
     checks.instance(system, "system", System)
     r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
     mu = checks.axis(mu, "mu", least=1.0)
-    system.accuracy(r)
+    system.costs(r)
     found = find_curves(system, r, mu)
     functions = {
         "V": found.v.real,

@@ -23,7 +23,7 @@ def duration(seconds: float) -> str:
 
 def rounded_off(value: float) -> str:
     """An error as a power of ten: 7e-14."""
-    return "0" if value == 0.0 else f"{value:.0e}".replace("e-0", "e-")
+    return "0" if value == 0.0 else f"{value:.0e}".replace("e-0", "e-").removesuffix("e+00")
 
 
 def markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:

@@ -21,7 +21,18 @@ BEGIN = "<!-- from benchmarks/results by `python -m benchmarks page`: do not edi
 END = "<!-- end of the results -->"
 
 #: The benchmarks whose results are quoted.
-QUOTED = ("peers", "structures", "accuracy", "stress", "steady", "scaling", "startup", "faults", "large")
+QUOTED = (
+    "peers",
+    "structures",
+    "accuracy",
+    "stress",
+    "steady",
+    "scaling",
+    "startup",
+    "faults",
+    "large",
+    "coupling",
+)
 
 #: What `faults` found in an earlier state, quoted beside what it finds.
 BEFORE = "faults-before"
@@ -241,6 +252,35 @@ def _mass_rows(structures: dict) -> Iterator[tuple[str, ...]]:
     )
 
 
+# ---------------------------------------------------------------- coupling
+
+
+def _coupling_lines(coupling: dict) -> list[str]:
+    rows = [
+        (
+            kind,
+            level,
+            str(entry["cells"]),
+            rounded_off(entry["error of Z"]["median"]),
+            rounded_off(entry["error of Z"]["nine of ten below"]),
+            str(entry["cells with other stop counts"]),
+        )
+        for kind, levels in coupling["neglected coupling"].items()
+        for level, entry in levels.items()
+    ]
+    return [
+        "",
+        "### Damping that the modes do not diagonalise",
+        "",
+        "Random chains of 2 to 5 masses, marched with the whole damping matrix, against those whose modes "
+        "are damped by its diagonal: what leaving out the coupling costs.",
+        *markdown(
+            ("damping", "mean zeta", "cells", "error of Z, median", "nine of ten below", "other stop counts"),
+            rows,
+        ),
+    ]
+
+
 # ---------------------------------------------------------------- all
 
 
@@ -284,6 +324,8 @@ def block(results: Path) -> str:
             lines += quote(found[name])
     if "faults" in found:
         lines += faults_lines(found["faults"], found.get(BEFORE))
+    if "coupling" in found:
+        lines += _coupling_lines(found["coupling"])
     growth = list(_scaling_rows(found["scaling"])) if "scaling" in found else []
     growth += _mass_rows(structures) if structures else []
     growth += _large_rows(found["large"]) if "large" in found else []

@@ -18,7 +18,7 @@ from benchmarks.report import quoting, record, results_page
 RESULTS = ROOT / "benchmarks" / "results"
 
 #: Benchmarks without timings.
-UNTIMED = {"stress", "steady", "faults"}
+UNTIMED = {"stress", "steady", "faults", "coupling"}
 
 #: Benchmarks whose figure has another name.
 FIGURES = {"bound": "fig-5-55"}

@@ -128,8 +128,7 @@ def _values(ds: xr.Dataset, name: str) -> str:
 
 def _of_point(ds: xr.Dataset, point: Mapping[str, int]) -> dict[str, str]:
     """Title, system and configuration of a point; the latter two are empty where the file does not tell."""
-    names = sorted((str(name) for name in ds.coords if _further(ds, str(name), [*point])), key=natural)
-    words = ", ".join(f"{name} = {float(ds[name].values[point[str(ds[name].dims[0])]]):g}" for name in names)
+    words = ", ".join(f"{name} = {_numbers(ds, name)[place]:g}" for name, place in point.items())
     title = f"{ds.attrs.get('title', '')}, {words}".removeprefix(", ")
     system = text = ""
     config = _config(ds)

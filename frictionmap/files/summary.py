@@ -194,7 +194,9 @@ def _axis(values: np.ndarray) -> str:
         return ", ".join(np.atleast_1d(values))
     if values.size <= _SHOWN:
         return _numbers(values)
-    return f"{values[0]:g} to {values[-1]:g}, {values.size:,} values"
+    return (
+        f"{values.min():g} to {values.max():g}, {values.size:,} values"  # those beside an axis in any order
+    )
 
 
 def _numbers(values: np.ndarray) -> str:

@@ -64,7 +64,8 @@ def fill_store(
                 if progress is not None:
                     progress(count, done.size)
         except OSError as error:
-            raise OSError(f"{path} cannot be written ({error.strerror or error}); {claim.kept()}") from error
+            why = f"cannot be written ({error.strerror})" if error.strerror else f"is not finished ({error})"
+            raise OSError(f"{path} {why}; {claim.kept()}") from error
         return store
 
 

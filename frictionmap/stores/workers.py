@@ -5,6 +5,7 @@ that is lost is done again, to the same bytes.
 """
 
 import contextlib
+import logging
 import sys
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator
@@ -121,6 +122,8 @@ def _cluster(workers: int) -> "LocalCluster":
 def running(address: str) -> Fill:
     """On the workers of a scheduler that is running; they see the store under the same path."""
     distributed = _distributed()
+    for name in ("distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # what there is to say is said below
 
     def fill(store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
         try:
@@ -169,5 +172,12 @@ def _check_lost(future: "Future", times: int) -> None:
     if future.status != "error":
         raise OSError("the scheduler of dask was lost")
     error = future.exception()
+    if isinstance(error, ImportError) or "deserialization" in str(
+        error
+    ):  # dask's word where a module is missing
+        raise OSError(
+            "frictionmap must be installed in the same version where the scheduler and the workers are; "
+            f"dask says: {str(error).splitlines()[0]}"
+        ) from error
     if not isinstance(error, _distributed().KilledWorker) or times > _LOSSES:
         raise error

@@ -54,7 +54,7 @@ def test_a_point_is_the_map_of_its_system(files, end):
     for name in one.data_vars:
         np.testing.assert_array_equal(ds[name].values, one[name].values)
     assert ds.attrs["system"] == system.describe()
-    assert "damping_ratios = 0.05" in ds.attrs["title"]
+    assert ds.attrs["title"] == "Study, damping_ratios = 0.05, sample = 1"  # the numbers are in `system`
     assert stored_system(ds) == system
 
 
@@ -307,6 +307,15 @@ def test_shares_as_a_file(samples, tmp_path, capsys):
         (value,) = column.values()
         told = [float(row[f"{name}_{value}"]) for row in rows]
         assert told == expected.transpose("mu", "r", "beta").values.ravel().tolist()
+
+
+def test_numbers_beside_an_axis_are_told_from_least_to_most(samples, tmp_path, capsys):
+    write(samples, tmp_path / "samples.nc")
+    assert main(["info", str(tmp_path / "samples.nc")]) == 0
+    values = samples["mass_ratios_2"].values
+    assert (
+        f"  mass_ratios_2         {values.min():g} to {values.max():g}, 30 values" in capsys.readouterr().out
+    )
 
 
 def test_a_study_survives_the_file(samples, tmp_path):

@@ -80,6 +80,8 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
         raise InputError(
             f"--over must name a further axis of the file: {', '.join(further) or 'it has none'}; got {over}"
         )
+    if over in places:
+        raise InputError(f"--at must choose on other axes than --over {over}, which takes all points of it")
     point: dict[str, int] = {}
     rows: dict[str, list[int]] = {}
     chosen = [dim for dim in further if dim != over]

@@ -1,6 +1,7 @@
 """Stores: block by block the same bytes as at once, however a run was stopped."""
 
 import filecmp
+import importlib
 import os
 import random
 import re
@@ -394,3 +395,16 @@ def test_workers_that_come_later_have_work(tmp_path):
         assert len(submitted) == 3 + 10
         assert len(list(done)) == asked.blocks - 2
     assert opened(path).marks().all()
+
+
+def test_workers_that_lack_the_package(tmp_path):
+    distributed = pytest.importorskip("distributed")
+    from frictionmap.stores.workers import _check_lost
+
+    with distributed.Client(processes=False, n_workers=1, dashboard_address=None) as client:
+        future = client.submit(importlib.import_module, "no_such_package")
+        distributed.wait(future)
+        with pytest.raises(
+            OSError, match=r"must be installed in the same version .*: No module named 'no_such"
+        ):
+            _check_lost(future, 1)

@@ -77,6 +77,12 @@ def test_choices_that_are_refused(files, end, at, words):
         read(files[end], at=at)
 
 
+@pytest.mark.parametrize("name", ["sample", "mass_ratios_2"])
+def test_a_choice_on_the_axis_that_shares_are_over(files, name):
+    with pytest.raises(InputError, match="--at must choose on other axes than --over sample"):
+        read_shares(files[".nc"], "sample", {"damping_ratios": 0.0, name: 1.0})
+
+
 @pytest.mark.parametrize("text", ["x", "x=", "=1", "x=one", "x=nan", "x=inf"])
 def test_choices_that_make_no_sense(text):
     with pytest.raises(InputError, match="--at must be NAME=VALUE"):

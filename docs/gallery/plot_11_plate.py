@@ -104,7 +104,7 @@ plate = fm.System(
     damping_ratios=0.005,
     stiffness_scale=1e3,
 )
-r = np.linspace(0.2, 8.0, 157)
+r = np.linspace(0.2, 8.0, 118)
 print(plate.describe())
 print(plate.accuracy(r).words())
 
@@ -115,7 +115,7 @@ print(plate.accuracy(r).words())
 # large it sticks for good, but near the resonances of the plate with the corner held, where the force in the
 # contact grows.  The white peaks stand at the resonances of the free plate.
 
-ds = fm.sweep(plate, r, np.geomspace(0.02, 4.0, 90), outputs=["regime", "stops_per_cycle", "status"])
+ds = fm.sweep(plate, r, np.geomspace(0.02, 4.0, 60), outputs=["regime", "stops_per_cycle", "status"])
 for ax in np.ravel(fm.plot_regimes(ds)):
     ax.set_yscale("log")
 plt.show()

@@ -180,6 +180,7 @@ class Page {
     this.map.show(found);
     if (found.whole) legend(part("legend"), found, this.scene, view, this.marks);
     const detail = { columns: found.columns, rows: found.rows, whole: found.whole };
+    this.map.stage.dataset.cells = `${found.columns} ${found.rows}`;
     requestAnimationFrame(() => this.map.stage.dispatchEvent(new CustomEvent("painted", { detail })));
   }
 

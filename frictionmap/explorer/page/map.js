@@ -31,7 +31,12 @@ export class RegimeMap {
     const { width, height } = this.stage.getBoundingClientRect();
     const right = this.seconds.beta ? ROOM.right + 44 : ROOM.right;
     const top = this.seconds.r ? ROOM.top + 26 : ROOM.top;
-    return { x: ROOM.left, y: top, width: Math.max(40, width - ROOM.left - right), height: Math.max(40, height - top - ROOM.bottom) };
+    const ratio = window.devicePixelRatio || 1;
+    const whole = (length) => Math.floor(length * ratio) / ratio; // cells are pixels: none lies across two
+    return {
+      x: whole(ROOM.left), y: whole(top),
+      width: whole(Math.max(40, width - ROOM.left - right)), height: whole(Math.max(40, height - top - ROOM.bottom)),
+    };
   }
 
   /** Cells of the finest picture: one for each pixel of the screen. */

@@ -1,0 +1,494 @@
+"""The page that explores maps in headless Chromium: what it paints, tells, asks for, keeps in its address."""
+
+import base64
+import contextlib
+import json
+import re
+import urllib.parse
+
+import numpy as np
+import pytest
+from browser import chromium
+from pages import HANG, packet, scene_from, served, solver
+
+import frictionmap as fm
+from frictionmap.explorer import stored
+from frictionmap.files.config import config_of
+from frictionmap.pictures.classes import classes
+from frictionmap.pictures.palette import CLASSES
+
+ONE = """\
+title = "One mass"
+[system]
+contact = "fixed-wall"
+[grid]
+r = [0.0, 2.0]
+beta = [0.0, 1.2]
+mu = [1.0, 1.5]
+"""
+TWO = """\
+[system]
+contact = "between-masses"
+contact_masses = [1, 2]
+mass_ratios = [1.0, 0.5]
+stiffness_ratios = [1.0, 2.0]
+[grid]
+r = [0.1, 2.5]
+beta = [0.0, 2.0]
+"""
+WAIT = 1000.0 * HANG
+
+#: Waits until the page has painted the finest picture of its view.
+DONE = "#stage[data-state=done]"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as driven:
+        yield driven
+
+
+@pytest.fixture(scope="module")
+def one(tmp_path_factory):
+    with served(scene_from(tmp_path_factory.mktemp("one"), ONE)) as server:
+        yield server
+
+
+@contextlib.contextmanager
+def page_of(browser, url, wait=DONE, **options):
+    """A page; in the end nothing was wrong on its console, and nobody else was asked for anything."""
+    context = browser.new_context(**{"viewport": {"width": 640, "height": 480}, **options})
+    context.set_default_timeout(WAIT)
+    page = context.new_page()
+    page.wrong, page.asked = [], set()
+    page.on(
+        "console", lambda said: page.wrong.append(said.text) if said.type in ("error", "warning") else None
+    )
+    page.on("pageerror", lambda error: page.wrong.append(str(error)))
+    page.on("request", lambda request: page.asked.add(urllib.parse.urlsplit(request.url)[:2]))
+    try:
+        page.goto(url)
+        if wait:
+            page.wait_for_selector(wait)
+        yield page
+        assert page.wrong == []
+        assert {pair for pair in page.asked if pair[0] not in ("data", "blob")} == {
+            urllib.parse.urlsplit(url)[:2]
+        }
+    finally:
+        context.close()
+
+
+def area(page):
+    """Where the cells lie on the page: left, top, width, height."""
+    box = page.locator("#stage").bounding_box()
+    return box["x"] + 64, box["y"] + 18, box["width"] - 80, box["height"] - 68
+
+
+def point(page, across, up):
+    left, top, width, height = area(page)
+    return left + across * width, top + (1.0 - up) * height
+
+
+def colours(page):
+    """Colours of the cells as they are on the screen, shape (columns, rows from below, 3)."""
+    ratio = page.evaluate("devicePixelRatio")
+    columns, rows = map(int, page.get_attribute("#stage", "data-cells").split())
+    if columns < 100:  # cells that are larger than pixels
+        columns, rows = (int(ratio * size) for size in area(page)[2:])
+    box = [64 * ratio, 18 * ratio, columns, rows]
+    pixels = np.frombuffer(base64.b64decode(page.evaluate(PIXELS, box)), np.uint8).reshape(rows, columns, 4)
+    return pixels[::-1, :, :3].swapaxes(0, 1)
+
+
+def wanted(system, r, beta, mu, shape, **settings):
+    """Colours of a map of so many columns and rows over ranges of r and beta."""
+    middles = [
+        np.linspace(low + half, high - half, count)
+        for (low, high), count in zip((r, beta), shape, strict=True)
+        for half in [0.5 * (high - low) / count]
+    ]
+    found = classes(fm.sweep(system, *middles, mu, solver=solver(**settings)).isel(mu=0))
+    table = np.array(
+        [[int(look.colour[k : k + 2], 16) for k in (1, 3, 5)] for look in CLASSES], dtype=np.uint8
+    )
+    return table[found]
+
+
+def of_address(page):
+    """The view in the address of a page, once it is there."""
+    page.wait_for_timeout(400)
+    return dict(urllib.parse.parse_qsl(urllib.parse.urlsplit(page.url).fragment))
+
+
+def ends(text):
+    return [float(part) for part in text.split(",")]
+
+
+def repainted(page, act):
+    """Do something, and wait for the finest picture of what the view has become."""
+    act()
+    page.wait_for_function("() => document.querySelector('#stage').dataset.state === 'done'")
+
+
+#: Scripts of the page: pixels of the cells; move a slider; how many values the pixels of a chart have; what the
+#: page makes of a packet.
+PIXELS = """(box) => {
+  const { data } = document.querySelector('#cells').getContext('2d').getImageData(...box);
+  let text = '';
+  for (let at = 0; at < data.length; at += 8192) text += String.fromCharCode(...data.subarray(at, at + 8192));
+  return btoa(text);
+}"""
+MOVE = """([name, value]) => {
+  const range = document.querySelector(`input[type=range][name='${name}']`);
+  range.value = value;
+  range.dispatchEvent(new Event('input'));
+}"""
+DRAWN = """(name) => {
+  const { width, height } = document.querySelector(`#motion .${name}`);
+  const pen = document.querySelector(`#motion .${name}`).getContext('2d');
+  return new Set(pen.getImageData(0, 0, width, height).data).size;
+}"""
+UNPACK = """async () => {
+  const { unpack } = await import('/packet.js');
+  const answer = await fetch('/motion?at=0.3,0.5');
+  const found = unpack(await answer.arrayBuffer());
+  return JSON.stringify([found.regime, [...found.z], [...found.numbers]]);
+}"""
+
+# The map
+
+
+@pytest.mark.parametrize("ratio", [1, 2])
+def test_a_map_is_painted_cell_by_cell(browser, one, ratio):
+    with page_of(browser, one.url, device_scale_factor=ratio) as page:
+        seen = colours(page)
+        right = wanted(fm.System(), (0.0, 2.0), (0.0, 1.2), 1.0, seen.shape[:2])
+        assert seen.shape[0] > 400 * ratio
+        np.testing.assert_array_equal(seen, right)
+        assert page.title() == "One mass – frictionmap"
+        legend = page.inner_text("#legend")
+        for words in ("permanent sticking", "continuous", "2 stops", "natural frequency"):
+            assert words in legend
+
+
+def test_zoom_and_pan_recompute_at_the_resolution_of_the_screen(browser, one):
+    with page_of(browser, one.url) as page:
+        page.mouse.move(*point(page, 0.25, 0.5))
+        repainted(page, lambda: page.mouse.wheel(0, -900))
+        view = of_address(page)
+        r, beta = ends(view["r"]), ends(view["beta"])
+        factor = 1.0015**-900
+        assert r[1] - r[0] == pytest.approx(2.0 * factor, rel=1e-3)
+        assert (0.5 - r[0]) / (r[1] - r[0]) == pytest.approx(0.25, abs=3e-3)  # what is pointed at stays there
+        assert (0.6 - beta[0]) / (beta[1] - beta[0]) == pytest.approx(0.5, abs=3e-3)
+        seen = colours(page)
+        np.testing.assert_array_equal(seen, wanted(fm.System(), r, beta, 1.0, seen.shape[:2]))
+        start, end = point(page, 0.5, 0.5), point(page, 0.25, 0.5)
+        page.mouse.move(*start)
+        page.mouse.down()
+        page.mouse.move(*end, steps=5)
+        repainted(page, page.mouse.up)
+        moved = ends(of_address(page)["r"])
+        assert moved[0] == pytest.approx(r[0] + 0.25 * (r[1] - r[0]), abs=4e-3)
+        assert moved[1] - moved[0] == pytest.approx(r[1] - r[0], rel=1e-3)
+
+
+def test_keys_and_buttons(browser, one):
+    with page_of(browser, one.url) as page:
+        page.focus("#stage")
+        repainted(page, lambda: page.keyboard.press("+"))
+        first = ends(of_address(page)["r"])
+        assert first == pytest.approx([1 - 1 / 1.6, 1 + 1 / 1.6], abs=1e-3)
+        repainted(page, lambda: page.keyboard.press("ArrowRight"))
+        assert ends(of_address(page)["r"])[0] == pytest.approx(first[0] + 0.12 * 1.25, abs=1e-3)
+        repainted(page, lambda: page.keyboard.press("ArrowUp"))
+        assert ends(of_address(page)["beta"])[0] > 0.225
+        repainted(page, lambda: page.click("[data-zoom=out]"))
+        repainted(page, lambda: page.click("[data-zoom=home]"))
+        assert ends(of_address(page)["r"]) == [0.0, 2.0]
+        page.focus("#stage")
+        page.keyboard.press("Shift+ArrowRight")
+        page.wait_for_selector("#motion h2")
+        assert ends(of_address(page)["cell"])[0] == pytest.approx(1.0, abs=0.05)
+        page.keyboard.press("?")
+        assert page.is_visible("#keys")
+
+
+def test_a_pinch_zooms(browser, one):
+    with page_of(
+        browser, one.url, has_touch=True, is_mobile=True, viewport={"width": 420, "height": 800}
+    ) as page:
+        devices = page.context.new_cdp_session(page)
+        (x0, y0), (x1, y1) = point(page, 0.4, 0.5), point(page, 0.6, 0.5)
+
+        def touch(kind, *places):
+            points = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(places)]
+            devices.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+        touch("touchStart", (x0, y0), (x1, y1))
+        for k in range(1, 6):
+            away = 0.2 * k * (x1 - x0) / 2
+            touch("touchMove", (x0 - away, y0), (x1 + away, y1))
+        repainted(page, lambda: touch("touchEnd"))
+        r = ends(of_address(page)["r"])
+        assert r[1] - r[0] == pytest.approx(1.0, rel=0.05)
+        assert sum(r) / 2 == pytest.approx(1.0, abs=0.05)
+        devices.send("Input.synthesizeTapGesture", {"x": round(x0), "y": round(y0)})
+        page.wait_for_selector("#motion h2")
+        assert "kept" in page.inner_text("#motion h2")
+
+
+# Numbers
+
+
+def test_a_slider_changes_the_map(browser, one):
+    with page_of(browser, one.url) as page:
+        repainted(page, lambda: page.evaluate(MOVE, ["mu", 250]))
+        assert of_address(page)["mu"] == "1.5"
+        repainted(page, lambda: page.evaluate(MOVE, ["damping_ratios", 200]))
+        assert of_address(page)["damping_ratios"] == "0.04"
+        seen = colours(page)
+        right = wanted(fm.System(damping_ratios=0.04), (0.0, 2.0), (0.0, 1.2), 1.5, seen.shape[:2])
+        np.testing.assert_array_equal(seen, right)
+        assert page.inner_text("#system").endswith("damping ratio 0.04")
+        repainted(page, lambda: page.select_option("#contact", "joined-base-wall:1"))
+        repainted(page, lambda: page.click("[data-start=moving]"))
+        seen = colours(page)
+        system = fm.System("joined-base-wall", damping_ratios=0.04)
+        right = wanted(system, (0.0, 2.0), (0.0, 1.2), 1.5, seen.shape[:2], start="moving")
+        np.testing.assert_array_equal(seen, right)
+
+
+def test_ratios_of_a_chain_have_sliders(browser, tmp_path):
+    with served(scene_from(tmp_path, TWO)) as server, page_of(browser, server.url) as page:
+        page.fill("input[type=number][name='mass_ratios[2]']", "0.8")
+        repainted(page, lambda: page.keyboard.press("Enter"))
+        assert of_address(page)["mass_ratios[2]"] == "0.8"
+        repainted(page, lambda: page.select_option("#contact", "fixed-wall:2"))
+        seen = colours(page)
+        system = fm.System("fixed-wall", [2], mass_ratios=[1, 0.8], stiffness_ratios=[1, 2])
+        np.testing.assert_array_equal(seen, wanted(system, (0.1, 2.5), (0.0, 2.0), 1.0, seen.shape[:2]))
+
+
+def test_quantities_have_a_ramp(browser, one):
+    with page_of(browser, one.url) as page:
+        before = colours(page)
+        repainted(page, lambda: page.select_option("#quantity", "contact_amplitude"))
+        assert "logarithmic" in page.inner_text("#legend")
+        after = colours(page)
+        stuck = (before == [196, 196, 196]).all(axis=-1)
+        np.testing.assert_array_equal(after[stuck], before[stuck])
+        assert np.unique(after[~stuck], axis=0).shape[0] > 100
+        assert of_address(page)["quantity"] == "contact_amplitude"
+
+
+# The motion in a cell
+
+
+def test_pointing_at_a_cell_shows_its_motion(browser, one):
+    with page_of(browser, one.url) as page:
+        page.mouse.move(*point(page, 0.15, 0.4))
+        page.wait_for_selector("#motion .others:not([hidden])")
+        assert page.inner_text("#motion .regime") == "Stick-slip"
+        words = page.inner_text("#motion .words")
+        assert "2 stops per cycle" in words
+        assert "lies between βlim" in re.sub(r"\s", " ", words).replace("β lim", "βlim")
+        assert "it ends in the same motion" in page.inner_text("#motion .others")
+        where = page.inner_text("#motion .where")
+        r, beta = (float(value) for value in re.findall(r"= ([0-9.]+)", where))
+        ds = fm.response(fm.System(), r, beta)
+        rows = dict(row.split("\t") for row in page.inner_text("#motion tbody").splitlines())
+        assert float(rows["share of time stuck"].split()[0]) == pytest.approx(
+            100 * ds["stuck_fraction"].item(), rel=2e-2
+        )
+        for canvas in ("displacement", "force", "portrait", "loop", "spectrum"):
+            assert page.evaluate(DRAWN, canvas) > 10, canvas
+
+
+def test_a_cell_is_kept_in_the_address(browser, one):
+    with page_of(browser, f"{one.url}#mu=1.5&r=0.2,0.5&beta=0.5,1") as page:
+        r, beta = 0.303, 0.76
+        repainted(page, lambda: page.mouse.click(*point(page, (r - 0.2) / 0.3, (beta - 0.5) / 0.5)))
+        page.wait_for_selector("#motion .others:not([hidden])")
+        assert page.inner_text("#motion .regime") == "Permanent sticking"
+        assert "it ends otherwise" in page.inner_text("#motion .others")
+        assert "2 stops per cycle" in page.inner_text("#motion .others")
+        cell = ends(of_address(page)["cell"])
+        assert cell == pytest.approx([r, beta], abs=2e-3)
+        link = page.url
+    with page_of(browser, link) as page:
+        page.wait_for_selector("#motion .others:not([hidden])")
+        assert page.inner_text("#motion .regime") == "Permanent sticking"
+        assert of_address(page) == dict(urllib.parse.parse_qsl(urllib.parse.urlsplit(link).fragment))
+        page.focus("#stage")
+        page.keyboard.press("Escape")
+        assert "cell" not in of_address(page)
+
+
+def test_a_cut_is_drawn(browser, one):
+    with page_of(browser, f"{one.url}#cell=0.4,0.3&cut=r") as page:
+        page.wait_for_selector("#cut:not([hidden])")
+        assert "along r at β = 0.3" in page.inner_text("#cut")
+        repainted(page, lambda: page.click("[data-cut=beta]"))
+        page.wait_for_function(
+            "() => document.querySelector('#cut').innerText.includes('along β at r = 0.4')"
+        )
+        repainted(page, lambda: page.click("#cut button"))
+        assert not page.is_visible("#cut")
+
+
+# What is outdated, what is wrong
+
+
+def test_what_is_outdated_is_given_up(browser, tmp_path):
+    with served(scene_from(tmp_path, TWO)) as server:
+        slow = f"{server.url}#mu=1.9&r=0.02,0.2&beta=0.01,0.9"
+        with page_of(browser, slow, wait="#stage[data-state=refining]") as page:
+            page.wait_for_function(
+                "() => document.querySelector('#legend').children.length > 0"
+            )  # a coarse picture
+            assert page.get_attribute("#stage", "data-state") == "refining"
+            address = "#mu=1&r=0.1,2.5&beta=0,2"
+            repainted(page, lambda: page.evaluate(f"location.hash = '{address}'"))
+            seen = colours(page)
+            system = fm.System("between-masses", [1, 2], mass_ratios=[1, 0.5], stiffness_ratios=[1, 2])
+            np.testing.assert_array_equal(seen, wanted(system, (0.1, 2.5), (0.0, 2.0), 1.0, seen.shape[:2]))
+            page.wait_for_timeout(300)
+            assert not server.page.jobs._running
+
+
+def test_what_is_wrong_is_told_in_a_line(browser, one):
+    with page_of(browser, one.url) as page:
+        page.fill("input[type=number][name=mu]", "0.5")
+        page.keyboard.press("Enter")
+        page.wait_for_selector("#told.wrong")
+        assert page.inner_text("#told") == "mu must be >= 1; got 0.5"
+        page.fill("input[type=number][name=mu]", "1.2")
+        repainted(page, lambda: page.keyboard.press("Enter"))
+        assert page.is_hidden("#told")
+        page.wrong = [
+            text for text in page.wrong if "400 (Bad Request)" not in text
+        ]  # the browser's own note
+
+
+def test_a_server_that_has_ended_is_told(browser, tmp_path):
+    with contextlib.ExitStack() as stack:
+        server = stack.enter_context(served(scene_from(tmp_path, ONE)))
+        with page_of(browser, server.url) as page:
+            stack.close()
+            page.context.set_offline(True)
+            page.click("[data-zoom=in]")
+            page.wait_for_selector("#told.wrong")
+            assert "does not answer: has it been ended?" in page.inner_text("#told")
+            page.wrong = [text for text in page.wrong if "net::ERR" not in text]
+
+
+def test_compiling_is_said(browser, one):
+    with page_of(browser, one.url) as page:
+        waiting = []
+        page.route("**/map?**", lambda route: waiting.append(route))
+        page.route(
+            "**/state?**", lambda route: route.fulfill(json={"compiling": {"seconds": 12.4, "kernels": 3}})
+        )
+        page.click("[data-zoom=in]")
+        page.wait_for_function("() => document.querySelector('#told').innerText.includes('compiling')")
+        assert page.inner_text("#told") == "compiling kernels, once on this machine: 12 s"
+        page.unroute("**/state?**")
+        page.unroute("**/map?**")
+        repainted(page, lambda: [route.continue_() for route in waiting])
+        page.wait_for_selector("#told", state="hidden")
+
+
+# What is taken along
+
+
+def test_a_view_can_be_taken_along(browser, one, tmp_path):
+    allowed = {"permissions": ["clipboard-read", "clipboard-write"]}
+    with page_of(browser, f"{one.url}#r=0.2,1.4&beta=0.1,1&mu=1.3", **allowed) as page:
+
+        def copied(what):
+            page.click("#save summary")
+            page.click(f"[data-save={what}]")
+            page.wait_for_selector("#toast:not([hidden])")
+            return page.evaluate("navigator.clipboard.readText()")
+
+        config = config_of(copied("configuration"), {})
+        ds = fm.sweep(config.system, config.r, config.beta, config.mu, solver=config.solver)
+        table = np.array([[int(look.colour[k : k + 2], 16) for k in (1, 3, 5)] for look in CLASSES], np.uint8)
+        np.testing.assert_array_equal(colours(page), table[classes(ds.isel(mu=0))])
+        assert copied("link") == page.url
+        for what, name in (("picture", "map.png"), ("csv", "map.csv"), ("nc", "map.nc")):
+            with page.expect_download() as expected:
+                page.click("#save summary")
+                page.click(f"[data-save={what}]")
+            assert expected.value.suggested_filename == name
+            expected.value.save_as(tmp_path / name)
+        assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+        assert (tmp_path / "map.csv").read_text().startswith("mu,r,beta,regime")
+
+
+def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
+    scene = scene_from(tmp_path, ONE)
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in {"_COLUMNS": 40, "_ROWS": 30, "_PLACES": 3}.items():
+            patch.setattr(stored, name, value)
+        (tmp_path / "page.html").write_bytes(stored.write_page(scene, lambda *_: None))
+    url = (tmp_path / "page.html").as_uri()
+    with page_of(browser, url, offline=True) as page:
+        maps = lambda mu, zeta: wanted(fm.System(damping_ratios=zeta), (0.0, 2.0), (0.0, 1.2), mu, (40, 30))  # noqa: E731
+
+        def middles():
+            """Colours in the middles of the cells, which are larger than pixels."""
+            seen = colours(page)
+            places = [
+                ((np.arange(count) + 0.5) / count * size).astype(int)
+                for count, size in zip((40, 30), seen.shape[:2], strict=True)
+            ]
+            return seen[np.ix_(*places)]
+
+        np.testing.assert_array_equal(middles(), maps(1.0, 0.0))
+        repainted(page, lambda: page.evaluate(MOVE, ["mu", 1]))
+        repainted(page, lambda: page.evaluate(MOVE, ["damping_ratios", 1]))
+        mu, zeta = (
+            float(page.input_value(f"input[type=number][name={name}]")) for name in ("mu", "damping_ratios")
+        )
+        assert (mu, zeta) == (2.0, 0.125)
+        np.testing.assert_array_equal(middles(), maps(mu, zeta))
+        repainted(page, lambda: page.select_option("#quantity", "stuck_fraction"))
+        page.mouse.move(*point(page, 0.2, 0.3))
+        assert "run frictionmap explore" in page.inner_text("#motion")
+        repainted(page, lambda: page.click("[data-zoom=in]"))
+
+
+# How it looks
+
+
+def test_it_follows_the_colours_of_the_desktop(browser, one):
+    backs = set()
+    for scheme in ("light", "dark"):
+        with page_of(browser, one.url, color_scheme=scheme) as page:
+            backs.add(page.evaluate("getComputedStyle(document.body).backgroundColor"))
+            cells = colours(page)
+    assert len(backs) == 2
+    assert {tuple(colour) for colour in np.unique(cells.reshape(-1, 3), axis=0)} <= {
+        tuple(int(look.colour[k : k + 2], 16) for k in (1, 3, 5)) for look in CLASSES
+    }
+
+
+@pytest.mark.parametrize("width", [360, 700, 1100, 1800])
+def test_it_fits_any_width(browser, one, width):
+    with page_of(browser, f"{one.url}#cell=0.3,0.5", viewport={"width": width, "height": 800}) as page:
+        page.wait_for_selector("#motion h2")
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert area(page)[2] > 200
+
+
+def test_what_is_asked_is_what_the_address_says(browser, one):
+    """A packet of the server, unpacked by the page, is what Python unpacks."""
+    with page_of(browser, one.url) as page:
+        regime, z, numbers = json.loads(page.evaluate(UNPACK))
+        header, arrays = packet(one, "/motion?at=0.3,0.5")
+        assert regime == header["regime"]
+        np.testing.assert_array_equal(np.float32(z), arrays["z"])
+        np.testing.assert_array_equal(np.array(numbers, dtype=float), arrays["numbers"])

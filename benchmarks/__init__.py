@@ -23,6 +23,7 @@ each one is a module of that name in `measures`.  It prints tables, and writes J
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
   faults                       bad input, interrupts, malformed files, damaged caches: what a user sees
   large                        stores: overhead, memory, workers, random variations, kills
+  explore                      the page in a browser: slider to picture, hover to motion; `browser` finds one
   coupling                     what it costs to leave out the coupling of modes by damping
 `peers/`                       other ways to do the same job: each for one mass and for chains of masses
   solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: one on many cells at a time

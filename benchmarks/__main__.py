@@ -25,6 +25,7 @@ BENCHMARKS = (
     "bound",
     "faults",
     "large",
+    "explore",
     "coupling",
 )
 

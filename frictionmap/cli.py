@@ -193,9 +193,10 @@ def _explore(options: Options) -> None:
     if options.output is not None:
         _export_page(options, scene)
         return
-    from .explorer.server import open_server, show
+    from .explorer.server import begin, open_server, show
 
     server = open_server(scene, options.port)
+    begin(server)
     _print(f"{scene.title} at {server.url} until Ctrl-C")
     if not options.no_browser:
         show(server.url)

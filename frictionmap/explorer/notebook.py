@@ -8,7 +8,7 @@ from typing import SupportsFloat
 from ..model.settings import Start
 from ..model.system import System
 from .scene import scene_of_system
-from .server import Server, open_server
+from .server import Server, begin, open_server
 
 #: Height of the page in a notebook [pixels].
 _HEIGHT = 860
@@ -21,6 +21,7 @@ class Explorer:
         self._server = server
         self._thread = threading.Thread(target=server.serve_forever, daemon=True)
         self._thread.start()
+        begin(server)
 
     @property
     def url(self) -> str:

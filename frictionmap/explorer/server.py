@@ -106,6 +106,16 @@ class Page:
         finally:
             self._warm.set()
 
+    def rehearse(self) -> None:
+        """Have a small map and a motion computed: their kernels are loaded before the page asks for more."""
+        from . import cell, queries, views
+
+        self._warm.wait()
+        with contextlib.suppress(InputError, Outdated), self.jobs.enter("rehearsal") as job:
+            view = queries.read_query(self.scene, "").view
+            views.piece_of_map(view, views.quantities(view.system)[0], views.Piece(2, 2, 0, 2), job)
+            cell.motion(view, 0.5 * sum(view.r), 0.5 * sum(view.beta))
+
     def answer(self, target: str, gone: Callable[[], bool]) -> Answer:
         """The answer to an address; `gone` tells whether anybody still waits for it."""
         parts = urlsplit(target)
@@ -317,6 +327,11 @@ def open_server(scene: Scene, port: int | None = None) -> Server:
             if number == tried[-1] or not free:
                 raise InputError(f"--port must be one that is free; got {number} ({reason})") from None
     raise AssertionError("there is always a last one")
+
+
+def begin(server: Server) -> None:
+    """Answer in the background what will be asked first."""
+    threading.Thread(target=server.page.rehearse, daemon=True).start()
 
 
 def show(url: str) -> None:

@@ -37,6 +37,7 @@ r = [0.1, 2.5]
 beta = [0.0, 2.0]
 """
 WAIT = 1000.0 * HANG
+SMALL = {"width": 400, "height": 400}
 
 #: Waits until the page has painted the finest picture of its view.
 DONE = "#stage[data-state=done]"
@@ -61,9 +62,7 @@ def page_of(browser, url, wait=DONE, **options):
     context.set_default_timeout(WAIT)
     page = context.new_page()
     page.wrong, page.asked = [], set()
-    page.on(
-        "console", lambda said: page.wrong.append(said.text) if said.type in ("error", "warning") else None
-    )
+    page.on("console", lambda said: page.wrong.append(said.text) if said.type == "error" else None)
     page.on("pageerror", lambda error: page.wrong.append(str(error)))
     page.on("request", lambda request: page.asked.add(urllib.parse.urlsplit(request.url)[:2]))
     try:
@@ -131,8 +130,8 @@ def repainted(page, act):
     page.wait_for_function("() => document.querySelector('#stage').dataset.state === 'done'")
 
 
-#: Scripts of the page: pixels of the cells; move a slider; how many values the pixels of a chart have; what the
-#: page makes of a packet.
+#: Scripts of the page: pixels of the cells; move a slider; how many values the pixels of a chart have; what
+#: the page makes of a packet.
 PIXELS = """(box) => {
   const { data } = document.querySelector('#cells').getContext('2d').getImageData(...box);
   let text = '';
@@ -161,10 +160,10 @@ UNPACK = """async () => {
 
 @pytest.mark.parametrize("ratio", [1, 2])
 def test_a_map_is_painted_cell_by_cell(browser, one, ratio):
-    with page_of(browser, one.url, device_scale_factor=ratio) as page:
+    with page_of(browser, one.url, device_scale_factor=ratio, viewport=SMALL) as page:
         seen = colours(page)
         right = wanted(fm.System(), (0.0, 2.0), (0.0, 1.2), 1.0, seen.shape[:2])
-        assert seen.shape[0] > 400 * ratio
+        assert seen.shape[0] > 300 * ratio
         np.testing.assert_array_equal(seen, right)
         assert page.title() == "One mass – frictionmap"
         legend = page.inner_text("#legend")
@@ -180,8 +179,9 @@ def test_zoom_and_pan_recompute_at_the_resolution_of_the_screen(browser, one):
         r, beta = ends(view["r"]), ends(view["beta"])
         factor = 1.0015**-900
         assert r[1] - r[0] == pytest.approx(2.0 * factor, rel=1e-3)
-        assert (0.5 - r[0]) / (r[1] - r[0]) == pytest.approx(0.25, abs=3e-3)  # what is pointed at stays there
-        assert (0.6 - beta[0]) / (beta[1] - beta[0]) == pytest.approx(0.5, abs=3e-3)
+        _, _, width, height = area(page)  # what is pointed at stays there, within two pixels
+        assert (0.5 - r[0]) / (r[1] - r[0]) == pytest.approx(0.25, abs=2.0 / width)
+        assert (0.6 - beta[0]) / (beta[1] - beta[0]) == pytest.approx(0.5, abs=2.0 / height)
         seen = colours(page)
         np.testing.assert_array_equal(seen, wanted(fm.System(), r, beta, 1.0, seen.shape[:2]))
         start, end = point(page, 0.5, 0.5), point(page, 0.25, 0.5)
@@ -396,7 +396,7 @@ def test_compiling_is_said(browser, one):
         assert page.inner_text("#told") == "compiling kernels, once on this machine: 12 s"
         page.unroute("**/state?**")
         page.unroute("**/map?**")
-        repainted(page, lambda: [route.continue_() for route in waiting])
+        page.wait_for_selector(DONE)  # what was kept waiting goes on
         page.wait_for_selector("#told", state="hidden")
 
 
@@ -404,7 +404,10 @@ def test_compiling_is_said(browser, one):
 
 
 def test_a_view_can_be_taken_along(browser, one, tmp_path):
-    allowed = {"permissions": ["clipboard-read", "clipboard-write"]}
+    allowed = {
+        "permissions": ["clipboard-read", "clipboard-write"],
+        "viewport": {"width": 320, "height": 400},
+    }
     with page_of(browser, f"{one.url}#r=0.2,1.4&beta=0.1,1&mu=1.3", **allowed) as page:
 
         def copied(what):
@@ -467,7 +470,7 @@ def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
 def test_it_follows_the_colours_of_the_desktop(browser, one):
     backs = set()
     for scheme in ("light", "dark"):
-        with page_of(browser, one.url, color_scheme=scheme) as page:
+        with page_of(browser, one.url, color_scheme=scheme, viewport=SMALL) as page:
             backs.add(page.evaluate("getComputedStyle(document.body).backgroundColor"))
             cells = colours(page)
     assert len(backs) == 2
@@ -476,7 +479,7 @@ def test_it_follows_the_colours_of_the_desktop(browser, one):
     }
 
 
-@pytest.mark.parametrize("width", [360, 700, 1100, 1800])
+@pytest.mark.parametrize("width", [360, 1100, 1800])
 def test_it_fits_any_width(browser, one, width):
     with page_of(browser, f"{one.url}#cell=0.3,0.5", viewport={"width": width, "height": 800}) as page:
         page.wait_for_selector("#motion h2")

@@ -181,7 +181,10 @@ class Page {
     if (found.whole) legend(part("legend"), found, this.scene, view, this.marks);
     const detail = { columns: found.columns, rows: found.rows, whole: found.whole };
     this.map.stage.dataset.cells = `${found.columns} ${found.rows}`;
-    requestAnimationFrame(() => this.map.stage.dispatchEvent(new CustomEvent("painted", { detail })));
+    requestAnimationFrame(() => {
+      if (found.whole && found.columns === this.map.size.columns) performance.mark("first whole picture");
+      this.map.stage.dispatchEvent(new CustomEvent("painted", { detail }));
+    });
   }
 
   #onState(state) {

@@ -13,8 +13,11 @@ const PATIENCE = 400;
 /** Pixels that a cell of the first picture has at most, each way. */
 const COARSEST = 32;
 
-/** How fast a guess of the cost of a cell follows what is seen. */
-const SWAY = 0.6;
+/** Factor by which a guess of the cost of a cell may grow at once. */
+const GROWTH = 6;
+
+/** Milliseconds of an answer that are not its cells'. */
+const OVERHEAD = 4;
 
 export class Refiner {
   /** @type {Map<string, number>} milliseconds a cell, by what it depends on */
@@ -131,11 +134,11 @@ export class Refiner {
     }
   }
 
-  /** A guess of what a cell costs. */
+  /** A guess of what a cell costs: it falls at once, and grows little by little, as a first answer also waits
+   *  for kernels to be loaded. */
   #learn(asked, milliseconds, cells) {
-    const kind = this.#kind(asked);
-    const seen = Math.max(1e-6, (milliseconds - 4) / cells);
-    const known = this.#costs.get(kind);
-    this.#costs.set(kind, known === undefined ? seen : known + SWAY * (seen - known));
+    const known = this.#cost(asked);
+    const seen = Math.min(GROWTH * known, Math.max(1e-6, (milliseconds - OVERHEAD) / cells));
+    this.#costs.set(this.#kind(asked), seen);
   }
 }

@@ -15,11 +15,13 @@ def market(path, matrix, symmetric=True):
     )
 
 
-def market_array(path, matrix):
-    """Matrix Market, all entries column by column."""
+def market_array(path, matrix, symmetric=False):
+    """Matrix Market, all entries column by column, or those of the lower triangle."""
     n = len(matrix)
-    values = [f"{value:.16e}" for value in np.ravel(matrix, order="F")]
-    path.write_text("\n".join(["%%MatrixMarket matrix array real general", f"{n} {n}", *values]) + "\n")
+    kept = [value for k, column in enumerate(matrix.T) for value in column[k * symmetric :]]
+    kind = "symmetric" if symmetric else "general"
+    lines = [f"%%MatrixMarket matrix array real {kind}", f"{n} {n}", *(f"{value:.16e}" for value in kept)]
+    path.write_text("\n".join(lines) + "\n")
 
 
 def abaqus(path, matrix, labels, part=np.tril):

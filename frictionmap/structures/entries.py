@@ -10,6 +10,9 @@ from numpy.typing import ArrayLike
 
 from ..errors import InputError
 
+#: More rows than any model that could be solved here has: a slip in a file.
+_MOST = 10**7
+
 #: Node and degree of freedom at it.
 Label = tuple[int, int]
 
@@ -64,6 +67,8 @@ def assembled(path: Path, size: int, rows: ArrayLike, columns: ArrayLike, values
     """The sparse matrix of such entries, counted from 0; none may come twice."""
     from scipy.sparse import coo_array
 
+    if size > _MOST:
+        raise InputError(f"file {path} must have at most {_MOST} rows; got {size}")
     at = np.asarray(rows, dtype=np.int64), np.asarray(columns, dtype=np.int64)
     places, counts = np.unique(at[0] * size + at[1], return_counts=True)
     if (counts > 1).any():

@@ -1,15 +1,23 @@
-"""Matrix Market: coordinate and array files, general and symmetric ones."""
+"""Matrix Market: coordinate and array files of real numbers, general and symmetric ones.
 
+Read here: the reader of scipy, compiled, crashes with the process on some damaged files.
+"""
+
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
-from ..packages import read_by
-from .entries import Matrix, assembled, mirrored
+from .entries import Matrix, as_number, assembled, mirrored, numbered, refuse, text_of
 
 #: How such a file begins.
 BANNER = "%%MatrixMarket"
+
+_FORMS = ("coordinate", "array")
+_FIELDS = ("real", "double", "integer", "unsigned-integer")
+_SYMMETRIES = ("general", "symmetric")
 
 
 def read_market(path: Path) -> Matrix:
@@ -18,26 +26,74 @@ def read_market(path: Path) -> Matrix:
     Raises
     ------
     InputError
-        It cannot be read, is not a square matrix of real numbers, or has an entry twice.
+        It is not a square matrix of real numbers, a line is not as the header says, or an entry is there
+        twice.
     """
-    from scipy.io import mminfo, mmread
+    text = text_of(path)
+    banner = text.split("\n", 1)[0]
+    words = banner.lower().split()
+    legal = len(words) == 5 and words[1] == "matrix" and words[2] in _FORMS
+    if not legal or words[3] not in _FIELDS or words[4] not in _SYMMETRIES:
+        refuse(path, 1, f"{BANNER} matrix coordinate|array real general|symmetric", banner)
+    lines = numbered(text, "%")
+    coordinates, symmetric = words[2] == "coordinate", words[4] == "symmetric"
+    rows, *further = _sizes(path, lines, 3 if coordinates else 2)
+    if coordinates:
+        matrix = _coordinates(path, lines, rows, further[1], symmetric)
+        return Matrix(mirrored(matrix) if symmetric else matrix)
+    return Matrix(_array(path, lines, rows, symmetric))
 
-    rows, columns, _, form, field, symmetry = read_by(path, "Matrix Market file", lambda: mminfo(path))
-    if field not in ("real", "double", "integer", "unsigned-integer") or symmetry not in (
-        "general",
-        "symmetric",
-    ):
-        raise InputError(
-            f"file {path} must have a real matrix, general or symmetric; it has a {field} {symmetry} one"
-        )
-    if rows != columns:
-        raise InputError(f"file {path} must have a square matrix; got {rows} by {columns}")
-    values = read_by(path, "Matrix Market file", lambda: mmread(path, spmatrix=False))
-    if form == "array":
-        return Matrix(np.asarray(values))
-    row, column = values.coords
-    if symmetry == "general":
-        return Matrix(assembled(path, rows, row, column, values.data))
-    # the reader has mirrored them: taken apart again, so that an entry above the diagonal shows
-    lower = row >= column
-    return Matrix(mirrored(assembled(path, rows, row[lower], column[lower], values.data[lower])))
+
+def _sizes(path: Path, lines: Iterator[tuple[int, str]], count: int) -> list[int]:
+    """Whole numbers of the line with the sizes; refused is a matrix that is not square."""
+    number, line = next(lines, (2, ""))
+    try:
+        sizes = [int(word) for word in line.split()]
+        if len(sizes) != count or min(sizes) < 0 or sizes[0] < 1:
+            raise ValueError(line)
+    except ValueError:
+        refuse(path, number, f"{count} whole numbers, the sizes of the matrix", line)
+    if sizes[0] != sizes[1]:
+        raise InputError(f"file {path} must have a square matrix; got {sizes[0]} by {sizes[1]}")
+    return sizes
+
+
+def _coordinates(path: Path, lines: Iterator[tuple[int, str]], size: int, count: int, symmetric: bool) -> Any:
+    rows, columns, values = [], [], []
+    for number, line in lines:
+        try:
+            first, second, entry = line.split()
+            row, column, value = int(first), int(second), as_number(entry)
+        except ValueError:
+            refuse(path, number, "row column entry", line)
+        if not 1 <= row <= size or not 1 <= column <= size:
+            refuse(path, number, f"a row and a column from 1 to {size}", line)
+        if symmetric and row < column:
+            refuse(path, number, "an entry of the lower triangle", line)
+        rows.append(row - 1)
+        columns.append(column - 1)
+        values.append(value)
+    _complete(path, len(values), count)
+    return assembled(path, size, rows, columns, values)
+
+
+def _array(path: Path, lines: Iterator[tuple[int, str]], size: int, symmetric: bool) -> np.ndarray:
+    """All entries, or those of the lower triangle, column by column."""
+    values = []
+    for number, line in lines:
+        try:
+            values.append(as_number(line))
+        except ValueError:
+            refuse(path, number, "one entry", line)
+    _complete(path, len(values), size * (size + 1) // 2 if symmetric else size * size)
+    if not symmetric:
+        return np.array(values).reshape(size, size).T
+    matrix = np.zeros((size, size))
+    columns, rows = np.triu_indices(size)
+    matrix[rows, columns] = matrix[columns, rows] = values
+    return matrix
+
+
+def _complete(path: Path, found: int, count: int) -> None:
+    if found != count:
+        raise InputError(f"file {path} must have {count} entries, as its header says; it has {found}")

@@ -77,6 +77,9 @@ FORMS = {
     "Matrix Market, general": lambda folder: each(
         folder, lambda path, matrix: written.market(path, matrix, False), ".mtx"
     ),
+    "Matrix Market, symmetric array": lambda folder: each(
+        folder, lambda path, matrix: written.market_array(path, matrix, True), ".mtx"
+    ),
     "Matrix Market, array": lambda folder: each(folder, written.market_array, ".mtx"),
     "Abaqus, lower": lambda folder: each(folder, labelled(np.tril), ".mtx"),
     "Abaqus, upper": lambda folder: each(folder, labelled(np.triu), ".mtx"),
@@ -182,15 +185,25 @@ BANNER = "%%MatrixMarket matrix coordinate"
 
 BAD_FILES = {
     "unsymmetric": (f"{BANNER} real general\n2 2 2\n1 1 1.0\n2 1 0.5\n", ["must be symmetric", "[0, 1]"]),
-    "complex": (f"{BANNER} complex general\n1 1 1\n1 1 1.0 2.0\n", ["a real matrix", "complex"]),
-    "a pattern": (f"{BANNER} pattern general\n1 1 1\n1 1\n", ["a real matrix", "pattern"]),
+    "complex": (
+        f"{BANNER} complex general\n1 1 1\n1 1 1.0 2.0\n", ["line 1", "real general|symmetric", "complex"]
+    ),
+    "a pattern": (f"{BANNER} pattern general\n1 1 1\n1 1\n", ["line 1", "real general|symmetric", "pattern"]),
     "not square": (f"{BANNER} real general\n1 2 1\n1 1 1.0\n", ["square", "1 by 2"]),
     "an entry twice": (f"{BANNER} real general\n1 1 2\n1 1 1.0\n1 1 1.0\n", ["once", "row 1, column 1"]),
     "symmetric, both triangles": (
-        f"{BANNER} real symmetric\n2 2 4\n1 1 1.0\n2 2 1.0\n1 2 0.5\n2 1 0.5\n", ["once", "row 2, column 1"]
+        f"{BANNER} real symmetric\n2 2 2\n1 1 1.0\n1 2 0.5\n", ["line 4", "an entry of the lower triangle"]
     ),
-    "cut short": (f"{BANNER} real general\n2 2 4\n1 1 1.0\n", ["Matrix Market file", "cannot be read"]),
-    "no number": (f"{BANNER} real general\n1 1 1\n1 1 one\n", ["Matrix Market file", "Line 3"]),
+    "a row too many": (f"{BANNER} real general\n1 1 1\n2 1 1.0\n", ["line 3", "from 1 to 1", "'2 1 1.0'"]),
+    "sizes": (f"{BANNER} real general\n1 1\n1 1 1.0\n", ["line 2", "3 whole numbers"]),
+    "no sizes": (f"{BANNER} real general\n", ["line 2", "3 whole numbers"]),
+    "another object": ("%%MatrixMarket vector coordinate real general\n1 1\n", ["line 1", "matrix"]),
+    "an array cut short": (
+        "%%MatrixMarket matrix array real symmetric\n2 2\n1.0\n0.5\n", ["3 entries", "it has 2"]
+    ),
+    "an array with words": ("%%MatrixMarket matrix array real general\n1 1\none\n", ["line 3", "one entry"]),
+    "cut short": (f"{BANNER} real general\n2 2 4\n1 1 1.0\n", ["4 entries", "it has 1"]),
+    "no number": (f"{BANNER} real general\n1 1 1\n1 1 one\n", ["line 3", "row column entry", "'1 1 one'"]),
     "not a number": (f"{BANNER} real general\n1 1 1\n1 1 nan\n", ["M must be finite", "[0, 0]"]),
     "words": ("mass\n", ["line 1", "node, dof, node, dof, entry or row column entry", "'mass'"]),
     "Abaqus, no number": ("1,1, 1,1, 2.0\n1,2, 1,1, x\n", ["line 2", "node, dof, node, dof, entry"]),
@@ -202,6 +215,7 @@ BAD_FILES = {
     "Abaqus, half of some": (
         "1 1 4.\n2 2 4.\n3 3 4.\n1 2 1.\n2 1 1.\n1 3 1.\n", ["must be symmetric", "[0, 2]"]
     ),
+    "Abaqus, a row far off": ("1 1 1.0\n99999999 1 1.0\n", ["at most 10000000 rows", "99999999"]),
     "Abaqus, nothing": ("** nothing\n", ["a line for every entry", "none"]),
     "zero bytes": ("1 1\0 1.0", ["must be text"]),
 }  # fmt: skip

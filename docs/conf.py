@@ -21,6 +21,7 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphin
 exclude_patterns = ["_build", "gallery/*"]
 suppress_warnings = ["config.cache"]  # the settings of the gallery cannot be pickled
 myst_heading_anchors = 3
+smartquotes = False  # "--set" and quotes are to be copied
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the docstrings say it, with shapes, units and ranges

@@ -1,5 +1,6 @@
 """Pages of the manual that the program writes itself: commands, keys, variables of files, API."""
 
+import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
@@ -59,7 +60,8 @@ def commands() -> Iterator[str]:
 
 def _command(command: Command) -> Iterator[str]:
     yield f"\n## frictionmap {command.name}\n\n{command.description}\n"
-    yield f"```text\n{command.usage}\n```\n"
+    usage = "\n".join(textwrap.wrap(command.usage, 84, subsequent_indent="    ", break_on_hyphens=False))
+    yield f"```text\n{usage}\n```\n"
     rows = (
         (
             f"`{', '.join(argument.flags)} {argument.metavar}`".replace(" `", "`")

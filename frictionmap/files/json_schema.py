@@ -22,6 +22,12 @@ _TOGETHER: list[Legal] = [
     },
     {"dependentSchemas": {"rayleigh": {"properties": {"damping_ratios": False}}}},
     {
+        "if": {"not": {"required": ["matrices"]}},  # a chain has no labels
+        "then": {
+            "properties": {"contact_masses": {"items": {"type": "integer"}}, "load_mass": {"type": "integer"}}
+        },
+    },
+    {
         "if": {"properties": {"contact": {"const": "between-masses"}}, "required": ["contact"]},
         "then": {"properties": {"contact_masses": {"minItems": 2}}, "required": ["contact_masses"]},
         "else": {"properties": {"contact_masses": {"maxItems": 1}}},

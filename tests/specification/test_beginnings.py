@@ -139,6 +139,19 @@ def test_what_init_writes_obeys_the_schema(contact):
     SCHEMA.validate(tomllib.loads(starting_configuration("map", contact)))
 
 
+@pytest.mark.parametrize(
+    "system",
+    [
+        'matrices = "plate.pch"\ncontact_masses = ["112.1"]\nload_mass = "7.3"',
+        'matrices = { M = "m.mtx", K = "k.mtx" }\ncontact_masses = [3]',
+        "matrices = { M = [[1.0]], K = [[2]], C = [[0.1]], dofs = [7] }\nfrequency_scale = 2.0",
+        "load = [1.0, [0.5, 0.2]]\nmass_ratios = [1, 2]\nstiffness_ratios = [1, 2]",
+    ],
+)
+def test_good_systems_obey_the_schema(system):
+    SCHEMA.validate(tomllib.loads(toml(system=system)))
+
+
 @pytest.mark.parametrize("kind", TRUTHS)
 def test_rigs_that_init_writes_obey_the_schema(kind):
     RIG_SCHEMA.validate(tomllib.loads(starting_rig(kind)[0]))
@@ -173,6 +186,8 @@ def test_bad_configurations_break_the_schema(name):
         toml(system="frequency_scale = 2.0"),
         toml(system="load = [1.0]\nload_mass = 1"),
         toml(system="load = [[1.0, 2.0, 3.0]]"),
+        toml(system='contact_masses = ["112.1"]'),
+        toml(system='matrices = { M = "m.mtx", K = [[1]] }'),
         toml(system="mass_ratios = [1]\nmatrices = { M = [[1]], K = [[1]] }"),
     ],
 )

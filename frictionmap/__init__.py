@@ -9,6 +9,7 @@ structures     matrices from the files of finite-element programs; `packages`, `
 _kernels       the only home of jitted code: numbers and arrays in, numbers and codes out
 model          what is simulated: system, matrices, modes, the structure held at its
                contact, settings of the solver
+units          units of measurement: their table, `Units`, axes in hertz and newtons
 datasets       what a dataset holds: labels, schema, provenance
 roots          the search for all roots of functions with poles
 features       limits, peak thresholds, invariant points, quasi-static displacement
@@ -55,12 +56,14 @@ if TYPE_CHECKING:
     from .steady.sweep import sweep
     from .theory.boundaries import boundaries
     from .theory.continuous_motion import continuous_motion
+    from .units.scales import Units
 
 __all__ = [
     "InputError",
     "NoSteadyState",
     "Solver",
     "System",
+    "Units",
     "__version__",
     "boundaries",
     "continuous_motion",
@@ -86,6 +89,7 @@ __all__ = [
 _HOME = {
     "Solver": "model.settings",
     "System": "model.system",
+    "Units": "units.scales",
     "boundaries": "theory.boundaries",
     "continuous_motion": "theory.continuous_motion",
     "curves": "steady.curves",

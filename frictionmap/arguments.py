@@ -76,6 +76,19 @@ def _port(text: str) -> int:
 _threads.__name__ = _port.__name__ = "whole number"  # what argparse calls it
 
 
+def _ratio(text: str) -> float | str:
+    """A ratio, or a number with its unit, which is checked where the units are known."""
+    try:
+        return float(text)
+    except ValueError:
+        if text[:1].isalpha() or not text:
+            raise
+        return text
+
+
+_ratio.__name__ = "float"  # what argparse calls it
+
+
 def _address(text: str) -> str:
     if not text:
         raise argparse.ArgumentTypeError("must be an address such as tcp://10.0.0.1:8786; got ''")
@@ -119,6 +132,18 @@ def _takes_yes(sub: argparse.ArgumentParser) -> None:
 def _takes_threads(sub: argparse.ArgumentParser) -> None:
     text = "threads to use (default: all processors); the result is the same to the bit"
     sub.add_argument("--threads", metavar="N", type=_threads, action=_Once, help=text)
+
+
+def _takes_cell(sub: argparse.ArgumentParser) -> None:
+    with_unit = "; with [units] in CONFIG also '"
+    sub.add_argument(
+        "--r", type=_ratio, required=True, action=_Once, help=f"frequency ratio, > 0{with_unit}4.2 Hz'"
+    )
+    sub.add_argument(
+        "--beta", type=_ratio, required=True, action=_Once, help=f"friction ratio, >= 0{with_unit}2 N'"
+    )
+    text = "static over kinetic friction, >= 1 (default: grid.mu of CONFIG if that is one value, else needed)"
+    sub.add_argument("--mu", type=float, action=_Once, help=text)
 
 
 def _takes_choices(sub: argparse.ArgumentParser) -> None:
@@ -181,10 +206,7 @@ def _parser() -> argparse.ArgumentParser:
     _takes_config(command("boundaries", "curves only", text))
     sub = command("response", "one steady state in time", "Compute one steady state in time; write NetCDF.")
     _takes_config(sub)
-    sub.add_argument("--r", type=float, required=True, action=_Once, help="frequency ratio, > 0")
-    sub.add_argument("--beta", type=float, required=True, action=_Once, help="friction ratio, >= 0")
-    text = "static over kinetic friction, >= 1 (default: grid.mu of CONFIG if that is one value, else needed)"
-    sub.add_argument("--mu", type=float, action=_Once, help=text)
+    _takes_cell(sub)
     text = "Show the map in a browser, to move about in; on this machine only."
     _takes_page(command("explore", "the map in a browser", text))
     text = "Fit friction, damping and frequency to measured data; print estimates with errors, write NetCDF."

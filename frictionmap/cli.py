@@ -49,7 +49,8 @@ def _map(options: Options, config: "Config", output: "Output") -> None:
         if cells >= _MANY and not options.quiet:
             progress.say(f"{cells:,} cells take about {_cost(options, config)}", always=True)
         return sweep(config.system, config.r, config.beta, config.mu, solver=config.solver,
-                     axes=config.variations, threads=options.threads, progress=progress)  # fmt: skip
+                     axes=config.variations, threads=options.threads, progress=progress,
+                     units=config.units)  # fmt: skip
 
     _fill_cells(options, config, output, f"map of {cells:,} cells", run)
 
@@ -62,7 +63,7 @@ def _curves(options: Options, config: "Config", output: "Output") -> None:
     def run(progress: "Progress") -> "xr.Dataset":
         return curves(config.system, config.r, config.beta, config.mu, harmonics=asked.harmonics,
                       quantities=asked.quantities, solver=config.solver, threads=options.threads,
-                      progress=progress)  # fmt: skip
+                      progress=progress, units=config.units)  # fmt: skip
 
     lines = config.mu.size * config.beta.size
     _fill_cells(options, config, output, f"{lines:,} response curves", run)
@@ -102,7 +103,7 @@ def _cost(options: Options, config: "Config") -> str:
 def _boundaries(options: Options, config: "Config", output: "Output") -> None:
     from .theory.boundaries import boundaries
 
-    ds = boundaries(config.system, config.r, config.mu)
+    ds = boundaries(config.system, config.r, config.mu, units=config.units)
     output.fill(_finish(ds, config, options))
     _tell(options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu")
 
@@ -112,7 +113,7 @@ def _response(options: Options, config: "Config", output: "Output") -> None:
     from .steady.response import response
 
     mu = _one_mu(config) if options.mu is None else options.mu
-    ds = response(config.system, options.r, options.beta, mu, solver=config.solver)
+    ds = response(config.system, options.r, options.beta, mu, solver=config.solver, units=config.units)
     output.fill(_finish(ds, config, options))
     _tell(options, output, describe_response(ds))
 
@@ -167,7 +168,7 @@ def _store(options: Options) -> None:
 
     config = load_config(options.config, options.overrides, lambda *_: None)  # a block is all that is held
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
-    study = study_of(config.system, config.variations, axes, config.solver)
+    study = study_of(config.system, config.variations, axes, config.solver, config.units)
     if options.workers or options.scheduler:
         from .stores import workers
 

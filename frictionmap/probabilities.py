@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from . import checks, regimes
-from .datasets.labels import CELL, LABELS, MARKS, REFERENCES, coordinate, label_variable
+from .datasets.labels import BESIDE, CELL, LABELS, MARKS, REFERENCES, SCALES, coordinate, label_variable
 from .datasets.schema import check_structure, kind
 from .errors import InputError
 from .files.reading import opened
@@ -73,8 +73,10 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
         **{name: np.atleast_1d(ds[name].values) for name in CELL},
     }
     coords = {name: coordinate(name, values) for name, values in axes.items()}
+    coords |= {name: coordinate(name, np.atleast_1d(ds[name].values)) for name in BESIDE if name in ds.coords}
+    kept = ("title", "system", "config", *SCALES.values())
     attributes = {
-        **{name: ds.attrs[name] for name in ("title", "system", "config") if name in ds.attrs},
+        **{name: ds.attrs[name] for name in kept if name in ds.attrs},
         "Conventions": "CF-1.11", "source": f"frictionmap {__version__}", "references": REFERENCES,
         "samples": int(ds.sizes[over]),
     }  # fmt: skip

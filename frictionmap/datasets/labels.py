@@ -3,6 +3,7 @@
 Files have them: they may grow, not change.
 """
 
+import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -12,6 +13,7 @@ import xarray as xr
 from .. import checks, regimes
 from ..model.settings import Solver
 from ..model.system import System
+from ..units.scales import Units
 from ..version import __version__
 from .provenance import made_by
 
@@ -469,7 +471,66 @@ SHARES = {
     "contact_amplitude_quantile": _quantiles("contact_amplitude"),
 }
 
-LABELS = {**CELL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES, **LAG, **SHARES}
+#: What has an SI unit where the dataset knows what a ratio of 1 is, by what the numbers are over.
+MEASURES = {
+    "length": (
+        "contact_amplitude", "amplitude", "sliding_distance", "contact_first_harmonic_amplitude",
+        "first_harmonic_amplitude", "displacement_harmonic", "contact_harmonic", "rms", "held_response",
+        "limit_amplitude", "limit_first_harmonic_amplitude", "x", "z", "event_z",
+    ),
+    "force": (
+        "beta_lim", "beta_lim_modal", "beta_stick", "sliding_limit", "beta_lim_high", "beta_stick_high",
+        "peak_threshold", "friction_harmonic", "transmitted_force", "transmitted_first_harmonic", "friction",
+    ),
+    "work": ("work_friction", "work_input", "work_damping"),
+    "frequency": (
+        "natural_frequency", "held_frequency", "invariant_point", "mass_invariant_point",
+        "invariant_first_harmonic", "contact_invariant_first_harmonic",
+    ),
+    "velocity": ("v",),
+    "time": ("event_tau",),
+}  # fmt: skip
+
+#: The other way round.
+MEASURE_OF = {name: measure for measure, names in MEASURES.items() for name in names}
+
+#: SI units as CF has them, and how names of variables end that are in them.
+SI = {
+    "length": ("m", "m"), "force": ("N", "N"), "work": ("J", "J"), "frequency": ("Hz", "Hz"),
+    "velocity": ("m s-1", "m_s"), "time": ("s", "s"),
+}  # fmt: skip
+
+#: Global attributes that say what 1 is of a ratio, by what they measure.
+SCALES = {"frequency": "frequency_scale_Hz", "force": "force_scale_N", "length": "length_scale_m"}
+
+
+def in_si(name: str, measure: str) -> str:
+    """The name of a variable in its SI unit."""
+    return f"{name}_{SI[measure][1]}"
+
+
+def _in_si(label: Label, measure: str) -> Label:
+    """The label of a variable in its SI unit."""
+    name = re.sub(r", (over P.*|dx/dtau.*|in units of r)$", "", label.long_name)
+    name = name.replace("frequency ratios", "frequencies").replace("excitation phase at", "time at")
+    what = ", kinetic friction force" if measure == "force" and "over" not in label.long_name else ""
+    return label._replace(long_name=f"{name}{what}", comment="", units=SI[measure][0], unresolved=np.nan)
+
+
+_RATIOS = {**CELL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES, **LAG, **SHARES}
+IN_SI = {
+    in_si(name, measure): _in_si(_RATIOS[name], measure)
+    for measure, names in MEASURES.items()
+    for name in names
+}
+LABELS = {**_RATIOS, **IN_SI}
+
+#: Coordinates beside an axis: the same in its SI unit.
+BESIDE = {
+    "frequency": Label(np.float64, "excitation frequency", ("r",), least=0.0, units="Hz"),
+    "friction_force": Label(np.float64, "kinetic friction force", ("beta",), least=0.0, units="N"),
+    "time": Label(np.float64, "time since a maximum of the load", ("tau",), least=0.0, units="s"),
+}
 
 
 #: What no other axis or variable may be called.
@@ -482,14 +543,17 @@ def labels_of(what: str) -> dict[str, Label]:
     """The labels of a kind of dataset, see `schema.kind`."""
     if what != "curves":
         return LABELS
-    held = {name: CURVES[name]._replace(dims=("r", "dof")) for name in ("held_response", "held_phase")}
+    held = {
+        name: LABELS[name]._replace(dims=("r", "dof"))
+        for name in ("held_response", "held_phase", in_si("held_response", "length"))
+    }
     return {**LABELS, **CYCLE_VARIABLES, **held}
 
 
 def coordinate(name: str, values: np.ndarray | float) -> xr.Variable:
     """A labelled axis, or a labelled scalar."""
-    label = COORDINATES[name]
-    dims = (name,) if np.ndim(values) else ()
+    label = COORDINATES[name] if name in COORDINATES else BESIDE[name]
+    dims = label.dims if np.ndim(values) else ()
     units = {} if label.texts else {"units": label.units}
     return xr.Variable(dims, values, {"long_name": label.long_name, **units})
 
@@ -531,6 +595,7 @@ def stamp(
     solver: Solver | None = None,
     curves: Mapping[str, object] | None = None,
     study: Mapping[str, object] | None = None,
+    units: Units | None = None,
 ) -> xr.Dataset:
     """Add the global attributes to what a function of the package computed on these axes."""
     ds.attrs = {
@@ -540,6 +605,6 @@ def stamp(
         "references": REFERENCES,
         "system": system.describe(),
         **system.costs(np.atleast_1d(axes["r"])),
-        **made_by(function, title, system, axes, solver, curves, study),
+        **made_by(function, title, system, axes, solver, curves, study, units),
     }
     return ds

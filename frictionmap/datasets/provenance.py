@@ -15,6 +15,7 @@ from ..model.matrices import Matrices
 if TYPE_CHECKING:
     from ..model.settings import Solver
     from ..model.system import System
+    from ..units.scales import Units
 
 #: What is larger is not put into text, but named in a comment.
 _MOST_VALUES = 10_000
@@ -51,12 +52,13 @@ def made_by(
     solver: "Solver | None" = None,
     curves: Mapping[str, object] | None = None,
     study: Mapping[str, object] | None = None,
+    units: "Units | None" = None,
 ) -> dict[str, str]:
     """Global attributes `history` and `config` of what a function computed; see `configuration`."""
     call = ", ".join(f"{name} = {_in_words(np.atleast_1d(values))}" for name, values in axes.items())
     return {
         "history": f"{now()} frictionmap.{function} of {system.contact}, {call}",
-        "config": configuration(title, system, axes, solver, curves, study),
+        "config": configuration(title, system, axes, solver, curves, study, units=units),
     }
 
 
@@ -68,6 +70,7 @@ def configuration(
     curves: Mapping[str, object] | None = None,
     study: Mapping[str, object] | None = None,
     matrices: str = "",
+    units: "Units | None" = None,
 ) -> str:
     """A configuration: read by `load_config` it gives the same system, axes and settings, to the bit.
 
@@ -75,7 +78,10 @@ def configuration(
         a function does not need
     """
     most = float("inf") if matrices else _MOST_VALUES
-    lines = [f"title = {quoted(title)}", "", "[system]", *_system_lines(system, matrices), "", "[grid]"]
+    lines = [f"title = {quoted(title)}", "", "[system]", *_system_lines(system, matrices), ""]
+    if units is not None:
+        lines += ["[units]", *(f"{key} = {quoted(text)}" for key, text in units.given.items()), ""]
+    lines.append("[grid]")
     lines += [_axis_line(name, np.atleast_1d(values), most) for name, values in axes.items()]
     if "beta" not in axes:
         lines.append("beta = 1.0  # boundaries need none")

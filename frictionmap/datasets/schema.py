@@ -9,6 +9,7 @@ from .. import checks
 from ..errors import InputError
 from .estimate_labels import ESTIMATE_TEXTS, ESTIMATES
 from .labels import (
+    BESIDE,
     CELL,
     COORDINATES,
     CURVES,
@@ -16,6 +17,7 @@ from .labels import (
     HISTORY_VARIABLES,
     LABELS,
     LIMIT,
+    SCALES,
     SHARES,
     Label,
     labels_of,
@@ -27,7 +29,7 @@ TEXTS = ("title", "system", "source", "history", "references", "config", "reduct
 
 def _known(what: str) -> dict[str, Label]:
     """The labels of axes and variables in a kind of dataset."""
-    return ESTIMATES if what == "estimates" else {**COORDINATES, **labels_of(what)}
+    return ESTIMATES if what == "estimates" else {**COORDINATES, **BESIDE, **labels_of(what)}
 
 
 def _is_history(ds: xr.Dataset, name: object) -> bool:
@@ -64,7 +66,7 @@ def in_brackets(dims: Iterable[object]) -> str:
 
 def standard_dims(name: str, what: str) -> tuple[str, ...]:
     """Dimensions of a variable in a dataset of a kind; a response is of one cell."""
-    dims = labels_of(what)[name].dims
+    dims = (BESIDE[name] if name in BESIDE else labels_of(what)[name]).dims
     return tuple(dim for dim in dims if dim not in CELL) if what == "response" else dims
 
 
@@ -83,6 +85,9 @@ def check_structure(ds: xr.Dataset, in_parts: bool = False) -> None:
         text = ds.attrs.get(key, "")
         if not isinstance(text, str):
             raise InputError(f"the attribute {key} must be text; got {checks.one_line(text)}")
+    for key in SCALES.values():
+        if key in ds.attrs:
+            checks.number(ds.attrs[key], f"the attribute {key}", above=0.0)
     known = _known(what)
     if not any(name in LABELS or name == "estimate" for name in ds.variables):
         names = ", ".join(map(str, ds.variables)) or "none"

@@ -16,6 +16,8 @@ from ..errors import InputError
 from ..model.settings import CurveSettings, Solver, curve_settings
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
+from ..units.axes import KINDS, Ladder, grid_ratios
+from ..units.scales import Scales, Units, scales_of
 from .keys import AXES, KEYS, names
 from .variants import put_variants
 
@@ -59,6 +61,7 @@ class Config:
     name: str  # of the file, without its ending
     variations: Variations | None = None  # along further axes
     files: tuple[Path, ...] = ()  # that it was read from
+    units: Units | None = None  # what r = 1 and beta = 1 are
 
 
 #: Called with the numbers of values of mu, r and beta and of points along further axes, the system and the
@@ -292,17 +295,16 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     system = _build(System, described, "system")
     solver = _build(Solver, _table(tree, "solver"), "solver")
     curves = _build(curve_settings, _table(tree, "curves"), "curves")
-    grid = _table(tree, "grid")
-    for key in ("r", "beta"):
-        if key not in grid:
-            raise InputError(f"grid.{key} must be given; it is missing")
-    counts = {key: _count(grid.get(key, [1.0]), f"grid.{key}") for key in ("mu", "r", "beta")}
     further = _further_axes(tree)
     variations = None if further is None else checked_variations(system, further)
+    given = _table(tree, "units")
+    units = _build(Units, given, "units") if given else None
+    grid = _grid(tree, scales_of(units, system, variations))
+    counts = {key: _count(grid[key], f"grid.{key}") for key in ("mu", "r", "beta")}
     points = 1 if variations is None else variations.count
     (room or _fits)({**counts, "points": points}, system, solver, curves)
     axes = {
-        key: checks.axis(_values(grid.get(key, [1.0]), f"grid.{key}"), f"grid.{key}", **bounds)
+        key: checks.axis(_values(grid[key], f"grid.{key}"), f"grid.{key}", **bounds)
         for key, bounds in AXES.items()
     }
     try:
@@ -311,8 +313,21 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
         raise InputError(f"system.{error}") from None
     files = (path, *_matrix_files(described))
     return Config(
-        title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, name, variations, files
+        title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, name, variations, files,
+        units,
     )  # fmt: skip
+
+
+def _grid(tree: Mapping[str, object], scales: Scales) -> dict[str, Any]:
+    """The axes of the table [grid]; those with units as ratios."""
+    grid: dict[str, Any] = {"mu": [1.0], **_table(tree, "grid")}
+    for key, kind in KINDS.items():
+        if key not in grid:
+            raise InputError(f"grid.{key} must be given; it is missing")
+        if isinstance(grid[key], Mapping):
+            _check_form(grid[key], f"grid.{key}")
+        grid[key] = grid_ratios(grid[key], f"grid.{key}", kind, scales)
+    return grid
 
 
 def _further_axes(tree: Mapping[str, object]) -> dict[str, Any] | None:
@@ -338,7 +353,7 @@ def _is_number(value: object) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def _axis_table(axis: Mapping[str, object], name: str) -> None:
+def _check_form(axis: Mapping[str, object], name: str) -> None:
     """Refuse an axis table that does not say one thing."""
     for key in axis:
         if key not in _AXIS_KEYS:
@@ -347,8 +362,10 @@ def _axis_table(axis: Mapping[str, object], name: str) -> None:
     keys = set(axis)
     if keys not in ({"values"}, {"start", "stop", "step"}, {"start", "stop", "num"}):
         raise InputError(f"{name} must be {legal}; got {', '.join(axis) or 'nothing'}")
-    if "values" in axis:
-        return
+
+
+def _check_range(axis: Mapping[str, object], name: str) -> None:
+    """Refuse a range whose numbers make no sense."""
     start = checks.number(axis["start"], f"{name}.start")
     stop = checks.number(axis["stop"], f"{name}.stop")
     if stop < start:
@@ -373,10 +390,13 @@ def _steps(axis: Mapping[str, object], name: str) -> int:
 
 def _count(axis: object, name: str) -> int:
     """How many values an axis will have, before any memory is taken for them."""
+    if isinstance(axis, Ladder):
+        return axis.count
     if isinstance(axis, Mapping):
-        _axis_table(axis, name)
+        _check_form(axis, name)
         if "values" in axis:
             return _count_list(axis["values"], f"{name}.values")
+        _check_range(axis, name)
         return _steps(axis, name) + 1 if "step" in axis else int(axis["num"])
     if isinstance(axis, list):
         return _count_list(axis, name)
@@ -396,6 +416,8 @@ def _count_list(values: object, name: str) -> int:
 
 def _values(axis: object, name: str) -> object:
     """The values of an axis that `_count` has accepted."""
+    if isinstance(axis, Ladder):
+        return axis.values()
     if not isinstance(axis, Mapping):
         return axis
     if "values" in axis:

@@ -95,7 +95,7 @@ def _further_axes() -> dict[str, Any]:
         "type": "object",
         "minProperties": 1,
         "patternProperties": {
-            f"^({numbers}|{indexed})$": axis(),
+            f"^({numbers}|{indexed})$": axis(""),
             f"^(?!({numbers}|{lists})$)[a-z][a-z0-9_]*$": {"anyOf": [file, columns]},
         },
         "additionalProperties": False,

@@ -5,12 +5,17 @@ of them what editors check by.  The checks themselves are those of `System`, `So
 `checks.axis`; ranges and words stand with them and are taken from there.
 """
 
+import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple, get_args
 
 from .. import checks
 from ..model.settings import OUTPUTS, RANGES, Quantity, Skip, Solver, Start, Steady, curve_settings
 from ..model.system import CONTACTS, DAMPING_REFERENCES, EXCITATIONS, System
+from ..units.axes import KINDS
+from ..units.quantities import EXAMPLES, NUMBER
+from ..units.scales import MODEL_HAS, OF_MODEL, UNIT_KINDS
+from ..units.table import units_of
 
 Legal = Mapping[str, Any]
 
@@ -67,15 +72,23 @@ def table(keys: Mapping[str, Legal], required: tuple[str, ...] = ()) -> Legal:
     }  # fmt: skip
 
 
-def axis(**ends: float) -> Legal:
-    """Values, or a range of them."""
-    value = number(**ends)
+def with_unit(kind: str) -> Legal:
+    """A number with a unit of a kind."""
+    units = "|".join(re.escape(unit) for unit in units_of(kind))
+    return {"type": "string", "pattern": rf"^{NUMBER} ?({units})$"}
+
+
+def axis(kind: str, **ends: float) -> Legal:
+    """Values, or a range of them; `kind`: what they measure if they may have a unit, or ""."""
+    value, step = number(**ends), number(above=0.0)
+    if kind:
+        value, step = either(value, with_unit(kind)), either(step, with_unit(kind))
     edges = {"start": value, "stop": value}
     return either(
         value,
         several(value),
         table({"values": several(value)}, ("values",)),
-        table({**edges, "step": number(above=0.0)}, ("start", "stop", "step")),
+        table({**edges, "step": step}, ("start", "stop", "step")),
         table({**edges, "num": whole(least=1, most=checks.MOST_CELLS)}, ("start", "stop", "num")),
     )
 
@@ -108,7 +121,17 @@ def _of_system(name: str, meaning: str, legal: Legal, **more: Any) -> Key:
 
 
 def _of_grid(name: str, meaning: str, **more: Any) -> Key:
-    return Key(name, meaning, axis(**AXES[name]), words=_RANGE, **more)
+    return Key(name, meaning, axis("", **AXES[name]), words=_RANGE, **more)
+
+
+def _unit(name: str, meaning: str) -> Key:
+    """A number with its unit."""
+    kind = UNIT_KINDS[name]
+    words = f"a number and one of {', '.join(units_of(kind))}"
+    legal = with_unit(kind)
+    if name in MODEL_HAS:
+        words, legal = f'{words}, or "{OF_MODEL}" of matrices in SI units', either(legal, word(OF_MODEL))
+    return Key(name, meaning, legal, example=f'"{EXAMPLES[kind]}"', words=words)
 
 
 #: Keys by table; "" is no table.
@@ -204,12 +227,16 @@ KEYS: dict[str, tuple[Key, ...]] = {
     ),
     "grid": (
         Key(
-            "r", "excitation frequency over natural frequency", axis(**AXES["r"]), example="1.0", words=_RANGE
+            "r",
+            "excitation frequency over natural frequency",
+            axis(KINDS["r"], **AXES["r"]),
+            example="1.0",
+            words=_RANGE,
         ),
         Key(
             "beta",
             "kinetic friction force over load amplitude",
-            axis(**AXES["beta"]),
+            axis(KINDS["beta"], **AXES["beta"]),
             example="1.0",
             words=_RANGE,
         ),
@@ -250,6 +277,15 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "harmonics", "the highest harmonic kept; 0: none", whole(**RANGES["harmonics"]), _CURVES.harmonics
         ),
     ),
+    "units": (
+        _unit("natural_frequency", "what r = 1 is: sqrt(k_1/m_1)/(2 pi), or frequency_scale/(2 pi)"),
+        _unit("load", "what beta = 1 is: the load's amplitude P, with a base that moves k_1 Y"),
+        _unit("base_amplitude", "instead of the load: Y, where the base moves"),
+        _unit("base_acceleration", "instead of the load: that of the base, at acceleration_frequency"),
+        _unit("acceleration_frequency", "the frequency at which base_acceleration holds"),
+        _unit("stiffness", "k_1, or stiffness_scale: amplitudes are over P/k_1"),
+        _unit("mass", "instead of the stiffness of a chain: m_1"),
+    ),
 }
 
 #: What is said of a table as a whole.
@@ -258,6 +294,7 @@ TABLES = {
     "grid": "The map: rows, columns, and one map for every mu.",
     "solver": "How steady states are found, and what is kept of them.",
     "curves": "For `frictionmap curves` only: beta is then a short list.",
+    "units": "Optional: what r = 1 and beta = 1 are. [grid] may then be in hertz and newtons.",
     "axes": "Further axes: numbers of [system] that change, alone or several together from a CSV.",
 }
 

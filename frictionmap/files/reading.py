@@ -10,7 +10,18 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
-from ..datasets.labels import CELL, COORDINATES, CURVES, LABELS, MARKS, coordinate, label_variable, labels_of
+from ..datasets.labels import (
+    BESIDE,
+    CELL,
+    COORDINATES,
+    CURVES,
+    LABELS,
+    MARKS,
+    coordinate,
+    label_variable,
+    labels_of,
+)
+from ..datasets.physical import in_si_too
 from ..datasets.schema import check_structure, checked_values, in_brackets, kind, placed, standard_dims
 from ..errors import InputError
 from .estimates import estimates_form
@@ -99,6 +110,7 @@ def _load(
     path: Path, ds: xr.Dataset, only: Mapping[str, Collection[str]] | None, at: Mapping[str, float]
 ) -> xr.Dataset:
     """The wanted variables of a file; their values are read once all else about them is known to be well."""
+    in_store = MARKS in ds
     with _naming(path):
         if at or further_axes(ds):
             ds = choose(ds, at)
@@ -109,12 +121,14 @@ def _load(
         return ds.load()
     wanted = LABELS if only is None else only[kind(ds)]
     part = _ours(ds)
-    return part.drop_vars([name for name in part.variables if name in LABELS and name not in wanted]).load()
+    part = part.drop_vars([name for name in part.variables if name in LABELS and name not in wanted]).load()
+    return in_si_too(part) if in_store and only is None else part  # a store has ratios only
 
 
 def _ours(ds: xr.Dataset) -> xr.Dataset:
     """What has a label."""
-    return ds.drop_vars([name for name in ds.variables if name not in LABELS and name not in COORDINATES])
+    known = {*LABELS, *COORDINATES, *BESIDE}
+    return ds.drop_vars([name for name in ds.variables if name not in known])
 
 
 def standard_form(ds: xr.Dataset) -> xr.Dataset:
@@ -146,7 +160,7 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
     if what == "estimates":
         return estimates_form(ds)
     ds = _ours(ds)
-    ds = ds.set_coords([name for name in COORDINATES if name in ds.data_vars])
+    ds = ds.set_coords([name for name in (*COORDINATES, *BESIDE) if name in ds.data_vars])
     if what == "response":
         ds = ds.squeeze([dim for dim in CELL if ds.sizes.get(dim) == 1])
     ds = _increasing(ds)
@@ -160,7 +174,7 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
             used.update(dims)
     if what in ("map", "curves"):
         used.update(CELL)  # also if what there is depends on frequency only
-    return xr.Dataset(variables, coords=_axes(ds, what, used), attrs=ds.attrs)
+    return xr.Dataset(variables, coords=_axes(ds, what, used) | _beside(ds, what, used), attrs=ds.attrs)
 
 
 def _increasing(ds: xr.Dataset) -> xr.Dataset:
@@ -190,6 +204,16 @@ def _check_increasing(name: str, values: np.ndarray) -> None:
     if wrong.size:
         first, second = values[wrong[0]], values[wrong[0] + 1]
         raise InputError(f"{name} must be strictly increasing; got {second} after {first}")
+
+
+def _beside(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:
+    """Axes in SI units, beside those that are used."""
+    beside = {}
+    for name in BESIDE:
+        dims = standard_dims(name, what)
+        if name in ds.variables and (set(dims) <= used or not dims):
+            beside[name] = coordinate(name, checked_values(name, placed(ds, name, dims), what))
+    return beside
 
 
 def _axes(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:

@@ -140,7 +140,9 @@ def _of_point(ds: xr.Dataset, point: Mapping[str, int]) -> dict[str, str]:
             left = left.chosen(point)
             axes = {"r": config.r, "beta": config.beta, "mu": config.mu}
             system = left.describe()
-            text = configuration(title, left.system, axes, config.solver, study=left.described or None)
+            text = configuration(
+                title, left.system, axes, config.solver, study=left.described or None, units=config.units
+            )
     return {"title": title, "system": system, "config": text}
 
 

@@ -8,6 +8,7 @@ import xarray as xr
 
 from .. import regimes
 from ..datasets.labels import CELL, LABELS
+from ..datasets.physical import in_words
 from ..datasets.schema import TEXTS, kind
 from .estimates import describe_estimates, source_of_data
 from .reading import standard_form
@@ -135,7 +136,8 @@ def header_lines(ds: xr.Dataset, what: str) -> list[str]:
     for name in ("system", "reduction", "decoupling", "source", "history"):
         if texts[name]:
             lines += _entry(name, texts[name])
-    return lines
+    units = in_words(ds)
+    return [*lines, *(_entry("units", units) if units else [])]
 
 
 def axis_lines(ds: xr.Dataset) -> list[str]:

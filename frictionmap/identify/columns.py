@@ -7,8 +7,8 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
+from ..units.table import COLUMN_UNITS, ending, suffixes
 from .tables import Table
-from .units import UNITS, ending, suffixes
 
 #: What is done about values that are no numbers.
 MISSING = ("refuse", "drop")
@@ -126,7 +126,9 @@ def _named_like(table: Table, role: str, legal: Sequence[str]) -> list[str]:
     """Columns of a role: its name, followed by a unit or by what should be one."""
     if not legal:
         return [name for name in table.columns if name == role]
-    known = [name for name in table.columns if ending(name) in UNITS and name == f"{role}_{ending(name)}"]
+    known = [
+        name for name in table.columns if ending(name) in COLUMN_UNITS and name == f"{role}_{ending(name)}"
+    ]
     return known or [name for name in table.columns if name == role or name.startswith(f"{role}_")]
 
 

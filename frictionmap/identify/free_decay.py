@@ -7,6 +7,7 @@ import xarray as xr
 
 from .. import checks
 from ..errors import InputError
+from ..units.table import checked_unit, conversion
 from .cautions import bounded, coloured, trading
 from .decay_checks import checked_record, checked_turning_points, largest_gap, unclipped, within
 from .decay_fit import DRIFT, X_F, ZETA, Fit, Record, fit_decay
@@ -15,7 +16,6 @@ from .estimates import estimates, number, verdict
 from .least_squares import Errors, Problem, Solution, errors
 from .robust import LOSSES, effective_variance, softened
 from .turning_points import TurningPoints, linear_decrement, noise_level, without_spikes
-from .units import checked_unit, conversion
 
 #: Estimates so many standard errors above zero are found.
 _FOUND = 3.0

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..packages import package, read_by
-from .units import UNITS, ending
+from ..units.table import COLUMN_UNITS, ending
 
 #: Columns by their names.
 Columns = dict[str, np.ndarray]
@@ -82,4 +82,4 @@ def _text(value: object) -> str:
 
 def _with_unit(name: str, unit: str) -> str:
     """A name that ends in its unit, if one is known; it may do so already."""
-    return name if ending(name) in UNITS or not unit else f"{name}_{unit}"
+    return name if ending(name) in COLUMN_UNITS or not unit else f"{name}_{unit}"

@@ -10,6 +10,7 @@ from .. import checks
 from ..datasets.provenance import system_text
 from ..errors import InputError
 from ..model.system import System
+from ..units.table import checked_unit, conversion
 from .decay_checks import checked_record, largest_gap, unclipped, within
 from .estimates import estimates, number, verdict
 from .least_squares import Errors
@@ -18,7 +19,6 @@ from .record_errors import DERIVED, derived_values, record_errors
 from .record_fit import Fit, fit_record, places_at
 from .record_motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
 from .turning_points import resolution
-from .units import checked_unit, conversion
 
 #: Estimates so many standard errors above zero are found, and drifts so many are no chance.
 _FOUND = 3.0

@@ -5,12 +5,12 @@ from typing import Any
 import xarray as xr
 
 from ..errors import InputError
+from ..units.table import conversion
 from .columns import check_increasing, pick_columns
 from .decay_motion import PARAMETERS
 from .free_decay import free_decay
 from .rig import Kind, Rig, check_columns, dropped_rows
 from .tables import Table
-from .units import conversion
 
 #: What is given in mm, whatever the unit of the data.
 _LENGTHS = ("x_F", "X0", "centre", "base_mm")

@@ -7,12 +7,12 @@ from .. import checks
 from ..errors import InputError
 from ..files.config import read_system
 from ..model.system import System
+from ..units.table import conversion
 from .columns import Columns, check_positive, has_column, pick_columns
 from .forced import forced
 from .forced_data import check_lag
 from .rig import Kind, Rig, check_columns, dropped_rows
 from .tables import Table
-from .units import conversion
 
 #: What may be fitted: the columns, and what they measure.
 _USE = {"phase": ("phase_lag", "angle"), "amplitude": ("amplitude_ratio", "ratio")}

@@ -5,12 +5,12 @@ import xarray as xr
 from .. import checks
 from ..errors import InputError
 from ..files.config import unknown_key
+from ..units.table import conversion
 from .columns import check_increasing, pick_columns
 from .record import record
 from .record_motion import CONTACTS, DAMPING_REFERENCES, PARAMETERS
 from .rig import Kind, Rig, check_columns, dropped_rows
 from .tables import Table
-from .units import conversion
 
 _WANTED = {"time": "time", "base": "length", "x": "length"}
 

@@ -8,6 +8,7 @@ import xarray as xr
 from .. import checks
 from ..errors import InputError
 from ..files.config import unknown_key
+from ..units.table import conversion
 from .chain_estimates import chain_names
 from .columns import Column, Columns, check_positive, has_column, pick_columns
 from .rig import Kind, Rig, check_columns, dropped_rows
@@ -15,7 +16,6 @@ from .robust import LOSSES
 from .sweep import COSTS, DAMPINGS, sweep
 from .sweep_data import MOST_MASSES
 from .tables import Table
-from .units import conversion
 
 SYSTEM_KEYS = ("masses", "excitation", "damping_reference")
 _MEASURES = {"amplitude_ratio": "ratio", "phase_lag": "angle"}

@@ -440,6 +440,11 @@ class System:
         """Whether this is one mass of 1 on a spring of 1, the units of the formulas for one mass."""
         return self.n == 1 and self.modes.mass[0, 0] == 1.0 == self.modes.stiffness[0, 0]
 
+    @property
+    def omega_1(self) -> float:
+        """omega/r: what r = 1 is, in the units of sqrt(K/M) of matrices; 1 of a chain, given by ratios."""
+        return 1.0 if self.matrices is None else self._frequency_scale
+
     @cached_property
     def _frequency_scale(self) -> float:
         """omega/r of a structure given by matrices."""

@@ -10,6 +10,7 @@ raster          cells to pixels: nothing is lost, however many cells a pixel has
 marks           where to write names, draw rings, put labels so that they lie apart
 words           titles and captions
 panels          figures, panels, axes, legends
+second_axes     axes in hertz, newtons, millimetres beside those of ratios
 boundary_curves boundaries over a map, as fine as the picture
 regime_map      maps of regimes and stops
 boundary_map    what the boundaries alone tell

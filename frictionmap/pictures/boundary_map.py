@@ -22,6 +22,7 @@ from .panels import (
     panel_grid,
     patch,
 )
+from .second_axes import frequency_on_top, on_the_right
 from .shapes import check_holds, panels_of, to_draw
 from .words import caption
 
@@ -96,6 +97,8 @@ def _draw(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
         handles += ax.plot(*_over(r, panel[name].values), path_effects=rim, **style)
     name_axes(ax, r, float(panel["mu"]))
     ax.set_ylim(0.0, top)
+    frequency_on_top(ax, panel)
+    on_the_right(ax, panel, "force")
     return handles + mark_features(ax, features_of(panel), r)
 
 

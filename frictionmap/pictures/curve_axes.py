@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from .families import Family
 from .invariants import infinite_resonances
 from .panels import Handle
+from .second_axes import frequency_on_top
 
 #: Where some amplitude is infinite the axis ends here, in units of P/k1; a logarithmic one further up.
 CUT, CUT_LOG = 5.0, 100.0
@@ -86,6 +87,7 @@ def over_r(ax: Axes, family: Family, title: str, name: str) -> None:
     ax.set_xlabel(r"frequency ratio $r$")
     ax.set_ylabel(name)
     ax.set_title(title, fontsize=10)
+    frequency_on_top(ax, family.cells)
 
 
 def in_rows(panels: list[Panel], below: list[Panel]) -> list[Row]:

@@ -10,6 +10,7 @@ from ..files.stored import stored_system
 from ..model.system import System
 from .grids import Grid
 from .palette import sequence
+from .second_axes import in_brackets
 
 
 class Family(NamedTuple):
@@ -60,7 +61,9 @@ def family_of(ds: xr.Dataset) -> Family:
         cells=cells,
         r=r,
         line=line,
-        labels=[f"{symbols[line]} = {value:g}" for value in values],
+        labels=[
+            f"{symbols[line]} = {value:g}{in_brackets(ds, line, index)}" for index, value in enumerate(values)
+        ],
         colours=sequence(values.size),
         regime=regime,
         chosen=_one_of(symbols[other], ds[other].values),

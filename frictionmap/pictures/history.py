@@ -13,7 +13,8 @@ from .. import regimes
 from ..errors import InputError
 from .marks import spread
 from .palette import CLASSES, LINES, STUCK, Shade
-from .panels import Handle, given_axes, legend_below, new_figure, title_figure
+from .panels import Handle, given_axes, halo, legend_below, new_figure, title_figure
+from .second_axes import in_brackets, on_the_right, time_on_top
 from .shapes import check_holds, check_range, to_draw
 from .words import caption, load_of, moves_base
 
@@ -45,13 +46,19 @@ _REGIME_WORDS = {
 
 
 def _label_beside(ax: Axes, places: np.ndarray, texts: Sequence[str], colours: Sequence[str]) -> None:
-    """Write labels right of a panel, beside `places` on its vertical axis, so that they lie apart."""
+    """Write labels right of a panel, beside `places` on its vertical axis, so that they lie apart.
+
+    Where a second axis has its numbers, they go inside.
+    """
+    aside = (
+        {"xytext": (-4, 0), "ha": "right", "path_effects": halo()} if ax.child_axes else {"xytext": (4, 0)}
+    )
     low, high = ax.get_ylim()
     beside = spread((places - low) / (high - low), _GAP)
     for height, text, colour in zip(beside, texts, colours, strict=True):
         ax.annotate(
-            text, (1.0, height), xycoords="axes fraction", xytext=(4, 0), textcoords="offset points",
-            va="center", fontsize=8, color=colour,
+            text, (1.0, height), xycoords="axes fraction", textcoords="offset points",
+            va="center", fontsize=8, color=colour, **aside,
         )  # fmt: skip
 
 
@@ -77,6 +84,7 @@ def _draw_contact(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> list[Handle]:
     ax.plot(turns, z, color=LINES[0])
     _in_sight(ax, z)
     ax.set_ylabel("contact\n" r"$z$ / $(P/k_1)$")
+    on_the_right(ax, ds, "length", "$z$")
     begins = ds["event_phase"].values == 0 if set(_EVENTS) <= set(ds) else np.zeros(0, dtype=bool)
     if not begins.any():
         return []
@@ -93,6 +101,7 @@ def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     for place, colour in zip(x, colours, strict=True):
         ax.plot(turns, place, color=colour, linewidth=1.2)
     _in_sight(ax, x)
+    on_the_right(ax, ds, "length", "$x$")
     ax.set_ylabel("masses\n" r"$x$ / $(P/k_1)$")
     labelled = np.unique(np.linspace(0, len(x) - 1, min(len(x), MOST_LABELS)).round().astype(int))
     _label_beside(
@@ -110,6 +119,7 @@ def _draw_friction(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     for level in np.unique(levels):
         ax.axhline(level, color="#606060", linewidth=0.9, linestyle=":")
     _in_sight(ax, np.concatenate((friction, levels)))
+    on_the_right(ax, ds, "force", "friction")
     _label_beside(ax, levels, texts, ["black"] * len(texts))
     ax.set_ylabel("friction / $P$")
 
@@ -136,7 +146,9 @@ def _mark_phases(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray) -> lis
 def title_of(ds: xr.Dataset) -> str:
     """The cell and its answer."""
     symbols = {"r": "r", "beta": "β", "mu": "μ"}
-    cell = ", ".join(f"{symbol} = {float(ds[name]):.6g}" for name, symbol in symbols.items())
+    cell = ", ".join(
+        f"{symbol} = {float(ds[name]):.6g}{in_brackets(ds, name)}" for name, symbol in symbols.items()
+    )
     if "regime" not in ds:
         return cell
     words = _REGIME_WORDS[int(ds["regime"])]
@@ -215,6 +227,7 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
     _draw_friction(by_name["friction"], ds, turns)
     axes[-1].set_xlabel(r"$\tau/\pi$")
     axes[-1].set_xlim(turns[0], turns[-1])
+    time_on_top(axes[0], ds)
     if ax is None:
         title_figure(axes[0].figure, title_of(ds))
         legend_below(axes[0].figure, handles, caption(ds))

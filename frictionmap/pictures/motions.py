@@ -13,6 +13,7 @@ from .features import frequencies_of, mark_features
 from .invariants import Invariant, invariant_points
 from .palette import HELD, LIMIT, LineStyle
 from .panels import Handle
+from .second_axes import on_the_right
 from .words import moves_base
 
 
@@ -214,6 +215,7 @@ def motion_picture(family: Family, quantity: str, log: bool) -> Picture:
             over_r(ax, family, motion.title, f"{NAMES[of].axis} / {unit}")
             handles = _draw_amplitude(ax, motion, family, scale.top)
             scale.apply(ax, motion.size)
+            on_the_right(ax, family.cells, "length", NAMES[of].axis)
             return handles + mark_features(ax, marks, family.r)
 
         return draw

@@ -12,6 +12,7 @@ from .harmonics import LOWEST, levels_of
 from .history import MOST_LABELS, check_can_be_seen, contact_is_a_mass, title_of
 from .palette import LINES
 from .panels import Handle, given_axes, legend_below, table_of_panels
+from .second_axes import length_on_top, on_the_right
 from .shapes import check_holds, to_draw
 from .words import caption
 
@@ -32,6 +33,7 @@ def _draw_portrait(ax: Axes, ds: xr.Dataset) -> None:
     ax.set_xlabel(r"displacement $x$ / $(P/k_1)$")
     ax.set_ylabel(r"velocity $x'$ / $(P/k_1)$")
     ax.set_title("phase portrait", fontsize=10)
+    length_on_top(ax, ds, "displacement")
 
 
 def _draw_loop(ax: Axes, ds: xr.Dataset) -> None:
@@ -40,6 +42,8 @@ def _draw_loop(ax: Axes, ds: xr.Dataset) -> None:
     ax.set_xlabel(r"motion in the contact $z$ / $(P/k_1)$")
     ax.set_ylabel("friction / $P$")
     ax.set_title("friction loop", fontsize=10)
+    length_on_top(ax, ds, "motion in the contact")
+    on_the_right(ax, ds, "force", "friction")
 
 
 def _draw_spectrum(ax: Axes, ds: xr.Dataset) -> None:

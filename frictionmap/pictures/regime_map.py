@@ -48,6 +48,7 @@ from .panels import (  # fmt: skip
     size_of,
 )
 from .raster import paint, rasterise, shade, stripes
+from .second_axes import frequency_on_top, on_the_right
 from .shapes import panels_of, to_draw
 from .words import caption
 
@@ -174,6 +175,8 @@ def draw_map(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
     if cells.beta.logarithmic:
         ax.set_yscale("log")
     ax.set_ylim(*cells.beta.limits)
+    frequency_on_top(ax, panel)
+    on_the_right(ax, panel, "force")
     for name, curve in curves.items():
         handles += ax.plot(*curve, path_effects=halo(), **_STYLES[name])
     if cells.several is not None:

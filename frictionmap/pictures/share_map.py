@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from .grids import Grid
 from .panels import Handle, distinct, halo, legend_below, name_axes, table_of_panels
+from .second_axes import frequency_on_top, on_the_right
 from .shapes import check_holds, to_draw
 from .words import system_words
 
@@ -56,6 +57,8 @@ def plot_shares(ds: xr.Dataset) -> "AxesArray":
         for ax, name in zip(row, there, strict=True):
             mesh = _fill(ax, share.sel(outcome=name).isel(mu=m).values, r, beta)
             name_axes(ax, r, float(ds["mu"][m]))
+            frequency_on_top(ax, ds)
+            on_the_right(ax, ds, "force")
             ax.set_title(f"{name.replace('_', ' ')}, {ax.get_title()}", fontsize=10)
             handles += _lines(ax, ds.isel(mu=m), r, beta)
     figure = axes[0, 0].figure

@@ -3,10 +3,12 @@
 import numpy as np
 from matplotlib.axes import Axes
 
+from ..datasets.labels import MEASURE_OF
 from .curve_axes import Panel, Picture, Scale, about_cut, about_peaks, in_rows, over_r, scale_of
 from .curve_lines import draw_curve
 from .families import Family
 from .panels import Handle
+from .second_axes import on_the_right
 
 #: Variables, with what their axis is called.
 SCALARS = {
@@ -46,6 +48,8 @@ def scalar_picture(family: Family, quantity: str, log: bool) -> Picture:
             for row, regime, colour in zip(values, family.regime, family.colours, strict=True):
                 draw_curve(ax, family.cells["r"].values, row, regime, colour, scale.top)
             scale.apply(ax, values)
+            if name in MEASURE_OF:
+                on_the_right(ax, family.cells, MEASURE_OF[name], SCALARS[quantity][name].split(" / ")[0])
             return []
 
         return draw

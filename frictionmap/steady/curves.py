@@ -10,10 +10,12 @@ from numpy.typing import ArrayLike
 
 from .. import checks
 from ..datasets.labels import coordinate, label_variable, stamp
+from ..datasets.physical import with_units
 from ..model.settings import CurveSettings, Output, Quantity, Solver, SolverSettings, curve_settings, merged
 from ..model.system import System
 from ..theory.boundaries import Curves, boundary_variables, held_variables
 from ..theory.limit_curves import limit_variables
+from ..units.scales import Units, scales_of
 from .maps import Progress, checked_axes, compute
 from .quantity_data import PARTS, VARIABLES, asked_for, read_result
 
@@ -50,6 +52,7 @@ def curves(
     solver: Solver | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
+    units: Units | None = None,
     **settings: Unpack[SolverSettings],
 ) -> xr.Dataset:
     """Response curves of the steady states on a mu-r-beta grid, through all regimes.
@@ -75,6 +78,8 @@ def curves(
         Threads to use; default: all processors of the process.  The result is the same to the bit.
     progress : callable, optional
         Called as progress(done, all) with numbers that tell the share of the work.
+    units : Units, optional
+        What r = 1 and beta = 1 are, as of `sweep`; one of eleven arguments, all but three for keywords.
 
     Returns
     -------
@@ -110,7 +115,8 @@ def curves(
     checks.instance(system, "system", System)
     solver = merged(solver, settings)
     asked = curve_settings(harmonics, quantities)
-    axes = checked_axes(r, beta, mu, system.n * (asked.harmonics + 1))
+    scales = scales_of(units, system)
+    axes = checked_axes(r, beta, mu, system.n * (asked.harmonics + 1), scales)
     basic, names = plain_outputs(asked), cycle_variables(asked)
     system.costs(axes["r"])
     cells, out = compute(
@@ -126,4 +132,5 @@ def curves(
         axes |= {"harmonic": np.arange(asked.harmonics + 1), "part": PARTS}
     coords = {name: coordinate(name, values) for name, values in axes.items()}
     ds = xr.Dataset(variables, coords=coords)
-    return stamp(ds, "curves", "Response curves", system, grid, solver, asdict(asked))
+    ds = stamp(ds, "curves", "Response curves", system, grid, solver, asdict(asked), units=units)
+    return with_units(ds, scales)

@@ -19,6 +19,8 @@ from ..errors import InputError
 from ..model.settings import Solver
 from ..model.system import System
 from ..theory.boundaries import boundary_variables
+from ..units.axes import KINDS, ratios
+from ..units.scales import Scales
 from .cells import Cells, Job
 from .quantity_data import Asked, asked_for, read_result
 
@@ -185,8 +187,11 @@ def _fill(
     cells.finish(out)
 
 
-def checked_axes(r: ArrayLike, beta: ArrayLike, mu: ArrayLike, per_cell: int) -> dict[str, np.ndarray]:
-    """The axes mu, r and beta of a grid, of so many numbers a cell."""
+def checked_axes(
+    r: ArrayLike, beta: ArrayLike, mu: ArrayLike, per_cell: int, scales: Scales
+) -> dict[str, np.ndarray]:
+    """The axes mu, r and beta of a grid, of so many numbers a cell; r and beta may have units."""
+    r, beta = ratios(r, "r", KINDS["r"], scales), ratios(beta, "beta", KINDS["beta"], scales)
     r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
     beta = checks.axis(beta, "beta", least=0.0)
     mu = checks.axis(mu, "mu", least=1.0)

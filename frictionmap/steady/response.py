@@ -23,10 +23,13 @@ from .._kernels.structure.newton import make_workspace
 from .._kernels.structure.oscillators import make_scratch
 from .._kernels.structure.state import make_structure
 from ..datasets.labels import CELL_VARIABLES, coordinate, label_variable, stamp
+from ..datasets.physical import with_units
 from ..errors import InputError, NoSteadyState
 from ..model.settings import HARMONICS, Output, Solver, SolverSettings, merged
 from ..model.system import System
 from ..theory.boundaries import boundary_variables
+from ..units.axes import KINDS, ratios
+from ..units.scales import Scales, Units, scales_of
 from .cells import Cells, limits
 from .maps import plan
 from .quantity_data import PARTS, VARIABLES, asked_for, read_result
@@ -307,14 +310,30 @@ def _history(question: Question, cells: Cells, found: Found) -> History:
     return _moving_history(question, cells, found)
 
 
+def _ratio(given: object, name: str, scales: Scales) -> object:
+    """A ratio that may be given as a frequency or a force."""
+    found = ratios(given, name, KINDS[name], scales)
+    return found[0] if isinstance(found, list) and len(found) == 1 and not isinstance(given, list) else found
+
+
+def _checked_cell(r: object, beta: object, mu: object, scales: Scales) -> tuple[float, float, float]:
+    r = checks.number(_ratio(r, "r", scales), "r", least=0.0, most=checks.LARGEST_RATIO)
+    beta = checks.number(_ratio(beta, "beta", scales), "beta", least=0.0)
+    mu = checks.number(mu, "mu", least=1.0)
+    if r == 0.0:
+        raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
+    return r, beta, mu
+
+
 def response(
     system: System,
-    r: SupportsFloat,
-    beta: SupportsFloat,
+    r: SupportsFloat | str,
+    beta: SupportsFloat | str,
     mu: SupportsFloat = 1.0,
     *,
     solver: Solver | None = None,
     points: int = POINTS,
+    units: Units | None = None,
     **settings: Unpack[SolverSettings],
 ) -> xr.Dataset:
     """One steady state in time.
@@ -328,6 +347,8 @@ def response(
         Settings; or give them one by one as keywords, each in place of the solver's own.
     points : int
         Samples per excitation period, up to 10^6.
+    units : Units, optional
+        What r = 1 and beta = 1 are, as of `sweep`; r and beta may then be a frequency and a force.
 
     Returns
     -------
@@ -341,6 +362,9 @@ def response(
 
         Of stick-slip that does not repeat (`status` not_periodic, `period` 0) tau goes over 8 periods at the
         end of those that were followed, and the scalars are those of the map: averages.
+
+        With units `time` [s] goes with tau, and what is in m, N, J or m/s stands beside its ratio, such as
+        `x_m`, `friction_N` and `v_m_s`.
 
     Raises
     ------
@@ -358,12 +382,9 @@ def response(
     """
     checks.instance(system, "system", System)
     solver = merged(solver, settings)
-    r = checks.number(r, "r", least=0.0, most=checks.LARGEST_RATIO)
-    beta = checks.number(beta, "beta", least=0.0)
-    mu = checks.number(mu, "mu", least=1.0)
+    scales = scales_of(units, system)
+    r, beta, mu = _checked_cell(r, beta, mu, scales)
     points = checks.whole(points, "points", least=2, most=_MOST_POINTS)
-    if r == 0.0:
-        raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
     question = Question(system, r, beta, mu, solver, points)
     cells = Cells(
         system, np.array([r]), np.array([beta]), np.array([mu]), solver, asked_for(CYCLE, HARMONICS)
@@ -402,7 +423,7 @@ def response(
     ds = ds.assign(_further(question, [name for name in solver.outputs if name not in ds]))
     cell = {"r": r, "beta": beta, "mu": mu}
     ds = ds.assign_coords({name: coordinate(name, value) for name, value in cell.items()})
-    ds = stamp(ds, "response", "Steady state in time", system, cell, solver)
+    ds = with_units(stamp(ds, "response", "Steady state in time", system, cell, solver, units=units), scales)
     if found.averages is not None:
         ds.attrs |= {"title": "Motion in time, a part of it", "comment": _WINDOWED.format(solver.cycles)}
     return ds

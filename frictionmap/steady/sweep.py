@@ -9,10 +9,12 @@ from numpy.typing import ArrayLike
 
 from .. import checks
 from ..datasets.labels import NAMES, coordinate_of_study, stamp
+from ..datasets.physical import with_units
 from ..errors import InputError
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
+from ..units.scales import Units, scales_of
 from .maps import Progress, checked_axes, regime_map
 
 
@@ -26,6 +28,7 @@ def sweep(
     axes: Mapping[str, Any] | Variations | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
+    units: Units | None = None,
     **settings: Unpack[SolverSettings],
 ) -> xr.Dataset:
     """Classify the steady state on a mu-r-beta grid and count its stops per cycle.
@@ -52,12 +55,17 @@ def sweep(
         Threads to use; default: all processors of the process.  The result is the same to the bit.
     progress : callable, optional
         Called as progress(done, all) with numbers that tell the share of the work.
+    units : Units, optional
+        What r = 1 and beta = 1 are.  Then r may be frequencies and beta friction forces, texts such as
+        "4.2 Hz" or quantities of pint, astropy or unyt; numbers are ratios as ever.
 
     Returns
     -------
     xarray.Dataset
         On (mu, r, beta): the outputs asked for, and `status` if it has anything to say.  On (mu, r):
         `beta_lim`, `beta_lim_modal`, `beta_stick`.  Unresolved cells have regime -1; `status` says why.
+        With units `frequency(r)` [Hz] and `friction_force(beta)` [N] beside the axes, and what is in m, N or
+        J beside its ratio, such as `contact_amplitude_m` and `beta_lim_N`.
 
     Raises
     ------
@@ -73,8 +81,9 @@ def sweep(
     """
     checks.instance(system, "system", System)
     solver = merged(solver, settings)
-    grid = checked_axes(r, beta, mu, system.n if "amplitude" in solver.outputs else 1)
     variations = None if axes is None else checked_variations(system, axes)
+    scales = scales_of(units, system, variations)
+    grid = checked_axes(r, beta, mu, system.n if "amplitude" in solver.outputs else 1, scales)
     (variations or system).costs(grid["r"])
     if variations is None:
         ds = regime_map(system, grid, solver, threads, progress)
@@ -84,7 +93,7 @@ def sweep(
     if "status" not in solver.outputs and not ds["status"].values.any():
         ds = ds.drop_vars("status")  # else no cell is unresolved, or averaged, without a word
     title = "Motion regimes and stops per cycle"
-    stamp(
+    ds = stamp(
         ds,
         "sweep",
         title,
@@ -92,8 +101,10 @@ def sweep(
         {name: grid[name] for name in ("r", "beta", "mu")},
         solver,
         study=None if variations is None else variations.described,
+        units=units,
     )
-    return ds if variations is None else ds.assign_attrs(system=variations.describe())
+    ds = ds if variations is None else ds.assign_attrs(system=variations.describe())
+    return with_units(ds, scales)
 
 
 def _study(

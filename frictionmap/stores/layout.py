@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..datasets.labels import CELL_VARIABLES, MARKS, coordinate
+from ..datasets.physical import physical_axes
 from .study import Block, Study
 
 
@@ -26,11 +27,13 @@ def arrays_of(study: Study, sample: xr.Dataset) -> dict[str, Array]:
     dims = tuple(axis.name for axis in study.variations.axes)
     sizes = dict(zip(dims, study.variations.shape, strict=True))
     sizes |= {"mu": study.mu.size, "r": study.r.size, "beta": study.beta.size, "dof": study.system.n}
-    further = [name for name in study.coordinates() if name not in dims]
-    beside = {"coordinates": " ".join(further)} if further else {}  # CF: what goes with an axis
+    further = {name: variable.dims for name, variable in study.coordinates().items() if name not in dims}
+    further |= {name: variable.dims for name, variable in _physical(study).items()}
     arrays = {}
     for name, variable in sample.data_vars.items():
         own = (*dims, *map(str, variable.dims))
+        with_axes = [name for name, dims_of_it in further.items() if set(dims_of_it) <= set(own)]
+        beside = {"coordinates": " ".join(with_axes)} if with_axes else {}  # CF: what goes with an axis
         chunk = {name: 1 for name in (*dims, "mu")} | {"r": study.rows}
         fill = CELL_VARIABLES[str(name)].unresolved if name in CELL_VARIABLES else np.nan
         arrays[str(name)] = Array(
@@ -53,7 +56,12 @@ def coordinates_of(study: Study, sample: xr.Dataset) -> dict[str, xr.Variable]:
     """The axes of a store."""
     grid = {name: coordinate(name, getattr(study, name)) for name in ("mu", "r", "beta")}
     further = {"dof": sample["dof"].variable} if "dof" in sample.coords else {}
-    return study.coordinates() | grid | further
+    return study.coordinates() | grid | _physical(study) | further
+
+
+def _physical(study: Study) -> dict[str, xr.Variable]:
+    """The axes r and beta in hertz and newtons."""
+    return physical_axes({"r": study.r, "beta": study.beta}, study.scales)
 
 
 def plain(attributes: Mapping[str, Any]) -> dict[str, Any]:

@@ -15,6 +15,7 @@ import xarray as xr
 
 from .. import checks
 from ..datasets.labels import REFERENCES
+from ..datasets.physical import scale_attributes
 from ..datasets.provenance import configuration
 from ..errors import InputError
 from ..files.config import Config, config_of, parse
@@ -125,7 +126,7 @@ def make_store(path: Path, study: Study, title: str) -> None:
         attributes = {
             "Conventions": "CF-1.11", "title": title, "source": _SOURCE, "references": REFERENCES,
             "system": study.variations.describe(), "config": text,
-            **study.system.costs(study.r),
+            **study.system.costs(study.r), **scale_attributes(study.scales),
         }  # fmt: skip
         group = zarr.create_group(away, attributes=attributes)
         for name, array in arrays_of(study, sample).items():
@@ -176,7 +177,9 @@ def _configuration(study: Study, title: str) -> str:
     """A configuration that makes the study again, beside its matrices."""
     grid = {"r": study.r, "beta": study.beta, "mu": study.mu}
     further = study.variations.described or None
-    return configuration(title, study.system, grid, study.solver, study=further, matrices=_MATRICES)
+    return configuration(
+        title, study.system, grid, study.solver, study=further, matrices=_MATRICES, units=study.units
+    )
 
 
 def opened(path: Path) -> Store:
@@ -189,7 +192,7 @@ def opened(path: Path) -> Store:
     """
     config = _config(path)
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
-    return Store(path, study_of(config.system, config.variations, axes, config.solver))
+    return Store(path, study_of(config.system, config.variations, axes, config.solver, config.units))
 
 
 def _config(path: Path) -> Config:

@@ -14,6 +14,7 @@ from ..model.system import System
 from ..model.variations import Variations
 from ..steady.maps import regime_map
 from ..steady.sweep import study_coordinates
+from ..units.scales import Scales, Units, scales_of
 
 #: Cells of a block: some seconds of work at most, and few files.
 BLOCK_CELLS = 2**20
@@ -42,11 +43,17 @@ class Study:
     beta: np.ndarray
     solver: Solver
     block_cells: int = BLOCK_CELLS
+    units: Units | None = None
 
     @property
     def system(self) -> System:
         """The one that the others are variations of."""
         return self.variations.system
+
+    @property
+    def scales(self) -> Scales:
+        """What the ratios are in SI units."""
+        return scales_of(self.units, self.system, self.variations)
 
     @property
     def rows(self) -> int:
@@ -101,11 +108,14 @@ class Study:
 
 
 def study_of(
-    system: System, variations: Variations | None, axes: dict[str, np.ndarray], solver: Solver
-) -> Study:
+    system: System, variations: Variations | None, axes: dict[str, np.ndarray], solver: Solver,
+    units: Units | None = None,
+) -> Study:  # fmt: skip
     """The study of one system, or of its variations, on axes mu, r and beta.
 
     Every cell has a `status` in a store: which cells want one is not known before all are computed.
     """
     solver = replace(solver, outputs=tuple(dict.fromkeys((*solver.outputs, "status"))))
-    return Study(variations or Variations(system, ()), axes["mu"], axes["r"], axes["beta"], solver)
+    return Study(
+        variations or Variations(system, ()), axes["mu"], axes["r"], axes["beta"], solver, units=units
+    )

@@ -11,6 +11,7 @@ from .._kernels.boundary.functions import response_functions
 from .._kernels.boundary.structure import many_mode_functions
 from .._kernels.engine.one_mass import Frequencies
 from ..datasets.labels import LABELS, coordinate, label_variable, stamp
+from ..datasets.physical import with_units
 from ..errors import InputError
 from ..features import (
     all_mass_invariant_points,
@@ -22,6 +23,8 @@ from ..features import (
 )
 from ..model.modes import angles, modulus, wrapped
 from ..model.system import System
+from ..units.axes import KINDS, ratios
+from ..units.scales import Units, scales_of
 
 #: About so many invariant points beyond one a mode are listed, from the highest down: below them hardly any
 #: motion is continuous.  Those of masses are listed up to so many masses: they cost the square of it.
@@ -254,7 +257,9 @@ def held_variables(system: System, r: np.ndarray) -> dict[str, xr.Variable]:
     }
 
 
-def boundaries(system: System, r: ArrayLike, mu: ArrayLike = 1.0) -> xr.Dataset:
+def boundaries(
+    system: System, r: ArrayLike, mu: ArrayLike = 1.0, *, units: Units | None = None
+) -> xr.Dataset:
     """Boundaries of the motion regimes over frequency.
 
     Parameters
@@ -265,6 +270,8 @@ def boundaries(system: System, r: ArrayLike, mu: ArrayLike = 1.0) -> xr.Dataset:
         system's frequency_scale.
     mu : array_like, shape (n_mu,)
         Static over kinetic friction [-], >= 1, increasing.
+    units : Units, optional
+        What r = 1 and beta = 1 are, as of `sweep`; r may then be frequencies.
 
     Returns
     -------
@@ -296,7 +303,8 @@ def boundaries(system: System, r: ArrayLike, mu: ArrayLike = 1.0) -> xr.Dataset:
     array([[0.25, 4.  ]])
     """
     checks.instance(system, "system", System)
-    r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
+    scales = scales_of(units, system)
+    r = checks.axis(ratios(r, "r", KINDS["r"], scales), "r", least=0.0, most=checks.LARGEST_RATIO)
     mu = checks.axis(mu, "mu", least=1.0)
     system.costs(r)
     found = find_curves(system, r, mu)
@@ -313,4 +321,5 @@ def boundaries(system: System, r: ArrayLike, mu: ArrayLike = 1.0) -> xr.Dataset:
     variables |= _feature_variables(system, r, mu)
     axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
     ds = xr.Dataset(variables, coords={name: coordinate(name, axis) for name, axis in axes.items()})
-    return stamp(ds, "boundaries", "Boundaries of the motion regimes", system, {"r": r, "mu": mu})
+    title = "Boundaries of the motion regimes"
+    return with_units(stamp(ds, "boundaries", title, system, {"r": r, "mu": mu}, units=units), scales)

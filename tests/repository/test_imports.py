@@ -121,7 +121,7 @@ def test_one_folder(module, folder):
 #: Rooms, and modules that stand alone, in the order in which data flows: none knows a later one.
 ORDER = (
     "errors", "version", "regimes", "checks", "interrupts", "packages", "mat_files", "structures",
-    "_kernels", "model", "datasets", "roots",
+    "_kernels", "model", "units", "datasets", "roots",
     "features",
     "theory", "steady", "files", "probabilities", "stores", "identify", "examples", "pictures", "plot",
     "explorer", "progress", "arguments", "completion", "cli", "__main__",

@@ -10,12 +10,13 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.datasets.labels import COORDINATES, LABELS
+from frictionmap.datasets.labels import BESIDE, COORDINATES, LABELS
 from frictionmap.files.reading import read, standard_form
 from frictionmap.files.storage import write
 from frictionmap.model.settings import OUTPUTS
 
 TWO = fm.System(mass_ratios=[1.0, 0.5], stiffness_ratios=[1.0, 2.0], damping_ratios=0.02)
+UNITS = fm.Units(natural_frequency="4.2 Hz", load="12.5 N", stiffness="3 N/mm")
 KINDS = ("map", "curves", "boundaries", "response", "shares")
 
 
@@ -26,15 +27,23 @@ def datasets():
     r, mu = np.linspace(0.0, 3.0, 31), np.array([1.0, 1.5])
     quantities = ["amplitude", "phase", "first_harmonic", "energy", "harmonics", "transmitted_force"]
     samples = {"mass_ratios[2]": [0.4, 0.5, 0.6]}
-    uncertain = fm.sweep(TWO, [0.0, 0.3, 2.0], [0.0, 0.5], [1.0, 1.5], axes={"sample": samples})
+    uncertain = fm.sweep(TWO, [0.0, 0.3, 2.0], [0.0, 0.5], [1.0, 1.5], axes={"sample": samples}, units=UNITS)
     return {
         "shares": fm.shares(uncertain, "sample"),
-        "map": fm.sweep(TWO, [0.0, 0.3, 0.5, 2.0], [0.0, 0.05, 0.5, 2.0, 5.0], [1.0, 1.5], outputs=OUTPUTS),
-        "curves": fm.curves(
-            TWO, [0.0, 0.3, 0.5, 2.0], [0.0, 0.05, 0.5], [1.0, 1.5], harmonics=2, quantities=quantities
+        "map": fm.sweep(
+            TWO, [0.0, 0.3, 0.5, 2.0], [0.0, 0.05, 0.5, 2.0, 5.0], [1.0, 1.5], outputs=OUTPUTS, units=UNITS
         ),
-        "boundaries": fm.boundaries(undamped, r, mu),
-        "response": fm.response(TWO, 0.3, 0.1, 1.5, points=50),
+        "curves": fm.curves(
+            TWO,
+            [0.0, 0.3, 0.5, 2.0],
+            [0.0, 0.05, 0.5],
+            [1.0, 1.5],
+            harmonics=2,
+            quantities=quantities,
+            units=UNITS,
+        ),
+        "boundaries": fm.boundaries(undamped, r, mu, units=UNITS),
+        "response": fm.response(TWO, 0.3, 0.1, 1.5, points=50, units=UNITS),
     }
 
 
@@ -63,7 +72,7 @@ def test_what_is_computed_is_in_standard_form(datasets, kind):
 def test_every_variable_is_in_the_examples(datasets):
     """So that the tests below see all of the schema."""
     known = {name for ds in datasets.values() for name in ds.variables}
-    assert known >= set(LABELS) | set(COORDINATES)
+    assert known >= set(LABELS) | set(COORDINATES) | set(BESIDE)
 
 
 SLICES = {

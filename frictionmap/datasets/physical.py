@@ -1,0 +1,98 @@
+"""Datasets in hertz, newtons and metres beside their ratios, where they know what a ratio of 1 is."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from ..units.axes import KINDS, typed
+from ..units.scales import Scales
+from ..units.table import UNITS
+from .labels import MEASURES, SCALES, attributes, coordinate, in_si, labels_of
+from .schema import kind
+
+#: The coordinate that tells an axis in its SI unit.
+BESIDE_OF = {"r": "frequency", "beta": "friction_force"}
+
+#: Units that pictures and words choose from, and the size in the SI unit from which each is handy.
+_HANDY = {
+    "frequency": {"Hz": 0.0, "kHz": 1e4},
+    "force": {"mN": 0.0, "N": 0.1, "kN": 1e4},
+    "length": {"um": 0.0, "mm": 1e-4, "m": 1.0},
+    "time": {"ms": 0.0, "s": 1.0},
+    "work": {"mJ": 0.0, "J": 0.1},
+}
+
+
+def with_units(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
+    """The dataset with `frequency(r)`, `friction_force(beta)`, and amplitudes, forces and works in SI units.
+
+    They stand beside the ratios, which stay as they are; names of variables end in the unit.
+    """
+    ds = ds.assign_attrs(scale_attributes(scales))
+    axes = {name: ds[name].values for name in KINDS if name in ds.coords}
+    ds = ds.assign_coords(physical_axes(axes, scales))
+    return in_si_too(ds)
+
+
+def scale_attributes(scales: Scales) -> dict[str, float]:
+    """Global attributes that say what a ratio of 1 is."""
+    found = {name: scales.of(measure) for measure, name in SCALES.items()}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def physical_axes(axes: Mapping[str, np.ndarray], scales: Scales) -> dict[str, xr.Variable]:
+    """Coordinates in hertz and newtons beside the axes r and beta; as they would be typed."""
+    found = {}
+    for name, kind_of_axis in KINDS.items():
+        one = getattr(scales, kind_of_axis)
+        if name in axes and one is not None:
+            found[BESIDE_OF[name]] = coordinate(BESIDE_OF[name], typed(axes[name], one))
+    return found
+
+
+def in_si_too(ds: xr.Dataset) -> xr.Dataset:
+    """The dataset with those of its variables in SI units that it lacks, by its attributes."""
+    ones = ones_of(ds)
+    labels = labels_of(kind(ds))
+    added = {}
+    for measure, names in MEASURES.items():
+        for name in names if measure in ones else ():
+            own = in_si(name, measure)
+            if name in ds.data_vars and own not in ds and ds[name].attrs.get("units", "1") == "1":
+                ratio = ds[name].variable
+                values = ratio.values * ratio.dtype.type(ones[measure])
+                added[own] = xr.Variable(ratio.dims, values, attributes(labels[own]))
+    if "tau" in ds.coords and "time" in ones:
+        ds = ds.assign_coords(time=coordinate("time", ds["tau"].values * ones["time"]))
+    return ds.assign(added)
+
+
+def ones_of(ds: xr.Dataset) -> dict[str, float]:
+    """What 1 is in SI units of every measure that a dataset tells; times and velocities of one r only."""
+    ones = {measure: float(ds.attrs[name]) for measure, name in SCALES.items() if name in ds.attrs}
+    if "force" in ones and "length" in ones:
+        ones["work"] = ones["force"] * ones["length"]
+    if "frequency" in ones and "r" in ds.coords and ds["r"].ndim == 0:
+        omega = 2.0 * math.pi * float(ds.coords["frequency"])
+        ones["time"] = 1.0 / omega
+        if "length" in ones:
+            ones["velocity"] = ones["length"] * omega
+    return ones
+
+
+def in_words(ds: xr.Dataset) -> str:
+    """What ratios of 1 are, as the dataset tells; empty if it has no units."""
+    said = {"frequency": "r = 1 is", "force": "beta = 1 is", "length": "an amplitude of 1 is"}
+    parts = []
+    for measure, name in SCALES.items():
+        if name in ds.attrs:
+            unit = handy_unit(float(ds.attrs[name]), measure)
+            parts.append(f"{said[measure]} {float(ds.attrs[name]) / float(UNITS[unit].size):.6g} {unit}")
+    return ", ".join(parts)
+
+
+def handy_unit(size: float, measure: str) -> str:
+    """The unit of frequency, force, length, time or work in which a size in SI units is a handy number."""
+    return [unit for unit, least in _HANDY[measure].items() if size >= least][-1]

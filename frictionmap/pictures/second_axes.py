@@ -1,0 +1,74 @@
+"""A second axis in hertz, newtons, millimetres or seconds, where the dataset tells what a ratio of 1 is."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from ..datasets.labels import BESIDE
+from ..datasets.physical import BESIDE_OF, handy_unit, ones_of
+from ..units.table import UNITS
+
+_NAMES = {
+    "frequency": "frequency",
+    "force": "friction force",
+    "length": "amplitude",
+    "work": "work",
+    "time": "time",
+}
+
+
+def frequency_on_top(ax: Axes, ds: xr.Dataset) -> None:
+    """The frequency over a panel whose lower axis is r."""
+    _beside(ax, ds, "x", "frequency", _NAMES["frequency"], float(np.max(ds["r"].values)))
+
+
+def time_on_top(ax: Axes, ds: xr.Dataset) -> None:
+    """The time over a panel whose lower axis is tau/pi."""
+    _beside(ax, ds, "x", "time", _NAMES["time"], float(np.max(ds["tau"].values)), np.pi)
+
+
+def on_the_right(ax: Axes, ds: xr.Dataset, measure: str, name: str = "") -> None:
+    """Forces, lengths or works right of a panel, once its limits are known; `name`: what they are of."""
+    largest = max(abs(limit) for limit in ax.get_ylim())
+    _beside(ax, ds, "y", measure, name or _NAMES[measure], largest)
+
+
+def length_on_top(ax: Axes, ds: xr.Dataset, name: str) -> None:
+    """Displacements over a panel whose lower axis has them in units of P/k1."""
+    _beside(ax, ds, "x", "length", name, max(abs(limit) for limit in ax.get_xlim()))
+
+
+def in_brackets(ds: xr.Dataset, axis: str, index: int = 0) -> str:
+    """A value of r or beta in hertz or newtons, if the dataset tells, to be put behind it."""
+    name = BESIDE_OF.get(axis, "")
+    if name not in ds.coords:
+        return ""
+    value = float(np.atleast_1d(ds[name].values)[index])
+    return f" ({value:.6g} {BESIDE[name].units})"
+
+
+def _beside(
+    ax: Axes, ds: xr.Dataset, axis: str, measure: str, name: str, largest: float, step: float = 1.0
+) -> None:
+    """A second axis, if the dataset tells what 1 is of what a panel shows in units of `step`."""
+    one = ones_of(ds).get(measure)
+    if one is None or not np.isfinite(largest):
+        return
+    unit = handy_unit(one * largest, measure)
+    factor = step * one / float(UNITS[unit].size)
+
+    def forward(values: ArrayLike) -> ArrayLike:
+        return factor * np.asarray(values)
+
+    def back(values: ArrayLike) -> ArrayLike:
+        return np.asarray(values) / factor
+
+    if axis == "x":
+        ax.secondary_xaxis("top", functions=(forward, back)).set_xlabel(f"{name} [{_shown(unit)}]")
+    else:
+        ax.secondary_yaxis("right", functions=(forward, back)).set_ylabel(f"{name} [{_shown(unit)}]")
+
+
+def _shown(unit: str) -> str:
+    return unit.replace("um", "µm")

@@ -1,0 +1,146 @@
+"""Values and ranges with units as ratios, and ratios as what somebody would have typed."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from .. import checks
+from ..errors import InputError
+from .quantities import is_foreign, quantities, quantity
+from .scales import NO_SCALES, Scales
+
+#: What the ratios of a grid are over.
+KINDS = {"r": "frequency", "beta": "force"}
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """A range in exact numbers: `count` values from the first on, the last one as it was given."""
+
+    first: Fraction
+    step: Fraction
+    last: Fraction
+    count: int
+
+    def values(self) -> np.ndarray:
+        """All of them, each rounded once."""
+        below = math.lcm(self.first.denominator, self.step.denominator)
+        first, step = int(self.first * below), int(self.step * below)
+        values = np.array([(first + k * step) / below for k in range(self.count)])
+        values[-1] = float(self.last)
+        return values
+
+
+def ratios(values: Any, name: str, kind: str, scales: Scales) -> Any:
+    """Values of an axis as ratios, each rounded once; what has no unit is left as it is.
+
+    Raises
+    ------
+    InputError
+        A value is no number with a unit of its kind, some have units and others none, or `scales` lack what
+        they are over.
+    """
+    try:
+        found = quantities(values, name, kind)
+    except InputError:
+        if scales is NO_SCALES and not is_foreign(values):
+            return values  # for the checks of numbers without units, which say what is wrong
+        raise
+    if found is None:
+        return values
+    one = scales.needed(kind, name, values)
+    return [_double(value / one) for value in found]
+
+
+def _double(value: Fraction) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
+def grid_ratios(axis: Any, name: str, kind: str, scales: Scales) -> Any:
+    """An axis of a configuration whose form is known to be legal, as ratios; see `ratios`.
+
+    A range with units becomes a `Ladder`.
+    """
+    if not isinstance(axis, Mapping):
+        return ratios(axis, name, kind, scales)
+    if "values" in axis:
+        listed = isinstance(axis["values"], list)
+        return {"values": ratios(axis["values"], f"{name}.values", kind, scales)} if listed else axis
+    ends = [axis[key] for key in ("start", "stop", "step") if key in axis]
+    if not any(isinstance(end, str) for end in ends):
+        return axis
+    try:
+        return _ladder(axis, name, kind, scales)
+    except InputError:
+        if scales is NO_SCALES and not _with_units(axis, kind):
+            return axis
+        raise
+
+
+def _with_units(axis: Mapping[str, Any], kind: str) -> bool:
+    """Whether any number of a range has a unit that is right."""
+    for key in ("start", "stop", "step"):
+        try:
+            quantity(axis.get(key), key, kind)
+        except InputError:
+            continue
+        return True
+    return False
+
+
+def _ladder(axis: Mapping[str, Any], name: str, kind: str, scales: Scales) -> Ladder:
+    given = {
+        key: quantity(axis[key], f"{name}.{key}", kind) for key in ("start", "stop", "step") if key in axis
+    }
+    one = scales.needed(kind, name, axis)
+    start, stop = (given[key].value / one for key in ("start", "stop"))
+    if stop < start:
+        raise InputError(f"{name}.stop must be >= start ({axis['start']}); got {axis['stop']!r}")
+    if math.isinf(_double(stop)) or math.isinf(_double(start)):
+        raise InputError(f"{name} must be finite; got {checks.one_line(axis)}")
+    if "num" in axis:
+        return _of_number(start, stop, axis, name)
+    if given["step"].value <= 0:
+        raise InputError(f"{name}.step must be > 0; got {axis['step']!r}")
+    step = given["step"].value / one
+    steps = math.ceil((stop - start) / step)
+    if steps >= checks.MOST_CELLS:
+        raise InputError(
+            f"{name}.step must leave at most {checks.MOST_CELLS:.0e} values; got {axis['step']!r}, which "
+            f"makes {_double(Fraction(steps + 1)):.3g}"
+        )
+    return Ladder(start, step, stop, steps + 1)
+
+
+def _of_number(start: Fraction, stop: Fraction, axis: Mapping[str, Any], name: str) -> Ladder:
+    """So many values from start to stop."""
+    num = checks.whole(axis["num"], f"{name}.num", least=1, most=checks.MOST_CELLS)
+    if num == 1 and stop > start:
+        raise InputError(f"{name}.num must be >= 2 to hold both {axis['start']} and {axis['stop']}; got 1")
+    return Ladder(start, (stop - start) / max(1, num - 1), stop, num)
+
+
+def typed(ratios: np.ndarray, one: Fraction) -> np.ndarray:
+    """Frequencies or forces that ratios stand for, with no more digits than it takes to tell them.
+
+    So 1.05 Hz over 4.2 Hz, a ratio that was rounded, is 1.05 Hz again.
+    """
+    flat = [_fewest_digits(float(ratio), one) for ratio in np.ravel(ratios)]
+    return np.array(flat).reshape(np.shape(ratios))
+
+
+def _fewest_digits(ratio: float, one: Fraction) -> float:
+    value = _double(Fraction(ratio) * one)
+    for digits in (15, 16):
+        short = f"{value:.{digits}g}"
+        if math.isfinite(value) and _double(Fraction(Decimal(short)) / one) == ratio:
+            return float(short)
+    return value

@@ -1,0 +1,201 @@
+"""A number with its unit as an exact number: text such as "4.2 Hz", or a quantity of pint, astropy or unyt.
+
+Of text nothing is guessed and nothing repaired.  Quantities of other packages are converted by their own
+`to` and `to_value`, into a unit that is chosen here: pint takes 1 Hz for 1 rad/s.
+"""
+
+import math
+import re
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .. import checks
+from ..errors import InputError
+from .table import UNITS, known_unit, units_of
+
+#: A number with a decimal point, then its unit, with one space between them or none.
+NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_TEXT = re.compile(rf"({NUMBER}) ?([A-Za-z\u00b5\u03bc]\S*)")
+_NO_NUMBER = re.compile(r"[+-]?(nan|inf|infinity)\b", re.IGNORECASE)
+_COMMA = re.compile(r"[+-]?[0-9.]*,[0-9]")
+
+#: What a message shows of a kind.
+EXAMPLES = {
+    "frequency": "4.2 Hz",
+    "force": "12.5 N",
+    "length": "0.5 mm",
+    "mass": "2 kg",
+    "stiffness": "3 N/mm",
+    "acceleration": "0.5 g",
+}
+
+#: The units that other packages are asked to convert into; all of them know these.
+_ASKED = {
+    "force": "N", "length": "m", "mass": "kg", "stiffness": "N/m", "acceleration": "m/s**2",
+}  # fmt: skip
+
+#: Frequencies in other packages, by how they write their own unit: cycles, or angles, over time.  A plain
+#: 1/s is neither.
+_CYCLES = re.compile(r"[a-z]*hertz|[a-zA-Zµ]?Hz")
+_TURNS = re.compile(r"rpm|revolution|turn|cycle")
+_ANGLES = re.compile(r"rad|deg")
+
+
+class Quantity(NamedTuple):
+    """A number in the SI unit of what it measures (Hz of a frequency), and the text that says it."""
+
+    value: Fraction
+    text: str
+
+
+def is_foreign(value: object) -> bool:
+    """Whether a value is a quantity of pint, astropy or unyt, and has a unit."""
+    if isinstance(value, type):
+        return False
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        return not getattr(value, "unitless", False)
+    return hasattr(value, "to_value") and _own_unit(value) not in ("", "dimensionless")
+
+
+def quantity(value: object, name: str, kind: str) -> Quantity:
+    """One number with a unit of frequency, force, length, mass, stiffness or acceleration.
+
+    Raises
+    ------
+    InputError
+        It has no unit, an unknown one or one of another kind, or is no finite number; one line that names it.
+    """
+    if isinstance(value, str):
+        return _from_text(value, name, kind)
+    if not is_foreign(value):
+        raise _refusal(name, kind, value, "it has no unit" if _is_number(value) else "")
+    found, unit = _converted(value, name, kind)
+    if found.ndim:
+        raise _refusal(name, kind, value, "one number is due")
+    return _from_text(f"{float(found)!r} {unit}", name, kind)
+
+
+def quantities(values: Any, name: str, kind: str) -> list[Fraction] | None:
+    """Values with units, one or a list of them, in the SI unit; None if they are plain numbers.
+
+    Raises
+    ------
+    InputError
+        As of `quantity`; or some have a unit and others none.
+    """
+    if isinstance(values, str):
+        return [_from_text(values, name, kind).value]
+    if is_foreign(values):
+        found, unit = _converted(values, name, kind)
+        texts = [f"{float(number)!r} {unit}" for number in np.atleast_1d(found).ravel()]
+        return [_from_text(text, f"{name}[{k}]", kind).value for k, text in enumerate(texts)]
+    said = _unit_of_array(values)
+    if said is not None:
+        texts = [f"{float(number)!r} {said}" for number in np.atleast_1d(values).ravel()]
+        return [_from_text(text, f"{name}[{k}]", kind).value for k, text in enumerate(texts)]
+    if not isinstance(values, (list, tuple)):
+        return None
+    with_unit = [isinstance(value, str) or is_foreign(value) for value in values]
+    if not any(with_unit):
+        return None
+    return [quantity(value, f"{name}[{k}]", kind).value for k, value in enumerate(values)]
+
+
+def _from_text(text: str, name: str, kind: str) -> Quantity:
+    matched = None if _is_text_of_number(text) else _TEXT.fullmatch(text)
+    if matched is None:
+        raise _refusal(name, kind, text, _slip(text))
+    unit = known_unit(matched[2])
+    if unit is None:
+        raise _refusal(name, kind, text, _meant(matched[2], kind))
+    if UNITS[unit].measures != kind:
+        raise _refusal(name, kind, text, f"{unit} is a unit of {UNITS[unit].measures}")
+    size = float(matched[1])  # beyond all doubles no exact number is made: it could fill the memory
+    if math.isinf(size) or (size == 0.0 and re.search("[1-9]", re.split("[eE]", matched[1])[0])):
+        raise _refusal(name, kind, text, "it is beyond all doubles")
+    return Quantity(Fraction(Decimal(matched[1])) * UNITS[unit].size, text)
+
+
+def _slip(text: str) -> str:
+    """What is wrong with text that is no number and unit."""
+    if _COMMA.match(text):
+        return "a decimal point, no comma"
+    if _NO_NUMBER.match(text):
+        return "it is not finite"
+    return "it has no unit" if _is_text_of_number(text) else "one number, one space and one unit are due"
+
+
+def _is_text_of_number(text: str) -> bool:
+    """Whether it is a number alone, such as 1e5."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _meant(unit: str, kind: str) -> str:
+    """Which unit an unknown one may be a slip of."""
+    legal = [*units_of(kind), *(name for name, known in UNITS.items() if known.measures != kind)]
+    same = [name for name in legal if name.lower() == unit.lower()]
+    hint = f" (did you mean {same[0]}?)" if same else checks.nearest(unit, legal)
+    return f"{unit} is no unit that is known{hint}"
+
+
+def _refusal(name: str, kind: str, value: object, why: str) -> InputError:
+    legal = ", ".join(units_of(kind))
+    got = (
+        repr(value) if isinstance(value, str) and len(value) < 80 else checks.one_line(value)
+    )  # spaces count
+    return InputError(
+        f"{name} must be a number with a unit of {kind} ({legal}), such as '{EXAMPLES[kind]}'; "
+        f"got {got}{why and f': {why}'}"
+    )
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
+
+
+def _own_unit(value: Any) -> str:
+    """How another package writes the unit of a quantity."""
+    return str(getattr(value, "units", None) if hasattr(value, "units") else getattr(value, "unit", ""))
+
+
+def _unit_of_array(values: Any) -> str | None:
+    """The unit that an array of xarray says its numbers have, if that is one; a ratio's is 1."""
+    said = getattr(values, "attrs", {}).get("units") if checks.is_array(values) else None
+    return known_unit(said) if isinstance(said, str) else None
+
+
+def _converted(value: Any, name: str, kind: str) -> tuple[np.ndarray, str]:
+    """Numbers of a quantity of another package, by its own conversion, and our unit that they are in."""
+    own = _own_unit(value)
+    unit, asked = _asked(own, kind)
+    try:
+        if not asked:
+            raise ValueError
+        found = value.to(asked).magnitude if hasattr(value, "magnitude") else value.to_value(asked)
+    except Exception:  # each package has its own errors for what it cannot convert
+        why = "1/s is neither Hz nor rad/s" if own in ("1 / second", "1 / s", "1/s") else ""
+        raise _refusal(name, kind, value, why or f"{own} is none of them") from None
+    return np.asarray(found, dtype=float), unit
+
+
+def _asked(own: str, kind: str) -> tuple[str, str]:
+    """Our unit, and the word for it that a package is asked with; none of what is no frequency."""
+    if kind != "frequency":
+        return units_in_si(kind), _ASKED[kind]
+    if _CYCLES.fullmatch(own):
+        return "Hz", "Hz"
+    if own in ("rpm", "revolutions_per_minute"):
+        return "rpm", "rpm"
+    return ("rad/s", "rad/s") if _TURNS.search(own) or _ANGLES.search(own) else ("", "")
+
+
+def units_in_si(kind: str) -> str:
+    """The unit of a kind that has the size 1."""
+    return next(name for name in units_of(kind) if UNITS[name].size == 1)

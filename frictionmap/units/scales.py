@@ -1,0 +1,236 @@
+"""What r = 1 and beta = 1 are in hertz and newtons, and the lengths and forces that follow from them."""
+
+from dataclasses import dataclass, fields
+from fractions import Fraction
+from typing import Any
+
+from .. import checks
+from ..errors import InputError
+from ..model.system import System
+from ..model.variations import Variations
+from .quantities import quantity
+from .table import PI
+
+#: What of a structure given by matrices is read as it stands: they are in SI units then.
+OF_MODEL = "model"
+MODEL_HAS = ("natural_frequency", "stiffness")
+
+#: What every number of `Units` measures.
+UNIT_KINDS = {
+    "natural_frequency": "frequency",
+    "load": "force",
+    "base_amplitude": "length",
+    "base_acceleration": "acceleration",
+    "acceleration_frequency": "frequency",
+    "stiffness": "stiffness",
+    "mass": "mass",
+}
+
+#: Of these one at most is given.
+_RIVALS = (("load", "base_amplitude", "base_acceleration"), ("stiffness", "mass"))
+
+#: The one that needs the other, and why.
+_NEEDS = (
+    ("mass", "natural_frequency", "k1 = m1 omega_1^2"),
+    (
+        "base_acceleration",
+        "acceleration_frequency",
+        "the base moves by the same Y = a/omega^2 at all frequencies, and a is that of one of them",
+    ),
+    ("acceleration_frequency", "base_acceleration", "it is the frequency at which that holds"),
+)
+
+
+@dataclass(frozen=True)
+class Units:
+    """What r = 1 and beta = 1 are: each a text such as "4.2 Hz", or a quantity of pint, astropy or unyt.
+
+    Parameters
+    ----------
+    natural_frequency : str, optional
+        What r = 1 is: sqrt(k_1/m_1)/(2 pi) of a chain, frequency_scale/(2 pi) of matrices.  Hz, kHz, rad/s,
+        rpm.  "model": matrices are in SI units, and so is their frequency_scale, in rad/s.
+    load : str, optional
+        Amplitude P of the load, with a base that moves P = k_1 Y.  N, mN, kN, lbf.
+    base_amplitude : str, optional
+        Instead of the load: amplitude Y of the base; it must move.  mm, m, um, in.
+    base_acceleration, acceleration_frequency : str, optional
+        Instead of the load: the acceleration of the base (m/s^2, or g = 9.80665 m/s^2) at one frequency.
+        Y = a/omega^2 is the same at all others.
+    stiffness : str, optional
+        k_1 of a chain, stiffness_scale of matrices.  N/m, N/mm, kN/m, kN/mm, lbf/in.  "model": matrices are
+        in SI units, and so is their stiffness_scale, in N/m.
+    mass : str, optional
+        Instead of the stiffness of a chain: m_1, which with the natural frequency gives k_1.  kg, lb.
+
+    Raises
+    ------
+    InputError
+        Text is no number with a unit of the right kind, above 0; or numbers exclude each other.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> units = fm.Units(natural_frequency="4.2 Hz", load="12.5 N", stiffness="3 N/mm")
+    >>> ds = fm.sweep(fm.System(), r=["2.1 Hz", "252 rpm"], beta=["2.5 N"], units=units)
+    >>> ds.r.values, ds.frequency.values, ds.beta.values
+    (array([0.5, 1. ]), array([2.1, 4.2]), array([0.2]))
+    """
+
+    natural_frequency: str | Any = None
+    load: str | Any = None
+    base_amplitude: str | Any = None
+    base_acceleration: str | Any = None
+    acceleration_frequency: str | Any = None
+    stiffness: str | Any = None
+    mass: str | Any = None
+
+    def __post_init__(self) -> None:
+        given = [name for name in UNIT_KINDS if getattr(self, name) is not None]
+        if not given:
+            first, *others = UNIT_KINDS
+            raise InputError(f"{first}, or another of {', '.join(others)}, must be given; got none")
+        for names in _RIVALS:
+            both = [name for name in names if name in given]
+            if len(both) > 1:
+                raise InputError(
+                    f"{both[1]} must be left out where {both[0]} is given: one follows from the other; "
+                    f"got {checks.one_line(getattr(self, both[1]))}"
+                )
+        for name, needed, why in _NEEDS:
+            if name in given and needed not in given:
+                raise InputError(f"{needed} must be given with {name}: {why}; got none")
+        for name in given:
+            self._check(name)
+
+    def _check(self, name: str) -> None:
+        """Keep a number as text, once it is known to be one."""
+        value = getattr(self, name)
+        if isinstance(value, str) and value == OF_MODEL and name in MODEL_HAS:
+            return
+        found = quantity(value, name, UNIT_KINDS[name])
+        if found.value <= 0:
+            raise InputError(f"{name} must be > 0; got {checks.one_line(value)}")
+        object.__setattr__(self, name, found.text)
+
+    def value(self, name: str) -> Fraction | None:
+        """One of the numbers in the SI unit, Hz of a frequency; None if it is not given, or the model's."""
+        text = getattr(self, name)
+        return None if text in (None, OF_MODEL) else quantity(text, name, UNIT_KINDS[name]).value
+
+    @property
+    def given(self) -> dict[str, str]:
+        """What is given, as a configuration has it."""
+        return {field.name: text for field in fields(self) if (text := getattr(self, field.name)) is not None}
+
+
+@dataclass(frozen=True)
+class Scales:
+    """What the ratios of a system are in SI units; exact, None where it does not follow from what is given.
+
+    frequency : what r = 1 is [Hz]
+    force : P, what beta = 1 is [N]
+    length : P/k_1, or Y [m]
+    """
+
+    frequency: Fraction | None
+    force: Fraction | None
+    length: Fraction | None
+
+    def of(self, kind: str) -> float | None:
+        """What 1 is of a kind of numbers in a dataset: frequency, force, length or work [J]."""
+        if kind == "work":
+            both = self.force is not None and self.length is not None
+            return float(self.force * self.length) if both else None  # type: ignore[operator]
+        found: Fraction | None = getattr(self, kind)
+        return None if found is None else float(found)
+
+    def needed(self, kind: str, name: str, given: object) -> Fraction:
+        """What 1 of an axis is; refused by name of what is missing."""
+        found: Fraction | None = getattr(self, kind)
+        if found is None:
+            missing = {
+                "frequency": "units.natural_frequency must be given",
+                "force": "units.load must be given, or units.base_amplitude and units.stiffness,",
+            }
+            raise InputError(f"{missing[kind]} for {name} with units; got {checks.one_line(given)}")
+        return found
+
+
+#: Where no units are given.
+NO_SCALES = Scales(None, None, None)
+
+
+def scales_of(units: Units | None, system: System, variations: Variations | None = None) -> Scales:
+    """What the ratios of a system are in SI units.
+
+    Raises
+    ------
+    InputError
+        The units do not go with the system.
+    """
+    if units is None:
+        return NO_SCALES
+    checks.instance(units, "units", Units)
+    _check_system(units, system)
+    _check_variations(variations)
+    frequency, stiffness = _frequency(units, system), _stiffness(units, system)
+    mass = units.value("mass")
+    if mass is not None and frequency is not None:
+        stiffness = mass * (2 * PI * frequency) ** 2
+    force, length = units.value("load"), _base_amplitude(units)
+    if stiffness is not None:
+        force, length = (
+            length * stiffness if force is None and length is not None else force,
+            force / stiffness if length is None and force is not None else length,
+        )
+    return Scales(frequency, force, length)
+
+
+def _check_system(units: Units, system: System) -> None:
+    """Refuse what a system has not: a base that moves, a first mass, numbers of matrices."""
+    for name in ("base_amplitude", "base_acceleration"):
+        if getattr(units, name) is not None and system.excitation != "base":
+            raise InputError(
+                f"units.{name} must be left out unless the base moves (excitation base or a joined "
+                f"base-wall): give units.load; got {getattr(units, name)!r}"
+            )
+    if units.mass is not None and system.matrices is not None:
+        raise InputError(
+            f"units.mass must be left out with matrices: give units.stiffness, what stiffness_scale is; "
+            f"got {units.mass!r}"
+        )
+    for name in MODEL_HAS:
+        if getattr(units, name) == OF_MODEL and system.matrices is None:
+            raise InputError(
+                f"units.{name} must be a number with its unit for a chain, whose numbers are ratios; "
+                f"got 'model'"
+            )
+
+
+def _check_variations(variations: Variations | None) -> None:
+    """Refuse axes along which r = 1 or an amplitude of 1 is not the same."""
+    for axis in () if variations is None else variations.axes:
+        for number in axis.numbers:
+            if number.key in ("frequency_scale", "stiffness_scale"):
+                raise InputError(
+                    f"units must be left out where {number.key} changes along an axis: one unit is due for "
+                    f"all points; got axes.{axis.name}"
+                )
+
+
+def _frequency(units: Units, system: System) -> Fraction | None:
+    if units.natural_frequency == OF_MODEL:
+        return Fraction(system.omega_1) / (2 * PI)
+    return units.value("natural_frequency")
+
+
+def _stiffness(units: Units, system: System) -> Fraction | None:
+    return Fraction(system.stiffness_scale) if units.stiffness == OF_MODEL else units.value("stiffness")
+
+
+def _base_amplitude(units: Units) -> Fraction | None:
+    acceleration, frequency = units.value("base_acceleration"), units.value("acceleration_frequency")
+    if acceleration is not None and frequency is not None:
+        return acceleration / (2 * PI * frequency) ** 2
+    return units.value("base_amplitude")

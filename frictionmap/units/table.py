@@ -1,0 +1,99 @@
+"""Every unit that is understood, with its exact size; no other package is asked.
+
+Sizes are exact fractions of the SI unit, Hz for frequencies; only pi is rounded, to 50 digits, and cancels
+where a ratio is of two angular frequencies.  1 in = 0.0254 m, 1 lb = 0.45359237 kg (1959); standard gravity
+g = 9.80665 m/s^2 (1901), so 1 lbf = 4.4482216152605 N.
+"""
+
+from fractions import Fraction
+from typing import NamedTuple
+
+from .. import checks
+from ..errors import InputError
+
+#: 50 digits: an error of 1e-50 is no part of any double.
+PI = Fraction("3.14159265358979323846264338327950288419716939937510")
+
+_INCH, _POUND, _GRAVITY = Fraction("0.0254"), Fraction("0.45359237"), Fraction("9.80665")
+_POUND_FORCE = _POUND * _GRAVITY
+
+
+class Unit(NamedTuple):
+    """What a unit measures, its size in the SI unit of that, and how it ends names of measured columns."""
+
+    measures: str
+    size: Fraction
+    column: str = ""  # nothing: columns of measured data are not in it
+
+
+#: By the one way each is written; the first of its kind is what a number of that kind is told in.
+UNITS = {
+    "Hz": Unit("frequency", Fraction(1), "Hz"),
+    "kHz": Unit("frequency", Fraction(1000)),
+    "rad/s": Unit("frequency", 1 / (2 * PI), "rad_s"),
+    "rpm": Unit("frequency", Fraction(1, 60)),
+    "N": Unit("force", Fraction(1), "N"),
+    "mN": Unit("force", Fraction(1, 1000)),
+    "kN": Unit("force", Fraction(1000)),
+    "lbf": Unit("force", _POUND_FORCE),
+    "mm": Unit("length", Fraction(1, 1000), "mm"),
+    "m": Unit("length", Fraction(1), "m"),
+    "um": Unit("length", Fraction(1, 10**6), "um"),
+    "in": Unit("length", _INCH),
+    "kg": Unit("mass", Fraction(1)),
+    "lb": Unit("mass", _POUND),
+    "N/m": Unit("stiffness", Fraction(1)),
+    "N/mm": Unit("stiffness", Fraction(1000)),
+    "kN/m": Unit("stiffness", Fraction(1000)),
+    "kN/mm": Unit("stiffness", Fraction(10**6)),
+    "lbf/in": Unit("stiffness", _POUND_FORCE / _INCH),
+    "m/s^2": Unit("acceleration", Fraction(1)),
+    "g": Unit("acceleration", _GRAVITY),
+    "J": Unit("work", Fraction(1)),
+    "mJ": Unit("work", Fraction(1, 1000)),
+    "s": Unit("time", Fraction(1), "s"),
+    "ms": Unit("time", Fraction(1, 1000), "ms"),
+    "deg": Unit("angle", PI / 180, "deg"),
+    "rad": Unit("angle", Fraction(1), "rad"),
+}
+
+#: Other ways to write one: the two signs for micro, the raised two.
+_ALIASES = {"\u00b5m": "um", "\u03bcm": "um", "m/s\u00b2": "m/s^2"}
+
+#: Units that names of columns may end in, by how they do.
+COLUMN_UNITS = {unit.column: unit for unit in UNITS.values() if unit.column}
+
+
+def units_of(measures: str) -> tuple[str, ...]:
+    """Units of frequency, force, length, mass, stiffness, acceleration, time or angle."""
+    return tuple(name for name, unit in UNITS.items() if unit.measures == measures)
+
+
+def known_unit(text: str) -> str | None:
+    """A unit as the table writes it; None if there is none."""
+    name = _ALIASES.get(text, text)
+    return name if name in UNITS else None
+
+
+def suffixes(measures: str) -> tuple[str, ...]:
+    """How columns of time, length, frequency, angle or force may end; one of a ratio has no unit."""
+    return tuple(f"_{name}" for name, unit in COLUMN_UNITS.items() if unit.measures == measures)
+
+
+def ending(name: str) -> str:
+    """The unit that a name ends in, or what stands in its place after the last underscore."""
+    known = [unit for unit in COLUMN_UNITS if name.endswith(f"_{unit}")]
+    return max(known, key=len) if known else name.rpartition("_")[2] if "_" in name else ""
+
+
+def conversion(unit: str, into: str) -> float:
+    """What a number in one unit of columns is multiplied by to be in another."""
+    return float(COLUMN_UNITS[unit].size / COLUMN_UNITS[into].size)
+
+
+def checked_unit(unit: str, measures: str, name: str) -> str:
+    """`unit`, if columns of time, length or frequency may have it."""
+    legal = tuple(suffix[1:] for suffix in suffixes(measures))
+    if unit not in legal:
+        raise InputError(f"{name} must be one of {', '.join(legal)}; got {checks.one_line(unit)}")
+    return unit

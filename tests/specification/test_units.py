@@ -1,0 +1,560 @@
+"""Units: what a careful person expects of hertz and newtons, to the bit; what is no quantity is refused."""
+
+import math
+import re
+import tomllib
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+from refusals import refusal
+
+import frictionmap as fm
+from frictionmap import InputError, load_config
+from frictionmap.cli import main
+from frictionmap.files.reading import read
+from frictionmap.units.axes import Ladder, typed
+from frictionmap.units.quantities import quantity
+from frictionmap.units.scales import NO_SCALES, scales_of
+from frictionmap.units.table import PI, UNITS, units_of
+
+MIXED = fm.Units(natural_frequency="4.2 Hz", load="12.5 N", stiffness="3 N/mm")
+BASE = fm.System(contact="joined-base-wall")
+
+CONFIG = """\
+[system]
+contact = "joined-base-wall"
+[units]
+natural_frequency = "4.2 Hz"
+load = "12.5 N"
+stiffness = "3 N/mm"
+[grid]
+r = { start = "1 Hz", stop = "600 rpm", step = "0.5 Hz" }
+beta = { values = ["1 N", "2.5 N"] }
+"""
+
+
+@pytest.fixture
+def rig(tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text(CONFIG, encoding="utf-8")
+    return path
+
+
+def hertz(text):
+    return quantity(text, "f", "frequency").value
+
+
+def assert_same_numbers(one, other):
+    """The same variables with the same bits."""
+    assert set(one.variables) == set(other.variables)
+    for name in one.variables:
+        np.testing.assert_array_equal(one[name].values, other[name].values, strict=True)
+
+
+# The table
+
+
+def test_sixty_turns_a_minute_are_one_hertz_are_two_pi_radian_a_second():
+    assert hertz("60 rpm") == hertz("1 Hz") == hertz("0.001 kHz") == 1
+    assert float(hertz("6.28318530717958647692528676655900576839 rad/s")) == 1.0
+    assert float(hertz(f"{2 * math.pi!r} rad/s")) == math.nextafter(1.0, 0.0)  # 2 pi itself is rounded
+    assert float(hertz("60 rpm") / hertz("1 rad/s")) == 2 * math.pi
+
+
+def test_pi_has_fifty_digits():
+    with mpmath.workdps(60):
+        assert abs(mpmath.mpf(PI.numerator) / PI.denominator - mpmath.pi) < mpmath.mpf(10) ** -49
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "size"),
+    [
+        ("1 lbf", "force", "4.4482216152605"),  # 0.45359237 kg x 9.80665 m/s^2, NIST SP 811 B.8
+        ("1 in", "length", "0.0254"),
+        ("1 g", "acceleration", "9.80665"),
+        ("1 lb", "mass", "0.45359237"),
+        ("3 N/mm", "stiffness", "3000"),
+        ("3 kN/m", "stiffness", "3000"),
+        ("1 kN/mm", "stiffness", "1e6"),
+        ("12.5 kN", "force", "12500"),
+        ("12.5 mN", "force", "0.0125"),
+        ("250 um", "length", "0.00025"),
+        ("250 \u00b5m", "length", "0.00025"),
+        ("250 \u03bcm", "length", "0.00025"),
+        ("9.80665 m/s\u00b2", "acceleration", "9.80665"),
+        ("1e-3 N", "force", "0.001"),
+        ("+.5 N", "force", "0.5"),
+        ("5. N", "force", "5"),
+        ("12.5N", "force", "12.5"),
+    ],
+)
+def test_sizes(text, kind, size):
+    assert quantity(text, "it", kind).value == Fraction(size)
+
+
+def test_a_pound_force_an_inch():
+    assert float(quantity("1 lbf/in", "k", "stiffness").value) == pytest.approx(175.126835246476, rel=1e-14)
+
+
+KINDS = ("frequency", "force", "length", "mass", "stiffness", "acceleration")
+
+
+@pytest.mark.parametrize("unit", [unit for kind in KINDS for unit in units_of(kind)])
+@given(number=st.floats(1e-300, 1e300))
+def test_every_unit_there_and_back(unit, number):
+    found = quantity(f"{number!r} {unit}", "it", UNITS[unit].measures)
+    assert found.text == f"{number!r} {unit}"
+    assert float(found.value / UNITS[unit].size) == number
+
+
+@given(r=st.floats(1e-6, 1e6), one=st.decimals("0.001", 10000, places=3))
+def test_a_ratio_is_typed_as_a_frequency_with_the_fewest_digits(r, one):
+    one = Fraction(one)
+    found = float(typed(np.array([r]), one)[0])
+    assert abs(Fraction(found) / one - Fraction(r)) <= 2 * Fraction(math.ulp(r))
+
+
+@given(number=st.decimals("0.001", 10000, places=6), one=st.decimals("0.001", 10000, places=3))
+def test_what_was_typed_is_told_again(number, one):
+    r = float(Fraction(number) / Fraction(one))
+    assert typed(np.array([r]), Fraction(one))[0] == float(number)
+
+
+# Text that is no quantity
+
+
+WRONG = {
+    "12,5 N": "a decimal point, no comma",
+    "1.012,5 N": "a decimal point, no comma",
+    "12.5": "it has no unit",
+    "1e5": "it has no unit",
+    "12.5 n": "n is no unit that is known (did you mean N?)",
+    "12.5 kn": "kn is no unit that is known (did you mean kN?)",
+    "12.5 Newton": "Newton is no unit that is known",
+    "12.5 MN": "MN is no unit that is known (did you mean mN?)",
+    "12.5 Hz": "Hz is a unit of frequency",
+    "12.5 kg": "kg is a unit of mass",
+    "nan N": "it is not finite",
+    "inf N": "it is not finite",
+    "-inf": "it is not finite",
+    "1e400 N": "it is beyond all doubles",
+    "1e-400 N": "it is beyond all doubles",
+    "1e999999999999 N": "it is beyond all doubles",
+    "N": "one number, one space and one unit are due",
+    "": "one number, one space and one unit are due",
+    "12.5  N": "one number, one space and one unit are due",
+    " 12.5 N": "one number, one space and one unit are due",
+    "12.5 N ": "one number, one space and one unit are due",
+    "12.5 N\n": "one number, one space and one unit are due",
+    "12.5 N m": "one number, one space and one unit are due",
+    "1 000 N": "one number, one space and one unit are due",
+    "1_000 N": "one number, one space and one unit are due",
+    "1.2.3 N": "one number, one space and one unit are due",
+    "0x10 N": "x10 N",
+    "\uff11 N": "one number, one space and one unit are due",
+}
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_text_that_is_no_force(text):
+    with pytest.raises(InputError) as caught:
+        fm.Units(load=text)
+    message = str(caught.value)
+    assert "\n" not in message
+    assert message.startswith(
+        "load must be a number with a unit of force (N, mN, kN, lbf), such as '12.5 N'; got "
+    )
+    assert repr(text) in message
+    assert text == "0x10 N" or message.endswith(WRONG[text])
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({}, "natural_frequency, or another of load, base_amplitude, base_acceleration, "),
+        ({"load": 12.5}, "such as '12.5 N'; got 12.5: it has no unit"),
+        ({"load": True}, "such as '12.5 N'; got True"),
+        ({"load": ["1 N"]}, "such as '12.5 N'; got ['1 N']"),
+        ({"natural_frequency": "4.2 hz"}, "hz is no unit that is known (did you mean Hz?)"),
+        ({"natural_frequency": "4.2 1/s"}, "one number, one space and one unit are due"),
+        ({"load": "0 N"}, "load must be > 0; got '0 N'"),
+        ({"load": "-1 N"}, "load must be > 0; got '-1 N'"),
+        ({"load": "model"}, "load must be a number with a unit of force"),
+        ({"load": "1 N", "base_amplitude": "1 mm"}, "base_amplitude must be left out where load is given"),
+        ({"stiffness": "1 N/m", "mass": "1 kg"}, "mass must be left out where stiffness is given"),
+        ({"mass": "1 kg"}, "natural_frequency must be given with mass: k1 = m1 omega_1^2"),
+        ({"mass": "5 g", "natural_frequency": "1 Hz"}, "g is a unit of acceleration"),
+        ({"base_acceleration": "0.5 g"}, "acceleration_frequency must be given with base_acceleration"),
+        ({"acceleration_frequency": "5 Hz"}, "base_acceleration must be given with acceleration_frequency"),
+    ],
+)  # fmt: skip
+def test_units_that_make_no_sense(given, message):
+    with pytest.raises(InputError, match=re.escape(message)) as caught:
+        fm.Units(**given)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("units", "system", "message"),
+    [
+        ({"base_amplitude": "1 mm"}, {}, "units.base_amplitude must be left out unless the base moves"),
+        ({"natural_frequency": "model"}, {}, "units.natural_frequency must be a number with its unit for a"),
+        ({"stiffness": "model"}, {}, "units.stiffness must be a number with its unit for a chain"),
+        (
+            {"mass": "1 kg", "natural_frequency": "1 Hz"},
+            {"matrices": {"M": [[1.0]], "K": [[1.0]]}},
+            "units.mass must be left out with matrices",
+        ),
+    ],
+)
+def test_units_that_a_system_has_not(units, system, message):
+    with pytest.raises(InputError, match=re.escape(message)):
+        fm.boundaries(fm.System(**system), [1.0], units=fm.Units(**units))
+
+
+def test_units_do_not_go_with_an_axis_that_changes_them():
+    system = fm.System(matrices={"M": [[2.0]], "K": [[8.0]]}, frequency_scale=2.0)
+    with pytest.raises(InputError, match="units must be left out where stiffness_scale changes"):
+        fm.sweep(system, [1.0], [1.0], axes={"stiffness_scale": [1.0, 2.0]}, units=MIXED)
+
+
+# What follows from what is given
+
+
+@pytest.mark.parametrize(
+    ("units", "system", "force", "length"),
+    [
+        ({"load": "12.5 N", "stiffness": "3 N/mm"}, {}, 12.5, 12.5 / 3000),
+        ({"load": "12.5 N"}, {}, 12.5, None),
+        ({"stiffness": "3 N/mm"}, {}, None, None),
+        ({"base_amplitude": "0.5 mm"}, {"excitation": "base"}, None, 0.0005),
+        ({"base_amplitude": "0.5 mm", "stiffness": "3 N/mm"}, {"excitation": "base"}, 1.5, 0.0005),
+        ({"load": "1.5 N", "stiffness": "3 N/mm"}, {"contact": "joined-base-wall"}, 1.5, 0.0005),
+        (
+            {"base_acceleration": "0.5 g", "acceleration_frequency": "5 Hz", "stiffness": "3 N/mm"},
+            {"excitation": "base"},
+            3000 * 0.5 * 9.80665 / (10 * math.pi) ** 2,
+            0.5 * 9.80665 / (10 * math.pi) ** 2,
+        ),
+        (
+            {"load": "2 N", "mass": "2 kg", "natural_frequency": "3 Hz"},
+            {"mass_ratios": [1.0, 2.0], "stiffness_ratios": [1.0, 1.0]},
+            2.0,
+            2.0 / (2.0 * (6.0 * math.pi) ** 2),
+        ),
+        (
+            {"load": "2 N", "stiffness": "model"},
+            {"matrices": {"M": [[2.0]], "K": [[8.0]]}, "stiffness_scale": 8.0},
+            2.0,
+            0.25,
+        ),
+    ],
+)
+def test_force_and_length_that_follow(units, system, force, length):
+    scales = scales_of(fm.Units(**units), fm.System(**system))
+    assert scales.of("force") == (None if force is None else pytest.approx(force, rel=1e-15))
+    assert scales.of("length") == (None if length is None else pytest.approx(length, rel=1e-15))
+
+
+def test_the_frequency_of_a_model_in_si_units():
+    """k = 8 N/m, m = 2 kg: 2 rad/s; with a frequency_scale that is what r = 1 is."""
+    matrices = {"M": [[2.0]], "K": [[8.0]]}
+    units = fm.Units(natural_frequency="model")
+    for scale, expected in ((None, 1.0 / math.pi), (5.0, 2.5 / math.pi)):
+        system = fm.System(matrices=matrices, frequency_scale=scale)
+        found = scales_of(units, system).of("frequency")
+        assert found == pytest.approx(expected, rel=1e-15)
+        ds = fm.boundaries(system, ["1 Hz"], units=units)
+        assert ds.r.item() == pytest.approx(1.0 / expected, rel=1e-15)
+
+
+def test_an_equation_of_motion_in_newtons():
+    """One mass below resonance, no friction: k1 x_max = P/(1 - r^2) in SI units, and work in joules."""
+    units = fm.Units(natural_frequency="4 Hz", load="12 N", stiffness="3 N/mm")
+    ds = fm.curves(fm.System(), ["2 Hz"], ["0 N"], units=units, quantities=["amplitude", "energy"])
+    assert ds.amplitude_m.item() == pytest.approx(12 / 3000 / 0.75, rel=1e-12)
+    ds = fm.curves(fm.System(), ["2 Hz"], ["3 N"], units=units, quantities=["amplitude", "energy"])
+    work = 4 * 3 * ds.contact_amplitude_m.item()  # Coulomb: 4 F X a cycle
+    assert ds.work_friction_J.item() == pytest.approx(work, rel=1e-9)
+
+
+# Axes
+
+
+def test_ratios_are_exact(rig):
+    config = load_config(rig)
+    assert config.units == MIXED
+    assert config.r.tolist() == [float(Fraction(k, 2) / Fraction("4.2")) for k in range(2, 21)]
+    assert config.beta.tolist() == [0.08, 0.2]
+    assert load_config(rig, ["grid.r=4.2 Hz"]).r.tolist() == [1.0]
+    assert load_config(rig, ['grid.r=["2.1 Hz", "252 rpm"]']).r.tolist() == [0.5, 1.0]
+    assert load_config(rig, ["grid.r.step=30 rpm"]).r.tolist() == config.r.tolist()
+
+
+@pytest.mark.parametrize(
+    ("axis", "expected"),
+    [
+        ('{ start = "0 Hz", stop = "4.2 Hz", num = 5 }', [0.0, 0.25, 0.5, 0.75, 1.0]),
+        ('{ start = "2.1 Hz", stop = "2.1 Hz", num = 1 }', [0.5]),
+        (
+            '{ start = "2.1 Hz", stop = "4.2 Hz", step = "60 rpm" }',
+            [0.5, float(Fraction(31, 42)), float(Fraction(41, 42)), 1.0],
+        ),
+        ('{ values = ["2.1 Hz"] }', [0.5]),
+        ("[0.5, 1]", [0.5, 1.0]),
+        ("{ start = 0.5, stop = 1, num = 2 }", [0.5, 1.0]),
+    ],
+)
+def test_ways_to_give_an_axis(rig, axis, expected):
+    assert load_config(rig, [f"grid.r={axis}"]).r.tolist() == expected
+
+
+@given(
+    start=st.fractions(0, 100, max_denominator=1000),
+    step=st.fractions("0.001", 10, max_denominator=1000),
+    count=st.integers(1, 40),
+)
+def test_a_range_is_rounded_once(start, step, count):
+    last = start + (count - 1) * step
+    values = Ladder(start, step, last, count).values()
+    assert values.tolist() == [float(start + k * step) for k in range(count)]
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("grid.r.step=0.5", "grid.r.step must be a number with a unit of frequency"),
+        ("grid.r.start=1", "grid.r.start must be a number with a unit of frequency"),
+        ("grid.r.step=0.5 N", "grid.r.step must be a number with a unit of frequency"),
+        ("grid.r.step=0.5 hz", "(did you mean Hz?)"),
+        ("grid.r.step=0 Hz", "grid.r.step must be > 0; got '0 Hz'"),
+        ("grid.r.stop=0.5 Hz", "grid.r.stop must be >= start (1 Hz); got '0.5 Hz'"),
+        ("grid.r.step=1e-12 Hz", "grid.r.step must leave at most 1e+09 values; got '1e-12 Hz'"),
+        ("grid.r.num=2.5", "grid.r.num must be a whole number; got 2.5"),
+        ("grid.r.num=1", "grid.r.num must be >= 2 to hold both 1 Hz and 600 rpm; got 1"),
+        ('grid.r=["1 Hz", 2]', "grid.r[1] must be a number with a unit of frequency"),
+        ('grid.r=["2 Hz", "1 Hz"]', "grid.r must be increasing"),
+        ("grid.r=-1 Hz", "grid.r must be >= 0"),
+        ("grid.r=1e300 kHz", "grid.r must be <= 1e+08"),
+        ("grid.r.stop=1e308 kHz", "grid.r must be finite"),
+        ("grid.beta=3 Hz", "Hz is a unit of frequency"),
+        ("grid.beta=3,5 N", "a decimal point, no comma"),
+        ("grid.mu=1 N", "grid.mu must be a number, a list of numbers or a table; got '1 N'"),
+        ('units={ load = "12.5 N" }', "units.natural_frequency must be given for grid.r with units"),
+        (
+            'units={ natural_frequency = "4.2 Hz" }',
+            "units.load must be given, or units.base_amplitude and units.stiffness, for grid.beta.values",
+        ),
+        ("units.load=12,5 N", "units.load must be a number with a unit of force (N, mN, kN, lbf)"),
+        ("units.load=12.5", "got 12.5: it has no unit"),
+        ("units.lod=1 N", "unknown key units.lod (did you mean load?)"),
+        ("units=3", "units must be a table [units]; got 3"),
+    ],
+)
+def test_the_command_refuses_in_one_line(rig, capsys, override, message):
+    assert message in refusal(capsys, "map", rig, "--set", override)
+
+
+def test_a_grid_with_units_needs_them(rig, tmp_path):
+    path = tmp_path / "without.toml"
+    path.write_text(
+        CONFIG.replace("[units]", "[solver]").split("[solver]")[0] + "[grid]" + CONFIG.split("[grid]")[1]
+    )
+    with pytest.raises(InputError, match=r"^units\.natural_frequency must be given for grid\.r with units"):
+        load_config(path)
+    with pytest.raises(
+        InputError, match=r"^units\.natural_frequency must be given for r with units; got '4 Hz'"
+    ):
+        fm.boundaries(fm.System(), "4 Hz")
+
+
+# Datasets
+
+
+@pytest.fixture(scope="module")
+def mapped():
+    return fm.sweep(BASE, ["1.05 Hz", "4.2 Hz"], ["1 N", "2.5 N"], [1.0, 1.5], units=MIXED)
+
+
+def test_without_units_nothing_changes(mapped):
+    """The same bits in the same variables, and none beside them."""
+    plain = fm.sweep(BASE, [0.25, 1.0], [0.08, 0.2], [1.0, 1.5])
+    assert not [name for name in plain.variables if "units" in plain[name].attrs and plain[name].units != "1"]
+    assert not [name for name in plain.attrs if name.endswith(("_Hz", "_N", "_m"))]
+    own = mapped[list(plain.data_vars)].drop_vars(["frequency", "friction_force"])
+    assert_same_numbers(own, plain)
+
+
+def test_what_a_map_has_beside(mapped):
+    assert mapped.frequency.values.tolist() == [1.05, 4.2]
+    assert mapped.friction_force.values.tolist() == [1.0, 2.5]
+    assert (mapped.frequency.dims, mapped.frequency.units) == (("r",), "Hz")
+    assert (mapped.friction_force.dims, mapped.friction_force.units) == (("beta",), "N")
+    assert set(mapped.coords) == {"mu", "r", "beta", "frequency", "friction_force"}
+    length = 12.5 / 3000
+    for name, unit, one in (
+        ("contact_amplitude", "m", length), ("beta_lim", "N", 12.5), ("beta_stick", "N", 12.5)
+    ):  # fmt: skip
+        beside = mapped[f"{name}_{unit}"]
+        assert beside.units == unit
+        assert beside.dims == mapped[name].dims
+        np.testing.assert_allclose(beside, mapped[name] * one, rtol=1e-15)
+    assert mapped.attrs["frequency_scale_Hz"] == 4.2
+    assert mapped.attrs["length_scale_m"] == length
+
+
+def test_motion_in_time():
+    ds = fm.response(BASE, "2.1 Hz", "2.5 N", units=MIXED)
+    assert (ds.r.item(), ds.beta.item(), ds.frequency.item(), ds.friction_force.item()) == (
+        0.5,
+        0.2,
+        2.1,
+        2.5,
+    )
+    np.testing.assert_allclose(ds.time[-1] * 2.1, ds.period, rtol=1e-15)
+    inside = slice(1, -1)  # where the acceleration jumps a slope of differences is off by its step
+    slope = np.gradient(ds.x_m.values[0], ds.time.values)[inside]
+    np.testing.assert_allclose(ds.v_m_s.values[0, inside], slope, atol=5e-4 * float(ds.v_m_s.max()))
+    assert np.abs(ds.friction_N).max() == pytest.approx(2.5, rel=1e-15)
+    assert ds.event_tau_s.units == "s"
+    plain = fm.response(BASE, 0.5, 0.2)
+    assert_same_numbers(ds[list(plain.data_vars)].drop_vars(["frequency", "friction_force", "time"]), plain)
+
+
+def test_a_configuration_in_a_result_gives_it_again(mapped, tmp_path):
+    path = tmp_path / "again.toml"
+    path.write_text(mapped.attrs["config"], encoding="utf-8")
+    config = load_config(path)
+    assert config.units == MIXED
+    again = fm.sweep(
+        config.system, config.r, config.beta, config.mu, solver=config.solver, units=config.units
+    )
+    assert again.attrs["config"] == mapped.attrs["config"]
+    xr.testing.assert_identical(again.drop_attrs(), mapped.drop_attrs())
+
+
+def test_the_command_writes_what_the_function_returns(rig, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["map", str(rig), "--quiet", "-o", "map.nc"]) == 0
+    config = load_config(rig)
+    ds = fm.sweep(BASE, config.r, config.beta, units=MIXED)
+    stored = read(tmp_path / "map.nc")
+    assert_same_numbers(stored, ds)
+    assert tomllib.loads(stored.attrs["config"]) == tomllib.loads(CONFIG)
+    with xr.open_dataset(tmp_path / "map.nc") as opened:
+        assert {"frequency", "friction_force"} < set(opened.coords)
+        assert opened.frequency.values.tolist() == [k / 2 for k in range(2, 21)]
+    assert main(["info", "map.nc"]) == 0
+    assert "r = 1 is 4.2 Hz, beta = 1 is 12.5 N, an amplitude of 1 is 4.16667 mm" in capsys.readouterr().out
+    assert main(["export", "map.nc", "--quiet", "-o", "map.csv"]) == 0
+    head = (tmp_path / "map.csv").read_text().splitlines()[0].split(",")
+    assert {"frequency", "friction_force", "contact_amplitude_m", "beta_lim_N"} < set(head)
+
+
+def test_a_response_is_asked_for_in_hertz(rig, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    asked = ["response", str(rig), "--r", "2.1 Hz", "--beta", "2.5 N"]
+    assert main([*asked, "--quiet"]) == 0
+    ds = read(tmp_path / "rig-response.nc")
+    assert (ds.r.item(), ds.frequency.item(), ds.friction_force.item()) == (0.5, 2.1, 2.5)
+    for r, message in (
+        ("2,1 Hz", "no comma"),
+        ("2.1 N", "N is a unit of force"),
+        ("4 x", "x is no unit"),
+    ):
+        assert message in refusal(capsys, "response", rig, "--r", r, "--beta", "1", "-o", "no.nc")
+
+
+def test_a_store_has_the_axes_and_is_read_with_lengths(rig, tmp_path, capsys):
+    pytest.importorskip("zarr")
+    path = tmp_path / "map.zarr"
+    assert main(["map", str(rig), "--quiet", "-o", str(path)]) == 0
+    with xr.open_zarr(path, consolidated=False) as ds:
+        assert {"frequency", "friction_force"} < set(ds.coords)
+    config = load_config(rig)
+    whole = fm.sweep(BASE, config.r, config.beta, units=MIXED, outputs=(*config.solver.outputs, "status"))
+    assert_same_numbers(read(path)[list(whole.data_vars)], whole)
+    message = refusal(
+        capsys, "map", rig, "-o", path, "--set", "units.load=13 N", "--set", "grid.beta=[0.08, 0.2]"
+    )
+    assert "it differs in units.load: '12.5 N' there, '13 N' here" in message
+
+
+def test_shares_keep_the_axes():
+    axes = {"damping_ratios": [0.0, 0.1]}
+    ds = fm.shares(fm.sweep(BASE, ["2.1 Hz"], ["1 N"], axes=axes, units=MIXED), "damping_ratios")
+    assert (ds.frequency.values.tolist(), ds.friction_force.values.tolist()) == ([2.1], [1.0])
+
+
+# Quantities of other packages
+
+
+def test_quantities_of_pint():
+    pint = pytest.importorskip("pint")
+    ureg = pint.UnitRegistry()
+    for frequency, text in (
+        (60 * ureg.rpm, "60.0 rpm"),
+        (1 * ureg.Hz, "1.0 Hz"),
+        (2 * ureg.kHz, "2000.0 Hz"),
+        (3 * ureg.rad / ureg.s, "3.0 rad/s"),
+    ):
+        assert fm.Units(natural_frequency=frequency).natural_frequency == text
+    one = fm.Units(natural_frequency=1 * ureg.turn / ureg.s).value("natural_frequency")
+    assert abs(float(one) - 1.0) <= math.ulp(1.0)
+    units = fm.Units(natural_frequency=4.2 * ureg.Hz, load=12.5 * ureg.N, stiffness=3 * ureg.N / ureg.mm)
+    ds = fm.boundaries(fm.System(), np.array([2.1, 4.2]) * ureg.Hz, units=units)
+    assert ds.r.values.tolist() == [0.5, 1.0]
+    assert fm.boundaries(fm.System(), [2.1 * ureg.Hz, "252 rpm"], units=units).r.values.tolist() == [0.5, 1.0]
+    with pytest.raises(InputError, match="1/s is neither Hz nor rad/s"):
+        fm.Units(natural_frequency=1 / ureg.s)
+    with pytest.raises(InputError, match="newton is none of them"):
+        fm.Units(natural_frequency=1 * ureg.N)
+    with pytest.raises(InputError, match=r"units\.natural_frequency must be given for r with units"):
+        fm.boundaries(fm.System(), np.array([2.1]) * ureg.Hz)
+
+
+def test_quantities_of_astropy():
+    u = pytest.importorskip("astropy.units")
+    assert fm.Units(natural_frequency=2 * u.kHz).natural_frequency == "2000.0 Hz"
+    assert fm.Units(natural_frequency=3 * u.rad / u.s).natural_frequency == "3.0 rad/s"
+    assert float(
+        fm.Units(natural_frequency=60 * u.cycle / u.min).value("natural_frequency")
+    ) == pytest.approx(1.0, rel=3e-16)
+    assert fm.Units(load=1 * u.kN, stiffness=3 * u.N / u.mm).given == {
+        "load": "1000.0 N", "stiffness": "3000.0 N/m"
+    }  # fmt: skip
+    units = fm.Units(natural_frequency=4.2 * u.Hz)
+    assert fm.boundaries(fm.System(), [2.1, 4.2] * u.Hz, units=units).r.values.tolist() == [0.5, 1.0]
+    with pytest.raises(InputError, match=r"units\.natural_frequency must be given for r with units"):
+        fm.boundaries(fm.System(), [2.1, 4.2] * u.Hz)  # they would be taken for ratios
+    with pytest.raises(InputError, match="1/s is neither Hz nor rad/s"):
+        fm.Units(natural_frequency=1 / u.s)
+
+
+def test_quantities_of_unyt():
+    unyt = pytest.importorskip("unyt")
+    assert fm.Units(natural_frequency=unyt.unyt_quantity(60, "rpm")).natural_frequency == "60.0 rpm"
+    assert fm.Units(natural_frequency=unyt.unyt_quantity(2, "kHz")).natural_frequency == "2000.0 Hz"
+    assert fm.Units(natural_frequency=unyt.unyt_quantity(3, "rad/s")).natural_frequency == "3.0 rad/s"
+    assert fm.Units(base_amplitude=unyt.unyt_quantity(2, "inch")).value("base_amplitude") == Fraction(
+        "0.0508"
+    )
+
+
+def test_an_axis_in_hertz_of_another_dataset(mapped):
+    """Numbers that say what their unit is are not taken for ratios."""
+    assert fm.boundaries(BASE, mapped.frequency, units=MIXED).r.values.tolist() == mapped.r.values.tolist()
+    assert fm.boundaries(BASE, mapped.r, units=MIXED).r.values.tolist() == mapped.r.values.tolist()
+    with pytest.raises(InputError, match=r"units\.natural_frequency must be given for r with units"):
+        fm.boundaries(BASE, mapped.frequency)
+
+
+def test_no_units_are_no_scales():
+    assert scales_of(None, BASE) is NO_SCALES
+    with pytest.raises(InputError, match=r"units must be a frictionmap\.Units; got '4 Hz'"):
+        fm.boundaries(BASE, [1.0], units="4 Hz")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import frictionmap as fm
 from frictionmap.arguments import Command, described
-from frictionmap.datasets.labels import LABELS
+from frictionmap.datasets.labels import LABELS, Label
 from frictionmap.datasets.provenance import value_text
 from frictionmap.files.keys import KEYS, TABLES, Key, in_words
 from frictionmap.identify.configuration import KINDS
@@ -115,10 +115,15 @@ def variables() -> Iterator[str]:
     yield "# Variables of files\n"
     yield "All are dimensionless unless a unit is named. `frictionmap info` tells which a file holds.\n"
     rows = (
-        (f"`{name}`", ", ".join(label.dims), label.dtype.__name__, label.long_name)
+        (f"`{name}`", ", ".join(label.dims), label.dtype.__name__, _with_unit(label))
         for name, label in LABELS.items()
     )
     yield from _table(("variable", "dimensions", "type", "content"), rows)
+
+
+def _with_unit(label: Label) -> str:
+    """What a variable is, and its unit if it has one."""
+    return label.long_name if label.units == "1" else f"{label.long_name} [{label.units}]"
 
 
 # API

@@ -535,7 +535,14 @@ BESIDE = {
 
 #: What no other axis or variable may be called.
 NAMES = frozenset(
-    (*LABELS, *COORDINATES, MARKS, "row_block", *(dim for label in LABELS.values() for dim in label.dims))
+    (
+        *LABELS,
+        *COORDINATES,
+        *BESIDE,
+        MARKS,
+        "row_block",
+        *(dim for label in LABELS.values() for dim in label.dims),
+    )
 )
 
 

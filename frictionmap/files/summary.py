@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from ..datasets.labels import CELL, LABELS
+from ..datasets.labels import CELL, IN_SI, LABELS
 from ..datasets.physical import in_words
 from ..datasets.schema import TEXTS, kind
 from .estimates import describe_estimates, source_of_data
@@ -119,7 +119,7 @@ def describe_file(ds: xr.Dataset) -> str:
         return "\n".join([*lines, *_estimates(ds)])
     lines += axis_lines(ds)
     listed = [name for name in ds.data_vars if _is_list(ds[name])]
-    lines += ["variables", *(_named(ds[name]) for name in ds.data_vars if name not in listed)]
+    lines += _variables(ds, [str(name) for name in ds.data_vars if name not in listed])
     if listed:
         few = [name for name in listed if ds[name].dims in ((), ("dof",))]
         others = [name for name in listed if name not in few]
@@ -148,7 +148,14 @@ def axis_lines(ds: xr.Dataset) -> list[str]:
 def variable_lines(ds: xr.Dataset) -> list[str]:
     """Every variable with its dimensions, further ones as three dots, and meaning."""
     further = further_axes(ds)
-    return ["variables", *(_named(ds[name], further) for name in ds.data_vars)]
+    return _variables(ds, [str(name) for name in ds.data_vars], further)
+
+
+def _variables(ds: xr.Dataset, names: Sequence[str], further: Sequence[str] = ()) -> list[str]:
+    """Variables with their meanings; of those in SI units only the names."""
+    lines = ["variables", *(_named(ds[name], further) for name in names if name not in IN_SI)]
+    beside = [name for name in names if name in IN_SI]
+    return [*lines, *(_entry("in SI units", ", ".join(beside)) if beside else [])]
 
 
 def _estimates(ds: xr.Dataset) -> Iterator[str]:

@@ -12,8 +12,10 @@ import xarray as xr
 from .. import checks
 from ..errors import InputError
 from ..files.config import read_tree, unknown_key
+from ..units.quantities import quantity
+from ..units.table import UNITS
 from .columns import MISSING
-from .rig import Rig
+from .rig import KNOWN_UNITS, Rig
 from .rig_decay import FREE_DECAY
 from .rig_forced import FORCED
 from .rig_record import RECORD
@@ -53,7 +55,7 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     title = tree.get("title", path.stem)
     if not isinstance(title, str):
         raise InputError(f"title must be text; got {checks.one_line(title)}")
-    values = {key: checks.number(value, f"known.{key}") for key, value in known.items()}
+    values = {key: _known_number(value, key) for key, value in known.items()}
     free = _checked_free(fit.get("free"), values, kind.parameters)
     source = path.parent / file
     return Rig(
@@ -146,6 +148,15 @@ def _checked_free(
         if name not in free and name not in known:
             raise InputError(f"fit.free must name {name}, or known.{name} give its value; got {free}")
     return tuple(free)
+
+
+def _known_number(value: object, key: str) -> float:
+    """A number of [known]; one with its unit in that of the key."""
+    unit = KNOWN_UNITS.get(key, "")
+    if unit and isinstance(value, str):
+        found = quantity(value, f"known.{key}", UNITS[unit].measures)
+        value = float(found.value / UNITS[unit].size)
+    return checks.number(value, f"known.{key}")
 
 
 def _names(columns: object) -> dict[str, str]:

@@ -29,6 +29,13 @@ class Rig(NamedTuple):
     files: tuple[Path, ...]
 
 
+#: Units of numbers of [known] that have one; as text they may be in another of its kind.
+KNOWN_UNITS = {
+    "f_n": "Hz", "f_k1m1": "Hz", "x_F": "mm", "X0": "mm", "centre": "mm", "offset_x": "mm", "base_mm": "mm",
+    "stiffness": "N/m", "t0": "s",
+}  # fmt: skip
+
+
 class Kind(NamedTuple):
     """What may be said of a kind of data, and the function that fits them."""
 

@@ -6,10 +6,12 @@ Which keys a kind has, its `Kind` says; what they mean stands here.
 from typing import Any
 
 from ..files.json_schema import DIALECT, described, keyed_table
-from ..files.keys import KEYS, Key, number, several, table, whole, word
+from ..files.keys import KEYS, Key, either, number, several, table, whole, with_unit, word
+from ..units.table import UNITS, units_of
 from .columns import MISSING
 from .configuration import KINDS
 from .record_motion import CONTACTS, DAMPING_REFERENCES
+from .rig import KNOWN_UNITS
 from .robust import LOSSES
 from .sweep import COSTS
 from .sweep_data import MOST_MASSES
@@ -98,6 +100,16 @@ _KNOWN |= {f"stiffness_ratio_{k}": (f"stiffness ratio k_{k}/k_1", "1.0") for k i
 _KNOWN |= {f"zeta_{k}": (f"damping ratio of mode {k}", "0.01") for k in range(1, MOST_MASSES + 1)}
 
 
+def _known(name: str) -> Key:
+    """A key of [known]; with the unit that its meaning ends in, or with any other of that kind as text."""
+    meaning, example = _KNOWN[name]
+    if name not in KNOWN_UNITS:
+        return Key(name, meaning, number(), example=example)
+    kind = UNITS[KNOWN_UNITS[name]].measures
+    words = f"a number, or text with {', '.join(units_of(kind))}"
+    return Key(name, meaning, either(number(), with_unit(kind)), example=example, words=words)
+
+
 def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
     """The keys of each table, for a kind of data."""
     of = KINDS[kind]
@@ -107,7 +119,7 @@ def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
         "": KEYS[""],
         "data": tuple(key for key in _DATA if key.name in data),
         "system": _SYSTEMS.get(kind, ()),
-        "known": tuple(Key(name, _KNOWN[name][0], number(), example=_KNOWN[name][1]) for name in known),
+        "known": tuple(_known(name) for name in known),
         "fit": tuple(key for key in _FIT if key.name in (*of.fit, *(("free",) if of.parameters else ()))),
     }
     return {name: keys for name, keys in tables.items() if keys}

@@ -30,6 +30,7 @@ EXAMPLES = {
     "mass": "2 kg",
     "stiffness": "3 N/mm",
     "acceleration": "0.5 g",
+    "time": "0.5 s",
 }
 
 #: The units that other packages are asked to convert into; all of them know these.

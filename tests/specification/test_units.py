@@ -17,6 +17,7 @@ import frictionmap as fm
 from frictionmap import InputError, load_config
 from frictionmap.cli import main
 from frictionmap.files.reading import read
+from frictionmap.identify.configuration import load_rig
 from frictionmap.units.axes import Ladder, typed
 from frictionmap.units.quantities import quantity
 from frictionmap.units.scales import NO_SCALES, scales_of
@@ -558,3 +559,90 @@ def test_no_units_are_no_scales():
     assert scales_of(None, BASE) is NO_SCALES
     with pytest.raises(InputError, match=r"units must be a frictionmap\.Units; got '4 Hz'"):
         fm.boundaries(BASE, [1.0], units="4 Hz")
+
+
+# Measured data
+
+
+@pytest.mark.parametrize(
+    ("f_n", "expected"), [("3.0", 3.0), ('"180 rpm"', 3.0), ('"3 Hz"', 3.0), ('"0.003 kHz"', 3.0)]
+)
+def test_known_numbers_of_a_rig_may_have_units(tmp_path, f_n, expected):
+    path = tmp_path / "rig.toml"
+    head = '[data]\nkind = "free-decay"\nfile = "decay.csv"\n[known]\n'
+    path.write_text(head + f'f_n = {f_n}\nx_F = "0.1 in"\nstiffness = "1.2 N/mm"\n')
+    assert load_rig(path).known == {"f_n": expected, "x_F": 2.54, "stiffness": 1200.0}
+    for wrong, message in (('f_n = "3 mm"', "known.f_n must be a number with a unit of frequency"),
+                           ('zeta = "3 Hz"', "known.zeta must be a number; got '3 Hz'")):  # fmt: skip
+        path.write_text(head + wrong)
+        with pytest.raises(InputError, match=re.escape(message)):
+            load_rig(path)
+
+
+# Pictures
+
+
+def second_axes(ax):
+    """Names and limits of the second axes of a panel, drawn."""
+    ax.figure.draw_without_rendering()
+    found = {}
+    for child in ax.child_axes:
+        one = child.xaxis if child.get_xlabel() else child.yaxis
+        found[one.get_label_text()] = one.get_view_interval()
+    return found
+
+
+def assert_beside(found, expected):
+    assert set(found) == set(expected)
+    for name, limits in expected.items():
+        np.testing.assert_allclose(found[name], limits, rtol=1e-12)
+
+
+def test_maps_have_axes_in_hertz_and_newtons(mapped):
+    for draw in (fm.plot_regimes, fm.plot_boundaries):
+        for ax in draw(mapped):
+            (low, high), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+            assert_beside(
+                second_axes(ax),
+                {
+                    "frequency [Hz]": (4.2 * low, 4.2 * high),
+                    "friction force [N]": (12.5 * bottom, 12.5 * top),
+                },
+            )
+    plain = fm.sweep(BASE, [0.25, 1.0], [0.08, 0.2])
+    assert not [child for ax in fm.plot_regimes(plain) for child in ax.child_axes]
+
+
+def test_logarithmic_axes_have_logarithmic_ones_beside():
+    r = np.geomspace(0.1, 10.0, 9)
+    (ax,) = fm.plot_boundaries(fm.boundaries(BASE, r, units=MIXED))
+    assert ax.get_xscale() == "log"
+    assert_beside(
+        {name: limits for name, limits in second_axes(ax).items() if "Hz" in name},
+        {"frequency [Hz]": (0.42, 42.0)},
+    )
+
+
+def test_curves_and_motions_have_axes_in_millimetres_and_seconds():
+    ds = fm.curves(BASE, ["1 Hz", "2 Hz"], ["1 N"], units=MIXED, quantities=["amplitude", "energy"])
+    amplitude = fm.plot_curves(ds)[0]
+    top = amplitude.get_ylim()[1]
+    assert_beside(
+        second_axes(amplitude), {"frequency [Hz]": (1.0, 2.0), "amplitude [mm]": (0.0, top * 12.5 / 3.0)}
+    )
+    works = {name for ax in fm.plot_curves(ds, "energy") for name in second_axes(ax)}
+    assert works == {
+        "frequency [Hz]",
+        "work of the load [mJ]",
+        "work of friction [mJ]",
+        "sliding distance [mm]",
+    }
+    ds = fm.response(BASE, "2.1 Hz", "2.5 N", units=MIXED, points=50)
+    load, contact, *_, friction = fm.plot_response(ds)
+    assert_beside(second_axes(load), {"time [ms]": (0.0, 1000.0 / 2.1)})
+    assert "r = 0.5 (2.1 Hz), β = 0.2 (2.5 N)" in load.figure.get_suptitle()
+    assert list(second_axes(contact)) == ["$z$ [mm]"]
+    assert_beside(second_axes(friction), {"friction [N]": 12.5 * np.array(friction.get_ylim())})
+    portrait, loop, _ = fm.plot_orbit(ds)
+    assert set(second_axes(portrait)) == {"displacement [mm]"}
+    assert set(second_axes(loop)) == {"motion in the contact [mm]", "friction [N]"}

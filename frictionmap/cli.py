@@ -93,7 +93,7 @@ def _cost(options: Options, config: "Config") -> str:
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
     counts = {name: axis.size for name, axis in axes.items()}
     counts["points"] = 1 if config.variations is None else config.variations.count
-    memory = memory_of_map(counts, config.system.n, tuple(config.solver.outputs))
+    memory = memory_of_map(counts, config.system.n, tuple(config.solver.outputs), config.units)
     seconds = counts["points"] * seconds_of_map(
         config.system, **axes, solver=config.solver, threads=options.threads
     )

@@ -66,7 +66,7 @@ class Config:
 
 #: Called with the numbers of values of mu, r and beta and of points along further axes, the system and the
 #: settings, before the axes are made.
-Room = Callable[[Mapping[str, int], System, Solver, CurveSettings], None]
+Room = Callable[[Mapping[str, int], System, Solver, CurveSettings, Units | None], None]
 
 
 def _fits(counts: Mapping[str, int], *_: object) -> None:
@@ -302,7 +302,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     grid = _grid(tree, scales_of(units, system, variations))
     counts = {key: _count(grid[key], f"grid.{key}") for key in ("mu", "r", "beta")}
     points = 1 if variations is None else variations.count
-    (room or _fits)({**counts, "points": points}, system, solver, curves)
+    (room or _fits)({**counts, "points": points}, system, solver, curves, units)
     axes = {
         key: checks.axis(_values(grid[key], f"grid.{key}"), f"grid.{key}", **bounds)
         for key, bounds in AXES.items()

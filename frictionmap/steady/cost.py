@@ -14,6 +14,7 @@ from .. import checks
 from ..errors import InputError
 from ..model.settings import CurveSettings, Solver
 from ..model.system import System
+from ..units.scales import Units
 
 if TYPE_CHECKING:
     from .quantity_data import Asked
@@ -41,24 +42,36 @@ _SAMPLE = 0.5
 _FEWEST, _MOST = 8, 256
 
 
-def memory_of_map(counts: Mapping[str, int], masses: int, outputs: tuple[str, ...]) -> float:
+def memory_of_map(
+    counts: Mapping[str, int], masses: int, outputs: tuple[str, ...], units: Units | None = None
+) -> float:
     """Bytes that a map with so many values of mu, r and beta takes at its peak."""
     from ..datasets.labels import CELL_VARIABLES
     from .quantity_data import asked_for
 
     of_cycle = [name for name in outputs if CELL_VARIABLES[name].needs == "cycle"]
-    return _memory({**counts, "dof": masses}, {*outputs, "status"}, asked_for(of_cycle))
+    return _memory({**counts, "dof": masses}, _also_in_si({*outputs, "status"}, units), asked_for(of_cycle))
 
 
-def memory_of_curves(counts: Mapping[str, int], masses: int, settings: CurveSettings) -> float:
+def memory_of_curves(
+    counts: Mapping[str, int], masses: int, settings: CurveSettings, units: Units | None = None
+) -> float:
     """Bytes that response curves at so many values of mu, r and beta take at their peak."""
     from .curves import cycle_variables, plain_outputs
     from .quantity_data import asked_for
 
     sizes = {**counts, "dof": masses, "harmonic": settings.harmonics + 1, "part": 2}
     names = cycle_variables(settings)
-    variables = {*plain_outputs(settings), *names}
+    variables = _also_in_si({*plain_outputs(settings), *names}, units)
     return _memory(sizes, variables, asked_for(names, settings.harmonics), "curves")
+
+
+def _also_in_si(names: Collection[str], units: Units | None) -> set[str]:
+    """The names of variables, and of the same in SI units, at most."""
+    from ..datasets.labels import MEASURE_OF, in_si
+
+    beside = [in_si(name, MEASURE_OF[name]) for name in names if name in MEASURE_OF]
+    return {*names, *(beside if units is not None else ())}
 
 
 def _memory(counts: Mapping[str, int], names: Collection[str], asked: "Asked", what: str = "") -> float:
@@ -102,7 +115,7 @@ def _of_machine() -> float:
 
 
 def refuse_map_without_memory(
-    counts: Mapping[str, int], system: System, solver: Solver, _: CurveSettings
+    counts: Mapping[str, int], system: System, solver: Solver, _: CurveSettings, units: Units | None
 ) -> None:
     """Refuse a map that this machine has no memory for, before any is taken.
 
@@ -111,14 +124,14 @@ def refuse_map_without_memory(
     InputError
         With what is needed and what there is.
     """
-    _refuse(counts, memory_of_map(counts, system.n, tuple(solver.outputs)), "outputs")
+    _refuse(counts, memory_of_map(counts, system.n, tuple(solver.outputs), units), "outputs")
 
 
 def refuse_curves_without_memory(
-    counts: Mapping[str, int], system: System, _: Solver, curves: CurveSettings
+    counts: Mapping[str, int], system: System, _: Solver, curves: CurveSettings, units: Units | None
 ) -> None:
     """The same of response curves."""
-    _refuse(counts, memory_of_curves(counts, system.n, curves), "quantities or harmonics")
+    _refuse(counts, memory_of_curves(counts, system.n, curves, units), "quantities or harmonics")
 
 
 def _refuse(counts: Mapping[str, int], needed: float, fewer: str) -> None:

@@ -40,7 +40,7 @@ def abaqus_coordinates(path, matrix, part=np.triu):
 
 
 def harwell_boeing(path, matrix, symmetric=True):
-    """Fixed columns, three entries of 25 characters a line."""
+    """Fixed columns, three entries of 23 characters a line, negative ones touch."""
     half = np.tril(matrix) if symmetric else matrix
     columns, rows = np.nonzero(half.T)
     pointers = np.concatenate(([1], 1 + np.cumsum([np.count_nonzero(column) for column in half.T])))
@@ -51,7 +51,7 @@ def harwell_boeing(path, matrix, symmetric=True):
 
     parts = [
         cards(pointers, "{:8d}", 10), cards(rows + 1, "{:8d}", 10),
-        cards(half[rows, columns], "{:25.16E}", 3),
+        cards(half[rows, columns], "{:23.16E}", 3),
     ]  # fmt: skip
     counts = [len(part) for part in parts]
     n, kind = len(matrix), "RSA" if symmetric else "RUA"
@@ -59,7 +59,7 @@ def harwell_boeing(path, matrix, symmetric=True):
         f"{'a structure':<72}{'KEY':<8}",
         "".join(f"{count:14d}" for count in (sum(counts), *counts, 0)),
         f"{kind:<14}" + "".join(f"{count:14d}" for count in (n, n, rows.size, 0)),
-        f"{'(10I8)':<16}{'(10I8)':<16}{'(3E25.16)':<20}",
+        f"{'(10I8)':<16}{'(10I8)':<16}{'(3E23.16)':<20}",
     ]
     path.write_text("\n".join([*header, *(line for part in parts for line in part)]) + "\n")
 

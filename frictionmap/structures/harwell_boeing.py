@@ -77,17 +77,24 @@ def _card(path: Path, line: str, word: str) -> _Card:
 
 
 def _numbers(path: Path, lines: list[str], begin: int, count: int, card: _Card, size: int) -> np.ndarray:
-    """So many numbers from so many lines."""
+    """So many numbers from so many lines; by blanks, or by the format's width where numbers touch.
+
+    Some programs keep the blanks and not the width.
+    """
+    part = lines[begin : begin + count]
+    fields = [line.split() for line in part]
+    if sum(map(len, fields)) != size:
+        fields = [
+            [line[k : k + card.width] for k in range(0, len(line.rstrip()), card.width)] for line in part
+        ]
     found: list[float] = []
-    for index in range(begin, begin + count):
-        line = lines[index].rstrip() if index < len(lines) else ""
-        fields = [line[k : k + card.width] for k in range(0, len(line), card.width)]
+    for index, words in enumerate(fields):
         try:
-            found += [int(field) if card.kind == "I" else as_number(field) for field in fields]
+            found += [int(word) if card.kind == "I" else as_number(word) for word in words]
         except ValueError:
-            refuse(path, index + 1, f"{card.most} numbers of {card.width} characters", line)
-        if not line or len(fields) > card.most:
-            refuse(path, index + 1, f"{card.most} numbers of {card.width} characters", line)
+            words = []
+        if not words or len(words) > card.most:
+            refuse(path, begin + index + 1, f"{card.most} numbers of {card.width} characters", part[index])
     if len(found) != size:
         raise InputError(
             f"file {path} must have {size} numbers from line {begin + 1} on; it has {len(found)}"

@@ -89,6 +89,9 @@ FORMS = {
     "Harwell-Boeing, RUA": lambda folder: each(
         folder, lambda path, matrix: written.harwell_boeing(path, matrix, False), ".hb"
     ),
+    "Harwell-Boeing of scipy": lambda folder: each(
+        folder, lambda path, matrix: scipy.io.hb_write(path, scipy.sparse.csc_array(matrix)), ".rua"
+    ),
     "OP4": lambda folder: op4(folder, binary=True),
     "OP4, sparse": lambda folder: op4(folder, binary=True, sparse="bigmat"),
     "OP4, text": lambda folder: op4(folder, binary=False),

@@ -37,6 +37,8 @@ class Accuracy(NamedTuple):
 
     def words(self) -> str:
         """In words."""
+        if not np.isfinite(self.frequencies):
+            return "natural frequencies of the whole structure's missing"
         return (
             f"natural frequencies within {self.frequencies:.1e} of the whole structure's, compliances within "
             f"{self.compliances:.1e}"
@@ -56,16 +58,16 @@ class Whole:
         static = factor(stiffness).solve(forces)
         self.units = np.sqrt(np.einsum("ij,ij->j", forces, static))
 
-    def frequencies(self, held: bool, most: float, guess: int) -> np.ndarray:
-        """Natural frequencies up to `most`, increasing; `guess`: how many they may be."""
+    def frequencies(self, held: bool, most: float, guess: int, limit: int) -> np.ndarray:
+        """Natural frequencies up to `most`, increasing, no more than `limit`; `guess`: how many may be."""
         mass, stiffness = self._pairs[int(held)]
-        n = mass.shape[0]
-        count = min(guess + _FURTHER, n)
+        limit = min(limit, mass.shape[0])
+        count = min(guess + _FURTHER, limit)
         while True:
             found, _ = slowest(mass, stiffness, count)
-            if count == n or found[-1] > most:
+            if count == limit or found[-1] > most:
                 return found[found <= most]
-            count = min(2 * count, n)
+            count = min(2 * count, limit)
 
     def compliances(self, omega: float) -> np.ndarray:
         """Works of the forces on each other's motions, (k, k)."""
@@ -95,6 +97,7 @@ class Comparison:
         self._whole = whole
         self._range = low, high
         self._frequencies: tuple[np.ndarray, ...] = ()
+        self._limit = 0  # no more of them were looked for
         self._samples: list[tuple[float, np.ndarray]] = []
 
     def accuracy(self, reduced: Reduced) -> Accuracy:
@@ -104,9 +107,11 @@ class Comparison:
         forces = reduced.motions.T @ self._whole.forces
         own = _own_frequencies(mass, stiffness, contact)
         high = (1.0 + _NEAR) * self._range[1]  # a resonance just beyond the range is felt in it
-        if not self._frequencies:
+        if not self._frequencies or max(map(len, self._frequencies)) >= self._limit:
+            self._limit = mass.shape[0] + 1  # one too many is enough to tell that some are missing
             self._frequencies = tuple(
-                self._whole.frequencies(bool(k), high, int((one <= high).sum())) for k, one in enumerate(own)
+                self._whole.frequencies(bool(k), high, int((one <= high).sum()), self._limit)
+                for k, one in enumerate(own)
             )
             self._samples = [(at, self._whole.compliances(at)) for at in self._places()]
 

@@ -176,6 +176,10 @@ def test_too_few_modes_are_refused_and_enough_are_told(tmp_path, capsys):
     with pytest.raises(fm.InputError, match=r"reduce.modes must leave errors"):
         fm.response(system, 6.0, 0.1)
     assert fm.System(matrices=CHAIN, reduce={"modes": int(found[1])}, **SYSTEM).accuracy(np.array([0.5, 6.0]))
+    with pytest.raises(
+        fm.InputError, match=r"got 0, with natural frequencies of the whole .* missing; 38 would"
+    ):
+        fm.System(matrices=CHAIN, reduce={"modes": 0}, **SYSTEM).accuracy(np.array([0.5, 50.0]))
     coarse = fm.System(matrices=CHAIN, reduce={"modes": 3, "allow": 1.0}, frequency_scale=1.0, **SYSTEM)
     assert coarse.accuracy(np.array([0.0, 0.02])).worst < coarse.accuracy(np.array([0.0, 0.1])).worst
 

@@ -39,6 +39,7 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "download_all_examples": False,
     "show_memory": False,
+    "capture_repr": (),  # the axes that a picture is in are no result
     "write_computation_times": False,  # its pages fetch scripts from elsewhere
     "min_reported_time": 1,
     "image_scrapers": ("matplotlib",),

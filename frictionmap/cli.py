@@ -136,6 +136,7 @@ def _compute(options: Options) -> None:
     if options.command == "map" and _is_store(options):
         _store(options)
         return
+    _refuse_store(options)
     config = load_config(options.config, options.overrides, None if room and options.yes else room)
     ending = "" if options.command == "map" else f"-{options.command}"
     if config.variations is not None and options.command != "map":
@@ -155,6 +156,11 @@ def _is_store(options: Options) -> bool:
     if options.threads and (options.workers or options.scheduler):
         raise InputError("--threads must be left out with --workers and --scheduler: a worker has one thread")
     return stored
+
+
+def _refuse_store(options: Options) -> None:
+    if options.output is not None and options.output.suffix == ".zarr":
+        raise InputError(f"-o must be a file for {options.command}: stores are of maps; got {options.output}")
 
 
 def _store(options: Options) -> None:
@@ -228,6 +234,7 @@ def _identify(options: Options) -> None:
     from .files.storage import write_netcdf
     from .identify.configuration import identify, load_rig
 
+    _refuse_store(options)
     rig = load_rig(options.config, options.overrides)
     path = options.output or Path(f"{rig.name}-identify.nc")
     with claimed(path, options.overwrite, rig.files) as output:

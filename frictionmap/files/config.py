@@ -92,9 +92,18 @@ def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | No
 
 
 def config_of(text: str, system: Mapping[str, object]) -> Config:
-    """A configuration that is at hand as text; `system` takes the place of keys of its table."""
+    """A configuration that is at hand as text; `system` takes the place of keys of its table.
+
+    Raises
+    ------
+    InputError
+        It is none, or its matrices are in a file: one of that name may lie here, and be another.
+    """
     tree = parse(text)
     tree["system"] = {**tree.get("system", {}), **system}
+    in_files = _matrix_files(_system_table(tree, Path()))
+    if in_files:
+        raise InputError(f"system.matrices must be at hand; they are in a file, {in_files[0]}")
     return _check(tree, text, Path("config"), lambda *_: None)
 
 

@@ -70,7 +70,7 @@ class Number:
         return values
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # arrays have no one answer
 class Axis:
     """A dimension along which one number changes, or several together."""
 

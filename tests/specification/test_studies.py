@@ -328,3 +328,22 @@ def test_a_study_survives_the_file(samples, tmp_path):
     write(samples, tmp_path / "s.nc")
     with xr.open_dataset(tmp_path / "s.nc") as opened:
         xr.testing.assert_identical(fm.shares(opened, "sample"), fm.shares(samples, "sample"))
+
+
+def test_a_matrices_file_of_that_name_is_not_taken_for_the_one_of_a_study(tmp_path, monkeypatch):
+    """The system of a point is left out where the file does not hold it."""
+    monkeypatch.chdir(tmp_path)
+    np.savez("frame.npz", M=np.eye(2), K=[[2.0, -1.0], [-1.0, 1.0]])
+    text = CONFIG.replace("mass_ratios = [1.0, 1.0]\nstiffness_ratios = [1.0, 1.0]", 'matrices = "frame.npz"')
+    (tmp_path / "frame.toml").write_text(text[: text.index("sample =")])
+    assert main(["map", "frame.toml", "--quiet"]) == 0
+    np.savez("frame.npz", M=np.eye(2), K=[[9.0, -1.0], [-1.0, 1.0]])
+    assert read(tmp_path / "frame.nc", at={"damping_ratios": 0.05}).attrs["system"] == ""
+
+
+@pytest.mark.parametrize("command", ["boundaries", "curves"])
+def test_stores_are_of_maps(tmp_path, capsys, command):
+    (tmp_path / "study.toml").write_text(CONFIG[: CONFIG.index("[axes]")])
+    assert main([command, str(tmp_path / "study.toml"), "-o", str(tmp_path / "out.zarr")]) == 2
+    assert f"-o must be a file for {command}: stores are of maps" in capsys.readouterr().err
+    assert not (tmp_path / "out.zarr").exists()

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..structures.accuracy import largest_error
+from ..structures.accuracy import Ranges, largest_error
 from .modes import ModalModel
 
 #: Frequencies, evenly spaced, beside the resonances, and as many of these at most.
@@ -21,14 +21,12 @@ class Decoupling:
     """A damping matrix whose diagonal in the modes is taken for it."""
 
     damping: np.ndarray  # C1 (n, n), the whole of it
-    _found: dict[tuple[float, float], float] = field(default_factory=dict)
+    _found: Ranges[float] = field(default_factory=Ranges)
 
     def error(self, modes: ModalModel, r: np.ndarray) -> float:
         """Largest relative change of compliances of contact and load in a range of r, resonances included."""
         ends = float(r[0]), float(r[-1])
-        if ends not in self._found:
-            self._found[ends] = self._error(modes, *ends)
-        return self._found[ends]
+        return self._found.told(*ends, lambda: self._error(modes, *ends))
 
     def _error(self, modes: ModalModel, low: float, high: float) -> float:
         load = modes.relative_load(np.ones(1))[0].real

@@ -5,12 +5,14 @@ between all kept degrees of freedom, away from resonances, each in the unit of i
 that of all together, over the larger of those free and held.
 """
 
-from collections.abc import Iterable
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from .craig_bampton import Reduced, factor, slowest
+
+T = TypeVar("T")
 
 #: Compliances are compared at so many frequencies at most, none nearer to a resonance than this share of it:
 #: there the error is that of the resonance's frequency.
@@ -22,6 +24,19 @@ _EVEN = 9
 
 #: Frequencies of the whole structure that are asked for beyond those that the reduced one has in the range.
 _FURTHER = 3
+
+
+class Ranges(dict[tuple[float, float], T]):
+    """What was found of ranges of frequency."""
+
+    def told(self, low: float, high: float, find: Callable[[], T]) -> T:
+        """What is found of a range; of a part of one that is known, at once, what was found of that."""
+        known = [at for at in self if at[0] <= low and high <= at[1]]
+        if (low, high) in self or not known:
+            known = [(low, high)]
+        if known[0] not in self:
+            self[low, high] = find()
+        return self[known[0]]
 
 
 class Accuracy(NamedTuple):

@@ -149,12 +149,8 @@ def fixed_interface(structure: Structure, kept: Sequence[int], modes: int) -> Fi
     """
     mass, stiffness = structure.arrays["M"], structure.arrays["K"]
     diagonal = np.asarray(mass.diagonal())
-    if (diagonal < 0.0).any():
-        where = structure.dofs.numbers[int(np.argmax(diagonal < 0.0))]
-        raise InputError(
-            f"matrices: M must be positive definite; it is negative at degree of freedom "
-            f"{structure.dofs.word(where)}"
-        )
+    _refuse_where(structure, "M", "has a negative number", diagonal < 0.0)
+    _refuse_where(structure, "K", "has no positive number", np.asarray(stiffness.diagonal()) <= 0.0)
     rows = np.array(sorted(kept))
     others = np.setdiff1d(np.arange(structure.n), rows)
     most = int(np.count_nonzero(diagonal[others]))
@@ -167,6 +163,16 @@ def fixed_interface(structure: Structure, kept: Sequence[int], modes: int) -> Fi
     _, shapes = slowest(mass[others][:, others], inner, modes)
     shapes = np.where(abs(shapes) > _ROUNDING * abs(shapes).max(axis=0, initial=0.0), shapes, 0.0)
     return FixedInterface(rows, others, follow, shapes)
+
+
+def _refuse_where(structure: Structure, name: str, what: str, wrong: np.ndarray) -> None:
+    """Refuse a matrix by the first degree of freedom whose entry on the diagonal is wrong."""
+    if wrong.any():
+        where = structure.dofs.word(structure.dofs.numbers[int(np.argmax(wrong))])
+        word = {"M": "mass", "K": "stiffness"}[name]
+        raise InputError(
+            f"matrices: {name} must be positive definite; degree of freedom {where} {what} as {word}"
+        )
 
 
 class Reduced(NamedTuple):

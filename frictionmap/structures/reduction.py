@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from .accuracy import Accuracy, Comparison, Whole
+from .accuracy import Accuracy, Comparison, Ranges, Whole
 from .craig_bampton import FixedInterface, Reduce, Reduced, fixed_interface, project
 from .structure import Structure
 
@@ -25,7 +25,7 @@ class Reduction:
     contact: np.ndarray  # c (n,) of the whole one
     base: bool  # whether its base moves
     reduced: Reduced
-    _found: dict[tuple[float, float], Accuracy] = field(default_factory=dict)
+    _found: Ranges[Accuracy] = field(default_factory=Ranges)
 
     def like(self, asked: Reduce, kept: tuple[int, ...], contact: np.ndarray, base: bool) -> bool:
         """Whether this is the reduction that is asked for."""
@@ -35,18 +35,22 @@ class Reduction:
     def checked(self, low: float, high: float) -> Accuracy:
         """Its accuracy from one angular frequency to another, in the units of sqrt(K/M).
 
+        Within a range that was asked for before it is that of this range: a motion at one of its
+        frequencies is told at once.
+
         Raises
         ------
         InputError
             It is worse than allowed; how many modes would do is told.
         """
-        if (low, high) not in self._found:
-            comparison = Comparison(self._whole(), low, high)
-            accuracy = comparison.accuracy(self.reduced)
-            if not accuracy.worst <= self.asked.allow:
-                self._refuse(comparison, accuracy)
-            self._found[low, high] = accuracy
-        return self._found[low, high]
+        return self._found.told(low, high, lambda: self._accuracy(low, high))
+
+    def _accuracy(self, low: float, high: float) -> Accuracy:
+        comparison = Comparison(self._whole(), low, high)
+        accuracy = comparison.accuracy(self.reduced)
+        if not accuracy.worst <= self.asked.allow:
+            self._refuse(comparison, accuracy)
+        return accuracy
 
     def _whole(self) -> Whole:
         arrays = _sparse(self.structure)

@@ -10,12 +10,17 @@ import xarray as xr
 from .. import regimes
 from ..errors import NoSteadyState
 from ..model.settings import Output, Start
+from ..pictures.classes import of_cells
+from ..pictures.palette import UNRESOLVED
 from ..steady.response import response
 from ..steady.sweep import sweep
 from .views import View
 
 #: Samples per excitation period: a curve a few hundred pixels wide is smooth with them.
 _SAMPLES = 400
+
+#: Masses whose numbers are listed one by one.
+_LISTED = 12
 
 #: Relative difference of two amplitudes from which on two starts are said to end differently.
 _OTHER = 1e-6
@@ -63,12 +68,15 @@ def motion(view: View, r: float, beta: float) -> Packet:
     try:
         ds = response(view.system, r, beta, view.mu, solver=_plain(view), points=_SAMPLES)
     except NoSteadyState as error:
-        return {"r": r, "beta": beta, "none": str(error)}, {}
+        return {"r": r, "beta": beta, "class": UNRESOLVED, "none": str(error)}, {}
     regime = int(ds["regime"])
     entries, numbers = _listed(ds)
     header = {
         "r": r,
         "beta": beta,
+        "class": int(
+            of_cells(*(np.atleast_1d(ds[name].values) for name in ("regime", "stops_per_cycle")))[0]
+        ),
         "regime": next(code.name for code in regimes.REGIMES if code.value == regime),
         "told": in_words(ds),
         "entries": [entry._asdict() for entry in entries],
@@ -91,7 +99,7 @@ def _listed(ds: xr.Dataset) -> tuple[list[Entry], list[float]]:
     for entry in _ENTRIES:
         if stuck and entry.name in _MOVING:
             continue
-        values = np.atleast_1d(ds[entry.name].values)
+        values = np.atleast_1d(ds[entry.name].values)[:_LISTED]
         for k, value in enumerate(values.tolist(), start=1):
             own = entry.label
             if ds[entry.name].dims == ("dof",):
@@ -131,9 +139,12 @@ def in_words(ds: xr.Dataset) -> list[str]:
     if beta >= stick:
         why = f"β = {beta:.4g} reaches β_stick = {stick:.4g}: friction can hold the contact for good."
     elif beta < lim:
-        why = f"β = {beta:.4g} lies below β_lim = {lim:.4g}: friction is too weak to stop the contact."
+        why = f"β = {beta:.4g} lies below β_lim = {lim:.4g}: the contact can slide without stopping."
     else:
-        why = f"β = {beta:.4g} lies between β_lim = {lim:.4g} and β_stick = {stick:.4g}."
+        why = (
+            f"β = {beta:.4g} lies between β_lim = {lim:.4g} and β_stick = {stick:.4g}: friction stops the "
+            "contact, but cannot hold it."
+        )
     told.append(why)
     status = int(ds["status"])
     if status != regimes.RESOLVED:

@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..model.settings import Start
 from .cut import Along
 from .scene import Scene, checked_range
-from .views import Piece, Quantity, View, quantities
+from .views import MOST_PIXELS, Piece, Quantity, View, quantities
 
 #: Keys of a query; a page of many masses has some tens.
 _MOST_KEYS = 100
@@ -111,7 +111,7 @@ def _range(given: Mapping[str, str], name: str, default: tuple[float, float]) ->
 
 
 #: Keys of a piece of a map, of a cell, and of a cut.
-PIECE = ("columns", "rows", "first", "last", "quantity", "page")
+PIECE = ("columns", "rows", "first", "last", "lines", "quantity", "page")
 CELL = ("at", "page")
 CUT = ("along", "place", "count", "page")
 
@@ -125,6 +125,11 @@ def piece_of(query: Query) -> tuple[Quantity, Piece]:
     known = quantities(query.view.system)
     key = checks.choice(given.get("quantity", known[0].key), "quantity", tuple(one.key for one in known))
     return next(one for one in known if one.key == key), piece
+
+
+def lines_of(query: Query) -> int:
+    """Points of boundaries that are wanted beside a piece of a map; 0: none."""
+    return checks.whole(_whole(query.given, "lines", 0), "lines", least=0, most=MOST_PIXELS)
 
 
 def cell_of(query: Query) -> tuple[float, float]:

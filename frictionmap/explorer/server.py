@@ -157,7 +157,7 @@ class Page:
         query = queries.read_query(self.scene, text, queries.PIECE)
         quantity, piece = queries.piece_of(query)
         with self._enter("map", query, gone) as job:
-            header, arrays = piece_of_map(query.view, quantity, piece, job)
+            header, arrays = piece_of_map(query.view, quantity, piece, job, queries.lines_of(query))
         return _packet(({**header, "compiled": job.kernels > 0}, arrays))
 
     def _motion(self, text: str, gone: Callable[[], bool]) -> Answer:

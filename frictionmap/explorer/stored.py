@@ -20,10 +20,11 @@ from .queries import read_query
 from .scene import Scene, Slider
 from .server import page_files
 from .told import told
-from .views import Piece, Quantity, View, piece_of_map, quantities
+from .views import Piece, Quantity, View, classes_of, quantities, solve_piece, values_of
 
-#: Cells of every map.
-_COLUMNS, _ROWS = 360, 270
+#: Cells of every map, each way: of one mass, and of structures, whose cells take some hundred times as long
+#: where mu is above 1.
+_CELLS = {False: (360, 270), True: (180, 135)}
 
 #: Places of each slider: two sliders are moved together, further ones by themselves.
 _PLACES, _TOGETHER = 7, 2
@@ -106,21 +107,17 @@ def _stepped(values: np.ndarray, log: bool) -> dict[str, Any]:
 
 def _map(view: View, offered: tuple[Quantity, ...]) -> dict[str, Any]:
     """The map of a view, with all quantities."""
-    piece = Piece(_COLUMNS, _ROWS, 0, _COLUMNS)
-    kept: dict[str, Any] = {"values": {}}
-    for quantity in offered:
-        header, arrays = piece_of_map(view, quantity, piece, _Unwatched())
-        if not quantity.output:
-            limits = np.concatenate((arrays["beta_lim"], arrays["beta_stick"]))
-            kept |= {
-                "classes": _deflated(arrays["classes"]),
-                "stops": header["stops"],
-                "limits": _deflated(limits),
-            }
-            continue
-        with np.errstate(divide="ignore", invalid="ignore"):
-            kept["values"][quantity.key] = _stepped(arrays["values"].astype(float), quantity.scale == "log")
-    return kept
+    columns, rows = _CELLS[view.system.n > 1]
+    ds = solve_piece(view, offered, Piece(columns, rows, 0, columns), _Unwatched())
+    header, arrays = classes_of(ds)
+    limits = np.concatenate((arrays["beta_lim"], arrays["beta_stick"]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        values = {
+            quantity.key: _stepped(values_of(ds, quantity).astype(float), quantity.scale == "log")
+            for quantity in offered
+            if quantity.output
+        }
+    return {**header, "classes": _deflated(arrays["classes"]), "limits": _deflated(limits), "values": values}
 
 
 def _name(kept: _Kept, point: tuple[float, ...]) -> str:
@@ -140,9 +137,10 @@ def _content(scene: Scene, progress: Progress) -> dict[str, Any]:
         query = read_query(scene, text)
         maps[_name(kept, point)] = _map(query.view, offered)
         progress(done + 1, len(kept.points))
+    columns, rows = _CELLS[scene.system.n > 1]
     own = tuple(slider.value for slider in scene.sliders)
     return {
-        "scene": told(scene, first), "r": scene.r, "beta": scene.beta, "columns": _COLUMNS, "rows": _ROWS,
+        "scene": told(scene, first), "r": scene.r, "beta": scene.beta, "columns": columns, "rows": rows,
         "values": kept.values, "first": _name(kept, own), "maps": maps,
     }  # fmt: skip
 

@@ -1,5 +1,6 @@
 """One view: a system as changed, ranges of r and beta, mu; its map, piece by piece."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, Protocol, cast
 
@@ -13,6 +14,7 @@ from ..model.system import System
 from ..pictures.classes import of_cells, stops_range
 from ..pictures.palette import BROKEN, MORE
 from ..steady.maps import regime_map
+from ..theory.boundaries import find_curves
 
 #: Pixels of a picture each way, and together: those of the largest screens.
 MOST_PIXELS, MOST_CELLS = 8192, 2**25
@@ -109,35 +111,52 @@ class Follower(Protocol):
     def progress(self, done: float, total: float) -> None: ...
 
 
-def solve_piece(view: View, quantity: Quantity, piece: Piece, follower: Follower) -> xr.Dataset:
-    """The cells of a piece as `sweep` gives them: regime, stops per cycle, and the quantity."""
+def solve_piece(view: View, wanted: Sequence[Quantity], piece: Piece, follower: Follower) -> xr.Dataset:
+    """The cells of a piece as `sweep` gives them: regime, stops per cycle, and the quantities."""
     piece.check()
-    wanted = dict.fromkeys(("regime", "stops_per_cycle", *filter(None, (quantity.output,))))
-    solver = replace(view.solver, outputs=cast(tuple[Output, ...], tuple(wanted)))
+    asked = (quantity.output for quantity in wanted if quantity.output)
+    outputs = tuple(dict.fromkeys(("regime", "stops_per_cycle", *asked)))
+    solver = replace(view.solver, outputs=cast(tuple[Output, ...], outputs))
     axes = view.axes(piece.columns, piece.rows)
     axes["r"] = axes["r"][piece.first : piece.last]
     return regime_map(view.system, axes, solver, None, follower.progress, follower.watch)
 
 
-def piece_of_map(
-    view: View, quantity: Quantity, piece: Piece, follower: Follower
-) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """A piece of a picture for the page: what to know of it, and its arrays.
+def classes_of(ds: xr.Dataset) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """Classes of the cells of a piece and the boundaries over it, for the page.
 
-    `classes` (columns, rows) are indices into the palette, `values` (columns, rows) float32 those of the
-    quantity; `beta_lim` and `beta_stick` (columns,).
+    `stops` are the least and the most stops of classes whose colours do not tell them.  Arrays: `classes`
+    (columns, rows), indices into the palette; `beta_lim` and `beta_stick` (columns,).
     """
-    ds = solve_piece(view, quantity, piece, follower)
     stops = ds["stops_per_cycle"].values[0]
     classes = of_cells(ds["regime"].values[0], stops)
-    arrays = {"classes": classes}
-    if quantity.output:
-        values = ds[quantity.output].values[0]
-        arrays["values"] = (values[..., quantity.mass - 1] if quantity.mass else values).astype(np.float32)
-    arrays |= {name: ds[name].values[0] for name in ("beta_lim", "beta_stick")}
+    limits = {name: ds[name].values[0] for name in ("beta_lim", "beta_stick")}
     ranges = {index: stops_range(classes, stops, index) for index in (MORE, BROKEN)}
     counted = {str(index): ends for index, ends in ranges.items() if ends[0] <= ends[1]}
-    return {"first": piece.first, "last": piece.last, "stops": counted}, arrays
+    return {"stops": counted}, {"classes": classes, **limits}
+
+
+def values_of(ds: xr.Dataset, quantity: Quantity) -> np.ndarray:
+    """A quantity of the cells of a piece, float32 (columns, rows)."""
+    values: np.ndarray = ds[quantity.output].values[0]
+    return (values[..., quantity.mass - 1] if quantity.mass else values).astype(np.float32)
+
+
+def piece_of_map(
+    view: View, quantity: Quantity, piece: Piece, follower: Follower, lines: int = 0
+) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """A piece of a picture for the page: `classes_of`, and `values` of the quantity if it has some.
+
+    lines : points of the boundaries over the whole view, finer than coarse cells: `line_lim`, `line_stick`
+    """
+    ds = solve_piece(view, [quantity], piece, follower)
+    header, arrays = classes_of(ds)
+    if quantity.output:
+        arrays["values"] = values_of(ds, quantity)
+    if lines:
+        curves = find_curves(view.system, middles(view.r, lines, "lines"), np.array([view.mu]))
+        arrays |= {"line_lim": curves.beta_lim[0], "line_stick": curves.beta_stick[0]}
+    return {"first": piece.first, "last": piece.last, **header}, arrays
 
 
 def marks(system: System) -> dict[str, list[float]]:

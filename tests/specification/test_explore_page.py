@@ -434,7 +434,7 @@ def test_a_view_can_be_taken_along(browser, one, tmp_path):
 def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
     scene = scene_from(tmp_path, ONE)
     with pytest.MonkeyPatch.context() as patch:
-        for name, value in {"_COLUMNS": 40, "_ROWS": 30, "_PLACES": 3}.items():
+        for name, value in {"_CELLS": {False: (40, 30)}, "_PLACES": 3}.items():
             patch.setattr(stored, name, value)
         (tmp_path / "page.html").write_bytes(stored.write_page(scene, lambda *_: None))
     url = (tmp_path / "page.html").as_uri()

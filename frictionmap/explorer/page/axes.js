@@ -3,8 +3,14 @@
 /** Steps that people count in. */
 const STEPS = [1, 2, 5, 10];
 
-/** Evenly spaced round numbers within a range, about `count` of them. */
+/** Evenly spaced round numbers within a range, about `count` of them and two at least. */
 export function ticks([low, high], count) {
+  let found = spaced([low, high], count);
+  for (let more = 1.5 * count; found.length < 2 && more < 20 * count; more *= 1.5) found = spaced([low, high], more);
+  return found;
+}
+
+function spaced([low, high], count) {
   const rough = (high - low) / Math.max(1, count);
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = power * STEPS.find((factor) => factor * power >= rough * 0.999);
@@ -45,9 +51,18 @@ export function short(value, digits = 4) {
   return `${factor}10${raised}`.replace(/^-/, "−");
 }
 
-/** The colour that a style sheet gives a name. */
+/** Colours of the style sheet that were asked for: to ask it takes as long as to draw a line. */
+const known = new Map();
+
+/** The colour that the style sheet gives a name. */
 export function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  if (!known.has(name)) known.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  return known.get(name);
+}
+
+/** The desktop has other colours now. */
+export function forgetColours() {
+  known.clear();
 }
 
 /** Masses that are drawn in one chart; more only cover each other. */

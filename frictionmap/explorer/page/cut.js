@@ -7,8 +7,8 @@ import { row } from "./packet.js";
 
 const SHOWN = {
   amplitude: "amplitude",
-  work: "energy that friction takes",
-  phase: "lag of the contact's first harmonic",
+  work: "energy of friction",
+  phase: "lag of z, first harmonic",
 };
 
 /** Share of values that an axis of amplitudes holds: a resonance goes beyond it. */
@@ -19,7 +19,7 @@ export class CutPanel {
   constructor(panel, scene, onClose) {
     [this.panel, this.scene] = [panel, scene];
     panel.innerHTML = `<div><span class="what"></span><label>show <select aria-label="What the curve shows"></select></label>
-      <span class="key"></span><button type="button" title="Close the curve" aria-label="Close the curve">×</button></div>
+      <button type="button" title="Close the curve" aria-label="Close the curve">×</button><span class="key"></span></div>
       <canvas role="img" aria-label="response curve"></canvas>`;
     this.select = panel.querySelector("select");
     for (const [key, label] of Object.entries(SHOWN)) this.select.add(new Option(label, key));

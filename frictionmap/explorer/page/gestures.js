@@ -10,6 +10,9 @@ const WHEEL = 1.0015;
 /** Share of the map that an arrow moves it by. */
 const SHIFT = 0.12;
 
+/** What has keys of its own. */
+const TYPED = "input, select, button, summary, dialog, textarea";
+
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /**
@@ -73,7 +76,7 @@ export function listen(map, does) {
     does.zoom([event.altKey ? 1 : factor, event.shiftKey ? 1 : factor], map.at(x, y));
   }, { passive: false });
 
-  stage.addEventListener("keydown", (event) => keyed(event, does));
+  document.addEventListener("keydown", (event) => keyed(event, stage, does));
 }
 
 /** One pointer: move the map, or draw a rectangle over it. */
@@ -100,9 +103,10 @@ function pinch(map, pointers, moved, now, does) {
   does.pan([(before.x - now.x) / 2 / width, (now.y - before.y) / 2 / height]);
 }
 
-function keyed(event, does) {
-  if (event.ctrlKey || event.metaKey || event.target.closest("button")) return;
-  const arrow = ARROWS[event.key];
+/** A key; arrows are the page's own, to scroll it, unless the map is pointed at or chosen. */
+function keyed(event, stage, does) {
+  if (event.ctrlKey || event.metaKey || event.target.closest(TYPED)) return;
+  const arrow = stage.matches(":hover, :focus") && ARROWS[event.key];
   const middle = null;
   if (arrow && event.shiftKey) does.step(...arrow);
   else if (arrow) does.pan(arrow.map((way) => way * SHIFT));

@@ -42,7 +42,7 @@ export function legend(element, picture, scene, view, marks) {
   }
   entries.push(...classesOf(picture, scene.classes).map(({ colour, text }) => make("span", {}, swatch(colour), text)));
   for (const [name, places] of Object.entries(marks)) {
-    if (places.length) entries.push(make("span", {}, name.includes("held") ? "▽" : "▼", name));
+    if (places.length) entries.push(make("span", {}, make("span", {}, name.includes("held") ? "▽" : "▼"), name));
   }
   element.replaceChildren(...entries);
 }

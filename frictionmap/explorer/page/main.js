@@ -1,7 +1,7 @@
 // The page: what it shows is one view; whatever changes that, here it is followed up.
 
 import { firstView, hashOf, queryOf, tidy, viewOf } from "./address.js";
-import { colour, short } from "./axes.js";
+import { forgetColours, short } from "./axes.js";
 import { classTable } from "./colours.js";
 import { Controls } from "./controls.js";
 import { CutPanel } from "./cut.js";
@@ -18,6 +18,9 @@ const part = (id) => document.getElementById(id);
 
 /** Milliseconds after which what waits is said to wait, and between two looks at it. */
 const PATIENCE = 350;
+
+/** Milliseconds from which on a picture is slow. */
+const SLOW = 1000;
 
 /** Milliseconds that a view stands still before what is less urgent follows: address, words, other starts. */
 const STILL = 180;
@@ -74,6 +77,9 @@ class Page {
     this.rest = later((cell) => this.askOthers(cell), STILL);
     this.pending = new Map();
     this.told = part("told");
+    for (const button of document.querySelectorAll("[data-save]")) {
+      button.hidden = !source.live && !["link", "picture"].includes(button.dataset.save);
+    }
     part("title").textContent = document.title = scene.title;
     part("system").textContent = scene.system;
     document.title += " – frictionmap";
@@ -98,7 +104,7 @@ class Page {
     document.addEventListener("click", (event) => part("save").contains(event.target) || part("save").removeAttribute("open"));
     window.addEventListener("hashchange", () => this.#onAddress());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#redraw());
-    new ResizeObserver(() => this.update()).observe(this.map.stage);
+    new ResizeObserver(() => this.#onSize()).observe(this.map.stage);
     setInterval(() => this.#lookAtWaiting(), PATIENCE);
     this.update(true);
   }
@@ -119,14 +125,21 @@ class Page {
     map.marks = this.marks;
     this.controls.set(view);
     map.draw();
-    const { columns, rows } = map.size;
+    const { columns, rows } = (this.size = map.size);
     const kind = scene.quantities.find((quantity) => quantity.key === view.quantity).scale;
     this.map.stage.dataset.state = "refining";
+    this.asked = performance.now();
     this.refiner.ask({ view, scene, columns, rows, table: this.table, kind, scale: null });
     if (motion && view.cell && this.source.live) this.askMotion(view.cell, true);
     if (view.cut) this.askCut();
     else this.cut.hide();
     this.settle();
+  }
+
+  #onSize() {
+    const { columns, rows } = this.map.size;
+    if (columns !== this.size?.columns || rows !== this.size?.rows) this.update();
+    else this.map.draw();
   }
 
   home() {
@@ -171,6 +184,7 @@ class Page {
   }
 
   #redraw() {
+    forgetColours();
     this.map.draw();
     this.motion.draw();
     this.cut.draw();
@@ -246,6 +260,8 @@ class Page {
       } else if (this.compiled) {
         this.compiled = false;
         this.#tell("");
+      } else if (this.told.hidden && performance.now() - this.asked > SLOW) {
+        this.#tell("computing");
       }
     } catch {
       // the request that waits will say so
@@ -284,19 +300,10 @@ class Page {
     this.#pick(map.cellAt(map.x(from[0] + 5 * across * size.r), map.y(from[1] + 5 * up * size.beta)));
   }
 
-  /** The class of a cell as it is coloured on the map. */
-  #lookAt([r, beta]) {
-    for (const found of [...this.map.pictures].reverse()) {
-      const cell = found.cellAt([r, beta]);
-      if (cell) return this.scene.classes[cell.class];
-    }
-    return { colour: colour("rule") };
-  }
-
   async #fetchMotion(cell, kept) {
     const motion = await this.#waiting(this.source.motion(this.view, this.scene, cell));
     if (kept !== Boolean(this.view.cell)) return;
-    this.motion.show(motion, this.#lookAt(cell), kept);
+    this.motion.show(motion, this.scene.classes[motion.class], kept);
     requestAnimationFrame(() => part("motion").dispatchEvent(new CustomEvent("painted", { detail: { r: motion.r, beta: motion.beta } })));
     this.rest(cell);
   }

@@ -128,10 +128,10 @@ export class RegimeMap {
     this.#drawPointers(pen);
   }
 
-  /** The boundaries of the finest whole picture that covers the view. */
+  /** The boundaries as fine as there are any. */
   drawBoundaries(pen) {
-    const whole = this.pictures.filter((picture) => picture.whole);
-    const picture = whole.at(-1) ?? this.picture;
+    const known = this.pictures.filter((picture) => picture.whole || picture.lines);
+    const picture = known.at(-1) ?? this.picture;
     if (!picture) return;
     const { area } = this;
     pen.save();
@@ -139,7 +139,7 @@ export class RegimeMap {
     pen.rect(area.x, area.y, area.width, area.height);
     pen.clip();
     for (const [name, { dash }] of Object.entries(LINES)) {
-      const path = this.#path(picture, picture.limits[name]);
+      const path = this.#path(picture, (picture.lines ?? picture.limits)[name]);
       for (const [width, ink, dashes] of [[3.6, "rgb(255 255 255 / 0.75)", []], [1.5, "#000", dash]]) {
         [pen.lineWidth, pen.strokeStyle] = [width, ink];
         pen.setLineDash(dashes);
@@ -151,10 +151,10 @@ export class RegimeMap {
 
   #path(picture, values) {
     const path = new Path2D();
-    const size = (picture.r[1] - picture.r[0]) / picture.columns;
+    const size = (picture.r[1] - picture.r[0]) / values.length;
     const [low, high] = [this.area.y - 50, this.area.y + this.area.height + 50];
     let drawn = false;
-    for (let k = 0; k < picture.filled; k += 1) {
+    for (let k = 0; k < values.length; k += 1) {
       if (Number.isNaN(values[k])) {
         drawn = false;
         continue;

@@ -101,9 +101,11 @@ export class MotionPanel {
   /** Draw again, in the colours and the size that the page has now. */
   draw() {
     if (!this.motion?.tau) return;
-    this.#drawTime();
+    const names = this.#drawTime();
     this.#drawLoops();
-    this.#drawSpectrum();
+    const harmonics = this.#drawSpectrum();
+    this.#part(".names").replaceChildren(...names); // last: what changes the page has it laid out anew
+    this.#part(".spectrum-names").replaceChildren(...harmonics);
   }
 
   /** Times in excitation periods, and stops as bands behind them. */
@@ -138,6 +140,7 @@ export class MotionPanel {
     return { x: xs, y: ys, colour: colour("second"), dash: [5, 3], width: 1.5 };
   }
 
+  /** Displacements and force; the names of their lines. */
   #drawTime() {
     const { motion, other } = this;
     const { time, bands } = this.#time();
@@ -159,7 +162,7 @@ export class MotionPanel {
     names.push(keyLine(ink, "z, contact", masses === 1 ? "dotted" : "solid"), keyLine(colour("warm"), "friction"));
     if (bands.length) names.push(keyLine(colour("stop"), "stuck", "solid", 9));
     if (other) names.push(keyLine(colour("second"), other.start === "moving" ? "from moving" : "from rest", "dashed"));
-    this.#part(".names").replaceChildren(...names);
+    return names;
   }
 
   #drawLoops() {
@@ -173,6 +176,7 @@ export class MotionPanel {
     loop(".loop", "friction", colour("warm"));
   }
 
+  /** Moduli of harmonics; the names of the bars. */
   #drawSpectrum() {
     const { z_harmonics: z, friction_harmonics: friction } = this.motion;
     const [one, other] = [colour("accent"), colour("warm")];
@@ -183,7 +187,7 @@ export class MotionPanel {
       x: [-0.6, z.length - 0.4], y: [top / 10 ** DECADES, top], log: true, bars: bars.filter((bar) => bar.y > 0),
       xTicks: Array.from(z, (_, n) => ({ value: n, text: String(n) })), xName: "harmonic of the excitation; 0 is the mean",
     });
-    this.#part(".spectrum-names").replaceChildren(make("b", {}, "spectrum"), keyLine(one, "z"), keyLine(other, "friction"));
+    return [make("b", {}, "spectrum"), keyLine(one, "z"), keyLine(other, "friction")];
   }
 }
 

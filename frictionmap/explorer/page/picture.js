@@ -20,6 +20,7 @@ export class Picture {
     this.classes = new Uint8Array(columns * rows);
     this.values = kind === "classes" ? null : new Float32Array(columns * rows);
     this.limits = { beta_lim: new Float64Array(columns).fill(NaN), beta_stick: new Float64Array(columns).fill(NaN) };
+    this.lines = null; // the boundaries, finer than the cells
     this.filled = 0; // columns from the left that are there
     this.stops = {};
   }

@@ -13,6 +13,10 @@ const PATIENCE = 400;
 /** Pixels that a cell of the first picture has at most, each way. */
 const COARSEST = 32;
 
+/** Milliseconds that a cell is taken to cost before one was seen: of one mass, and of structures where proofs
+ *  decide most of them (mu = 1), or none. */
+const GUESS = { one: 0.001, proved: 0.02, unproved: 0.5 };
+
 /** Factor by which a guess of the cost of a cell may grow at once. */
 const GROWTH = 6;
 
@@ -37,7 +41,8 @@ export class Refiner {
 
   /**
    * Ask for pictures of a view; what was asked for before is outdated.
-   * @param {object} asked  {view, scene, columns, rows, table, kind, scale}
+   * @param {object} asked  {view, scene, columns, rows, table, kind, scale}; boundaries as fine as the screen, once
+   *   they are there, are its `lines`
    */
   ask(asked) {
     this.#waiting = asked;
@@ -76,7 +81,8 @@ export class Refiner {
   }
 
   #cost(asked) {
-    return this.#costs.get(this.#kind(asked)) ?? (asked.scene.masses > 1 ? 0.02 : 0.001);
+    const guess = asked.scene.masses === 1 ? GUESS.one : GUESS[asked.view.mu > 1 ? "unproved" : "proved"];
+    return this.#costs.get(this.#kind(asked)) ?? guess;
   }
 
   /** Pixels of a cell in the pictures to come. */
@@ -122,7 +128,11 @@ export class Refiner {
       const width = Math.max(1, Math.floor((first ? 2 * PIECE : PIECE) / (this.#cost(asked) * rows)));
       const last = Math.min(columns, columns - at - width < width / 2 ? columns : at + width);
       const sent = performance.now();
-      const packet = await this.source.map(asked.view, asked.scene, { columns, rows, first: at, last }, run.control.signal);
+      const piece = { columns, rows, first: at, last };
+      if (columns < asked.columns && !asked.lines) piece.lines = asked.columns;
+      const packet = await this.source.map(asked.view, asked.scene, piece, run.control.signal);
+      if (packet.line_lim) asked.lines = { beta_lim: packet.line_lim, beta_stick: packet.line_stick };
+      picture.lines = asked.lines;
       picture.put(packet, at);
       if (!packet.compiled) this.#learn(asked, performance.now() - sent, (last - at) * rows);
       asked.scale = picture.scale;

@@ -45,6 +45,7 @@ rig_forced       forced responses from the file of a rig
 rig_record       records of steady motion from the file of a rig
 rig_sweep        sweeps from the file of a rig
 configuration    configurations of rigs, for the command `identify`
+rig_keys         their keys in words and as JSON Schema
 ===============  =======================================================================
 """
 

@@ -35,7 +35,7 @@ OVERHEAD = {False: 4096, True: 512}
 SIZES = {False: (4096, 8192, 16384), True: (256,)}
 IN_MEMORY = {False: 4096, True: 512}  # the largest that is made in memory, too
 SAMPLES = {False: 1000, True: 8}
-SMALL_MAP = 60
+SMALL_MAP = {False: 60, True: 15}
 KILLS = {False: 100, True: 1}
 RUNS = {False: 5, True: 1}
 
@@ -158,19 +158,19 @@ def size(folder: Path, quick: bool) -> list[dict]:
     return rows
 
 
-def _write_study(folder: Path, samples: int) -> None:
+def _write_study(folder: Path, samples: int, quick: bool) -> None:
     chance = np.random.default_rng(2021)
     names = [f"{key}[{i}]" for key in ("mass_ratios", "stiffness_ratios") for i in range(2, 6)]
     rows = 1.0 + 0.05 * chance.standard_normal((samples, len(names)))
     lines = [",".join(names), *(",".join(map(repr, row)) for row in rows.tolist())]
     (folder / "variants.csv").write_text("\n".join(lines) + "\n")
-    (folder / "study.toml").write_text(STUDY.format(n=SMALL_MAP))
+    (folder / "study.toml").write_text(STUDY.format(n=SMALL_MAP[quick]))
 
 
 def workers(folder: Path, quick: bool) -> dict:
     """The study on one and two processes; on none of its samples but one it is their start."""
     samples = SAMPLES[quick] // 4
-    _write_study(folder, samples)
+    _write_study(folder, samples, quick)
     seconds = {}
     for count in (1, 2)[int(quick) :]:
         out = folder / f"workers{count}.zarr"
@@ -179,7 +179,7 @@ def workers(folder: Path, quick: bool) -> dict:
     same = all(_same(folder / "alone.zarr", folder / f"workers{count}.zarr") for count in seconds)
     if quick:  # no more than: does it work?
         return {"samples": samples, "seconds": seconds, "same bytes": same}
-    _write_study(folder, 1)
+    _write_study(folder, 1, quick)
     start = _whole(folder, "map", "study.toml", "-o", folder / "start.zarr", "--workers", 2)["seconds"]
     speed_up = (seconds[1] - start) / (seconds[2] - start)
     print(f"two workers {speed_up:.2f} times one (start of {start:.1f} s left out), same bytes: {same}")
@@ -188,18 +188,16 @@ def workers(folder: Path, quick: bool) -> dict:
 
 def study(folder: Path, quick: bool) -> dict:
     """Random variations of five masses on all processors."""
-    _write_study(folder, SAMPLES[quick])
+    _write_study(folder, SAMPLES[quick], quick)
     found = _whole(folder, "map", "study.toml", "-o", "samples.zarr")
-    cells = SAMPLES[quick] * SMALL_MAP**2
-    print(
-        f"{SAMPLES[quick]} samples of five masses, {SMALL_MAP} x {SMALL_MAP} cells: {found['seconds']:.0f} s"
-    )
+    cells = SAMPLES[quick] * SMALL_MAP[quick] ** 2
+    print(f"{SAMPLES[quick]} samples of five masses, {cells:,} cells: {found['seconds']:.0f} s")
     return {"samples": SAMPLES[quick], "cells": cells, **found}
 
 
 def kills(folder: Path, quick: bool) -> dict:
     """Runs that are killed at random moments, over and over."""
-    _write_study(folder, 24)
+    _write_study(folder, 24, quick)
     usual = _whole(folder, "map", "study.toml", "-o", "well.zarr")["seconds"]
     chance = random.Random(1)
     killed = finished = different = 0

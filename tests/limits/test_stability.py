@@ -243,7 +243,7 @@ COEXISTENCE = ("also_reachable", "sliding_limit")
     [
         (fm.System(), [0.31, 1.0218979168366544], [1.0, 1.3601607109057832]),
         (BASE, [0.0, 0.52, 0.9], [1.5]),
-        (TWO, [0.45, 0.7, 1.3], [1.0, 1.4]),
+        (TWO, [0.45, 1.3], [1.0, 1.4]),
     ],
 )
 def test_what_is_reachable_does_not_depend_on_the_grid(system, r, mu):

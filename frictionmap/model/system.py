@@ -581,10 +581,9 @@ class System:
             plural = "s" if self.n > 1 else ""
             source = f" from {self.matrices.source}" if self.matrices.source else ""
             if self.reduction is not None:
-                modes = self.reduction.asked.modes
-                source = (
-                    f" reduced from {self.reduction.structure.n}{source} with {modes} fixed-interface modes"
-                )
+                of = f" of {self.matrices.source}" if self.matrices.source else ""
+                number, modes = self.reduction.structure.n, self.reduction.asked.modes
+                source = f" reduced from the {number}{of} with {modes} fixed-interface modes"
             first = " (the first natural frequency)" if self.frequency_scale is None else ""
             return (
                 f"structure of {self.n} degree{plural} of freedom{source}, r = omega/"

@@ -204,7 +204,7 @@ def test_a_dataset_names_the_degrees_of_freedom_of_the_file(tmp_path):
     assert {CONTACT, LOAD, KEPT} <= set(ds.dof.values.tolist())
     assert ds.sizes["dof"] == 12
     assert re.search(r"natural frequencies within .*e-.* for r = 0.4 to 1.3", ds.attrs["reduction"])
-    assert "reduced from 40 from M.mtx, K.mtx with 9 fixed-interface modes" in ds.attrs["system"]
+    assert "reduced from the 40 of M.mtx, K.mtx with 9 fixed-interface modes" in ds.attrs["system"]
     python = fm.System(matrices=CHAIN, reduce={"keep": [KEPT], "modes": 9}, rayleigh=[0.001, 0.0], **SYSTEM)
     there = fm.sweep(python, [0.4, 1.3], [0.1, 0.4], outputs=["regime", "stops_per_cycle", "amplitude"])
     xr.testing.assert_equal(ds.drop_attrs(), there.drop_attrs())

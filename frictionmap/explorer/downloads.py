@@ -39,11 +39,13 @@ def configuration_text(scene: Scene, view: View, quantity: Quantity, piece: Piec
     of_grid = {name: axes[name] for name in ("r", "beta", "mu")}
     solver = _solver(view, quantity)
     if _is_large(view):
-        return _with_files(scene, configuration(scene.title, scene.system, of_grid, solver))
-    text = configuration(scene.title, view.system, of_grid, solver)
+        return _with_files(
+            scene, configuration(scene.title, scene.system, of_grid, solver, units=scene.units)
+        )
+    text = configuration(scene.title, view.system, of_grid, solver, units=scene.units)
     loaded = config_of(text, {})
     again = {"r": loaded.r, "beta": loaded.beta, "mu": loaded.mu}
-    if configuration(scene.title, loaded.system, again, loaded.solver) != text:
+    if configuration(scene.title, loaded.system, again, loaded.solver, units=loaded.units) != text:
         raise InputError("this view has no configuration that gives it again")
     return text
 
@@ -68,7 +70,7 @@ def saved_map(
     """The map of a view as a file: `ending` is .nc or .csv."""
     axes = view.axes(piece.columns, piece.rows)
     ds = sweep(view.system, axes["r"], axes["beta"], axes["mu"], solver=_solver(view, quantity),
-               progress=follower.progress)  # fmt: skip
+               units=scene.units, progress=follower.progress)  # fmt: skip
     ds.attrs["title"] = scene.title
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"map{ending}"

@@ -7,6 +7,7 @@ from typing import SupportsFloat
 
 from ..model.settings import Start
 from ..model.system import System
+from ..units.scales import Units
 from .scene import scene_of_system
 from .server import Server, begin, open_server
 
@@ -60,6 +61,7 @@ def explore(
     mu: SupportsFloat = 1.0,
     *,
     start: Start = "rest",
+    units: Units | None = None,
     title: str = "Regimes of motion",
     port: int | None = None,
 ) -> Explorer:
@@ -75,6 +77,8 @@ def explore(
         Static over kinetic friction [-], >= 1, that it begins with.
     start : {"rest", "moving"}
         The starting state that it begins with, see `Solver`.
+    units : Units, optional
+        What r = 1 and beta = 1 are: the page has second axes in hertz and newtons then.
     title : str
         What stands above it.
     port : int, optional
@@ -98,7 +102,7 @@ def explore(
     True
     >>> page.close()
     """
-    scene = scene_of_system(system, r, beta, mu, start, title)
+    scene = scene_of_system(system, r, beta, mu, start, title, units)
     return Explorer(open_server(scene, _port(port)))
 
 

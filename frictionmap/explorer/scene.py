@@ -12,6 +12,7 @@ from ..errors import InputError
 from ..model.settings import Solver, Start
 from ..model.system import CONTACTS, System
 from ..model.variations import Number
+from ..units.scales import Units, scales_of
 
 if TYPE_CHECKING:
     from ..files.config import Config
@@ -58,6 +59,7 @@ class Scene:
     mu: float
     solver: Solver
     config: "Config | None" = None
+    units: Units | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "changed", lru_cache(_KEPT)(self._changed))
@@ -187,9 +189,8 @@ def scene_of(config: "Config") -> Scene:
     system = config.system
     if config.variations is not None:
         system = config.variations.at([0] * len(config.variations.axes))
-    return Scene(
-        config.title, system, _ends(config.r), _ends(config.beta), float(config.mu[0]), config.solver, config
-    )
+    ends, mu = (_ends(config.r), _ends(config.beta)), float(config.mu[0])
+    return Scene(config.title, system, *ends, mu, config.solver, config, config.units)
 
 
 def checked_range(values: object, name: str) -> tuple[float, float]:
@@ -202,7 +203,7 @@ def checked_range(values: object, name: str) -> tuple[float, float]:
 
 
 def scene_of_system(
-    system: System, r: object, beta: object, mu: object, start: object, title: object
+    system: System, r: object, beta: object, mu: object, start: object, title: object, units: Units | None
 ) -> Scene:
     """What a system is explored with from Python, checked."""
     checks.instance(system, "system", System)
@@ -210,5 +211,7 @@ def scene_of_system(
         raise InputError(f"title must be text; got {checks.one_line(title)}")
     checks.choice(start, "start", get_args(Start))
     mu = checks.number(mu, "mu", least=1.0)
+    scales_of(units, system)  # they may not go with it
     settings: Mapping[str, Any] = {"start": start}
-    return Scene(title, system, checked_range(r, "r"), checked_range(beta, "beta"), mu, Solver(**settings))
+    ends = checked_range(r, "r"), checked_range(beta, "beta")
+    return Scene(title, system, *ends, mu, Solver(**settings), units=units)

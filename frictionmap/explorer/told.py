@@ -2,7 +2,11 @@
 
 from typing import Any
 
+from ..datasets.physical import handy_unit
+from ..errors import InputError
 from ..pictures.palette import CLASSES
+from ..units.scales import scales_of
+from ..units.table import UNITS
 from ..version import __version__
 from .queries import Query
 from .scene import Scene
@@ -13,6 +17,22 @@ _UNITS = {
     "force": {"length": "P/k₁", "force": "P", "energy": "P²/k₁", "beta": "F/P"},
     "base": {"length": "Y", "force": "k₁Y", "energy": "k₁Y²", "beta": "F/(k₁Y)"},
 }
+
+
+def _physical(scene: Scene, query: Query) -> dict[str, dict[str, Any]]:
+    """Of r, beta, lengths and works, if the scene has units: the unit, and how many of it 1 is."""
+    try:
+        scales = scales_of(scene.units, query.view.system)
+    except InputError:  # a contact was chosen that the units do not go with
+        return {}
+    largest = {"frequency": scene.r[1], "force": scene.beta[1], "length": 1.0, "work": 1.0}
+    found = {}
+    for measure, most in largest.items():
+        one = scales.of(measure)
+        if one is not None:
+            unit = handy_unit(one * most, measure)
+            found[measure] = {"unit": unit.replace("um", "µm"), "factor": one / float(UNITS[unit].size)}
+    return found
 
 
 def told(scene: Scene, query: Query) -> dict[str, Any]:
@@ -34,5 +54,6 @@ def told(scene: Scene, query: Query) -> dict[str, Any]:
         ],
         "classes": [look._asdict() for look in CLASSES],
         "units": _UNITS[str(system.excitation)],
+        "physical": _physical(scene, query),
         "marks": marks(system),
     }

@@ -724,3 +724,36 @@ def test_python_serves_the_same_page():
 def test_python_refuses(arguments, words):
     with pytest.raises(InputError, match=re.escape(words)):
         fm.explore(**{"system": fm.System(), **arguments})
+
+
+# Units
+
+UNITS = '[units]\nnatural_frequency = "4.2 Hz"\nload = "12.5 N"\nstiffness = "3 N/mm"\n'
+
+
+def test_units_stand_beside_the_ratios(tmp_path):
+    with served(scene_from(tmp_path, ONE + UNITS)) as server:
+        told = json.loads(ask(server, "/scene")[1])
+        assert told["r"] == [0.0, 2.0]
+        assert {kind: one["unit"] for kind, one in told["physical"].items()} == {
+            "frequency": "Hz", "force": "N", "length": "mm", "work": "mJ",
+        }  # fmt: skip
+        factors = {kind: one["factor"] for kind, one in told["physical"].items()}
+        assert factors == pytest.approx(
+            {"frequency": 4.2, "force": 12.5, "length": 12.5 / 3, "work": 156.25 / 3}
+        )
+        config = config_of(ask(server, "/configuration.toml?columns=4&rows=3")[1].decode(), {})
+        assert config.units == fm.Units(natural_frequency="4.2 Hz", load="12.5 N", stiffness="3 N/mm")
+        (tmp_path / "map.nc").write_bytes(ask(server, "/map.nc?columns=4&rows=3")[1])
+        with xr.open_dataset(tmp_path / "map.nc") as written:
+            np.testing.assert_allclose(written["frequency"], 4.2 * middles(0.0, 2.0, 4), rtol=1e-12)
+            np.testing.assert_allclose(written["friction_force"], 12.5 * middles(0.0, 1.2, 3), rtol=1e-12)
+
+
+def test_python_takes_units():
+    units = fm.Units(natural_frequency="60 rpm")
+    with fm.explore(fm.System(), units=units) as page:
+        told = json.loads(ask(page._server, "/scene")[1])
+    assert told["physical"] == {"frequency": {"unit": "Hz", "factor": 1.0}}
+    with pytest.raises(InputError, match=r"units\.base_amplitude must be left out unless the base moves"):
+        fm.explore(fm.System(), units=fm.Units(base_amplitude="1 mm"))

@@ -58,6 +58,12 @@ function later(work, milliseconds) {
   };
 }
 
+/** Further axes of the map in units, where the scene tells them. */
+function secondsOf({ frequency, force }) {
+  const axis = (name, one) => (one ? { factor: one.factor, name: `${name} [${one.unit}]` } : null);
+  return { r: axis("frequency", frequency), beta: axis("friction force", force) };
+}
+
 class Page {
   constructor(source, scene) {
     [this.source, this.scene] = [source, scene];
@@ -66,6 +72,7 @@ class Page {
     this.map = new RegimeMap(part("stage"));
     this.map.names = { r: "frequency ratio r = ω/ω₁", beta: `friction ratio β = ${scene.units.beta}` };
     this.marks = scene.marks;
+    this.map.seconds = secondsOf(scene.physical);
     this.motion = new MotionPanel(part("motion"), scene);
     this.cut = new CutPanel(part("cut"), scene, () => this.change({ cut: "" }));
     this.refiner = new Refiner(source, (found, view) => this.#onPicture(found, view), (state) => this.#onState(state));
@@ -171,6 +178,7 @@ class Page {
       const told = await this.source.scene(queryOf(this.view, this.scene));
       part("system").textContent = told.system;
       this.map.marks = this.marks = told.marks;
+      this.scene.physical = told.physical;
       this.map.drawOver();
     } catch {
       // what is wrong with the view the map says

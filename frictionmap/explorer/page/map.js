@@ -95,6 +95,9 @@ export class RegimeMap {
 
   draw() {
     if (!this.view) return;
+    const { x, y, width } = this.area;
+    const zoom = this.stage.querySelector("#zoom"); // in the upper right corner of the cells
+    [zoom.style.left, zoom.style.top] = [`${x + width - 40}px`, `${y + 8}px`];
     this.#drawCells(sharp(this.cells).pen);
     this.drawOver();
   }

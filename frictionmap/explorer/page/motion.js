@@ -34,6 +34,11 @@ const TEMPLATE = `
   <div class="others" hidden></div>
   <table><tbody></tbody></table>`;
 
+/** A ratio in its unit, in brackets, where that is known. */
+function inUnits(value, one) {
+  return one && Number.isFinite(value) ? ` (${short(value * one.factor)} ${one.unit})` : "";
+}
+
 export class MotionPanel {
   /** @param {HTMLElement} panel */
   constructor(panel, scene) {
@@ -63,7 +68,9 @@ export class MotionPanel {
     const none = "none" in motion;
     this.#part("h2 i").style.background = look.colour;
     this.#part(".regime").textContent = none ? REGIMES.unresolved : REGIMES[motion.regime];
-    this.#part(".where").textContent = `${kept ? "kept: " : ""}r = ${short(motion.r)}, β = ${short(motion.beta)}`;
+    const { frequency, force } = this.scene.physical;
+    const place = `r = ${short(motion.r)}${inUnits(motion.r, frequency)}, β = ${short(motion.beta)}${inUnits(motion.beta, force)}`;
+    this.#part(".where").textContent = `${kept ? "kept: " : ""}${place}`;
     this.#part(".words").replaceChildren(...(none ? [motion.none] : [...motion.told, motion.comment]).filter(Boolean).map(paragraph));
     for (const figure of this.panel.querySelectorAll(".moves")) figure.hidden = none;
     this.#part(".others").hidden = true;
@@ -73,7 +80,8 @@ export class MotionPanel {
 
   #entry(entry, value) {
     const unit = { length: this.scene.units.length, energy: this.scene.units.energy }[entry.unit] ?? entry.unit;
-    return tableRow(entry.label, `${short(value, 6)}${Number.isFinite(value) && unit ? ` ${unit}` : ""}`);
+    const physical = this.scene.physical[{ length: "length", energy: "work" }[entry.unit]];
+    return tableRow(entry.label, `${short(value, 6)}${Number.isFinite(value) && unit ? ` ${unit}` : ""}${inUnits(value, physical)}`);
   }
 
   /** What else is known of the cell that is shown. */

@@ -406,23 +406,21 @@ def response(
     cycle = _cycle(question, cells, found)
     # what a map is asked for comes from its kernels below, to the bit
     variables |= {name: value for name, value in cycle.items() if name not in solver.outputs}
-    own = {
+    own: dict[str, np.ndarray | float] = {
         "tau": history.tau,
         "dof": np.array(system.dofs.numbers),
         "harmonic": np.arange(HARMONICS + 1),
         "part": PARTS,
     }
-    ds = xr.Dataset(
-        {name: label_variable(name, values) for name, values in variables.items()},
-        coords={name: coordinate(name, values) for name, values in own.items()},
-    )
-    ds = ds.assign({name: v[0, 0] for name, v in boundary_variables(cells.curves).items()})
-    ds = ds.assign(
-        {name: label_variable(name, CELL_VARIABLES[name].dtype(value)) for name, value in summary.items()}
-    )
-    ds = ds.assign(_further(question, [name for name in solver.outputs if name not in ds]))
     cell = {"r": r, "beta": beta, "mu": mu}
-    ds = ds.assign_coords({name: coordinate(name, value) for name, value in cell.items()})
+    labelled = {name: label_variable(name, values) for name, values in variables.items()}
+    labelled |= {name: v[0, 0] for name, v in boundary_variables(cells.curves).items()}
+    labelled |= {
+        name: label_variable(name, CELL_VARIABLES[name].dtype(value)) for name, value in summary.items()
+    }
+    labelled |= _further(question, [name for name in solver.outputs if name not in labelled])
+    coords = {name: coordinate(name, values) for name, values in {**own, **cell}.items()}
+    ds = xr.Dataset(labelled, coords=coords)  # all at once: piece by piece took a third of the time
     ds = with_units(stamp(ds, "response", "Steady state in time", system, cell, solver, units=units), scales)
     if found.averages is not None:
         ds.attrs |= {"title": "Motion in time, a part of it", "comment": _WINDOWED.format(solver.cycles)}

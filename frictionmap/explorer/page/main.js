@@ -377,7 +377,8 @@ class Page {
         const subtitle = [part("system").textContent, `μ = ${short(view.mu)}`].join("; ");
         map.hovered = null;
         map.drawOver();
-        save(await picture(map, scene, subtitle), "map.png");
+        const quantity = scene.quantities.find(({ key }) => key === view.quantity).label;
+        save(await picture(map, scene, subtitle, quantity), "map.png");
       } else {
         save(source.file(view, scene, map.size, what), `map.${what}`);
       }

@@ -1,12 +1,18 @@
 // What can be taken along: a link, a configuration, a picture, the cells.
 
-import { colour } from "./axes.js";
+import { colour, short } from "./axes.js";
+import { rampColour } from "./colours.js";
 import { classesOf } from "./legend.js";
 import { LINES } from "./map.js";
 
-/** Room of a picture for title and legend, in pixels of the style sheet. */
-const HEAD = 44;
+/** Room of a picture for its title, and for each further line of text, in pixels of the style sheet. */
+const HEAD = 26;
 const LINE = 20;
+
+const FONT = "12px system-ui, sans-serif";
+
+/** Length of a ramp of colours in a legend. */
+const RAMP = 120;
 
 export async function copy(text) {
   try {
@@ -36,7 +42,7 @@ export function save(what, name) {
 function laid(pen, entries, width) {
   let [x, y] = [0, 0];
   return entries.map((entry) => {
-    const size = 34 + pen.measureText(entry.text).width + 16;
+    const size = (entry.scale ? RAMP + 8 : 34) + pen.measureText(entry.text).width + 16;
     if (x && x + size > width) [x, y] = [0, y + LINE];
     const place = { ...entry, x, y };
     x += size;
@@ -44,38 +50,60 @@ function laid(pen, entries, width) {
   });
 }
 
+/** Text in lines of a width. */
+function wrapped(pen, text, width) {
+  const lines = [""];
+  for (const word of text.split(" ")) {
+    const longer = `${lines.at(-1)} ${word}`.trim();
+    if (lines.at(-1) && pen.measureText(longer).width > width) lines.push(word);
+    else lines[lines.length - 1] = longer;
+  }
+  return lines;
+}
+
+/** What a legend under a picture lists. */
+function entriesOf(found, scene, quantity) {
+  const boundaries = Object.values(LINES).map(({ index, dash, meaning }) => ({ dash, text: `β ${index}: ${meaning}` }));
+  if (!found.scale) return [...boundaries, ...classesOf(found, scene.classes)];
+  const { low, high, log } = found.scale;
+  const text = `${quantity}, ${short(low, 2)} to ${short(high, 2)}${log ? ", logarithmic" : ""}`;
+  return [{ scale: found.scale, text }, ...boundaries, ...classesOf(found, scene.classes)];
+}
+
 /** The map with its axes, title and legend as a picture. @param {import("./map.js").RegimeMap} map */
-export function picture(map, scene, subtitle) {
+export function picture(map, scene, subtitle, quantity) {
   const ratio = window.devicePixelRatio || 1;
   const { width, height } = map.stage.getBoundingClientRect();
   const canvas = document.createElement("canvas");
   const pen = canvas.getContext("2d");
-  pen.font = "12px system-ui, sans-serif";
-  const entries = [
-    ...classesOf(map.picture, scene.classes),
-    ...Object.values(LINES).map(({ index, dash, meaning }) => ({ dash, text: `β ${index}: ${meaning}` })),
-  ];
-  const places = laid(pen, entries, width - 90);
-  const foot = places.at(-1).y + LINE + 12;
-  [canvas.width, canvas.height] = [width * ratio, (height + HEAD + foot) * ratio];
+  pen.font = FONT;
+  const places = laid(pen, entriesOf(map.picture, scene, quantity), width - 90);
+  const lines = wrapped(pen, subtitle, width - 80);
+  const [head, foot] = [HEAD + 16 * lines.length, places.at(-1).y + LINE + 12];
+  [canvas.width, canvas.height] = [width * ratio, (height + head + foot) * ratio];
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.fillStyle = colour("panel");
-  pen.fillRect(0, 0, width, height + HEAD + foot);
+  pen.fillRect(0, 0, width, height + head + foot);
   pen.fillStyle = colour("ink");
   pen.font = "600 14px system-ui, sans-serif";
   pen.fillText(scene.title, 64, 20);
-  pen.font = "12px system-ui, sans-serif";
-  pen.fillText(subtitle, 64, 37);
-  pen.drawImage(map.cells, 0, HEAD, width, height);
-  pen.drawImage(map.over, 0, HEAD, width, height);
-  for (const place of places) drawEntry(pen, place, 64, HEAD + height + 8);
+  pen.font = FONT;
+  lines.forEach((line, k) => pen.fillText(line, 64, 37 + 16 * k));
+  pen.drawImage(map.cells, 0, head, width, height);
+  pen.drawImage(map.over, 0, head, width, height);
+  for (const place of places) drawEntry(pen, place, 64, head + height + 8);
   return new Promise((done) => canvas.toBlob(done, "image/png"));
 }
 
-function drawEntry(pen, { x, y, colour: ink, dash, text }, left, top) {
+function drawEntry(pen, { x, y, colour: ink, dash, scale, text }, left, top) {
   const [at, middle] = [left + x, top + y + 8];
   pen.strokeStyle = colour("ink");
-  if (dash) {
+  if (scale) {
+    for (let k = 0; k < RAMP; k += 1) {
+      pen.fillStyle = rampColour(k / (RAMP - 1));
+      pen.fillRect(at + k, middle - 6, 1, 12);
+    }
+  } else if (dash) {
     pen.lineWidth = 1.6;
     pen.setLineDash(dash);
     pen.beginPath();
@@ -90,5 +118,5 @@ function drawEntry(pen, { x, y, colour: ink, dash, text }, left, top) {
   }
   pen.fillStyle = colour("ink");
   pen.textBaseline = "middle";
-  pen.fillText(text, at + 32, middle);
+  pen.fillText(text, at + (scale ? RAMP + 8 : 32), middle);
 }

@@ -108,12 +108,12 @@ def _stepped(values: np.ndarray, log: bool) -> dict[str, Any]:
 def _map(view: View, offered: tuple[Quantity, ...]) -> dict[str, Any]:
     """The map of a view, with all quantities."""
     columns, rows = _CELLS[view.system.n > 1]
-    ds = solve_piece(view, offered, Piece(columns, rows, 0, columns), _Unwatched())
-    header, arrays = classes_of(ds)
+    found = solve_piece(view, offered, Piece(columns, rows, 0, columns), _Unwatched())
+    header, arrays = classes_of(found)
     limits = np.concatenate((arrays["beta_lim"], arrays["beta_stick"]))
     with np.errstate(divide="ignore", invalid="ignore"):
         values = {
-            quantity.key: _stepped(values_of(ds, quantity).astype(float), quantity.scale == "log")
+            quantity.key: _stepped(values_of(found, quantity).astype(float), quantity.scale == "log")
             for quantity in offered
             if quantity.output
         }

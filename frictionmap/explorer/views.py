@@ -1,11 +1,10 @@
 """One view: a system as changed, ranges of r and beta, mu; its map, piece by piece."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, Protocol, cast
 
 import numpy as np
-import xarray as xr
 
 from .. import checks
 from ..errors import InputError
@@ -13,7 +12,7 @@ from ..model.settings import Output, Solver
 from ..model.system import System
 from ..pictures.classes import of_cells, stops_range
 from ..pictures.palette import BROKEN, MORE
-from ..steady.maps import regime_map
+from ..steady.maps import solve_map
 from ..theory.boundaries import find_curves
 
 #: Pixels of a picture each way, and together: those of the largest screens.
@@ -111,34 +110,41 @@ class Follower(Protocol):
     def progress(self, done: float, total: float) -> None: ...
 
 
-def solve_piece(view: View, wanted: Sequence[Quantity], piece: Piece, follower: Follower) -> xr.Dataset:
-    """The cells of a piece as `sweep` gives them: regime, stops per cycle, and the quantities."""
+def solve_piece(
+    view: View, wanted: Sequence[Quantity], piece: Piece, follower: Follower
+) -> dict[str, np.ndarray]:
+    """The cells of a piece as `sweep` gives them, (columns, rows): regime, stops per cycle, the quantities.
+
+    And over its columns `beta_lim` and `beta_stick`.
+    """
     piece.check()
     asked = (quantity.output for quantity in wanted if quantity.output)
     outputs = tuple(dict.fromkeys(("regime", "stops_per_cycle", *asked)))
     solver = replace(view.solver, outputs=cast(tuple[Output, ...], outputs))
     axes = view.axes(piece.columns, piece.rows)
     axes["r"] = axes["r"][piece.first : piece.last]
-    return regime_map(view.system, axes, solver, None, follower.progress, follower.watch)
+    found, curves = solve_map(view.system, axes, solver, None, follower.progress, follower.watch)
+    found |= {"beta_lim": curves.beta_lim, "beta_stick": curves.beta_stick}
+    return {name: values[0] for name, values in found.items()}  # of the only mu
 
 
-def classes_of(ds: xr.Dataset) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+def classes_of(found: Mapping[str, np.ndarray]) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Classes of the cells of a piece and the boundaries over it, for the page.
 
     `stops` are the least and the most stops of classes whose colours do not tell them.  Arrays: `classes`
     (columns, rows), indices into the palette; `beta_lim` and `beta_stick` (columns,).
     """
-    stops = ds["stops_per_cycle"].values[0]
-    classes = of_cells(ds["regime"].values[0], stops)
-    limits = {name: ds[name].values[0] for name in ("beta_lim", "beta_stick")}
+    stops = found["stops_per_cycle"]
+    classes = of_cells(found["regime"], stops)
+    limits = {name: found[name] for name in ("beta_lim", "beta_stick")}
     ranges = {index: stops_range(classes, stops, index) for index in (MORE, BROKEN)}
     counted = {str(index): ends for index, ends in ranges.items() if ends[0] <= ends[1]}
     return {"stops": counted}, {"classes": classes, **limits}
 
 
-def values_of(ds: xr.Dataset, quantity: Quantity) -> np.ndarray:
+def values_of(found: Mapping[str, np.ndarray], quantity: Quantity) -> np.ndarray:
     """A quantity of the cells of a piece, float32 (columns, rows)."""
-    values: np.ndarray = ds[quantity.output].values[0]
+    values = found[quantity.output]
     return (values[..., quantity.mass - 1] if quantity.mass else values).astype(np.float32)
 
 
@@ -149,10 +155,10 @@ def piece_of_map(
 
     lines : points of the boundaries over the whole view, finer than coarse cells: `line_lim`, `line_stick`
     """
-    ds = solve_piece(view, [quantity], piece, follower)
-    header, arrays = classes_of(ds)
+    found = solve_piece(view, [quantity], piece, follower)
+    header, arrays = classes_of(found)
     if quantity.output:
-        arrays["values"] = values_of(ds, quantity)
+        arrays["values"] = values_of(found, quantity)
     if lines:
         curves = find_curves(view.system, middles(view.r, lines, "lines"), np.array([view.mu]))
         arrays |= {"line_lim": curves.beta_lim[0], "line_stick": curves.beta_stick[0]}

@@ -18,7 +18,7 @@ from ..datasets.labels import CELL, CELL_VARIABLES, coordinate, label_variable
 from ..errors import InputError
 from ..model.settings import Solver
 from ..model.system import System
-from ..theory.boundaries import boundary_variables
+from ..theory.boundaries import Curves, boundary_variables
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales
 from .cells import Cells, Job
@@ -215,26 +215,35 @@ def compute(
     return cells, out
 
 
-def regime_map(
+def solve_map(
     system: System,
     axes: Mapping[str, np.ndarray],
     solver: Solver,
     threads: int | None,
     progress: Progress | None,
     watch: Watch | None = None,
+) -> tuple[dict[str, np.ndarray], Curves]:
+    """Outputs and `status` of one system over the axes mu, r and beta as bare arrays, and its curves."""
+    of_cycle = [name for name in solver.outputs if CELL_VARIABLES[name].needs == "cycle"]
+    asked = asked_for(of_cycle) if of_cycle else None
+    cells, out = compute(system, axes, solver, asked, threads, progress, watch)
+    names = dict.fromkeys((*solver.outputs, "status"))
+    found: dict[str, np.ndarray] = {
+        name: read_result(name, cells.results) if name in of_cycle else getattr(out, name) for name in names
+    }
+    return found, cells.curves
+
+
+def regime_map(
+    system: System,
+    axes: Mapping[str, np.ndarray],
+    solver: Solver,
+    threads: int | None,
+    progress: Progress | None,
 ) -> xr.Dataset:
     """Outputs, `status` and boundaries of one system over the axes mu, r and beta."""
-    of_cycle = [name for name in solver.outputs if CELL_VARIABLES[name].needs == "cycle"]
-    cells, out = compute(
-        system, axes, solver, asked_for(of_cycle) if of_cycle else None, threads, progress, watch
-    )
-    names = dict.fromkeys((*solver.outputs, "status"))
-    variables = {
-        name: label_variable(
-            name, read_result(name, cells.results) if name in of_cycle else getattr(out, name)
-        )
-        for name in names
-    }
+    found, curves = solve_map(system, axes, solver, threads, progress)
+    variables = {name: label_variable(name, values) for name, values in found.items()}
     sizes = {"dof": np.array(system.dofs.numbers)} if "amplitude" in solver.outputs else {}
     coords = {name: coordinate(name, values) for name, values in {**axes, **sizes}.items()}
-    return xr.Dataset(variables | boundary_variables(cells.curves), coords=coords)
+    return xr.Dataset(variables | boundary_variables(curves), coords=coords)

@@ -20,8 +20,9 @@ class Outdated(Exception):
 class Job:
     """A piece of work that somebody waits for."""
 
-    def __init__(self, gone: Callable[[], bool]) -> None:
+    def __init__(self, gone: Callable[[], bool], turn: int) -> None:
         self._gone = gone
+        self.turn = turn
         self.outdated = False
         self.compiles_since: float | None = None
         self.kernels = 0
@@ -68,13 +69,14 @@ class Jobs:
                 job.outdated = True
 
     @contextmanager
-    def enter(self, lane: str, gone: Callable[[], bool] = lambda: False) -> Iterator[Job]:
-        """A job in a lane; the one before it there is outdated from now on."""
-        job = Job(gone)
+    def enter(self, lane: str, gone: Callable[[], bool] = lambda: False, turn: int = 0) -> Iterator[Job]:
+        """A job in a lane: of it and the one before it there, that of the earlier turn is outdated."""
+        job = Job(gone, turn)
         with self._lock:
-            if lane in self._lanes:
-                self._lanes.pop(lane).outdated = True
-            self._lanes[lane] = job
+            before = self._lanes.pop(lane, job)
+            newer, older = (before, job) if before.turn > turn else (job, before)
+            older.outdated = newer is not older
+            self._lanes[lane] = newer
             while len(self._lanes) > _MOST_LANES:
                 self._lanes.popitem(last=False)
             self._running.add(job)

@@ -111,9 +111,9 @@ def _range(given: Mapping[str, str], name: str, default: tuple[float, float]) ->
 
 
 #: Keys of a piece of a map, of a cell, and of a cut.
-PIECE = ("columns", "rows", "first", "last", "lines", "quantity", "page")
-CELL = ("at", "page")
-CUT = ("along", "place", "count", "page")
+PIECE = ("columns", "rows", "first", "last", "lines", "quantity", "page", "turn")
+CELL = ("at", "page", "turn")
+CUT = ("along", "place", "count", "page", "turn")
 
 
 def piece_of(query: Query) -> tuple[Quantity, Piece]:
@@ -151,9 +151,9 @@ def cut_of(query: Query) -> tuple[Along, float, int]:
     return along, place, checks.whole(count, "count", least=2, most=_MOST_POINTS)
 
 
-def page_of(query: Query) -> str:
-    """The page that asks: a later request of it makes this one outdated."""
+def page_of(query: Query) -> tuple[str, int]:
+    """The page that asks, and which of its requests it is: a later one makes this one outdated."""
     page = query.given.get("page", "")
     if len(page) > 64 or not page.isascii():
         raise InputError(f"page must be a short word; got {checks.one_line(page)}")
-    return page
+    return page, checks.whole(_whole(query.given, "turn", 0), "turn", least=0)

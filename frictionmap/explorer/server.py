@@ -147,8 +147,8 @@ class Page:
         """A job in the lane of the page for work of a kind; pages without a name have none in common."""
         from .queries import page_of
 
-        page = page_of(query)
-        return self.jobs.enter(f"{kind} {page}" if page else f"{kind} {id(query)}", gone)
+        page, turn = page_of(query)
+        return self.jobs.enter(f"{kind} {page}" if page else f"{kind} {id(query)}", gone, turn)
 
     def _map(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
@@ -157,6 +157,7 @@ class Page:
         query = queries.read_query(self.scene, text, queries.PIECE)
         quantity, piece = queries.piece_of(query)
         with self._enter("map", query, gone) as job:
+            job.watch()
             header, arrays = piece_of_map(query.view, quantity, piece, job, queries.lines_of(query))
         return _packet(({**header, "compiled": job.kernels > 0}, arrays))
 

@@ -458,6 +458,12 @@ def test_lanes():
             with pytest.raises(Outdated):
                 first.watch()
             second.watch()
+    with jobs.enter("map a", turn=7) as newest, jobs.enter("map a", turn=6) as late:
+        newest.watch()
+        with pytest.raises(Outdated):
+            late.watch()  # it was asked for before, and came after
+        with jobs.enter("map a", turn=8), pytest.raises(Outdated):
+            newest.watch()
     with jobs.enter("map a", lambda: True) as gone, pytest.raises(Outdated):
         gone.watch()
     for k in range(1000):

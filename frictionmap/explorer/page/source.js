@@ -13,6 +13,8 @@ export class Server {
   live = true;
   /** Whatever this page asks for makes what it asked for before outdated. */
   #page = Math.random().toString(36).slice(2);
+  /** Requests are counted: they may arrive in another order than they were made in. */
+  #turn = 0;
 
   async #get(path, query, signal) {
     let response;
@@ -38,7 +40,7 @@ export class Server {
   }
 
   async #packet(path, view, scene, further, signal) {
-    const query = queryOf(view, scene, { ...further, page: this.#page });
+    const query = queryOf(view, scene, { ...further, page: this.#page, turn: (this.#turn += 1) });
     const response = await this.#get(path, query, signal);
     return unpack(await response.arrayBuffer());
   }

@@ -260,6 +260,20 @@ def test_a_slider_changes_the_map(browser, one):
         np.testing.assert_array_equal(seen, right)
 
 
+def test_many_inputs_in_a_row_end_with_the_last(browser, one):
+    with page_of(browser, one.url, viewport=SMALL) as page:
+        for k in range(40):
+            page.evaluate(MOVE, ["mu", 7 * k])
+            page.evaluate(MOVE, ["damping_ratios", 300 - 5 * k])
+        repainted(page, lambda: page.click("[data-zoom=in]"))
+        view = of_address(page)
+        seen = colours(page)
+        system = fm.System(damping_ratios=float(view["damping_ratios"]))
+        right = wanted(system, ends(view["r"]), ends(view["beta"]), float(view["mu"]), seen.shape[:2])
+        np.testing.assert_array_equal(seen, right)
+        assert (view["mu"], view["damping_ratios"]) == ("1.55", "0.011")
+
+
 def test_ratios_of_a_chain_have_sliders(browser, tmp_path):
     with served(scene_from(tmp_path, TWO)) as server, page_of(browser, server.url) as page:
         page.fill("input[type=number][name='mass_ratios[2]']", "0.8")

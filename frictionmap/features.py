@@ -35,7 +35,7 @@ def peak_thresholds(system: System) -> np.ndarray:
     """Least beta for which the i-th resonant peak is finite, T(6.2), (6.26), (7.62); shape (n,).
 
     (pi/4)|lambda_i/chi_i| without damping; with it T(7.62), which is approximate.  Infinite for a mode that
-    the contact does not see.
+    the contact does not see; NaN of one that C couples to others.
     """
     modes = system.modes
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -44,14 +44,14 @@ def peak_thresholds(system: System) -> np.ndarray:
     # (cosh x - 1)/(2 zeta sinh x) = tanh(x/2)/(2 zeta), which is pi/4 at zeta = 0
     factor = np.full(x.size, 0.25 * math.pi)
     np.divide(np.tanh(0.5 * x), 2.0 * modes.zeta, out=factor, where=modes.zeta > 0.0)
-    return np.where(modes.chi == 0.0, np.inf, ratio * factor)
+    return np.where(modes.joined, np.nan, np.where(modes.chi == 0.0, np.inf, ratio * factor))
 
 
 def peak_amplitudes(system: System, beta: float) -> np.ndarray:
     """Amplitude of every mass at every resonance, T(7.60), approximate; shape (n, n): mass, mode.
 
     It falls with beta on a straight line, to 0 at the mode's `peak_thresholds`; from there on NaN, as the
-    motion is not continuous.  Infinite without damping.
+    motion is not continuous.  Infinite without damping; NaN of a mode that C couples to others.
     """
     beta = checks.number(beta, "beta", least=0.0)
     modes = system.modes
@@ -60,7 +60,7 @@ def peak_amplitudes(system: System, beta: float) -> np.ndarray:
         # |phi chi|/w^2 sinh/(cosh - 1) is the frictionless peak over the threshold
         left = 1.0 - beta / peak_thresholds(system) if beta > 0.0 else np.ones(modes.w.size)
         peaks = np.where(part > 0.0, part / (2.0 * modes.zeta) * left, 0.0)
-    return np.where(left > 0.0, peaks, np.nan)
+    return np.where((left > 0.0) & ~modes.joined, peaks, np.nan)
 
 
 def high_frequency_limits(system: System, mu: float = 1.0) -> HighFrequency:
@@ -140,6 +140,7 @@ def invariant_points(system: System, low: float, high: float, most: int = MOST_P
     such points: between two of its poles U falls from +inf to -inf, once.  With damping it is the phase.
     Of more than about `most` points the highest are returned.
     """
+    system.need_modal("invariant points of z")
     modes = system.modes
     where = _range(modes, low, high, most)
     row = modes.chi[np.newaxis]
@@ -166,13 +167,10 @@ def _undamped(system: System) -> ModalModel:
     modes = system.modes
     turned = _turned_load(modes)
     none = np.zeros(modes.w.size)
-    return replace(
-        modes,
-        zeta=none,
-        damping=np.zeros_like(modes.damping),
-        load=turned.real.astype(complex),
-        load_rate=none.astype(complex),
-    )
+    return ModalModel(
+        modes.w, modes.phi, none, modes.contact, turned.real.astype(complex), none.astype(complex),
+        modes.base_motion, modes.mass, modes.stiffness, np.zeros_like(modes.damping), modes.springs,
+    )  # fmt: skip
 
 
 def _responses(modes: ModalModel, r: np.ndarray) -> np.ndarray:

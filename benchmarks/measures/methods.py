@@ -194,7 +194,7 @@ def _march_structure(model, loads, r, beta, mu, steps, cycles, out, begins):
             inside = window <= tau < window + TWO_PI
             began = math.atan2(sign * s, sign * c)
             if inside:
-                peak = max(peak, abs(place(st, state)))
+                peak = max(peak, abs(place(st, state, c, s)))
             code, c, s, force, wait, _, _ = after_slide(
                 st, beta[k], mu_beta, state, held, c, s, 1e6, scratch
             )  # fmt: skip

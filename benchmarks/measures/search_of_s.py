@@ -93,9 +93,10 @@ def _by_kernel(system: fm.System, r: np.ndarray) -> np.ndarray:
         out = np.empty((6, r.size))
         response_functions(r, system.zeta, *out)
         return out[5]
-    m = system.modes
+    modes, free = system.modes, system.modes.free
+    weights = free.weights(modes.chi[modes.participating])
     out = np.empty((5, r.size))
-    many_mode_functions(r, m.w, m.zeta, m.chi, m.inverse_mass, *out)
+    many_mode_functions(r, free.omega, free.zeta, *weights, modes.inverse_mass, *out)
     return out[3]
 
 

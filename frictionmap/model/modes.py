@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from .balance import Body, Polynomial, contact_responses, dynamic_stiffness, held_motions
+from .free_structure import FreeStructure, modal_structure
 
 _EPS = float(np.finfo(float).eps)
 
@@ -21,7 +22,7 @@ _SAME_FREQUENCY = 8.0
 #: Computed modes are orthonormal to a few n eps.  A product with them that vanishes comes out as such a
 #: multiple of the most that it could be; this times n eps of it is above the rounding, and nothing that
 #: double precision could tell from zero is lost.
-_ZERO_PRODUCT = 64.0
+ZERO_PRODUCT = 64.0
 
 
 def _made_equal(squares: np.ndarray, rounding: np.ndarray) -> np.ndarray:
@@ -72,6 +73,12 @@ def modal_damping(mass: np.ndarray, w: np.ndarray, phi: np.ndarray, zeta: np.nda
     return (shaped * (2.0 * zeta * w)) @ shaped.T
 
 
+def load_rate(damping: np.ndarray, to_base: bool) -> np.ndarray:
+    """What the load has that grows with i r, complex (n,): C1 ones if the damping ends at a moving base."""
+    rate = damping.sum(axis=1) if to_base else np.zeros(len(damping))
+    return rate.astype(complex)
+
+
 def damped_modes(damping: np.ndarray, w: np.ndarray, phi: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
     """Damping ratios and modes of a structure with the damping matrix C1.
 
@@ -90,7 +97,7 @@ def damped_modes(damping: np.ndarray, w: np.ndarray, phi: np.ndarray) -> tuple[n
             phi[:, group] = part @ np.linalg.eigh(part.T @ damping @ part)[1]
     product = phi.T @ damping @ phi
     rates = np.diag(product).copy()
-    rounding = _ZERO_PRODUCT * n * _EPS * rates.max(initial=0.0)
+    rounding = ZERO_PRODUCT * n * _EPS * rates.max(initial=0.0)
     rates[rates <= rounding] = 0.0
     for i in range(1, n):  # equal to rounding: made equal, so that the contact can turn these modes
         if w[i] == w[i - 1] and abs(rates[i] - rates[i - 1]) <= rounding:
@@ -164,6 +171,13 @@ def _modal_sum(stiffness: np.ndarray, parts: np.ndarray) -> np.ndarray:
     return np.where(resonant.any(axis=1), np.inf, np.where(resonant, 0.0, terms).sum(axis=1))
 
 
+def weighed(answers: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Sum over modes of answers (n_r, n) by weights (n,); infinite where one that has a weight is."""
+    infinite = np.isinf(answers)
+    total = times(np.where(infinite, 0.0, answers), weights[:, np.newaxis])[:, 0]
+    return np.where((infinite & (weights != 0.0)).any(axis=1), np.inf, total)
+
+
 def _held_squares(mass: np.ndarray, stiffness: np.ndarray, contact: np.ndarray) -> np.ndarray:
     """Squared natural frequencies of the undamped structure with c.x = 0 held, (n - 1,)."""
     if contact.size == 1:
@@ -181,7 +195,7 @@ def _unfed_resonance(bordered: np.ndarray, mass: np.ndarray, right: np.ndarray) 
     It is the limit, in which the resonant motions are absent: what remains is orthogonal to them with
     respect to the mass.  None if the load feeds them.
     """
-    rounding = _ZERO_PRODUCT * right.size * _EPS
+    rounding = ZERO_PRODUCT * right.size * _EPS
     left, sizes, rows = np.linalg.svd(bordered)
     kept = sizes > rounding * sizes[0]
     along = left.conj().T @ right
@@ -194,7 +208,7 @@ def _unfed_resonance(bordered: np.ndarray, mass: np.ndarray, right: np.ndarray) 
     return solution - resonant @ amounts
 
 
-def _solve_held(
+def solve_held(
     mass: np.ndarray,
     stiffness: np.ndarray,
     damping: np.ndarray,
@@ -264,12 +278,32 @@ class ModalModel:
         """
         shares = vector @ self.phi
         most = np.sqrt(np.real(np.conj(vector) @ np.linalg.solve(self.mass, vector)))
-        return np.where(np.abs(shares) <= _ZERO_PRODUCT * self.w.size * _EPS * most, 0.0, shares)
+        return np.where(np.abs(shares) <= ZERO_PRODUCT * self.w.size * _EPS * most, 0.0, shares)
 
     @cached_property
     def chi(self) -> np.ndarray:
         """Participation of the contact, c.phi_i (n,); exactly 0 in modes that the contact does not see."""
         return self._shares(self.contact)
+
+    @property
+    def participating(self) -> np.ndarray:
+        """Modes that the contact sees, bool (n,)."""
+        return self.chi != 0.0
+
+    @property
+    def joined(self) -> np.ndarray:
+        """Modes that the damping couples to others, bool (n,)."""
+        return np.zeros(self.w.size, dtype=bool)
+
+    def seen_coupling(self) -> np.ndarray | None:
+        """What the damping has between the modes that the contact sees; None: nothing."""
+        return None
+
+    @cached_property
+    def free(self) -> FreeStructure:
+        """The modes that the contact sees as oscillators."""
+        which = self.participating
+        return modal_structure(self.w[which], self.zeta[which], self.chi[which])
 
     @cached_property
     def _load_shares(self) -> Polynomial:
@@ -296,7 +330,7 @@ class ModalModel:
         return Body(
             self.w, self.zeta, self.phi, self.chi, self.contact, self.mass, self.stiffness, self.springs,
             self.mass @ self.phi, self._relative, self._relative_shares,
-            _ZERO_PRODUCT * _EPS,
+            ZERO_PRODUCT * _EPS,
         )  # fmt: skip
 
     @cached_property
@@ -309,7 +343,7 @@ class ModalModel:
         across = np.linalg.solve(self.mass, load)
         most = np.sqrt(self.inverse_mass * np.real(np.conj(load) @ across))  # by Cauchy and Schwarz
         value = complex(self.contact @ across)
-        return 0.0 if abs(value) <= _ZERO_PRODUCT * self.w.size * _EPS * most else value
+        return 0.0 if abs(value) <= ZERO_PRODUCT * self.w.size * _EPS * most else value
 
     def participation(self, r: np.ndarray) -> np.ndarray:
         """Participation of the load, lambda_i = p(r).phi_i, complex (n_r, n)."""
@@ -332,8 +366,22 @@ class ModalModel:
         return _rows(self._relative_shares, r)
 
     def dynamic_stiffness(self, r: np.ndarray) -> np.ndarray:
-        """w_i^2 - r^2 + 2 i zeta_i w_i r, shape (n_r, n), without cancellation at resonance."""
+        """w_i^2 - r^2 + 2 i zeta_i w_i r, shape (n_r, n), without cancellation at resonance.
+
+        Of each mode by itself: what couples it to others is not in it.
+        """
         return dynamic_stiffness(self.w, self.zeta, np.asarray(r, dtype=float)).rows()
+
+    def answers(self, r: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """Coordinates of the modes under loads on them, (n_r, n) both; infinite at an undamped resonance."""
+        stiffness = self.dynamic_stiffness(r)
+        resonant = stiffness == 0.0
+        found = np.where(resonant, 0.0, loads) / np.where(resonant, 1.0, stiffness)
+        return np.where(resonant & (loads != 0.0), np.inf, found)
+
+    def drag(self, q: np.ndarray) -> np.ndarray:
+        """q^H C q of phasors of the modes (n_r, n), with the damping between them; (n_r,)."""
+        return (2.0 * self.zeta * self.w * modulus(q) ** 2).sum(axis=1)
 
     def response(self, r: np.ndarray, weights: np.ndarray) -> np.ndarray:
         """sum_i weights_i lambda_i/(w_i^2 - r^2 + 2 i zeta_i w_i r), complex (n_r,).
@@ -362,12 +410,12 @@ class ModalModel:
         at = np.flatnonzero(singular)
         if participating.all():
             load = self.relative_load(r[at])
-            solved = _solve_held(self.mass, self.stiffness, self.damping, self.contact, r[at], load)
+            solved = solve_held(self.mass, self.stiffness, self.damping, self.contact, r[at], load)
             found[at], force[at] = solved[:, :-1], solved[:, -1]
             return found, force
         w, zeta, chi = self.w[participating], self.zeta[participating], self.chi[participating]
         parts = self.relative_participation(r)
-        solved = _solve_held(
+        solved = solve_held(
             np.eye(w.size),
             np.diag(w**2),
             np.diag(2.0 * zeta * w),

@@ -5,7 +5,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -16,9 +16,18 @@ from ..structures.craig_bampton import Reduce, checked_reduce
 from ..structures.dofs import Dofs
 from ..structures.reduction import Reduction, reduce_structure
 from ..structures.structure import Structure, read_structure
+from .coupled_modes import CoupledModel, coupled_model
 from .decoupling import Decoupling
 from .matrices import Matrices, of_reduction, whole
-from .modes import ModalModel, damped_modes, gather_contact, modal_damping, solve_chain_modes, solve_modes
+from .modes import (
+    ModalModel,
+    damped_modes,
+    gather_contact,
+    load_rate,
+    modal_damping,
+    solve_chain_modes,
+    solve_modes,
+)
 
 CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 EXCITATIONS = ("force", "base")
@@ -99,6 +108,16 @@ def _in_words(values: Sequence[complex]) -> str:
     return ", ".join(f"{value.real if value.imag == 0.0 else value:g}" for value in values)
 
 
+class _DampedModes(NamedTuple):
+    """Frequencies, modes, damping ratios; C1 where it couples modes, or what is left out of it."""
+
+    w: np.ndarray
+    phi: np.ndarray
+    zeta: np.ndarray
+    coupled: np.ndarray | None = None
+    left_out: Decoupling | None = None
+
+
 @dataclass(frozen=True)
 class System:
     """A linear structure with one dry-friction contact, shaken at one frequency.
@@ -128,7 +147,7 @@ class System:
         ones, or of paths: Matrix Market or Abaqus (.mtx), Harwell-Boeing (.hb, .rb, .rsa, .rua).  An array
         `dofs` (n,) beside M and K has numbers that degrees of freedom are called by instead of 1 to n.  Real
         and symmetric; M and K positive definite.  C takes the place of damping_ratios: it is positive
-        semi-definite and diagonal in the undamped modes.
+        semi-definite, and may couple the undamped modes, as single dashpots do.
     frequency_scale : float, optional
         With matrices: r = omega/frequency_scale, in the units of sqrt(K/M); default the first natural
         frequency.  A chain's is sqrt(k_1/m_1).
@@ -152,8 +171,9 @@ class System:
         With matrices, instead of damping_ratios and of C: [a, b] of C = a M + b K, >= 0, in their units.
 
     decouple : float, optional
-        With a C that couples the undamped modes: its diagonal in the modes takes its place, if that changes
-        linear responses, free and with the contact held, by no more than this in the range of r.
+        With a C that couples the undamped modes: its diagonal in the modes takes its place, and what is
+        known of modes only is told, if that changes linear responses, free and with the contact held, by no
+        more than this in the range of r.
 
     Raises
     ------
@@ -389,7 +409,7 @@ class System:
         InputError
             More than is allowed.
         """
-        left_out = self._damped_modes[3]
+        left_out = self._damped_modes.left_out
         if left_out is None:
             return None
         error = left_out.error(self.modes, r)
@@ -501,59 +521,57 @@ class System:
             )
         return zeta
 
-    def _checked_damping(
-        self, damping: np.ndarray, w: np.ndarray, phi: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, Decoupling | None]:
-        """Damping ratios by a matrix C1, the modes that it leaves apart, and what is left out of it."""
-        zeta, phi, coupling = damped_modes(damping, w, phi)
-        coupled = coupling > _MOST_COUPLING
-        if coupled and (self.decouple is None or not np.isfinite(coupling)):
-            raise InputError(
-                f"matrices: C must be diagonal in the undamped modes, such as modal or Rayleigh damping, "
-                f"a M + b K (or leave C out and give damping_ratios); it couples modes by {coupling:.1e} of "
-                f"their own damping (decouple = 0.02 takes its diagonal if responses change by no more)"
-            )
+    def _check_ratios(self, zeta: np.ndarray) -> None:
         worst = int(np.argmax(zeta))
         if zeta[worst] > checks.LARGEST_DAMPING:
             raise InputError(
                 f"matrices: C must make damping ratios <= {checks.LARGEST_DAMPING:g}; got "
                 f"{zeta[worst]:.3g} of mode {worst + 1}"
             )
-        return zeta, phi, Decoupling(damping) if coupled else None
 
     @cached_property
-    def _damped_modes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, Decoupling | None]:
-        """Frequencies, modes, damping ratios, and what is left out of C."""
+    def _damped_modes(self) -> _DampedModes:
         mass, stiffness, given = self._structure()
         w, phi = self._solve(mass, stiffness)
-        if given is not None:
-            zeta, phi, left_out = self._checked_damping(given, w, phi)
-            return w, phi, zeta, left_out
-        zeta = np.array(self.damping_ratios) if self.rayleigh is None else self._rayleigh_ratios(w)
-        return w, phi, zeta, None
+        if given is None:
+            zeta = np.array(self.damping_ratios) if self.rayleigh is None else self._rayleigh_ratios(w)
+            return _DampedModes(w, phi, zeta)
+        zeta, phi, coupling = damped_modes(given, w, phi)
+        self._check_ratios(zeta)
+        if coupling <= _MOST_COUPLING:
+            return _DampedModes(w, phi, zeta)
+        if self.decouple is None:
+            return _DampedModes(w, phi, zeta, coupled=given)
+        return _DampedModes(w, phi, zeta, left_out=Decoupling(given))
 
     @cached_property
     def modes(self) -> ModalModel:
         """Modes and participation factors; they do not depend on r."""
         mass, stiffness, _ = self._structure()
-        w, phi, zeta, _ = self._damped_modes
-        contact = self.contact_vector
-        phi = gather_contact(w, zeta, phi, contact)
+        w, phi, zeta, coupled, _ = self._damped_modes
+        parts: dict[str, Any] = {
+            "contact": self.contact_vector,
+            "load": self._load_vector(stiffness),
+            "base_motion": self.base_motion,
+            "mass": mass,
+            "stiffness": stiffness,
+        }
+        to_base = self.damping_reference == "base"
+        if coupled is not None:
+            return coupled_model(w, phi, coupled, to_base, parts)
+        phi = gather_contact(w, zeta, phi, parts["contact"])
         damping = modal_damping(mass, w, phi, zeta)
-        rate = damping.sum(axis=1) if self.damping_reference == "base" else np.zeros(self.n)
-        return ModalModel(
-            w=w,
-            phi=phi,
-            zeta=zeta,
-            contact=contact,
-            load=self._load_vector(stiffness),
-            load_rate=rate.astype(complex),
-            base_motion=self.base_motion,
-            mass=mass,
-            stiffness=stiffness,
-            damping=damping,
-            springs=np.array(self.stiffness_ratios) if self.matrices is None else None,
-        )
+        springs = np.array(self.stiffness_ratios) if self.matrices is None else None
+        rate = load_rate(damping, to_base)
+        return ModalModel(w, phi, zeta, load_rate=rate, damping=damping, springs=springs, **parts)
+
+    def need_modal(self, what: str) -> None:
+        """Refuse what is known of modes only where C couples them."""
+        if isinstance(self.modes, CoupledModel):
+            raise InputError(
+                f"matrices: C must be diagonal in the undamped modes for {what}, such as modal or Rayleigh "
+                f"damping, a M + b K; it couples them by {self.modes.strength:.1e} of their own damping"
+            )
 
     def contact_load(self, r: np.ndarray) -> np.ndarray:
         """Phasor F of the load in the contact when it is held, over P (complex, shape of r).
@@ -627,6 +645,9 @@ class System:
         if self.rayleigh is not None:
             zeta, (a, b) = self.modes.zeta, self.rayleigh
             return f"modal damping ratios {zeta.min():g} to {zeta.max():g}, from C = {a:g} M + {b:g} K"
+        if isinstance(self.modes, CoupledModel):
+            zeta = self.modes.free.zeta
+            return f"damping that couples modes, ratios {zeta.min():g} to {zeta.max():g}, from C"
         if self.damping_ratios is None:
             zeta = self.modes.zeta
             return f"modal damping ratios {zeta.min():g} to {zeta.max():g}, from C"

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,14 +11,19 @@ from .._kernels.engine.extremes import Shapes
 from .._kernels.engine.many_masses import Starts
 from .._kernels.engine.policies import MOVING, MOVING_CAP
 from .._kernels.structure.sliding_orbit import Continuous
-from .._kernels.structure.state import CHI, MODE_ROWS, STATIC_SHAPE, Loads, Model
-from ..model.held_structure import held_structure
+from .._kernels.structure.state import MODE_ROWS, STATIC_SHAPE, Loads, Model
+from ..model.balance import dynamic_stiffness
+from ..model.free_structure import FreeStructure
+from ..model.held_structure import HeldStructure, held_structure
 from ..model.modes import ModalModel, angles, modulus, times
 from ..model.system import System
 from ..theory.boundaries import Curves
 
 #: A share of the load smaller than this times n eps of the most that it could be is rounding; as in `modes`.
 _ZERO_SHARE = 64.0
+
+#: cos and sin of something.
+Phase = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -37,17 +43,33 @@ class Structures:
     held: np.ndarray  # (n_r, n_dof) phasor of the displacements with the contact held
 
 
-def _model(modes: ModalModel, participating: np.ndarray) -> Model:
-    w, zeta, chi = modes.w[participating], modes.zeta[participating], modes.chi[participating]
-    held = held_structure(w, zeta, chi)
-    table = np.empty((MODE_ROWS, w.size))
-    mass = 1.0 / np.sum(chi**2)  # m_eff
+def _contact_rows(modes: ModalModel, which: np.ndarray, mass: float) -> tuple[np.ndarray, np.ndarray]:
+    """What the load in the contact has of the modes that it sees, and of their velocities."""
+    w, zeta, chi = modes.w[which], modes.zeta[which], modes.chi[which]
     load, load_rate = mass * chi * w**2, 2.0 * mass * chi * zeta * w
-    table[:] = w, zeta, chi, held.static_shape, load, load_rate
+    coupling = modes.seen_coupling()
+    return load, load_rate if coupling is None else load_rate + mass * (chi @ coupling)
+
+
+def _model(modes: ModalModel, which: np.ndarray, held: HeldStructure) -> Model:
+    free, w, chi = modes.free, modes.w[which], modes.chi[which]
+    n = w.size
+    mass = 1.0 / np.sum(chi**2)  # m_eff
+    load, load_rate = _contact_rows(modes, which, mass)
     watch = np.concatenate((load, load_rate)) @ held.to_free
+    # a force in the contact has no direct part: its static answer is of coordinates alone
+    shape = (free.to_oscillators @ np.append(held.static_shape, np.zeros(n)))[:n]
+    nothing = np.zeros(n)
+    rows = np.array((np.append(load, load_rate), np.append(chi, nothing), np.append(nothing, chi)))
+    table = np.zeros((MODE_ROWS, n))
+    table[:4] = free.omega, free.zeta, free.push, shape
+    table[4:10] = (rows @ free.to_modes).reshape(6, n)
+    reach = math.sqrt(sum((a / b) * (a / b) + c * c for a, b, c in zip(load, w, load_rate, strict=True)))
     return Model(
-        table, held.omega, held.zeta, watch, np.ascontiguousarray(held.to_free),
-        np.ascontiguousarray(held.to_held), 1.0 / mass, held.stiffness,
+        table, held.omega, held.zeta, watch,
+        np.ascontiguousarray(free.to_oscillators @ held.to_free),
+        np.ascontiguousarray(held.to_held @ free.to_modes), 1.0 / mass, held.stiffness, reach,
+        free.norm(w),
     )  # fmt: skip
 
 
@@ -62,54 +84,93 @@ def _shares(parts: np.ndarray, rows: np.ndarray) -> np.ndarray:
     return np.where(np.abs(shares) <= _ZERO_SHARE * rows.shape[1] * np.finfo(float).eps * most, 0.0, shares)
 
 
-def _loads(model: Model, r: np.ndarray, participation: np.ndarray) -> Loads:
-    """cos and sin parts of Re(lambda e^{i tau}) on free modes, held oscillators and in the contact."""
-    n = model.modes.shape[1]
-    m = model.omega.size
-    chi = model.modes[CHI]
-    cosine, sine = participation.real, -participation.imag
-    on_y, on_p = model.to_held[:m, n:], model.to_held[m:, n:]
-    direct_cos, direct_sin = _shares(cosine, on_y), _shares(sine, on_y)
-    # y' = p + direct: its derivative joins the load on y''
-    rate = 2.0 * model.ratio * model.omega
+class _Driven(NamedTuple):
+    """cos and sin part of the load on oscillators, and of that in their velocities."""
+
+    cos: np.ndarray
+    sin: np.ndarray
+    direct_cos: np.ndarray
+    direct_sin: np.ndarray
+
+
+def _driven(rate: np.ndarray, r: np.ndarray, on_y: Phase, on_p: Phase) -> _Driven:
+    """Of the load's shares (cos, sin) of y and of p, where y'' + rate y' + ... = load.
+
+    y' = p + direct: its derivative joins the load on y''.
+    """
     turn = r[:, np.newaxis]
-    held_cos = _shares(cosine, on_p) + rate * direct_cos + turn * direct_sin
-    held_sin = _shares(sine, on_p) + rate * direct_sin - turn * direct_cos
-    in_contact = times(participation, chi[:, np.newaxis])[:, 0]
-    contact_cos, contact_sin = in_contact.real / model.inverse_mass, -in_contact.imag / model.inverse_mass
-    arrays = (
-        cosine, sine, held_cos, held_sin, direct_cos, direct_sin, contact_cos, contact_sin,
+    cosine = on_p[0] + rate * on_y[0] + turn * on_y[1]
+    return _Driven(cosine, on_p[1] + rate * on_y[1] - turn * on_y[0], *on_y)
+
+
+def _on_held(held: HeldStructure, r: np.ndarray, participation: np.ndarray) -> _Driven:
+    """On the held oscillators."""
+    m, n = held.omega.size, held.static_shape.size
+    cosine, sine = participation.real, -participation.imag
+    on_y, on_p = held.to_held[:m, n:], held.to_held[m:, n:]
+    return _driven(
+        2.0 * held.zeta * held.omega, r, (_shares(cosine, on_y), _shares(sine, on_y)),
+        (_shares(cosine, on_p), _shares(sine, on_p)),
     )  # fmt: skip
-    return Loads(*(np.ascontiguousarray(a) for a in arrays))
 
 
-def _orbit(
-    modes: ModalModel, participating: np.ndarray, r: np.ndarray, participation: np.ndarray, curves: Curves
-) -> Continuous:
-    stiffness = modes.dynamic_stiffness(r)[:, participating]
+def _on_free(free: FreeStructure, r: np.ndarray, participation: np.ndarray) -> _Driven:
+    """On the free oscillators."""
+    n = free.omega.size
+    loads = times(participation, free.to_oscillators[:, n:].T) if free.coupled else participation
+    nothing = np.zeros_like(participation)
+    on_y, on_p = (loads[:, :n], loads[:, n:]) if free.coupled else (nothing, loads)
+    return _driven(2.0 * free.zeta * free.omega, r, (on_y.real, -on_y.imag), (on_p.real, -on_p.imag))
+
+
+def _loads(model: Model, free: _Driven, held: _Driven, in_contact: np.ndarray) -> Loads:
+    """cos and sin parts of the load on free and held oscillators, and in the contact, phasor (n_r,)."""
+    contact_cos, contact_sin = in_contact.real / model.inverse_mass, -in_contact.imag / model.inverse_mass
+    return Loads(*(np.ascontiguousarray(a) for a in (*free, *held, contact_cos, contact_sin)))
+
+
+def _orbit(free: FreeStructure, r: np.ndarray, driven: _Driven, curves: Curves) -> Continuous:
+    stiffness = dynamic_stiffness(free.omega, free.zeta, r).rows()
     resonant = stiffness == 0.0
-    response = np.where(resonant, np.inf, participation / np.where(resonant, 1.0, stiffness))
-    u, g = np.empty((2, r.size, participating.size))
-    for k, i in enumerate(participating):
+    load = np.empty(stiffness.shape, dtype=complex)
+    load.real, load.imag = driven.cos, -driven.sin
+    response = np.where(resonant, np.inf, load / np.where(resonant, 1.0, stiffness))
+    u, g = np.empty((2, r.size, free.omega.size))
+    for k, mode in enumerate(zip(free.omega, free.zeta, strict=True)):
         for j, value in enumerate(r):
-            u[j, k], g[j, k] = damping_functions(modes.w[i], modes.zeta[i], value)
+            u[j, k], g[j, k] = damping_functions(*mode, value)
     return Continuous(
         np.ascontiguousarray(response.real), np.ascontiguousarray(response.imag), u, g,
         modulus(curves.v), angles(curves.v), curves.u, curves.g,
     )  # fmt: skip
 
 
-def _rest(modes: ModalModel, participating: np.ndarray, n_r: int) -> Starts:
+def _start(
+    free: FreeStructure, place: np.ndarray, velocity: np.ndarray, phase: Phase, driven: _Driven
+) -> Starts:
+    """That of the oscillators from coordinates and velocities (n_r, n) of modes at the load's (cos, sin)."""
+    cosine, sine = phase
+    if free.coupled:
+        n = free.omega.size
+        state = np.concatenate((place, velocity), axis=1) @ free.to_oscillators.T
+        place, velocity = np.ascontiguousarray(state[:, :n]), state[:, n:]
+        velocity += driven.direct_cos * cosine[:, np.newaxis] + driven.direct_sin * sine[:, np.newaxis]
+    return Starts(place, velocity, cosine, sine)
+
+
+def _rest(modes: ModalModel, participating: np.ndarray, driven: _Driven) -> Starts:
     """Every mass at rest at 0, one on a joined base-wall at the base's displacement; tau = 0."""
     c = modes.contact
     x = modes.base_motion * (c / (c @ c) - 1.0)  # relative to the base
+    n_r = len(driven.cos)
     place = (modes.phi[:, participating].T @ modes.mass @ x)[np.newaxis].repeat(n_r, axis=0)
-    return Starts(place, np.zeros_like(place), np.ones(n_r), np.zeros(n_r))
+    return _start(modes.free, place, np.zeros_like(place), (np.ones(n_r), np.zeros(n_r)), driven)
 
 
 def _moving(
-    modes: ModalModel, participating: np.ndarray, r: np.ndarray, participation: np.ndarray, force: np.ndarray
-) -> Starts:
+    modes: ModalModel, participating: np.ndarray, r: np.ndarray, participation: np.ndarray, force: np.ndarray,
+    driven: _Driven,
+) -> Starts:  # fmt: skip
     """The contact at z = 0, every mode at its largest speed; the load in the held contact falls through 0.
 
     Its amplitude is 1.5 times what the load alone sustains of it, that taken as 10 times its static answer at
@@ -122,17 +183,16 @@ def _moving(
     size = MOVING * modulus(participation) * gain * np.maximum(w, r[:, np.newaxis])
     lead = np.where(np.isfinite(force), angles(force), 0.0)
     sine, cosine = (np.array([function(angle) for angle in lead]) for function in (math.sin, math.cos))
-    return Starts(np.zeros_like(size), size * np.sign(modes.chi[participating]), sine, cosine)
+    velocity = size * np.sign(modes.chi[participating])
+    return _start(modes.free, np.zeros_like(size), velocity, (sine, cosine), driven)
 
 
 def _alone(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Phasor (n_r, n_dof) of the base's motion and of the modes that do not participate; where infinite."""
-    idle = np.flatnonzero(modes.chi == 0.0)
-    stiffness = modes.dynamic_stiffness(r)[:, idle]
-    loads = modes.relative_participation(r)[:, idle]
-    resonant = (stiffness == 0.0) & (loads != 0.0)
-    parts = np.where(stiffness == 0.0, 0.0, loads / np.where(stiffness == 0.0, 1.0, stiffness))
-    alone = modes.base_motion + times(parts, modes.phi[:, idle].T)
+    idle = ~modes.participating
+    parts = modes.answers(r, np.where(idle, modes.relative_participation(r), 0.0))[:, idle]
+    resonant = np.isinf(parts)
+    alone = modes.base_motion + times(np.where(resonant, 0.0, parts), modes.phi[:, idle].T)
     return alone, (resonant.astype(float) @ np.abs(modes.phi[:, idle].T)) > 0.0
 
 
@@ -154,31 +214,37 @@ def _marginal(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> np.ndarray:
     return found
 
 
-def _shapes(model: Model, phi: np.ndarray) -> Shapes:
+def _shapes(model: Model, free: FreeStructure, phi: np.ndarray) -> Shapes:
     """Displacements of the masses; `phi` (n_dof, n) of the participating modes."""
     n = phi.shape[1]
     # contiguous, all of them: another memory layout would be another type to the kernels, compiled anew
+    nothing = np.zeros(phi.shape[0])
+    if free.coupled:
+        rows = phi @ free.to_modes[:n]
+        return Shapes(rows, rows @ model.to_free, rows[:, :n] @ model.modes[STATIC_SHAPE], nothing)
     return Shapes(
         np.concatenate((phi, np.zeros_like(phi)), axis=1), np.ascontiguousarray(phi @ model.to_free[:n]),
-        phi @ model.modes[STATIC_SHAPE], np.zeros(phi.shape[0]),
+        phi @ model.modes[STATIC_SHAPE], nothing,
     )  # fmt: skip
 
 
 def structures(system: System, r: np.ndarray, curves: Curves) -> Structures:
     """Everything that the cells of a system need at frequencies r, for which `curves` are."""
-    modes = system.modes
-    participating = np.flatnonzero(modes.chi)
-    model = _model(modes, participating)
+    modes, free = system.modes, system.modes.free
+    which = np.flatnonzero(modes.participating)
+    chi = modes.chi[which]
+    fixed = held_structure(modes.w[which], modes.zeta[which], chi, modes.seen_coupling())
+    model = _model(modes, which, fixed)
     alone, resonant = _alone(modes, r)
     held, force = modes.held(r)
     held = held + modes.base_motion
     r = np.where(r > 0.0, r, 1.0)  # no cell at r = 0 is followed: any other number does
-    participation = np.ascontiguousarray(modes.relative_participation(r)[:, participating])
+    participation = np.ascontiguousarray(modes.relative_participation(r)[:, which])
+    on_free, on_held = _on_free(free, r, participation), _on_held(fixed, r, participation)
     return Structures(
-        participating, model, _loads(model, r, participation),
-        _orbit(modes, participating, r, participation, curves),
-        _marginal(modes.w[participating], modes.zeta[participating], r), _rest(modes, participating, r.size),
-        _moving(modes, participating, r, participation, force), _shapes(model, modes.phi[:, participating]),
-        np.ascontiguousarray(alone), resonant,
+        which, model, _loads(model, on_free, on_held, times(participation, chi[:, np.newaxis])[:, 0]),
+        _orbit(free, r, on_free, curves), _marginal(free.omega, free.zeta, r),
+        _rest(modes, which, on_free), _moving(modes, which, r, participation, force, on_free),
+        _shapes(model, free, modes.phi[:, which]), np.ascontiguousarray(alone), resonant,
         np.ascontiguousarray(held),
     )  # fmt: skip

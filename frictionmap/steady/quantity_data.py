@@ -22,9 +22,10 @@ from .._kernels.engine.quantities import (
     Quantities,
     Results,
 )
-from .._kernels.structure.state import CHI, STATIC_SHAPE
+from .._kernels.engine.works import Dampers
+from .._kernels.structure.state import STATIC_SHAPE
 from ..datasets.labels import COORDINATES
-from ..model.modes import ModalModel, modulus, times
+from ..model.modes import ModalModel, times
 from ..model.system import System
 from .kernel_data import Structures
 
@@ -136,11 +137,15 @@ def _with_force(shapes: Shapes, found: Structures, modes: ModalModel) -> Shapes:
         mass * modes.w[participating] ** 2,
         mass * 2.0 * modes.zeta[participating] * modes.w[participating],
     )
-    friction = float(mass @ model.modes[CHI])
-    held = np.concatenate((stiff, rate)) @ model.to_free - friction * model.watch
-    static = float(stiff @ model.modes[STATIC_SHAPE]) - friction * model.stiffness
+    coupling = modes.seen_coupling()
+    if coupling is not None:
+        rate += mass @ coupling
+    row = np.concatenate((stiff, rate)) @ modes.free.to_modes
+    friction = float(mass @ modes.chi[participating])
+    held = row @ model.to_free - friction * model.watch
+    static = float(row[: mass.size] @ model.modes[STATIC_SHAPE]) - friction * model.stiffness
     return Shapes(
-        np.vstack((shapes.free, np.concatenate((stiff, rate)))), np.vstack((shapes.held, held)),
+        np.vstack((shapes.free, row)), np.vstack((shapes.held, held)),
         np.append(shapes.static_shape, static), np.append(shapes.friction, friction),
     )  # fmt: skip
 
@@ -166,7 +171,7 @@ def _alone(found: Structures, modes: ModalModel, r: np.ndarray, balance: Balance
     loads = np.ascontiguousarray(modes.relative_participation(r)[:, participating])
     sliding = balance.load - _column(loads, mass)
     sliding += _scaled(_column(found.alone, modes.mass.sum(axis=0)), r * r)
-    chi = model.modes[CHI]
+    chi = modes.chi[participating]
     held = sliding + _column(loads, chi * (float(mass @ chi) / model.inverse_mass))
     return Alone(np.column_stack((found.alone, sliding)), np.column_stack((found.alone, held)))
 
@@ -179,6 +184,21 @@ def _base_share(system: System) -> float:
     return float(system.base_motion) - float(system.damping_reference == "base")
 
 
+def _dampers(modes: ModalModel, found: Structures, base: np.ndarray) -> Dampers:
+    """The dashpots of what the contact sees; `base` (n,) its share of the base's motion, by modes.
+
+    One a mode; where the damping couples them one along each principal direction of it.
+    """
+    which = found.participating
+    coupling, n = modes.seen_coupling(), which.size
+    weights, forms = 2.0 * modes.zeta[which] * modes.w[which], np.eye(n)
+    if coupling is not None:
+        rates, directions = np.linalg.eigh(np.diag(weights) + coupling)
+        weights, forms = np.maximum(rates, 0.0), directions.T
+    place, speed = forms @ modes.free.to_modes[:n], forms @ modes.free.to_modes[n:]
+    return Dampers(weights, place, speed, speed @ found.model.to_free, forms @ base)
+
+
 def _balance(system: System, found: Structures, r: np.ndarray) -> Balance:
     modes = system.modes
     loads = modes.total_load(r)
@@ -186,11 +206,8 @@ def _balance(system: System, found: Structures, r: np.ndarray) -> Balance:
     share, total_mass = _base_share(system), modes.mass.sum(axis=0)
     participating = np.isin(np.arange(modes.w.size), found.participating)
     mass = modes.phi.T @ total_mass
-    stiffness = modes.dynamic_stiffness(r)
-    moving = np.where(participating | (stiffness == 0.0), 0.0, modes.relative_participation(r))
-    moving /= np.where(stiffness == 0.0, 1.0, stiffness)
-    rate = 2.0 * modes.zeta * modes.w
-    speed = np.where(participating, 0.0, modulus(moving + share * mass))
+    moving = modes.answers(r, np.where(participating, 0.0, modes.relative_participation(r)))
+    alone = np.where(participating, 0.0, np.where(np.isinf(moving), 0.0, moving) + share * mass)
     held = np.where(np.isfinite(found.held), found.held, 0.0) - float(to_base)
     drag = times(held, modes.damping)
     held_rate = (held.real * drag.real + held.imag * drag.imag).sum(axis=1)
@@ -200,9 +217,9 @@ def _balance(system: System, found: Structures, r: np.ndarray) -> Balance:
         power=-(loads if to_base else loads.conj()),
         power_alone=loads.sum(axis=1) if to_base else np.zeros(r.size, complex),
         base_motion=float(system.base_motion),
-        base=share * mass[participating],
+        dampers=_dampers(modes, found, share * mass[participating]),
         damped=bool(modes.zeta[found.participating].any()),
-        damping_alone=np.pi * r * (rate * speed**2).sum(axis=1),
+        damping_alone=np.pi * r * modes.drag(alone),
         damping_held=np.pi * r * held_rate,
     )  # fmt: skip
 

@@ -31,6 +31,7 @@ from ..theory.boundaries import boundary_variables
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales, Units, scales_of
 from .cells import Cells, limits
+from .kernel_data import Structures
 from .maps import plan
 from .quantity_data import PARTS, VARIABLES, asked_for, read_result
 from .sweep import sweep
@@ -223,6 +224,21 @@ def _place(found: Found, tau: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray
     return tau + skipped, inside, begin[inside] - skipped
 
 
+def _displacements(
+    question: Question, numbers: Structures, coordinates: np.ndarray, velocities: np.ndarray, tau: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """x and x' in tau (n_dof, tau.size), from coordinates and velocities of the oscillators (n, tau.size)."""
+    modes, n = question.system.modes, len(coordinates)
+    if not modes.free.coupled:
+        shapes = numbers.shapes.free[:, :n]
+        return shapes @ coordinates, shapes @ velocities
+    r, loads = question.r, numbers.loads
+    direct = np.outer(loads.free_direct_cos[0], np.cos(tau)) + np.outer(loads.free_direct_sin[0], np.sin(tau))
+    motion = modes.free.to_modes @ np.concatenate((coordinates, r * velocities - direct))
+    phi = modes.phi[:, numbers.participating]
+    return phi @ motion[:n], phi @ motion[n:] / r
+
+
 def _moving_history(question: Question, cells: Cells, found: Found) -> History:
     """A motion that slides, sampled along its phases."""
     numbers, table = cells.structures, found.table
@@ -244,11 +260,10 @@ def _moving_history(question: Question, cells: Cells, found: Found) -> History:
     back = np.empty_like(order)
     back[order] = np.arange(order.size)
     alone = numbers.alone[0][:, np.newaxis] * np.exp(1j * tau)
-    shapes = numbers.shapes.free[:, :n]
+    x, v = _displacements(question, numbers, coordinates[:, back], velocities[:, back], tau)
     begins, places = _phase_starts(table)
     return History(
-        period, tau, (shapes @ coordinates)[:, back] + alone.real,
-        (shapes @ velocities)[:, back] - alone.imag, z[back], friction[back], sense[back],
+        period, tau, x + alone.real, v - alone.imag, z[back], friction[back], sense[back],
         (times, begins[shown], places[shown]), lengths[table[:, phase_table.SENSE] == 0.0],
         float(np.abs(table[:, phase_table.Z_END]).max()), False,
     )  # fmt: skip

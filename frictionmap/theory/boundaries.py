@@ -21,6 +21,7 @@ from ..features import (
     one_phase,
     peak_thresholds,
 )
+from ..model.coupled_modes import CoupledModel
 from ..model.modes import angles, modulus, wrapped
 from ..model.system import System
 from ..units.axes import KINDS, ratios
@@ -145,8 +146,8 @@ def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
 
 def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     """All curves of a system of any number of masses; `r` and `mu` are checked axes."""
-    modes = system.modes
-    rates = modes.w * np.where(modes.zeta > 1.0, 2.0 * modes.zeta, 1.0)
+    modes, free = system.modes, system.modes.free
+    rates = free.omega * np.where(free.zeta > 1.0, 2.0 * free.zeta, 1.0)
     least = _LEAST_RATIO * float(rates.max())
     small = (r > 0.0) & (r < least)
     if small.any():
@@ -156,7 +157,8 @@ def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
         )
     v = modes.contact_response(r)
     u, g, h, s, by_modes = np.empty((5, r.size))
-    many_mode_functions(r, modes.w, modes.zeta, modes.chi, modes.inverse_mass, u, g, h, s, by_modes)
+    weights = free.weights(modes.chi[modes.participating])
+    many_mode_functions(r, free.omega, free.zeta, *weights, modes.inverse_mass, u, g, h, s, by_modes)
     v_abs = modulus(v)
     inertia = over_square(modes.inverse_mass, r)
     # at a resonance |V|/|U| -> (pi/4) |lambda_i/chi_i|, T(6.2), (6.26)
@@ -170,7 +172,9 @@ def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
         h=h,
         s=s,
         beta_lim=find_beta_lim(v_abs, u, h, s, inertia, mu, at_resonance),
-        beta_lim_modal=find_beta_lim(v_abs, u, h, by_modes, inertia, mu, at_resonance),
+        beta_lim_modal=np.where(
+            np.isnan(by_modes), np.nan, find_beta_lim(v_abs, u, h, by_modes, inertia, mu, at_resonance)
+        ),
         beta_stick=find_beta_stick(modes.held_load(r), mu),
     )
 
@@ -201,7 +205,7 @@ def _padded(rows: list[np.ndarray]) -> np.ndarray:
 def _invariants(system: System, r: np.ndarray) -> dict[str, np.ndarray]:
     """Invariant points within the axis; a variable is left out if it would be empty, as NetCDF demands."""
     positive = r[r > 0.0]
-    if positive.size < 2:
+    if positive.size < 2 or isinstance(system.modes, CoupledModel):
         return {}
     first = positive[0]
     low, high = first * (1.0 - _ON_END), r[-1] * (1.0 + _ON_END)
@@ -288,7 +292,8 @@ def boundaries(
         `invariant_first_harmonic`, where it leaves the amplitude of the first harmonic, and on (contact_root)
         `contact_invariant_first_harmonic`, that of z, theory.md 9.  The highest 40 or so points and one a
         mode are listed, those of masses for up to 12 masses; a variable without points is left out.
-        `frictionmap.features` has them all.
+        `frictionmap.features` has them all.  Where C couples modes `beta_lim_modal` and their
+        `peak_threshold` are NaN, and no invariant points are listed.
 
     Raises
     ------

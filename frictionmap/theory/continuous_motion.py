@@ -255,6 +255,7 @@ def continuous_motion(system: System, r: SupportsFloat, beta: SupportsFloat) -> 
     checks.instance(system, "system", System)
     r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
     beta = checks.number(beta, "beta", least=0.0)
+    system.need_modal("the closed form of a continuous motion")
     modes = system.modes
     at = np.array([r])
     found = find_curves(system, at, np.ones(1))

@@ -82,7 +82,7 @@ def test_global_maximum_of_random_sums():
         chi = rng.normal(size=n)
         r = float(rng.uniform(0.08, 3.0))
         table = np.empty((ROWS, n))
-        u, _, h, _, used = mode_sums(r, w, zeta, chi, table)
+        u, _, h, _, used = mode_sums(r, w, zeta, (chi / w) ** 2, np.zeros(n), table)
         end = h + float(np.sum(chi**2)) / r**2
         s = largest_sum(end, table, used, np.empty((80, 8)))
         tau = np.linspace(0.0, np.pi, 4000)[1:-1]

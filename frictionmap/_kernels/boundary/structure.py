@@ -31,9 +31,10 @@ _DEEPEST = 40
 
 #: Rows of the table of modes that `mode_sums` fills, one column a mode: c, a = 1/R, zeta, and y_i = h_i',
 #: y_i' and y_i'' + y_i over (q, e) of `decay`.  Modes beside their resonance have no use for Y_E and P_Q,
-#: which hold u, but for delta = s a - 1 with s^2 = 1 - zeta^2, and u delta, u zeta and u (a - s).
-C, A, ZETA, Y_Q, Y_E, P_Q, P_E, K_Q, K_E, DELTA, U_DELTA, U_ZETA, U_GAP = range(13)
-ROWS = 13
+#: which hold u, but for delta = s a - 1 with s^2 = 1 - zeta^2, and u delta, u zeta and u (a - s); BESIDE is 1
+#: for them, else 0.  Of oscillators that the damping couples c is 1, and y_i is c_i h_i' + d_i h_i''.
+C, A, ZETA, Y_Q, Y_E, P_Q, P_E, K_Q, K_E, DELTA, U_DELTA, U_ZETA, U_GAP, BESIDE = range(14)
+ROWS = 14
 
 
 @kernel
@@ -53,7 +54,9 @@ def _fill_column(table, n, c, w, r, zeta, u, g, slope):
     table[Y_E, n] = -u
     table[P_Q, n] = a * u
     table[P_E, n] = slope + a * a
+    table[BESIDE, n] = 0.0
     if _beside_resonance(a, zeta):
+        table[BESIDE, n] = 1.0
         off = (w - r) / r
         u_off = u * off if math.isfinite(u) else -2.0 / math.pi  # its limit: u -> -2/(pi off)
         u_zeta = u * zeta if zeta > 0.0 else 0.0
@@ -71,12 +74,25 @@ def _fill_column(table, n, c, w, r, zeta, u, g, slope):
 
 
 @kernel
-def mode_sums(r, w, zeta, chi, table):
+def _fill_coupled(table, n, c, d, a, zeta, u, g):
+    """The same of an oscillator that the damping couples to others: c h' + d h'', which are over (q, e)."""
+    rate, pull = (1.0 + g) * a, -u
+    bend, push = -a * pull, a * rate - 2.0 * zeta * a * pull
+    y_q, y_e = c * rate + d * bend, c * pull + d * push
+    p_q, p_e = -a * y_e, a * y_q - 2.0 * zeta * a * y_e
+    table[BESIDE, n] = 0.0
+    table[C, n], table[A, n], table[ZETA, n] = 1.0, a, zeta
+    table[Y_Q, n], table[Y_E, n], table[P_Q, n], table[P_E, n] = y_q, y_e, p_q, p_e
+    table[K_Q, n], table[K_E, n] = y_q - a * p_e, y_e + a * p_q - 2.0 * zeta * a * p_e
+
+
+@kernel
+def mode_sums(r, w, zeta, static, rates, table):
     """U, G, H of theory.md 2 at r > 0, and the bound of (5.55); fills `table` for `largest_sum`.
 
-    Returns (U, G, H, S by modes, modes in the table).  Modes that the contact does not see (chi = 0) are
-    left out: their u may be infinite.  S by modes is infinite where S is: at a pole of u other than the
-    resonance r = w.
+    static, rates : (n,) the answer of z to friction is sum of static h_i + rates r h_i', rates = 0 of modes
+    Returns (U, G, H, S by modes, modes in the table).  S by modes is infinite where S is: at a pole of u
+    other than the resonance r = w.  It is nan where the damping couples modes.
     """
     total_u = 0.0
     total_g = 0.0
@@ -84,17 +100,25 @@ def mode_sums(r, w, zeta, chi, table):
     by_modes = 0.0
     n = 0
     for i in range(w.size):
-        if chi[i] == 0.0:
-            continue
         u, g = damping_functions(w[i], zeta[i], r)
         a = w[i] / r
-        c = (chi[i] / w[i]) ** 2
+        c = static[i]
         total_u += c * u
         total_g += c * g
         slope = g * a * a
         if zeta[i] > 0.0:
             slope += 2.0 * zeta[i] * a * u
         total_h += c * slope
+        if rates[i] != 0.0:
+            # h_i''(0+) = slope + a^2; the a^2 add up to nothing in U, and to 1/(m_eff r^2) in h''(0+)
+            d = rates[i] * r
+            total_u -= d * slope
+            total_g += d * u
+            total_h += d * (a * a * u - 2.0 * zeta[i] * a * slope)
+            by_modes = by_modes if math.isinf(by_modes) else math.nan
+            _fill_coupled(table, n, c, d, a, zeta[i], u, g)
+            n += 1
+            continue
         if math.isinf(u) and w[i] != r:
             by_modes = math.inf
             continue
@@ -154,7 +178,7 @@ def _values(tau, table, n_modes):
     k = 0.0
     for i in range(n_modes):
         c = table[C, i]
-        if _beside_resonance(table[A, i], table[ZETA, i]):
+        if table[BESIDE, i] == 1.0:
             n_i, m_i, f_i, k_i = _combined(tau, sine, cosine, table[:, i])
             n += c * n_i
             m += c * m_i
@@ -206,7 +230,7 @@ def _bends(table, n):
         rate_k = _amplitude(zeta, -a * table[K_E, i], a * (table[K_Q, i] - 2.0 * zeta * table[K_E, i]))
         # W'' = -2 zeta a W' - a^2 W of a mode, and so for y
         bend_w += c * (2.0 * zeta * a * rate_k + a * a * size_k)
-        if _beside_resonance(a, zeta):
+        if table[BESIDE, i] == 1.0:
             # n'' = W - n, and n is bounded term by term, as `_combined` has it, with fallen <= theta
             size_q = _amplitude(zeta, 1.0, 0.0)
             size_n = abs(table[Y_Q, i]) * size_q + math.pi * abs(table[U_DELTA, i])
@@ -278,8 +302,11 @@ def largest_sum(floor, table, n, stack):
 
 
 @entry
-def many_mode_functions(r, w, zeta, chi, inverse_mass, u, g, h, s, by_modes):
+def many_mode_functions(r, w, zeta, static, rates, inverse_mass, u, g, h, s, by_modes):
     """Fill U, G, H, S of theory.md 2 and 3 and the bound of T(5.55) over frequencies r, shape (n_r,).
+
+    w, zeta, static, rates : (n,) oscillators that the contact sees, as of `mode_sums`; with what is filled
+    they make eleven arguments
 
     At r = 0 (limits): S is infinite; U has no limit if a participating mode is undamped (nan), else it is 0.
     """
@@ -289,15 +316,14 @@ def many_mode_functions(r, w, zeta, chi, inverse_mass, u, g, h, s, by_modes):
         if r[j] == 0.0:
             u[j], g[j], h[j] = 0.0, 0.0, 0.0
             for i in range(w.size):
-                if chi[i] != 0.0:
-                    if zeta[i] == 0.0:
-                        u[j] = math.nan
-                    else:
-                        g[j] += (chi[i] / w[i]) ** 2
-                        h[j] = math.inf
+                if zeta[i] == 0.0:
+                    u[j] = math.nan
+                else:
+                    g[j] += static[i]
+                    h[j] = math.inf
             s[j] = math.inf
             by_modes[j] = math.inf
             continue
-        u[j], g[j], h[j], by_modes[j], n = mode_sums(r[j], w, zeta, chi, table)
+        u[j], g[j], h[j], by_modes[j], n = mode_sums(r[j], w, zeta, static, rates, table)
         floor = h[j] + inverse_mass / (r[j] * r[j])
         s[j] = math.inf if math.isinf(by_modes[j]) else largest_sum(floor, table, n, stack)

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..jit import kernel
 from ..structure.oscillators import COLUMNS, OW, OZ, bounds, derivatives, expand, step_on, watch, watch_load
+from ..structure.state import DIRECT_COS, DIRECT_SIN
 from .phase_table import COS, LENGTH, PLACE, SENSE, SIN, Z_END, take_start
 
 #: Columns of what is found: the largest modulus, the load's phase at it, and where it is held over a stop the
@@ -30,7 +31,7 @@ _NEXT = 1e-9
 class Shapes(NamedTuple):
     """What each of the things looked at, the masses first, has of the state; velocities in t = tau/r."""
 
-    free: np.ndarray  # (rows, 2n) of the free modes and their velocities
+    free: np.ndarray  # (rows, 2n) of the free oscillators (q, p)
     held: np.ndarray  # (rows, 2m) of the held oscillators (y, p)
     static_shape: np.ndarray  # (rows,) of a unit displacement of the contact while it is held
     friction: np.ndarray  # (rows,) of the friction force while the contact slides
@@ -81,6 +82,8 @@ def set_watch(st, shapes, k, beta, phasor, row, slides, n, table):
     for i in range(n):
         if slides:
             place, rate = shapes.free[k, i], shapes.free[k, n + i]
+            yc -= rate * st.modes[DIRECT_COS, i]
+            ys -= rate * st.modes[DIRECT_SIN, i]
         else:
             place, rate = shapes.held[k, i], shapes.held[k, n + i]
             yc -= rate * st.direct[0, i]

@@ -14,7 +14,7 @@ import numpy as np
 from ..jit import entry, kernel
 from ..one_mass.newton import half_periods
 from ..structure.oscillators import F1, FC, FS, OW, OZ, YC, YS, D, K
-from ..structure.state import CHI, DAMPING, STATIC_SHAPE, W
+from ..structure.state import DAMPING, PUSH, STATIC_SHAPE, W
 from .phase_table import COS, LENGTH, PLACE, SENSE, SIGN, SIN, STATE
 from .transforms import Driven, end_of, near_harmonic, transform
 
@@ -165,7 +165,7 @@ def _answer_of(st, i, n, friction):
     """
     w, zeta = st.modes[W, i], st.modes[DAMPING, i]
     square = st.r * st.r / (st.h * st.h)
-    force = -st.modes[CHI, i] * friction
+    force = -st.modes[PUSH, i] * friction
     if n == 1:
         force += complex(st.free[i, FC], -st.free[i, FS]) * square
     stiffness = complex((w - n * st.r) * (w + n * st.r), 2.0 * zeta * w * n * st.r)

@@ -146,7 +146,7 @@ def start(motion, system, i, contact, moving):
     for j in range(st.n):
         state[0, j] = starts.place[i, j]
         state[1, j] = starts.velocity[i, j] / st.rate
-    return Moment(place(st, state), 0.0, starts.cos[i], starts.sin[i], MOVING)
+    return Moment(place(st, state, starts.cos[i], starts.sin[i]), 0.0, starts.cos[i], starts.sin[i], MOVING)
 
 
 @inner_kernel
@@ -156,7 +156,7 @@ def slide_to_turn(motion, contact, at, allowed):
         motion.st, contact.b, at.contact_force, motion.state, at.cos, at.sin, allowed, motion.scratch
     )
     done = steps if end == FELL else float(NO_END)
-    return done, Moment(place(motion.st, motion.state), 0.0, c, s, 0.0)
+    return done, Moment(place(motion.st, motion.state, c, s), 0.0, c, s, 0.0)
 
 
 @inner_kernel
@@ -229,7 +229,7 @@ def return_distance(motion, now, then, size):
         z = one[STATE + i] - other[STATE + i]
         v = one[STATE + st.n + i] - other[STATE + st.n + i]
         total += (st.modes[W, i] * z) ** 2 + (st.rate * v) ** 2
-    return turn + math.sqrt(total) / size
+    return turn + st.norm * math.sqrt(total) / size
 
 
 @kernel
@@ -448,7 +448,7 @@ def on_continuous(motion, contact):
     phase = orbit_phase(motion.v_abs, orbit.v_arg[i], orbit.u[i], contact.b)
     c, s = -math.cos(phase), -math.sin(phase)
     orbit_state(motion.st, orbit, i, contact.b, phase, c, s, motion.state)
-    return Moment(place(motion.st, motion.state), 0.0, c, s, MOVING)
+    return Moment(place(motion.st, motion.state, c, s), 0.0, c, s, MOVING)
 
 
 @kernel

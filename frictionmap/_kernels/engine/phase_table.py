@@ -1,7 +1,7 @@
 """The table of phases of a steady state: slides and stops in order, each with its exact motion.
 
 One row a phase; a phase that is a mirror image is told so by its sign.  The state at its start is that of
-the modes of `structure.Structure`, free modes in a slide and held oscillators in a stop, whatever kind of
+`structure.Structure`, free oscillators in a slide and held oscillators in a stop, whatever kind of
 motion was followed.  All that is asked of a steady state beyond its regime is read from here.
 """
 
@@ -65,7 +65,7 @@ def continuous_phase(st, orbit, i, beta, phase, row, work):
     """The rising half of the continuous orbit, a table of one phase; `phase` is the load's at its maximum."""
     c, s = -math.cos(phase), -math.sin(phase)
     orbit_state(st, orbit, i, beta, phase, c, s, work.start)
-    z = place(st, work.start)
+    z = place(st, work.start, c, s)
     put_state(work.start, st.n, st.rate, c, s, row)
     put_phase(row, 0.0, math.pi, 1.0, 1.0, -z)
 

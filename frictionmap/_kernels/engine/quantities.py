@@ -16,7 +16,16 @@ from ..one_mass.sliding_orbit import continuous_amplitude, orbit_phase
 from ..structure.newton import Workspace, make_workspace
 from ..structure.oscillators import Scratch, make_scratch
 from ..structure.sliding_orbit import Continuous
-from ..structure.state import CHI, DAMPING, Loads, Model, Structure, W, make_structure
+from ..structure.state import (
+    DIRECT_COS,
+    DIRECT_SIN,
+    Z_RATE,
+    Loads,
+    Model,
+    Structure,
+    Z,
+    make_structure,
+)
 from .answers import known_orbit
 from .details import Nothing
 from .extremes import (
@@ -35,7 +44,7 @@ from .harmonics import Spectrum, harmonics_of_continuous, harmonics_of_phases, m
 from .measure import measure
 from .phase_table import continuous_phase, phase_columns
 from .rests import rest_square
-from .works import sliding_distance, viscous_work
+from .works import Dampers, sliding_distance, viscous_work
 
 #: Columns of `Results.works`, per excitation cycle.
 DISTANCE, BY_FRICTION, BY_LOAD, BY_DAMPING, EQUIVALENT = 0, 1, 2, 3, 4
@@ -78,8 +87,8 @@ class Balance(NamedTuple):
     power: np.ndarray  # (n_r, n_dof) complex; the work of the load is pi Im(power.X + power_alone - s F)
     power_alone: np.ndarray  # (n_r,) complex
     base_motion: float  # s
-    base: np.ndarray  # (n,) the base's velocity in what the dampers see of a mode
-    damped: bool  # whether any mode is that the contact sees
+    dampers: Dampers  # of what the contact sees
+    damped: bool  # whether they take any work
     damping_alone: np.ndarray  # (n_r,) work of the dampers of the modes that it does not see
     damping_held: np.ndarray  # (n_r,) work of all of them with the contact held
 
@@ -160,6 +169,13 @@ def _transmitted(here):
 
 
 @kernel
+def _rate(st, spectrum, n, i):
+    """Harmonic of p of a free oscillator."""
+    rate = complex(0.0, n * st.r) * spectrum.modes[n, i]
+    return rate - complex(st.modes[DIRECT_COS, i], -st.modes[DIRECT_SIN, i]) if n == 1 else rate
+
+
+@kernel
 def _put_harmonics(here):
     """Harmonics of all rows from those of friction and modes."""
     st, spectrum, of = here.st, here.spectrum, here.of
@@ -169,11 +185,13 @@ def _put_harmonics(here):
             total = of.alone.sliding[here.i, k] if n == 1 else 0j
             for i in range(st.n):
                 total += of.shapes.free[k, i] * spectrum.modes[n, i]
+                total += of.shapes.free[k, st.n + i] * _rate(st, spectrum, n, i)
             here.rows[k, n] = total
         here.rows[force, n] = spectrum.friction[n]
         total = 0j
         for i in range(st.n):
-            total += st.modes[CHI, i] * spectrum.modes[n, i]
+            total += st.modes[Z, i] * spectrum.modes[n, i]
+            total += st.modes[Z_RATE, i] * _rate(st, spectrum, n, i)
         here.rows[force + 1, n] = total
 
 
@@ -289,7 +307,7 @@ def _dampers(here, beta, table, halves):
         return 0.0
     total = balance.damping_alone[here.i]
     if balance.damped:
-        spent = viscous_work(here.st, beta, balance.base, table, here.work, here.scratch)
+        spent = viscous_work(here.st, beta, balance.dampers, table, here.work, here.scratch)
         total += 2.0 / halves * spent
     return total
 
@@ -330,11 +348,15 @@ def _continuous(here, m, j, beta):
 @kernel
 def _linear_damping(here):
     """The work of the dampers without friction."""
-    st, base = here.st, here.of.balance.base
+    st, dampers = here.st, here.of.balance.dampers
     total = 0.0
-    for i in range(st.n):
-        size = abs(here.spectrum.modes[1, i] + base[i])
-        total += 2.0 * st.modes[DAMPING, i] * st.modes[W, i] * st.r * math.pi * size * size
+    for k in range(dampers.weights.size):
+        moved = complex(dampers.base[k], 0.0)
+        for i in range(st.n):
+            moved += dampers.place[k, i] * here.spectrum.modes[1, i]
+            moved += dampers.place[k, st.n + i] * _rate(st, here.spectrum, 1, i)
+        size = abs(moved)
+        total += dampers.weights[k] * st.r * math.pi * size * size
     return total
 
 

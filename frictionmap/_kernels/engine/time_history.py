@@ -15,7 +15,7 @@ from .phase_table import BEGIN, COS, LENGTH, PLACE, SENSE, SIGN, SIN, take_start
 class Samples(NamedTuple):
     """A motion at k times."""
 
-    coordinates: np.ndarray  # (n, k) of the free modes
+    coordinates: np.ndarray  # (n, k) of the free oscillators
     velocities: np.ndarray  # (n, k) in tau
     z: np.ndarray  # (k,)
     friction: np.ndarray  # (k,)
@@ -50,7 +50,7 @@ def sample_phases(st, beta, table, tau, samples, work, scratch):
             c, s = math.cos(angle + tau[j] - begin), math.sin(angle + tau[j] - begin)
             if slides:
                 copy_state(scratch.next, work.start, n)
-                z[j] = row[SIGN] * place(st, work.start)
+                z[j] = row[SIGN] * place(st, work.start, c, s)
                 friction[j] = row[SIGN] * beta
             else:
                 release(st, scratch.next, row[PLACE], c, s, work.start)

@@ -1,10 +1,13 @@
 """Sliding distance and the work of the dampers in a steady state, from its table of phases."""
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 from ..jit import kernel
 from ..structure.oscillators import advance, expand
-from ..structure.state import DAMPING, W, place
+from ..structure.state import DIRECT_COS, DIRECT_SIN, place
 from .phase_table import COS, LENGTH, SENSE, SIN, Z_END, take_start
 
 
@@ -15,33 +18,44 @@ def sliding_distance(st, table, work):
     for k in range(table.shape[0]):
         if table[k, SENSE] > 0.0:
             _, _, state = take_start(st, table[k], work)
-            total += abs(table[k, Z_END] - place(st, state))
+            total += abs(table[k, Z_END] - place(st, state, table[k, COS], table[k, SIN]))
     return total
 
 
+class Dampers(NamedTuple):
+    """Damping as k dashpots that the motion of what the contact sees works on; velocities in t = tau/r."""
+
+    weights: np.ndarray  # (k,) work rate over the square of the velocity
+    place: np.ndarray  # (k, 2n) displacements of the free oscillators (q, p)
+    free: np.ndarray  # (k, 2n) their velocities
+    held: np.ndarray  # (k, 2m) those of the held oscillators
+    base: np.ndarray  # (k,) share of the base's motion in what they see
+
+
 @kernel
-def _speed(st, base, slides, i, c, s, series, out):
-    """Coefficients over a scan step of q_i' in tau, and of what the dampers see of the base beside it."""
+def _speed(st, dampers, slides, i, c, s, series, out):
+    """Coefficients over a scan step of the i-th dashpot's velocity in tau."""
     n, m = st.n, st.m
-    yc, ys = 0.0, -base[i]
-    if not slides:
-        for k in range(m):
-            yc -= st.to_free[n + i, m + k] * st.direct[0, k] / st.r
-            ys -= st.to_free[n + i, m + k] * st.direct[1, k] / st.r
+    rows = dampers.free if slides else dampers.held
+    count = n if slides else m
+    yc, ys = 0.0, -dampers.base[i]
+    for k in range(count):
+        rate = rows[i, count + k]
+        yc -= rate * (st.modes[DIRECT_COS, k] if slides else st.direct[0, k]) / st.r
+        ys -= rate * (st.modes[DIRECT_SIN, k] if slides else st.direct[1, k]) / st.r
     c_j, s_j = c, s
     c_next, s_next = -s * st.h, c * st.h
     for j in range(st.terms):
-        total = yc * c_j + ys * s_j
-        if slides:
-            total += (j + 1.0) * series[j + 1, i] / st.h
-        else:
-            for k in range(m):
-                total += st.to_free[n + i, k] * series[j, k] / st.r
-                total += st.to_free[n + i, m + k] * ((j + 1.0) * series[j + 1, k] / st.h)
-        out[j] = total
+        out[j] = yc * c_j + ys * s_j
         fall = -st.h * st.h / ((j + 1.0) * (j + 2.0))
         c_j, c_next = c_next, fall * c_j
         s_j, s_next = s_next, fall * s_j
+    for k in range(count):
+        place, rate = rows[i, k], rows[i, count + k]
+        if place != 0.0 or rate != 0.0:
+            for j in range(st.terms):
+                out[j] += place * series[j, k] / st.r
+                out[j] += rate * ((j + 1.0) * series[j + 1, k] / st.h)
 
 
 @kernel
@@ -58,11 +72,10 @@ def integral_of_square(p, terms, last):
 
 
 @kernel
-def viscous_work(st, beta, base, table, work, scratch):
-    """The work of the dampers of the modes that the contact sees, sum of 2 zeta w r int q'^2 over the table.
+def viscous_work(st, beta, dampers, table, work, scratch):
+    """The work of the dampers of what the contact sees, sum of weight r int speed^2 over the table.
 
     Integrated along the motion, so that the balance of works is a test of it.
-    base : (n,) share of the base's velocity in what the dampers see
     """
     total = 0.0
     for k in range(table.shape[0]):
@@ -74,9 +87,9 @@ def viscous_work(st, beta, base, table, work, scratch):
             last = min(1.0, row[LENGTH] / st.h - step)
             c, s = math.cos(angle + step * st.h), math.sin(angle + step * st.h)
             expand(oscillators, n, beta if slides else 0.0, state, c, s, st.h, st.terms, scratch.series)
-            for i in range(st.n):
-                _speed(st, base, slides, i, c, s, scratch.series, scratch.watched)
-                rate = 2.0 * st.modes[DAMPING, i] * st.modes[W, i] * st.r
+            for i in range(dampers.weights.size):
+                _speed(st, dampers, slides, i, c, s, scratch.series, scratch.watched)
+                rate = dampers.weights[i] * st.r
                 total += rate * st.h * integral_of_square(scratch.watched, st.terms, last)
             advance(scratch.series, n, st.terms, last, state)
     return total

@@ -83,7 +83,7 @@ def after_slide(st, beta, mu_beta, state, held, c, s, allowed, scratch):
         return REVERSE, -c, -s, load - beta, 0.0, load, 0.0
     if load < -mu_beta:
         return GRAZING, c, s, -load - beta, 0.0, load, 0.0
-    z = place(st, state)
+    z = place(st, state, c, s)
     hold(st, state, z, c, s, held)
     end, c, s, wait, slope = wait_for_release(st, mu_beta, z, held, c, s, allowed, scratch)
     if end == AT_LIMIT:

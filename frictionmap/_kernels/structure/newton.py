@@ -16,7 +16,7 @@ from ..jit import entry, kernel
 from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
 from .events import MOVING, NO_RELEASE, after_slide, slide_on
 from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA
-from .state import CHI, STATIC_SHAPE, energy
+from .state import PUSH, SPEED, SPEED_RATE, STATIC_SHAPE, Z_RATE, Z, energy
 
 _MAX_NEWTON = 16
 
@@ -95,14 +95,15 @@ def _carry(table, n, time, rows, columns):
 
 
 @kernel
-def _contact_row(st, rows, first, columns, out):
-    """chi times the n rows from `first` on: what the contact has of them."""
+def _contact_row(st, place, rate, rows, columns, out):
+    """What the contact has of coordinates and their velocities by two rows of `st.modes`, Z or SPEED."""
     for j in range(columns):
         out[j] = 0.0
     for i in range(st.n):
-        chi = st.modes[CHI, i]
-        for j in range(columns):
-            out[j] += chi * rows[first + i, j]
+        for row, part in ((i, st.modes[place, i]), (st.n + i, st.modes[rate, i])):
+            if part != 0.0:
+                for j in range(columns):
+                    out[j] += part * rows[row, j]
 
 
 @kernel
@@ -110,15 +111,15 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
     """The derivative after an event that ended an upward slide; see `follow.after_slide`."""
     n, m = st.n, st.m
     size = 2 * n
-    _contact_row(st, flow, n, size, row)
+    _contact_row(st, SPEED, SPEED_RATE, flow, size, row)
     # a stop takes all of the contact's velocity, a turn 2 beta/(load + beta) of it
     share = (2.0 * beta / (load + beta) if code == REVERSE else 1.0) / st.inverse_mass
     for i in range(n):
-        part = st.modes[CHI, i] * share
+        part = st.modes[PUSH, i] * share
         for j in range(size):
             flow[n + i, j] -= part * row[j]
     if code != REVERSE:
-        _contact_row(st, flow, 0, size, stopped[2 * m])
+        _contact_row(st, Z, Z_RATE, flow, size, stopped[2 * m])
         for k in range(2 * m):
             for j in range(size):
                 stopped[k, j] = 0.0
@@ -147,7 +148,7 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
         if code == STOP_THEN_BACK:
             jump = -jump
         for i in range(n):
-            part = st.modes[CHI, i] * jump
+            part = st.modes[PUSH, i] * jump
             for j in range(size):
                 flow[n + i, j] += part * row[j]
     if code == REVERSE or code == STOP_THEN_BACK:

@@ -8,14 +8,14 @@ import numpy as np
 from ..closed_form import decay
 from ..jit import kernel
 from ..one_mass.sliding_orbit import since_maximum
-from .oscillators import OW, OZ, bounds, step_on, watch_load
-from .state import CHI, DAMPING, LOAD, LOAD_RATE, W, contact_load
+from .oscillators import OW, OZ, YC, YS, bounds, step_on, watch_load
+from .state import DAMPING, LOAD, LOAD_RATE, PUSH, W, contact_load
 
 
 class Continuous(NamedTuple):
-    """Response functions at every r; arrays (n_r, n) of participating modes, and (n_r,) of the contact."""
+    """Response functions at every r; arrays (n_r, n) of free oscillators, and (n_r,) of the contact."""
 
-    re: np.ndarray  # modal response lambda_i/(w_i^2 - r^2 + 2 i zeta_i w_i r)
+    re: np.ndarray  # response to the load; of modes lambda_i/(w_i^2 - r^2 + 2 i zeta_i w_i r)
     im: np.ndarray
     u_modes: np.ndarray
     g_modes: np.ndarray
@@ -38,7 +38,7 @@ def orbit_state(st, orbit, i, beta, phase, c, s, out):
         d = e + 2.0 * zeta * q
         g1 = 1.0 + orbit.g_modes[i, j]
         turn = orbit.u_modes[i, j] * st.r / w  # u R
-        pull = beta * st.modes[CHI, j] / (w * w)
+        pull = beta * st.modes[PUSH, j] / (w * w)
         z = orbit.re[i, j] * cosine - orbit.im[i, j] * sine + pull * (1.0 - g1 * d - turn * q)
         v = -st.r * (orbit.re[i, j] * sine + orbit.im[i, j] * cosine) + pull * w * (g1 * q - turn * e)
         out[0, j] = sign * z
@@ -55,7 +55,6 @@ def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, before):
     c = -math.cos(phase)
     s = -math.sin(phase)
     orbit_state(st, orbit, i, beta, phase, c, s, state)
-    reach = 0.0
     for j in range(st.n + 1):
         for column in range(loaded.shape[1]):
             loaded[j, column] = st.free[j, column]
@@ -63,8 +62,6 @@ def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, before):
     for j in range(st.n):
         loaded[j, OZ] = st.modes[LOAD, j]
         loaded[j, OW] = st.modes[LOAD_RATE, j] * st.rate
-        reach += (st.modes[LOAD, j] / st.modes[W, j]) ** 2 + st.modes[LOAD_RATE, j] ** 2
-    reach = math.sqrt(reach)
     fast_per = st.rate / math.sqrt(st.inverse_mass)
     curve, _, _, curve_growth, _, _ = bounds(st.free, beta, state, c, s)
     bend, _, _, bend_growth, _, _ = bounds(loaded, beta, state, c, s)
@@ -75,11 +72,12 @@ def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, before):
     for _ in range(int(math.ceil(math.pi / st.h))):
         speed1 = step_on(st.free, st.n, beta, state, before, c, s)
         c, s = turn_c * c - turn_s * s, turn_c * s + turn_s * c
+        speed1 += st.free[st.n, YC] * c + st.free[st.n, YS] * s
         load1 = contact_load(st, state, c, s)
         fast = fast_per * (min(speed, speed1) - 0.125 * curve)
         # a load that changes its sign inside the step passes zero there
         least = min(abs(load), abs(load1)) if load * load1 > 0.0 else 0.0
-        radius = min(radius, max(fast, (least - 0.125 * bend - mu_beta) / reach))
+        radius = min(radius, max(fast, (least - 0.125 * bend - mu_beta) / st.reach))
         curve += curve_growth
         bend += bend_growth
         speed = speed1

@@ -1,8 +1,10 @@
 """One structure at one frequency, ready to be followed: free and held oscillators, and the way between them.
 
-While it slides, its state is that of the free modes; a stop leaves the contact where it is, and the rest
-moves as the held oscillators do, about the static shape that the contact's place gives it.  Both
-are in units of one scan step: row 0 the coordinates, row 1 their change per step.
+While it slides, its state is that of the free oscillators, which are the modes unless the damping couples
+them; a stop leaves the contact where it is, and the rest moves as the held oscillators do, about the static
+shape that the contact's place gives it.  Both are in units of one scan step: row 0 the coordinates, row 1
+their change per step.  What depends on them is told by the coordinates and by p, their velocities in t =
+tau/r less the load's direct part.
 
 With a joined base-wall all displacements are taken relative to the base: then its contact is that with a
 fixed wall, under another load (`modes.relative_load`), and no kernel knows of a moving base.
@@ -34,10 +36,12 @@ from .oscillators import (
     watch_load,
 )
 
-# Rows of the table of free modes: frequency, damping ratio, participation, static shape, and what the load in
-# the contact has of the coordinate and of its velocity in t = tau/r.
-W, DAMPING, CHI, STATIC_SHAPE, LOAD, LOAD_RATE = 0, 1, 2, 3, 4, 5
-MODE_ROWS = 6
+# Rows of the table of free oscillators: frequency, damping ratio, push of a force in the contact, static
+# shape; what the contact's load, its displacement z, and dz/dt have of the coordinate and of p; cos and sin
+# part of the load in the velocity.
+W, DAMPING, PUSH, STATIC_SHAPE, LOAD, LOAD_RATE, Z, Z_RATE, SPEED, SPEED_RATE = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
+DIRECT_COS, DIRECT_SIN = 10, 11
+MODE_ROWS = 12
 
 #: Load periods beyond which `held_period` does not look for a repetition.
 _LONGEST_REPEAT = 256
@@ -46,7 +50,7 @@ _LONGEST_REPEAT = 256
 class Structure(NamedTuple):
     """Everything here depends on (system, r, steps) only."""
 
-    n: int  # free modes that the contact sees
+    n: int  # free oscillators that the contact sees
     m: int  # held oscillators, n - 1
     r: float
     h: float  # scan step in tau
@@ -54,8 +58,12 @@ class Structure(NamedTuple):
     terms: int
     inverse_mass: float  # 1/m_eff
     stiffness: float  # static stiffness at the contact
-    free_cos: float  # the load in the contact while it slides, less its modal part
+    reach: float  # most of the load in the contact that a motion of unit energy has
+    norm: float  # energy over that of the free oscillators, at most; 1 of modes
+    free_cos: float  # the load in the contact while it slides, less the oscillators' part
     free_sin: float
+    place_cos: float  # the same of z
+    place_sin: float
     modes: np.ndarray  # (MODE_ROWS, n)
     free: np.ndarray  # (n + 1, COLUMNS) tables of `oscillators`
     held: np.ndarray  # (m + 1, COLUMNS)
@@ -67,7 +75,7 @@ class Structure(NamedTuple):
 class Model(NamedTuple):
     """A system in numbers; nothing here depends on r."""
 
-    modes: np.ndarray  # (MODE_ROWS, n)
+    modes: np.ndarray  # those of `Structure`, but for the load's part
     omega: np.ndarray  # (m,) held oscillators
     ratio: np.ndarray
     watch: np.ndarray  # (2m,) the load in the contact of (y, p)
@@ -75,13 +83,17 @@ class Model(NamedTuple):
     to_held: np.ndarray
     inverse_mass: float
     stiffness: float
+    reach: float
+    norm: float
 
 
 class Loads(NamedTuple):
     """The load at every r; arrays (n_r, n), (n_r, m) and (n_r,)."""
 
-    free_cos: np.ndarray  # (n_r, n) load on the free modes
+    free_cos: np.ndarray  # (n_r, n) load on the free oscillators
     free_sin: np.ndarray
+    free_direct_cos: np.ndarray  # (n_r, n)
+    free_direct_sin: np.ndarray
     held_cos: np.ndarray  # (n_r, m) load on the held oscillators
     held_sin: np.ndarray
     direct_cos: np.ndarray  # (n_r, m)
@@ -90,35 +102,31 @@ class Loads(NamedTuple):
     contact_sin: np.ndarray
 
 
-@entry
-def make_structure(model, loads, i, r, steps):
-    """The `Structure` at the i-th frequency, r > 0, for `steps` scan steps per period of the fastest part."""
-    n = model.modes.shape[1]
-    m = model.omega.size
-    fastest = 0.0
-    for j in range(n):
-        fastest = max(fastest, fastest_rate(model.modes[W, j], model.modes[DAMPING, j]))
-    for j in range(m):
-        fastest = max(fastest, fastest_rate(model.omega[j], model.ratio[j]))
-    turn, terms = series_terms(steps)
-    h = turn / max(1.0, fastest / r)
-    scale = h / r
+@kernel
+def _fill_free(loads, i, scale, modes, free):
+    """The free oscillators, and the load's part of their velocities."""
     square = scale * scale
-    free = np.zeros((n + 1, COLUMNS))
-    for j in range(n):
-        w = model.modes[W, j]
-        zeta = model.modes[DAMPING, j]
+    for j in range(modes.shape[1]):
+        w = modes[W, j]
+        zeta = modes[DAMPING, j]
         free[j, K] = (w * scale) * (w * scale)
         free[j, D] = 2.0 * zeta * (w * scale)
         free[j, FC] = loads.free_cos[i, j] * square
         free[j, FS] = loads.free_sin[i, j] * square
-        free[j, F1] = -model.modes[CHI, j] * square
-        free[j, OW] = model.modes[CHI, j]
+        free[j, F1] = -modes[PUSH, j] * square
+        free[j, OZ] = modes[SPEED, j] * scale
+        free[j, OW] = modes[SPEED_RATE, j]
         free[j, OMEGA] = w
         free[j, ZETA] = zeta
-    fill_steps(free, h, terms)
-    held = np.zeros((m + 1, COLUMNS))
-    direct = np.empty((2, m))
+        modes[DIRECT_COS, j] = loads.free_direct_cos[i, j]
+        modes[DIRECT_SIN, j] = loads.free_direct_sin[i, j]
+
+
+@kernel
+def _fill_held(model, loads, i, scale, held, direct):
+    """The held oscillators; returns cos and sin part of the load in the contact, less theirs."""
+    m = model.omega.size
+    square = scale * scale
     contact_cos = -loads.contact_cos[i]
     contact_sin = -loads.contact_sin[i]
     for j in range(m):
@@ -135,22 +143,61 @@ def make_structure(model, loads, i, r, steps):
         direct[1, j] = loads.direct_sin[i, j]
         contact_cos -= model.watch[m + j] * direct[0, j]
         contact_sin -= model.watch[m + j] * direct[1, j]
+    return contact_cos, contact_sin
+
+
+@kernel
+def _less_direct(modes, row):
+    """cos and sin part of what a row of p has less than of the velocities."""
+    cosine, sine = 0.0, 0.0
+    for j in range(modes.shape[1]):
+        cosine -= modes[row, j] * modes[DIRECT_COS, j]
+        sine -= modes[row, j] * modes[DIRECT_SIN, j]
+    return cosine, sine
+
+
+@entry
+def make_structure(model, loads, i, r, steps):
+    """The `Structure` at the i-th frequency, r > 0, for `steps` scan steps per period of the fastest part."""
+    n = model.modes.shape[1]
+    m = model.omega.size
+    fastest = 0.0
+    for j in range(n):
+        fastest = max(fastest, fastest_rate(model.modes[W, j], model.modes[DAMPING, j]))
+    for j in range(m):
+        fastest = max(fastest, fastest_rate(model.omega[j], model.ratio[j]))
+    turn, terms = series_terms(steps)
+    h = turn / max(1.0, fastest / r)
+    scale = h / r
+    free = np.zeros((n + 1, COLUMNS))
+    modes = model.modes.copy()
+    _fill_free(loads, i, scale, modes, free)
+    fill_steps(free, h, terms)
+    speed_cos, speed_sin = _less_direct(modes, SPEED_RATE)
+    watch_load(free, speed_cos * scale, speed_sin * scale)
+    held = np.zeros((m + 1, COLUMNS))
+    direct = np.empty((2, m))
+    held_cos, held_sin = _fill_held(model, loads, i, scale, held, direct)
     fill_steps(held, h, terms)
-    watch_load(held, contact_cos, contact_sin)
+    watch_load(held, held_cos, held_sin)
+    load_cos, load_sin = _less_direct(modes, LOAD_RATE)
+    place_cos, place_sin = _less_direct(modes, Z_RATE)
     return Structure(
-        n, m, r, h, r / h, terms, model.inverse_mass, model.stiffness,
-        -loads.contact_cos[i], -loads.contact_sin[i], model.modes, free, held, direct, model.to_free,
-        model.to_held,
+        n, m, r, h, r / h, terms, model.inverse_mass, model.stiffness, model.reach, model.norm,
+        load_cos - loads.contact_cos[i], load_sin - loads.contact_sin[i], place_cos, place_sin, modes, free,
+        held, direct, model.to_free, model.to_held,
     )  # fmt: skip
 
 
 @kernel
-def place(st, state):
+def place(st, state, c, s):
     """z of a free state."""
-    total = 0.0
+    total = st.place_cos * c + st.place_sin * s
+    rate = 0.0
     for i in range(st.n):
-        total += st.modes[CHI, i] * state[0, i]
-    return total
+        total += st.modes[Z, i] * state[0, i]
+        rate += st.modes[Z_RATE, i] * state[1, i]
+    return total + st.rate * rate
 
 
 @kernel
@@ -171,32 +218,35 @@ def held_load(st, held, z, c, s):
 @kernel
 def hold(st, state, z, c, s, held):
     """The held state that a free state with z' = 0 is."""
-    n, m = st.n, st.m
+    n, m, modes = st.n, st.m, st.modes
     for k in range(m):
-        y = 0.0
-        p = 0.0
-        for i in range(n):
-            u = state[0, i] - st.modes[STATIC_SHAPE, i] * z
-            v = st.rate * state[1, i]
-            y += st.to_held[k, i] * u + st.to_held[k, n + i] * v
-            p += st.to_held[m + k, i] * u + st.to_held[m + k, n + i] * v
-        held[0, k] = y
-        held[1, k] = (p + st.direct[0, k] * c + st.direct[1, k] * s) / st.rate
+        held[0, k] = 0.0
+        held[1, k] = 0.0
+    for i in range(n):
+        u = state[0, i] - modes[STATIC_SHAPE, i] * z
+        v = st.rate * state[1, i] - (modes[DIRECT_COS, i] * c + modes[DIRECT_SIN, i] * s)
+        for k in range(m):
+            held[0, k] += st.to_held[k, i] * u + st.to_held[k, n + i] * v
+            held[1, k] += st.to_held[m + k, i] * u + st.to_held[m + k, n + i] * v
+    for k in range(m):
+        held[1, k] = (held[1, k] + st.direct[0, k] * c + st.direct[1, k] * s) / st.rate
 
 
 @kernel
 def release(st, held, z, c, s, state):
     """The free state that a held state is."""
-    n, m = st.n, st.m
+    n, m, modes = st.n, st.m, st.modes
     for i in range(n):
-        u = st.modes[STATIC_SHAPE, i] * z
-        v = 0.0
-        for k in range(m):
-            p = st.rate * held[1, k] - st.direct[0, k] * c - st.direct[1, k] * s
-            u += st.to_free[i, k] * held[0, k] + st.to_free[i, m + k] * p
-            v += st.to_free[n + i, k] * held[0, k] + st.to_free[n + i, m + k] * p
-        state[0, i] = u
-        state[1, i] = v / st.rate
+        state[0, i] = modes[STATIC_SHAPE, i] * z
+        state[1, i] = 0.0
+    for k in range(m):
+        y = held[0, k]
+        p = st.rate * held[1, k] - st.direct[0, k] * c - st.direct[1, k] * s
+        for i in range(n):
+            state[0, i] += st.to_free[i, k] * y + st.to_free[i, m + k] * p
+            state[1, i] += st.to_free[n + i, k] * y + st.to_free[n + i, m + k] * p
+    for i in range(n):
+        state[1, i] = (state[1, i] + (modes[DIRECT_COS, i] * c + modes[DIRECT_SIN, i] * s)) / st.rate
 
 
 @kernel
@@ -209,11 +259,15 @@ def mirror(st, state):
 
 @kernel
 def energy(st, state):
-    """sqrt(sum w_i^2 z_i^2 + z_i'^2) of a free state, the derivative in t: the energy norm of theory.md 6."""
+    """The energy norm of theory.md 6 of a free state, or of a difference of two, or what is above it.
+
+    sqrt(sum w_i^2 q_i^2 + q_i'^2) of modes, the derivative in t.  Where the damping couples them that is
+    taken so many times that it is no less than the energy, which does not grow.
+    """
     total = 0.0
     for i in range(st.n):
         total += (st.modes[W, i] * state[0, i]) ** 2 + (st.rate * state[1, i]) ** 2
-    return math.sqrt(total)
+    return st.norm * math.sqrt(total)
 
 
 @kernel

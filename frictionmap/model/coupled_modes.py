@@ -1,0 +1,213 @@
+"""A structure whose damping couples its undamped modes: those that the contact sees, and answers to loads."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from .free_structure import FreeStructure, coupled_structure, modal_structure
+from .modes import ZERO_PRODUCT, ModalModel, load_rate, solve_held, times, weighed
+
+#: Answers beyond this many times the load over the stiffness are looked at for what rounding alone bounds.
+_SUSPECT = 1e8
+
+#: Share of a direction beside others that makes it one of its own: far above what rounding leaves of it.
+_NEW = 1e-8
+
+
+def _groups(w: np.ndarray) -> list[np.ndarray]:
+    """Modes of one frequency, by frequency."""
+    return np.split(np.arange(w.size), np.flatnonzero(np.diff(w)) + 1)
+
+
+def _unit(direction: np.ndarray, least: float) -> np.ndarray:
+    """A direction (k,) as a column of length 1, or no column if it is not above `least`."""
+    size = np.linalg.norm(direction)
+    return direction[:, np.newaxis] / size if size > least else np.zeros((direction.size, 0))
+
+
+def _reached(product: np.ndarray, group: np.ndarray, found: np.ndarray, least: float) -> np.ndarray:
+    """Orthonormal columns: what of a group the directions (n, l) reach by damping above `least`."""
+    left, sizes, _ = np.linalg.svd(product[group] @ found, full_matrices=False)
+    return left[:, sizes > least]
+
+
+def _new(part: np.ndarray, found: np.ndarray) -> np.ndarray:
+    """Orthonormal columns of what `part` has beside the span of `found`, orthonormal both."""
+    left, sizes, _ = np.linalg.svd(part - found @ (found.T @ part), full_matrices=False)
+    return left[:, sizes > _NEW]
+
+
+def sort_seen(
+    w: np.ndarray, phi: np.ndarray, damping: np.ndarray, contact: np.ndarray, rounding: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Modes turned among those of one frequency, and which of them the contact sees, itself or by damping.
+
+    What is seen is the least set of directions that has the contact's and that neither stiffness nor damping
+    leaves; each frequency's are turned to have it and the rest apart, and either to be damped apart.
+
+    Returns
+    -------
+    phi : (n, n)
+    seen : (n,) bool; nothing couples the others to these
+    """
+    product, chi, groups = phi.T @ damping @ phi, contact @ phi, _groups(w)
+    least = rounding * float(np.diag(product).max(initial=0.0))
+    found = [np.zeros((group.size, 0)) for group in groups]
+    new = [_unit(chi[group], rounding * float(np.linalg.norm(chi))) for group in groups]
+    while any(part.size for part in new):
+        reached = np.zeros((w.size, sum(part.shape[1] for part in new)))
+        column = 0
+        for k, (group, part) in enumerate(zip(groups, new, strict=True)):
+            found[k] = np.column_stack((found[k], part))
+            reached[group, column : column + part.shape[1]] = part
+            column += part.shape[1]
+        for k, group in enumerate(groups):
+            whole = found[k].shape[1] == group.size
+            part = _reached(product, group, reached[:, : 0 if whole else None], least)
+            new[k] = _new(part, found[k])
+    turned, seen = phi.copy(), np.zeros(w.size, dtype=bool)
+    for group, part in zip(groups, found, strict=True):
+        seen[group[: part.shape[1]]] = True
+        if group.size > 1:
+            turned[:, group] = phi[:, group] @ _damped_apart(part, product[np.ix_(group, group)])
+    return turned, seen
+
+
+def _damped_apart(part: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    """An orthogonal matrix: columns in the span of `part`, then the others, each diagonal in the damping."""
+    whole = np.linalg.svd(part, full_matrices=True)[0] if part.shape[1] else np.eye(len(part))
+    columns = [whole[:, : part.shape[1]], whole[:, part.shape[1] :]]
+    return np.column_stack([c @ np.linalg.eigh(c.T @ damping @ c)[1] if c.shape[1] else c for c in columns])
+
+
+@dataclass(frozen=True)
+class CoupledModel(ModalModel):
+    """A structure in its undamped modes, which its damping couples.
+
+    Attributes
+    ----------
+    zeta : (n,) what the damping is to each mode by itself, phi^T C1 phi = 2 zeta w on the diagonal
+    coupling : (n, n) phi^T C1 phi off the diagonal; exactly 0 between modes that are not coupled
+    seen : (n,) bool, the modes that move the contact, by themselves or through others
+    """
+
+    coupling: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    seen: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+
+    @property
+    def strength(self) -> float:
+        """The most that the damping couples two modes, over the root of their own damping's product."""
+        own = np.sqrt(2.0 * self.zeta * self.w)[self.joined]
+        return float(np.max(np.abs(self.coupling[np.ix_(self.joined, self.joined)]) / np.outer(own, own)))
+
+    @property
+    def joined(self) -> np.ndarray:
+        """As of `ModalModel`."""
+        return np.any(self.coupling != 0.0, axis=1)
+
+    @property
+    def participating(self) -> np.ndarray:
+        """Modes that the contact sees, bool (n,)."""
+        return self.seen
+
+    def seen_coupling(self) -> np.ndarray:
+        """What the damping has between the modes that the contact sees."""
+        return self.coupling[np.ix_(self.participating, self.participating)]
+
+    @cached_property
+    def free(self) -> FreeStructure:
+        """The modes that the contact sees as oscillators."""
+        which = self.participating
+        coupling = self.seen_coupling()
+        if not coupling.any():
+            return modal_structure(self.w[which], self.zeta[which], self.chi[which])
+        return coupled_structure(self.w[which], self.zeta[which], coupling, self.chi[which])
+
+    def _dynamic(self, r: float) -> np.ndarray:
+        """Dynamic stiffness between the modes at one frequency, complex (n, n)."""
+        return np.diag(self.dynamic_stiffness(np.array([r]))[0]) + 1j * r * self.coupling
+
+    def answers(self, r: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """Coordinates of the modes under loads on them, complex (n_r, n); infinite as of `ModalModel`."""
+        found = np.empty((r.size, self.w.size), dtype=complex)
+        for k, at in enumerate(r):
+            stiffness, load = self._dynamic(at), loads[k].copy()
+            resonant = ~stiffness.any(axis=1)  # undamped, and so coupled to none
+            stiffness[resonant, resonant] = 1.0
+            load[resonant] = np.where(load[resonant] != 0.0, np.inf, 0.0)
+            found[k, ~resonant] = np.linalg.solve(stiffness, np.where(resonant, 0.0, load))[~resonant]
+            found[k, resonant] = load[resonant]
+        return found
+
+    def drag(self, q: np.ndarray) -> np.ndarray:
+        """As of `ModalModel`."""
+        across = times(q, self.coupling)
+        return super().drag(q) + (q.real * across.real + q.imag * across.imag).sum(axis=1)
+
+    def response(self, r: np.ndarray, weights: np.ndarray) -> np.ndarray:
+        """As of `ModalModel`."""
+        r = np.asarray(r, dtype=float)
+        return weighed(self.answers(r, self.participation(r)), weights)
+
+    def contact_response(self, r: np.ndarray) -> np.ndarray:
+        """As of `ModalModel`."""
+        r = np.asarray(r, dtype=float)
+        return weighed(self.answers(r, self.relative_participation(r)), self.chi)
+
+    def held(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """As of `ModalModel`; modes that the contact does not see move as if free."""
+        r = np.asarray(r, dtype=float)
+        which, parts = self.participating, self.relative_participation(r)
+        q = self.answers(r, np.where(which, 0.0, parts))
+        force = np.empty(r.size, dtype=complex)
+        for k in range(r.size):
+            q[k, which], force[k] = self._held_at(float(r[k]), parts[k, which])
+        motion = times(np.where(np.isinf(q), 0.0, q), self.phi.T)
+        motion[np.isinf(q).any(axis=1)] = np.inf
+        return motion, force
+
+    def _held_at(self, r: float, load: np.ndarray) -> tuple[np.ndarray, complex]:
+        """Modes that the contact sees, and the force that holds it, at one frequency."""
+        which, n = self.participating, load.size
+        bordered = np.zeros((n + 1, n + 1), dtype=complex)
+        bordered[:n, :n] = self._dynamic(r)[np.ix_(which, which)]
+        bordered[:n, n] = bordered[n, :n] = self.chi[which]
+        right = np.append(load, 0.0)
+        with np.errstate(all="ignore"):
+            try:
+                solution = np.linalg.solve(bordered, right)
+            except np.linalg.LinAlgError:
+                solution = np.full(n + 1, np.inf)
+        # an undamped resonance of the held structure: rounding alone keeps it finite
+        small = np.abs(bordered).max() * np.abs(solution).max() <= _SUSPECT * np.abs(right).max()
+        if not small:
+            w, coupling = self.w[which], self.seen_coupling()
+            damping = np.diag(2.0 * self.zeta[which] * w) + coupling
+            solution = solve_held(
+                np.eye(n), np.diag(w**2), damping, self.chi[which], np.array([r]), load[np.newaxis]
+            )[0]
+        return solution[:n], complex(solution[n])
+
+
+def coupled_model(
+    w: np.ndarray, phi: np.ndarray, damping: np.ndarray, to_base: bool, parts: dict[str, Any]
+) -> CoupledModel:
+    """The model of a structure with any damping matrix C1, of its undamped modes; `parts` as they are."""
+    rounding = ZERO_PRODUCT * w.size * float(np.finfo(float).eps)
+    phi, seen = sort_seen(w, phi, damping, parts["contact"], rounding)
+    product = phi.T @ damping @ phi
+    rates = np.diag(product)
+    small = np.abs(product) <= rounding * rates.max()
+    product[small | (seen[:, np.newaxis] != seen)] = 0.0
+    return CoupledModel(
+        w,
+        phi,
+        np.diag(product) / (2.0 * w),
+        load_rate=load_rate(damping, to_base),
+        damping=damping,
+        coupling=product - np.diag(np.diag(product)),
+        seen=seen,
+        **parts,
+    )

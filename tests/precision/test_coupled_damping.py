@@ -1,0 +1,214 @@
+"""A damping matrix that couples the modes, against marching with it, sums of many harmonics, and balances."""
+
+import numpy as np
+import pytest
+from structures import CHAIN, chain_matrices
+
+import frictionmap as fm
+from benchmarks.references.naive import naive_steady_state
+from frictionmap import regimes
+from frictionmap.model.coupled_modes import CoupledModel, coupled_model
+from frictionmap.steady.points import steady_states
+
+KINDS = {"wall": "fixed-wall", "base": "joined-base-wall", "masses": "between-masses"}
+
+
+def dashpots(n, *given):
+    """C of dashpots (from mass, to mass, c); mass 0 is the ground."""
+    C = np.zeros((n, n))
+    for a, b, c in given:
+        row = np.zeros(n)
+        row[b - 1] = 1.0
+        if a:
+            row[a - 1] = -1.0
+        C += c * np.outer(row, row)
+    return C
+
+
+#: contact, load, gamma, kappa, C, mu; one lightly damped, one over-damped, two over-damped dashpots.
+CASES = {
+    "wall": (("wall", 2), 1, (1.0, 0.8, 1.3), (1.0, 0.7, 0.9), dashpots(3, (0, 3, 0.2), (1, 2, 0.1)), 1.0),
+    "masses": (
+        ("masses", 1, 3), 2, (1.0, 0.8, 1.3), (1.0, 0.7, 0.9), dashpots(3, (0, 3, 0.2), (1, 2, 0.1)), 1.5,
+    ),
+    "base": (("base", 2), 1, (1.0, 0.8, 1.3), (1.0, 0.7, 0.9), dashpots(3, (0, 3, 0.2), (1, 2, 0.1)), 1.0),
+    "over-damped": (("wall", 1), 1, (1.0, 0.8), (1.0, 0.7), dashpots(2, (0, 2, 4.0)), 1.5),
+    "over-damped twice": (
+        ("wall", 2), 1, (1.0, 0.8, 1.2, 0.7), (1.0, 0.7, 1.1, 0.6),
+        dashpots(4, (0, 4, 3.0), (0, 1, 2.5), (2, 3, 0.2)), 1.0,
+    ),
+}  # fmt: skip
+CELLS = ((0.25, 0.1), (0.45, 0.25), (0.7, 0.1), (1.1, 0.2), (1.7, 0.03))
+OUTPUTS = ("regime", "stops_per_cycle", "contact_amplitude", "stuck_fraction", "amplitude")
+
+
+def system(case, **further):
+    contact, load, gamma, kappa, C, _ = CASES[case]
+    loaded = {} if contact[0] == "base" else {"load_mass": load}
+    return fm.System(
+        contact=KINDS[contact[0]], contact_masses=list(contact[1:]), frequency_scale=1.0,
+        matrices={**chain_matrices(gamma, kappa), "C": C}, **loaded, **further,
+    )  # fmt: skip
+
+
+def marched(case, r, beta):
+    contact, load, gamma, kappa, C, mu = CASES[case]
+    return naive_steady_state(
+        gamma=gamma, kappa=kappa, contact=contact, load=load, damping=C, r=r, beta=beta, mu=mu, points=100
+    )
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_steady_states(case):
+    """Against marching in small steps, which knows nothing of modes."""
+    taken = 0
+    for r, beta in CELLS:
+        cell = fm.sweep(system(case), r, beta, CASES[case][5], outputs=OUTPUTS).squeeze()
+        found = marched(case, r, beta)
+        if found.status == "stuck":
+            assert cell.regime == regimes.PERMANENT_STICKING
+            continue
+        assert found.status == "ok"
+        taken += 1
+        assert cell.stops_per_cycle == np.float32(found.stops)
+        np.testing.assert_allclose(cell.contact_amplitude, found.Z, rtol=1e-8)
+        np.testing.assert_allclose(cell.amplitude, found.X, rtol=1e-8)
+        np.testing.assert_allclose(cell.stuck_fraction, found.stuck_fraction, atol=1e-7)
+    assert taken >= 2
+
+
+def test_a_mode_without_damping_beside_coupled_ones():
+    """Two equal masses on a third: against each other they move undamped; held they do not matter."""
+    M = np.diag([1.0, 0.5, 0.5])
+    K = np.array([[3.0, -1.0, -1.0], [-1.0, 1.5, 0.0], [-1.0, 0.0, 1.5]])
+    C = dashpots(3, (0, 1, 0.3))
+    given = {"matrices": {"M": M, "K": K, "C": C}, "load_mass": 2, "frequency_scale": 1.0}
+    whole = fm.System(contact_masses=[1], **given)
+    w = np.sqrt(3.0)
+    assert np.sum(~whole.modes.participating) == 1
+    # the load feeds it, and the contact cannot hold it
+    ds = fm.curves(whole, [0.9 * w, w], [0.1], quantities=["amplitude"]).squeeze()
+    assert np.isinf(ds.amplitude[1, 1:]).all()
+    assert np.isfinite(ds.amplitude[0]).all()
+    # what is left is two masses: 1, and both others
+    one = np.diag([1.0, 1.0]), np.array([[3.0, -2.0], [-2.0, 3.0]])
+    pair = {"M": one[0], "K": one[1], "C": dashpots(2, (0, 1, 0.3))}
+    less = fm.System(contact_masses=[1], matrices=pair, load=[0.0, 1.0], frequency_scale=1.0)
+    r, beta = np.linspace(0.3, 2.5, 12), np.linspace(0.02, 0.6, 8)
+    maps = [fm.sweep(one, r, beta, threads=1) for one in (whole, less)]
+    np.testing.assert_allclose(maps[0].contact_amplitude, maps[1].contact_amplitude, rtol=1e-10, atol=1e-14)
+    np.testing.assert_array_equal(maps[0].regime, maps[1].regime)
+
+
+def square_wave(case, r, order=20001):
+    """Harmonics n of the square wave, and what they make of z in place of a mass 1/c^T M^-1 c alone.
+
+    Of a square wave that is 1 from tau = 0 to pi, reversed after it; phasors of e^{i n tau}.
+    """
+    matrices, c = system(case).matrices, system(case).contact_vector
+    M, K, C = matrices.mass, matrices.stiffness, matrices.damping
+    n = np.arange(1, order, 2)
+    dynamic = K - (n * r)[:, None, None] ** 2 * M + 1j * (n * r)[:, None, None] * C
+    compliance = np.linalg.solve(dynamic, np.broadcast_to(c[:, None], (n.size, c.size, 1)))[..., 0] @ c
+    alone = -(c @ np.linalg.solve(M, c)) / (n * r) ** 2
+    return n, 4.0 / (np.pi * n) / 1j * (compliance - alone)
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("r", [0.31, 0.8, 1.7])
+def test_response_functions_and_boundaries(case, r):
+    """Against a sum of 10^4 harmonics; of the mass alone it is known, and its acceleration is the step's."""
+    ds = fm.boundaries(system(case), [r], [1.0, 1.4]).squeeze()
+    n, wave = square_wave(case, r)
+    step = system(case).modes.inverse_mass / r**2
+
+    def velocity(tau):
+        """h', the answer's; of the mass alone a triangle wave."""
+        return np.real((1j * n * wave) @ np.exp(1j * np.outer(n, tau))) + step * (tau - 0.5 * np.pi)
+
+    np.testing.assert_allclose(ds.G, -wave.sum().real, atol=1e-11)
+    np.testing.assert_allclose(ds.U, -velocity(np.zeros(1))[0], atol=1e-8)
+    bends = np.real(-(n**2) * wave)
+    np.testing.assert_allclose(ds.H, bends.sum() + bends[-1] * n[-1] / 2.0, rtol=1e-7, atol=1e-7)
+    tau = np.linspace(0.0, np.pi, 1501)[5:-5]
+    bracket = (float(ds.U) * np.cos(tau) + velocity(tau)) / np.sin(tau)
+    largest = max(bracket.max(), float(ds.H) + step)
+    assert largest * (1.0 - 1e-6) < float(ds.S) < largest + 1e-4 * abs(largest)
+    # V and the load in the held contact, by the matrices as they are
+    matrices, c = system(case).matrices, system(case).contact_vector
+    base = system(case).base_motion
+    dynamic = matrices.stiffness - r * r * matrices.mass + 1j * r * matrices.damping
+    load = system(case).modes.load
+    v = c @ np.linalg.solve(dynamic, load) - base
+    np.testing.assert_allclose(complex(ds.V, ds.V_imag), v, rtol=1e-12)
+    bordered = np.block([[dynamic, c[:, None]], [c[None], np.zeros((1, 1))]])
+    held = np.linalg.solve(bordered, np.append(load, base))
+    np.testing.assert_allclose(ds.beta_stick, abs(held[-1]) / ds.mu, rtol=1e-12)
+    largest = np.maximum(ds.S, ds.H + ds.mu * step)
+    np.testing.assert_allclose(ds.beta_lim, abs(v) / np.hypot(ds.U, largest), rtol=1e-12)
+    assert np.isnan(ds.beta_lim_modal).all()
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_motions_in_time(case):
+    """Equations of motion, works and velocities of a response, and the map's multiplier."""
+    matrices, mu = system(case).matrices, CASES[case][5]
+    for r, beta in ((0.45, 0.1), (0.7, 0.15)):
+        ds = fm.response(system(case), r, beta, mu, points=4000)
+        if ds.regime == regimes.PERMANENT_STICKING:
+            continue
+        tau, x, v = ds.tau.values, ds.x.values, ds.v.values
+        np.testing.assert_allclose(
+            np.gradient(x, tau, axis=1)[:, 1:-1], v[:, 1:-1], atol=5e-4 * np.abs(v).max()
+        )
+        base = system(case).base_motion
+        np.testing.assert_allclose(system(case).contact_vector @ x - base * np.cos(tau), ds.z, atol=1e-12)
+        lost = r * np.trapezoid(np.einsum("it,ij,jt->t", v, matrices.damping, v), tau) / int(ds.period)
+        assert float(ds.work_damping) == pytest.approx(lost, rel=1e-6)
+        balance = float(ds.work_input - ds.work_friction - ds.work_damping)
+        assert abs(balance) < 1e-12 * float(ds.work_input)
+        assert (
+            0.0
+            < float(fm.sweep(system(case), r, beta, mu, outputs=["multiplier"]).multiplier.squeeze())
+            < 1.0
+        )
+
+
+def test_modal_damping_is_a_case(monkeypatch):
+    """The way of coupled damping with a matrix that couples nothing but for 1e-13."""
+    damping = 0.04 * CHAIN["M"] + 0.03 * CHAIN["K"]
+    given = {"contact_masses": [2], "load_mass": 3, "frequency_scale": 1.0}
+    modal = fm.System(matrices={**CHAIN, "C": damping}, **given)
+    general = fm.System(matrices={**CHAIN, "C": damping}, **given)
+    m = modal.modes
+    parts = {name: getattr(m, name) for name in ("contact", "load", "base_motion", "mass", "stiffness")}
+    model = coupled_model(m.w, m.phi, damping, False, parts)
+    tiny = np.full((3, 3), 1e-13) - np.diag(np.full(3, 1e-13))
+    model = CoupledModel(
+        **{**{f: getattr(model, f) for f in model.__dataclass_fields__}, "coupling": model.coupling + tiny}
+    )
+    monkeypatch.setitem(general.__dict__, "modes", model)
+    assert model.free.coupled
+    assert not modal.modes.free.coupled
+    r, beta = np.linspace(0.3, 2.2, 9), np.linspace(0.05, 0.8, 7)
+    one, other = (fm.sweep(s, r, beta, 1.5, outputs=OUTPUTS) for s in (modal, general))
+    for name in OUTPUTS:
+        np.testing.assert_allclose(one[name], other[name], rtol=2e-11, atol=1e-12, err_msg=name)
+    one, other = (fm.boundaries(s, r) for s in (modal, general))
+    for name in ("beta_lim", "beta_stick", "U", "G", "H", "S", "V", "V_imag"):
+        np.testing.assert_allclose(one[name], other[name], rtol=1e-11, atol=1e-12, err_msg=name)
+
+
+def test_what_is_not_known_of_coupled_damping():
+    for ask in (
+        lambda s: fm.continuous_motion(s, 0.8, 0.01),
+        lambda s: fm.features.invariant_points(s, 0.3, 2.0),
+        lambda s: steady_states(s, np.array([0.8]), np.array([0.01]), 1.0),
+    ):
+        with pytest.raises(
+            fm.InputError, match=r"C must be diagonal in the undamped modes for .* couples them by"
+        ):
+            ask(system("wall"))
+    assert "limit_amplitude" not in fm.curves(system("wall"), [0.8], [0.1], quantities=["amplitude"])
+    assert np.isnan(fm.features.peak_thresholds(system("wall"))).all()
+    assert "damping that couples modes" in system("wall").describe()

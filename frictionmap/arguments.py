@@ -22,8 +22,10 @@ Exact regime maps of a vibrating structure with one dry-friction contact: does i
 stick and slip, or stick for good, over frequency ratio r, friction ratio beta and static/kinetic ratio mu?"""
 
 _EPILOG = """\
-example:
-  frictionmap map configs/fig-3-12.toml && frictionmap plot fig-3-12.nc
+to begin with:
+  frictionmap init                                           a configuration, map.toml
+  frictionmap explore map.toml                               its map in a browser
+  frictionmap map map.toml && frictionmap plot map.nc        the same as files
 
 exit status: 0 done, 2 the input is at fault, 130 interrupted (also by termination), 1 anything else"""
 

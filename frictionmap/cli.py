@@ -194,6 +194,7 @@ def _explore(options: Options) -> None:
     """Serve the page until an interrupt, or write it as a file."""
     from .explorer.scene import scene_of
     from .files.config import load_config
+    from .interrupts import before_exit
 
     config = load_config(options.config, options.overrides, lambda *_: None)  # the page has its own grid
     scene = scene_of(config)
@@ -204,6 +205,7 @@ def _explore(options: Options) -> None:
 
     server = open_server(scene, options.port)
     begin(server)
+    before_exit(lambda: "the page is closed")
     _print(f"{scene.title} at {server.url} until Ctrl-C")
     if not options.no_browser:
         show(server.url)
@@ -310,7 +312,7 @@ def _init(options: Options) -> None:
         from .files.template import starting_configuration
 
         texts = {path: starting_configuration(path.stem, options.contact or CONTACTS[0])}
-        then = f"frictionmap map {path} && frictionmap plot {path.stem}.nc"
+        then = f"frictionmap explore {path}, or frictionmap map {path} && frictionmap plot {path.stem}.nc"
     with contextlib.ExitStack() as places:
         outputs = [
             places.enter_context(claimed(place, options.overwrite, name="NAME.toml")) for place in texts

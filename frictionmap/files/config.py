@@ -125,7 +125,8 @@ def read_tree(path: str | Path, overrides: Sequence[str] = ()) -> tuple[dict, st
     try:
         text = path.read_bytes().decode("utf-8-sig")  # some editors put a mark at the beginning
     except UnicodeDecodeError:
-        raise InputError(f"configuration {path} must be text in UTF-8; it is not") from None
+        hint = "; results are read by frictionmap plot, info and export" if path.suffix == ".nc" else ""
+        raise InputError(f"configuration {path} must be text in UTF-8; it is not{hint}") from None
     except (OSError, ValueError) as error:  # a name with a null character is a ValueError
         reason = getattr(error, "strerror", None) or error
         raise InputError(

@@ -69,6 +69,11 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
     if not store and not path.is_file():
         wrong = "is not a file" if path.exists() else "does not exist"
         raise InputError(f"file {path} {wrong}; give a file written by frictionmap")
+    if path.suffix == ".toml":
+        raise InputError(
+            f"file {path} must be NetCDF written by frictionmap; a configuration is computed first, "
+            f"as by frictionmap map {path}"
+        )
     # no value of ours is a time, whatever the units say
     options: dict = {"engine": "netcdf4"}
     if store:

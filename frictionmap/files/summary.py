@@ -142,7 +142,7 @@ def header_lines(ds: xr.Dataset, what: str) -> list[str]:
 
 def axis_lines(ds: xr.Dataset) -> list[str]:
     """Every axis, and what goes with one."""
-    return ["axes", *(line for name in ds.coords for line in _entry(str(name), _axis(ds[name].values)))]
+    return ["axes", *(line for name in ds.coords for line in _entry(str(name), _axis(ds[name])))]
 
 
 def variable_lines(ds: xr.Dataset) -> list[str]:
@@ -198,14 +198,16 @@ def _named(variable: xr.DataArray, further: Sequence[str] = ()) -> str:
     return begin + meaning
 
 
-def _axis(values: np.ndarray) -> str:
+def _axis(axis: xr.DataArray) -> str:
+    values = axis.values
     if values.dtype.kind == "U":
         return ", ".join(np.atleast_1d(values))
+    unit = axis.attrs.get("units", "1")
+    beside = "" if unit == "1" else f" {_printable(str(unit))}"
     if values.size <= _SHOWN:
-        return _numbers(values)
-    return (
-        f"{values.min():g} to {values.max():g}, {values.size:,} values"  # those beside an axis in any order
-    )
+        return _numbers(values) + beside
+    ends = f"{values.min():g} to {values.max():g}"  # of what stands beside an axis, in any order
+    return f"{ends}{beside}, {values.size:,} values"
 
 
 def _numbers(values: np.ndarray) -> str:
@@ -256,7 +258,15 @@ def _motion(ds: xr.Dataset) -> Iterator[str]:
 
 
 def _stops(stops: np.ndarray) -> Iterator[str]:
-    if (stops > 0).any():
-        values, counts = np.unique(stops[stops > 0], return_counts=True)
-        shown = ", ".join(f"{v:.4g}: {c:,}" for v, c in zip(values[:12], counts[:12], strict=True))
-        yield f"cells by stops per cycle  {shown}{' ...' if values.size > 12 else ''}"
+    """How many cells stop how often: whole numbers one by one, broken ones together."""
+    found = stops[stops > 0]
+    whole = found == np.rint(found)
+    values, counts = np.unique(found[whole], return_counts=True)
+    told = [f"{v:.0f}: {c:,}" for v, c in zip(values[:12], counts[:12], strict=True)]
+    if values.size > 12:
+        told.append(f"more, to {values[-1]:.0f}: {counts[12:].sum():,}")
+    if not whole.all():
+        broken = found[~whole]
+        told.append(f"not whole, {broken.min():.4g} to {broken.max():.4g}: {broken.size:,}")
+    if told:
+        yield f"cells by stops per cycle  {', '.join(told)}"

@@ -36,6 +36,7 @@ _STARTS = {
 _HEAD = """\
 # Try it as it stands:
 #
+#     frictionmap explore {name}.toml
 #     frictionmap map {name}.toml && frictionmap plot {name}.nc
 #
 # Above each key: what it means, and what is legal.  A line such as #cycles = 2000 shows the default, where

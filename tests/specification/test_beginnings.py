@@ -55,7 +55,8 @@ def test_a_configuration_to_begin_with_runs_as_it_stands(contact, tmp_path, monk
     monkeypatch.chdir(tmp_path)
     assert main(["init", "--contact", contact]) == 0
     told = capsys.readouterr().out
-    assert told == "wrote map.toml; next: frictionmap map map.toml && frictionmap plot map.nc\n"
+    then = "frictionmap explore map.toml, or frictionmap map map.toml && frictionmap plot map.nc"
+    assert told == f"wrote map.toml; next: {then}\n"
     assert load_config("map.toml").system.contact == contact
     coarse = ["--set", "grid.r.step=0.31", "--set", "grid.beta.num=4"]  # seconds of it, not all
     assert main(["map", "map.toml", *coarse]) == 0

@@ -239,12 +239,14 @@ def test_bad_configuration(folder, capsys, text, words):
 def test_configurations_that_cannot_be_read(folder, capsys, command):
     command, *more = command.split()
     (folder / "latin.toml").write_bytes('title = "é"'.encode("latin-1"))
+    (folder / "result.nc").write_bytes(b"\x89HDF\r\n")
     (folder / "a folder").mkdir()
     for name, word in (
         ("missing.toml", "No such file or directory"),
         ("a folder", "directory"),
         ("good.toml/x.toml", "Not a directory"),
         ("latin.toml", "must be text in UTF-8"),
+        ("result.nc", "results are read by frictionmap plot, info and export"),
     ):
         assert_refused(capsys, folder, [command, name, *more], f"configuration {name} ", word)
 
@@ -364,6 +366,8 @@ def test_files_of_others(folder, capsys):
             ("undecodable.nc", "its source is 'not given'"),
         ):
             assert_refused(capsys, folder, [command, name], f"file {name} must be", word)
+        first = "computed first, as by frictionmap map good.toml"
+        assert_refused(capsys, folder, [command, "good.toml"], "file good.toml must be NetCDF", first)
 
 
 OUTPUT_COMMANDS = [

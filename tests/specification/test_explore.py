@@ -654,7 +654,7 @@ def test_the_command_serves_until_an_interrupt(tmp_path, sent):
     process.send_signal(sent)
     out, err = process.communicate(timeout=HANG)
     assert (process.returncode, out) == (130, "")
-    assert err == "frictionmap: interrupted; nothing was written\n"
+    assert err == "frictionmap: interrupted; the page is closed\n"
 
 
 def test_a_port_that_is_taken(tmp_path, capsys, one):

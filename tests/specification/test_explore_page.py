@@ -320,6 +320,21 @@ def test_pointing_at_a_cell_shows_its_motion(browser, one):
             assert page.evaluate(DRAWN, canvas) > 10, canvas
 
 
+def test_a_motion_that_takes_long_is_waited_for(browser, one):
+    with page_of(browser, one.url) as page:
+        page.mouse.move(*point(page, 0.15, 0.4))
+        page.wait_for_selector("#motion .others:not([hidden])")
+        page.route("**/motion?**", lambda route: None)
+        page.mouse.move(*point(page, 0.5, 0.1))
+        page.wait_for_selector("#motion .hint")  # and no numbers of the cell before
+        r, beta = re.findall(r"[0-9.]+[0-9]", page.inner_text("#motion"))
+        assert page.inner_text("#motion") == f"Computing the motion at r = {r}, β = {beta}."
+        assert (float(r), float(beta)) == pytest.approx((1.0, 0.12), abs=0.02)
+        page.unroute("**/motion?**")  # what was kept waiting goes on
+        page.wait_for_selector("#motion tbody tr")
+        assert page.inner_text("#motion .where") == f"r = {r}, β = {beta}"
+
+
 def test_a_cell_is_kept_in_the_address(browser, one):
     with page_of(browser, f"{one.url}#mu=1.5&r=0.2,0.5&beta=0.5,1") as page:
         r, beta = 0.303, 0.76
@@ -372,12 +387,25 @@ def test_what_is_outdated_is_given_up(browser, tmp_path):
             assert not server.page.jobs._running
 
 
+def test_the_whole_legend_is_seen_on_a_laptop(browser, one):
+    with page_of(browser, f"{one.url}#mu=1.5", viewport={"width": 1280, "height": 800}) as page:
+        assert page.locator("#legend > span").count() > 8
+        low, high = page.evaluate(
+            """() => ["#legend", "#legend > span:last-child"]
+                 .map((name) => document.querySelector(name).getBoundingClientRect().bottom).reverse()"""
+        )
+        assert low <= high <= 800
+
+
 def test_what_is_wrong_is_told_in_a_line(browser, one):
     with page_of(browser, one.url) as page:
         page.fill("input[type=number][name=mu]", "0.5")
         page.keyboard.press("Enter")
         page.wait_for_selector("#told.wrong")
         assert page.inner_text("#told") == "mu must be >= 1; got 0.5"
+        page.fill("input[type=number][name=mu]", "")
+        page.keyboard.press("Enter")
+        assert page.input_value("input[type=number][name=mu]") == "0.5"
         page.fill("input[type=number][name=mu]", "1.2")
         repainted(page, lambda: page.keyboard.press("Enter"))
         assert page.is_hidden("#told")
@@ -407,7 +435,7 @@ def test_compiling_is_said(browser, one):
         )
         page.click("[data-zoom=in]")
         page.wait_for_function("() => document.querySelector('#told').innerText.includes('compiling')")
-        assert page.inner_text("#told") == "compiling kernels, once on this machine: 12 s"
+        assert page.inner_text("#told") == "compiling kernels, once on this machine: 12 s so far"
         page.unroute("**/state?**")
         page.unroute("**/map?**")
         page.wait_for_selector(DONE)  # what was kept waiting goes on

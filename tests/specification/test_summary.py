@@ -149,3 +149,21 @@ def test_what_a_file_says_cannot_move_the_cursor(datasets):
     assert text.splitlines()[0] == "two lines ?[2J [map]"
     assert len(text.splitlines()) <= HEIGHT
     assert all(len(line) <= WIDTH for line in text.splitlines())
+
+
+def stops_line(ds):
+    (line,) = [line for line in describe_file(ds).splitlines() if line.startswith("cells by stops")]
+    return line.removeprefix("cells by stops per cycle  ")
+
+
+def test_cells_by_stops_are_all_counted(datasets):
+    ds = datasets["map"].isel(r=[2] * 40, beta=[0]).assign_coords(r=np.linspace(0.5, 2.5, 40))
+    ds["stops_per_cycle"] = ds["stops_per_cycle"].copy(data=np.full(ds["stops_per_cycle"].shape, np.nan))
+    stops = ds["stops_per_cycle"].values.reshape(-1)
+    stops[:5] = [0.0, 2.0, 0.8, 2.0, 1.25]
+    assert stops_line(ds) == "2: 2, not whole, 0.8 to 1.25: 2"
+    stops[10:24] = 2.0 * np.arange(1, 15)
+    told = ", ".join(f"{2 * k}: {1 + 2 * (k == 1)}" for k in range(1, 13))
+    assert stops_line(ds) == f"{told}, more, to 28: 2, not whole, 0.8 to 1.25: 2"
+    stops[:] = 1.5
+    assert stops_line(ds) == "not whole, 1.5 to 1.5: 80"

@@ -113,7 +113,7 @@ export class Controls {
       const value = key === "mu" ? view.mu : view.numbers[key] ?? slider.value;
       range.value = places ? places.indexOf(value) : Math.round(STEPS * shareAt(slider, value));
       range.ariaValueText = short(value);
-      if (document.activeElement !== number) number.value = Number(value.toPrecision(8));
+      if (document.activeElement !== number || !number.value) number.value = Number(value.toPrecision(8));
     }
   }
 }

@@ -73,6 +73,7 @@ class Page {
     this.map.names = { r: "frequency ratio r = ω/ω₁", beta: `friction ratio β = ${scene.units.beta}` };
     this.marks = scene.marks;
     this.map.seconds = secondsOf(scene.physical);
+    this.hint = part("motion").innerText;
     this.motion = new MotionPanel(part("motion"), scene);
     this.cut = new CutPanel(part("cut"), scene, () => this.change({ cut: "" }));
     this.refiner = new Refiner(source, (found, view) => this.#onPicture(found, view), (state) => this.#onState(state));
@@ -264,7 +265,7 @@ class Page {
       const { compiling } = await this.source.state();
       if (compiling.seconds) {
         this.compiled = true;
-        this.#tell(`compiling kernels, once on this machine: ${Math.round(compiling.seconds)} s`);
+        this.#tell(`compiling kernels, once on this machine: ${Math.round(compiling.seconds)} s so far`);
       } else if (this.compiled) {
         this.compiled = false;
         this.#tell("");
@@ -297,7 +298,7 @@ class Page {
   #pick(cell) {
     if (cell && !this.source.live) this.#tellStored(cell);
     this.change({ cell: cell && [cell.r, cell.beta], cut: cell ? this.view.cut : "" });
-    if (!cell && this.source.live) this.motion.tell("Point at the map to see the motion there; click to keep it.");
+    if (!cell && this.source.live) this.motion.tell(this.hint);
   }
 
   /** The next cell by keys: some pixels on from the one that is kept, or from the middle. */
@@ -309,11 +310,25 @@ class Page {
   }
 
   async #fetchMotion(cell, kept) {
-    const motion = await this.#waiting(this.source.motion(this.view, this.scene, cell));
+    const motion = await this.#slowly(this.source.motion(this.view, this.scene, cell), cell, kept);
     if (kept !== Boolean(this.view.cell)) return;
     this.motion.show(motion, this.scene.classes[motion.class], kept);
     requestAnimationFrame(() => part("motion").dispatchEvent(new CustomEvent("painted", { detail: { r: motion.r, beta: motion.beta } })));
     this.rest(cell);
+  }
+
+  /** A motion that takes long: no other cell's stands beside the map until it is there. */
+  async #slowly(motion, [r, beta], kept) {
+    const place = `r = ${short(r)}, β = ${short(beta)}`;
+    const slow = setTimeout(() => kept === Boolean(this.view.cell) && this.motion.tell(`Computing the motion at ${place}.`), SLOW);
+    try {
+      return await this.#waiting(motion);
+    } catch (error) {
+      if (!this.motion.motion) this.motion.tell(this.hint);
+      throw error;
+    } finally {
+      clearTimeout(slow);
+    }
   }
 
   async #fetchOthers(cell) {

@@ -138,7 +138,8 @@ def _run(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None)
             if not running:
                 return
             pause = None if watch is None else _WATCHED
-            for future in wait(running, pause, return_when=FIRST_COMPLETED).done:
+            ended = wait(running, pause, return_when=FIRST_COMPLETED).done
+            for future in sorted(ended, key=running.__getitem__):  # as they began: progress tells of them
                 future.result()
                 done(running.pop(future))
             if watch is not None:

@@ -493,7 +493,11 @@ def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
             return seen[np.ix_(*places)]
 
         np.testing.assert_array_equal(middles(), maps(1.0, 0.0))
+        page.mouse.click(*point(page, 0.2, 0.7))  # r = 0.4, beta = 0.84: beta_stick is 1/mu
+        assert "stops" in page.inner_text("#motion")
         repainted(page, lambda: page.evaluate(MOVE, ["mu", 1]))
+        assert "permanent sticking" in page.inner_text("#motion")
+        page.keyboard.press("Escape")
         repainted(page, lambda: page.evaluate(MOVE, ["damping_ratios", 1]))
         mu, zeta = (
             float(page.input_value(f"input[type=number][name={name}]")) for name in ("mu", "damping_ratios")

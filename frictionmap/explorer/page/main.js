@@ -202,6 +202,10 @@ class Page {
   #onPicture(found, view) {
     this.map.show(found);
     if (found.whole) legend(part("legend"), found, this.scene, view, this.marks);
+    if (view.cell && !this.source.live) {
+      const kept = this.map.cellAt(this.map.x(view.cell[0]), this.map.y(view.cell[1]));
+      if (kept) this.#tellStored(kept); // another system may do something else there
+    }
     const detail = { columns: found.columns, rows: found.rows, whole: found.whole };
     this.map.stage.dataset.cells = `${found.columns} ${found.rows}`;
     requestAnimationFrame(() => {

@@ -32,6 +32,7 @@ QUOTED = (
     "faults",
     "large",
     "coupling",
+    "explore",
 )
 
 #: What `faults` found in an earlier state, quoted beside what it finds.
@@ -252,6 +253,25 @@ def _mass_rows(structures: dict) -> Iterator[tuple[str, ...]]:
     )
 
 
+# ---------------------------------------------------------------- the page in the browser
+
+
+def _explore_lines(explore: dict) -> list[str]:
+    rows = [
+        (scene, what, *(duration(1e-3 * spread[name]) for name in ("median", "least", "most")))
+        for scene, measured in explore["milliseconds"].items()
+        for what, spread in measured.items()
+    ]
+    return [
+        "",
+        "### The page in the browser",
+        "",
+        f"`frictionmap explore` in headless Chromium {explore['browser']}, a map of {explore['pixels']} pixels "
+        "each way.  Loaded: by a new server; loaded again: by one that has shown it before.",
+        *markdown(("scene", "from and to", "median", "least", "most"), rows),
+    ]
+
+
 # ---------------------------------------------------------------- coupling
 
 
@@ -324,6 +344,8 @@ def block(results: Path) -> str:
             lines += quote(found[name])
     if "faults" in found:
         lines += faults_lines(found["faults"], found.get(BEFORE))
+    if "milliseconds" in found.get("explore", {}):  # there was a browser
+        lines += _explore_lines(found["explore"])
     if "coupling" in found:
         lines += _coupling_lines(found["coupling"])
     growth = list(_scaling_rows(found["scaling"])) if "scaling" in found else []

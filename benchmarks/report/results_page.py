@@ -266,8 +266,8 @@ def _explore_lines(explore: dict) -> list[str]:
         "",
         "### The page in the browser",
         "",
-        f"`frictionmap explore` in headless Chromium {explore['browser']}, a map of {explore['pixels']} pixels "
-        "each way.  Loaded: by a new server; loaded again: by one that has shown it before.",
+        f"`frictionmap explore` in headless Chromium {explore['browser']}, {explore['pixels']} pixels each "
+        "way.  Loaded: by a new server; loaded again: by one that has shown it before.",
         *markdown(("scene", "from and to", "median", "least", "most"), rows),
     ]
 

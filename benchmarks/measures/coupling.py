@@ -1,9 +1,9 @@
 """What it costs to leave out the coupling of modes by damping: how wrong amplitudes and stops become.
 
-The package takes damping that the undamped modes diagonalise.  Random chains whose springs have loss factors
-of their own, or that have one dashpot, are marched with their whole C1 by `references/naive.py`; the package
-is given the diagonal of C1 in the modes, as damping ratios.  Cells lie between 5 and 95 % of the sticking
-boundary, mu = 1, at frequencies up to past the highest mode.
+Why a damping matrix is taken whole.  Random chains whose springs have loss factors of their own, or that have
+one dashpot, are marched with their whole C1 by `references/naive.py`; the package is given the diagonal of C1
+in the modes, as damping ratios.  Cells lie between 5 and 95 % of the sticking boundary, mu = 1, at
+frequencies up to past the highest mode.
 """
 
 from pathlib import Path

@@ -84,3 +84,11 @@ export function sharp(canvas) {
   pen.clearRect(0, 0, width, height);
   return { pen, width, height };
 }
+
+/** Draw in an area only, until the pen is restored. */
+export function keepTo(pen, { x, y, width, height }) {
+  pen.save();
+  pen.beginPath();
+  pen.rect(x, y, width, height);
+  pen.clip();
+}

@@ -1,6 +1,6 @@
 // Small charts: lines over two axes, bars, and what lies behind them.
 
-import { colour, logTicks, sharp, short, ticks } from "./axes.js";
+import { colour, keepTo, logTicks, sharp, short, ticks } from "./axes.js";
 
 const FONT = "11px system-ui, sans-serif";
 
@@ -36,10 +36,7 @@ export function draw(canvas, chart) {
     pen.fillRect(x(band.from), area.y, Math.max(0.5, x(band.to) - x(band.from)), area.height);
   }
   drawGrid(pen, chart, area, x, y);
-  pen.save();
-  pen.beginPath();
-  pen.rect(area.x, area.y, area.width, area.height);
-  pen.clip();
+  keepTo(pen, area);
   drawBars(pen, chart, area, x, y);
   for (const line of chart.lines ?? []) drawLine(pen, line, x, y, area);
   pen.restore();

@@ -1,6 +1,6 @@
 // The map: pictures of cells under axes, boundaries and the cells that are pointed at.
 
-import { colour, sharp, ticks } from "./axes.js";
+import { colour, keepTo, sharp, ticks } from "./axes.js";
 
 /** Room for numbers and names around the cells, in pixels of the style sheet. */
 const ROOM = { left: 64, right: 16, top: 18, bottom: 50 };
@@ -105,10 +105,7 @@ export class RegimeMap {
   /** All pictures, each where it belongs in the present view. */
   #drawCells(pen) {
     const { area } = this;
-    pen.save();
-    pen.beginPath();
-    pen.rect(area.x, area.y, area.width, area.height);
-    pen.clip();
+    keepTo(pen, area);
     pen.fillStyle = colour("back");
     pen.fillRect(area.x, area.y, area.width, area.height);
     pen.imageSmoothingEnabled = false;
@@ -136,11 +133,7 @@ export class RegimeMap {
     const known = this.pictures.filter((picture) => picture.whole || picture.lines);
     const picture = known.at(-1) ?? this.picture;
     if (!picture) return;
-    const { area } = this;
-    pen.save();
-    pen.beginPath();
-    pen.rect(area.x, area.y, area.width, area.height);
-    pen.clip();
+    keepTo(pen, this.area);
     for (const [name, { dash }] of Object.entries(LINES)) {
       const path = this.#path(picture, (picture.lines ?? picture.limits)[name]);
       for (const [width, ink, dashes] of [[3.6, "rgb(255 255 255 / 0.75)", []], [1.5, "#000", dash]]) {
@@ -248,11 +241,7 @@ export class RegimeMap {
   }
 
   #drawPointers(pen) {
-    const { area } = this;
-    pen.save();
-    pen.beginPath();
-    pen.rect(area.x, area.y, area.width, area.height);
-    pen.clip();
+    keepTo(pen, this.area);
     if (this.kept) this.#ring(pen, this.kept, true);
     if (this.hovered) this.#ring(pen, [this.hovered.r, this.hovered.beta], false);
     if (this.box) {

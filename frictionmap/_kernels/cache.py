@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 
 from numba.core import sigutils
 from numba.core.compiler import CompileResult, compile_result
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
 from .cache_folders import ENDING, UNDER_WAY, folders, places, state
@@ -164,7 +165,9 @@ class KernelCache:
 
     def load_overload(self, signature: object, target_context: Any) -> CompileResult | None:
         """The compiled kernel for a signature, or None: then it is compiled."""
-        target_context.refresh()
+        # a kernel that is loaded may count references; numba's own cache has all registries of the compiler
+        # loaded here, which take as long as all the rest of a first map
+        rtsys.initialize(target_context)
         key, name = self._key(signature, target_context.codegen())
         data = _find(name, key)
         library = _library(target_context.codegen(), name, key, data) if data is not None else None

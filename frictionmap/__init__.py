@@ -10,11 +10,11 @@ _kernels       the only home of jitted code: numbers and arrays in, numbers and 
 model          what is simulated: system, matrices, modes, the structure held at its
                contact, settings of the solver
 units          units of measurement: their table, `Units`, axes in hertz and newtons
-datasets       what a dataset holds: labels, schema, provenance
+datasets       what a dataset holds: labels, variables, schema, provenance
 roots          the search for all roots of functions with poles
 features       limits, peak thresholds, invariant points, quasi-static displacement
-theory         closed forms over frequency: `boundaries`, `continuous_motion`
-steady         steady states: cells, maps (plan, run), `sweep`, `curves`, `response`; what a map costs
+theory         closed forms over frequency: `boundary_curves`, `boundaries`, `continuous_motion`
+steady         steady states: cells, maps (plan, run), `sweep`, `curves`, `motion`, `response`; what a map costs
 files          configurations; places of output, storage, reading; files in words
 probabilities  many samples of an uncertain structure as probabilities
 stores         maps block by block into a zarr store, in this process or on workers

@@ -27,7 +27,7 @@ from matplotlib.axes import Axes
 import frictionmap as fm
 from frictionmap import regimes
 from frictionmap.model.settings import Solver
-from frictionmap.theory.boundaries import find_curves
+from frictionmap.theory.boundary_curves import find_curves
 
 from ..peers.body import TWO_PI, load_in_contact
 from ..peers.cvode import OneMassCvode

@@ -39,7 +39,7 @@ from frictionmap._kernels.engine.motion import at_frequency, contact_at, start
 from frictionmap._kernels.engine.one_mass import Frequencies, OneMassSystem
 from frictionmap.model.settings import Solver
 from frictionmap.steady.maps import Arrays
-from frictionmap.theory.boundaries import one_mass_curves
+from frictionmap.theory.boundary_curves import one_mass_curves
 
 from ..peers.body import Body, Cell, Outcome
 from ..peers.heyoka import OneMassHeyoka

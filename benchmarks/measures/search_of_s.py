@@ -16,7 +16,7 @@ import frictionmap as fm
 from frictionmap._kernels.boundary.functions import response_functions
 from frictionmap._kernels.boundary.structure import many_mode_functions
 from frictionmap._kernels.closed_form import damping_functions
-from frictionmap.theory.boundaries import find_curves
+from frictionmap.theory.boundary_curves import find_curves
 
 from ..references import closed_forms
 from ..report.record import spread, timed

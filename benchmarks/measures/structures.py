@@ -33,7 +33,7 @@ from frictionmap._kernels.structure.state import make_structure
 from frictionmap.model.settings import Solver
 from frictionmap.steady.cells import Cells
 from frictionmap.steady.maps import Arrays
-from frictionmap.theory.boundaries import many_mode_curves, one_mass_curves
+from frictionmap.theory.boundary_curves import many_mode_curves, one_mass_curves
 
 from ..peers.body import Body, Cell, Outcome
 from ..peers.heyoka import ChainHeyoka

@@ -8,21 +8,13 @@ import xarray as xr
 
 from ..units.axes import KINDS, typed
 from ..units.scales import Scales
-from ..units.table import UNITS
-from .labels import MEASURES, SCALES, attributes, coordinate, in_si, labels_of
+from ..units.table import UNITS, handy_unit
+from .labels import MEASURES, SCALES, attributes, in_si, labels_of
 from .schema import kind
+from .variables import coordinate
 
 #: The coordinate that tells an axis in its SI unit.
 BESIDE_OF = {"r": "frequency", "beta": "friction_force"}
-
-#: Units that pictures and words choose from, and the size in the SI unit from which each is handy.
-_HANDY = {
-    "frequency": {"Hz": 0.0, "kHz": 1e4},
-    "force": {"mN": 0.0, "N": 0.1, "kN": 1e4},
-    "length": {"um": 0.0, "mm": 1e-4, "m": 1.0},
-    "time": {"ms": 0.0, "s": 1.0},
-    "work": {"mJ": 0.0, "J": 0.1},
-}
 
 
 def with_units(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
@@ -91,8 +83,3 @@ def in_words(ds: xr.Dataset) -> str:
             unit = handy_unit(float(ds.attrs[name]), measure)
             parts.append(f"{said[measure]} {float(ds.attrs[name]) / float(UNITS[unit].size):.6g} {unit}")
     return ", ".join(parts)
-
-
-def handy_unit(size: float, measure: str) -> str:
-    """The unit of frequency, force, length, time or work in which a size in SI units is a handy number."""
-    return [unit for unit, least in _HANDY[measure].items() if size >= least][-1]

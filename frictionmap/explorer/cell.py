@@ -5,15 +5,14 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from .. import regimes
 from ..errors import NoSteadyState
 from ..model.settings import Output, Start
 from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
-from ..steady.response import response
-from ..steady.sweep import sweep
+from ..steady.maps import solve_map
+from ..steady.motion import Motion, Question, find_motion
 from .views import View
 
 #: Samples per excitation period: a curve a few hundred pixels wide is smooth with them.
@@ -65,77 +64,76 @@ def motion(view: View, r: float, beta: float) -> Packet:
 
     Where there is no steady state, the header says why under `none`, and there are no arrays.
     """
+    # what a map is asked for beside the motion would take as long again
+    solver = replace(view.solver, outputs=("regime",))
     try:
-        ds = response(view.system, r, beta, view.mu, solver=_plain(view), points=_SAMPLES)
+        found = find_motion(Question(view.system, r, beta, view.mu, solver, _SAMPLES))
     except NoSteadyState as error:
         return {"r": r, "beta": beta, "class": UNRESOLVED, "none": str(error)}, {}
-    regime = int(ds["regime"])
-    entries, numbers = _listed(ds)
+    told = _numbers(found)
+    regime, stops = (np.array([told[name]]) for name in ("regime", "stops_per_cycle"))
+    entries, numbers = _listed(view.system.n, told)
     header = {
         "r": r,
         "beta": beta,
-        "class": int(
-            of_cells(*(np.atleast_1d(ds[name].values) for name in ("regime", "stops_per_cycle")))[0]
-        ),
-        "regime": next(code.name for code in regimes.REGIMES if code.value == regime),
-        "told": in_words(ds),
+        "class": int(of_cells(regime, stops)[0]),
+        "regime": next(code.name for code in regimes.REGIMES if code.value == regime[0]),
+        "told": in_words(beta, told),
         "entries": [entry._asdict() for entry in entries],
-        "comment": ds.attrs.get("comment", ""),
+        "comment": found.comment,
     }
-    return header, {**curves_of(view, ds), "numbers": np.array(numbers)}
+    return header, {**curves_of(view, found), "numbers": np.array(numbers)}
 
 
-def _plain(view: View) -> Any:
-    """The solver for a motion alone: what a map is asked for beside it would take as long again."""
-    return replace(view.solver, outputs=("regime",))
+def _numbers(found: Motion) -> dict[str, Any]:
+    """The numbers of a cell, as a dataset would have them."""
+    limits = {name: float(getattr(found.curves, name)[0, 0]) for name in ("beta_lim", "beta_stick")}
+    return {**found.cycle, **found.summary, **limits}
 
 
-def _listed(ds: xr.Dataset) -> tuple[list[Entry], list[float]]:
+def _listed(masses: int, told: Mapping[str, Any]) -> tuple[list[Entry], list[float]]:
     """What there is to list of a cell, and the numbers; of masses one by one."""
     entries: list[Entry] = []
     numbers: list[float] = []
-    stuck = int(ds["regime"]) == regimes.PERMANENT_STICKING
-    one = ds.sizes["dof"] == 1
+    stuck = told["regime"] == regimes.PERMANENT_STICKING
     for entry in _ENTRIES:
         if stuck and entry.name in _MOVING:
             continue
-        values = np.atleast_1d(ds[entry.name].values)[:_LISTED]
-        for k, value in enumerate(values.tolist(), start=1):
+        of_masses = np.ndim(told[entry.name]) == 1
+        for k, value in enumerate(np.atleast_1d(told[entry.name])[:_LISTED].tolist(), start=1):
             own = entry.label
-            if ds[entry.name].dims == ("dof",):
-                own = own.replace("mass", "the mass") if one else f"{own} {k}"
+            if of_masses:
+                own = f"{own} {k}" if masses > 1 else own.replace("mass", "the mass")
             entries.append(entry._replace(label=own))
             numbers.append(100.0 * value if entry.unit == "%" else float(value))
     return entries, numbers
 
 
-def curves_of(view: View, ds: xr.Dataset) -> dict[str, np.ndarray]:
+def curves_of(view: View, found: Motion) -> dict[str, np.ndarray]:
     """What is drawn of a motion, float32."""
-    system, tau = view.system, ds["tau"].values
-    rate = system.contact_vector @ ds["v"].values + system.base_motion * np.sin(tau)
+    system, history = view.system, found.history
+    rate = system.contact_vector @ history.v + system.base_motion * np.sin(history.tau)
     drawn = {
-        "tau": tau,
-        "z": ds["z"].values,
-        "z_rate": np.where(ds["phase"].values == 0, 0.0, rate),  # at rest to the bit, not to rounding
-        "friction": ds["friction"].values,
-        "x": ds["x"].values,
-        "z_harmonics": _moduli(ds["contact_harmonic"]),
-        "friction_harmonics": _moduli(ds["friction_harmonic"]),
+        "tau": history.tau,
+        "z": history.z,
+        "z_rate": np.where(history.phase == 0, 0.0, rate),  # at rest to the bit, not to rounding
+        "friction": history.friction,
+        "x": history.x,
+        "z_harmonics": _moduli(found.cycle["contact_harmonic"]),
+        "friction_harmonics": _moduli(found.cycle["friction_harmonic"]),
     }
     arrays = {name: values.astype(np.float32) for name, values in drawn.items()}
-    return {**arrays, "phase": ds["phase"].values}
+    return {**arrays, "phase": history.phase}
 
 
-def _moduli(harmonics: xr.DataArray) -> np.ndarray:
-    real, imaginary = harmonics.values[..., 0], harmonics.values[..., 1]
-    return np.hypot(real, imaginary)
+def _moduli(harmonics: np.ndarray) -> np.ndarray:
+    return np.hypot(harmonics[..., 0], harmonics[..., 1])
 
 
-def in_words(ds: xr.Dataset) -> list[str]:
+def in_words(beta: float, numbers: Mapping[str, Any]) -> list[str]:
     """What the contact does in a cell, and why, in sentences."""
-    regime = int(ds["regime"])
-    told = [_deed(ds, regime)]
-    beta, lim, stick = (float(ds[name]) for name in ("beta", "beta_lim", "beta_stick"))
+    told = [_deed(numbers)]
+    lim, stick = numbers["beta_lim"], numbers["beta_stick"]
     if beta >= stick:
         why = f"β = {beta:.4g} reaches β_stick = {stick:.4g}: friction can hold the contact for good."
     elif beta < lim:
@@ -146,21 +144,22 @@ def in_words(ds: xr.Dataset) -> list[str]:
             "contact, but cannot hold it."
         )
     told.append(why)
-    status = int(ds["status"])
+    status = int(numbers["status"])
     if status != regimes.RESOLVED:
         meaning = regimes.status_meaning(status)
         told.append(f"{meaning[0].upper()}{meaning[1:]}.")
     return told
 
 
-def _deed(ds: xr.Dataset, regime: int) -> str:
+def _deed(numbers: Mapping[str, Any]) -> str:
+    regime = numbers["regime"]
     if regime == regimes.PERMANENT_STICKING:
         return "The contact never slides: friction holds it for good."
     if regime == regimes.CONTINUOUS:
         return "The contact slides to and fro without stopping."
     if regime == regimes.UNRESOLVED:
         return "No steady state was found."
-    stops, stuck = float(ds["stops_per_cycle"]), 100.0 * float(ds["stuck_fraction"])
+    stops, stuck = numbers["stops_per_cycle"], 100.0 * numbers["stuck_fraction"]
     plural = "stop" if stops == 1.0 else "stops"
     return f"The contact slides and stops: {stops:.4g} {plural} per cycle; stuck {stuck:.3g} % of the time."
 
@@ -174,15 +173,10 @@ def others(view: View, r: float, beta: float) -> Packet:
     The header has `start`, the other one, `same`, `told` and the `reachable` regimes; the arrays `multiplier`
     and, of another motion, what `motion` has of it.
     """
-    wanted: tuple[Output, ...] = ("regime", "multiplier", "also_reachable")
-    solver = replace(view.solver, outputs=wanted)
-    own = _one(sweep(view.system, r, beta, view.mu, solver=solver, threads=1))
     start = _STARTS[view.solver.start]
-    there = replace(view, solver=replace(view.solver, start=start, outputs=("regime", "contact_amplitude")))
-    here = replace(view, solver=replace(view.solver, outputs=("regime", "contact_amplitude")))
-    ours, theirs = (
-        _one(sweep(one.system, r, beta, one.mu, solver=one.solver, threads=1)) for one in (here, there)
-    )
+    there = replace(view, solver=replace(view.solver, start=start))
+    own = _one(view, r, beta, "multiplier", "also_reachable")
+    ours, theirs = (_one(one, r, beta, "contact_amplitude") for one in (view, there))
     flags = int(own["also_reachable"])
     header: dict[str, Any] = {
         "r": r,
@@ -200,13 +194,17 @@ def others(view: View, r: float, beta: float) -> Packet:
     return header, arrays
 
 
-def _one(ds: xr.Dataset) -> xr.Dataset:
-    return ds.isel(mu=0, r=0, beta=0)
+def _one(view: View, r: float, beta: float, *outputs: Output) -> dict[str, Any]:
+    """What a map of this one cell has."""
+    axes = {"mu": np.array([view.mu]), "r": np.array([r]), "beta": np.array([beta])}
+    solver = replace(view.solver, outputs=("regime", *outputs))
+    found, _ = solve_map(view.system, axes, solver, 1, None)
+    return {name: values[0, 0, 0] for name, values in found.items()}
 
 
-def _alike(one: Mapping[Any, Any], other: Mapping[Any, Any]) -> bool:
+def _alike(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
     """Whether two starts end in the same regime with the same amplitude."""
-    if int(one["regime"]) != int(other["regime"]):
+    if one["regime"] != other["regime"]:
         return False
     sizes = float(one["contact_amplitude"]), float(other["contact_amplitude"])
     return bool(np.isclose(*sizes, rtol=_OTHER, atol=_OTHER, equal_nan=True))

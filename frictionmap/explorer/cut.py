@@ -7,7 +7,6 @@ import numpy as np
 
 from ..model.settings import Quantity
 from ..pictures.classes import of_cells
-from ..steady.curves import curves
 from .views import View, middles
 
 Along = Literal["r", "beta"]
@@ -37,6 +36,8 @@ def cut(
 
 
 def _piece(view: View, along: Along, at: float, places: np.ndarray) -> dict[str, np.ndarray]:
+    from ..steady.curves import curves  # with xarray, which a page can do without until a line is drawn
+
     r, beta = (places, at) if along == "r" else (at, places)
     ds = curves(view.system, r, beta, view.mu, solver=view.solver, quantities=_QUANTITIES)
     flat = ds.isel({"mu": 0, "beta" if along == "r" else "r": 0})

@@ -2,11 +2,10 @@
 
 from typing import Any
 
-from ..datasets.physical import handy_unit
 from ..errors import InputError
 from ..pictures.palette import CLASSES
 from ..units.scales import scales_of
-from ..units.table import UNITS
+from ..units.table import UNITS, handy_unit
 from ..version import __version__
 from .queries import Query
 from .scene import Scene

@@ -13,7 +13,7 @@ from ..model.system import System
 from ..pictures.classes import of_cells, stops_range
 from ..pictures.palette import BROKEN, MORE
 from ..steady.maps import solve_map
-from ..theory.boundaries import find_curves
+from ..theory.boundary_curves import find_curves
 
 #: Pixels of a picture each way, and together: those of the largest screens.
 MOST_PIXELS, MOST_CELLS = 8192, 2**25

@@ -10,19 +10,10 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
-from ..datasets.labels import (
-    BESIDE,
-    CELL,
-    COORDINATES,
-    CURVES,
-    LABELS,
-    MARKS,
-    coordinate,
-    label_variable,
-    labels_of,
-)
+from ..datasets.labels import BESIDE, CELL, COORDINATES, CURVES, LABELS, MARKS, labels_of
 from ..datasets.physical import in_si_too
 from ..datasets.schema import check_structure, checked_values, in_brackets, kind, placed, standard_dims
+from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError
 from .estimates import estimates_form
 from .slices import choose, further_axes

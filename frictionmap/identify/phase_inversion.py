@@ -11,7 +11,7 @@ from ..model.modes import wrapped
 from ..model.system import System
 from ..roots import polish
 from ..steady.points import steady_states
-from ..theory.boundaries import find_curves
+from ..theory.boundary_curves import find_curves
 
 #: Friction ratios over beta_stick at which lags are looked at: evenly, then ever closer to sticking, where
 #: the lag of one mass comes back from beyond 90 deg.

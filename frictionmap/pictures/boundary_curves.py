@@ -10,7 +10,7 @@ import xarray as xr
 
 from ..files.stored import stored_system
 from ..model.system import System
-from ..theory.boundaries import find_curves
+from ..theory.boundary_curves import find_curves
 from .grids import Grid
 
 BOUNDARIES = ("beta_lim", "beta_stick")

@@ -1,9 +1,9 @@
 """The class of every cell, how many cells a class has, and what a legend calls it."""
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from .. import regimes
 from .palette import (  # fmt: skip
@@ -19,6 +19,9 @@ from .palette import (  # fmt: skip
     UNCOUNTED,
     UNRESOLVED,
 )
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 #: Cells that are looked at together: a map of any size takes little memory beyond its own.
 _AT_ONCE = 1 << 19
@@ -55,7 +58,7 @@ def of_cells(regime: np.ndarray | None, stops: np.ndarray | None) -> np.ndarray:
     return found
 
 
-def classes(ds: xr.Dataset) -> np.ndarray:
+def classes(ds: "xr.Dataset") -> np.ndarray:
     """The class of every cell of one mu: an index into the palette, uint8, shape (r, beta).
 
     The regime decides; among stick-slip motions, the number of stops.  A map without regimes tells

@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import features
 from ..model.system import System
-from ..theory.boundaries import find_curves
+from ..theory.boundary_curves import find_curves
 from .families import Family
 
 

@@ -6,8 +6,8 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from ..datasets.labels import BESIDE
-from ..datasets.physical import BESIDE_OF, handy_unit, ones_of
-from ..units.table import UNITS
+from ..datasets.physical import BESIDE_OF, ones_of
+from ..units.table import UNITS, handy_unit
 
 _NAMES = {
     "frequency": "frequency",

@@ -20,7 +20,7 @@ from .._kernels.engine.quantities import Quantities
 from ..datasets.labels import CELL_VARIABLES
 from ..model.settings import Solver
 from ..model.system import System
-from ..theory.boundaries import OneMass, many_mode_curves, one_mass_curves
+from ..theory.boundary_curves import OneMass, many_mode_curves, one_mass_curves
 from .kernel_data import Structures, structures
 from .quantity_data import Asked, quantity_numbers, results
 from .quantity_limits import put_resonance, put_static

@@ -9,12 +9,13 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
-from ..datasets.labels import coordinate, label_variable, stamp
 from ..datasets.physical import with_units
+from ..datasets.variables import coordinate, label_variable, stamp
 from ..model.coupled_modes import CoupledModel
 from ..model.settings import CurveSettings, Output, Quantity, Solver, SolverSettings, curve_settings, merged
 from ..model.system import System
-from ..theory.boundaries import Curves, boundary_variables, held_variables
+from ..theory.boundaries import boundary_variables, held_variables
+from ..theory.boundary_curves import Curves
 from ..theory.limit_curves import limit_variables
 from ..units.scales import Units, scales_of
 from .maps import Progress, checked_axes, compute

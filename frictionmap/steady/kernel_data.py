@@ -17,7 +17,7 @@ from ..model.free_structure import FreeStructure
 from ..model.held_structure import HeldStructure, held_structure
 from ..model.modes import ModalModel, angles, modulus, times
 from ..model.system import System
-from ..theory.boundaries import Curves
+from ..theory.boundary_curves import Curves
 
 #: A share of the load smaller than this times n eps of the most that it could be is rounding; as in `modes`.
 _ZERO_SHARE = 64.0

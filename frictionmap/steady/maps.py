@@ -1,4 +1,4 @@
-"""The cells of a map: plan which of them need integration, run them in parallel, label the result."""
+"""The cells of a map: plan which of them need integration, run them in parallel."""
 
 import os
 from collections import namedtuple
@@ -9,16 +9,15 @@ from itertools import islice
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
 from .._kernels.engine.fill import RESTART, OpenCells
-from ..datasets.labels import CELL, CELL_VARIABLES, coordinate, label_variable
+from ..datasets.labels import CELL, CELL_VARIABLES
 from ..errors import InputError
 from ..model.settings import Solver
 from ..model.system import System
-from ..theory.boundaries import Curves, boundary_variables
+from ..theory.boundary_curves import Curves
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales
 from .cells import Cells, Job
@@ -233,18 +232,3 @@ def solve_map(
         name: read_result(name, cells.results) if name in of_cycle else getattr(out, name) for name in names
     }
     return found, cells.curves
-
-
-def regime_map(
-    system: System,
-    axes: Mapping[str, np.ndarray],
-    solver: Solver,
-    threads: int | None,
-    progress: Progress | None,
-) -> xr.Dataset:
-    """Outputs, `status` and boundaries of one system over the axes mu, r and beta."""
-    found, curves = solve_map(system, axes, solver, threads, progress)
-    variables = {name: label_variable(name, values) for name, values in found.items()}
-    sizes = {"dof": np.array(system.dofs.numbers)} if "amplitude" in solver.outputs else {}
-    coords = {name: coordinate(name, values) for name, values in {**axes, **sizes}.items()}
-    return xr.Dataset(variables | boundary_variables(curves), coords=coords)

@@ -9,7 +9,7 @@ from .._kernels.engine.fill import OpenCells
 from .._kernels.engine.quantities import LAG, MODULUS
 from ..model.settings import Solver, Start
 from ..model.system import System
-from ..theory.boundaries import Curves, find_curves
+from ..theory.boundary_curves import Curves, find_curves
 from ..theory.half_waves import compliances, dynamic_shares, mass_responses
 from .cells import Cells
 from .maps import allocate

@@ -1,312 +1,28 @@
-"""One steady state in time: motion of the masses and of the contact, friction force, starts and stops."""
+"""`response`: one steady state in time as a dataset."""
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import SupportsFloat, Unpack
 
 import numpy as np
 import xarray as xr
 
-from .. import checks, regimes
-from .._kernels.engine import phase_table
-from .._kernels.engine.answers import Cell
-from .._kernels.engine.fill import one_cell
-from .._kernels.engine.quantities import (
-    continuous_cell_quantities,
-    stuck_cell_quantities,
-    table_cell_quantities,
-)
-from .._kernels.engine.time_history import Samples, sample_phases
-from .._kernels.engine.window import window_table
-from .._kernels.one_mass.sliding_orbit import orbit_phase
-from .._kernels.structure.newton import make_workspace
-from .._kernels.structure.oscillators import make_scratch
-from .._kernels.structure.state import make_structure
-from ..datasets.labels import CELL_VARIABLES, coordinate, label_variable, stamp
+from .. import checks
+from ..datasets.labels import CELL_VARIABLES
 from ..datasets.physical import with_units
-from ..errors import InputError, NoSteadyState
+from ..datasets.variables import coordinate, label_variable, stamp
+from ..errors import InputError
 from ..model.settings import HARMONICS, Output, Solver, SolverSettings, merged
 from ..model.system import System
 from ..theory.boundaries import boundary_variables
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales, Units, scales_of
-from .cells import Cells, limits
-from .kernel_data import Structures
-from .maps import plan
-from .quantity_data import PARTS, VARIABLES, asked_for, read_result
+from .motion import Question, find_motion
+from .quantity_data import PARTS
 from .sweep import sweep
 
 #: Samples of a time history per excitation period.
 POINTS = 2000
 _MOST_POINTS = 10**6
-
-#: Excitation periods shown of a motion that does not repeat: the longest steady state is as long.
-WINDOW = 8
-
-_WINDOWED = (
-    f"the motion repeats in no 8 periods: x, v, z, friction and the events are those of {WINDOW} periods at "
-    "the end of the {} that were followed, the scalars averages over the last 100"
-)
-
-_TURN = 2.0 * math.pi
-
-#: What response curves have, all of it.
-CYCLE = tuple(name for names in VARIABLES.values() for name in names)
-
-
-@dataclass(frozen=True)
-class Question:
-    """One steady state that is asked for."""
-
-    system: System
-    r: float
-    beta: float
-    mu: float
-    solver: Solver
-    points: int
-
-
-@dataclass(frozen=True)
-class History:
-    """A steady state in time; events are the starts of slides and stops, in order."""
-
-    period: int
-    tau: np.ndarray
-    x: np.ndarray  # (n, tau.size)
-    v: np.ndarray
-    z: np.ndarray  # (tau.size,)
-    friction: np.ndarray
-    phase: np.ndarray
-    events: tuple[np.ndarray, np.ndarray, np.ndarray]  # tau, phase that begins, z
-    durations: np.ndarray  # of the stops
-    amplitude: float
-    stuck: bool  # for good
-
-
-@dataclass(frozen=True)
-class Found:
-    """The steady state of a cell, or a window of a motion that does not repeat.
-
-    once : the phases until the motion returns, mirrored or not; none where the closed form tells them
-    """
-
-    table: np.ndarray | None  # phases of one period, or of the window; none where it sticks for good
-    status: int
-    rest: float = 0.0  # where it sticks
-    averages: Cell | None = None  # of the motion that does not repeat
-    once: np.ndarray | None = None
-
-
-def _times(period: int, points: int) -> np.ndarray:
-    return np.linspace(0.0, _TURN * period, points * period + 1)
-
-
-def _since(tau: np.ndarray, start: float, total: float) -> np.ndarray:
-    """Times from `start` on, within one steady period."""
-    since = np.mod(tau - start, total)
-    since[since > total * (1.0 - 1e-15)] = 0.0  # rounding must not place a sample past the end
-    return since
-
-
-def _no_steady_state(question: Question, why: str) -> NoSteadyState:
-    return NoSteadyState(f"r = {question.r:g}, beta = {question.beta:g}, mu = {question.mu:g}: {why}")
-
-
-_UNBOUNDED = "an undamped resonance; the motion grows without bound"
-
-
-def _decided(cells: Cells, question: Question) -> int:
-    """The regime that a formula gives; unresolved where the cell is open."""
-    beta, mu = np.array([question.beta]), np.array([question.mu])
-    work = plan(cells, np.array([question.r]), mu, beta, question.solver)
-    if work.cells:
-        return regimes.UNRESOLVED
-    return regimes.CONTINUOUS if work.low[0] else regimes.PERMANENT_STICKING
-
-
-def _with_mirror_image(table: np.ndarray) -> np.ndarray:
-    """The table of phases over one steady period: twice as long where the motion returns mirrored."""
-    length = float(table[:, phase_table.LENGTH].sum())
-    if round(length / math.pi) % 2 == 0:
-        return table
-    mirrored = table.copy()
-    mirrored[:, phase_table.SIGN] *= -1.0
-    mirrored[:, phase_table.BEGIN] += length
-    return np.concatenate((table, mirrored))
-
-
-def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
-    """The table of phases of the continuous orbit, one phase."""
-    found = cells.structures
-    orbit, n = found.orbit, found.participating.size
-    st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
-    table = np.empty((1, phase_table.phase_columns(n)))
-    phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], question.beta)
-    phase_table.continuous_phase(st, orbit, 0, question.beta, phase, table[0], make_workspace(n))
-    return table
-
-
-def _window(question: Question, cells: Cells, cell: Cell) -> Found:
-    """The last periods that the solver followed, of a motion that does not repeat."""
-    before = _TURN * max(0.0, question.solver.cycles - WINDOW - 2.0)
-    moving = question.solver.start == "moving"
-    table = window_table(
-        cells.motion, question.beta, question.mu, moving, before, _TURN * (WINDOW + 2.0)
-    )  # fmt: skip
-    averages = cell._replace(amplitude=cells.unit * cell.amplitude)
-    return Found(table, cell.status, averages=averages)
-
-
-def _find(question: Question, cells: Cells) -> Found:
-    regime, rest = _decided(cells, question), 0.0
-    status = regimes.RESOLVED
-    table = np.empty((0, 0))
-    if regime == regimes.UNRESOLVED:
-        solver = question.solver
-        moving = solver.start == "moving"
-        cell, table = one_cell(cells.motion, question.beta, question.mu, limits(solver), moving)
-        status = cell.status
-        if status == regimes.NOT_PERIODIC:
-            return _window(question, cells, cell)
-        if cell.period == 0:
-            raise _no_steady_state(question, regimes.status_meaning(status))
-        regime, rest = cell.regime, cells.unit * cell.sign * cell.at.z
-    if regime == regimes.PERMANENT_STICKING:
-        return Found(None, status, rest)
-    once = table if table.shape[0] else None
-    if once is None:
-        if math.isinf(cells.structures.orbit.v_abs[0]):
-            raise _no_steady_state(question, _UNBOUNDED)
-        table = _continuous_table(question, cells)
-        marginal = bool(cells.structures.marginal[0]) and question.beta > 0.0
-        status = regimes.MARGINAL if marginal else status
-    return Found(_with_mirror_image(table), status, once=once)
-
-
-def _stuck_history(question: Question, cells: Cells, rest: float) -> History:
-    """The contact held at `rest` for good."""
-    found = cells.structures
-    tau = _times(1, question.points)
-    turn = np.exp(1j * tau)
-    held = found.held[0][:, np.newaxis] * turn
-    offset = found.shapes.static_shape[:, np.newaxis] * rest
-    force = question.system.modes.held_load(np.array([question.r]))[0] * turn
-    return History(
-        1, tau, held.real + offset, -held.imag, np.full(tau.size, rest),
-        force.real - found.model.stiffness * rest, np.zeros(tau.size, np.int8),
-        (np.empty(0), np.empty(0), np.empty(0)), np.empty(0), 0.0, True,
-    )  # fmt: skip
-
-
-def _phase_starts(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Phases that begin, and z there."""
-    sign = table[:, phase_table.SIGN]
-    # a slide starts where the phase before it ended
-    return sign * table[:, phase_table.SENSE], np.roll(sign * table[:, phase_table.Z_END], 1)
-
-
-def _place(found: Found, tau: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Where in time the table of phases lies, whose phases begin `begin` after the first one.
-
-    Returns the times of samples since its first phase; which phases begin among them, in order; and when.
-    """
-    table = found.table
-    assert table is not None
-    sign = table[0, phase_table.SIGN]
-    start = math.atan2(sign * table[0, phase_table.SIN], sign * table[0, phase_table.COS])
-    if found.averages is None:
-        total = float(table[:, phase_table.LENGTH].sum())
-        times = np.mod(begin + start, total)
-        order = np.argsort(times, kind="stable")
-        return _since(tau, start, total), order, times[order]
-    skipped = -start % _TURN  # to the first maximum of the load
-    inside = np.flatnonzero((begin >= skipped) & (begin <= skipped + tau[-1]))
-    return tau + skipped, inside, begin[inside] - skipped
-
-
-def _displacements(
-    question: Question, numbers: Structures, coordinates: np.ndarray, velocities: np.ndarray, tau: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """x and x' in tau (n_dof, tau.size), from coordinates and velocities of the oscillators (n, tau.size)."""
-    modes, n = question.system.modes, len(coordinates)
-    if not modes.free.coupled:
-        shapes = numbers.shapes.free[:, :n]
-        return shapes @ coordinates, shapes @ velocities
-    r, loads = question.r, numbers.loads
-    direct = np.outer(loads.free_direct_cos[0], np.cos(tau)) + np.outer(loads.free_direct_sin[0], np.sin(tau))
-    motion = modes.free.to_modes @ np.concatenate((coordinates, r * velocities - direct))
-    phi = modes.phi[:, numbers.participating]
-    return phi @ motion[:n], phi @ motion[n:] / r
-
-
-def _moving_history(question: Question, cells: Cells, found: Found) -> History:
-    """A motion that slides, sampled along its phases."""
-    numbers, table = cells.structures, found.table
-    assert table is not None
-    if numbers.resonant.any():
-        raise _no_steady_state(question, _UNBOUNDED)
-    n = numbers.participating.size
-    lengths = table[:, phase_table.LENGTH]
-    period = WINDOW if found.averages else max(1, round(float(lengths.sum()) / _TURN))
-    tau = _times(period, question.points)
-    since, shown, times = _place(found, tau, table[:, phase_table.BEGIN])
-    order = np.argsort(since, kind="stable")
-    st = make_structure(numbers.model, numbers.loads, 0, question.r, float(question.solver.steps))
-    coordinates, velocities = np.empty((2, n, tau.size))
-    z, friction = np.empty((2, tau.size))
-    sense = np.empty(tau.size, dtype=np.int8)
-    samples = Samples(coordinates, velocities, z, friction, sense)
-    sample_phases(st, question.beta, table, since[order], samples, make_workspace(n), make_scratch(n))
-    back = np.empty_like(order)
-    back[order] = np.arange(order.size)
-    alone = numbers.alone[0][:, np.newaxis] * np.exp(1j * tau)
-    x, v = _displacements(question, numbers, coordinates[:, back], velocities[:, back], tau)
-    begins, places = _phase_starts(table)
-    return History(
-        period, tau, x + alone.real, v - alone.imag, z[back], friction[back], sense[back],
-        (times, begins[shown], places[shown]), lengths[table[:, phase_table.SENSE] == 0.0],
-        float(np.abs(table[:, phase_table.Z_END]).max()), False,
-    )  # fmt: skip
-
-
-def _summary(history: History, found: Found) -> dict[str, float]:
-    """The cell's numbers; those of a motion that does not repeat are averages, and it has no period."""
-    averages = found.averages
-    if averages is not None:
-        return {
-            "regime": averages.regime,
-            "stops_per_cycle": averages.stops,
-            "contact_amplitude": averages.amplitude,
-            "stuck_fraction": averages.stuck,
-            "period": 0,
-            "status": found.status,
-        }
-    stops = history.durations.size
-    regime = regimes.STICK_SLIP if stops else regimes.CONTINUOUS
-    return {
-        "regime": regimes.PERMANENT_STICKING if history.stuck else regime,
-        "stops_per_cycle": math.nan if history.stuck else stops / history.period,
-        "contact_amplitude": history.amplitude,
-        "stuck_fraction": 1.0 if history.stuck else history.durations.sum() / (_TURN * history.period),
-        "period": history.period,
-        "status": found.status,
-    }
-
-
-def _cycle(question: Question, cells: Cells, found: Found) -> dict[str, np.ndarray]:
-    """What the cell's response curves have; NaN of a motion that does not repeat."""
-    if found.averages is None:
-        if found.table is None:
-            stuck_cell_quantities(cells.quantities)
-        elif found.once is None:
-            continuous_cell_quantities(cells.quantities, question.beta)
-        else:
-            table_cell_quantities(cells.quantities, question.beta, found.once)
-    values = {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
-    if found.table is None:  # here the place where the contact rests is shown, too
-        values["amplitude"] += np.abs(cells.structures.shapes.static_shape * found.rest)
-    values["phase_lag"] = values.pop("phase")
-    return values
 
 
 def _further(question: Question, names: list[Output]) -> dict[str, xr.Variable]:
@@ -317,12 +33,6 @@ def _further(question: Question, names: list[Output]) -> dict[str, xr.Variable]:
     ds = sweep(question.system, question.r, question.beta, question.mu, solver=solver, threads=1)
     cell = ds.isel(mu=0, r=0, beta=0, missing_dims="ignore")
     return {name: cell[name].variable for name in names}
-
-
-def _history(question: Question, cells: Cells, found: Found) -> History:
-    if found.table is None:
-        return _stuck_history(question, cells, found.rest)
-    return _moving_history(question, cells, found)
 
 
 def _ratio(given: object, name: str, scales: Scales) -> object:
@@ -401,12 +111,8 @@ def response(
     r, beta, mu = _checked_cell(r, beta, mu, scales)
     points = checks.whole(points, "points", least=2, most=_MOST_POINTS)
     question = Question(system, r, beta, mu, solver, points)
-    cells = Cells(
-        system, np.array([r]), np.array([beta]), np.array([mu]), solver, asked_for(CYCLE, HARMONICS)
-    )
-    found = _find(question, cells)
-    history = _history(question, cells, found)
-    summary = _summary(history, found)
+    found = find_motion(question)
+    history, cycle = found.history, found.cycle
     times, begins, places = history.events
     variables = {
         "x": history.x,
@@ -418,7 +124,6 @@ def response(
         "event_phase": begins.astype(np.int8),
         "event_z": places,
     }
-    cycle = _cycle(question, cells, found)
     # what a map is asked for comes from its kernels below, to the bit
     variables |= {name: value for name, value in cycle.items() if name not in solver.outputs}
     own: dict[str, np.ndarray | float] = {
@@ -429,14 +134,14 @@ def response(
     }
     cell = {"r": r, "beta": beta, "mu": mu}
     labelled = {name: label_variable(name, values) for name, values in variables.items()}
-    labelled |= {name: v[0, 0] for name, v in boundary_variables(cells.curves).items()}
+    labelled |= {name: v[0, 0] for name, v in boundary_variables(found.curves).items()}
     labelled |= {
-        name: label_variable(name, CELL_VARIABLES[name].dtype(value)) for name, value in summary.items()
+        name: label_variable(name, CELL_VARIABLES[name].dtype(value)) for name, value in found.summary.items()
     }
     labelled |= _further(question, [name for name in solver.outputs if name not in labelled])
     coords = {name: coordinate(name, values) for name, values in {**own, **cell}.items()}
     ds = xr.Dataset(labelled, coords=coords)  # all at once: piece by piece took a third of the time
     ds = with_units(stamp(ds, "response", "Steady state in time", system, cell, solver, units=units), scales)
-    if found.averages is not None:
-        ds.attrs |= {"title": "Motion in time, a part of it", "comment": _WINDOWED.format(solver.cycles)}
+    if found.comment:
+        ds.attrs |= {"title": "Motion in time, a part of it", "comment": found.comment}
     return ds

@@ -8,14 +8,16 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
-from ..datasets.labels import NAMES, coordinate_of_study, stamp
+from ..datasets.labels import NAMES
 from ..datasets.physical import with_units
+from ..datasets.variables import coordinate, coordinate_of_study, label_variable, stamp
 from ..errors import InputError
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
+from ..theory.boundaries import boundary_variables
 from ..units.scales import Units, scales_of
-from .maps import Progress, checked_axes, regime_map
+from .maps import Progress, checked_axes, solve_map
 
 
 def sweep(
@@ -105,6 +107,21 @@ def sweep(
     )
     ds = ds if variations is None else ds.assign_attrs(system=variations.describe())
     return with_units(ds, scales)
+
+
+def regime_map(
+    system: System,
+    axes: Mapping[str, np.ndarray],
+    solver: Solver,
+    threads: int | None,
+    progress: Progress | None,
+) -> xr.Dataset:
+    """Outputs, `status` and boundaries of one system over the axes mu, r and beta."""
+    found, curves = solve_map(system, axes, solver, threads, progress)
+    variables = {name: label_variable(name, values) for name, values in found.items()}
+    sizes = {"dof": np.array(system.dofs.numbers)} if "amplitude" in solver.outputs else {}
+    coords = {name: coordinate(name, values) for name, values in {**axes, **sizes}.items()}
+    return xr.Dataset(variables | boundary_variables(curves), coords=coords)
 
 
 def _study(

@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..datasets.labels import CELL_VARIABLES, MARKS, coordinate
+from ..datasets.labels import CELL_VARIABLES, MARKS
 from ..datasets.physical import physical_axes
+from ..datasets.variables import coordinate
 from .study import Block, Study
 
 

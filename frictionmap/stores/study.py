@@ -12,8 +12,7 @@ import xarray as xr
 from ..model.settings import Solver
 from ..model.system import System
 from ..model.variations import Variations
-from ..steady.maps import regime_map
-from ..steady.sweep import study_coordinates
+from ..steady.sweep import regime_map, study_coordinates
 from ..units.scales import Scales, Units, scales_of
 
 #: Cells of a block: some seconds of work at most, and few files.

@@ -16,7 +16,7 @@ from .. import checks
 from ..errors import InputError, NoSteadyState
 from ..model.modes import ModalModel, wrapped
 from ..model.system import System
-from .boundaries import find_curves
+from .boundary_curves import find_curves
 from .energy import damping_participation, transmitted_first_harmonic, work_input
 from .half_waves import (
     FrictionAnswers,

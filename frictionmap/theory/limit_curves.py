@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..datasets.labels import label_variable
+from ..datasets.variables import label_variable
 from ..model.modes import ModalModel, wrapped
 from ..model.system import System
-from .boundaries import Curves, over_square, sliding_bracket
+from .boundary_curves import Curves, over_square, sliding_bracket
 from .half_waves import (
     RESONANT_FIRST_HARMONIC,
     RESONANT_U,

@@ -97,3 +97,18 @@ def checked_unit(unit: str, measures: str, name: str) -> str:
     if unit not in legal:
         raise InputError(f"{name} must be one of {', '.join(legal)}; got {checks.one_line(unit)}")
     return unit
+
+
+#: Units that pictures and words choose from, and the size in the SI unit from which each is handy.
+_HANDY = {
+    "frequency": {"Hz": 0.0, "kHz": 1e4},
+    "force": {"mN": 0.0, "N": 0.1, "kN": 1e4},
+    "length": {"um": 0.0, "mm": 1e-4, "m": 1.0},
+    "time": {"ms": 0.0, "s": 1.0},
+    "work": {"mJ": 0.0, "J": 0.1},
+}
+
+
+def handy_unit(size: float, measure: str) -> str:
+    """The unit of frequency, force, length, time or work in which a size in SI units is a handy number."""
+    return [unit for unit, least in _HANDY[measure].items() if size >= least][-1]

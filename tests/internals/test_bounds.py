@@ -13,7 +13,7 @@ from frictionmap._kernels.one_mass import events
 from frictionmap._kernels.one_mass import sliding_orbit as continuous
 from frictionmap._kernels.one_mass.scan_step import MAX_TERMS, step_constants
 from frictionmap._kernels.one_mass.sliding_orbit import Oscillator, orbit_phase
-from frictionmap.theory.boundaries import one_mass_curves
+from frictionmap.theory.boundary_curves import one_mass_curves
 
 decay = callable_kernel(closed_form.decay)
 continuous_amplitude = callable_kernel(continuous.continuous_amplitude)

@@ -59,7 +59,7 @@ def test_one_mass_by_many():
             r = np.concatenate((np.linspace(0.04, 2.5, 200), [0.25, 1 / 3, 0.5, 1.0 - 1e-9]))
             r = np.unique(r[r != 1.0])
             mu = np.array([1.0, 1.4])
-            from frictionmap.theory.boundaries import many_mode_curves, one_mass_curves
+            from frictionmap.theory.boundary_curves import many_mode_curves, one_mass_curves
 
             one = one_mass_curves(system, r, mu).curves
             many = many_mode_curves(system, r, mu)

@@ -10,7 +10,7 @@ from structures import CHAIN, RATIOS, chain_matrices, pendants
 
 import frictionmap as fm
 from frictionmap.features import high_frequency_limits, peak_thresholds
-from frictionmap.theory.boundaries import many_mode_curves, one_mass_curves
+from frictionmap.theory.boundary_curves import many_mode_curves, one_mass_curves
 
 MU = [1.0, 1.4]
 R = np.linspace(0.13, 2.9, 61)

@@ -8,7 +8,7 @@ import pytest
 from continuous_motions import CASES, Precise, as_system, random_system
 
 import frictionmap as fm
-from frictionmap.theory.boundaries import find_curves
+from frictionmap.theory.boundary_curves import find_curves
 from frictionmap.theory.limit_curves import limit_variables
 
 UNDAMPED = [

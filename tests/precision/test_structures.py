@@ -21,7 +21,7 @@ from frictionmap._kernels.structure.oscillators import COLUMNS, WW, WZ, ZW, ZZ, 
 from frictionmap._kernels.structure.state import make_structure
 from frictionmap.model.held_structure import held_structure
 from frictionmap.steady.cells import Cells
-from frictionmap.steady.response import Question, _find
+from frictionmap.steady.motion import Question, _find
 
 decay = callable_kernel(closed_form.decay)
 fill_steps = callable_kernel(oscillators.fill_steps)

@@ -119,7 +119,8 @@ def test_a_cell_moves_as_response_says(one):
     assert not arrays["z_rate"][~sliding].any()
     numbers = dict(zip([entry["name"] for entry in header["entries"]], arrays["numbers"], strict=True))
     assert numbers["contact_amplitude"] == ds["contact_amplitude"].item()
-    assert numbers["stuck_fraction"] == 100.0 * ds["stuck_fraction"].item()
+    # a dataset has it in single precision
+    assert numbers["stuck_fraction"] == pytest.approx(100.0 * ds["stuck_fraction"].item(), rel=2.0**-24)
     assert header["regime"] == "stick_slip"
 
 

@@ -14,7 +14,7 @@ import frictionmap as fm
 from frictionmap import regimes
 from frictionmap.files.config import load_config
 from frictionmap.steady.kernel_data import structures
-from frictionmap.theory.boundaries import find_curves
+from frictionmap.theory.boundary_curves import find_curves
 
 
 @pytest.mark.parametrize("start", ["rest", "moving"])

@@ -1,0 +1,59 @@
+"""Numbers as labelled variables, and datasets with their global attributes."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from ..model.settings import Solver
+from ..model.system import System
+from ..units.scales import Units
+from ..version import __version__
+from .labels import BESIDE, COORDINATES, REFERENCES, attributes, labels_of
+from .provenance import made_by
+
+
+def coordinate(name: str, values: np.ndarray | float) -> xr.Variable:
+    """A labelled axis, or a labelled scalar."""
+    label = COORDINATES[name] if name in COORDINATES else BESIDE[name]
+    dims = label.dims if np.ndim(values) else ()
+    units = {} if label.texts else {"units": label.units}
+    return xr.Variable(dims, values, {"long_name": label.long_name, **units})
+
+
+def coordinate_of_study(dim: str, meaning: str, values: np.ndarray) -> xr.Variable:
+    """An axis of a study, or what goes with one: numbers of a system, or points counted from 0."""
+    return xr.Variable((dim,), values, {"long_name": meaning, "units": "1"})
+
+
+def label_variable(name: str, values: np.ndarray | float, what: str = "") -> xr.Variable:
+    """A labelled variable, of one cell without the cell's dimensions; the values are not copied.
+
+    what : the kind of its dataset, see `labels_of`
+    """
+    label = labels_of(what)[name]
+    return xr.Variable(label.dims[len(label.dims) - np.ndim(values) :], values, attributes(label))
+
+
+def stamp(
+    ds: xr.Dataset,
+    function: str,
+    title: str,
+    system: System,
+    axes: Mapping[str, np.ndarray | float],
+    solver: Solver | None = None,
+    curves: Mapping[str, object] | None = None,
+    study: Mapping[str, object] | None = None,
+    units: Units | None = None,
+) -> xr.Dataset:
+    """Add the global attributes to what a function of the package computed on these axes."""
+    ds.attrs = {
+        "Conventions": "CF-1.11",
+        "title": title,
+        "source": f"frictionmap {__version__}",
+        "references": REFERENCES,
+        "system": system.describe(),
+        **system.costs(np.atleast_1d(axes["r"])),
+        **made_by(function, title, system, axes, solver, curves, study, units),
+    }
+    return ds

@@ -1,0 +1,159 @@
+"""Boundaries of the motion regimes over frequency, and the response functions they come from, in numbers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._kernels.boundary.functions import response_functions
+from .._kernels.boundary.structure import many_mode_functions
+from .._kernels.engine.one_mass import Frequencies
+from ..errors import InputError
+from ..model.modes import angles, modulus
+from ..model.system import System
+
+#: Least r over the fastest rate of a structure: some 10^6 intervals are searched for S there.
+_LEAST_RATIO = 1e-6
+
+
+@dataclass(frozen=True)
+class Curves:
+    """What depends on r, and on (mu, r), only; arrays of shape (n_r,) and (n_mu, n_r).
+
+    V, U, G, H and S are those of theory.md 2 and 3.
+    """
+
+    v: np.ndarray  # complex; infinite at an undamped resonance
+    u: np.ndarray
+    g: np.ndarray
+    h: np.ndarray
+    s: np.ndarray
+    beta_lim: np.ndarray
+    beta_lim_modal: np.ndarray
+    beta_stick: np.ndarray
+
+
+@dataclass(frozen=True)
+class OneMass:
+    """Curves of one mass, and what its cells need of them: `lim` is beta_lim over the load amplitude."""
+
+    curves: Curves
+    frequencies: Frequencies
+    lim: np.ndarray
+
+
+def over_square(number: float, r: np.ndarray) -> np.ndarray:
+    """number/r^2; 0 at r = 0, where S is infinite anyway."""
+    return np.divide(number, r * r, out=np.zeros_like(r), where=r > 0.0)
+
+
+def sliding_bracket(h: np.ndarray, s: np.ndarray, inertia: np.ndarray, mu: np.ndarray) -> np.ndarray:
+    """max(S, H + mu/(m_eff r^2)), (n_mu, n_r), theory.md 3: (Z + beta G)/beta has to be no less."""
+    with np.errstate(invalid="ignore"):  # an infinite S or H may come as nan, and leaves no beta_lim
+        return np.maximum(s, h + mu[:, np.newaxis] * inertia)
+
+
+def find_beta_lim(
+    v_abs: np.ndarray, u: np.ndarray, h: np.ndarray, s: np.ndarray, inertia: np.ndarray, mu: np.ndarray,
+    at_resonance: np.ndarray,
+) -> np.ndarray:  # fmt: skip
+    """The boundary of continuous motion, |V|/sqrt(U^2 + max(S, H + mu/(m_eff r^2))^2), theory.md 3.
+
+    T(2.26), (3.21), (5.65) and (7.46) are cases of it.  0 where U or S alone is infinite, or U has no limit
+    (r = 0).
+
+    Parameters
+    ----------
+    v_abs, u, h, s : (n_r,) |V|, U, H, S; V and U are infinite at an undamped resonance
+    inertia : (n_r,) 1/(m_eff r^2), 0 at r = 0
+    mu : (n_mu,)
+    at_resonance : (n_r,) or (), the limit there: |V|/|U| is finite, and both outgrow S
+
+    Returns
+    -------
+    beta_lim : (n_mu, n_r)
+    """
+    resonance = np.isinf(v_abs) & np.isinf(u)
+    bracket = sliding_bracket(h, s, inertia, mu)
+    size = np.hypot(np.where(np.isnan(u), np.inf, u), bracket)
+    finite = np.isfinite(size)
+    found = np.where(finite, v_abs / np.where(finite, size, 1.0), 0.0)
+    return np.where(resonance, at_resonance, found)
+
+
+def find_beta_stick(force: np.ndarray, mu: np.ndarray) -> np.ndarray:
+    """The boundary to permanent sticking, |F|/mu, (n_mu, n_r), theory.md 4; F (n_r,), complex, holds z.
+
+    T(2.29), (3.24), (6.11), (6.27) and (6.33) are cases of it.
+    """
+    return modulus(force) / mu[:, np.newaxis]
+
+
+def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
+    """All curves of a normalised system, whose one mode has w = 1; `r` and `mu` are checked axes.
+
+    One mass has its own search of S, with intervals in closed form, and one equation for both contacts.
+    """
+    load = system.contact_load(r)
+    v_abs, v_arg, u, g, h, s = np.empty((6, r.size))
+    response_functions(r, system.zeta, u, g, v_abs, v_arg, h, s)
+    amplitude = modulus(load)
+    half = np.divide(0.5, r, out=np.zeros_like(r), where=r > 0.0)
+    even = (half >= 1.0) & (half == np.floor(half))
+    marginal = even & (system.zeta == 0.0)
+    frequencies = Frequencies(r, amplitude, angles(load), v_abs, v_arg, u, g, marginal)
+    lim = find_beta_lim(v_abs, u, h, s, over_square(1.0, r), mu, np.array(0.25 * np.pi))
+    stiffness = system.modes.dynamic_stiffness(r)[:, 0]
+    resonance = stiffness == 0.0
+    found = Curves(
+        v=np.where(resonance, np.inf, load / np.where(resonance, 1.0, stiffness)),
+        u=u,
+        g=g,
+        h=h,
+        s=s,
+        beta_lim=lim * amplitude,
+        beta_lim_modal=lim * amplitude,  # of one mode the maximum of the sum is the sum of the maxima
+        beta_stick=find_beta_stick(load, mu),
+    )
+    return OneMass(found, frequencies, lim)
+
+
+def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
+    """All curves of a system of any number of masses; `r` and `mu` are checked axes."""
+    modes, free = system.modes, system.modes.free
+    rates = free.omega * np.where(free.zeta > 1.0, 2.0 * free.zeta, 1.0)
+    least = _LEAST_RATIO * float(rates.max())
+    small = (r > 0.0) & (r < least)
+    if small.any():
+        raise InputError(
+            f"r must be 0, or >= {least:.3g} for this structure: below, S takes too many steps to find; "
+            f"got {r[small][0]:g}"
+        )
+    v = modes.contact_response(r)
+    u, g, h, s, by_modes = np.empty((5, r.size))
+    weights = free.weights(modes.chi[modes.participating])
+    many_mode_functions(r, free.omega, free.zeta, *weights, modes.inverse_mass, u, g, h, s, by_modes)
+    v_abs = modulus(v)
+    inertia = over_square(modes.inverse_mass, r)
+    # at a resonance |V|/|U| -> (pi/4) |lambda_i/chi_i|, T(6.2), (6.26)
+    resonant = modes.dynamic_stiffness(r) == 0.0  # r is an undamped frequency to the bit
+    ratio = modulus(modes.participation(r)) / np.where(modes.chi == 0.0, np.inf, np.abs(modes.chi))
+    at_resonance = 0.25 * np.pi * (resonant * ratio).sum(axis=1)
+    return Curves(
+        v=v,
+        u=u,
+        g=g,
+        h=h,
+        s=s,
+        beta_lim=find_beta_lim(v_abs, u, h, s, inertia, mu, at_resonance),
+        beta_lim_modal=np.where(
+            np.isnan(by_modes), np.nan, find_beta_lim(v_abs, u, h, by_modes, inertia, mu, at_resonance)
+        ),
+        beta_stick=find_beta_stick(modes.held_load(r), mu),
+    )
+
+
+def find_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
+    """All curves of any system; `r` and `mu` are checked axes."""
+    if system.normalised:
+        return one_mass_curves(system, r, mu).curves
+    return many_mode_curves(system, r, mu)

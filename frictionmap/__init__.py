@@ -14,7 +14,7 @@ datasets       what a dataset holds: labels, variables, schema, provenance
 roots          the search for all roots of functions with poles
 features       limits, peak thresholds, invariant points, quasi-static displacement
 theory         closed forms over frequency: `boundary_curves`, `boundaries`, `continuous_motion`
-steady         steady states: cells, maps (plan, run), `sweep`, `curves`, `motion`, `response`; what a map costs
+steady         steady states: cells, maps, `sweep`, `curves`, `motion`, `response`; what a map costs
 files          configurations; places of output, storage, reading; files in words
 probabilities  many samples of an uncertain structure as probabilities
 stores         maps block by block into a zarr store, in this process or on workers

@@ -1,5 +1,6 @@
 """A structure and its reduction: made, and held to its promise in the range of frequency."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,9 +11,13 @@ from .accuracy import Accuracy, Comparison, Ranges, Whole
 from .craig_bampton import FixedInterface, Reduce, Reduced, fixed_interface, project
 from .structure import Structure
 
-#: Of the modes asked for: so many more are tried for a number that would do, in such steps.
+#: Of the modes asked for: so many times as many are tried for a number that would do, in such steps.
 _MORE = 8
 _STEP = 1.25
+
+#: Share of what is allowed that a number of modes must keep to that is said to do: its own first natural
+#: frequency, which r is over by default, shifts the range.
+_ROOM = 0.9
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,15 +71,36 @@ class Reduction:
         most = int(np.count_nonzero(whole.arrays["M"].diagonal())) - len(self.kept)
         tried = min(_MORE * max(self.asked.modes, 8), most)
         fixed = fixed_interface(whole, whole.dofs.rows(self.kept), tried)
-        modes, enough = self.asked.modes, False
-        while modes < tried and not enough:
-            modes = min(max(modes + 1, round(_STEP * modes)), tried)
-            enough = comparison.accuracy(project(whole, fixed, modes, self.base)).worst <= self.asked.allow
-        advice = f"{modes} would do" if enough else f"{tried} would not do either"
+
+        def do(modes: int) -> bool:
+            accuracy = comparison.accuracy(project(whole, fixed, modes, self.base))
+            return accuracy.worst <= _ROOM * self.asked.allow
+
+        enough = _enough(do, self.asked.modes, tried)
+        advice = f"{tried} would not do either" if enough is None else f"{enough} would do"
         raise InputError(
             f"reduce.modes must leave errors <= {self.asked.allow:g} in the range of r (or give reduce.allow)"
             f"; got {self.asked.modes}, with {accuracy.words()}; {advice}"
         )
+
+
+def _enough(do: Callable[[int], bool], too_few: int, most: int) -> int | None:
+    """A number of modes that does, where one fewer does not: the same, mostly, whatever was tried first.
+
+    None if `most` does not.
+    """
+    modes = too_few
+    while modes < most:
+        modes = min(max(modes + 1, round(_STEP * modes)), most)
+        if do(modes):
+            break
+        too_few = modes
+    else:
+        return None
+    while modes - too_few > 1:
+        middle = (modes + too_few) // 2
+        modes, too_few = (middle, too_few) if do(middle) else (modes, middle)
+    return modes
 
 
 def _sparse(structure: Structure) -> dict[str, Any]:

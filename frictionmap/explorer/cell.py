@@ -1,6 +1,7 @@
 """One cell of a view: its motion in numbers, words and curves, and what other starts give."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -13,6 +14,7 @@ from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
 from ..steady.maps import solve_map
 from ..steady.motion import Motion, Question, find_motion
+from ..theory.boundary_curves import find_curves
 from .views import View
 
 #: Samples per excitation period: a curve a few hundred pixels wide is smooth with them.
@@ -23,6 +25,9 @@ _LISTED = 12
 
 #: Relative difference of two amplitudes from which on two starts are said to end differently.
 _OTHER = 1e-6
+
+#: Share of the range of r at which motions are rehearsed: at rounder ones, as the middle, much resonates.
+_ASIDE = 0.382
 
 Packet = tuple[dict[str, Any], dict[str, np.ndarray]]
 
@@ -208,3 +213,21 @@ def _alike(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
         return False
     sizes = float(one["contact_amplitude"]), float(other["contact_amplitude"])
     return bool(np.isclose(*sizes, rtol=_OTHER, atol=_OTHER, equal_nan=True))
+
+
+def rehearse(view: View, watch: Callable[[], None]) -> None:
+    """A motion of each kind, and what else is known of one that stops: kernels are compiled or loaded.
+
+    With mu = 1, where every motion is found at once.
+    """
+    view, r = replace(view, mu=1.0), view.r[0] + _ASIDE * (view.r[1] - view.r[0])
+    limits = find_curves(view.system, np.array([r]), np.array([1.0]))
+    lim, stick = limits.beta_lim.item(), limits.beta_stick.item()
+    if not math.isfinite(stick):  # held, it resonates: nothing sticks there
+        stick = 2.0 * lim + 1.0
+    between = 0.5 * (lim + stick)
+    for beta in (between, 0.5 * lim, 1.5 * stick):
+        watch()
+        motion(view, r, beta)
+    watch()
+    others(view, r, between)

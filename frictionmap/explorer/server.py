@@ -107,14 +107,14 @@ class Page:
             self._warm.set()
 
     def rehearse(self) -> None:
-        """Have a small map and a motion computed: their kernels are loaded before the page asks for more."""
+        """Have a small map and motions computed: their kernels are at hand before the page asks for more."""
         from . import cell, queries, views
 
         self._warm.wait()
         with contextlib.suppress(InputError, Outdated), self.jobs.enter("rehearsal") as job:
             view = queries.read_query(self.scene, "").view
             views.piece_of_map(view, views.quantities(view.system)[0], views.Piece(2, 2, 0, 2), job)
-            cell.motion(view, 0.5 * sum(view.r), 0.5 * sum(view.beta))
+            cell.rehearse(view, job.watch)
 
     def answer(self, target: str, gone: Callable[[], bool]) -> Answer:
         """The answer to an address; `gone` tells whether anybody still waits for it."""

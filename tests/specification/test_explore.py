@@ -24,7 +24,8 @@ from refusals import refusal
 import frictionmap as fm
 from frictionmap import InputError, regimes
 from frictionmap._kernels.cache import listeners
-from frictionmap.explorer import stored
+from frictionmap.explorer import cell, stored
+from frictionmap.explorer.cell import motion
 from frictionmap.explorer.jobs import Jobs, Outdated
 from frictionmap.explorer.packets import pack, unpack
 from frictionmap.files.config import config_of
@@ -122,6 +123,22 @@ def test_a_cell_moves_as_response_says(one):
     # a dataset has it in single precision
     assert numbers["stuck_fraction"] == pytest.approx(100.0 * ds["stuck_fraction"].item(), rel=2.0**-24)
     assert header["regime"] == "stick_slip"
+
+
+def test_a_motion_of_every_kind_is_rehearsed(one, two, monkeypatch):
+    """Else the first cell of a kind waits for its kernels."""
+    for server in (one, two):
+        kinds = set()
+
+        def told(*asked, kinds=kinds):
+            header, arrays = motion(*asked)
+            kinds.add(header["regime"])
+            return header, arrays
+
+        monkeypatch.setattr(cell, "motion", told)
+        server.page.rehearse()
+        monkeypatch.undo()
+        assert kinds == {"stick_slip", "continuous", "permanent_sticking"}
 
 
 @pytest.mark.parametrize(

@@ -398,7 +398,18 @@ def test_the_whole_legend_is_seen_on_a_laptop(browser, one):
 
 
 def test_what_is_wrong_is_told_in_a_line(browser, one):
-    with page_of(browser, one.url) as page:
+    address = "#mu=abc&r=3,1&damping_ratios=-1&zeta=0.1&beta=0,0.9&cell=1&quantity=stuck_fraction"
+    with page_of(browser, one.url + address) as page:
+        keys = "r, beta, quantity, cell, start, contact, cut, mu, damping_ratios"
+        assert page.inner_text("#notice") == (
+            "mu must be a number >= 1; got abc; shown is 1\n"
+            "r must be two increasing numbers >= 0 with a comma; got 3,1; shown is 0,2\n"
+            "damping_ratios must be a number >= 0; got -1; shown is 0\n"
+            f"unknown key zeta is left out; the keys are {keys}\n"
+            "cell must be r > 0 and beta >= 0 with a comma; got 1; shown is none"
+        )
+        right = {"r": "0,2", "beta": "0,0.9", "mu": "1", "quantity": "stuck_fraction"}
+        assert of_address(page) == right
         page.fill("input[type=number][name=mu]", "0.5")
         page.keyboard.press("Enter")
         page.wait_for_selector("#told.wrong")
@@ -406,6 +417,7 @@ def test_what_is_wrong_is_told_in_a_line(browser, one):
         page.fill("input[type=number][name=mu]", "")
         page.keyboard.press("Enter")
         assert page.input_value("input[type=number][name=mu]") == "0.5"
+        assert page.is_hidden("#notice")  # the view is another one now
         page.fill("input[type=number][name=mu]", "1.2")
         repainted(page, lambda: page.keyboard.press("Enter"))
         assert page.is_hidden("#told")
@@ -479,8 +491,9 @@ def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
         for name, value in {"_CELLS": {False: (40, 30)}, "_PLACES": 3}.items():
             patch.setattr(stored, name, value)
         (tmp_path / "page.html").write_bytes(stored.write_page(scene, lambda *_: None))
-    url = (tmp_path / "page.html").as_uri()
+    url = f"{(tmp_path / 'page.html').as_uri()}#mu=1.7"
     with page_of(browser, url, offline=True) as page:
+        assert page.inner_text("#notice") == "mu must be one of 1, 2, 3; got 1.7; shown is 1"
         maps = lambda mu, zeta: wanted(fm.System(damping_ratios=zeta), (0.0, 2.0), (0.0, 1.2), mu, (40, 30))  # noqa: E731
 
         def middles():

@@ -60,36 +60,95 @@ export function hashOf(view, scene) {
   return `#${joined(pairs)}`;
 }
 
-function isRange(numbers) {
-  return numbers.length === 2 && numbers.every(Number.isFinite) && numbers[0] >= 0 && numbers[0] < numbers[1];
+/** Characters of a wrong value that are told. */
+const TOLD = 40;
+
+/** Numbers with commas between them, if they are so many, finite and right; else undefined. */
+function numbersOf(text, count, right) {
+  const parts = text.split(",");
+  const numbers = parts.map(Number);
+  const known = parts.length === count && parts.every((part) => part.trim()) && numbers.every(Number.isFinite);
+  return known && right(...numbers) ? numbers : undefined;
 }
 
-function isCell(numbers) {
-  return numbers.length === 2 && numbers.every(Number.isFinite) && numbers[0] > 0 && numbers[1] >= 0;
+/**
+ * What may stand under a key of an address.
+ * @typedef {object} Key
+ * @property {(text: string) => any} read  the value, or undefined
+ * @property {string} legal                what is legal, in words
+ */
+
+/** @returns {Key} */
+function range() {
+  const read = (text) => numbersOf(text, 2, (low, high) => low >= 0 && low < high);
+  return { read, legal: "two increasing numbers >= 0 with a comma" };
 }
 
-/** The view of an address; what it leaves out or what is wrong in it is as the scene begins. @returns {View} */
-export function viewOf(hash, scene) {
+/** @returns {Key} */
+function cell() {
+  return { read: (text) => numbersOf(text, 2, (r, beta) => r > 0 && beta >= 0), legal: "r > 0 and beta >= 0 with a comma" };
+}
+
+/** @returns {Key} */
+function choice(words) {
+  return { read: (text) => (words.includes(text) ? text : undefined), legal: `one of ${words.join(", ")}` };
+}
+
+/** A number as a slider has it: only mass and stiffness ratios may lie below the slider's least. @returns {Key} */
+function number({ least, scale }) {
+  const ratio = scale === "log";
+  const right = (value) => (ratio ? value > 0 : value >= least);
+  return { read: (text) => numbersOf(text, 1, right)?.[0], legal: `a number ${ratio ? "> 0" : `>= ${least}`}` };
+}
+
+/** One of the places of a slider that has no others. @returns {Key} */
+function place(places) {
+  return { read: (text) => numbersOf(text, 1, (value) => places.includes(value))?.[0], legal: `one of ${places.join(", ")}` };
+}
+
+/** The keys of an address; a page that keeps maps for some places of its sliders has no others to offer. @returns {Map<string, Key>} */
+function keysOf(scene, places) {
+  const shown = [["r", range()], ["beta", range()], ["quantity", choice(scene.quantities.map(({ key }) => key))], ["cell", cell()]];
+  if (places) return new Map([...shown, ...scene.sliders.map(({ key }) => [key, place(places[key])])]);
+  return new Map([
+    ...shown,
+    ["start", choice(["rest", "moving"])],
+    ["contact", choice(scene.contacts.map(({ key }) => key))],
+    ["cut", choice(["r", "beta"])],
+    ...scene.sliders.map((slider) => [slider.key, number(slider)]),
+  ]);
+}
+
+/** What a view has under a key of an address. */
+function valueIn(view, key, scene) {
+  const slider = scene.sliders.find((one) => one.key === key);
+  const value = key in view ? view[key] : view.numbers[key] ?? slider.value;
+  return String(value ?? "") || "none";
+}
+
+/** What is wrong with a key of an address, and what the view has instead, in a line. */
+function fault(view, scene, keys, key, text) {
+  const got = text.length > TOLD ? `${text.slice(0, TOLD)}…` : text;
+  if (!keys.has(key)) return `unknown key ${key.slice(0, TOLD)} is left out; the keys are ${[...keys.keys()].join(", ")}`;
+  return `${key} must be ${keys.get(key).legal}; got ${got || "nothing"}; shown is ${valueIn(view, key, scene)}`;
+}
+
+/**
+ * The view of an address; what it leaves out or what is wrong in it is as the scene begins.
+ * @param {Object<string, number[]> | null} [places]  those of the sliders, if maps are kept for them only
+ * @returns {{view: View, wrong: string[]}}  a line for everything that is wrong
+ */
+export function viewOf(hash, scene, places = null) {
   const view = firstView(scene);
-  const given = new URLSearchParams(hash.replace(/^#/, ""));
-  const numbers = (key) => (given.get(key) ?? "").split(",").filter(Boolean).map(Number);
-  const one = (key, legal) => {
-    const value = given.get(key);
-    if (value !== null && legal.includes(value)) view[key] = value;
-  };
-  if (isRange(numbers("r"))) view.r = numbers("r");
-  if (isRange(numbers("beta"))) view.beta = numbers("beta");
-  if (isCell(numbers("cell"))) view.cell = numbers("cell");
-  if (Number(given.get("mu")) >= 1) view.mu = Number(given.get("mu"));
-  one("start", ["rest", "moving"]);
-  one("contact", scene.contacts.map((contact) => contact.key));
-  one("quantity", scene.quantities.map((quantity) => quantity.key));
-  one("cut", ["r", "beta"]);
-  for (const slider of scene.sliders) {
-    const value = given.get(slider.key);
-    if (slider.key !== "mu" && value && Number.isFinite(Number(value))) view.numbers[slider.key] = Number(value);
+  const keys = keysOf(scene, places);
+  const faults = [];
+  for (const [key, text] of new URLSearchParams(hash.replace(/^#/, ""))) {
+    const value = keys.get(key)?.read(text);
+    if (value === undefined) faults.push([key, text]);
+    else if (key in view) view[key] = value;
+    else view.numbers[key] = value;
   }
-  return view;
+  return { view, wrong: faults.map(([key, text]) => fault(view, scene, keys, key, text)) };
 }
 
 /** Ends of a range with no more digits than can be seen. */

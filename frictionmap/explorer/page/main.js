@@ -67,7 +67,7 @@ function secondsOf({ frequency, force }) {
 class Page {
   constructor(source, scene) {
     [this.source, this.scene] = [source, scene];
-    this.view = viewOf(location.hash, scene);
+    this.#readAddress();
     this.table = classTable(scene.classes);
     this.map = new RegimeMap(part("stage"));
     this.map.names = { r: "frequency ratio r = ω/ω₁", beta: `friction ratio β = ${scene.units.beta}` };
@@ -122,6 +122,7 @@ class Page {
     const ranges = ["r", "beta"].filter((axis) => change[axis]).map((axis) => [axis, tidy(change[axis])]);
     const cells = Object.keys(change).some((key) => !["r", "beta", "quantity", "cell", "cut"].includes(key));
     this.view = { ...this.view, ...change, ...Object.fromEntries(ranges) };
+    this.#note("");
     this.update(cells || "cell" in change);
   }
 
@@ -188,8 +189,15 @@ class Page {
 
   #onAddress() {
     if (location.hash === this.hash) return;
-    this.view = viewOf(location.hash, this.scene);
+    this.#readAddress();
     this.update(true);
+  }
+
+  /** The view that the address names; what is wrong in it is told until the view is changed. */
+  #readAddress() {
+    const { view, wrong } = viewOf(location.hash, this.scene, this.source.fixed?.values);
+    this.view = view;
+    this.#note(wrong.join("\n"));
   }
 
   #redraw() {
@@ -227,6 +235,11 @@ class Page {
       const spent = performance.now() - state.since;
       if (spent > PATIENCE) this.#tell(`${Math.round(100 * state.share)} %, about ${this.#duration((spent * (1 - state.share)) / state.share)} left`);
     }
+  }
+
+  /** What was wrong in the address, over the map: whatever else is told does not replace it. */
+  #note(text) {
+    [part("notice").textContent, part("notice").hidden] = [text, !text];
   }
 
   #duration(milliseconds) {

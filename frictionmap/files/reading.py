@@ -2,6 +2,7 @@
 
 import contextlib
 import importlib.util
+import traceback
 import warnings
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
@@ -55,6 +56,7 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
     ------
     InputError
         There is none, it is not ours, zarr is wanted and missing; or the file is damaged where it is read.
+        What else the body of the context raises comes through as it is.
     """
     store = (path / "zarr.json").is_file()
     if not store and not path.is_file():
@@ -74,16 +76,32 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a malformed file; what is wrong with it is said below
         try:
-            with xr.open_dataset(path, decode_times=False, **options) as ds:
-                _check_ours(path, ds)
-                yield ds
-        except InputError:
-            raise
+            ds = xr.open_dataset(path, decode_times=False, **options)
         except Exception as error:  # the libraries raise anything over a file that is not what they expect
-            raise InputError(
-                f"file {path} must be NetCDF written by frictionmap; it cannot be opened "
-                f"({checks.one_line(error) if not str(error) else error})"
-            ) from None
+            raise _damaged(path, error) from None
+        with ds:
+            _check_ours(path, ds)
+            try:
+                yield ds
+            except Exception as error:
+                if not _from_the_file(error):
+                    raise
+                raise _damaged(path, error) from None
+
+
+def _damaged(path: Path, error: Exception) -> InputError:
+    return InputError(
+        f"file {path} must be NetCDF written by frictionmap; it cannot be opened "
+        f"({checks.one_line(error) if not str(error) else error})"
+    )
+
+
+def _from_the_file(error: Exception) -> bool:
+    """Whether it was raised where values are read from a file, of which xarray reads no more than is used."""
+    if isinstance(error, MemoryError):  # says nothing of the file
+        return False
+    modules = (str(frame.f_globals.get("__name__")) for frame, _ in traceback.walk_tb(error.__traceback__))
+    return any(name.startswith(("xarray.backends.", "xarray.coding.")) for name in modules)
 
 
 def _check_ours(path: Path, ds: xr.Dataset) -> None:

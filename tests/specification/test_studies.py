@@ -10,7 +10,7 @@ import xarray as xr
 import frictionmap as fm
 from frictionmap import InputError
 from frictionmap.cli import main
-from frictionmap.files.reading import read
+from frictionmap.files.reading import opened, read
 from frictionmap.files.slices import parse_choices
 from frictionmap.files.storage import write
 from frictionmap.files.stored import stored_system
@@ -197,6 +197,30 @@ def test_unfinished_blocks_are_told_and_drawn_as_such(files, tmp_path, capsys):
     assert "27 cells not_computed" in told
     arguments = ["plot", str(path), "--at", "damping_ratios=0.05", "--at", "sample=0"]
     assert main([*arguments, "-o", str(tmp_path / "part.png"), "--quiet"]) == 0
+
+
+@pytest.mark.parametrize("error", [KeyError("nu"), OSError("no room"), MemoryError(), TypeError("text")])
+def test_an_error_beside_an_open_file_is_not_put_on_the_file(files, error):
+    def fails_after_reading():
+        with opened(files[".zarr"]) as ds:
+            assert ds["regime"].values.any()
+            raise error
+
+    with pytest.raises(type(error)) as raised:
+        fails_after_reading()
+    assert raised.value is error
+
+
+def test_a_damaged_chunk_is_told_where_it_is_read(files, tmp_path):
+    path = tmp_path / "cut.zarr"
+    shutil.copytree(files[".zarr"], path)
+    for chunk in (path / "regime" / "c").rglob("[0-9]"):
+        if chunk.is_file():
+            chunk.write_bytes(chunk.read_bytes()[:10])
+    with opened(path) as ds:
+        assert (ds["stops_per_cycle"].values >= 0).any()
+    with pytest.raises(InputError, match=r"cut\.zarr must be .* it cannot be opened"), opened(path) as ds:
+        _ = ds["regime"].values
 
 
 def test_shares_of_what_is_finished(files, tmp_path, capsys):

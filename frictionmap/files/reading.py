@@ -2,6 +2,8 @@
 
 import contextlib
 import importlib.util
+import os
+import stat
 import traceback
 import warnings
 from collections.abc import Collection, Iterator, Mapping
@@ -55,11 +57,12 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
     Raises
     ------
     InputError
-        There is none, it is not ours, zarr is wanted and missing; or the file is damaged where it is read.
+        There is none, it is protected or not ours, zarr is wanted and missing; or the file is damaged where
+        it is read.
         What else the body of the context raises comes through as it is.
     """
-    store = (path / "zarr.json").is_file()
-    if not store and not path.is_file():
+    store = _is_file(path / "zarr.json")
+    if not store and not _is_file(path):
         wrong = "is not a file" if path.exists() else "does not exist"
         raise InputError(f"file {path} {wrong}; give a file written by frictionmap")
     if path.suffix == ".toml":
@@ -89,7 +92,23 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
                 raise _damaged(path, error) from None
 
 
+def _is_file(path: Path) -> bool:
+    try:
+        return stat.S_ISREG(os.stat(path).st_mode)
+    except PermissionError:
+        raise _protected(path) from None
+    except OSError:
+        return False
+
+
+def _protected(path: Path) -> InputError:
+    return InputError(f"file {path} must be readable; it is protected from reading")
+
+
 def _damaged(path: Path, error: Exception) -> InputError:
+    """What is wrong with a file over which a library has raised this."""
+    if isinstance(error, PermissionError):
+        return _protected(Path(error.filename or path))
     return InputError(
         f"file {path} must be NetCDF written by frictionmap; it cannot be opened "
         f"({checks.one_line(error) if not str(error) else error})"

@@ -41,7 +41,7 @@ def fill_store(
     ------
     InputError
         There is a store of another study or version (without `overwrite`), or something else of that name,
-        or another run is at it.
+        it is protected from writing and not done, or another run is at it.
     OSError
         A block cannot be written; those before it are kept.
     """
@@ -56,6 +56,8 @@ def fill_store(
         remove_strays(path)
         store = Store(path, study)
         done = store.marks()
+        if not done.all():
+            _check_writable(path)
         count = int(np.count_nonzero(done))
         claim.kept = lambda: f"{count:,} of {done.size:,} blocks are in {path}; the same command goes on"
         try:
@@ -73,7 +75,13 @@ def _check_replaceable(path: Path) -> None:
     """Refuse to replace a folder that is no store, or one that is protected from writing."""
     if not path.exists():
         return
+    _check_writable(path)
     if not (path / "zarr.json").is_file():
         raise InputError(f"-o must be a store to be overwritten; the folder {path} holds something else")
-    if not os.access(path, os.W_OK):
-        raise InputError(f"output {path} is protected from writing; use another -o")
+
+
+def _check_writable(path: Path) -> None:
+    """Refuse a store that is protected from writing, or one of whose arrays is."""
+    for place in (path, *path.glob("*/")):
+        if not os.access(place, os.W_OK):
+            raise InputError(f"output {place} is protected from writing; make it writable or use another -o")

@@ -199,12 +199,19 @@ def _config(path: Path) -> Config:
     """The configuration of a store; refused is what is no store of ours, or of another version."""
     zarr = _zarr()
     source: object = "something else"
-    with contextlib.suppress(Exception):  # whatever the library makes of files that are not its own
+    try:
         group = zarr.open_group(path, mode="r", use_consolidated=False)
         source = group.attrs.get("source", source)
         if source == _SOURCE:
             found = {name: np.asarray(array[...]) for name, array in _arrays_in(group, _MATRICES)}
             return config_of(str(group.attrs["config"]), {"matrices": found} if found else {})
+    except PermissionError as error:
+        raise InputError(
+            f"store {path} must be readable to go on with; {error.filename} is protected from reading; "
+            "use another -o"
+        ) from None
+    except Exception:  # whatever the library makes of files that are not its own
+        pass
     raise InputError(
         f"store {path} must be of this version, {_SOURCE}, to go on with; it is of {source}; "
         "use --overwrite or another -o"

@@ -19,6 +19,7 @@ import xarray as xr
 import frictionmap as fm
 from frictionmap import InputError
 from frictionmap.cli import main
+from frictionmap.files.config import load_config
 from frictionmap.files.places import claimed_folder
 from frictionmap.stores.run import fill_store, in_this_process
 from frictionmap.stores.store import opened
@@ -225,6 +226,35 @@ def test_a_damaged_store_is_refused(tmp_path, gone):
         fill_store(path, asked, "map", in_this_process(1))
     fill_store(path, asked, "map", in_this_process(1), overwrite=True)
     assert opened(path).marks().all()
+
+
+#: Root may do everything, unless it lays down what lets it.
+ROOT = hasattr(os, "geteuid") and os.geteuid() == 0
+OBEYING = ["setpriv", "--bounding-set=-dac_override,-dac_read_search"] if ROOT else []
+
+
+@pytest.mark.skipif(os.name == "nt" or (ROOT and not shutil.which("setpriv")), reason="root may do all")
+@pytest.mark.parametrize(
+    ("where", "mode", "words"),
+    [
+        (".", 0o500, "output m.zarr is protected from writing"),
+        ("status", 0o500, "output m.zarr/status is protected from writing"),
+        (".", 0o000, "m.zarr/zarr.json is protected from reading"),
+    ],
+)
+def test_a_protected_store_is_refused_by_name(tmp_path, where, mode, words):
+    found = load_config(config(tmp_path))
+    axes = {"mu": found.mu, "r": found.r, "beta": found.beta}
+    begun = study_of(found.system, found.variations, axes, found.solver)
+    fill_store(tmp_path / "m.zarr", begun, "study", lambda store, blocks: iter(()))
+    os.chmod(tmp_path / "m.zarr" / where, mode)
+    told = subprocess.run(
+        [*OBEYING, *command(tmp_path, "-o", "m.zarr", "--quiet")],
+        cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=600,
+    )  # fmt: skip
+    os.chmod(tmp_path / "m.zarr" / where, 0o700)  # so that it can be cleared away
+    assert (told.returncode, told.stderr.count("\n")) == (2, 1), told.stderr
+    assert words in told.stderr
 
 
 def test_without_zarr_a_store_is_left_alone(tmp_path, monkeypatch):

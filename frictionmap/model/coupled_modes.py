@@ -151,6 +151,12 @@ class CoupledModel(ModalModel):
         r = np.asarray(r, dtype=float)
         return weighed(self.answers(r, self.participation(r)), weights)
 
+    def mass_responses(self, r: np.ndarray) -> np.ndarray:
+        """As of `ModalModel`."""
+        r = np.asarray(r, dtype=float)
+        q = self.answers(r, self.participation(r))
+        return np.column_stack([weighed(q, row) for row in self.phi])
+
     def contact_response(self, r: np.ndarray) -> np.ndarray:
         """As of `ModalModel`."""
         r = np.asarray(r, dtype=float)

@@ -19,7 +19,7 @@ class FreeStructure(NamedTuple):
     push : (n,) what a force in the contact is on each
     to_modes : (2n, 2n) (u, u') of (q, p), p = q' less the load's direct part; an identity without coupling
     to_oscillators : (2n, 2n) the inverse
-    coupled : whether the damping couples any modes
+    joined : (j,) which of them are pairs of roots of modes that the damping couples
     """
 
     omega: np.ndarray
@@ -27,7 +27,25 @@ class FreeStructure(NamedTuple):
     push: np.ndarray
     to_modes: np.ndarray
     to_oscillators: np.ndarray
-    coupled: bool
+    joined: np.ndarray
+
+    @property
+    def coupled(self) -> bool:
+        """Whether the damping couples any modes."""
+        return self.joined.size > 0
+
+    def compliances(self, rows: np.ndarray) -> np.ndarray:
+        """The answers of sums of modes to friction by those of the oscillators: weights of h_i and R_i h_i'.
+
+        rows : (k, n) of the modes
+        Returns (k, n + j), of the h_i and of the joined ones' R_i h_i', R_i = r/w_i: they do not depend on r
+        """
+        share = self.push / self.omega**2
+        if not self.coupled:
+            return rows * share
+        n, joined = self.omega.size, self.joined
+        both = rows @ self.to_modes[:n]
+        return np.hstack((both[:, :n] * share, both[:, n + joined] * (share * self.omega)[joined]))
 
     def weights(self, chi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The answer of z to friction by those of the oscillators, h = sum a_i h_i + b_i r h_i'.
@@ -52,7 +70,7 @@ class FreeStructure(NamedTuple):
 def modal_structure(w: np.ndarray, zeta: np.ndarray, chi: np.ndarray) -> FreeStructure:
     """That of modes that the damping does not couple."""
     same = np.eye(2 * w.size)
-    return FreeStructure(w, zeta, chi, same, same, False)
+    return FreeStructure(w, zeta, chi, same, same, np.zeros(0, dtype=int))
 
 
 def coupled_structure(
@@ -73,4 +91,4 @@ def coupled_structure(
     to_oscillators[np.ix_(both, both)] = part.to_oscillators
     omega, ratio, push = free.omega.copy(), free.zeta.copy(), free.push.copy()
     omega[joined], ratio[joined], push[joined] = part.omega, part.zeta, part.push
-    return FreeStructure(omega, ratio, push, to_modes, to_oscillators, True)
+    return FreeStructure(omega, ratio, push, to_modes, to_oscillators, joined)

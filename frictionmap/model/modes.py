@@ -390,6 +390,10 @@ class ModalModel:
         """
         return _modal_sum(self.dynamic_stiffness(r), _weighted(self.participation(r), weights))
 
+    def mass_responses(self, r: np.ndarray) -> np.ndarray:
+        """V_k, displacements without friction, complex (n_r, n); infinite as `response`."""
+        return np.column_stack([self.response(r, row) for row in self.phi])
+
     def contact_response(self, r: np.ndarray) -> np.ndarray:
         """V of theory.md 2, the response function of z, complex (n_r,); infinite as `response`.
 

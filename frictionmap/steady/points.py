@@ -10,7 +10,7 @@ from .._kernels.engine.quantities import LAG, MODULUS
 from ..model.settings import Solver, Start
 from ..model.system import System
 from ..theory.boundary_curves import Curves, find_curves
-from ..theory.half_waves import compliances, dynamic_shares, mass_responses
+from ..theory.half_waves import compliances, dynamic_shares
 from .cells import Cells
 from .maps import allocate
 from .quantity_data import asked_for
@@ -109,7 +109,7 @@ def _put_continuous(
         turn = (root + 1j * swing) / size * v / size  # e^{-i phi_z}, T(7.21)
         shift = (4j / np.pi * beta * turn)[:, np.newaxis] * answers[place]
         shift[beta == 0.0] = 0.0
-        states.phasors[where] = mass_responses(modes, r)[place] - shift
+        states.phasors[where] = modes.mass_responses(r)[place] - shift
     states.regime[where] = regimes.CONTINUOUS
 
 

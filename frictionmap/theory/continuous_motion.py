@@ -2,7 +2,7 @@
 
 Its friction force is a square wave locked to the maxima of z.  The answer of a mode to that wave, less its
 harmonic part, is ``h`` of theory.md 2; all else is harmonic.  Modes that do not participate have the harmonic
-part only: their u may be infinite, and is not asked for.
+part only: their u may be infinite, and is not asked for.  Where the damping couples modes, theory.md 8.
 """
 
 import math
@@ -22,10 +22,10 @@ from .half_waves import (
     FrictionAnswers,
     Peaks,
     compliances,
+    contact_compliances,
     dynamic_shares,
     friction_answers,
     mass_peaks,
-    mass_responses,
     peak_phases,
 )
 
@@ -60,14 +60,13 @@ class ContinuousMotion:
 
     @cached_property
     def _compliance(self) -> np.ndarray:
-        """phi_ki chi_i/w_i^2 of the participating modes, (n, p)."""
+        """Of every mass, (n, answers)."""
         return compliances(self._modes)
 
     @cached_property
     def _contact_compliance(self) -> np.ndarray:
-        """chi_i^2/w_i^2 of the same, (1, p)."""
-        modes = self._modes
-        return ((modes.chi / modes.w)[modes.chi != 0.0] ** 2)[np.newaxis]
+        """Of z, (1, answers)."""
+        return contact_compliances(self._modes)[np.newaxis]
 
     def displacement(self, tau: object) -> np.ndarray:
         """x_k, T(7.28) with d(tau) of (B.8a); shape (n, tau.size)."""
@@ -109,7 +108,7 @@ class ContinuousMotion:
 
         As from T(7.31), (7.32): the sign of U_dk sin(..) in T(7.33) is a slip.
         """
-        g, u = self._compliance @ self._answers.g[0], self._compliance @ self._answers.u[0]  # T(7.17), (7.16)
+        u, g = (self._compliance @ part[0] for part in self._answers.at_maximum())  # T(7.16), (7.17)
         return np.abs(self._harmonic - self.beta * (g - 1j * u))
 
     @property
@@ -168,6 +167,8 @@ class ContinuousMotion:
     def work_damping(self) -> float:
         """Work lost in dashpots: sum_i 2 zeta_i w_i r int q_i'^2, theory.md 9 (6)."""
         modes, r, beta = self._modes, self.r, self.beta
+        if modes.joined.any():
+            return self._coupled_work_damping
         part = damping_participation(modes, r) * np.exp(1j * self.contact_phase)
         rate = 2.0 * math.pi * modes.zeta * modes.w * r
         work = float(np.sum(rate * np.abs(part) ** 2))
@@ -178,6 +179,18 @@ class ContinuousMotion:
         alone = 4.0 * (modes.w[participating] * share) ** 2 * self._answers.g[0]
         work += beta * float(np.sum(8.0 / math.pi * rate[participating] * share * turned))
         return work + beta * beta * float(np.sum(alone))
+
+    @property
+    def _coupled_work_damping(self) -> float:
+        """The same where the damping couples modes, theory.md 8: first harmonics', and the others'."""
+        modes, at = self._modes, np.array([self.r])
+        friction = np.zeros((1, modes.w.size), dtype=complex)
+        answers = modes.free.compliances(np.eye(modes.free.omega.size)) @ dynamic_shares(modes, at)[0]
+        friction[0, modes.participating] = -self.friction_harmonics(1)[1] * answers
+        whole = damping_participation(modes, self.r) + friction
+        first = math.pi * self.r * float((modes.drag(whole) - modes.drag(friction))[0])
+        lift = float(self._contact_compliance[0] @ self._answers.at_maximum()[1][0])  # G
+        return first + 4.0 * self.beta**2 * lift
 
     @property
     def equivalent_damping(self) -> float:
@@ -211,11 +224,11 @@ class ContinuousMotion:
         """x_k or x_k' at times 0 <= t <= pi after a maximum of z; shape (n, t.size)."""
         turn = np.exp(1j * t)
         values = (harmonic[:, np.newaxis] * (1j * turn if velocity else turn)).real
-        modes = range(compliance.shape[1])
+        which = range(compliance.shape[1])
         if velocity:
-            answers = [self._answers.rates(i, 0, t)[0] for i in modes]
+            answers = [self._answers.rates(i, 0, t)[0] for i in which]
         else:
-            answers = [self._answers.displacement(i, 0, t) for i in modes]
+            answers = [self._answers.displacement(i, 0, t) for i in which]
         return values + self.beta * (compliance @ answers)
 
 
@@ -255,12 +268,11 @@ def continuous_motion(system: System, r: SupportsFloat, beta: SupportsFloat) -> 
     checks.instance(system, "system", System)
     r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
     beta = checks.number(beta, "beta", least=0.0)
-    system.need_modal("the closed form of a continuous motion")
     modes = system.modes
     at = np.array([r])
     found = find_curves(system, at, np.ones(1))
     v, beta_lim = found.v[0], found.beta_lim[0, 0]
-    responses = mass_responses(modes, at)[0]
+    responses = modes.mass_responses(at)[0]
     if np.isinf(v) or np.isinf(responses).any():
         raise NoSteadyState(f"r = {r:g}: an undamped resonance; the motion grows without bound")
     if beta > beta_lim:

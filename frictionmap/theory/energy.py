@@ -34,8 +34,7 @@ def damping_participation(modes: ModalModel, r: float) -> np.ndarray:
     """
     at = np.array([r])
     damped = modes.zeta > 0.0
-    parts = np.zeros(damped.size, dtype=complex)
-    np.divide(modes.participation(at)[0], modes.dynamic_stiffness(at)[0], out=parts, where=damped)
+    parts = np.where(damped, modes.answers(at, modes.participation(at))[0], 0.0)
     if modes.load_rate.any():
         parts -= np.where(damped, modes.phi.T @ modes.mass @ np.ones(damped.size), 0.0)
     return parts

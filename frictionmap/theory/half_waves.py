@@ -1,7 +1,8 @@
 """Motions over half a period from a maximum of z on, theory.md 2, and where they are largest.
 
 Such a half is harmonic but for the answers h_i of the modes to the square wave of friction; the next one is
-its mirror image.  Modes that do not participate have the harmonic part only.
+its mirror image.  Modes that do not participate have the harmonic part only.  Where the damping couples modes
+the h_i are those of oscillators, and their velocities count, too: R_i h_i' is one more answer of each.
 """
 
 import math
@@ -11,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._kernels.closed_form import damping_functions
+from ..model.balance import dynamic_stiffness
 from ..model.modes import ModalModel, wrapped
 
 #: First intervals of half a period in the search of an amplitude, and parts that an open one is cut into.
@@ -89,9 +91,10 @@ class Swing(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FrictionAnswers:
-    """The answers h_i of theory.md 2 of the participating modes, in several motions.
+    """The answers h_i of theory.md 2 of p participating modes or oscillators, in several motions.
 
     zeta : (p,) damping ratios
+    joined : (j,) of which R_i h_i' are answers, too: numbers p.. of p + j; `FreeStructure.joined`
     pace : (n_motions, p) w_i/r
     u, g : (n_motions, p) damping functions T(7.11), (7.12).  At an undamped resonance u is infinite: its
         part u sin(tau) is in the harmonic motion there, and (2/pi) tau cos(tau) is left, theory.md 9 (5)
@@ -100,17 +103,41 @@ class FrictionAnswers:
     """
 
     zeta: np.ndarray
+    joined: np.ndarray
     pace: np.ndarray
     u: np.ndarray
     g: np.ndarray
 
-    def displacement(self, mode: int, motion: np.ndarray | int, t: np.ndarray) -> np.ndarray:
-        """h_i at times t."""
-        a, u, g, resonant = self._swing(mode, motion)
-        rise, q, _ = free_answers(self.zeta[mode], a * t)
+    def displacement(self, answer: int, motion: np.ndarray | int, t: np.ndarray) -> np.ndarray:
+        """h_i, or R_i h_i', at times t."""
+        if answer >= self.zeta.size:
+            i = int(self.joined[answer - self.zeta.size])
+            return self._rates(i, motion, t)[0] / self.pace[motion, i]
+        a, u, g, resonant = self._swing(answer, motion)
+        rise, q, _ = free_answers(self.zeta[answer], a * t)
         return (1.0 + g) * rise - g - np.where(resonant, RESONANT_U * t * np.cos(t), u / a * q)
 
-    def rates(self, mode: int, motion: np.ndarray | int, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def rates(self, answer: int, motion: np.ndarray | int, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Velocity and acceleration of `displacement` at times t."""
+        if answer < self.zeta.size:
+            return self._rates(answer, motion, t)
+        i = int(self.joined[answer - self.zeta.size])
+        a = self.pace[motion, i]
+        swing, bend = self._rates(i, motion, t)
+        return bend / a, -2.0 * self.zeta[i] * bend - a * swing
+
+    def at_maximum(self) -> tuple[np.ndarray, np.ndarray]:
+        """Velocities and displacements at t = 0, their signs turned; (n_motions, p + j) both.
+
+        u and g of the h_i.  The a that h_i''(0)/a has besides is left out: a force moves no velocity at once,
+        so that it adds up to nothing.
+        """
+        which = self.joined
+        a, u, g = self.pace[:, which], self.u[:, which], self.g[:, which]
+        velocity = -(a * g + 2.0 * self.zeta[which] * u)
+        return np.hstack((self.u, velocity)), np.hstack((self.g, u / a))
+
+    def _rates(self, mode: int, motion: np.ndarray | int, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """h_i' and h_i'' at times t."""
         a, u, g, resonant = self._swing(mode, motion)
         zeta = self.zeta[mode]
@@ -128,20 +155,24 @@ class FrictionAnswers:
         return Swing(self.pace[motion, mode], np.where(resonant, 0.0, u), self.g[motion, mode], resonant)
 
     def largest_displacements(self) -> np.ndarray:
-        """Sizes of the parts of h_i, whose rounding is that of the sum; (n_motions, p)."""
+        """Sizes of the parts of h_i, whose rounding is that of the sum; (n_motions, p + j)."""
         swing = np.where(np.isinf(self.u), 2.0, np.abs(self.u) / self.pace)
-        return 1.0 + np.abs(1.0 + self.g) + swing
+        size = np.abs(1.0 + self.g) + swing
+        return np.hstack((1.0 + size, size[:, self.joined]))
 
     def largest_accelerations(self) -> np.ndarray:
-        """Bounds of |h_i''| over all times; (n_motions, p).
+        """Bounds of their accelerations over all times; (n_motions, p + j).
 
         h'' = a e + b q, and q^2 + e^2 <= 1: it is the energy of free motion, 1 at the start.
+        The acceleration of R h' is (b - 2 zeta a) e - a q.
         """
         a, zeta = self.pace, self.zeta
         resonant = np.isinf(self.u)
         u = np.where(resonant, 0.0, self.u)
-        bound = np.hypot((1.0 + self.g) * a * a + 2.0 * zeta * a * u, a * u)
-        return np.where(resonant, 1.0 - RESONANT_U * (2.0 + math.pi), bound)
+        along, across = (1.0 + self.g) * a * a + 2.0 * zeta * a * u, a * u
+        bound = np.where(resonant, 1.0 - RESONANT_U * (2.0 + math.pi), np.hypot(along, across))
+        further = np.hypot(across - 2.0 * zeta * along, along)
+        return np.hstack((bound, further[:, self.joined]))
 
 
 def friction_answers(modes: ModalModel, r: np.ndarray, beta: np.ndarray) -> FrictionAnswers:
@@ -149,34 +180,36 @@ def friction_answers(modes: ModalModel, r: np.ndarray, beta: np.ndarray) -> Fric
 
     u and g count for nothing, and are 0, where there is no friction: u may be infinite without a resonance.
     """
-    participating = modes.chi != 0.0
-    w, zeta = modes.w[participating], modes.zeta[participating]
+    free = modes.free
+    w, zeta = free.omega, free.zeta
     pairs = np.array([[damping_functions(*mode, x) for mode in zip(w, zeta, strict=True)] for x in r])
     u, g = np.where(beta[:, np.newaxis, np.newaxis] > 0.0, pairs, 0.0).transpose(2, 0, 1)
-    return FrictionAnswers(zeta, w / r[:, np.newaxis], u, g)
+    return FrictionAnswers(zeta, free.joined, w / r[:, np.newaxis], u, g)
 
 
 def dynamic_shares(modes: ModalModel, s: np.ndarray) -> np.ndarray:
-    """w_i^2/(w_i^2 - s^2 + 2 i zeta_i w_i s) of the participating modes, complex (n_s, p).
+    """`FrictionAnswers` to a harmonic force in place of a square wave, complex (n_s, p + j).
 
-    0 where that is infinite, at an undamped s = w_i.
+    w_i^2/(w_i^2 - s^2 + 2 i zeta_i w_i s), and i s/w_i times it.  0 where that is infinite, at an undamped
+    s = w_i.
     """
-    participating = modes.chi != 0.0
-    stiffness = modes.dynamic_stiffness(s)[:, participating]
-    return np.divide(
-        modes.w[participating] ** 2, stiffness, out=np.zeros_like(stiffness), where=stiffness != 0.0
-    )
-
-
-def mass_responses(modes: ModalModel, r: np.ndarray) -> np.ndarray:
-    """V_k, displacements without friction, complex (n_r, n); infinite at a loaded undamped resonance."""
-    return np.column_stack([modes.response(r, row) for row in modes.phi])
+    free = modes.free
+    stiffness, squares = dynamic_stiffness(free.omega, free.zeta, s).complex(), free.omega[:, np.newaxis] ** 2
+    shares = np.divide(squares, stiffness, out=np.zeros_like(stiffness), where=stiffness != 0.0)
+    turning = 1j * s / free.omega[free.joined, np.newaxis]
+    return np.vstack((shares, turning * shares[free.joined])).T
 
 
 def compliances(modes: ModalModel) -> np.ndarray:
-    """phi_ki chi_i/w_i^2 of the participating modes, (n, p)."""
-    participating = modes.chi != 0.0
-    return modes.phi[:, participating] * (modes.chi / modes.w**2)[participating]
+    """Answers of displacements to friction by `FrictionAnswers`, (n, p + j); of modes phi_ki chi_i/w_i^2."""
+    return modes.free.compliances(modes.phi[:, modes.participating])
+
+
+def contact_compliances(modes: ModalModel) -> np.ndarray:
+    """The same of z, (p + j,); of modes chi_i^2/w_i^2."""
+    free = modes.free
+    static, rates = free.weights(modes.chi[modes.participating])
+    return np.append(static, (free.omega * rates)[free.joined])
 
 
 class HalfWaves(NamedTuple):
@@ -185,7 +218,7 @@ class HalfWaves(NamedTuple):
     answers : the h_i of the motions
     motion : (m,) which of them each displacement is of
     harmonic : (m,) complex
-    weights : (m, p)
+    weights : (m, p + j)
     """
 
     answers: FrictionAnswers

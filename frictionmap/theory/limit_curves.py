@@ -21,7 +21,6 @@ from .half_waves import (
     dynamic_shares,
     friction_answers,
     mass_peaks,
-    mass_responses,
     peak_phases,
 )
 
@@ -49,7 +48,7 @@ def _limit_motions(
     regular = (beta > 0.0) & ~resonant
     u, size, v = (np.where(regular, part, 1.0) for part in (found.u, bracket, found.v))
     phase = np.where(regular, -np.arctan2(u, size) - np.angle(v), 0.0)
-    responses = mass_responses(modes, r)
+    responses = modes.mass_responses(r)
     infinite = np.isinf(responses) & ~resonant[:, np.newaxis]
     harmonic = np.where(np.isinf(responses), 0.0, responses) * np.exp(1j * phase)[:, np.newaxis]
     for j in np.flatnonzero(resonant):

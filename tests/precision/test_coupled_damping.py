@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 from structures import CHAIN, chain_matrices
 
 import frictionmap as fm
@@ -174,6 +175,91 @@ def test_motions_in_time(case):
         )
 
 
+def random_system(rng):
+    """A chain of 2 to 5 masses, dashpots from 10^-5 to heavily over-damped, any contact, load or base."""
+    n = int(rng.integers(2, 6))
+    contact = str(rng.choice(list(KINDS.values())))
+    masses = rng.choice(np.arange(1, n + 1), 2 if contact == "between-masses" else 1, replace=False)
+    ends = [np.sort(rng.choice(n + 1, 2, replace=False)) for _ in range(rng.integers(2, n + 2))]
+    rates = 10.0 ** rng.uniform(-5.0, 0.7) * rng.uniform(0.1, 1.0, len(ends))
+    C = dashpots(n, *((a, b, rate) for (a, b), rate in zip(ends, rates, strict=True)))
+    if contact == "joined-base-wall" or rng.random() < 0.3:
+        load = {"excitation": "base", "damping_reference": str(rng.choice(["ground", "base"]))}
+    else:
+        load = {"load": list(rng.normal(size=n) + 1j * rng.normal(size=n))}
+    ratios = (np.append(1.0, rng.uniform(0.3, 3.0, n - 1)) for _ in range(2))
+    matrices = {**chain_matrices(*ratios), "C": C}
+    return fm.System(
+        contact=contact, contact_masses=sorted(map(int, masses)), matrices=matrices, frequency_scale=1.0,
+        **load,
+    )  # fmt: skip
+
+
+def half_period(system, r, beta, phase, tau):
+    """x and x' at phase <= tau <= phase + pi of a motion with friction +beta there, its next half reversed.
+
+    By the matrices and their exponential: the answer w to friction from w(pi) = -w(0).
+    """
+    matrices, n, load = system.matrices, system.n, system.modes.load + 1j * r * system.modes.load_rate
+    M, K, C = r * r * matrices.mass, matrices.stiffness, r * matrices.damping
+    harmonic = np.linalg.solve(K - M + 1j * C, load)
+    flow = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+    rest = np.append(np.linalg.solve(K, beta * system.contact_vector), np.zeros(n))
+    half, one = expm(np.pi * flow), np.eye(2 * n)
+    start = np.linalg.solve(one + half, (half - one) @ rest)
+    answer = np.array([rest + expm(flow * t) @ (start - rest) for t in tau - phase]).T
+    turning = np.outer(harmonic, np.exp(1j * tau))
+    return turning.real + answer[:n], -turning.imag + answer[n:]
+
+
+def continuous_motions(rng, count):
+    """Systems that the damping couples, each with a motion below its boundary."""
+    while count:
+        system = random_system(rng)
+        r = float(rng.uniform(0.25, 3.0))
+        beta = float(rng.uniform(0.05, 0.99)) * fm.boundaries(system, [r]).beta_lim.item()
+        if system.modes.free.coupled and beta > 0.0:
+            count -= 1
+            yield system, fm.continuous_motion(system, r, beta)
+
+
+def test_continuous_motion():
+    """Against exponentials of the matrices, quadrature, and steady states of the same cells."""
+    nodes, weights = np.polynomial.legendre.leggauss(100)
+    for system, motion in continuous_motions(np.random.default_rng(41), 25):
+        r, beta, start = motion.r, motion.beta, motion.contact_phase
+        tau, weight = start + 0.5 * np.pi * (1.0 + nodes), 0.5 * np.pi * weights
+        size = motion.amplitude.max()
+        x, v = half_period(system, r, beta, start, tau)
+        speed = np.abs(v).max()
+        np.testing.assert_allclose(motion.displacement(tau), x, rtol=0.0, atol=5e-12 * size)
+        np.testing.assert_allclose(motion.velocity(tau), v, rtol=0.0, atol=5e-12 * speed)
+        place, swing = half_period(system, r, beta, start, np.array([start]))
+        c, base = system.contact_vector, system.base_motion
+        z = c @ place - base * np.cos(start)
+        np.testing.assert_allclose(motion.contact_amplitude, z, rtol=0.0, atol=5e-12 * size)
+        mono = np.hypot(place, swing)[:, 0]
+        np.testing.assert_allclose(motion.monoharmonic_amplitude, mono, rtol=0.0, atol=5e-12 * (size + speed))
+        np.testing.assert_allclose(c @ swing + base * np.sin(start), 0.0, atol=5e-12 * speed)
+        np.testing.assert_allclose(motion.contact(tau), c @ x - base * np.cos(tau), atol=5e-12 * size)
+        np.testing.assert_allclose(
+            motion.contact_velocity(tau), c @ v + base * np.sin(tau), atol=5e-12 * speed
+        )
+        for k in (1, 3, 5):
+            part = 2.0 / np.pi * (x * np.exp(-1j * k * tau)) @ weight
+            np.testing.assert_allclose(motion.harmonics(k)[:, k], part, rtol=0.0, atol=5e-12 * size)
+        across = v + (system.damping_reference == "base") * np.sin(tau)
+        lost = 2.0 * r * np.einsum("it,ij,jt,t", across, system.matrices.damping, across, weight)
+        np.testing.assert_allclose(motion.work_damping, lost, rtol=0.0, atol=1e-10 * abs(motion.work_input))
+        balance = motion.work_input - motion.work_friction - motion.work_damping
+        assert abs(balance) < 1e-11 * abs(motion.work_input)
+        cell = fm.curves(system, [r], [beta], quantities=["amplitude", "phase", "first_harmonic"]).squeeze()
+        np.testing.assert_allclose(motion.amplitude, cell.amplitude, rtol=0.0, atol=1e-11 * size)
+        np.testing.assert_allclose(np.exp(1j * motion.phase), np.exp(1j * cell.phase), atol=1e-8)
+        first = cell.first_harmonic_amplitude * np.exp(-1j * cell.first_harmonic_phase)
+        np.testing.assert_allclose(motion.first_harmonic, first, rtol=0.0, atol=1e-11 * size)
+
+
 def test_modal_damping_is_a_case(monkeypatch):
     """The way of coupled damping with a matrix that couples nothing but for 1e-13."""
     damping = 0.04 * CHAIN["M"] + 0.03 * CHAIN["K"]
@@ -197,11 +283,13 @@ def test_modal_damping_is_a_case(monkeypatch):
     one, other = (fm.boundaries(s, r) for s in (modal, general))
     for name in ("beta_lim", "beta_stick", "U", "G", "H", "S", "V", "V_imag"):
         np.testing.assert_allclose(one[name], other[name], rtol=1e-11, atol=1e-12, err_msg=name)
+    one, other = (fm.continuous_motion(s, 0.8, 0.05) for s in (modal, general))
+    for name in ("amplitude", "phase", "monoharmonic_amplitude", "first_harmonic", "work_damping"):
+        np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-11, err_msg=name)
 
 
 def test_what_is_not_known_of_coupled_damping():
     for ask in (
-        lambda s: fm.continuous_motion(s, 0.8, 0.01),
         lambda s: fm.features.invariant_points(s, 0.3, 2.0),
         lambda s: steady_states(s, np.array([0.8]), np.array([0.01]), 1.0),
     ):

@@ -32,6 +32,9 @@ _KEPT = 30
 ANY = 255
 _SETTLED = (regimes.RESOLVED, regimes.QUASI_STATIC)
 
+#: Samples of a motion in a period, and every how many is kept.
+_SAMPLES, _EVERY = 2000, 40
+
 #: Numbers are kept with 24 bits; the exact ones agree to 1e-10 on any machine.
 _RELATIVE, _ABSOLUTE = 1e-6, 1e-7
 
@@ -42,12 +45,13 @@ _MAPPED = ("contact_amplitude", "also_reachable")
 _BOUNDARIES = ("beta_lim", "beta_stick")
 _PHASES = ("phase", "first_harmonic_phase")
 _DRAWN = ("amplitude", "first_harmonic_amplitude", *_PHASES)
-_CODES = ("class", "also_reachable")
+_MOVES = ("x", "z", "friction")
+_CODES = ("class", "also_reachable", "sense")
 _OF_CELLS = ("class", *_MAPPED, *_DRAWN)
 
 
 def computed(name: str) -> xr.Dataset:
-    """The map or the curves of `configs/NAME.toml`, which show what they are known to show.
+    """The map, the curves or the motion of `configs/NAME.toml`, which show what they are known to show.
 
     Raises
     ------
@@ -63,7 +67,10 @@ def computed(name: str) -> xr.Dataset:
 
 
 def compute(config: Config, r: np.ndarray, beta: np.ndarray) -> xr.Dataset:
-    """What a configuration asks for, on this grid."""
+    """What a configuration asks for, on this grid; of a single cell its motion."""
+    if r.size * beta.size == 1:
+        cell = r.item(), beta.item(), config.mu.item()
+        return fm.response(config.system, *cell, solver=config.solver, points=_SAMPLES)
     if "[curves]" not in config.text:
         return fm.sweep(config.system, r, beta, config.mu, solver=config.solver)
     return fm.curves(
@@ -86,6 +93,8 @@ def _some(values: np.ndarray) -> np.ndarray:
 
 def shown(ds: xr.Dataset) -> dict[str, np.ndarray]:
     """What a picture of a dataset shows: classes of cells, boundaries, heights of curves."""
+    if "tau" in ds:
+        return _moving(ds)
     settled = np.ones([ds.sizes[name] for name in ("mu", "r", "beta")], dtype=bool)
     if "status" in ds:
         settled = np.isin(ds["status"].values, _SETTLED)
@@ -100,6 +109,16 @@ def shown(ds: xr.Dataset) -> dict[str, np.ndarray]:
     return numbers
 
 
+def _moving(ds: xr.Dataset) -> dict[str, np.ndarray]:
+    """What a picture of a motion shows, at some times."""
+    some = ds.isel(tau=slice(0, None, _EVERY))
+    cell = ds.expand_dims("beta").expand_dims("r").expand_dims("mu")
+    numbers = {name: np.atleast_1d(ds[name].values) for name in ("r", "beta")}
+    numbers["class"] = classes(cell.isel(mu=0))[np.newaxis]
+    numbers["sense"] = some["phase"].values
+    return numbers | {name: some[name].values.astype(np.float32) for name in _MOVES}
+
+
 def _spread(cells: np.ndarray, ndim: int) -> np.ndarray:
     """Something of cells, for all numbers of each."""
     return cells.reshape(cells.shape + (1,) * (ndim - cells.ndim))
@@ -112,7 +131,7 @@ def differences(name: str, ds: xr.Dataset) -> list[str]:
     missing = [axis for axis in ("r", "beta") if not np.isin(kept[axis], ds[axis].values).all()]
     if missing:
         return [f"its axis {axis} lacks values" for axis in missing]
-    now = shown(ds.sel(r=kept["r"], beta=kept["beta"]))
+    now = shown(ds if "tau" in ds else ds.sel(r=kept["r"], beta=kept["beta"]))
     if now.keys() != kept.keys():
         return [f"it has {', '.join(now)} where {', '.join(kept)} were"]
     open_to_any = (now["class"] == ANY) | (kept["class"] == ANY)

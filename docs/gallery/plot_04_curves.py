@@ -11,8 +11,16 @@ from picture_data import computed
 import frictionmap as fm
 
 # %%
-# **T Fig. 3.7 and 3.8**, wall joined to the base. Above r = 1.4 more friction means larger amplitudes:
-# curves cross.
+# **T Fig. 2.4**, fixed wall. Friction below beta = pi/4 does not bound the resonance, T(2.30).
+fm.plot_curves(computed("fig-2-4"))
+
+# %%
+# **T Fig. 2.7**, the same with viscous damping beside the friction: no resonance without bounds.
+fm.plot_curves(computed("fig-2-7"))
+
+# %%
+# **T Fig. 3.2** (the contact), **3.7 and 3.8** (the mass), wall joined to the base. Above r = 1.4 more
+# friction means larger amplitudes: curves cross.
 fm.plot_curves(computed("fig-3-7"))
 
 # %%

@@ -25,5 +25,10 @@ fm.plot_curves(fixed, "harmonics")
 fm.plot_curves(computed("fig-4-9"))
 
 # %%
-# **T Fig. 6.21**, the two-storey rig with the wall on its second mass.
+# **T Fig. 6.20** and **6.21**, the two-storey rig with the wall on its first and on its second mass.
+fm.plot_curves(computed("fig-6-20"))
 fm.plot_curves(computed("fig-6-21"))
+
+# %%
+# **T Fig. 6.28 and 6.29**, the wall joined to the rig's base.
+fm.plot_curves(computed("fig-6-28"))

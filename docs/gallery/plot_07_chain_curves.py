@@ -1,6 +1,6 @@
 """
-Two masses: amplitude and phase
-===============================
+Chains: amplitude and phase
+===========================
 
 Every mass has its own curve, and so has the contact.
 """
@@ -20,3 +20,14 @@ fm.plot_curves(computed("fig-6-13"))
 # **T Fig. 6.23**, contact between the masses; **6.25**, a wall joined to the base.
 fm.plot_curves(computed("fig-6-23"))
 fm.plot_curves(computed("fig-6-25"))
+
+# %%
+# **T Fig. 6.2**, three masses, contact on the second. Each resonance becomes finite at a friction ratio of
+# its own, T(6.2): 0.436, 1.765 and 0.630.
+fm.plot_curves(computed("fig-6-2"))
+
+# %%
+# **T Fig. 6.8 and 6.9b**, five masses, contact and load on the first; **6.15 and 6.16b**, contact on the
+# third.
+fm.plot_curves(computed("fig-6-8"))
+fm.plot_curves(computed("fig-6-15"))

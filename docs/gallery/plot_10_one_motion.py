@@ -1,9 +1,11 @@
 """
-One motion in time
-==================
+Motions in time
+===============
 
-A single cell in full: what moves, when the contact stops, and what friction takes.
+Single cells in full: what moves, when the contact stops, and what friction takes.
 """
+
+from picture_data import computed
 
 import frictionmap as fm
 
@@ -17,3 +19,25 @@ fm.plot_response(one)
 # a cycle.
 fm.plot_orbit(one)
 print(f"work of friction in a cycle: {one.work_friction.item():.4f}")
+
+# %%
+# **T Fig. 4.6**, a mass on a shaken base against a fixed wall, at r = 0.85: so little friction does not
+# stop it.
+fm.plot_response(computed("fig-4-6"))
+
+# %%
+# **T Fig. 6.9a**, five masses, contact on the first.
+fm.plot_response(computed("fig-6-9"))
+
+# %%
+# **T Fig. 7.1**, the same at another frequency with modal damping ratios of 0.01 and of 0.1; **7.2**, with
+# the contact on the third mass. With more damping the masses move no longer in phase, or opposed.
+for figure in ("7-1", "7-2"):
+    for zeta in ("0.01", "0.1"):
+        fm.plot_response(computed(f"fig-{figure}-zeta-{zeta}"))
+
+# %%
+# **T Fig. 7.10**, stick-slip at low frequency: four stops in a cycle without damping and with little, two
+# with a damping ratio of 0.1.
+for zeta in ("0", "0.01", "0.1"):
+    fm.plot_response(computed(f"fig-7-10-zeta-{zeta}"))

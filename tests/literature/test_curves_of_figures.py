@@ -229,3 +229,20 @@ def test_phases_go_on_without_jumps(system, beta):
         for one, other in ((a.phase, b.phase), (np.angle(a.first_harmonic), np.angle(b.first_harmonic))):
             turn = np.remainder(other - one + math.pi, math.tau) - math.pi
             assert np.all(np.abs(turn) < 2.0 * math.pi / 3.0)
+
+
+@pytest.mark.parametrize(
+    ("zeta", "stops", "amplitude"),
+    [
+        (0.0, 4, 0.813277013839),
+        (0.001, 4, 0.81573860098),
+        (0.01, 4, 0.828549298876),
+        (0.05, 2, 0.829667156722),
+        (0.1, 2, 0.813341723355),
+    ],
+)
+def test_figure_7_10_stops(zeta, stops, amplitude):
+    """r = 0.1, beta = 0.2, mu = 1: damping takes two of the four stops."""
+    found = fm.sweep(fm.System(damping_ratios=zeta), 0.1, 0.2)
+    assert found["stops_per_cycle"].item() == stops
+    assert found["contact_amplitude"].item() == pytest.approx(amplitude, abs=1e-12)

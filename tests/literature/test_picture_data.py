@@ -24,7 +24,7 @@ CONTACTS = {"fixed-wall": "wall", "joined-base-wall": "base", "between-masses": 
 
 def test_every_configuration_is_a_figure():
     assert {path.stem for path in picture_data.DATA.iterdir()} == set(picture_data.FIGURES)
-    assert len(picture_data.FIGURES) >= 35
+    assert len(picture_data.FIGURES) >= 51
     assert sum(path.stat().st_size for path in picture_data.DATA.iterdir()) < 500_000
 
 
@@ -79,6 +79,13 @@ def test_one_changed_point_of_a_curve_fails(variable):
     ds[variable].values[0, 5, 1, 0] += 1e-4
     (text,) = picture_data.differences("fig-6-13", ds)
     assert text.startswith(f"{variable} differs in 1 places, at (0, 5, 1, 0)")
+
+
+def test_one_changed_instant_of_a_motion_fails():
+    ds = picture_data.coarse("fig-7-10-zeta-0.01").copy(deep=True)
+    ds["z"].values[40] += 1e-5
+    (text,) = picture_data.differences("fig-7-10-zeta-0.01", ds)
+    assert text.startswith("z differs in 1 places, at (1,)")
 
 
 def test_another_grid_and_other_quantities_fail():

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from .. import checks
 from ..datasets.physical import with_units
 from ..datasets.variables import coordinate, label_variable, stamp
-from ..model.coupled_modes import CoupledModel
 from ..model.settings import CurveSettings, Output, Quantity, Solver, SolverSettings, curve_settings, merged
 from ..model.system import System
 from ..theory.boundaries import boundary_variables, held_variables
@@ -40,8 +39,6 @@ def _over_frequency(system: System, axes: Mapping[str, np.ndarray], found: Curve
     """What does not depend on beta: the contact held, and motions on the boundary."""
     held = held_variables(system, axes["r"])
     turned = {name: label_variable(name, value.values.T, "curves") for name, value in held.items()}
-    if isinstance(system.modes, CoupledModel):
-        return turned
     return turned | limit_variables(system, axes["r"], axes["mu"], found)
 
 
@@ -97,9 +94,8 @@ def curves(
         `displacement_harmonic`, `contact_harmonic` and `friction_harmonic`; `transmitted_force` and
         `transmitted_first_harmonic`; `rms`, root mean square, and `distortion`, that of all but the mean and
         the first harmonic over that of the first.  On (mu, r): `beta_lim`, `beta_lim_modal`, `beta_stick`;
-        on (mu, r, dof)
-        `limit_amplitude`, `limit_phase`, `limit_first_harmonic_amplitude`, `limit_first_harmonic_phase` of
-        the continuous motion at beta_lim, unless C couples modes; on (r, dof) `held_response` and
+        on (mu, r, dof) `limit_amplitude`, `limit_phase`, `limit_first_harmonic_amplitude` and
+        `limit_first_harmonic_phase` of the continuous motion at beta_lim; on (r, dof) `held_response` and
         `held_phase` with the contact held.
 
         Infinite at an undamped resonance, where phases are those that the growing motion goes to.  Where the

@@ -18,6 +18,7 @@ from .half_waves import (
     RESONANT_FIRST_HARMONIC,
     RESONANT_U,
     compliances,
+    contact_compliances,
     dynamic_shares,
     friction_answers,
     mass_peaks,
@@ -63,14 +64,14 @@ def _at_resonance(modes: ModalModel, r: float, beta: float, bracket: float) -> t
     x_k - (phi_ki/chi_i) z mode i has no share.
     """
     at = np.array([r])
-    stiffness, load = modes.dynamic_stiffness(at)[0], modes.participation(at)[0]
-    participating = modes.chi != 0.0
-    i = int(np.flatnonzero((stiffness == 0.0) & participating)[0])
-    u = friction_answers(modes, at, np.array([beta])).u[0]
+    load = modes.participation(at)
+    i = int(np.flatnonzero((modes.dynamic_stiffness(at)[0] == 0.0) & (modes.chi != 0.0))[0])
+    u = friction_answers(modes, at, np.array([beta])).at_maximum()[0][0]
     u = np.where(np.isinf(u), RESONANT_U, u)
-    contact = beta * complex(bracket, -float(np.sum((modes.chi / modes.w)[participating] ** 2 * u)))
-    turn = 1j * np.abs(load[i]) / load[i] * np.sign(modes.chi[i])  # e^{i phi_z}
-    others = np.divide(load, stiffness, out=np.zeros_like(load), where=stiffness != 0.0)
+    contact = beta * complex(bracket, -float(np.sum(contact_compliances(modes) * u)))
+    turn = 1j * np.abs(load[0, i]) / load[0, i] * np.sign(modes.chi[i])  # e^{i phi_z}
+    others = modes.answers(at, load)[0]
+    others[np.isinf(others)] = 0.0
     share = modes.phi[:, i] / modes.chi[i]
     rest = modes.phi @ others - share * (modes.chi @ others - modes.base_motion)
     return float(np.angle(turn)), share * contact + turn * rest

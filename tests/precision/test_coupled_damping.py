@@ -260,6 +260,43 @@ def test_continuous_motion():
         np.testing.assert_allclose(motion.first_harmonic, first, rtol=0.0, atol=1e-11 * size)
 
 
+def limits(system, r, mu):
+    """`limit_` variables over (mu, r, dof): amplitudes, and phases as numbers on the unit circle."""
+    ds = fm.curves(system, r, [0.1], mu, quantities=["amplitude"], threads=1)
+    found = {name.removeprefix("limit_"): ds[name].values for name in ds if name.startswith("limit_")}
+    return {name: np.exp(1j * v) if name.endswith("phase") else v for name, v in found.items()}
+
+
+def test_motions_on_the_boundary():
+    """As continuous motions at beta_lim, also where S decides."""
+    rng = np.random.default_rng(42)
+    for system, motion in continuous_motions(rng, 15):
+        r, mu = motion.r, (1.0, 1.4)
+        if np.min(np.abs(system.modes.free.omega / r - 1.0)) < 0.01:
+            continue  # the rounding of beta_lim costs digits of the motion at it
+        found = limits(system, [r], mu)
+        for m, beta in enumerate(fm.boundaries(system, [r], mu).beta_lim.values[:, 0]):
+            motion = fm.continuous_motion(system, r, beta)
+            size = motion.amplitude.max()
+            np.testing.assert_allclose(found["amplitude"][m, 0], motion.amplitude, rtol=0, atol=1e-10 * size)
+            first = found["first_harmonic_amplitude"][m, 0] / found["first_harmonic_phase"][m, 0]
+            np.testing.assert_allclose(first, motion.first_harmonic, rtol=0, atol=1e-10 * size)
+            np.testing.assert_allclose(found["phase"][m, 0], np.exp(1j * motion.phase), rtol=0, atol=1e-8)
+
+
+def test_on_the_boundary_at_an_undamped_resonance_beside_coupled_modes():
+    """Ends of a chain against each other do not move its middle, where the dashpot is: mean of both sides."""
+    matrices = {**chain_matrices([1.0] * 3, [1.0] * 3), "C": dashpots(3, (0, 2, 0.3))}
+    matrices["K"][2, 2] += 1.0
+    system = fm.System(contact_masses=[1], load=[1.0, 0.3, 0.2], matrices=matrices, frequency_scale=1.0)
+    w = system.modes.w[1]
+    assert system.modes.zeta[1] == 0.0 < abs(system.modes.chi[1])
+    assert system.modes.free.coupled
+    assert np.isinf(fm.boundaries(system, [w]).V[0])
+    for value in limits(system, [w * (1.0 - 1e-6), w, w * (1.0 + 1e-6)], (1.0, 3.0)).values():
+        np.testing.assert_allclose(0.5 * (value[:, 0] + value[:, 2]), value[:, 1], rtol=0.0, atol=1e-9)
+
+
 def test_modal_damping_is_a_case(monkeypatch):
     """The way of coupled damping with a matrix that couples nothing but for 1e-13."""
     damping = 0.04 * CHAIN["M"] + 0.03 * CHAIN["K"]
@@ -286,6 +323,9 @@ def test_modal_damping_is_a_case(monkeypatch):
     one, other = (fm.continuous_motion(s, 0.8, 0.05) for s in (modal, general))
     for name in ("amplitude", "phase", "monoharmonic_amplitude", "first_harmonic", "work_damping"):
         np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-11, err_msg=name)
+    one, other = (limits(s, r, (1.0, 1.5)) for s in (modal, general))
+    for name in one:
+        np.testing.assert_allclose(one[name], other[name], rtol=1e-10, err_msg=name)
 
 
 def test_what_is_not_known_of_coupled_damping():
@@ -297,6 +337,5 @@ def test_what_is_not_known_of_coupled_damping():
             fm.InputError, match=r"C must be diagonal in the undamped modes for .* couples them by"
         ):
             ask(system("wall"))
-    assert "limit_amplitude" not in fm.curves(system("wall"), [0.8], [0.1], quantities=["amplitude"])
     assert np.isnan(fm.features.peak_thresholds(system("wall"))).all()
     assert "damping that couples modes" in system("wall").describe()

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
+from ..datasets.labels import MEASURE_OF
 from ..datasets.provenance import configuration, to_toml
 from ..errors import InputError
 from ..files.config import config_of, parse
@@ -12,6 +13,7 @@ from ..files.export import write_export
 from ..model.matrices import Matrices
 from ..model.settings import Output, Solver
 from ..steady.sweep import sweep
+from ..units.scales import scales_of
 from .scene import Scene
 from .views import Follower, Piece, Quantity, View
 
@@ -21,10 +23,23 @@ _WRITTEN = 64
 #: What every map that is saved has.
 _ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "contact_amplitude")
 
+#: What a map has beside its outputs, over r; and outputs that NetCDF packs into next to nothing.
+_BOUNDARIES, _CODES = ("beta_lim", "beta_lim_modal", "beta_stick"), ("regime", "stops_per_cycle")
+
+#: Bytes of a number of a table, of one of a cell in NetCDF, and of all else there; measured.
+_PER_NUMBER, _PER_FLOAT, _PER_FILE = 13.0, 5.0, 60e3
+
 
 def _solver(view: View, quantity: Quantity) -> Solver:
     wanted = dict.fromkeys((*_ALWAYS, *filter(None, (quantity.output,))))
     return replace(view.solver, outputs=cast(tuple[Output, ...], tuple(wanted)))
+
+
+def _described(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> str:
+    """The configuration of a view; matrices that are too large for text are a comment."""
+    axes = view.axes(piece.columns, piece.rows)
+    of_grid = {name: axes[name] for name in ("r", "beta", "mu")}
+    return configuration(scene.title, view.system, of_grid, _solver(view, quantity), units=scene.units)
 
 
 def configuration_text(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> str:
@@ -35,14 +50,9 @@ def configuration_text(scene: Scene, view: View, quantity: Quantity, piece: Piec
     InputError
         The system is larger than text should hold, and comes from no file.
     """
-    axes = view.axes(piece.columns, piece.rows)
-    of_grid = {name: axes[name] for name in ("r", "beta", "mu")}
-    solver = _solver(view, quantity)
+    text = _described(scene, view, quantity, piece)
     if _is_large(view):
-        return _with_files(
-            scene, configuration(scene.title, scene.system, of_grid, solver, units=scene.units)
-        )
-    text = configuration(scene.title, view.system, of_grid, solver, units=scene.units)
+        return _with_files(scene, text)
     loaded = config_of(text, {})
     again = {"r": loaded.r, "beta": loaded.beta, "mu": loaded.mu}
     if configuration(scene.title, loaded.system, again, loaded.solver, units=loaded.units) != text:
@@ -64,6 +74,25 @@ def _with_files(scene: Scene, text: str) -> str:
     return to_toml(tree)
 
 
+def sizes(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> dict[str, float]:
+    """About how many bytes the files of `saved_map` take, by their formats; less where much of it sticks."""
+    scales = scales_of(scene.units, view.system)
+    outputs = _solver(view, quantity).outputs
+    masses = view.system.n if "amplitude" in outputs else 1
+
+    def copies(name: str) -> int:
+        """A ratio, and beside it the same in SI units where they are known."""
+        return 1 + (name in MEASURE_OF and scales.of(MEASURE_OF[name]) is not None)
+
+    axes = sum(1 + (scales.of(measure) is not None) for measure in ("frequency", "force"))
+    numbers = axes + len(("mu",)) + (masses > 1) + sum(map(copies, (*outputs, *_BOUNDARIES)))
+    floats = sum(
+        copies(name) * (masses if name == "amplitude" else 1) for name in outputs if name not in _CODES
+    )
+    cells = piece.columns * piece.rows
+    return {"csv": _PER_NUMBER * numbers * masses * cells, "nc": _PER_FILE + _PER_FLOAT * floats * cells}
+
+
 def saved_map(
     scene: Scene, view: View, quantity: Quantity, piece: Piece, ending: str, follower: Follower
 ) -> bytes:
@@ -71,7 +100,7 @@ def saved_map(
     axes = view.axes(piece.columns, piece.rows)
     ds = sweep(view.system, axes["r"], axes["beta"], axes["mu"], solver=_solver(view, quantity),
                units=scene.units, progress=follower.progress)  # fmt: skip
-    ds.attrs["title"] = scene.title
+    ds.attrs |= {"title": scene.title, "config": _described(scene, view, quantity, piece)}
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"map{ending}"
         write_export(ds, path, "frictionmap explore")

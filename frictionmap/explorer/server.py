@@ -93,6 +93,7 @@ class Page:
             "/others": self._others,
             "/cut": self._cut,
             "/configuration.toml": self._configuration,
+            "/sizes": self._sizes,
             "/map.nc": self._saved(".nc"),
             "/map.csv": self._saved(".csv"),
         }
@@ -196,6 +197,15 @@ class Page:
         query = queries.read_query(self.scene, text, queries.PIECE)
         found = configuration_text(self.scene, query.view, *queries.piece_of(query))
         return Answer(200, "application/toml", found.encode(), "view.toml")
+
+    def _sizes(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from ..steady.cost import in_bytes
+        from . import queries
+        from .downloads import sizes
+
+        query = queries.read_query(self.scene, text, queries.PIECE)
+        found = sizes(self.scene, query.view, *queries.piece_of(query))
+        return _json({ending: in_bytes(size) for ending, size in found.items()})
 
     def _saved(self, ending: str) -> Callable[[str, Callable[[], bool]], Answer]:
         def save(text: str, gone: Callable[[], bool]) -> Answer:

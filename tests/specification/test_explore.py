@@ -54,6 +54,8 @@ r = [0.1, 2.5]
 beta = [0.0, 2.0]
 """
 
+UNITS = '[units]\nnatural_frequency = "4.2 Hz"\nload = "12.5 N"\nstiffness = "3 N/mm"\n'
+
 
 @pytest.fixture(scope="module")
 def one(tmp_path_factory):
@@ -546,10 +548,30 @@ def test_cells_as_files(one, tmp_path):
         for name in ds.data_vars:
             np.testing.assert_array_equal(written[name].values, ds[name].values)
         assert written.attrs["title"] == "One mass"
+        config = config_of(written.attrs["config"], {})
+    assert (config.title, config.mu, config.solver.outputs) == ("One mass", [1.2], tuple(ds.data_vars)[:-3])
+    np.testing.assert_array_equal(config.r, r)
+    np.testing.assert_array_equal(config.beta, beta)
     status, body, _ = ask(one, f"/map.csv?{query}")
     lines = body.decode().splitlines()
     assert lines[0].startswith("mu,r,beta,regime")
     assert len(lines) == 1 + 72
+
+
+@pytest.mark.parametrize(
+    ("scene", "query"),
+    [(ONE, "quantity=work_friction"), (ONE + UNITS, "quantity=work_friction"), (TWO, "quantity=amplitude_2")],
+)
+def test_sizes_of_files_are_told_before(tmp_path, scene, query):
+    with served(scene_from(tmp_path, scene)) as server:
+        query = f"columns=60&rows=40&mu=1&{query}"
+        told = {
+            ending: float(size.split()[0])
+            for ending, size in json.loads(ask(server, f"/sizes?{query}")[1]).items()
+        }
+        taken = {ending: len(ask(server, f"/map.{ending}?{query}")[1]) / 1e6 for ending in told}
+    assert told["csv"] == pytest.approx(taken["csv"], rel=0.15)
+    assert taken["nc"] / 1.5 < told["nc"] < 1.5 * taken["nc"]
 
 
 def test_numbers_travel_as_they_are():
@@ -751,8 +773,6 @@ def test_python_refuses(arguments, words):
 
 
 # Units
-
-UNITS = '[units]\nnatural_frequency = "4.2 Hz"\nload = "12.5 N"\nstiffness = "3 N/mm"\n'
 
 
 def test_units_stand_beside_the_ratios(tmp_path):

@@ -475,6 +475,10 @@ def test_a_view_can_be_taken_along(browser, one, tmp_path):
         table = np.array([[int(look.colour[k : k + 2], 16) for k in (1, 3, 5)] for look in CLASSES], np.uint8)
         np.testing.assert_array_equal(colours(page), table[classes(ds.isel(mu=0))])
         assert copied("link") == page.url
+        page.click("#save summary")
+        page.wait_for_function("() => document.querySelector('[data-save=csv]').innerText.includes('about')")
+        sizes = page.inner_text("#save div").splitlines()[-2:]
+        page.click("#save summary")
         for what, name in (("picture", "map.png"), ("csv", "map.csv"), ("nc", "map.nc")):
             with page.expect_download() as expected:
                 page.click("#save summary")
@@ -483,6 +487,9 @@ def test_a_view_can_be_taken_along(browser, one, tmp_path):
             expected.value.save_as(tmp_path / name)
         assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
         assert (tmp_path / "map.csv").read_text().startswith("mu,r,beta,regime")
+        for line, ending in zip(sizes, ("csv", "nc"), strict=True):
+            told = re.fullmatch(r"Cells of this view \((?:CSV|NetCDF), about ([0-9.]+) MB\)", line)
+            assert float(told[1]) == pytest.approx((tmp_path / f"map.{ending}").stat().st_size / 1e6, rel=0.5)
 
 
 def test_a_page_as_a_file_needs_no_server(browser, tmp_path):

@@ -107,7 +107,11 @@ class Page {
       key: (letter) => this.#key(letter),
     });
     part("zoom").addEventListener("click", (event) => this.#zoomButton(event.target.dataset.zoom));
-    part("save").addEventListener("click", (event) => event.target.dataset.save && this.#save(event.target.dataset.save));
+    part("save").addEventListener("toggle", () => part("save").open && this.#tellSizes());
+    part("save").addEventListener("click", (event) => {
+      const chosen = event.target.closest("[data-save]");
+      if (chosen) this.#save(chosen.dataset.save);
+    });
     part("help").addEventListener("click", () => part("keys").showModal());
     document.addEventListener("click", (event) => part("save").contains(event.target) || part("save").removeAttribute("open"));
     window.addEventListener("hashchange", () => this.#onAddress());
@@ -392,6 +396,19 @@ class Page {
     } else if (this.source.live) {
       const along = letter === "r" ? "r" : "beta";
       this.change({ cut: this.view.cut === along ? "" : along });
+    }
+  }
+
+  /** Before cells are saved: how large their files will be. */
+  async #tellSizes() {
+    const places = part("save").querySelectorAll("[data-size]");
+    for (const place of places) place.textContent = "";
+    if (!this.source.live) return;
+    try {
+      const sizes = await this.source.sizes(this.view, this.scene, this.map.size);
+      for (const place of places) place.textContent = `, about ${sizes[place.dataset.size]}`;
+    } catch {
+      // what is wrong with the view the map says, and who saves it all the same
     }
   }
 

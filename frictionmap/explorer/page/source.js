@@ -71,6 +71,11 @@ export class Server {
     return (await this.#get("configuration.toml", query)).text();
   }
 
+  /** About how large the files of a view's cells are, in words, by their endings. */
+  async sizes(view, scene, size) {
+    return (await this.#get("sizes", queryOf(view, scene, { ...size, quantity: view.quantity }))).json();
+  }
+
   /** The address of a view's cells as a file. */
   file(view, scene, size, ending) {
     return `map.${ending}?${queryOf(view, scene, { ...size, quantity: view.quantity })}`;

@@ -38,6 +38,7 @@ class Entry(NamedTuple):
     name: str
     label: str
     unit: str  # "length" and "energy" are named by the page, as the load is a force or a base's motion
+    why: str = ""  # there is no number
 
 
 _ENTRIES = (
@@ -109,9 +110,21 @@ def _listed(masses: int, told: Mapping[str, Any]) -> tuple[list[Entry], list[flo
             own = entry.label
             if of_masses:
                 own = f"{own} {k}" if masses > 1 else own.replace("mass", "the mass")
-            entries.append(entry._replace(label=own))
+            none = entry.name == "phase_lag" and np.isnan(value)
+            entries.append(entry._replace(label=own, why=_why_no_lag(told, k - 1) if none else ""))
             numbers.append(100.0 * value if entry.unit == "%" else float(value))
     return entries, numbers
+
+
+def _why_no_lag(told: Mapping[str, Any], k: int) -> str:
+    """Why mass k, counted from 0, has no lag: its maximum is at no one time of every cycle."""
+    period = int(told["period"])
+    if period != 1:
+        return f"its period is {period} cycles" if period else "it has no period"
+    if told["amplitude"][k] == 0.0:
+        return "it rests"
+    begin, end = (f"{told[name][k]:.3f}".replace("-", "−") for name in ("phase_begin", "phase_end"))
+    return f"held at its maximum from {begin} to {end} rad"
 
 
 def curves_of(view: View, found: Motion) -> dict[str, np.ndarray]:

@@ -125,6 +125,9 @@ def test_a_cell_moves_as_response_says(one):
     # a dataset has it in single precision
     assert numbers["stuck_fraction"] == pytest.approx(100.0 * ds["stuck_fraction"].item(), rel=2.0**-24)
     assert header["regime"] == "stick_slip"
+    (why,) = (entry["why"] for entry in header["entries"] if entry["name"] == "phase_lag")
+    begin, end = (f"{ds[name].item():.3f}".replace("-", "−") for name in ("phase_begin", "phase_end"))
+    assert why == f"held at its maximum from {begin} to {end} rad"
 
 
 def test_a_motion_of_every_kind_is_rehearsed(one, two, monkeypatch):
@@ -141,6 +144,23 @@ def test_a_motion_of_every_kind_is_rehearsed(one, two, monkeypatch):
         server.page.rehearse()
         monkeypatch.undo()
         assert kinds == {"stick_slip", "continuous", "permanent_sticking"}
+
+
+@pytest.mark.parametrize(
+    ("asked", "period", "why"),
+    [
+        ("at=0.3,1.1&mu=1", 1, "it rests"),
+        ("at=0.3881,0.1013&mu=2.5", 3, "its period is 3 cycles"),
+        ("at=0.1913,0.0496&mu=2.5", 0, "it has no period"),
+        ("at=1.5,0.1&mu=1", 1, ""),
+    ],
+)
+def test_a_lag_that_is_none_says_why(one, asked, period, why):
+    header, arrays = packet(one, f"/motion?{asked}")
+    numbers = dict(zip([entry["name"] for entry in header["entries"]], arrays["numbers"], strict=True))
+    assert numbers["period"] == period
+    assert np.isnan(numbers["phase_lag"]) == bool(why)
+    assert [entry["why"] for entry in header["entries"] if entry["why"]] == [why] * bool(why)
 
 
 @pytest.mark.parametrize(

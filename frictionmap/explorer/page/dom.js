@@ -28,7 +28,7 @@ export function lowered(text) {
   return text.split(/_(lim|stick)\b/).map((piece, k) => (k % 2 ? make("sub", {}, piece) : piece));
 }
 
-/** A row of a table: a name and a value. */
-export function tableRow(name, value) {
-  return make("tr", {}, make("th", {}, ...lowered(name)), make("td", {}, value));
+/** A row of a table: a name and a value, a number or words. */
+export function tableRow(name, value, kind = "number") {
+  return make("tr", {}, make("th", {}, ...lowered(name)), make("td", { className: kind }, value));
 }

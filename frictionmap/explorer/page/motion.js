@@ -81,6 +81,7 @@ export class MotionPanel {
   #entry(entry, value) {
     const unit = { length: this.scene.units.length, energy: this.scene.units.energy }[entry.unit] ?? entry.unit;
     const physical = this.scene.physical[{ length: "length", energy: "work" }[entry.unit]];
+    if (entry.why) return tableRow(entry.label, `none: ${entry.why}`, "text");
     return tableRow(entry.label, `${short(value, 6)}${Number.isFinite(value) && unit ? ` ${unit}` : ""}${inUnits(value, physical)}`);
   }
 

@@ -155,6 +155,12 @@ UNPACK = """async () => {
   return JSON.stringify([found.regime, [...found.z], [...found.numbers]]);
 }"""
 
+FOCUS = """() => {
+  const { id, tagName, dataset } = document.activeElement;
+  const { outlineStyle, outlineWidth } = getComputedStyle(document.activeElement);
+  return [id || dataset.zoom || tagName, outlineStyle === "solid" ? parseFloat(outlineWidth) : 0];
+}"""
+
 # The map
 
 
@@ -211,8 +217,26 @@ def test_keys_and_buttons(browser, one):
         page.keyboard.press("Shift+ArrowRight")
         page.wait_for_selector("#motion h2")
         assert ends(of_address(page)["cell"])[0] == pytest.approx(1.0, abs=0.05)
+        page.click("#save summary")
+        page.keyboard.press("Escape")  # closes the menu only
+        assert page.is_hidden("[data-save=link]")
+        assert "cell" in of_address(page)
+        page.keyboard.press("Escape")
+        assert "cell" not in of_address(page)
+        repainted(page, lambda: page.keyboard.press("q"))  # though a button has the focus
+        assert of_address(page)["quantity"] == "contact_amplitude"
         page.keyboard.press("?")
         assert page.is_visible("#keys")
+
+
+def test_the_keyboard_comes_to_the_map_before_what_changes_it(browser, one):
+    with page_of(browser, one.url) as page:
+        names = []
+        for _ in range(6):
+            page.keyboard.press("Tab")
+            names.append(page.evaluate(FOCUS))
+        assert [name for name, _ in names] == ["SUMMARY", "help", "stage", "in", "out", "home"]
+        assert all(width >= 2 for _, width in names)  # and is seen there
 
 
 def test_a_pinch_zooms(browser, one):
@@ -316,6 +340,7 @@ def test_pointing_at_a_cell_shows_its_motion(browser, one):
         assert float(rows["share of time stuck"].split()[0]) == pytest.approx(
             100 * ds["stuck_fraction"].item(), rel=2e-2
         )
+        assert rows["lag of the mass"].startswith("none: held at its maximum from")
         for canvas in ("displacement", "force", "portrait", "loop", "spectrum"):
             assert page.evaluate(DRAWN, canvas) > 10, canvas
 

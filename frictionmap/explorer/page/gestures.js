@@ -10,8 +10,8 @@ const WHEEL = 1.0015;
 /** Share of the map that an arrow moves it by. */
 const SHIFT = 0.12;
 
-/** What has keys of its own. */
-const TYPED = "input, select, button, summary, dialog, textarea";
+/** What has letters, signs and arrows of its own. */
+const TYPED = "input, select, dialog, textarea";
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
@@ -106,7 +106,7 @@ function pinch(map, pointers, moved, now, does) {
 /** A key; arrows are the page's own, to scroll it, unless the map is pointed at or chosen. */
 function keyed(event, stage, does) {
   if (event.ctrlKey || event.metaKey || event.target.closest(TYPED)) return;
-  const arrow = stage.matches(":hover, :focus") && ARROWS[event.key];
+  const arrow = stage.matches(":hover, :focus-within") && ARROWS[event.key];
   const middle = null;
   if (arrow && event.shiftKey) does.step(...arrow);
   else if (arrow) does.pan(arrow.map((way) => way * SHIFT));

@@ -113,6 +113,7 @@ class Page {
       if (chosen) this.#save(chosen.dataset.save);
     });
     part("help").addEventListener("click", () => part("keys").showModal());
+    part("save").addEventListener("keydown", (event) => event.key === "Escape" && this.#closeMenu(event));
     document.addEventListener("click", (event) => part("save").contains(event.target) || part("save").removeAttribute("open"));
     window.addEventListener("hashchange", () => this.#onAddress());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#redraw());
@@ -412,9 +413,17 @@ class Page {
     }
   }
 
+  /** The menu is closed, and the keyboard goes on from there. */
+  #closeMenu(event) {
+    if (!part("save").open) return;
+    part("save").open = false;
+    part("save").querySelector("summary").focus();
+    event?.stopPropagation(); // the key means nothing else
+  }
+
   async #save(what) {
     const { view, scene, map, source } = this;
-    part("save").removeAttribute("open");
+    this.#closeMenu();
     try {
       if (what === "link") {
         await copy(location.href.split("#")[0] + hashOf(view, scene));

@@ -152,8 +152,9 @@ def _start(
     cosine, sine = phase
     if free.coupled:
         n = free.omega.size
-        state = np.concatenate((place, velocity), axis=1) @ free.to_oscillators.T
-        place, velocity = np.ascontiguousarray(state[:, :n]), state[:, n:]
+        state = times(np.concatenate((place, velocity), axis=1), free.to_oscillators.T).real
+        # contiguous, both: another memory layout would be another type to the kernels
+        place, velocity = np.ascontiguousarray(state[:, :n]), np.ascontiguousarray(state[:, n:])
         velocity += driven.direct_cos * cosine[:, np.newaxis] + driven.direct_sin * sine[:, np.newaxis]
     return Starts(place, velocity, cosine, sine)
 

@@ -9,7 +9,9 @@ import frictionmap as fm
 from benchmarks.references.naive import naive_steady_state
 from frictionmap import regimes
 from frictionmap.model.coupled_modes import CoupledModel, coupled_model
+from frictionmap.steady import kernel_data
 from frictionmap.steady.points import steady_states
+from frictionmap.theory.boundary_curves import find_curves
 
 KINDS = {"wall": "fixed-wall", "base": "joined-base-wall", "masses": "between-masses"}
 
@@ -226,7 +228,7 @@ def continuous_motions(rng, count):
 def test_continuous_motion():
     """Against exponentials of the matrices, quadrature, and steady states of the same cells."""
     nodes, weights = np.polynomial.legendre.leggauss(100)
-    for system, motion in continuous_motions(np.random.default_rng(41), 25):
+    for system, motion in continuous_motions(np.random.default_rng(41), 14):
         r, beta, start = motion.r, motion.beta, motion.contact_phase
         tau, weight = start + 0.5 * np.pi * (1.0 + nodes), 0.5 * np.pi * weights
         size = motion.amplitude.max()
@@ -270,7 +272,7 @@ def limits(system, r, mu):
 def test_motions_on_the_boundary():
     """As continuous motions at beta_lim, also where S decides."""
     rng = np.random.default_rng(42)
-    for system, motion in continuous_motions(rng, 15):
+    for system, motion in continuous_motions(rng, 10):
         r, mu = motion.r, (1.0, 1.4)
         if np.min(np.abs(system.modes.free.omega / r - 1.0)) < 0.01:
             continue  # the rounding of beta_lim costs digits of the motion at it
@@ -328,11 +330,30 @@ def test_modal_damping_is_a_case(monkeypatch):
         np.testing.assert_allclose(one[name], other[name], rtol=1e-10, err_msg=name)
 
 
+def test_a_row_of_a_map_alone_is_the_same_to_the_bit():
+    """No product of matrices may round a row by its place among the others."""
+    rng = np.random.default_rng(43)
+    outputs = ("regime", "cycles", "contact_amplitude")
+    r, beta = np.linspace(0.3, 2.2, 7), np.linspace(0.05, 0.6, 4)
+    for _ in range(3):
+        structure = random_system(rng)
+        whole = fm.sweep(structure, r, beta, 1.5, outputs=outputs, start="moving")
+        for k in range(r.size):
+            alone = fm.sweep(structure, r[k : k + 1], beta, 1.5, outputs=outputs, start="moving")
+            for name in outputs:
+                np.testing.assert_array_equal(alone[name][:, 0], whole[name][:, k])
+
+
+def test_no_kernel_is_compiled_for_it_alone():
+    """A memory layout of its own would be one more type to the kernels."""
+    structure, r = system("wall"), np.array([0.4, 0.7])
+    found = kernel_data.structures(structure, r, find_curves(structure, r, np.ones(1)))
+    for part in (found.rest, found.moving, found.loads, found.model, found.orbit, found.shapes):
+        assert all(array.flags.c_contiguous for array in part if isinstance(array, np.ndarray))
+
+
 def test_what_is_not_known_of_coupled_damping():
-    for ask in (
-        lambda s: fm.features.invariant_points(s, 0.3, 2.0),
-        lambda s: steady_states(s, np.array([0.8]), np.array([0.01]), 1.0),
-    ):
+    for ask in (lambda s: fm.features.invariant_points(s, 0.3, 2.0),):
         with pytest.raises(
             fm.InputError, match=r"C must be diagonal in the undamped modes for .* couples them by"
         ):

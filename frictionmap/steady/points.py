@@ -40,7 +40,6 @@ def steady_states(system: System, r: np.ndarray, beta: np.ndarray, mu: float) ->
     beta : (k,) >= 0
     mu : >= 1
     """
-    system.need_modal("closed forms at points")
     distinct, place = np.unique(r + 1j * beta, return_inverse=True)
     points = _Points(distinct.real, distinct.imag, mu)
     found = _smooth(system, points) if mu == 1.0 else _several(system, points)

@@ -330,6 +330,49 @@ def test_modal_damping_is_a_case(monkeypatch):
         np.testing.assert_allclose(one[name], other[name], rtol=1e-10, err_msg=name)
 
 
+def test_points_as_cells():
+    """Continuous, stuck and with stops: first harmonics as those of response curves, each cell by itself."""
+    r, beta, seen = [0.25, 0.45, 0.7, 1.1, 1.7], [0.1, 0.25, 0.05, 0.9, 0.7], set()
+    for case, mu, starts in (("wall", 1.0, {0: "rest"}), ("over-damped", 1.5, {1: "rest", 2: "moving"})):
+        found = steady_states(system(case), np.array(r), np.array(beta), mu)
+        for column, start in starts.items():
+            for k in range(len(r)):
+                point = r[k : k + 1], beta[k : k + 1], mu
+                cell = fm.curves(system(case), *point, quantities=["first_harmonic"], start=start).squeeze()
+                size = cell.first_harmonic_amplitude.values
+                expected = size * np.exp(-1j * np.where(size > 0.0, cell.first_harmonic_phase, 0.0))
+                np.testing.assert_allclose(found[column].phasors[k], expected, rtol=1e-10, atol=1e-13)
+                assert found[column].regime[k] == cell.regime
+                seen.add(int(cell.regime))
+    assert seen == {regimes.CONTINUOUS, regimes.STICK_SLIP, regimes.PERMANENT_STICKING}
+    # of several motions the continuous one is by its closed form
+    assert found[0].regime[2] == regimes.CONTINUOUS
+    motion = fm.continuous_motion(system("over-damped"), r[2], beta[2])
+    np.testing.assert_allclose(found[0].phasors[2], motion.first_harmonic, rtol=1e-13)
+
+
+def first_harmonics(system, r, beta):
+    """Those of continuous motion, complex (n,), by exponentials of the matrices."""
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    phase = fm.continuous_motion(system, r, beta).contact_phase
+    tau = phase + 0.5 * np.pi * (1.0 + nodes)
+    return (half_period(system, r, beta, phase, tau)[0] * np.exp(-1j * tau)) @ weights
+
+
+def test_fits():
+    """Friction and f_n from lags and amplitudes; friction from one lag."""
+    structure, beta, f_n = system("wall"), 0.05, 3.0
+    r = np.linspace(0.6, 1.3, 8)
+    assert (fm.boundaries(structure, r).beta_lim > beta).all()
+    first = np.array([first_harmonics(structure, one, beta) for one in r]).T
+    lag = np.degrees(-np.angle(first))
+    columns = [{k: row[k - 1] for k in (1, 3)} for row in (lag, np.abs(first))]
+    fit = fm.identify.forced(f_n * r, *columns, system=structure, known={"mu": 1.0})
+    np.testing.assert_allclose(fit.estimate[:2], [beta, f_n], rtol=1e-9)
+    (found,) = fm.identify.friction_ratio(r[1], lag[0, 1], system=structure)
+    assert found.beta == pytest.approx([beta], abs=1e-9)
+
+
 def test_a_row_of_a_map_alone_is_the_same_to_the_bit():
     """No product of matrices may round a row by its place among the others."""
     rng = np.random.default_rng(43)

@@ -194,8 +194,8 @@ def _named(variable: xr.DataArray, further: Sequence[str] = ()) -> str:
     own = [str(dim) for dim in variable.dims if dim not in further]
     dims = f"({', '.join(own if len(own) == variable.ndim else ['...', *own])})"
     begin = f"  {variable.name!s:<{_INDENT - 3}} {dims:<16} "
-    meaning = textwrap.shorten(variable.attrs["long_name"], _WIDTH - len(begin), placeholder="...")
-    return begin + meaning
+    meaning = _printable(str(variable.attrs.get("long_name", "")))  # what is not ours may have none
+    return (begin + textwrap.shorten(meaning, _WIDTH - len(begin), placeholder="...")).rstrip()
 
 
 def _axis(axis: xr.DataArray) -> str:

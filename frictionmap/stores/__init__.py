@@ -10,6 +10,6 @@ run        one block after the other, in this process
 workers    the same on processes of dask, here or elsewhere
 =========  =============================================================================
 
-A block is whole rows in r of one point of the study and one mu.  Its mark is written last: whatever stops a
-run loses no more than the blocks under way.
+A block is whole rows in r of one point of the study and one mu; small ones are computed and written in
+batches.  Its mark is written last: whatever stops a run loses no more than the blocks under way.
 """

@@ -1,4 +1,4 @@
-"""The arrays of a store: dimensions, types, chunks; a block is one chunk of every variable."""
+"""The arrays of a store: dimensions, types, chunks; a batch of blocks is one chunk of every variable."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -9,7 +9,7 @@ import xarray as xr
 from ..datasets.labels import CELL_VARIABLES, MARKS
 from ..datasets.physical import physical_axes
 from ..datasets.variables import coordinate
-from .study import Block, Study
+from .study import Batch, Study
 
 
 class Array(NamedTuple):
@@ -35,7 +35,7 @@ def arrays_of(study: Study, sample: xr.Dataset) -> dict[str, Array]:
         own = (*dims, *map(str, variable.dims))
         with_axes = [name for name, dims_of_it in further.items() if set(dims_of_it) <= set(own)]
         beside = {"coordinates": " ".join(with_axes)} if with_axes else {}  # CF: what goes with an axis
-        chunk = {name: 1 for name in (*dims, "mu")} | {"r": study.rows}
+        chunk = dict(zip((*dims, "mu"), study.together, strict=False)) | {"r": study.rows}
         fill = CELL_VARIABLES[str(name)].unresolved if name in CELL_VARIABLES else np.nan
         arrays[str(name)] = Array(
             own, tuple(sizes[dim] for dim in own), tuple(chunk.get(dim, sizes[dim]) for dim in own),
@@ -45,7 +45,7 @@ def arrays_of(study: Study, sample: xr.Dataset) -> dict[str, Array]:
     arrays[MARKS] = Array(
         (*dims, "mu", "row_block"),
         study.shape,
-        (1,) * len(study.shape),
+        study.together,
         np.dtype(np.uint8),
         np.uint8(0),
         marks,
@@ -73,9 +73,13 @@ def plain(attributes: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def region(study: Study, block: Block, array: Array) -> tuple[slice | int, ...]:
-    """Where a block lies in an array."""
-    where = dict(zip(array.dims, block.point, strict=False))
-    where |= {"mu": block.mu, "row_block": block.rows}
-    rows = study.frequencies(block)
-    return tuple(rows if dim == "r" else where.get(dim, slice(None)) for dim in array.dims)
+def region(study: Study, batch: Batch, array: Array) -> tuple[slice, ...]:
+    """Where a batch lies in an array."""
+    axes = (*(axis.name for axis in study.variations.axes), "mu", "row_block")
+    where = dict(zip(axes, batch.places, strict=True)) | {"r": study.frequencies(batch)}
+    return tuple(where.get(dim, slice(None)) for dim in array.dims)
+
+
+def chunk(where: tuple[slice, ...], array: Array) -> tuple[int, ...]:
+    """Which chunk of an array lies there."""
+    return tuple((part.start or 0) // size for part, size in zip(where, array.chunks, strict=True))

@@ -10,19 +10,19 @@ from ..errors import InputError
 from ..files.places import claimed_folder
 from ..steady.maps import Progress
 from .store import Store, check_same, make_store, remove_strays
-from .study import Block, Study
+from .study import Batch, Study
 
-#: Computes and writes blocks, and yields when one is done.
-Fill = Callable[[Store, Iterable[Block]], Iterator[Block]]
+#: Computes and writes batches of blocks, and yields each when it is done.
+Fill = Callable[[Store, Iterable[Batch]], Iterator[Batch]]
 
 
 def in_this_process(threads: int | None) -> Fill:
-    """One block after the other, each on threads."""
+    """One batch after the other, each on threads."""
 
-    def fill(store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
-        for block in blocks:
-            store.write(block, store.study.compute(block, threads))
-            yield block
+    def fill(store: Store, batches: Iterable[Batch]) -> Iterator[Batch]:
+        for batch in batches:
+            store.write(batch, store.study.compute(batch, threads))
+            yield batch
 
     return fill
 
@@ -55,16 +55,18 @@ def fill_store(
             make_store(path, study, title)
         remove_strays(path)
         store = Store(path, study)
-        done = store.marks()
+        done = store.done()
         if not done.all():
             _check_writable(path)
-        count = int(np.count_nonzero(done))
-        claim.kept = lambda: f"{count:,} of {done.size:,} blocks are in {path}; the same command goes on"
+        claim.kept = lambda: (
+            f"{np.count_nonzero(done):,} of {done.size:,} blocks are in {path}; the same command goes on"
+        )
+        missing = [batch for batch in study.batches() if not done[batch.places].all()]
         try:
-            for _ in fill(store, [study.block(place) for place in study.places() if not done[place]]):
-                count += 1
+            for batch in fill(store, missing):
+                done[batch.places] = True
                 if progress is not None:
-                    progress(count, done.size)
+                    progress(int(np.count_nonzero(done)), done.size)
         except OSError as error:
             why = f"cannot be written ({error.strerror})" if error.strerror else f"is not finished ({error})"
             raise OSError(f"{path} {why}; {claim.kept()}") from error

@@ -5,13 +5,13 @@ import glob
 import hashlib
 import secrets
 import shutil
+import threading
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from .. import checks
 from ..datasets.labels import REFERENCES
@@ -21,8 +21,8 @@ from ..errors import InputError
 from ..files.config import Config, config_of, parse
 from ..model.matrices import Matrices
 from ..version import __version__
-from .layout import MARKS, Array, arrays_of, coordinates_of, plain, region
-from .study import Block, Study, study_of
+from .layout import MARKS, Array, arrays_of, chunk, coordinates_of, plain, region
+from .study import Batch, Study, study_of
 
 if TYPE_CHECKING:
     import zarr
@@ -34,6 +34,9 @@ _MATRICES = "matrices"
 _PARTIAL = "*.partial"
 
 _SOURCE = f"frictionmap {__version__}"
+
+#: Held while a setting of zarr is changed.
+_settings = threading.Lock()
 
 
 def _zarr() -> Any:
@@ -66,7 +69,7 @@ class Store:
         return hashlib.sha256(b"".join(content)).hexdigest()
 
     def marks(self) -> np.ndarray:
-        """Which blocks are done; bool, in the shape of `study.shape`.
+        """Which blocks are marked as done; bool, in the shape of `study.shape`.
 
         Raises
         ------
@@ -86,26 +89,37 @@ class Store:
                 f"({checks.one_line(error)}); use --overwrite or another -o"
             ) from None
 
-    def write(self, block: Block, found: xr.Dataset) -> None:
-        """Write a block, whole chunks only, and then its mark."""
+    def done(self) -> np.ndarray:
+        """Which blocks are done: `marks`, but for blocks of which a chunk is missing, by whose hand ever."""
+        done = self.marks()
+        for batch in self.study.batches():
+            done[batch.places] &= not done[batch.places].any() or self._is_whole(batch)
+        return done
+
+    def _is_whole(self, batch: Batch) -> bool:
+        """Whether all chunks of a batch are there, whatever is in them."""
+        for name, array in self._arrays.items():
+            place = chunk(region(self.study, batch, array), array)
+            if not (self.path / name / self._writable[name].metadata.encode_chunk_key(place)).exists():
+                return False
+        return True
+
+    def write(self, batch: Batch, found: Mapping[str, np.ndarray]) -> None:
+        """Write a batch, whole chunks only, and then its marks."""
         for name, array in self._arrays.items():
             if name != MARKS:
-                where = region(self.study, block, array)
-                self._group[name][where] = found[name].values.reshape(_shape(where, array.shape))
-        self._group[MARKS][block.place] = 1
+                self._writable[name][region(self.study, batch, array)] = found[name]
+        self._writable[MARKS][batch.places] = 1
+
+    @cached_property
+    def _writable(self) -> dict[str, "zarr.Array"]:
+        """The arrays; chunks of nothing but the fill value are written like others: none is missing."""
+        with _settings, _zarr().config.set({"array.write_empty_chunks": True}):
+            return {name: self._group[name] for name in self._arrays}
 
     @cached_property
     def _arrays(self) -> dict[str, Array]:
         return arrays_of(self.study, self.study.sample)
-
-
-def _shape(where: tuple[slice | int, ...], shape: tuple[int, ...]) -> list[int]:
-    """The shape of what lies there."""
-    return [
-        len(range(*index.indices(size)))
-        for index, size in zip(where, shape, strict=True)
-        if isinstance(index, slice)
-    ]
 
 
 def make_store(path: Path, study: Study, title: str) -> None:

@@ -1,9 +1,13 @@
-"""What a store holds: systems along further axes, a grid, settings; and the blocks it is computed in."""
+"""What a store holds: systems along further axes, a grid, settings; and the blocks it is computed in.
+
+A block is whole rows in r of one point of the further axes and one mu.
+"""
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -19,17 +23,25 @@ from ..units.scales import Scales, Units, scales_of
 BLOCK_CELLS = 2**20
 
 
-class Block(NamedTuple):
-    """Whole rows in r of one point of the further axes and one mu."""
+#: Small blocks that are computed and written together: so many at most, with one in so many of those cells.
+TOGETHER = 64
 
-    point: tuple[int, ...]
-    mu: int
-    rows: int  # which part of the rows
+
+class Batch(NamedTuple):
+    """Blocks that are computed and written together: one of many cells, or small ones that are neighbours."""
+
+    first: tuple[int, ...]  # place of the first of them among the marks
+    sizes: tuple[int, ...]  # how many along every axis of the marks
 
     @property
-    def place(self) -> tuple[int, ...]:
-        """Its place among the marks."""
-        return (*self.point, self.mu, self.rows)
+    def places(self) -> tuple[slice, ...]:
+        """Their places among the marks."""
+        return tuple(slice(k, k + size) for k, size in zip(self.first, self.sizes, strict=True))
+
+    @property
+    def points(self) -> Iterator[tuple[int, ...]]:
+        """The points of the further axes that they are of."""
+        return product(*(range(part.start, part.stop) for part in self.places[:-2]))
 
 
 @dataclass(frozen=True)
@@ -57,8 +69,12 @@ class Study:
     @property
     def rows(self) -> int:
         """Rows of a block; the last one of a map may have fewer."""
-        row = self.beta.size * (self.system.n if "amplitude" in self.solver.outputs else 1)
-        return max(1, min(self.r.size, self.block_cells // row))
+        return max(1, min(self.r.size, self.block_cells // self._row))
+
+    @property
+    def _row(self) -> int:
+        """What is in a row, as a number of cells."""
+        return self.beta.size * (self.system.n if "amplitude" in self.solver.outputs else 1)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -75,25 +91,44 @@ class Study:
         """Number of cells."""
         return self.variations.count * self.mu.size * self.r.size * self.beta.size
 
-    def block(self, place: tuple[int, ...]) -> Block:
-        """The block at a place among the marks."""
-        *point, mu, rows = place
-        return Block(tuple(point), mu, rows)
+    @property
+    def together(self) -> tuple[int, ...]:
+        """Blocks of a batch along every axis of the marks; batches at the ends may have fewer.
 
-    def places(self) -> Iterator[tuple[int, ...]]:
-        """All places among the marks."""
-        return iter(np.ndindex(self.shape))
+        Large blocks are alone; small ones share files, and what it costs to write them.
+        """
+        room = min(TOGETHER, self.block_cells // TOGETHER // (self.rows * self._row))
+        sizes: list[int] = []
+        for size in reversed(self.shape):
+            sizes.append(max(1, min(size, room)))
+            room //= sizes[-1]
+        return tuple(reversed(sizes))
 
-    def frequencies(self, block: Block) -> slice:
-        """Rows of the map that a block has."""
-        return slice(block.rows * self.rows, min((block.rows + 1) * self.rows, self.r.size))
+    def batch(self, first: tuple[int, ...]) -> Batch:
+        """The batch whose first block is at this place among the marks."""
+        ends = zip(first, self.shape, self.together, strict=True)
+        return Batch(first, tuple(min(most, size - k) for k, size, most in ends))
 
-    def compute(self, block: Block, threads: int | None) -> xr.Dataset:
-        """The variables of a block; the same to the bit as in the whole map."""
-        grid = {
-            "mu": self.mu[block.mu : block.mu + 1], "r": self.r[self.frequencies(block)], "beta": self.beta,
-        }  # fmt: skip
-        return regime_map(self.variations.at(block.point), grid, self.solver, threads, None)
+    def batches(self) -> Iterator[Batch]:
+        """All of them."""
+        steps = zip(self.shape, self.together, strict=True)
+        return map(self.batch, product(*(range(0, size, step) for size, step in steps)))
+
+    def frequencies(self, batch: Batch) -> slice:
+        """Rows of the map that a batch has."""
+        return slice(batch.first[-1] * self.rows, min((batch.first[-1] + 1) * self.rows, self.r.size))
+
+    def compute(self, batch: Batch, threads: int | None) -> dict[str, np.ndarray]:
+        """The variables of a batch, along the further axes first; the same to the bit as in whole maps."""
+        grid = {"mu": self.mu[batch.places[-2]], "r": self.r[self.frequencies(batch)], "beta": self.beta}
+        maps = [
+            regime_map(self.variations.at(point), grid, self.solver, threads, None) for point in batch.points
+        ]
+        along = batch.sizes[:-2]
+        return {
+            str(name): np.stack([one[name].values for one in maps]).reshape(*along, *variable.shape)
+            for name, variable in maps[0].data_vars.items()
+        }
 
     @cached_property
     def sample(self) -> xr.Dataset:

@@ -1,7 +1,7 @@
 """Blocks on processes of dask: of this machine, or of a cluster that is running.
 
-Workers are sent the path of the store and the place of a block, no data.  A block that was done by a worker
-that is lost is done again, to the same bytes.
+Workers are sent the path of the store and the place of a block, no data; they do the batch that it begins.
+What was done by a worker that is lost is done again, to the same bytes.
 """
 
 import contextlib
@@ -18,7 +18,7 @@ from .._kernels.cache_folders import folders
 from ..errors import InputError
 from .run import Fill
 from .store import Store, opened
-from .study import Block
+from .study import Batch
 
 if TYPE_CHECKING:
     from distributed import Client, Future, LocalCluster
@@ -78,14 +78,14 @@ def _alone() -> Iterator[None]:
         yield
 
 
-def compute(path: str, digest: str, place: tuple[int, ...]) -> tuple[int, ...]:
-    """Compute and write a block."""
+def compute(path: str, digest: str, first: tuple[int, ...]) -> tuple[int, ...]:
+    """Compute and write the batch whose first block has this place."""
     store = _store(path, digest)
-    block = store.study.block(place)
-    found = store.study.compute(block, threads=1)
+    batch = store.study.batch(first)
+    found = store.study.compute(batch, threads=1)
     _check_same(Store(store.path, store.study), digest)  # a run that has ended since may have been followed
-    store.write(block, found)
-    return place
+    store.write(batch, found)
+    return first
 
 
 def local(workers: int) -> Fill:
@@ -93,13 +93,13 @@ def local(workers: int) -> Fill:
     distributed = _distributed()
     import dask
 
-    def fill(store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
+    def fill(store: Store, batches: Iterable[Batch]) -> Iterator[Batch]:
         with (
             dask.config.set({"distributed.scheduler.allowed-failures": _LOSSES}),
             _cluster(workers) as cluster,
             distributed.Client(cluster) as client,
         ):
-            yield from _on(client, store, blocks)
+            yield from _on(client, store, batches)
 
     return fill
 
@@ -125,7 +125,7 @@ def running(address: str) -> Fill:
     for name in ("distributed", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what there is to say is said below
 
-    def fill(store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
+    def fill(store: Store, batches: Iterable[Batch]) -> Iterator[Batch]:
         try:
             client = distributed.Client(address, timeout="30s")
         except (OSError, ValueError) as error:
@@ -133,15 +133,15 @@ def running(address: str) -> Fill:
                 f"--scheduler must be the address of a running one; got {address} ({error})"
             ) from None
         with client:
-            yield from _on(client, store, blocks)
+            yield from _on(client, store, batches)
 
     return fill
 
 
-def _on(client: "Client", store: Store, blocks: Iterable[Block]) -> Iterator[Block]:
-    """Blocks as they are done; a few more are under way than there are workers."""
+def _on(client: "Client", store: Store, batches: Iterable[Batch]) -> Iterator[Batch]:
+    """Batches as they are done; a few more are under way than there are workers."""
     path, digest = str(store.path.resolve()), store.digest
-    waiting = deque(block.place for block in blocks)
+    waiting = deque(batch.first for batch in batches)
     places: dict[str, tuple[int, ...]] = {}
     losses: Counter[tuple[int, ...]] = Counter()
     under_way = _distributed().as_completed(raise_errors=False)
@@ -159,7 +159,7 @@ def _on(client: "Client", store: Store, blocks: Iterable[Block]) -> Iterator[Blo
     for future in under_way:
         place = places.pop(future.key)
         if future.status == "finished":
-            yield store.study.block(place)
+            yield store.study.batch(place)
         else:
             losses[place] += 1
             _check_lost(future, losses[place])

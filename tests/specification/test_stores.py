@@ -10,6 +10,8 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +23,7 @@ from frictionmap import InputError
 from frictionmap.cli import main
 from frictionmap.files.config import load_config
 from frictionmap.files.places import claimed_folder
+from frictionmap.model.variations import checked_variations
 from frictionmap.stores.run import fill_store, in_this_process
 from frictionmap.stores.store import opened
 from frictionmap.stores.study import Study, study_of
@@ -33,11 +36,11 @@ CONFIG = """
 [system]
 contact = "joined-base-wall"
 [grid]
-r = { start = 0.05, stop = 2.0, num = 30 }
-beta = { start = 0.0, stop = 1.5, num = 20 }
+r = { start = 0.05, stop = 2.0, num = 40 }
+beta = { start = 0.0, stop = 1.5, num = 40 }
 mu = [1.0, 1.5]
 [axes]
-damping_ratios = { start = 0.0, stop = 0.1, num = 12 }
+damping_ratios = { start = 0.0, stop = 0.1, num = 36 }
 """
 
 
@@ -117,6 +120,53 @@ def test_a_block_without_its_mark_is_written_anew(tmp_path):
     same_files(path, tmp_path / "well.zarr")
 
 
+@pytest.mark.parametrize("gone", ["contact_amplitude", "cycles", "beta_lim"])
+def test_a_block_that_lacks_a_chunk_is_computed_again(tmp_path, gone):
+    """Whatever the chunk would say: that of cycles holds nothing but zeros, which is its fill value."""
+    asked, path = study(ONE, 300, outputs=("contact_amplitude", "cycles", "regime")), tmp_path / "map.zarr"
+    asked = replace(asked, beta=np.array([0.0, 3.0]))  # decided without motion
+    fill_store(path, asked, "map", in_this_process(1))
+    shutil.copytree(path, tmp_path / "well.zarr")
+    again = []
+
+    def recorded(store, batches):
+        for batch in in_this_process(1)(store, batches):
+            again.append(batch)
+            yield batch
+
+    fill_store(path, asked, "map", recorded)
+    assert again == []
+    next(file for file in (path / gone / "c").rglob("*") if file.is_file()).unlink()
+    fill_store(path, asked, "map", recorded)
+    assert len(again) == 1
+    same_files(path, tmp_path / "well.zarr")
+
+
+@pytest.mark.parametrize(
+    ("cells", "together"), [(2**20, (3, 10, 2, 1)), (64 * 8 * 20, (1, 4, 2, 1)), (64 * 20 - 1, (1, 1, 1, 1))]
+)
+def test_small_maps_are_written_together(tmp_path, cells, together):
+    """Of 20 cells and two masses: as many as fit into a 64th of a large block, the last ones fewer."""
+    axes = {"stiffness_ratios[2]": [0.5, 1.0, 2.0], "mass_ratios[2]": np.linspace(0.5, 2.0, 10)}
+    grid = {"r": np.linspace(0.3, 1.5, 5), "beta": np.linspace(0.0, 1.2, 4), "mu": np.array([1.0, 1.5])}
+    two = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.02)
+    solver = fm.Solver(outputs=("regime", "amplitude", "stops_per_cycle"))
+    asked = replace(study_of(two, checked_variations(two, axes), grid, solver), block_cells=2 * cells)
+    assert asked.together == together
+    path = tmp_path / "map.zarr"
+    fill_store(path, asked, "map", lambda store, batches: islice(in_this_process(1)(store, batches), 1))
+    assert opened(path).marks().sum() == np.prod(together)
+    fill_store(path, asked, "map", in_this_process(2))
+    whole = fm.sweep(two, **grid, axes=axes, solver=solver)
+    with xr.open_zarr(path, consolidated=False, chunks=None) as stored:
+        assert stored["block_done"].values.all()
+        for name, variable in whole.variables.items():
+            np.testing.assert_array_equal(stored[name].values, variable.values)
+    assert len([file for file in (path / "regime").rglob("*") if file.name.isdigit() and file.is_file()]) == (
+        np.prod([np.ceil(size / most) for size, most in zip(asked.shape, together, strict=True)])
+    )
+
+
 def config(tmp_path, text=CONFIG):
     path = tmp_path / "study.toml"
     path.write_text(text)
@@ -143,7 +193,7 @@ def environment():
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("grid.beta.num=21", "grid.beta.num: 20 there, 21 here"),
+        ("grid.beta.num=21", "grid.beta.num: 40 there, 21 here"),
         ("axes.damping_ratios.num=11", r"axes.damping_ratios: \[0.0\] there, \[0.0, 0.01, .* 0.1\] here"),
         ("solver.steps=30", "solver.steps: 24 there, 30 here"),
         ('system.contact="fixed-wall"', "system.contact: 'joined-base-wall' there, 'fixed-wall' here"),
@@ -362,12 +412,16 @@ def test_lost_workers_cost_no_block(tmp_path):
     one, two = tmp_path / "one.zarr", tmp_path / "two.zarr"
     subprocess.run(command(tmp_path, "-o", one, "--quiet"), env=environment(), check=True, timeout=900)
     run = subprocess.Popen(command(tmp_path, "-o", two, "--workers", "2", "--quiet"), env=environment())
-    chance = random.Random(5)
+    while not (two / "block_done" / "c").exists() and run.poll() is None:
+        time.sleep(0.01)  # workers that are lost before any has begun are too few to go on
+    chance, killed = random.Random(5), 0
     for _ in range(4):
-        time.sleep(chance.uniform(0.5, 2.0))
         family = psutil.Process(run.pid).children(recursive=True) if run.poll() is None else []
         for worker in [child for child in family if "spawn_main" in " ".join(child.cmdline())][:1]:
             worker.kill()
+            killed += 1
+        time.sleep(chance.uniform(0.5, 2.0))
+    assert killed
     assert run.wait(900) == 0
     same_files(one, two)
 
@@ -401,12 +455,14 @@ def test_a_store_that_was_replaced_meanwhile(tmp_path):
         compute(str(path), "another", (0, 0))
 
 
-def test_workers_that_come_later_have_work(tmp_path):
+def test_workers_that_come_later_have_work(tmp_path, monkeypatch):
     distributed = pytest.importorskip("distributed")
+    from frictionmap.stores import store
     from frictionmap.stores.workers import _on
 
     path, asked = tmp_path / "map.zarr", study(ONE, 40)
-    fill_store(path, asked, "map", lambda store, blocks: iter(()))
+    monkeypatch.setattr(store, "study_of", lambda *given: replace(study_of(*given), block_cells=40))
+    fill_store(path, asked, "map", lambda store, batches: iter(()))
     submitted = []
     with (
         distributed.LocalCluster(
@@ -416,7 +472,7 @@ def test_workers_that_come_later_have_work(tmp_path):
     ):
         submit = client.submit
         client.submit = lambda *task, **how: submitted.append(task) or submit(*task, **how)
-        done = _on(client, opened(path), [asked.block(place) for place in asked.places()])
+        done = _on(client, opened(path), asked.batches())
         next(done)
         assert len(submitted) == 3
         cluster.scale(4)
@@ -424,7 +480,8 @@ def test_workers_that_come_later_have_work(tmp_path):
         next(done)
         assert len(submitted) == 3 + 10
         assert len(list(done)) == asked.blocks - 2
-    assert opened(path).marks().all()
+    fill_store(tmp_path / "well.zarr", asked, "map", in_this_process(1))
+    same_files(path, tmp_path / "well.zarr")
 
 
 def test_workers_that_lack_the_package(tmp_path):

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .files.config import Config
     from .files.places import Output
     from .progress import Progress
+    from .stores.run import Fill
 
 
 #: Cells of a map from which on its cost is told before it is taken.
@@ -169,25 +170,33 @@ def _store(options: Options) -> None:
     from .files.config import load_config
     from .files.studies import describe_cells
     from .progress import Progress
-    from .stores.run import fill_store, in_this_process
+    from .stores.run import fill_store
     from .stores.study import study_of
 
     config = load_config(options.config, options.overrides, lambda *_: None)  # a block is all that is held
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
     study = study_of(config.system, config.variations, axes, config.solver, config.units)
-    if options.workers or options.scheduler:
-        from .stores import workers
-
-        fill = workers.running(options.scheduler) if options.scheduler else workers.local(options.workers)
-    else:
-        fill = in_this_process(options.threads)
     with Progress(f"map of {study.cells:,} cells in {study.blocks:,} blocks", options.quiet) as progress:
+        fill = _fill(options, progress)
         listeners.append(progress.compiling)
         store = fill_store(options.output, study, config.title, fill, options.overwrite, progress)
         listeners.remove(progress.compiling)
     if not options.quiet:
         first, *others = describe_cells(store.path)
         _print("\n  ".join((f"{first}; wrote {options.output}", *others)))
+
+
+def _fill(options: Options, progress: "Progress") -> "Fill":
+    """What computes the blocks of a store."""
+    from .stores.run import in_this_process
+
+    if not options.workers and not options.scheduler:
+        return in_this_process(options.threads)
+    from .stores import workers
+
+    if options.scheduler:
+        return workers.running(options.scheduler, lambda text: progress.say(text, always=True))
+    return workers.local(options.workers)
 
 
 def _explore(options: Options) -> None:

@@ -8,7 +8,7 @@ import contextlib
 import logging
 import sys
 from collections import Counter, deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from pathlib import Path
 from socket import gethostname
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._kernels.cache_folders import folders
 from ..errors import InputError
+from ..version import __version__
 from .run import Fill
 from .store import Store, opened
 from .study import Batch
@@ -31,6 +32,9 @@ _STARTS = 3
 
 #: A block whose workers are lost so many times is what kills them.
 _LOSSES = 20
+
+#: Seconds to wait for the first worker of a scheduler that is running: a queue may take a night.
+_PATIENCE = 86400
 
 
 def _distributed() -> Any:
@@ -88,6 +92,35 @@ def compute(path: str, digest: str, first: tuple[int, ...]) -> tuple[int, ...]:
     return first
 
 
+def task(version: str) -> Callable[[str, str, tuple[int, ...]], tuple[int, ...]]:
+    """`compute` as workers are sent it: one without this version of the package says so.
+
+    It is in no module, and so sent as code: what is sent as the name of a module ends a worker that lacks it.
+    """
+
+    def computed(path: str, digest: str, first: tuple[int, ...]) -> tuple[int, ...]:
+        import sys
+        from importlib import import_module
+
+        from distributed import get_worker
+
+        try:
+            found = import_module("frictionmap.version").__version__
+            import_module("zarr")
+            compute = import_module("frictionmap.stores.workers").compute
+            lacks = "" if found == version else f"frictionmap is of version {found} there"
+        except ImportError as error:
+            lacks = str(error)
+        if lacks:
+            raise OSError(
+                f"worker {get_worker().address} must have frictionmap[dask] {version}: {lacks}; "
+                f"install it for {sys.executable} on that machine"
+            )
+        return compute(path, digest, first)
+
+    return computed
+
+
 def local(workers: int) -> Fill:
     """On so many processes of this machine, started for it."""
     distributed = _distributed()
@@ -119,8 +152,11 @@ def _cluster(workers: int) -> "LocalCluster":
                 raise OSError(f"the {workers} workers of --workers cannot be started ({error})") from error
 
 
-def running(address: str) -> Fill:
-    """On the workers of a scheduler that is running; they see the store under the same path."""
+def running(address: str, say: Callable[[str], None]) -> Fill:
+    """On the workers of a scheduler that is running; they see the store under the same path.
+
+    say : is told if there are none yet
+    """
     distributed = _distributed()
     for name in ("distributed", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what there is to say is said below
@@ -133,14 +169,26 @@ def running(address: str) -> Fill:
                 f"--scheduler must be the address of a running one; got {address} ({error})"
             ) from None
         with client:
+            _wait(client, address, say)
             yield from _on(client, store, batches)
 
     return fill
 
 
+def _wait(client: "Client", address: str, say: Callable[[str], None]) -> None:
+    """Until there is a worker."""
+    if client.nthreads():
+        return
+    say(f"waiting for workers of {address}")
+    try:
+        client.wait_for_workers(1, timeout=_PATIENCE)
+    except TimeoutError:
+        raise OSError(f"{address} had no worker for {_PATIENCE / 3600:g} hours") from None
+
+
 def _on(client: "Client", store: Store, batches: Iterable[Batch]) -> Iterator[Batch]:
     """Batches as they are done; a few more are under way than there are workers."""
-    path, digest = str(store.path.resolve()), store.digest
+    path, digest, sent = str(store.path.resolve()), store.digest, task(__version__)
     waiting = deque(batch.first for batch in batches)
     places: dict[str, tuple[int, ...]] = {}
     losses: Counter[tuple[int, ...]] = Counter()
@@ -151,7 +199,7 @@ def _on(client: "Client", store: Store, batches: Iterable[Batch]) -> Iterator[Ba
         threads = max(1, sum(client.nthreads().values()))
         while waiting and len(places) < (1 + _WAITING) * threads:
             place = waiting.popleft()
-            future = client.submit(compute, path, digest, place, pure=False)
+            future = client.submit(sent, path, digest, place, pure=False)
             places[future.key] = place
             under_way.add(future)
 
@@ -172,11 +220,9 @@ def _check_lost(future: "Future", times: int) -> None:
     if future.status != "error":
         raise OSError("the scheduler of dask was lost")
     error = future.exception()
-    if isinstance(error, ImportError) or "deserialization" in str(
-        error
-    ):  # dask's word where a module is missing
+    if "deserialization" in str(error):  # dask's word where what is sent cannot be read
         raise OSError(
-            "frictionmap must be installed in the same version where the scheduler and the workers are; "
+            "Python and dask must be of the same versions here and where the scheduler runs; "
             f"dask says: {str(error).splitlines()[0]}"
         ) from error
     if not isinstance(error, _distributed().KilledWorker) or times > _LOSSES:

@@ -1,7 +1,6 @@
 """Stores: block by block the same bytes as at once, however a run was stopped."""
 
 import filecmp
-import importlib
 import os
 import random
 import re
@@ -484,14 +483,68 @@ def test_workers_that_come_later_have_work(tmp_path, monkeypatch):
     same_files(path, tmp_path / "well.zarr")
 
 
-def test_workers_that_lack_the_package(tmp_path):
+@pytest.fixture
+def scheduler():
     distributed = pytest.importorskip("distributed")
-    from frictionmap.stores.workers import _check_lost
+    with distributed.LocalCluster(
+        n_workers=0, protocol="tcp://", dashboard_address=None, silence_logs="CRITICAL"
+    ) as cluster:
+        yield cluster.scheduler_address
+
+
+#: A process with dask, where nothing of that name can be imported.
+BARE = """
+import sys
+from distributed.cli.dask_worker import main
+
+class Hidden:
+    def find_spec(name, *rest):
+        if name.partition(".")[0] == "frictionmap":
+            raise ModuleNotFoundError(f"No module named {name!r}")
+
+sys.meta_path.insert(0, Hidden)
+main(args=[sys.argv[1], "--no-nanny", "--nthreads=1", "--no-dashboard"])
+"""
+
+
+def test_a_worker_that_lacks_the_package_is_named(tmp_path, scheduler):
+    """There is none at first, which is told; then one comes that cannot compute."""
+    from frictionmap.stores import workers
+
+    told, started = [], []
+
+    def say(text):
+        told.append(text)
+        started.append(subprocess.Popen([sys.executable, "-c", BARE, scheduler], stderr=subprocess.DEVNULL))
+
+    try:
+        with pytest.raises(OSError, match=(
+            rf"worker tcp://[0-9.:]+ must have frictionmap\[dask\] {fm.__version__}: No module named "
+            rf"'frictionmap'; install it for {re.escape(sys.executable)} .*; 0 of 2 blocks are in"
+        )):  # fmt: skip
+            fill_store(tmp_path / "map.zarr", study(ONE, 10**6), "map", workers.running(scheduler, say))
+    finally:
+        for process in started:
+            process.kill()
+            process.wait()
+    assert told == [f"waiting for workers of {scheduler}"]
+
+
+def test_workers_that_never_come(tmp_path, scheduler, monkeypatch):
+    from frictionmap.stores import workers
+
+    monkeypatch.setattr(workers, "_PATIENCE", 0.36)
+    fill = workers.running(scheduler, lambda text: None)
+    with pytest.raises(OSError, match=f"{scheduler} had no worker for 0.0001 hours"):
+        fill_store(tmp_path / "map.zarr", study(ONE, 10**6), "map", fill)
+
+
+def test_a_worker_of_another_version_is_named():
+    distributed = pytest.importorskip("distributed")
+    from frictionmap.stores.workers import task
 
     with distributed.Client(processes=False, n_workers=1, dashboard_address=None) as client:
-        future = client.submit(importlib.import_module, "no_such_package")
-        distributed.wait(future)
-        with pytest.raises(
-            OSError, match=r"must be installed in the same version .*: No module named 'no_such"
-        ):
-            _check_lost(future, 1)
+        sent = client.submit(task("0.0.1"), "map.zarr", "digest", (0, 0))
+        words = rf"\[dask\] 0\.0\.1: frictionmap is of version {re.escape(fm.__version__)} there"
+        with pytest.raises(OSError, match=words):
+            sent.result()

@@ -118,6 +118,8 @@ def _system_lines(system: "System", file: str) -> list[str]:
     matrices = system.matrices
     own = {key: getattr(system, key) for key in _SYSTEM}
     own["load"] = own.pop("loads")  # of a reduced structure those on the masses that are left
+    if system.reduction is not None:  # of the whole structure, which the matrices below do not tell
+        own["frequency_scale"] = system.omega_1
     lines = [
         f"{key} = {value_text(value)}" for key, value in own.items() if value not in (None, _SYSTEM.get(key))
     ]

@@ -150,7 +150,7 @@ class System:
         semi-definite, and may couple the undamped modes, as single dashpots do.
     frequency_scale : float, optional
         With matrices: r = omega/frequency_scale, in the units of sqrt(K/M); default the first natural
-        frequency.  A chain's is sqrt(k_1/m_1).
+        frequency, before any reduction.  A chain's is sqrt(k_1/m_1).
     stiffness_scale : float
         With matrices: displacements are in P/stiffness_scale, in the units of K.  A chain's is k_1.
     excitation : {"force", "base"}, optional
@@ -166,7 +166,8 @@ class System:
         degrees of freedom, those in contact and under load, and so many modes with all these held.
         Contact, load and results keep the numbers of the file.  In the range of r that is asked for,
         natural frequencies and compliances must be within "allow", by default 0.001, of the whole
-        structure's: else there is an InputError, which says how many modes would do.
+        structure's: else there is an InputError, which says how many modes would do.  Boundaries of
+        continuous motion, which harmonics of friction above that range move, may need more.
     rayleigh : sequence of float, optional
         With matrices, instead of damping_ratios and of C: [a, b] of C = a M + b K, >= 0, in their units.
 
@@ -195,7 +196,7 @@ class System:
     damping_ratios: float | Sequence[float] | None = None
     _: KW_ONLY
     matrices: str | os.PathLike | Mapping[str, Any] | Structure | Matrices | None = None
-    frequency_scale: float | None = None
+    frequency_scale: float | None = field(default=None, compare=False)  # `_scale` says what it comes to
     stiffness_scale: float = 1.0
     excitation: Literal["force", "base"] | None = None
     damping_reference: Literal["ground", "base"] = "ground"
@@ -204,6 +205,7 @@ class System:
     reduce: Mapping[str, Any] | Reduce | None = field(default=None, compare=False)
     rayleigh: Sequence[float] | None = None
     decouple: float | None = None
+    _scale: float | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
         previous = self.matrices.reduction if isinstance(self.matrices, Matrices) else None
@@ -217,6 +219,10 @@ class System:
             self._set(
                 "matrices", self._reduced(self.matrices, previous) if self.reduce else whole(self.matrices)
             )
+        scale = self.frequency_scale
+        if scale is None and self.reduction is not None:  # r means the same however much is left
+            scale = self.reduction.first_frequency
+        self._set("_scale", scale)
         self._check_damping()
         if self.n > 1 or self.matrices is not None:
             _ = self.modes  # what only they can tell is told at the door, too
@@ -433,7 +439,7 @@ class System:
         reduced, decoupled = self.accuracy(r), self.decoupling(r)
         where = f", for r = {r[0]:g} to {r[-1]:g}"
         if reduced is not None:
-            words["reduction"] = reduced.words() + where
+            words["reduction"] = f"{reduced.words()}{where}; {reduced.beyond()}"
         if decoupled is not None:
             words["decoupling"] = (
                 f"C, taken by its diagonal in the modes, changes linear responses by {decoupled:.1e}{where}"
@@ -468,8 +474,8 @@ class System:
     @cached_property
     def _frequency_scale(self) -> float:
         """omega/r of a structure given by matrices."""
-        if self.frequency_scale is not None:
-            return self.frequency_scale
+        if self._scale is not None:
+            return self._scale
         assert isinstance(self.matrices, Matrices)
         w, _ = self._solve(self.matrices.mass, self.matrices.stiffness)
         return float(w[0])
@@ -492,7 +498,7 @@ class System:
         """Dimensionless M, K and, where it was given, C1."""
         if isinstance(self.matrices, Matrices):
             mass, stiffness, damping = self.matrices.scaled(self._frequency_scale, self.stiffness_scale)
-            if self.n == 1 and self.frequency_scale is None:
+            if self.n == 1 and self._scale is None:
                 mass = stiffness.copy()  # w = 1 by definition; scaling misses it by a rounding
             return mass, stiffness, damping
         springs = np.array(self.stiffness_ratios)

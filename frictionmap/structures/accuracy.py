@@ -3,6 +3,10 @@
 Both without damping, which would hide errors, and both with the contact free and held.  Compliances are those
 between all kept degrees of freedom, away from resonances, each in the unit of its static ones; their error is
 that of all together, over the larger of those free and held.
+
+Friction that reverses at once has harmonics far above the range, and sticking depends on the mass that the
+contact feels in that instant, theory.md 3; of the masses around it a reduction keeps few to themselves.  So
+the contact's effective mass is told beside the errors, and not held to what is allowed.
 """
 
 from collections.abc import Callable, Iterable
@@ -10,6 +14,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from ..errors import InputError
 from .craig_bampton import Reduced, factor, slowest
 
 T = TypeVar("T")
@@ -40,15 +45,19 @@ class Ranges(dict[tuple[float, float], T]):
 
 
 class Accuracy(NamedTuple):
-    """Largest relative errors in a range of frequency."""
+    """Largest relative errors in a range of frequency, and what is felt beyond it.
+
+    contact_mass : 1/(c M^-1 c) of the reduced structure, over that of the whole one; 1 or more
+    """
 
     frequencies: float
     compliances: float
+    contact_mass: float
 
     @property
     def worst(self) -> float:
-        """The larger one."""
-        return max(self)
+        """The larger error."""
+        return max(self.frequencies, self.compliances)
 
     def words(self) -> str:
         """In words."""
@@ -58,6 +67,10 @@ class Accuracy(NamedTuple):
             f"natural frequencies within {self.frequencies:.1e} of the whole structure's, compliances within "
             f"{self.compliances:.1e}"
         )
+
+    def beyond(self) -> str:
+        """In words, what is felt beyond the range."""
+        return f"the contact's effective mass is {self.contact_mass:.4g} times that of the whole structure"
 
 
 class Whole:
@@ -72,6 +85,7 @@ class Whole:
         self._pairs = ((mass, stiffness), (held.T @ mass @ held, held.T @ stiffness @ held))
         static = factor(stiffness).solve(forces)
         self.units = np.sqrt(np.einsum("ij,ij->j", forces, static))
+        self.inverse_mass = _inverse_mass(mass, contact)
 
     def frequencies(self, held: bool, most: float, guess: int, limit: int) -> np.ndarray:
         """Natural frequencies up to `most`, increasing, no more than `limit`; `guess`: how many may be."""
@@ -90,6 +104,16 @@ class Whole:
 
         dynamic = (self._stiffness - omega * omega * self._mass).tocsc()
         return self.forces.T @ splu(dynamic).solve(self.forces)
+
+
+def _inverse_mass(mass: Any, contact: np.ndarray) -> float:
+    """c M^-1 c over the degrees of freedom that have mass; infinite if some of their motions have none."""
+    moving = np.flatnonzero(np.asarray(abs(mass).sum(axis=1)))
+    pull = contact[moving]
+    try:
+        return float(pull @ factor(mass[moving][:, moving]).solve(pull))
+    except InputError:
+        return np.inf
 
 
 def _held(contact: np.ndarray) -> Any:
@@ -136,7 +160,12 @@ class Comparison:
         frequencies = max(_difference(w, one) for w, one in zip(self._frequencies, own, strict=True))
         pull = np.linalg.lstsq(forces, contact, rcond=None)[0]
         pairs = ((compliances(omega), true) for omega, true in self._samples)
-        return Accuracy(frequencies, largest_error(pairs, self._whole.units, pull))
+        inverse_mass = contact @ np.linalg.solve(mass, contact)
+        return Accuracy(
+            frequencies,
+            largest_error(pairs, self._whole.units, pull),
+            self._whole.inverse_mass / float(inverse_mass),
+        )
 
     def _places(self) -> np.ndarray:
         """Frequencies at which compliances are compared."""
@@ -145,8 +174,11 @@ class Comparison:
         between = 0.5 * (poles[1:] + poles[:-1])
         places = np.unique(np.concatenate((between[between >= low], np.linspace(low, high, _EVEN))))
         if poles.size:
-            nearest = np.abs(places[:, np.newaxis] - poles).min(axis=1)
-            places = places[nearest > _NEAR * places]
+            distance = np.abs(places[:, np.newaxis] - poles).min(axis=1) / np.maximum(places, poles[0])
+            far = distance > _NEAR
+            if not far.any():  # a range so narrow: where it is furthest off, if it is off
+                far = (distance == distance.max()) & (distance > 0.0)
+            places = places[far]
         return places[:: max(1, -(-places.size // _SAMPLES))]
 
 

@@ -2,22 +2,19 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
 from .accuracy import Accuracy, Comparison, Ranges, Whole
-from .craig_bampton import FixedInterface, Reduce, Reduced, fixed_interface, project
+from .craig_bampton import FixedInterface, Reduce, Reduced, fixed_interface, project, slowest
 from .structure import Structure
 
 #: Of the modes asked for: so many times as many are tried for a number that would do, in such steps.
 _MORE = 8
 _STEP = 1.25
-
-#: Share of what is allowed that a number of modes must keep to that is said to do: its own first natural
-#: frequency, which r is over by default, shifts the range.
-_ROOM = 0.9
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +33,12 @@ class Reduction:
         """Whether this is the reduction that is asked for."""
         same = self.asked == asked and self.kept == kept and self.base == base
         return same and bool(np.array_equal(self.contact, contact))
+
+    @cached_property
+    def first_frequency(self) -> float:
+        """The first natural frequency of the whole structure, in the units of sqrt(K/M)."""
+        arrays = _sparse(self.structure)
+        return float(slowest(arrays["M"], arrays["K"], 1)[0][0])
 
     def checked(self, low: float, high: float) -> Accuracy:
         """Its accuracy from one angular frequency to another, in the units of sqrt(K/M).
@@ -73,8 +76,7 @@ class Reduction:
         fixed = fixed_interface(whole, whole.dofs.rows(self.kept), tried)
 
         def do(modes: int) -> bool:
-            accuracy = comparison.accuracy(project(whole, fixed, modes, self.base))
-            return accuracy.worst <= _ROOM * self.asked.allow
+            return comparison.accuracy(project(whole, fixed, modes, self.base)).worst <= self.asked.allow
 
         enough = _enough(do, self.asked.modes, tried)
         advice = f"{tried} would not do either" if enough is None else f"{enough} would do"

@@ -118,6 +118,45 @@ def test_some_modes_are_as_good_as_is_said(settings):
         np.testing.assert_allclose(found, expected, rtol=0.02, atol=0.002 * scale)
 
 
+def test_r_means_the_same_however_much_is_left():
+    whole = fm.System(matrices=CHAIN, **SYSTEM)
+    for modes in (0, 3, 20):
+        system = reduced(modes=modes)
+        assert system.omega_1 == pytest.approx(whole.omega_1, rel=1e-12)
+        assert system == dataclasses.replace(system, frequency_scale=system.omega_1)
+
+
+def test_a_single_frequency_beside_a_resonance_is_compared():
+    """1 % from one, where a range as narrow has nothing further off."""
+    whole = fm.System(matrices=CHAIN, frequency_scale=1.0, **SYSTEM)
+    r = np.array([1.01 * whole.modes.w[3]])
+    system = reduced(modes=10, frequency_scale=1.0)
+    kept = [LOAD - 1, KEPT - 1, CONTACT - 1]
+    full = np.linalg.inv(CHAIN["K"] - r**2 * CHAIN["M"])[np.ix_(kept, kept)]
+    rows = [system.dofs.row(k + 1) for k in kept]
+    small = system.reduction.reduced.arrays
+    own = np.linalg.inv(small["K"] - r**2 * small["M"])[np.ix_(rows, rows)]
+    units = np.sqrt(np.diag(np.linalg.inv(CHAIN["K"])))[kept]
+    scale = np.outer(units, units)
+    worst = np.linalg.norm((own - full) / scale) / np.linalg.norm(full / scale)
+    assert worst > 1e-3
+    assert system.accuracy(r).compliances == pytest.approx(worst, rel=1e-6)
+    with pytest.raises(fm.InputError, match=r"reduce.modes must leave errors <= 0.001"):
+        reduced(modes=10, frequency_scale=1.0, reduce={"allow": 0.001}).accuracy(r)
+
+
+@pytest.mark.parametrize("modes", [0, 8, 37])
+def test_the_effective_mass_of_the_contact_is_told(modes):
+    """What friction that reverses feels at once: more with fewer modes, and exact with all."""
+    system = reduced(modes=modes)
+    told = system.accuracy(np.array([0.5])).contact_mass
+    row = system.dofs.row(CONTACT)
+    inverses = [np.linalg.inv(M)[k, k] for M, k in ((CHAIN["M"], CONTACT - 1), (system.matrices.mass, row))]
+    assert told == pytest.approx(inverses[0] / inverses[1], rel=1e-9)
+    assert told >= 1.0 - 1e-12
+    assert f"effective mass is {told:.4g} times" in fm.boundaries(system, [0.5]).attrs["reduction"]
+
+
 def test_degrees_of_freedom_without_mass_follow_exactly():
     light = {"M": CHAIN["M"].copy(), "K": CHAIN["K"]}
     some = [2, 16, 17, 33]

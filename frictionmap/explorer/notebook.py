@@ -67,6 +67,9 @@ def explore(
 ) -> Explorer:
     """The map of a system as a page in a browser, or in a notebook, to be moved about in.
 
+    The page is served from this process and ends with it: a script that shows one ends with a line such as
+    ``input(page.url)``, or the page is gone before it is seen.
+
     Parameters
     ----------
     system : System

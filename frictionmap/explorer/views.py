@@ -1,5 +1,6 @@
 """One view: a system as changed, ranges of r and beta, mu; its map, piece by piece."""
 
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, Protocol, cast
@@ -153,16 +154,20 @@ def piece_of_map(
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """A piece of a picture for the page: `classes_of`, and `values` of the quantity if it has some.
 
+    The header tells the `seconds` that its cells took, by which the page foresees finer pictures.
+
     lines : points of the boundaries over the whole view, finer than coarse cells: `line_lim`, `line_stick`
     """
+    began = time.perf_counter()
     found = solve_piece(view, [quantity], piece, follower)
+    seconds = time.perf_counter() - began
     header, arrays = classes_of(found)
     if quantity.output:
         arrays["values"] = values_of(found, quantity)
     if lines:
         curves = find_curves(view.system, middles(view.r, lines, "lines"), np.array([view.mu]))
         arrays |= {"line_lim": curves.beta_lim[0], "line_stick": curves.beta_stick[0]}
-    return {"first": piece.first, "last": piece.last, **header}, arrays
+    return {"first": piece.first, "last": piece.last, "seconds": seconds, **header}, arrays
 
 
 def marks(system: System) -> dict[str, list[float]]:

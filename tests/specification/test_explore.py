@@ -83,7 +83,9 @@ def middles(low, high, count):
 def test_a_map_is_that_of_sweep_to_the_bit(one, mu):
     r, beta = middles(0.2, 1.4, 40), middles(0.0, 1.1, 30)
     ds = fm.sweep(fm.System(), r, beta, mu, solver=solver())
+    began = time.perf_counter()
     header, arrays = packet(one, f"/map?r=0.2,1.4&beta=0,1.1&mu={mu}&columns=40&rows=30")
+    assert 0.0 < header["seconds"] < time.perf_counter() - began
     np.testing.assert_array_equal(arrays["classes"], classes(ds.isel(mu=0)))
     for name in ("beta_lim", "beta_stick"):
         np.testing.assert_array_equal(arrays[name], ds[name].values[0])

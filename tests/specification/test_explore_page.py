@@ -155,6 +155,26 @@ UNPACK = """async () => {
   return JSON.stringify([found.regime, [...found.z], [...found.numbers]]);
 }"""
 
+FORESEEN = """async ([ofCell, ofColumn]) => {
+  const { Refiner } = await import('/refine.js');
+  const spent = (columns, rows, first, last) => { // the left is the dearest, as it is of maps
+    const share = (at) => 1 - (1 - at / columns) ** 4;
+    return (share(last) - share(first)) * (columns * rows * ofCell + columns * ofColumn);
+  };
+  const source = { fixed: null, map: async (view, scene, { columns, rows, first, last }) => ({
+    classes: new Uint8Array((last - first) * rows), beta_lim: new Float64Array(last - first),
+    beta_stick: new Float64Array(last - first), seconds: spent(columns, rows, first, last) }) };
+  const view = { r: [0, 1], beta: [0, 1], mu: 1.5, quantity: 'regime', start: 'rest', contact: '' };
+  return new Promise((told) => {
+    let size = null;
+    const onState = ({ held, done }) => {
+      if (held) told([size.columns, size.rows, held / 1000]);
+      else if (done !== undefined) told([size.columns, size.rows, 0]);
+    };
+    const asked = { view, scene: { masses: 5 }, columns: 640, rows: 480, kind: 'classes', scale: null };
+    new Refiner(source, (picture) => (size = picture), onState).ask({ ...asked, table: new Uint32Array(10) });
+  });
+}"""
 FOCUS = """() => {
   const { id, tagName, dataset } = document.activeElement;
   const { outlineStyle, outlineWidth } = getComputedStyle(document.activeElement);
@@ -410,6 +430,19 @@ def test_what_is_outdated_is_given_up(browser, tmp_path):
             np.testing.assert_array_equal(seen, wanted(system, (0.1, 2.5), (0.0, 2.0), 1.0, seen.shape[:2]))
             page.wait_for_timeout(300)
             assert not server.page.jobs._running
+
+
+def test_what_finer_pictures_take_is_foreseen(browser, one):
+    """Of seconds that are known: every cell costs some, or every column, most of them on the left."""
+    held = 0
+    with page_of(browser, one.url, viewport=SMALL) as page:
+        for of_cell, of_column in ((0.02, 0.0), (0.0, 2.0), (1e-3, 0.2), (1e-6, 1e-4)):
+            columns, rows, told = page.evaluate(FORESEEN, [of_cell, of_column])
+            finer = 4 if columns <= 640 / 8 else 2
+            takes = finer * columns * (finer * rows * of_cell + of_column)
+            held += told > 0
+            assert told / 3.0 < takes < 3.0 * told if told else columns == 640
+    assert held == 3
 
 
 def test_the_whole_legend_is_seen_on_a_laptop(browser, one):

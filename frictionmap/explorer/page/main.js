@@ -400,17 +400,18 @@ class Page {
     }
   }
 
-  /** Before cells are saved: how large their files will be. */
+  /** Before cells are saved: how large their files will be, and how long they will take if that is long. */
   async #tellSizes() {
-    const places = part("save").querySelectorAll("[data-size]");
-    for (const place of places) place.textContent = "";
     if (!this.source.live) return;
+    let words = () => "";
     try {
       const sizes = await this.source.sizes(this.view, this.scene, this.map.size);
-      for (const place of places) place.textContent = `, about ${sizes[place.dataset.size]}`;
+      const wait = this.refiner.whole > SLOW ? `, ${this.#duration(this.refiner.whole)}` : "";
+      words = ({ dataset }) => `, about ${sizes[dataset.size]}${wait}`;
     } catch {
       // what is wrong with the view the map says, and who saves it all the same
     }
+    for (const place of part("save").querySelectorAll("[data-size]")) place.textContent = words(place);
   }
 
   /** The menu is closed, and the keyboard goes on from there. */

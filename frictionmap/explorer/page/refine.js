@@ -1,5 +1,6 @@
 // A coarse picture first, then finer ones; what is outdated is given up at once.
 
+import { Costs } from "./costs.js";
 import { Picture } from "./picture.js";
 
 /** Milliseconds that a first picture may take, that a piece of a finer one should take, and that all may take. */
@@ -13,19 +14,8 @@ const PATIENCE = 400;
 /** Pixels that a cell of the first picture has at most, each way. */
 const COARSEST = 32;
 
-/** Milliseconds that a cell is taken to cost before one was seen: of one mass, and of structures where proofs
- *  decide most of them (mu = 1), or none. */
-const GUESS = { one: 0.001, proved: 0.02, unproved: 0.5 };
-
-/** Factor by which a guess of the cost of a cell may grow at once. */
-const GROWTH = 6;
-
-/** Milliseconds of an answer that are not its cells'. */
-const OVERHEAD = 4;
-
 export class Refiner {
-  /** @type {Map<string, number>} milliseconds a cell, by what it depends on */
-  #costs = new Map();
+  #costs = new Costs();
   #running = null;
   #waiting = null;
   #last = null;
@@ -75,23 +65,17 @@ export class Refiner {
     this.#next();
   }
 
-  /** What the cost of a cell depends on. */
-  #kind({ view }) {
-    return [view.mu > 1, view.quantity, view.start, view.contact].join();
-  }
-
-  #cost(asked) {
-    const guess = asked.scene.masses === 1 ? GUESS.one : GUESS[asked.view.mu > 1 ? "unproved" : "proved"];
-    return this.#costs.get(this.#kind(asked)) ?? guess;
+  /** Milliseconds that the finest picture of the view will take. */
+  get whole() {
+    return this.#last && this.#costs.of(this.#last, this.#last.columns * this.#last.rows);
   }
 
   /** Pixels of a cell in the pictures to come. */
   #blocks(asked) {
     if (this.source.fixed) return [1];
     const cells = asked.columns * asked.rows;
-    const most = FIRST / this.#cost(asked);
     let block = 1;
-    while (cells / block ** 2 > 1.5 * most && block < COARSEST) block *= 2;
+    while (this.#costs.of(asked, cells / block ** 2) > 1.5 * FIRST && block < COARSEST) block *= 2;
     const blocks = [block];
     while (block > 1) {
       block = block > 4 ? block / 4 : 1;
@@ -107,7 +91,7 @@ export class Refiner {
         columns: Math.ceil(asked.columns / block),
         rows: Math.ceil(asked.rows / block),
       };
-      const expected = size.columns * size.rows * this.#cost(asked);
+      const expected = this.#costs.of(asked, size.columns * size.rows);
       if (level && expected > LONGEST && !asked.patient) {
         this.onState({ held: expected });
         return;
@@ -123,18 +107,18 @@ export class Refiner {
     const ranges = this.source.fixed ?? asked.view;
     const picture = new Picture(ranges, columns, rows, asked.table, asked.kind, asked.scale);
     const began = performance.now();
+    const cost = this.#costs.begin(asked, columns, rows);
     while (!picture.whole) {
       const at = picture.filled;
-      const width = Math.max(1, Math.floor((first ? 2 * PIECE : PIECE) / (this.#cost(asked) * rows)));
+      const width = Math.max(1, Math.floor((first ? 2 * PIECE : PIECE) / cost.column));
       const last = Math.min(columns, columns - at - width < width / 2 ? columns : at + width);
-      const sent = performance.now();
       const piece = { columns, rows, first: at, last };
       if (columns < asked.columns && !asked.lines) piece.lines = asked.columns;
       const packet = await this.source.map(asked.view, asked.scene, piece, run.control.signal);
       if (packet.line_lim) asked.lines = { beta_lim: packet.line_lim, beta_stick: packet.line_stick };
       picture.lines = asked.lines;
       picture.put(packet, at);
-      if (!packet.compiled) this.#learn(asked, performance.now() - sent, (last - at) * rows);
+      if (packet.seconds && !packet.compiled) cost.add(last - at, 1000 * packet.seconds);
       asked.scale = picture.scale;
       run.seen = true;
       this.onPicture(picture, asked.view);
@@ -142,13 +126,5 @@ export class Refiner {
       if (this.#waiting) run.control.abort();
       run.control.signal.throwIfAborted();
     }
-  }
-
-  /** A guess of what a cell costs: it falls at once, and grows little by little, as a first answer also waits
-   *  for kernels to be loaded. */
-  #learn(asked, milliseconds, cells) {
-    const known = this.#cost(asked);
-    const seen = Math.min(GROWTH * known, Math.max(1e-6, (milliseconds - OVERHEAD) / cells));
-    this.#costs.set(this.#kind(asked), seen);
   }
 }

@@ -1,0 +1,52 @@
+// What pictures cost, foreseen from those that were seen.
+
+/** What pictures are taken to cost before one was seen: of one mass; of structures where proofs decide most cells
+ *  (mu = 1); of others, for every mass. */
+const GUESS = {
+  one: { cells: 30000, milliseconds: 30 },
+  proved: { cells: 2000, milliseconds: 40 },
+  unproved: { cells: 500, milliseconds: 200 },
+};
+
+/** Power of the number of cells that their time goes with: between 1, where every cell is followed, and 1/2, where
+ *  proofs decide whole columns.  Sixteen times the cells are then foreseen within a factor 2. */
+const POWER = 0.75;
+
+export class Costs {
+  /** @type {Map<string, {cells: number, milliseconds: number}>} the last picture of a kind */
+  #seen = new Map();
+
+  /** Milliseconds that a picture of so many cells will take. @param {{view: object, scene: object}} asked */
+  of(asked, cells) {
+    const { cells: known, milliseconds } = this.#seen.get(kindOf(asked)) ?? guessed(asked);
+    return milliseconds * (cells / known) ** POWER;
+  }
+
+  /**
+   * A picture is begun: `column` foresees the milliseconds of its next columns, which are like the last ones;
+   * `add` tells what columns took.  Left and right may differ much: all that was seen of a picture counts.
+   */
+  begin(asked, columns, rows) {
+    const taken = { columns: 0, milliseconds: 0 };
+    const cost = { column: this.of(asked, columns * rows) / columns };
+    cost.add = (count, milliseconds) => {
+      cost.column = milliseconds / count;
+      taken.columns += count;
+      taken.milliseconds += milliseconds;
+      const whole = (taken.milliseconds * columns) / taken.columns;
+      this.#seen.set(kindOf(asked), { cells: columns * rows, milliseconds: whole });
+    };
+    return cost;
+  }
+}
+
+/** What the cost of a cell depends on. */
+function kindOf({ view }) {
+  return [view.mu > 1, view.quantity, view.start, view.contact].join();
+}
+
+function guessed({ view, scene: { masses } }) {
+  if (masses === 1) return GUESS.one;
+  if (view.mu === 1) return GUESS.proved;
+  return { ...GUESS.unproved, milliseconds: masses * GUESS.unproved.milliseconds };
+}

@@ -226,14 +226,17 @@ def _put(content: bytes, path: Path) -> None:
 
 
 def _export_page(options: Options, scene: "Scene") -> None:
+    from ._kernels.cache import listeners
     from .explorer.stored import check_page, write_page
     from .files.places import claimed
     from .progress import Progress
 
     check_page(options.output)
     with claimed(options.output, options.overwrite, scene.files) as output:
-        with Progress(f"maps of {scene.title}", options.quiet) as progress:
+        with Progress(f"page of {scene.title}", options.quiet, "maps") as progress:
+            listeners.append(progress.compiling)
             page = write_page(scene, progress)
+            listeners.remove(progress.compiling)
         output.fill(lambda scratch: _put(page, scratch))
     if not options.quiet:
         _print(f"wrote {options.output} ({len(page) / 1e6:.2g} MB)")

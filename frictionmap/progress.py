@@ -15,10 +15,14 @@ _COMPILING = "compiling kernels, once: up to a minute"
 
 
 class Progress:
-    """Of one piece of work, named by `what`, as a context."""
+    """Of one piece of work, named by `what`, as a context.
 
-    def __init__(self, what: str, quiet: bool) -> None:
-        self._what = what
+    parts : what is counted, such as "maps", if the work is done one by one; each is told when it is done
+    """
+
+    def __init__(self, what: str, quiet: bool, parts: str = "") -> None:
+        self._what, self._parts = what, parts
+        self._done = 0  # parts
         self._active = sys.stderr is not None and not quiet
         self._terminal = self._active and sys.stderr.isatty()
         self._began = time.monotonic()
@@ -63,9 +67,13 @@ class Progress:
         now, share = time.monotonic(), done / max(total, 1)
         if self._first is None:
             self._first = now, share
+        counted, left = f"{int(done)} of {total:g} {self._parts}", self._left(now, share)
+        if self._parts and done >= self._done + 1:
+            self._done = int(done)
+            self.say(f"{counted}{left}")
         if now >= self._next:
             self._next = now + _BETWEEN
-            self._show(f"{100.0 * share:5.1f} %{self._left(now, share)}")
+            self._show(f"{f'{counted}  ' if self._parts else ''}{100.0 * share:5.1f} %{left}")
 
     def _left(self, now: float, share: float) -> str:
         """The time left if the rest goes as what was seen of it; compiling came before."""

@@ -20,7 +20,7 @@ from .queries import read_query
 from .scene import Scene, Slider
 from .server import page_files
 from .told import told
-from .views import Piece, Quantity, View, classes_of, quantities, solve_piece, values_of
+from .views import Follower, Piece, Quantity, View, classes_of, quantities, solve_piece, values_of
 
 #: Cells of every map, each way: of one mass, and of structures, whose cells take some hundred times as long
 #: where mu is above 1.
@@ -28,6 +28,9 @@ _CELLS = {False: (360, 270), True: (180, 135)}
 
 #: Places of each slider: two sliders are moved together, further ones by themselves.
 _PLACES, _TOGETHER = 7, 2
+
+#: Share of a map that is done when its cells are computed, at most.
+_PACKED = 0.99
 
 #: Steps of a quantity; 0 is no number.
 _STEPS = 255
@@ -39,19 +42,24 @@ _POLICY = (
 
 
 class Progress(Protocol):
-    """Who is told how far the maps are."""
+    """Who is told how many maps are done, with the share of the one that is not."""
 
     def __call__(self, done: float, total: float) -> None: ...
 
 
-class _Unwatched:
-    """Nobody ends the computation of a map that is written."""
+class _OneOf(NamedTuple):
+    """Of a map that is written, how far all of them are; nobody ends its computation."""
+
+    progress_of_all: Progress
+    before: int  # maps that are done
+    total: int
 
     def watch(self) -> None:
         """Go on."""
 
     def progress(self, done: float, total: float) -> None:
-        """Maps are counted, not their cells."""
+        """The map counts as done once it is packed."""
+        self.progress_of_all(self.before + min(done / total, _PACKED), self.total)
 
 
 class _Kept(NamedTuple):
@@ -105,10 +113,10 @@ def _stepped(values: np.ndarray, log: bool) -> dict[str, Any]:
     return {"low": low, "high": high, "log": log, "steps": _deflated(steps.astype(np.uint8))}
 
 
-def _map(view: View, offered: tuple[Quantity, ...]) -> dict[str, Any]:
+def _map(view: View, offered: tuple[Quantity, ...], follower: Follower) -> dict[str, Any]:
     """The map of a view, with all quantities."""
     columns, rows = _CELLS[view.system.n > 1]
-    found = solve_piece(view, offered, Piece(columns, rows, 0, columns), _Unwatched())
+    found = solve_piece(view, offered, Piece(columns, rows, 0, columns), follower)
     header, arrays = classes_of(found)
     limits = np.concatenate((arrays["beta_lim"], arrays["beta_stick"]))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -131,12 +139,12 @@ def _content(scene: Scene, progress: Progress) -> dict[str, Any]:
     kept = _kept(scene.sliders)
     first = read_query(scene, "")
     offered = quantities(scene.system)
-    maps = {}
+    maps, count = {}, len(kept.points)
     for done, point in enumerate(kept.points):
         text = "&".join(f"{key}={value!r}" for key, value in zip(kept.values, point, strict=True))
         query = read_query(scene, text)
-        maps[_name(kept, point)] = _map(query.view, offered)
-        progress(done + 1, len(kept.points))
+        maps[_name(kept, point)] = _map(query.view, offered, _OneOf(progress, done, count))
+        progress(done + 1, count)
     columns, rows = _CELLS[scene.system.n > 1]
     own = tuple(slider.value for slider in scene.sliders)
     return {

@@ -645,7 +645,10 @@ def small(tmp_path_factory):
             patch.setattr(stored, name, value)
         told = []
         page = stored.write_page(scene, lambda done, total: told.append((done, total)))
-    assert told == [(k, 12) for k in range(1, 13)]
+    assert told == sorted(told)
+    assert [done for done, _ in told if done == int(done)] == list(range(1, 13))
+    assert len({int(done) for done, _ in told if 0 < done % 1 < 1}) == 12  # and within each map
+    assert {total for _, total in told} == {12}
     return scene, page.decode()
 
 

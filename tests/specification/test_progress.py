@@ -76,6 +76,26 @@ def test_elsewhere_there_is_a_line_at_the_start_and_one_at_the_end(monkeypatch):
     ]
 
 
+@pytest.mark.parametrize(
+    ("stream", "wanted"),
+    [
+        (Terminal(), ["0 of 3 maps    5.6 %", "1 of 3 maps   33.3 %  about 48 s left",
+                      "2 of 3 maps   72.2 %  about 21 s left"]),
+        (io.StringIO(), ["frictionmap: a page begun", "frictionmap: 1 of 3 maps  about 48 s left",
+                         "frictionmap: 2 of 3 maps  about 21 s left", "frictionmap: a page done in 60 s"]),
+    ],
+)  # fmt: skip
+def test_parts_are_told_one_by_one(monkeypatch, stream, wanted):
+    clock = Clock(monkeypatch)
+    monkeypatch.setattr(sys, "stderr", stream)
+    with Progress("a page", quiet=False, parts="maps") as shown:
+        for done, after in ((1 / 6, 10.0), (1.0, 20.0), (13 / 6, 30.0)):
+            clock.now += after
+            shown(done, 3)
+    text = stream.getvalue()
+    assert [line.rstrip() for line in text.replace("\r", "\n").splitlines() if line.strip()] == wanted
+
+
 @pytest.mark.parametrize("stream", [Terminal(), io.StringIO()])
 def test_quiet(monkeypatch, stream):
     assert work(monkeypatch, stream, quiet=True) == ""

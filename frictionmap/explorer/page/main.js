@@ -231,7 +231,7 @@ class Page {
     if (state.error) {
       this.#wrong(state.error);
     } else if (state.held) {
-      this.#tell(`finer would take about ${this.#duration(state.held)}`, "compute it", () => this.refiner.more());
+      this.#tell(`finer would take about ${this.#duration(state.held)}`, "compute it", () => this.#finer());
       this.map.stage.dataset.state = "done";
     } else if (state.done !== undefined) {
       this.#tell("");
@@ -245,6 +245,14 @@ class Page {
   /** What was wrong in the address, over the map: whatever else is told does not replace it. */
   #note(text) {
     [part("notice").textContent, part("notice").hidden] = [text, !text];
+  }
+
+  /** Whoever waits has asked for it. */
+  #finer() {
+    this.map.stage.dataset.state = "refining";
+    this.asked = performance.now();
+    this.#tell("computing");
+    this.refiner.more();
   }
 
   #duration(milliseconds) {

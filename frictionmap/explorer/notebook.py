@@ -51,7 +51,8 @@ class Explorer:
         """What a notebook shows."""
         if not self._thread.is_alive():
             return html.escape(repr(self))
-        return f'<iframe src="{self.url}" width="100%" height="{_HEIGHT}" style="border:0"></iframe>'
+        size = f'width="100%" height="{_HEIGHT}" style="border:0"'
+        return f'<iframe src="{self.url}" {size} allow="clipboard-write"></iframe>'  # links are copied
 
 
 def explore(

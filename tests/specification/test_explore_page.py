@@ -605,7 +605,7 @@ def test_it_follows_the_colours_of_the_desktop(browser, one):
     }
 
 
-@pytest.mark.parametrize("width", [360, 1100, 1800])
+@pytest.mark.parametrize("width", [360, 940, 1800])
 def test_it_fits_any_width(browser, one, width):
     with page_of(browser, f"{one.url}#cell=0.3,0.5", viewport={"width": width, "height": 800}) as page:
         page.wait_for_selector("#motion h2")

@@ -106,7 +106,7 @@ plate = fm.System(
 )
 r = np.linspace(0.2, 8.0, 118)
 print(plate.describe())
-print(plate.accuracy(r).words())
+print(plate.costs(r)["reduction"])
 
 # %%
 # The map
@@ -119,3 +119,10 @@ ds = fm.sweep(plate, r, np.geomspace(0.02, 4.0, 60), outputs=["regime", "stops_p
 for ax in np.ravel(fm.plot_regimes(ds)):
     ax.set_yscale("log")
 plt.show()
+
+# %%
+# What is promised is the answer to loads in the range.  With 24 modes permanent sticking stays where it is
+# and amplitudes change by 0.4 % in the median; but of a hundred cells nine that slid without stopping stop
+# for an instant: friction that reverses finds fast modes, and the corner's own mass is 1/363 of what twelve
+# modes leave to it.  On a finer mesh it is less still, so where the motion of a point contact is continuous
+# is a matter of the model.

@@ -8,7 +8,7 @@ from typing import cast
 from ..datasets.labels import MEASURE_OF
 from ..datasets.provenance import configuration, to_toml
 from ..errors import InputError
-from ..files.config import config_of, parse
+from ..files.config import config_of, parse, read_system
 from ..files.export import write_export
 from ..model.matrices import Matrices
 from ..model.settings import Output, Solver
@@ -48,30 +48,43 @@ def configuration_text(scene: Scene, view: View, quantity: Quantity, piece: Piec
     Raises
     ------
     InputError
-        The system is larger than text should hold, and comes from no file.
+        The system is larger than text should hold, and comes from no file, or from files that have changed.
     """
     text = _described(scene, view, quantity, piece)
     if _is_large(view):
-        return _with_files(scene, text)
+        return _with_files(scene, view, text)
     loaded = config_of(text, {})
     again = {"r": loaded.r, "beta": loaded.beta, "mu": loaded.mu}
-    if configuration(scene.title, loaded.system, again, loaded.solver, units=loaded.units) != text:
+    found = configuration(scene.title, loaded.system, again, loaded.solver, units=loaded.units)
+    if _uncommented(found) != _uncommented(text):
         raise InputError("this view has no configuration that gives it again")
     return text
+
+
+def _uncommented(text: str) -> str:
+    """A configuration without the lines that tell, as how a structure was reduced, but change nothing."""
+    return "\n".join(line for line in text.splitlines() if not line.startswith("#"))
 
 
 def _is_large(view: View) -> bool:
     return isinstance(view.system.matrices, Matrices) and view.system.n > _WRITTEN
 
 
-def _with_files(scene: Scene, text: str) -> str:
-    """The grid and the solver of `text`, with the system as its own configuration gives it."""
+def _with_files(scene: Scene, view: View, text: str) -> str:
+    """The view that `text` describes, with matrices by the names of their files."""
     if scene.config is None:
         raise InputError(f"a system of {scene.system.n} degrees of freedom is too large to be put into text")
-    of_view = parse("\n".join(line for line in text.splitlines() if not line.startswith("#")))
-    tree = {**parse(scene.config.text), "grid": of_view["grid"], "solver": of_view["solver"]}
+    given = parse(scene.config.text)
+    of_view = parse(_uncommented(text))
+    of_files = {key: given["system"][key] for key in ("matrices", "reduce") if key in given["system"]}
+    if view.system.load is not None:  # on all masses of the files, of which a reduced structure has fewer
+        of_files["load"] = view.system.load
+    tree = {**given, **of_view, "system": {**of_view["system"], **of_files}}
     tree.pop("axes", None)
-    return to_toml(tree)
+    written = to_toml(tree)
+    if read_system(parse(written)["system"], scene.config.files[0].parent) != view.system:
+        raise InputError("this view has no configuration that gives it again: its files have changed")
+    return written
 
 
 def sizes(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> dict[str, float]:

@@ -110,12 +110,17 @@ def number_of(key: str) -> Number:
     return Number(name, int(place) if place else None)
 
 
+def _damped_alike(system: System) -> bool:
+    """Whether all modes have one damping ratio, given as such."""
+    return system.damping_ratios is not None and len(set(system.damping_ratios)) == 1  # type: ignore[arg-type]
+
+
 def _of_damping(system: System) -> tuple[Slider, ...]:
     given = system.damping_ratios
     if given is None:  # a matrix C
         return ()
     ratios = tuple(given)  # type: ignore[arg-type]
-    alike = len(set(ratios)) == 1
+    alike = _damped_alike(system)
     if not alike and len(ratios) > _OFFERED_RATIOS:
         return ()
     keys = ("damping_ratios",) if alike else tuple(f"damping_ratios[{k + 1}]" for k in range(len(ratios)))
@@ -174,7 +179,9 @@ def _with_contact(system: System, contact: Contact) -> System:
     """The system with another contact; a wall that moves with the base needs a base that moves."""
     changes: dict[str, Any] = {"contact": contact.kind, "contact_masses": contact.masses}
     if contact.kind == "joined-base-wall" and system.excitation != "base":
-        changes |= {"excitation": "base", "load": None, "load_mass": 1}
+        changes |= {"excitation": "base", "load": None, "load_mass": None}
+    if _damped_alike(system):  # reduced for another contact it may have more or fewer modes
+        changes["damping_ratios"] = system.damping_ratios[0]  # type: ignore[index]
     return replace(system, **changes)
 
 

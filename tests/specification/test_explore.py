@@ -20,6 +20,7 @@ import xarray as xr
 from conftest import ROOT
 from pages import HANG, ask, packet, scene_from, served, solver
 from refusals import refusal
+from structures import chain_matrices
 
 import frictionmap as fm
 from frictionmap import InputError, regimes
@@ -28,7 +29,7 @@ from frictionmap.explorer import cell, stored
 from frictionmap.explorer.cell import motion
 from frictionmap.explorer.jobs import Jobs, Outdated
 from frictionmap.explorer.packets import pack, unpack
-from frictionmap.files.config import config_of
+from frictionmap.files.config import config_of, load_config
 from frictionmap.pictures.classes import classes
 
 ONE = """\
@@ -557,6 +558,55 @@ def test_a_configuration_gives_the_view_again(two, query):
     np.testing.assert_array_equal(arrays["classes"], classes(ds.isel(mu=0)))
     if "multiplier" in query:
         np.testing.assert_array_equal(arrays["values"], ds["multiplier"].values[0].astype(np.float32))
+
+
+SEVENTY = """\
+[system]
+contact_masses = [70]
+load_mass = 10
+matrices = "chain.npz"
+damping_ratios = 0.01
+{reduce}
+[grid]
+r = [0.5, 6.0]
+beta = [0.1, 1.0]
+"""
+
+
+def seventy(folder, reduce=""):
+    """The scene of a chain of seventy masses in a file, perhaps reduced."""
+    np.savez(folder / "chain.npz", **chain_matrices(np.ones(70), np.ones(70)))
+    return scene_from(folder, SEVENTY.format(reduce=reduce))
+
+
+@pytest.mark.parametrize("reduce", ["", "reduce = { keep = [17], modes = 66, allow = 1.0 }"])
+def test_a_configuration_names_the_files_of_a_large_structure(tmp_path, reduce):
+    query = "contact=joined-base-wall:70&damping_ratios=0.3&r=0.5,3&mu=1.25&start=moving&columns=4&rows=3"
+    with served(seventy(tmp_path, reduce)) as server:
+        path = tmp_path / "again.toml"
+        path.write_bytes(ask(server, f"/configuration.toml?{query}")[1])
+        _, arrays = packet(server, f"/map?{query}")
+        (tmp_path / "chain.npz").rename(tmp_path / "own.npz")
+        np.savez(tmp_path / "chain.npz", **chain_matrices(np.ones(70), np.full(70, 2.0)))
+        assert b"its files have changed" in ask(server, f"/configuration.toml?{query}")[1]
+    (tmp_path / "own.npz").rename(tmp_path / "chain.npz")
+    assert 'matrices = "chain.npz"' in path.read_text()
+    config = load_config(path)
+    assert (config.system.contact, config.system.zeta) == ("joined-base-wall", 0.3)
+    ds = fm.sweep(config.system, config.r, config.beta, config.mu, solver=config.solver)
+    np.testing.assert_array_equal(arrays["classes"], classes(ds.isel(mu=0)))
+    np.testing.assert_array_equal(arrays["beta_lim"], ds["beta_lim"].values[0])
+
+
+def test_a_configuration_of_a_structure_that_was_reduced(tmp_path):
+    with served(seventy(tmp_path, "reduce = { keep = [17], modes = 9, allow = 1.0 }")) as server:
+        status, body, _ = ask(server, "/configuration.toml?columns=4&rows=3")
+        _, arrays = packet(server, "/map?columns=4&rows=3")
+    assert (status, b"# reduced from 70" in body) == (200, True)
+    config = config_of(body.decode(), {})
+    ds = fm.sweep(config.system, config.r, config.beta, config.mu, solver=config.solver)
+    np.testing.assert_array_equal(arrays["classes"], classes(ds.isel(mu=0)))
+    np.testing.assert_array_equal(arrays["beta_lim"], ds["beta_lim"].values[0])
 
 
 def test_cells_as_files(one, tmp_path):

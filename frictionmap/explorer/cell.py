@@ -10,12 +10,13 @@ import numpy as np
 from .. import regimes
 from ..errors import NoSteadyState
 from ..model.settings import Output, Start
+from ..model.system import System
 from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
 from ..steady.maps import solve_map
 from ..steady.motion import Motion, Question, find_motion
 from ..theory.boundary_curves import find_curves
-from .views import View
+from .views import View, name_of_mass
 
 #: Samples per excitation period: a curve a few hundred pixels wide is smooth with them.
 _SAMPLES = 400
@@ -47,8 +48,8 @@ _ENTRIES = (
     Entry("contact_amplitude", "amplitude in the contact", "length"),
     Entry("contact_first_harmonic_amplitude", "its first harmonic", "length"),
     Entry("contact_first_harmonic_phase", "lag of that behind the load", "rad"),
-    Entry("amplitude", "amplitude of mass", "length"),
-    Entry("phase_lag", "lag of mass", "rad"),
+    Entry("amplitude", "amplitude of", "length"),
+    Entry("phase_lag", "lag of", "rad"),
     Entry("work_friction", "energy that friction takes per cycle", "energy"),
     Entry("work_damping", "energy that damping takes per cycle", "energy"),
     Entry("equivalent_damping", "equivalent damping of the contact, cω/k₁", ""),
@@ -66,10 +67,12 @@ def motion(view: View, r: float, beta: float) -> Packet:
     """The motion in a cell for the page.
 
     Arrays over `tau`: `z`, its velocity `z_rate`, `friction`, `phase` (-1, 0, 1), `x` (masses, tau).  Moduli
-    of harmonics 0 to 7: `z_harmonics`, `friction_harmonics`.  `numbers` are those of the header's `entries`.
+    of harmonics 0 to 7: `z_harmonics`, `friction_harmonics`.  `numbers` are those of the header's `entries`;
+    its `dofs` are the numbers of the masses.
 
     Where there is no steady state, the header says why under `none`, and there are no arrays.
     """
+    view.check(r)
     # what a map is asked for beside the motion would take as long again
     solver = replace(view.solver, outputs=("regime",))
     try:
@@ -78,7 +81,7 @@ def motion(view: View, r: float, beta: float) -> Packet:
         return {"r": r, "beta": beta, "class": UNRESOLVED, "none": str(error)}, {}
     told = _numbers(found)
     regime, stops = (np.array([told[name]]) for name in ("regime", "stops_per_cycle"))
-    entries, numbers = _listed(view.system.n, told)
+    entries, numbers = _listed(view.system, told)
     header = {
         "r": r,
         "beta": beta,
@@ -87,6 +90,7 @@ def motion(view: View, r: float, beta: float) -> Packet:
         "told": in_words(beta, told),
         "entries": [entry._asdict() for entry in entries],
         "comment": found.comment,
+        "dofs": view.system.dofs.numbers,
     }
     return header, {**curves_of(view, found), "numbers": np.array(numbers)}
 
@@ -97,7 +101,7 @@ def _numbers(found: Motion) -> dict[str, Any]:
     return {**found.cycle, **found.summary, **limits}
 
 
-def _listed(masses: int, told: Mapping[str, Any]) -> tuple[list[Entry], list[float]]:
+def _listed(system: System, told: Mapping[str, Any]) -> tuple[list[Entry], list[float]]:
     """What there is to list of a cell, and the numbers; of masses one by one."""
     entries: list[Entry] = []
     numbers: list[float] = []
@@ -106,12 +110,11 @@ def _listed(masses: int, told: Mapping[str, Any]) -> tuple[list[Entry], list[flo
         if stuck and entry.name in _MOVING:
             continue
         of_masses = np.ndim(told[entry.name]) == 1
-        for k, value in enumerate(np.atleast_1d(told[entry.name])[:_LISTED].tolist(), start=1):
-            own = entry.label
-            if of_masses:
-                own = f"{own} {k}" if masses > 1 else own.replace("mass", "the mass")
+        for row, value in enumerate(np.atleast_1d(told[entry.name])[:_LISTED].tolist()):
+            mass = f" {name_of_mass(system, system.dofs.numbers[row])}" if of_masses else ""
             none = entry.name == "phase_lag" and np.isnan(value)
-            entries.append(entry._replace(label=own, why=_why_no_lag(told, k - 1) if none else ""))
+            why = _why_no_lag(told, row) if none else ""
+            entries.append(entry._replace(label=entry.label + mass, why=why))
             numbers.append(100.0 * value if entry.unit == "%" else float(value))
     return entries, numbers
 
@@ -191,6 +194,7 @@ def others(view: View, r: float, beta: float) -> Packet:
     The header has `start`, the other one, `same`, `told` and the `reachable` regimes; the arrays `multiplier`
     and, of another motion, what `motion` has of it.
     """
+    view.check(r)
     start = _STARTS[view.solver.start]
     there = replace(view, solver=replace(view.solver, start=start))
     own = _one(view, r, beta, "multiplier", "also_reachable")

@@ -26,13 +26,15 @@ def cut(
     harmonic); `amplitude` (masses, cells).  Along r also `held` (masses, cells), with the contact held, and
     `limit`, those at beta_lim.
     """
+    view.check(None if along == "r" else at)
     place = middles(getattr(view, along), count, "count")
     pieces: list[dict[str, np.ndarray]] = []
     for first in range(0, count, _AT_ONCE):
         watch()
         pieces.append(_piece(view, along, at, place[first : first + _AT_ONCE]))
     joined = {name: np.concatenate([piece[name] for piece in pieces], axis=-1) for name in pieces[0]}
-    return {"along": along, "at": at, "ends": list(getattr(view, along))}, joined
+    header = {"along": along, "at": at, "ends": getattr(view, along), "dofs": view.system.dofs.numbers}
+    return header, joined
 
 
 def _piece(view: View, along: Along, at: float, places: np.ndarray) -> dict[str, np.ndarray]:

@@ -7,6 +7,8 @@ from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
+import numpy as np
+
 from .. import checks
 from ..errors import InputError
 from ..model.settings import Solver, Start
@@ -221,4 +223,5 @@ def scene_of_system(
     scales_of(units, system)  # they may not go with it
     settings: Mapping[str, Any] = {"start": start}
     ends = checked_range(r, "r"), checked_range(beta, "beta")
+    system.costs(np.array(ends[0]))
     return Scene(title, system, *ends, mu, Solver(**settings), units=units)

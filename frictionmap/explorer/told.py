@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from ..errors import InputError
 from ..pictures.palette import CLASSES
 from ..units.scales import scales_of
@@ -40,7 +42,7 @@ def told(scene: Scene, query: Query) -> dict[str, Any]:
     return {
         "title": scene.title,
         "version": __version__,
-        "system": system.describe(),
+        "system": "; ".join((system.describe(), *system.costs(np.array(query.view.r)).values())),
         "masses": system.n,
         "r": scene.r,
         "beta": scene.beta,

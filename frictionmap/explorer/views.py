@@ -33,7 +33,7 @@ class Quantity(NamedTuple):
     label: str
     output: str  # of a map; "" for the classes of regimes and stops
     scale: str  # of the colours: "classes", "linear" or "log"
-    mass: int = 0  # the one that is meant, counted from 1
+    row: int | None = None  # of the mass that is meant, counted from 0
 
 
 _QUANTITIES = (
@@ -47,13 +47,18 @@ _QUANTITIES = (
 
 def quantities(system: System) -> tuple[Quantity, ...]:
     """What the cells of maps of a system can be coloured by."""
-    masses = range(1, min(system.n, _OFFERED_MASSES) + 1)
     amplitudes = tuple(
-        Quantity(f"amplitude_{k}", f"amplitude of mass {k}" if system.n > 1 else "amplitude of the mass",
-                 "amplitude", "log", k)
-        for k in masses
-    )  # fmt: skip
+        Quantity(
+            f"amplitude_{number}", f"amplitude of {name_of_mass(system, number)}", "amplitude", "log", row
+        )
+        for row, number in enumerate(system.dofs.numbers[:_OFFERED_MASSES])
+    )
     return (*_QUANTITIES[:2], *amplitudes, *_QUANTITIES[2:])
+
+
+def name_of_mass(system: System, number: int) -> str:
+    """What a mass is called: by its number, and its label if there is one, unless it is the only one."""
+    return f"mass {system.dofs.word(number)}" if system.n > 1 else "the mass"
 
 
 @dataclass(frozen=True)
@@ -65,6 +70,11 @@ class View:
     beta: tuple[float, float]
     mu: float
     solver: Solver
+
+    def check(self, r: float | None = None) -> None:
+        """Refuse a range, or a frequency of it or beyond, in which a reduced structure errs too much."""
+        inside = r is None or self.r[0] <= r <= self.r[1]
+        self.system.costs(np.array(self.r if inside else (r, r)))
 
     def axes(self, columns: int, rows: int) -> dict[str, np.ndarray]:
         """The middles of a picture's pixels: axes r and beta, and mu, of a map."""
@@ -119,6 +129,7 @@ def solve_piece(
     And over its columns `beta_lim` and `beta_stick`.
     """
     piece.check()
+    view.check()
     asked = (quantity.output for quantity in wanted if quantity.output)
     outputs = tuple(dict.fromkeys(("regime", "stops_per_cycle", *asked)))
     solver = replace(view.solver, outputs=cast(tuple[Output, ...], outputs))
@@ -146,7 +157,7 @@ def classes_of(found: Mapping[str, np.ndarray]) -> tuple[dict[str, Any], dict[st
 def values_of(found: Mapping[str, np.ndarray], quantity: Quantity) -> np.ndarray:
     """A quantity of the cells of a piece, float32 (columns, rows)."""
     values = found[quantity.output]
-    return (values[..., quantity.mass - 1] if quantity.mass else values).astype(np.float32)
+    return (values if quantity.row is None else values[..., quantity.row]).astype(np.float32)
 
 
 def piece_of_map(

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..errors import InputError
 from ..structures.accuracy import Ranges, largest_error
 from .modes import ModalModel
 
@@ -21,12 +22,27 @@ class Decoupling:
     """A damping matrix whose diagonal in the modes is taken for it."""
 
     damping: np.ndarray  # C1 (n, n), the whole of it
+    allowed: float  # relative change of linear responses
     _found: Ranges[float] = field(default_factory=Ranges)
 
     def error(self, modes: ModalModel, r: np.ndarray) -> float:
-        """Largest relative change of compliances of contact and load in a range of r, resonances included."""
+        """Largest relative change of compliances of contact and load in a range of r, resonances included.
+
+        Raises
+        ------
+        InputError
+            It is larger than allowed.
+        """
         ends = float(r[0]), float(r[-1])
-        return self._found.told(*ends, lambda: self._error(modes, *ends))
+        return self._found.told(*ends, lambda: self._checked(self._error(modes, *ends)))
+
+    def _checked(self, error: float) -> float:
+        if not error <= self.allowed:
+            raise InputError(
+                f"decouple must be at least {error:.2g}, by which linear responses change in the range of r "
+                f"if C is taken by its diagonal; got {self.allowed:g}"
+            )
+        return error
 
     def _error(self, modes: ModalModel, low: float, high: float) -> float:
         load = modes.relative_load(np.ones(1))[0].real

@@ -416,16 +416,7 @@ class System:
             More than is allowed.
         """
         left_out = self._damped_modes.left_out
-        if left_out is None:
-            return None
-        error = left_out.error(self.modes, r)
-        allowed: float = self.decouple  # type: ignore[assignment]
-        if not error <= allowed:
-            raise InputError(
-                f"decouple must be at least {error:.2g}, by which linear responses change in the range of r "
-                f"if C is taken by its diagonal; got {allowed:g}"
-            )
-        return error
+        return None if left_out is None else left_out.error(self.modes, r)
 
     def costs(self, r: np.ndarray) -> dict[str, str]:
         """In words, what the structure that is computed differs from the one given, in the range of r.
@@ -548,7 +539,7 @@ class System:
             return _DampedModes(w, phi, zeta)
         if self.decouple is None:
             return _DampedModes(w, phi, zeta, coupled=given)
-        return _DampedModes(w, phi, zeta, left_out=Decoupling(given))
+        return _DampedModes(w, phi, zeta, left_out=Decoupling(given, self.decouple))
 
     @cached_property
     def modes(self) -> ModalModel:

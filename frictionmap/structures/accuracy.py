@@ -9,6 +9,7 @@ contact feels in that instant, theory.md 3; of the masses around it a reduction 
 the contact's effective mass is told beside the errors, and not held to what is allowed.
 """
 
+import threading
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple, TypeVar
 
@@ -18,6 +19,9 @@ from ..errors import InputError
 from .craig_bampton import Reduced, factor, slowest
 
 T = TypeVar("T")
+
+#: Held while the whole structure is looked at; no part of what travels to other processes.
+_LOOKING = threading.Lock()
 
 #: Compliances are compared at so many frequencies at most, none nearer to a resonance than this share of it:
 #: there the error is that of the resonance's frequency.
@@ -31,17 +35,37 @@ _EVEN = 9
 _FURTHER = 3
 
 
-class Ranges(dict[tuple[float, float], T]):
-    """What was found of ranges of frequency."""
+class Ranges(dict[tuple[float, float], T | InputError]):
+    """What was found of ranges of frequency, or why they are refused."""
 
     def told(self, low: float, high: float, find: Callable[[], T]) -> T:
-        """What is found of a range; of a part of one that is known, at once, what was found of that."""
-        known = [at for at in self if at[0] <= low and high <= at[1]]
-        if (low, high) in self or not known:
-            known = [(low, high)]
-        if known[0] not in self:
-            self[low, high] = find()
-        return self[known[0]]
+        """What is found of a range; of a part of one that is known, at once, what was found of that.
+
+        Several threads that ask for one range have it looked at once.
+        """
+        with _LOOKING:
+            found = self.get((low, high))
+            if found is None:
+                found = self._around(low, high)
+            if found is None:
+                found = self[low, high] = _found(find)
+        if isinstance(found, InputError):
+            raise InputError(str(found))
+        return found
+
+    def _around(self, low: float, high: float) -> T | None:
+        """What was found of a range that holds this one; a part of one that is refused may be legal."""
+        for (least, most), found in self.items():
+            if least <= low and high <= most and not isinstance(found, InputError):
+                return found
+        return None
+
+
+def _found(find: Callable[[], T]) -> T | InputError:
+    try:
+        return find()
+    except InputError as error:
+        return error
 
 
 class Accuracy(NamedTuple):

@@ -69,7 +69,7 @@ export class CutPanel {
       if (curves.held) lines.push({ x, y: row(curves.held, k), colour: massColour(k), width: 1, dash: [2, 3] });
     }
     for (let k = 0; k < masses; k += 1) {
-      lines.push({ x, y: row(curves.amplitude, k), colour: massColour(k), width: 1.5, name: masses === 1 ? "mass" : `x${k + 1}` });
+      lines.push({ x, y: row(curves.amplitude, k), colour: massColour(k), width: 1.5, name: masses === 1 ? "mass" : `x${curves.dofs[k]}` });
     }
     lines.push({ x, y: curves.contact_amplitude, colour: ink, width: 2.2, dash: masses === 1 ? [6, 4] : undefined, name: "z, contact" });
     if (curves.held) lines.push({ x: [], y: [], colour: "#888", dash: [2, 3], name: "contact held" });

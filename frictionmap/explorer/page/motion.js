@@ -167,7 +167,7 @@ export class MotionPanel {
       x, y: around(...forces.map((line) => line.y)), lines: forces, bands, xName: "time / excitation period", yName: this.scene.units.force,
     });
     const names = [];
-    for (let k = 0; k < masses; k += 1) names.push(keyLine(massColour(k), masses === 1 ? "x, mass" : `x${k + 1}`));
+    for (let k = 0; k < masses; k += 1) names.push(keyLine(massColour(k), masses === 1 ? "x, mass" : `x${motion.dofs[k]}`));
     names.push(keyLine(ink, "z, contact", masses === 1 ? "dotted" : "solid"), keyLine(colour("warm"), "friction"));
     if (bands.length) names.push(keyLine(colour("stop"), "stuck", "solid", 9));
     if (other) names.push(keyLine(colour("second"), other.start === "moving" ? "from moving" : "from rest", "dashed"));

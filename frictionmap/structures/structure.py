@@ -48,18 +48,19 @@ def read_structure(given: object) -> Structure:
         symmetric matrix of the size of the others.
     """
     found = read_files(given)
-    arrays = {name: _symmetric(_square(one, name), name) for name, one in found.arrays.items()}
+    arrays = {name: _square(one, name) for name, one in found.arrays.items()}
     n = arrays["M"].shape[0]
     for name, array in arrays.items():
         if array.shape[0] != n:
             raise InputError(f"matrices: {name} must have the shape of M, ({n}, {n}); got {array.shape}")
-    dofs = _dofs(found, n)
-    if found.held is None or not found.held.any():
-        return Structure(arrays, dofs, found.source, 0)
-    free = np.flatnonzero(~found.held)
-    if not free.size:
-        raise InputError("matrices: K must leave a degree of freedom free; boundary conditions hold all")
-    arrays = {name: one[free][:, free] for name, one in arrays.items()}
+    dofs, free = _dofs(found, n), np.arange(n)
+    if found.held is not None and found.held.any():
+        free = np.flatnonzero(~found.held)
+        if not free.size:
+            raise InputError("matrices: K must leave a degree of freedom free; boundary conditions hold all")
+        arrays = {name: one[free][:, free] for name, one in arrays.items()}
+    # only now: beside the stiffness of a row that is held any difference would be rounding
+    arrays = {name: _symmetric(one, name, free) for name, one in arrays.items()}
     return Structure(arrays, dofs.at(free), found.source, n - free.size)
 
 
@@ -127,14 +128,14 @@ def _first_wrong(array: Any) -> tuple[int, int, float]:
     return int(entries.coords[0][k]), int(entries.coords[1][k]), float(entries.data[k])
 
 
-def _symmetric(array: Any, name: str) -> Any:
-    """The symmetric part, if the rest of it is rounding."""
+def _symmetric(array: Any, name: str, free: np.ndarray) -> Any:
+    """The symmetric part, if the rest of it is rounding; `free`: which rows of the file these are."""
     difference = abs(array - array.T)
     i, j = np.unravel_index(difference.argmax(), array.shape)
     if difference[i, j] > TOLERANCE * abs(array).max():
         raise InputError(
-            f"matrices: {name} must be symmetric; got {float(array[i, j])!r} at [{i}, {j}] and "
-            f"{float(array[j, i])!r} at [{j}, {i}]"
+            f"matrices: {name} must be symmetric; got {float(array[i, j])!r} at [{free[i]}, {free[j]}] and "
+            f"{float(array[j, i])!r} at [{free[j]}, {free[i]}]"
         )
     whole = 0.5 * (array + array.T)
     return whole.tocsr() if _is_sparse(whole) else whole

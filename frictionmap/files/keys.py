@@ -15,7 +15,7 @@ from ..model.system import CONTACTS, DAMPING_REFERENCES, EXCITATIONS, System
 from ..units.axes import KINDS
 from ..units.quantities import EXAMPLES, NUMBER
 from ..units.scales import MODEL_HAS, OF_MODEL, UNIT_KINDS
-from ..units.table import units_of
+from ..units.table import spellings, units_of
 
 Legal = Mapping[str, Any]
 
@@ -74,7 +74,7 @@ def table(keys: Mapping[str, Legal], required: tuple[str, ...] = ()) -> Legal:
 
 def with_unit(kind: str) -> Legal:
     """A number with a unit of a kind."""
-    units = "|".join(re.escape(unit) for unit in units_of(kind))
+    units = "|".join(re.escape(unit) for unit in spellings(kind))
     return {"type": "string", "pattern": rf"^{NUMBER} ?({units})$"}
 
 

@@ -69,6 +69,12 @@ def units_of(measures: str) -> tuple[str, ...]:
     return tuple(name for name, unit in UNITS.items() if unit.measures == measures)
 
 
+def spellings(measures: str) -> tuple[str, ...]:
+    """All ways to write the units of a kind."""
+    legal = units_of(measures)
+    return (*legal, *(other for other, name in _ALIASES.items() if name in legal))
+
+
 def known_unit(text: str) -> str | None:
     """A unit as the table writes it; None if there is none."""
     name = _ALIASES.get(text, text)

@@ -153,6 +153,13 @@ def test_good_systems_obey_the_schema(system):
     SCHEMA.validate(tomllib.loads(toml(system=system)))
 
 
+@pytest.mark.parametrize("base", ["1 um", "1 \u00b5m", "1\u03bcm", "0.5 in"])
+def test_units_however_they_are_written_obey_the_schema(base, tmp_path):
+    text = toml(top=f'[units]\nbase_amplitude = "{base}"', system='excitation = "base"')
+    SCHEMA.validate(tomllib.loads(text))
+    assert loaded(tmp_path, text).units.base_amplitude == base
+
+
 @pytest.mark.parametrize("kind", TRUTHS)
 def test_rigs_that_init_writes_obey_the_schema(kind):
     RIG_SCHEMA.validate(tomllib.loads(starting_rig(kind)[0]))

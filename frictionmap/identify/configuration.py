@@ -4,6 +4,7 @@ A kind of data is a `Kind`: what may be said of it, and the function that fits i
 one like `rig_decay` and add it to `KINDS`.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import xarray as xr
 from .. import checks
 from ..errors import InputError
 from ..files.config import read_tree, unknown_key
+from ..units.axes import rounded
 from ..units.quantities import quantity
 from ..units.table import UNITS
 from .columns import MISSING
@@ -155,7 +157,10 @@ def _known_number(value: object, key: str) -> float:
     unit = KNOWN_UNITS.get(key, "")
     if unit and isinstance(value, str):
         found = quantity(value, f"known.{key}", UNITS[unit].measures)
-        value = float(found.value / UNITS[unit].size)
+        number = rounded(found.value / UNITS[unit].size)
+        if math.isinf(number):
+            raise InputError(f"known.{key} must be finite in {unit}; got {value!r}")
+        value = number
     return checks.number(value, f"known.{key}")
 
 

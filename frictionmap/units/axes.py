@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from .quantities import is_foreign, quantities, quantity
+from .quantities import quantities, quantity
 from .scales import NO_SCALES, Scales
 
 #: What the ratios of a grid are over.
@@ -48,16 +48,17 @@ def ratios(values: Any, name: str, kind: str, scales: Scales) -> Any:
     try:
         found = quantities(values, name, kind)
     except InputError:
-        if scales is NO_SCALES and not is_foreign(values):
+        if scales is NO_SCALES and isinstance(values, (str, list, tuple)):
             return values  # for the checks of numbers without units, which say what is wrong
         raise
     if found is None:
         return values
     one = scales.needed(kind, name, values)
-    return [_double(value / one) for value in found]
+    return [rounded(value / one) for value in found]
 
 
-def _double(value: Fraction) -> float:
+def rounded(value: Fraction) -> float:
+    """The nearest double; infinity beyond all."""
     try:
         return float(value)
     except OverflowError:
@@ -104,7 +105,7 @@ def _ladder(axis: Mapping[str, Any], name: str, kind: str, scales: Scales) -> La
     start, stop = (given[key].value / one for key in ("start", "stop"))
     if stop < start:
         raise InputError(f"{name}.stop must be >= start ({axis['start']}); got {axis['stop']!r}")
-    if math.isinf(_double(stop)) or math.isinf(_double(start)):
+    if math.isinf(rounded(stop)) or math.isinf(rounded(start)):
         raise InputError(f"{name} must be finite; got {checks.one_line(axis)}")
     if "num" in axis:
         return _of_number(start, stop, axis, name)
@@ -115,7 +116,7 @@ def _ladder(axis: Mapping[str, Any], name: str, kind: str, scales: Scales) -> La
     if steps >= checks.MOST_CELLS:
         raise InputError(
             f"{name}.step must leave at most {checks.MOST_CELLS:.0e} values; got {axis['step']!r}, which "
-            f"makes {_double(Fraction(steps + 1)):.3g}"
+            f"makes {rounded(Fraction(steps + 1)):.3g}"
         )
     return Ladder(start, step, stop, steps + 1)
 
@@ -138,9 +139,9 @@ def typed(ratios: np.ndarray, one: Fraction) -> np.ndarray:
 
 
 def _fewest_digits(ratio: float, one: Fraction) -> float:
-    value = _double(Fraction(ratio) * one)
+    value = rounded(Fraction(ratio) * one)
     for digits in (15, 16):
         short = f"{value:.{digits}g}"
-        if math.isfinite(value) and _double(Fraction(Decimal(short)) / one) == ratio:
+        if math.isfinite(value) and rounded(Fraction(Decimal(short)) / one) == ratio:
             return float(short)
     return value

@@ -45,6 +45,10 @@ _TURNS = re.compile(r"rpm|revolution|turn|cycle")
 _ANGLES = re.compile(r"rad|deg")
 
 
+#: What of the units of axes CF writes in another way.
+_CF = {"rad s-1": "rad/s"}
+
+
 class Quantity(NamedTuple):
     """A number in the SI unit of what it measures (Hz of a frequency), and the text that says it."""
 
@@ -93,7 +97,7 @@ def quantities(values: Any, name: str, kind: str) -> list[Fraction] | None:
         found, unit = _converted(values, name, kind)
         texts = [f"{float(number)!r} {unit}" for number in np.atleast_1d(found).ravel()]
         return [_from_text(text, f"{name}[{k}]", kind).value for k, text in enumerate(texts)]
-    said = _unit_of_array(values)
+    said = _unit_of_array(values, name, kind)
     if said is not None:
         texts = [f"{float(number)!r} {said}" for number in np.atleast_1d(values).ravel()]
         return [_from_text(text, f"{name}[{k}]", kind).value for k, text in enumerate(texts)]
@@ -166,10 +170,19 @@ def _own_unit(value: Any) -> str:
     return str(getattr(value, "units", None) if hasattr(value, "units") else getattr(value, "unit", ""))
 
 
-def _unit_of_array(values: Any) -> str | None:
-    """The unit that an array of xarray says its numbers have, if that is one; a ratio's is 1."""
+def _unit_of_array(values: Any, name: str, kind: str) -> str | None:
+    """The unit that an array of xarray says its numbers have; None of ratios, which say 1 or nothing."""
     said = getattr(values, "attrs", {}).get("units") if checks.is_array(values) else None
-    return known_unit(said) if isinstance(said, str) else None
+    if said in (None, "", "1"):
+        return None
+    unit = known_unit(_CF.get(str(said), str(said)))
+    if unit is None:
+        legal = ", ".join(units_of(kind))
+        raise InputError(
+            f"{name} must say units of {kind} ({legal}), or 1 of ratios; got {checks.one_line(said)}: "
+            f"{_meant(str(said), kind)}"
+        )
+    return unit
 
 
 def _converted(value: Any, name: str, kind: str) -> tuple[np.ndarray, str]:

@@ -1,6 +1,7 @@
 """What r = 1 and beta = 1 are in hertz and newtons, and the lengths and forces that follow from them."""
 
 from dataclasses import dataclass, fields
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -41,6 +42,19 @@ _NEEDS = (
 )
 
 
+#: What 1 is lies within 1/this to this in SI units: then so do, within doubles, numbers of datasets and
+#: products of two.
+_LARGEST = 10**100
+
+#: What 1 is of each kind, and its unit.
+_ONES = {
+    "frequency": ("r = 1", "Hz"),
+    "force": ("beta = 1", "N"),
+    "length": ("an amplitude of 1", "m"),
+    "work": ("a work of 1", "J"),
+}
+
+
 @dataclass(frozen=True)
 class Units:
     """What r = 1 and beta = 1 are: each a text such as "4.2 Hz", or a quantity of pint, astropy or unyt.
@@ -62,6 +76,8 @@ class Units:
         in SI units, and so is their stiffness_scale, in N/m.
     mass : str, optional
         Instead of the stiffness of a chain: m_1, which with the natural frequency gives k_1.  kg, lb.
+
+    What follows of them for r = 1, beta = 1, an amplitude and a work of 1 is 1e-100 to 1e100 in SI units.
 
     Raises
     ------
@@ -137,11 +153,13 @@ class Scales:
     force: Fraction | None
     length: Fraction | None
 
+    @property
+    def work(self) -> Fraction | None:
+        """Force times length [J]."""
+        return None if self.force is None or self.length is None else self.force * self.length
+
     def of(self, kind: str) -> float | None:
-        """What 1 is of a kind of numbers in a dataset: frequency, force, length or work [J]."""
-        if kind == "work":
-            both = self.force is not None and self.length is not None
-            return float(self.force * self.length) if both else None  # type: ignore[operator]
+        """What 1 is of a kind of numbers in a dataset: frequency, force, length or work."""
         found: Fraction | None = getattr(self, kind)
         return None if found is None else float(found)
 
@@ -167,7 +185,7 @@ def scales_of(units: Units | None, system: System, variations: Variations | None
     Raises
     ------
     InputError
-        The units do not go with the system.
+        The units do not go with the system, or what they make of 1 is beyond 1e-100 to 1e100.
     """
     if units is None:
         return NO_SCALES
@@ -184,7 +202,22 @@ def scales_of(units: Units | None, system: System, variations: Variations | None
             length * stiffness if force is None and length is not None else force,
             force / stiffness if length is None and force is not None else length,
         )
-    return Scales(frequency, force, length)
+    scales = Scales(frequency, force, length)
+    _check_sizes(scales, units)
+    return scales
+
+
+def _check_sizes(scales: Scales, units: Units) -> None:
+    """Refuse numbers that each may be well, but make too much or too little of 1."""
+    for kind, (one, unit) in _ONES.items():
+        found: Fraction | None = getattr(scales, kind)
+        if found is not None and not Fraction(1, _LARGEST) <= found <= _LARGEST:
+            size = Decimal(found.numerator) / Decimal(found.denominator)  # it may be beyond doubles
+            given = ", ".join(f"{name} {text}" for name, text in units.given.items())
+            raise InputError(
+                f"units must make {one} mean {1 / _LARGEST:g} to {_LARGEST:g} {unit}; got {size:.3g} {unit} "
+                f"from {given}"
+            )
 
 
 def _check_system(units: Units, system: System) -> None:

@@ -218,6 +218,32 @@ def test_units_that_a_system_has_not(units, system, message):
         fm.boundaries(fm.System(**system), [1.0], units=fm.Units(**units))
 
 
+@pytest.mark.parametrize(
+    ("units", "message"),
+    [
+        ({"load": "1e308 kN"}, "beta = 1 mean 1e-100 to 1e+100 N; got 1.00e+311 N from load 1e308 kN"),
+        ({"natural_frequency": "1e307 kHz"}, "r = 1 mean 1e-100 to 1e+100 Hz; got 1.00e+310 Hz from"),
+        (
+            {"load": "1e90 N", "stiffness": "1e-90 N/m"},
+            "an amplitude of 1 mean 1e-100 to 1e+100 m; got 1.00e+180 m from load 1e90 N, stiffness",
+        ),
+        (
+            {"load": "1e-90 N", "stiffness": "1e90 N/m"},
+            "an amplitude of 1 mean 1e-100 to 1e+100 m; got 1e-180 m",
+        ),
+        (
+            {"load": "1e-80 N", "stiffness": "1 N/m"},
+            "a work of 1 mean 1e-100 to 1e+100 J; got 1e-160 J from",
+        ),
+    ],
+)
+def test_units_that_make_too_much_or_too_little_of_1(units, message):
+    """Each number by itself may be well; what follows from them would overflow or vanish."""
+    with pytest.raises(InputError, match=f"^units must make {re.escape(message)}"):
+        fm.boundaries(fm.System(), [1.0], units=fm.Units(**units))
+    fm.boundaries(fm.System(), [1.0], units=fm.Units(load="1e50 N", stiffness="1 N/m"))
+
+
 def test_units_do_not_go_with_an_axis_that_changes_them():
     system = fm.System(matrices={"M": [[2.0]], "K": [[8.0]]}, frequency_scale=2.0)
     with pytest.raises(InputError, match="units must be left out where stiffness_scale changes"):
@@ -355,6 +381,7 @@ def test_a_range_is_rounded_once(start, step, count):
         ("units.load=12.5", "got 12.5: it has no unit"),
         ("units.lod=1 N", "unknown key units.lod (did you mean load?)"),
         ("units=3", "units must be a table [units]; got 3"),
+        ("units.load=1e308 kN", "units must make beta = 1 mean 1e-100 to 1e+100 N"),
     ],
 )
 def test_the_command_refuses_in_one_line(rig, capsys, override, message):
@@ -553,6 +580,27 @@ def test_an_axis_in_hertz_of_another_dataset(mapped):
     assert fm.boundaries(BASE, mapped.r, units=MIXED).r.values.tolist() == mapped.r.values.tolist()
     with pytest.raises(InputError, match=r"units\.natural_frequency must be given for r with units"):
         fm.boundaries(BASE, mapped.frequency)
+    turning = xr.DataArray([2 * math.pi * 4.2], attrs={"units": "rad s-1"})  # as CF writes it
+    assert fm.boundaries(BASE, turning, units=MIXED).r.item() == pytest.approx(1.0, rel=1e-15)
+    assert fm.boundaries(BASE, mapped.r.assign_attrs(units="")).r.values.tolist() == mapped.r.values.tolist()
+
+
+@pytest.mark.parametrize("units", [None, MIXED])
+@pytest.mark.parametrize(
+    ("said", "hint"),
+    [
+        ("s-1", "s-1 is no unit that is known"),
+        ("1/min", "1/min is no unit that is known"),
+        ("Rpm", "Rpm is no unit that is known (did you mean rpm?)"),
+        ("rad s^-1", "(did you mean rad/s?)"),
+        ("N", "N is a unit of force"),
+    ],
+)
+def test_an_axis_in_another_unit_is_not_taken_for_ratios(said, hint, units):
+    with pytest.raises(InputError, match=re.escape(hint)) as caught:
+        fm.boundaries(BASE, xr.DataArray([1.0, 2.0], attrs={"units": said}), units=units)
+    assert str(caught.value).startswith("r")
+    assert "\n" not in str(caught.value)
 
 
 def test_no_units_are_no_scales():
@@ -573,6 +621,7 @@ def test_known_numbers_of_a_rig_may_have_units(tmp_path, f_n, expected):
     path.write_text(head + f'f_n = {f_n}\nx_F = "0.1 in"\nstiffness = "1.2 N/mm"\n')
     assert load_rig(path).known == {"f_n": expected, "x_F": 2.54, "stiffness": 1200.0}
     for wrong, message in (('f_n = "3 mm"', "known.f_n must be a number with a unit of frequency"),
+                           ('x_F = "1e308 m"', "known.x_F must be finite in mm; got '1e308 m'"),
                            ('zeta = "3 Hz"', "known.zeta must be a number; got '3 Hz'")):  # fmt: skip
         path.write_text(head + wrong)
         with pytest.raises(InputError, match=re.escape(message)):

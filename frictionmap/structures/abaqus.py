@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from .entries import Label, Matrix, as_number, assembled, half_or_whole, numbered, refuse, text_of
+from .entries import Label, Matrix, as_number, as_whole, assembled, half_or_whole, numbered, refuse, text_of
 
 #: Entry on the diagonal that Abaqus gives a degree of freedom that a boundary condition holds.
 HELD = 1e36
@@ -40,7 +40,7 @@ def read_abaqus(path: Path) -> Matrix:
         try:
             if len(fields) != count or count not in (_LABELLED, _COUNTED):
                 raise ValueError(line)
-            places = [int(field) for field in fields[:-1]]
+            places = [as_whole(field) for field in fields[:-1]]
             values.append(as_number(fields[-1]))
         except ValueError:
             refuse(path, number, _legal(count), line)

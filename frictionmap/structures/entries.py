@@ -53,14 +53,25 @@ def numbered(text: str, comment: str) -> Iterator[tuple[int, str]]:
             yield number, line
 
 
+def as_whole(text: str) -> int:
+    """A whole number in digits.  ValueError if it is none."""
+    _check_digits(text)
+    return int(text)
+
+
 def as_number(text: str) -> float:
     """A number as Fortran or C writes it; also 1.5D+03 and 1.5+03.  ValueError if it is none."""
-    if "_" in text:  # float() takes 1_000
-        raise ValueError(text)
+    _check_digits(text)
     try:
         return float(text)
     except ValueError:
         return float(re.sub(r"(?<=[0-9.])[dD]?(?=[+-])|[dD]", "e", text.strip(), count=1))
+
+
+def _check_digits(text: str) -> None:
+    """Refuse what Python takes for a number and no other program: 1_000, and digits of other alphabets."""
+    if "_" in text or not text.isascii():
+        raise ValueError(text)
 
 
 def assembled(path: Path, size: int, rows: ArrayLike, columns: ArrayLike, values: ArrayLike) -> Any:

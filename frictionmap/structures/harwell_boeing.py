@@ -10,9 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import InputError
-from .entries import Matrix, as_number, assembled, mirrored, refuse, text_of
+from .entries import Matrix, as_number, as_whole, assembled, mirrored, refuse, text_of
 
-_FORMAT = re.compile(r"(?:\d+P,?)?(\d*)([IEDFG])(\d+)(?:\.\d+)?(?:E\d+)?", re.IGNORECASE)
+_FORMAT = re.compile(r"(?:(\d+)P,?)?(\d*)([IEDFG])(\d+)(?:\.(\d+))?(?:E\d+)?", re.IGNORECASE)
+
+#: Digits, decimal point and more digits, exponent.
+_REAL = re.compile(r"\s*([+-]?\d*)(\.\d*)?(?:[ED]?([+-]?\d+))?\s*", re.IGNORECASE | re.ASCII)
 
 
 class _Card(NamedTuple):
@@ -21,6 +24,19 @@ class _Card(NamedTuple):
     most: int
     kind: str
     width: int
+    decimals: int  # of a number without a decimal point
+    scale: int  # what is written without an exponent is 10 to this times as large
+
+    def number(self, field: str) -> float:
+        """A number as Fortran reads it.  ValueError if it is none."""
+        if self.kind == "I":
+            return as_whole(field)
+        parts = _REAL.fullmatch(field)
+        if parts is None:
+            return as_number(field)
+        digits, point, exponent = parts.groups()
+        shift = (0 if point else self.decimals) + (0 if exponent else self.scale)
+        return float(f"{digits}{point or ''}e{int(exponent or 0) - shift}") if shift else as_number(field)
 
 
 def read_harwell_boeing(path: Path) -> Matrix:
@@ -64,7 +80,7 @@ def read_harwell_boeing(path: Path) -> Matrix:
 def _whole(path: Path, lines: list[str], index: int, begin: int = 0) -> list[int]:
     """Whole numbers of a line of the header."""
     try:
-        return [int(word) for word in lines[index][begin:].split()]
+        return [as_whole(word) for word in lines[index][begin:].split()]
     except ValueError:
         refuse(path, index + 1, "whole numbers of a Harwell-Boeing header", lines[index])
 
@@ -73,7 +89,8 @@ def _card(path: Path, line: str, word: str) -> _Card:
     matched = _FORMAT.fullmatch(word.strip("()"))
     if not matched:
         refuse(path, 4, "Fortran formats such as (10I8) and (3E25.17)", line)
-    return _Card(int(matched[1] or 1), matched[2], int(matched[3]))
+    scale, most, kind, width, decimals = matched.groups()
+    return _Card(int(most or 1), kind.upper(), int(width), int(decimals or 0), int(scale or 0))
 
 
 def _numbers(path: Path, lines: list[str], begin: int, count: int, card: _Card, size: int) -> np.ndarray:
@@ -90,7 +107,7 @@ def _numbers(path: Path, lines: list[str], begin: int, count: int, card: _Card, 
     found: list[float] = []
     for index, words in enumerate(fields):
         try:
-            found += [int(word) if card.kind == "I" else as_number(word) for word in words]
+            found += [card.number(word) for word in words]
         except ValueError:
             words = []
         if not words or len(words) > card.most:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from .entries import Matrix, as_number, assembled, mirrored, numbered, refuse, text_of
+from .entries import Matrix, as_number, as_whole, assembled, mirrored, numbered, refuse, text_of
 
 #: How such a file begins.
 BANNER = "%%MatrixMarket"
@@ -48,7 +48,7 @@ def _sizes(path: Path, lines: Iterator[tuple[int, str]], count: int) -> list[int
     """Whole numbers of the line with the sizes; refused is a matrix that is not square."""
     number, line = next(lines, (2, ""))
     try:
-        sizes = [int(word) for word in line.split()]
+        sizes = [as_whole(word) for word in line.split()]
         if len(sizes) != count or min(sizes) < 0 or sizes[0] < 1:
             raise ValueError(line)
     except ValueError:
@@ -63,7 +63,7 @@ def _coordinates(path: Path, lines: Iterator[tuple[int, str]], size: int, count:
     for number, line in lines:
         try:
             first, second, entry = line.split()
-            row, column, value = int(first), int(second), as_number(entry)
+            row, column, value = as_whole(first), as_whole(second), as_number(entry)
         except ValueError:
             refuse(path, number, "row column entry", line)
         if not 1 <= row <= size or not 1 <= column <= size:

@@ -12,6 +12,9 @@ from ..errors import InputError
 from ..packages import package, read_by
 from .entries import Matrix, text_of
 
+#: Forms and types of DMIG matrices.
+_SYMMETRIC, _COMPLEX = 6, (3, 4)
+
 #: What M, K and C are called.
 _CALLED = {
     "M": re.compile(r"m|mass|m([a-z])\1x?", re.IGNORECASE),
@@ -41,13 +44,15 @@ def read_punch(path: Path) -> dict[str, Matrix]:
     Raises
     ------
     InputError
-        As `read_op4`; or a matrix is not square, or not real.
+        As `read_op4`; or a matrix is not square, or not real, or has an entry twice.
     """
     bulk = package("pyyeti.nastran.bulk", path, "fe")
     if not re.search(r"^DMIG", text_of(path), re.MULTILINE | re.IGNORECASE):
         raise InputError(f"file {path} must have DMIG cards; it has none")
 
     def read() -> dict[str, Any]:
+        cards = bulk.rdcards(str(path), name="dmig", return_var="list", blank="", follow_includes=False)
+        _check_entries(path, cards)
         return bulk.rddmig(str(path), square=True, follow_includes=False)
 
     tables = read_by(path, "punch file of Nastran", read)
@@ -58,6 +63,30 @@ def read_punch(path: Path) -> dict[str, Matrix]:
         labels = tuple((int(node), int(dof)) for node, dof in table.index)
         found[name] = Matrix(table.to_numpy(), labels)
     return found
+
+
+def _check_entries(path: Path, cards: list[list[Any]]) -> None:
+    """Refuse an M, K or C that is complex or has an entry twice, of which pyyeti takes the last.
+
+    The first card of a matrix has name, 0, form and type, any other name, label and a column of label, entry,
+    label, entry, each after an empty field.
+    """
+    symmetric, seen = False, set[Any]()
+    for name, first, second, *fields in cards:
+        if not any(pattern.fullmatch(name) for pattern in _CALLED.values()):
+            continue
+        if first == 0:
+            if fields[0] in _COMPLEX:
+                raise InputError(f"file {path} must have real matrices; {name} is complex")
+            symmetric, seen = second == _SYMMETRIC, set()
+            continue
+        column = (first, second)
+        for row in zip(fields[1::4], fields[2::4], strict=False):
+            place = (min(row, column), max(row, column)) if symmetric else (row, column)
+            if place in seen:
+                words = ", ".join(f"{node}.{dof}" for node, dof in (row, column))
+                raise InputError(f"file {path} must have every entry of {name} once; got {words} twice")
+            seen.add(place)
 
 
 def _called(path: Path, names: list[str], matrices: list[Any]) -> dict[str, Any]:

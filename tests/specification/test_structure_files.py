@@ -13,7 +13,9 @@ from structures import CHAIN
 import frictionmap as fm
 from frictionmap.cli import main
 from frictionmap.datasets.provenance import to_toml
+from frictionmap.structures.harwell_boeing import read_harwell_boeing
 
+HEADER = f"{'title':<80}\n{5:14d}{1:14d}{1:14d}{1:14d}{0:14d}\n"
 LABELS = [(3, 1), (3, 2), (17, 1)]
 M = CHAIN["M"] / 3.0  # entries that need all digits
 K = CHAIN["K"] / 7.0
@@ -41,10 +43,11 @@ def mat(folder, kind):
     return "frame.mat"
 
 
-def mat_73(folder):
+def mat_73(folder, mass=M, kind=b"double"):
     h5py = pytest.importorskip("h5py")
     with h5py.File(folder / "frame.mat", "w", userblock_size=512) as file:
-        file["M"] = M
+        file["M"] = mass
+        file["M"].attrs["MATLAB_class"] = np.bytes_(kind)
         for name, matrix in (("K", K), ("C", C)):
             sparse = scipy.sparse.csc_array(matrix)
             group = file.create_group(name)
@@ -187,6 +190,28 @@ def test_numbers_of_degrees_of_freedom(tmp_path):
     assert fm.System(matrices={**MATRICES, "dofs": [1, 2, 4]}) != fm.System(matrices=MATRICES)
 
 
+@pytest.mark.parametrize(
+    ("form", "entry", "value"),
+    [
+        ("(5F8.1)", "20", 2.0),
+        ("(5F8.3)", "-20", -0.02),
+        ("(5E8.3)", "25E2", 2.5),
+        ("(5F8.1)", "2.5", 2.5),
+        ("(5F8.0)", "20", 20.0),
+        ("(1P5F8.2)", "25.0", 2.5),
+        ("(1P,5E8.2)", "2.5E0", 2.5),
+    ],
+)
+def test_entries_without_point_or_exponent_are_read_as_by_fortran(form, entry, value, tmp_path):
+    """Fortran 2018, 13.7.2.3.2: without a point the last d digits are decimals; 13.8.5: without an exponent
+    kP is a factor of 10^k."""
+    path = tmp_path / "K.rua"
+    path.write_text(
+        f"{HEADER}RUA{1:25d}{1:14d}{1:14d}{0:14d}\n(8I8) (8I8) {form}\n{1:8d}{2:8d}\n{1:8d}\n{entry:>8}\n"
+    )
+    assert read_harwell_boeing(path).values.toarray().tolist() == [[value]]
+
+
 # Refusals
 
 
@@ -226,6 +251,10 @@ BAD_FILES = {
     ),
     "Abaqus, a row far off": ("1 1 1.0\n99999999 1 1.0\n", ["at most 10000000 rows", "99999999"]),
     "Abaqus, nothing": ("** nothing\n", ["a line for every entry", "none"]),
+    "digits of another alphabet": (
+        f"{BANNER} real general\n1 1 1\n1 1 \u0662\n", ["line 3", "row column entry", "'1 1 \u0662'"]
+    ),
+    "a row in digits of another alphabet": ("\u0661 1 1.0\n", ["line 1", "row column entry"]),
     "zero bytes": ("1 1\0 1.0", ["must be text"]),
 }  # fmt: skip
 
@@ -244,11 +273,10 @@ def refused(capsys, folder, matrices, words, status=2):
 
 @pytest.mark.parametrize(("text", "words"), BAD_FILES.values(), ids=BAD_FILES)
 def test_bad_texts(text, words, tmp_path, capsys):
-    (tmp_path / "M.mtx").write_text(text)
+    (tmp_path / "M.mtx").write_text(text, encoding="utf-8")
     refused(capsys, tmp_path, {"M": "M.mtx", "K": "M.mtx"}, words)
 
 
-HEADER = f"{'title':<80}\n{5:14d}{1:14d}{1:14d}{1:14d}{0:14d}\n"
 BAD_BOEING = {
     "empty": ("", ["four lines", "it has 0"]),
     "complex": (f"{HEADER}CUA{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (3E25.16)\n", ["line 3", "real"]),
@@ -304,6 +332,15 @@ def test_bad_choices(matrices, words, tmp_path, capsys):
     refused(capsys, tmp_path, matrices, words)
 
 
+@pytest.mark.parametrize("kind", [np.asarray, scipy.sparse.csc_array])
+def test_true_and_false_are_no_entries(kind, tmp_path, capsys):
+    """MATLAB stores logical ones as bytes, which would pass for numbers."""
+    masses = np.eye(3, dtype=bool)
+    scipy.io.savemat(tmp_path / "logical.mat", {"M": kind(masses), "K": K})
+    refused(capsys, tmp_path, "logical.mat", ["M must be an array of real numbers; got type bool"])
+    refused(capsys, tmp_path, mat_73(tmp_path, masses.astype(np.uint8), b"logical"), ["got type bool"])
+
+
 def test_bad_files_of_nastran(tmp_path, capsys):
     pytest.importorskip("pyyeti")
     from pyyeti.nastran import op4 as writer
@@ -319,6 +356,14 @@ def test_bad_files_of_nastran(tmp_path, capsys):
     refused(capsys, tmp_path, "text.op4", ["OP4 file of Nastran"])
     (tmp_path / "text.pch").write_text("GRID,1\n")
     refused(capsys, tmp_path, "text.pch", ["DMIG cards", "none"])
+    written.punch(tmp_path / "frame.pch", {"PHIX": M, "MAAX": M, "KAAX": K}, LABELS)
+    good = (tmp_path / "frame.pch").read_text()
+    entry = f"*       {3:>16}{2:>16}{-2.5:>16.9E}\n"
+    (tmp_path / "twice.pch").write_text(good + entry)  # in the column of 17.1; that of 3.2 has it
+    refused(capsys, tmp_path, "twice.pch", ["every entry of KAAX once", "3.2, 17.1 twice"])
+    real = f"KAAX    {0:>8}{6:>8}{2:>8}"
+    (tmp_path / "complex.pch").write_text(good.replace(real, f"{real[:-1]}4"))
+    refused(capsys, tmp_path, "complex.pch", ["real matrices", "KAAX is complex"])
 
 
 def test_without_the_extra(tmp_path, monkeypatch, capsys):

@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from . import checks
-from ._kernels.boundary.damping import first_damping_functions
+from ._kernels.boundary.damping import fill_damping_functions
 from .errors import InputError
+from .model.free_structure import FreeStructure
 from .model.modes import ModalModel
 from .model.system import System
 from .roots import Stretch, find_roots, shaped, union, with_poles, without
@@ -94,15 +95,16 @@ def quasi_static_displacement(system: System, beta: float) -> np.ndarray:
 def _range(modes: ModalModel, low: object, high: object, most: object) -> Stretch:
     """The checked range, cut at its lower end so that it has at most about `most` edges.
 
-    Edges are the natural frequencies and, of every participating mode that vibrates, the damped frequency
-    over 1, 3, 5...: there u of T(7.11) has its poles, or without them changes its sign.
+    Edges are the natural frequencies and, of every participating mode or oscillator that vibrates, the
+    damped frequency over 1, 3, 5...: there u of T(7.11) has its poles, or without them changes its sign.
     """
     low = checks.number(low, "low", above=0.0)
     high = checks.number(high, "high", above=low, most=checks.LARGEST_RATIO)
     most = checks.whole(most, "most", least=1)
-    vibrating = (modes.chi != 0.0) & (modes.zeta < 1.0)
+    free = modes.free
+    vibrating = free.zeta < 1.0
     edges, poles = [modes.w], [modes.w[modes.zeta == 0.0]]
-    for w, zeta in zip(modes.w[vibrating], modes.zeta[vibrating], strict=True):
+    for w, zeta in zip(free.omega[vibrating], free.zeta[vibrating], strict=True):
         top = w * math.sqrt((1.0 - zeta) * (1.0 + zeta))
         first = 2.0 * math.floor(0.5 * top / high) + 1.0
         last = min(top / low, first + 2.0 * most)
@@ -118,14 +120,29 @@ def _range(modes: ModalModel, low: object, high: object, most: object) -> Stretc
     return Stretch(low, high, *inside)
 
 
+def _damping_functions(free: FreeStructure, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """u and g of participating modes or oscillators, (n_r, p) both."""
+    u, g = np.empty((2, r.size, free.omega.size))
+    fill_damping_functions(r, free.omega, free.zeta, u, g)
+    return u, g
+
+
 def _first_damping(modes: ModalModel, r: np.ndarray) -> np.ndarray:
     """u_i/w_i^2 chi_i, and 0 of modes that the contact does not see, whose u may be infinite; (n_r, n)."""
     participating = modes.chi != 0.0
-    u = np.empty((r.size, int(participating.sum())))
-    first_damping_functions(r, modes.w[participating], modes.zeta[participating], u)
+    u, _ = _damping_functions(modes.free, r)
     terms = np.zeros((r.size, participating.size))
     terms[:, participating] = u * (modes.chi / modes.w**2)[participating]
     return terms
+
+
+def _coupled_u(modes: ModalModel, r: np.ndarray) -> np.ndarray:
+    """U where the damping couples modes, theory.md 8; (n_r,)."""
+    free, r = modes.free, r[:, np.newaxis]
+    static, rates = free.weights(modes.chi[modes.participating])
+    u, g = _damping_functions(free, r[:, 0])
+    a = free.omega / r
+    return u @ static - r[:, 0] * ((a * a * g + 2.0 * free.zeta * a * u) @ rates)
 
 
 def _sums(terms: np.ndarray, rows: np.ndarray, which: np.ndarray | None) -> np.ndarray:
@@ -140,9 +157,10 @@ def invariant_points(system: System, low: float, high: float, most: int = MOST_P
     such points: between two of its poles U falls from +inf to -inf, once.  With damping it is the phase.
     Of more than about `most` points the highest are returned.
     """
-    system.need_modal("invariant points of z")
     modes = system.modes
     where = _range(modes, low, high, most)
+    if modes.free.coupled:
+        return find_roots(lambda r, which=None: shaped(_coupled_u(modes, r), which), where)[0]
     row = modes.chi[np.newaxis]
     return find_roots(lambda r, which=None: _sums(_first_damping(modes, r), row, which), where)[0]
 

@@ -97,12 +97,6 @@ class CoupledModel(ModalModel):
     seen: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
 
     @property
-    def strength(self) -> float:
-        """The most that the damping couples two modes, over the root of their own damping's product."""
-        own = np.sqrt(2.0 * self.zeta * self.w)[self.joined]
-        return float(np.max(np.abs(self.coupling[np.ix_(self.joined, self.joined)]) / np.outer(own, own)))
-
-    @property
     def joined(self) -> np.ndarray:
         """As of `ModalModel`."""
         return np.any(self.coupling != 0.0, axis=1)

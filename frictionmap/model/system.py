@@ -562,14 +562,6 @@ class System:
         rate = load_rate(damping, to_base)
         return ModalModel(w, phi, zeta, load_rate=rate, damping=damping, springs=springs, **parts)
 
-    def need_modal(self, what: str) -> None:
-        """Refuse what is known of modes only where C couples them."""
-        if isinstance(self.modes, CoupledModel):
-            raise InputError(
-                f"matrices: C must be diagonal in the undamped modes for {what}, such as modal or Rayleigh "
-                f"damping, a M + b K; it couples them by {self.modes.strength:.1e} of their own damping"
-            )
-
     def contact_load(self, r: np.ndarray) -> np.ndarray:
         """Phasor F of the load in the contact when it is held, over P (complex, shape of r).
 

@@ -16,7 +16,6 @@ from ..features import (
     one_phase,
     peak_thresholds,
 )
-from ..model.coupled_modes import CoupledModel
 from ..model.modes import wrapped
 from ..model.system import System
 from ..units.axes import KINDS, ratios
@@ -53,7 +52,7 @@ def _padded(rows: list[np.ndarray]) -> np.ndarray:
 def _invariants(system: System, r: np.ndarray) -> dict[str, np.ndarray]:
     """Invariant points within the axis; a variable is left out if it would be empty, as NetCDF demands."""
     positive = r[r > 0.0]
-    if positive.size < 2 or isinstance(system.modes, CoupledModel):
+    if positive.size < 2:
         return {}
     first = positive[0]
     low, high = first * (1.0 - _ON_END), r[-1] * (1.0 + _ON_END)
@@ -141,7 +140,7 @@ def boundaries(
         `contact_invariant_first_harmonic`, that of z, theory.md 9.  The highest 40 or so points and one a
         mode are listed, those of masses for up to 12 masses; a variable without points is left out.
         `frictionmap.features` has them all.  Where C couples modes `beta_lim_modal` and their
-        `peak_threshold` are NaN, and no invariant points are listed.
+        `peak_threshold`, which take modes one by one, are NaN.
 
     Raises
     ------

@@ -200,18 +200,24 @@ def random_system(rng):
 def half_period(system, r, beta, phase, tau):
     """x and x' at phase <= tau <= phase + pi of a motion with friction +beta there, its next half reversed.
 
-    By the matrices and their exponential: the answer w to friction from w(pi) = -w(0).
+    By the matrices and their exponential.
     """
-    matrices, n, load = system.matrices, system.n, system.modes.load + 1j * r * system.modes.load_rate
+    matrices, load = system.matrices, system.modes.load + 1j * r * system.modes.load_rate
+    dynamic = matrices.stiffness - r * r * matrices.mass + 1j * r * matrices.damping
+    turning = np.outer(np.linalg.solve(dynamic, load), np.exp(1j * tau))
+    answer = beta * friction_answer(system, r, tau - phase)
+    return turning.real + answer[: system.n], -turning.imag + answer[system.n :]
+
+
+def friction_answer(system, r, t):
+    """x and x' (2n, t) in friction +1 alone, reversed after t = pi: w(pi) = -w(0)."""
+    matrices, n = system.matrices, system.n
     M, K, C = r * r * matrices.mass, matrices.stiffness, r * matrices.damping
-    harmonic = np.linalg.solve(K - M + 1j * C, load)
     flow = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
-    rest = np.append(np.linalg.solve(K, beta * system.contact_vector), np.zeros(n))
+    rest = np.append(np.linalg.solve(K, system.contact_vector), np.zeros(n))
     half, one = expm(np.pi * flow), np.eye(2 * n)
     start = np.linalg.solve(one + half, (half - one) @ rest)
-    answer = np.array([rest + expm(flow * t) @ (start - rest) for t in tau - phase]).T
-    turning = np.outer(harmonic, np.exp(1j * tau))
-    return turning.real + answer[:n], -turning.imag + answer[n:]
+    return np.array([rest + expm(flow * at) @ (start - rest) for at in t]).T
 
 
 def continuous_motions(rng, count):
@@ -395,11 +401,27 @@ def test_no_kernel_is_compiled_for_it_alone():
         assert all(array.flags.c_contiguous for array in part if isinstance(array, np.ndarray))
 
 
+@pytest.mark.parametrize("case", ["wall", "over-damped twice"])
+def test_invariant_points(case):
+    """U = -z'(0) of the answer to friction is zero there, and changes its sign nowhere else."""
+    structure, low, high = system(case), 0.3, 2.5
+
+    def u(r):
+        return -structure.contact_vector @ friction_answer(structure, r, [0.0])[structure.n :, 0]
+
+    points = fm.features.invariant_points(structure, low, high)
+    assert points.size >= 2
+    off = np.array([[u(r * (1.0 - 1e-6)), u(r), u(r * (1.0 + 1e-6))] for r in points])
+    assert (off[:, 0] * off[:, 2] < 0.0).all()
+    assert (np.abs(off[:, 1]) < 1e-5 * np.abs(off[:, 2] - off[:, 0])).all()
+    r = np.linspace(low, high, 400)
+    values = np.array([u(one) for one in r])
+    changes = np.flatnonzero(values[1:] * values[:-1] < 0.0)
+    np.testing.assert_array_equal(np.isin(changes, np.searchsorted(r, points) - 1), True)
+    found = fm.boundaries(structure, r).invariant_point
+    np.testing.assert_allclose(found, points, rtol=1e-12)
+
+
 def test_what_is_not_known_of_coupled_damping():
-    for ask in (lambda s: fm.features.invariant_points(s, 0.3, 2.0),):
-        with pytest.raises(
-            fm.InputError, match=r"C must be diagonal in the undamped modes for .* couples them by"
-        ):
-            ask(system("wall"))
     assert np.isnan(fm.features.peak_thresholds(system("wall"))).all()
     assert "damping that couples modes" in system("wall").describe()

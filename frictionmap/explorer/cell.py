@@ -1,7 +1,7 @@
 """One cell of a view: its motion in numbers, words and curves, and what other starts give."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -16,7 +16,7 @@ from ..pictures.palette import UNRESOLVED
 from ..steady.maps import solve_map
 from ..steady.motion import Motion, Question, find_motion
 from ..theory.boundary_curves import find_curves
-from .views import View, name_of_mass
+from .views import Follower, View, name_of_mass
 
 #: Samples per excitation period: a curve a few hundred pixels wide is smooth with them.
 _SAMPLES = 400
@@ -63,7 +63,7 @@ _MOVING = ("stops_per_cycle", "contact_amplitude", "contact_first_harmonic_ampli
            "contact_first_harmonic_phase", "work_friction", "equivalent_damping")  # fmt: skip
 
 
-def motion(view: View, r: float, beta: float) -> Packet:
+def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
     """The motion in a cell for the page.
 
     Arrays over `tau`: `z`, its velocity `z_rate`, `friction`, `phase` (-1, 0, 1), `x` (masses, tau).  Moduli
@@ -73,6 +73,7 @@ def motion(view: View, r: float, beta: float) -> Packet:
     Where there is no steady state, the header says why under `none`, and there are no arrays.
     """
     view.check(r)
+    follower.watch()
     # what a map is asked for beside the motion would take as long again
     solver = replace(view.solver, outputs=("regime",))
     try:
@@ -188,7 +189,7 @@ def _deed(numbers: Mapping[str, Any]) -> str:
 _STARTS: dict[str, Start] = {"rest": "moving", "moving": "rest"}
 
 
-def others(view: View, r: float, beta: float) -> Packet:
+def others(view: View, r: float, beta: float, follower: Follower) -> Packet:
     """What else is known of a cell: stability, every regime it can end in, the motion from the other start.
 
     The header has `start`, the other one, `same`, `told` and the `reachable` regimes; the arrays `multiplier`
@@ -197,8 +198,8 @@ def others(view: View, r: float, beta: float) -> Packet:
     view.check(r)
     start = _STARTS[view.solver.start]
     there = replace(view, solver=replace(view.solver, start=start))
-    own = _one(view, r, beta, "multiplier", "also_reachable")
-    ours, theirs = (_one(one, r, beta, "contact_amplitude") for one in (view, there))
+    own = _one(view, r, beta, follower, "multiplier", "also_reachable")
+    ours, theirs = (_one(one, r, beta, follower, "contact_amplitude") for one in (view, there))
     flags = int(own["also_reachable"])
     header: dict[str, Any] = {
         "r": r,
@@ -210,17 +211,17 @@ def others(view: View, r: float, beta: float) -> Packet:
     }
     arrays = {"multiplier": np.array([float(own["multiplier"])])}
     if not header["same"]:
-        other, curves = motion(there, r, beta)
+        other, curves = motion(there, r, beta, follower)
         header["told"] = [other["none"]] if "none" in other else other["told"][:1]
         arrays |= curves
     return header, arrays
 
 
-def _one(view: View, r: float, beta: float, *outputs: Output) -> dict[str, Any]:
+def _one(view: View, r: float, beta: float, follower: Follower, *outputs: Output) -> dict[str, Any]:
     """What a map of this one cell has."""
     axes = {"mu": np.array([view.mu]), "r": np.array([r]), "beta": np.array([beta])}
     solver = replace(view.solver, outputs=("regime", *outputs))
-    found, _ = solve_map(view.system, axes, solver, 1, None)
+    found, _ = solve_map(view.system, axes, solver, 1, None, follower.watch)
     return {name: values[0, 0, 0] for name, values in found.items()}
 
 
@@ -232,7 +233,7 @@ def _alike(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
     return bool(np.isclose(*sizes, rtol=_OTHER, atol=_OTHER, equal_nan=True))
 
 
-def rehearse(view: View, watch: Callable[[], None]) -> None:
+def rehearse(view: View, follower: Follower) -> None:
     """A motion of each kind, and what else is known of one that stops: kernels are compiled or loaded.
 
     With mu = 1, where every motion is found at once.
@@ -244,7 +245,5 @@ def rehearse(view: View, watch: Callable[[], None]) -> None:
         stick = 2.0 * lim + 1.0
     between = 0.5 * (lim + stick)
     for beta in (between, 0.5 * lim, 1.5 * stick):
-        watch()
-        motion(view, r, beta)
-    watch()
-    others(view, r, between)
+        motion(view, r, beta, follower)
+    others(view, r, between, follower)

@@ -1,24 +1,23 @@
 """A line through a view, along r or beta, as response curves."""
 
-from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
 
-from ..model.settings import Quantity
+from ..model.settings import Quantity, curve_settings
 from ..pictures.classes import of_cells
-from .views import View, middles
+from .views import Follower, View, middles
 
 Along = Literal["r", "beta"]
 
-#: Cells that are computed between two looks at whether anybody waits.
+#: Cells that are computed at once: nobody looks at whether anybody waits while their boundaries are found.
 _AT_ONCE = 96
 
 _QUANTITIES: tuple[Quantity, ...] = ("amplitude", "first_harmonic", "energy")
 
 
 def cut(
-    view: View, along: Along, at: float, count: int, watch: Callable[[], None]
+    view: View, along: Along, at: float, count: int, follower: Follower
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Response curves along r at one beta, or along beta at one r.
 
@@ -30,26 +29,34 @@ def cut(
     place = middles(getattr(view, along), count, "count")
     pieces: list[dict[str, np.ndarray]] = []
     for first in range(0, count, _AT_ONCE):
-        watch()
-        pieces.append(_piece(view, along, at, place[first : first + _AT_ONCE]))
+        follower.watch()
+        pieces.append(_piece(view, along, at, place[first : first + _AT_ONCE], follower))
     joined = {name: np.concatenate([piece[name] for piece in pieces], axis=-1) for name in pieces[0]}
     header = {"along": along, "at": at, "ends": getattr(view, along), "dofs": view.system.dofs.numbers}
     return header, joined
 
 
-def _piece(view: View, along: Along, at: float, places: np.ndarray) -> dict[str, np.ndarray]:
-    from ..steady.curves import curves  # with xarray, which a page can do without until a line is drawn
+def _piece(
+    view: View, along: Along, at: float, places: np.ndarray, follower: Follower
+) -> dict[str, np.ndarray]:
+    from ..steady.curves import solve_curves  # with xarray, which a page can do without until a line is drawn
 
-    r, beta = (places, at) if along == "r" else (at, places)
-    ds = curves(view.system, r, beta, view.mu, solver=view.solver, quantities=_QUANTITIES)
-    flat = ds.isel({"mu": 0, "beta" if along == "r" else "r": 0})
+    here = np.array([at])
+    axes = {"r": places, "beta": here} if along == "r" else {"r": here, "beta": places}
+    axes["mu"] = np.array([view.mu])
+    asked = curve_settings(None, _QUANTITIES)
+    found = solve_curves(view.system, axes, view.solver, asked, None, follower.progress, follower.watch)
     names = {
         "contact_amplitude": "contact_amplitude",
         "contact_phase": "contact_first_harmonic_phase",
         "work_friction": "work_friction",
         "amplitude": "amplitude",
+        "regime": "regime",
+        "stops": "stops_per_cycle",
     }
     if along == "r":
         names |= {"held": "held_response", "limit": "limit_amplitude"}
-    found = {ours: flat[name].values.T.astype(np.float32) for ours, name in names.items()}
-    return {"classes": of_cells(flat["regime"].values, flat["stops_per_cycle"].values), **found}
+    only = {"mu": 0, "beta" if along == "r" else "r": 0}
+    flat = {ours: found[name].isel(only, missing_dims="ignore").values.T for ours, name in names.items()}
+    classes = of_cells(flat.pop("regime"), flat.pop("stops"))
+    return {"classes": classes, **{name: values.astype(np.float32) for name, values in flat.items()}}

@@ -12,7 +12,7 @@ from ..files.config import config_of, parse, read_system
 from ..files.export import write_export
 from ..model.matrices import Matrices
 from ..model.settings import Output, Solver
-from ..steady.sweep import sweep
+from ..steady.sweep import swept
 from ..units.scales import scales_of
 from .scene import Scene
 from .views import Follower, Piece, Quantity, View
@@ -111,10 +111,12 @@ def saved_map(
 ) -> bytes:
     """The map of a view as a file: `ending` is .nc or .csv."""
     axes = view.axes(piece.columns, piece.rows)
-    ds = sweep(view.system, axes["r"], axes["beta"], axes["mu"], solver=_solver(view, quantity),
-               units=scene.units, progress=follower.progress)  # fmt: skip
+    given = axes["r"], axes["beta"], axes["mu"]
+    ds = swept(view.system, given, _solver(view, quantity), None, None, follower.progress, scene.units,
+               follower.watch)  # fmt: skip
     ds.attrs |= {"title": scene.title, "config": _described(scene, view, quantity, piece)}
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"map{ending}"
+        follower.watch()
         write_export(ds, path, "frictionmap explore")
         return path.read_bytes()

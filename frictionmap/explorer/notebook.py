@@ -2,8 +2,9 @@
 
 import html
 import threading
-from collections.abc import Sequence
 from typing import SupportsFloat
+
+from numpy.typing import ArrayLike
 
 from ..model.settings import Start
 from ..model.system import System
@@ -57,8 +58,8 @@ class Explorer:
 
 def explore(
     system: System,
-    r: Sequence[float] = (0.0, 2.5),
-    beta: Sequence[float] = (0.0, 2.0),
+    r: ArrayLike = (0.0, 2.5),
+    beta: ArrayLike = (0.0, 2.0),
     mu: SupportsFloat = 1.0,
     *,
     start: Start = "rest",
@@ -74,7 +75,7 @@ def explore(
     Parameters
     ----------
     system : System
-    r, beta : sequence of float
+    r, beta : array_like
         Ranges of the frequency ratio (>= 0) and of the friction ratio (>= 0) [-] that the page begins with:
         the first and the last value of what is given, increasing.
     mu : float
@@ -82,7 +83,8 @@ def explore(
     start : {"rest", "moving"}
         The starting state that it begins with, see `Solver`.
     units : Units, optional
-        What r = 1 and beta = 1 are: the page has second axes in hertz and newtons then.
+        What r = 1 and beta = 1 are: the page has second axes in hertz and newtons then, and r and beta may
+        have units as of `sweep`, such as ``("1 Hz", "10 Hz")``.
     title : str
         What stands above it.
     port : int, optional

@@ -14,6 +14,7 @@ from ..errors import InputError
 from ..model.settings import Solver, Start
 from ..model.system import CONTACTS, System
 from ..model.variations import Number
+from ..units.axes import KINDS, ratios
 from ..units.scales import Units, scales_of
 
 if TYPE_CHECKING:
@@ -220,8 +221,11 @@ def scene_of_system(
         raise InputError(f"title must be text; got {checks.one_line(title)}")
     checks.choice(start, "start", get_args(Start))
     mu = checks.number(mu, "mu", least=1.0)
-    scales_of(units, system)  # they may not go with it
+    scales = scales_of(units, system)  # they may not go with it
     settings: Mapping[str, Any] = {"start": start}
-    ends = checked_range(r, "r"), checked_range(beta, "beta")
+    ends = (
+        checked_range(ratios(r, "r", KINDS["r"], scales), "r"),
+        checked_range(ratios(beta, "beta", KINDS["beta"], scales), "beta"),
+    )
     system.costs(np.array(ends[0]))
     return Scene(title, system, *ends, mu, Solver(**settings), units=units)

@@ -20,6 +20,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
 
+from ..checks import one_line
 from ..errors import InputError
 from .jobs import Jobs, Outdated
 from .packets import pack
@@ -33,6 +34,9 @@ PORT = 8712
 
 _HOST = "127.0.0.1"
 _NAMES = (_HOST, "localhost", "[::1]")
+
+#: Where links from elsewhere may lead.
+_DOORS = ("/", "/index.html")
 
 #: Seconds that a connection may be silent.
 _SILENCE = 120.0
@@ -115,11 +119,14 @@ class Page:
         with contextlib.suppress(InputError, Outdated), self.jobs.enter("rehearsal") as job:
             view = queries.read_query(self.scene, "").view
             views.piece_of_map(view, views.quantities(view.system)[0], views.Piece(2, 2, 0, 2), job)
-            cell.rehearse(view, job.watch)
+            cell.rehearse(view, job)
 
     def answer(self, target: str, gone: Callable[[], bool]) -> Answer:
         """The answer to an address; `gone` tells whether anybody still waits for it."""
-        parts = urlsplit(target)
+        try:
+            parts = urlsplit(target)
+        except ValueError as error:
+            return _text(400, f"the address must be one of this page; got {one_line(target)} ({error})")
         name = parts.path.removeprefix("/") or "index.html"
         if name in self._files:
             return Answer(200, _KINDS["." + name.rpartition(".")[2]], self._files[name])
@@ -179,7 +186,7 @@ class Page:
         cell = queries.cell_of(query)
         with self._enter(kind, query, gone) as job:
             job.watch()
-            return _packet(work(query.view, *cell))
+            return _packet(work(query.view, *cell, job))
 
     def _cut(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
@@ -188,7 +195,7 @@ class Page:
         query = queries.read_query(self.scene, text, queries.CUT)
         line = queries.cut_of(query)
         with self._enter("cut", query, gone) as job:
-            return _packet(cut(query.view, *line, job.watch))
+            return _packet(cut(query.view, *line, job))
 
     def _configuration(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
@@ -248,13 +255,14 @@ class _Handler(BaseHTTPRequestHandler):
         """Why somebody else than our own page must not be answered."""
         port = self.server.server_address[1]
         own = {f"{name}:{port}" for name in _NAMES} | ({*_NAMES} if port == 80 else set())
-        host, origin = self.headers.get_all("Host") or [], self.headers.get("Origin")
+        host, origins = (self.headers.get_all(name) or [] for name in ("Host", "Origin"))
         if len(host) != 1 or host[0].lower() not in own:
             return _text(403, f"this page is for this machine only, at http://{_HOST}:{port}")
-        if origin is not None and origin.removeprefix("http://").lower() not in own:
+        if not {origin.lower() for origin in origins} <= {f"http://{name}" for name in own}:
             return _text(403, "pages of other hosts are not answered")
-        document = self.headers.get("Sec-Fetch-Mode") == "navigate"
-        if not document and self.headers.get("Sec-Fetch-Site", "none") not in ("same-origin", "none"):
+        # a link in a letter may lead to the page, but to no work
+        linked = self.headers.get("Sec-Fetch-Mode") == "navigate" and self.path.partition("?")[0] in _DOORS
+        if not linked and self.headers.get("Sec-Fetch-Site", "none") not in ("same-origin", "none"):
             return _text(403, "pages of other hosts are not answered")
         return None
 
@@ -288,7 +296,8 @@ class _Handler(BaseHTTPRequestHandler):
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
         """One line for what the library itself refuses: other methods, lines too long."""
         self.close_connection = True
-        self._reply(_text(code, message or HTTPStatus(code).phrase))
+        refusal = self._refusal() if code == HTTPStatus.NOT_IMPLEMENTED else None
+        self._reply(refusal or _text(code, message or HTTPStatus(code).phrase))
 
     def log_message(self, format: str, *args: object) -> None:
         """Nothing: the terminal is the user's."""

@@ -17,7 +17,7 @@ from ..theory.boundaries import boundary_variables, held_variables
 from ..theory.boundary_curves import Curves
 from ..theory.limit_curves import limit_variables
 from ..units.scales import Units, scales_of
-from .maps import Progress, checked_axes, compute
+from .maps import Progress, Watch, checked_axes, compute
 from .quantity_data import PARTS, VARIABLES, asked_for, read_result
 
 #: What every cell tells.
@@ -40,6 +40,20 @@ def _over_frequency(system: System, axes: Mapping[str, np.ndarray], found: Curve
     held = held_variables(system, axes["r"])
     turned = {name: label_variable(name, value.values.T, "curves") for name, value in held.items()}
     return turned | limit_variables(system, axes["r"], axes["mu"], found)
+
+
+def solve_curves(
+    system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
+    progress: Progress | None, watch: Watch | None = None,
+) -> dict[str, xr.Variable]:  # fmt: skip
+    """What `curves` has over the axes mu, r and beta; `watch` may end it."""
+    basic, names = plain_outputs(asked), cycle_variables(asked)
+    settings = replace(solver, outputs=basic)
+    cells, out = compute(system, axes, settings, asked_for(names, asked.harmonics), threads, progress, watch)
+    values: dict[str, np.ndarray] = {name: getattr(out, name) for name in basic}
+    values |= {name: read_result(name, cells.results) for name in names}
+    variables = {name: label_variable(name, value, "curves") for name, value in values.items()}
+    return variables | boundary_variables(cells.curves) | _over_frequency(system, axes, cells.curves)
 
 
 def curves(
@@ -118,15 +132,8 @@ def curves(
     asked = curve_settings(harmonics, quantities)
     scales = scales_of(units, system)
     axes = checked_axes(r, beta, mu, system.n * (asked.harmonics + 1), scales)
-    basic, names = plain_outputs(asked), cycle_variables(asked)
     system.costs(axes["r"])
-    cells, out = compute(
-        system, axes, replace(solver, outputs=basic), asked_for(names, asked.harmonics), threads, progress
-    )
-    values: dict[str, np.ndarray] = {name: getattr(out, name) for name in basic}
-    values |= {name: read_result(name, cells.results) for name in names}
-    variables = {name: label_variable(name, value, "curves") for name, value in values.items()}
-    variables |= boundary_variables(cells.curves) | _over_frequency(system, axes, cells.curves)
+    variables = solve_curves(system, axes, solver, asked, threads, progress)
     grid = {name: axes[name] for name in ("r", "beta", "mu")}
     axes["dof"] = np.array(system.dofs.numbers)
     if asked.harmonics:

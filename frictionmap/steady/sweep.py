@@ -17,7 +17,7 @@ from ..model.system import System
 from ..model.variations import Variations, checked_variations
 from ..theory.boundaries import boundary_variables
 from ..units.scales import Units, scales_of
-from .maps import Progress, checked_axes, solve_map
+from .maps import Progress, Watch, checked_axes, solve_map
 
 
 def sweep(
@@ -82,16 +82,24 @@ def sweep(
     array([[[ 0.,  2., nan]]], dtype=float32)
     """
     checks.instance(system, "system", System)
-    solver = merged(solver, settings)
+    return swept(system, (r, beta, mu), merged(solver, settings), axes, threads, progress, units)
+
+
+def swept(
+    system: System, given: tuple[ArrayLike, ArrayLike, ArrayLike], solver: Solver,
+    axes: Mapping[str, Any] | Variations | None, threads: int | None, progress: Progress | None,
+    units: Units | None, watch: Watch | None = None,
+) -> xr.Dataset:  # fmt: skip
+    """What `sweep` has over r, beta and mu; `watch` may end it."""
     variations = None if axes is None else checked_variations(system, axes)
     scales = scales_of(units, system, variations)
-    grid = checked_axes(r, beta, mu, system.n if "amplitude" in solver.outputs else 1, scales)
+    grid = checked_axes(*given, system.n if "amplitude" in solver.outputs else 1, scales)
     (variations or system).costs(grid["r"])
     if variations is None:
-        ds = regime_map(system, grid, solver, threads, progress)
+        ds = regime_map(system, grid, solver, threads, progress, watch)
     else:
         checks.cells(grid["mu"].size, grid["r"].size, grid["beta"].size, points=variations.count)
-        ds = _study(variations, grid, solver, threads, progress)
+        ds = _study(variations, grid, solver, threads, progress, watch)
     if "status" not in solver.outputs and not ds["status"].values.any():
         ds = ds.drop_vars("status")  # else no cell is unresolved, or averaged, without a word
     title = "Motion regimes and stops per cycle"
@@ -115,9 +123,10 @@ def regime_map(
     solver: Solver,
     threads: int | None,
     progress: Progress | None,
+    watch: Watch | None = None,
 ) -> xr.Dataset:
     """Outputs, `status` and boundaries of one system over the axes mu, r and beta."""
-    found, curves = solve_map(system, axes, solver, threads, progress)
+    found, curves = solve_map(system, axes, solver, threads, progress, watch)
     variables = {name: label_variable(name, values) for name, values in found.items()}
     sizes = {"dof": np.array(system.dofs.numbers)} if "amplitude" in solver.outputs else {}
     coords = {name: coordinate(name, values) for name, values in {**axes, **sizes}.items()}
@@ -126,7 +135,7 @@ def regime_map(
 
 def _study(
     variations: Variations, grid: Mapping[str, np.ndarray], solver: Solver, threads: int | None,
-    progress: Progress | None,
+    progress: Progress | None, watch: Watch | None,
 ) -> xr.Dataset:  # fmt: skip
     """The maps of all points along further axes, in one dataset."""
     count = variations.count
@@ -134,7 +143,7 @@ def _study(
     whole: dict[str, xr.Variable] = {}
     coords = study_coordinates(variations)
     for done, point in enumerate(variations.points()):
-        ds = regime_map(variations.at(point), grid, solver, threads, _share(progress, done, count))
+        ds = regime_map(variations.at(point), grid, solver, threads, _share(progress, done, count), watch)
         if not whole:
             coords |= {str(name): ds[name].variable for name in ds.coords}
             whole = {

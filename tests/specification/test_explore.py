@@ -343,6 +343,8 @@ def test_it_listens_on_this_machine_only(one):
         {"Host": ""},
         {"Origin": "http://evil.example"},
         {"Origin": "null"},
+        {"Origin": ""},
+        {"Origin": "127.0.0.1:PORT"},
         {"Origin": "https://127.0.0.1:PORT"},
         {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "no-cors"},
         {"Sec-Fetch-Site": "same-site", "Sec-Fetch-Mode": "cors"},
@@ -372,13 +374,19 @@ def test_two_hosts_are_refused(one):
         {"Host": "LOCALHOST:PORT"},
         {"Origin": "http://127.0.0.1:PORT"},
         {"Sec-Fetch-Site": "same-origin", "Sec-Fetch-Mode": "cors"},
-        {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "navigate"},  # a link in a letter
+        {"Sec-Fetch-Site": "none", "Sec-Fetch-Mode": "navigate"},
     ],
 )
 def test_our_own_page_is_answered(one, headers):
     port = str(one.server_address[1])
     given = {name: value.replace("PORT", port) for name, value in headers.items()}
     assert ask(one, "/scene", given)[0] == 200
+
+
+def test_a_link_leads_to_the_page_and_to_no_work(one):
+    letter = {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "navigate"}
+    assert [ask(one, target, letter)[0] for target in ("/", "/index.html", "/?utm=1")] == [200] * 3
+    assert [ask(one, target, letter)[0] for target in ("/map.csv?columns=2&rows=2", "/scene")] == [403] * 2
 
 
 # What it refuses
@@ -449,9 +457,19 @@ def test_what_is_not_there(one, target):
 
 @pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS", "CONNECT"])
 def test_other_methods_are_refused(one, method):
-    status, body, _ = ask(one, "/scene", method=method)
-    assert status == 501
-    assert body.count(b"\n") == 1
+    for headers, wanted in (({}, 501), ({"Host": "evil.example"}, 403)):
+        status, body, _ = ask(one, "/scene", headers, method)
+        assert status == wanted
+        assert body.count(b"\n") == 1
+
+
+def test_an_address_that_is_none(one):
+    with socket.create_connection(one.server_address) as connection:
+        host = f"127.0.0.1:{one.server_address[1]}"
+        connection.sendall(f"GET http://[ HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
+        said = b"".join(iter(lambda: connection.recv(65536), b"")).decode()
+    assert said.startswith("HTTP/1.1 400")
+    assert said.endswith("the address must be one of this page; got 'http://[' (Invalid IPv6 URL)\n")
 
 
 def test_an_address_that_is_too_long(one):
@@ -532,11 +550,19 @@ def test_the_newest_request_of_a_page_wins(two):
     assert took < HANG / 10
 
 
-def test_a_page_that_has_gone_is_worked_for_no_more(two):
+@pytest.mark.parametrize(
+    "target",
+    [
+        f"map?{SLOW}",
+        f"map.nc?{SLOW}&quantity=work_friction",
+        "cut?along=beta&place=0.005&count=8000&mu=1.9&beta=0.001,0.9&damping_ratios=0",
+    ],
+)
+def test_a_page_that_has_gone_is_worked_for_no_more(two, target):
     packet(two, "/map?columns=3&rows=3&mu=1.9")
     port = two.server_address[1]
     connection = socket.create_connection(("127.0.0.1", port))
-    connection.sendall(f"GET /map?{SLOW} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
+    connection.sendall(f"GET /{target} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
     waits_for(lambda: two.page.jobs._running)
     time.sleep(0.2)
     assert two.page.jobs._running
@@ -926,8 +952,11 @@ def test_units_stand_beside_the_ratios(tmp_path):
 
 def test_python_takes_units():
     units = fm.Units(natural_frequency="60 rpm")
-    with fm.explore(fm.System(), units=units) as page:
+    with fm.explore(fm.System(), ("0.5 Hz", "180 rpm"), units=units) as page:
         told = json.loads(ask(page._server, "/scene")[1])
+    assert told["r"] == [0.5, 3.0]
+    with pytest.raises(InputError, match=r"units\.load must be given"):
+        fm.explore(fm.System(), beta=("1 N", "2 N"), units=units)
     assert told["physical"] == {"frequency": {"unit": "Hz", "factor": 1.0}}
     with pytest.raises(InputError, match=r"units\.base_amplitude must be left out unless the base moves"):
         fm.explore(fm.System(), units=fm.Units(base_amplitude="1 mm"))

@@ -408,6 +408,16 @@ def test_a_cut_is_drawn(browser, one):
         page.wait_for_function(
             "() => document.querySelector('#cut').innerText.includes('along β at r = 0.4')"
         )
+        page.select_option("#contact", "joined-base-wall:1")
+        page.wait_for_function(
+            "() => /amplitude of the mass\\s+\\S+ Y/.test(document.querySelector('#motion').innerText)"
+        )
+        page.route("**/cut?**", lambda route: None)
+        with page.expect_request("**/cut?**along=r**"):
+            page.click("[data-cut=r]")
+        with page.expect_event("requestfailed", lambda request: "along=r" in request.url):  # it is given up
+            page.click("[data-cut=beta]")
+        page.unroute("**/cut?**")
         repainted(page, lambda: page.click("#cut button"))
         assert not page.is_visible("#cut")
 

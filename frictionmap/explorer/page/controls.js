@@ -54,8 +54,21 @@ export class Controls {
   #choice(key, label, options) {
     const made = this.#add(this.form, `<label for="${key}">${label}</label><select id="${key}"></select>`);
     const select = made.querySelector("select");
-    for (const option of options) select.add(new Option(option.label, option.key));
+    this.#fill(select, options);
     select.addEventListener("change", () => this.onChange({ [key]: select.value }));
+  }
+
+  #fill(select, options) {
+    select.replaceChildren(...options.map((option) => new Option(option.label, option.key)));
+  }
+
+  /** Other options of a choice: the masses of a structure that is reduced may be others for another contact. */
+  offer(key, options, view) {
+    const select = this.form.querySelector(`#${key}`);
+    const known = [...select.options].map((option) => option.label).join();
+    if (known === options.map((option) => option.label).join()) return; // a menu that is open stays so
+    this.#fill(select, options);
+    this.set(view);
   }
 
   #starts() {

@@ -22,31 +22,55 @@ const PATIENCE = 350;
 /** Milliseconds from which on a picture is slow. */
 const SLOW = 1000;
 
+/** Milliseconds that a motion is still shown after though another is asked for. */
+const GRACE = 50;
+
 /** Milliseconds that a view stands still before what is less urgent follows: address, words, other starts. */
 const STILL = 180;
 
-/** Work of which only the newest counts: one at a time, and what comes meanwhile waits, the last of it. */
-function newest(work, onError) {
-  let [running, waiting] = [false, null];
-  const run = async (...asked) => {
-    if (running) {
-      waiting = asked;
+/**
+ * Work of which only the newest counts: one at a time, and what comes meanwhile waits, the last of it.
+ * What is outdated may go on for some milliseconds: motions follow the pointer then.
+ */
+class Newest {
+  #control = null;
+  #waiting = null;
+
+  /** @param {(signal: AbortSignal, ...asked) => Promise<void>} work */
+  constructor(work, onError, grace = 0) {
+    [this.work, this.onError, this.grace] = [work, onError, grace];
+  }
+
+  async ask(...asked) {
+    if (this.#control) {
+      this.#waiting = asked;
+      this.#outdate(this.#control);
       return;
     }
-    running = true;
+    const control = (this.#control = new AbortController());
+    control.began = performance.now();
     try {
-      await work(...asked);
+      await this.work(control.signal, ...asked);
     } catch (error) {
-      if (error.name !== "AbortError") onError(error);
+      if (error.name !== "AbortError") this.onError(error);
     }
-    running = false;
-    if (waiting) {
-      const next = waiting;
-      waiting = null;
-      run(...next);
-    }
-  };
-  return run;
+    this.#control = null;
+    const next = this.#waiting;
+    this.#waiting = null;
+    if (next) this.ask(...next);
+  }
+
+  /** Nobody wants any of it now. */
+  stop() {
+    this.#waiting = null;
+    this.#control?.abort();
+  }
+
+  #outdate(control) {
+    const left = control.began + this.grace - performance.now();
+    if (left > 0) setTimeout(() => control.abort(), left);
+    else control.abort();
+  }
 }
 
 /** Do something once nobody has asked for it for a while. */
@@ -64,13 +88,18 @@ function secondsOf({ frequency, force }) {
   return { r: axis("frequency", frequency), beta: axis("friction force", force) };
 }
 
+/** Names of the axes of the map. */
+function namesOf(units) {
+  return { r: "frequency ratio r = ω/ω₁", beta: `friction ratio β = ${units.beta}` };
+}
+
 class Page {
   constructor(source, scene) {
     [this.source, this.scene] = [source, scene];
     this.#readAddress();
     this.table = classTable(scene.classes);
     this.map = new RegimeMap(part("stage"));
-    this.map.names = { r: "frequency ratio r = ω/ω₁", beta: `friction ratio β = ${scene.units.beta}` };
+    this.map.names = namesOf(scene.units);
     this.marks = scene.marks;
     this.map.seconds = secondsOf(scene.physical);
     this.hint = part("motion").innerText;
@@ -78,11 +107,11 @@ class Page {
     this.cut = new CutPanel(part("cut"), scene, () => this.change({ cut: "" }));
     this.refiner = new Refiner(source, (found, view) => this.#onPicture(found, view), (state) => this.#onState(state));
     this.controls = new Controls(part("controls"), scene, (change) => this.#onControl(change), source.fixed);
-    this.askMotion = newest((cell, kept) => this.#fetchMotion(cell, kept), (error) => this.#wrong(error));
-    this.askOthers = newest((cell) => this.#fetchOthers(cell), () => {});
-    this.askCut = newest(() => this.#fetchCut(), (error) => this.#wrong(error));
+    this.motions = new Newest((...asked) => this.#fetchMotion(...asked), (error) => this.#wrong(error), GRACE);
+    this.others = new Newest((...asked) => this.#fetchOthers(...asked), () => {});
+    this.cuts = new Newest((signal) => this.#fetchCut(signal), (error) => this.#wrong(error));
     this.settle = later(() => this.#settled(), STILL);
-    this.rest = later((cell) => this.askOthers(cell), STILL);
+    this.rest = later((...asked) => this.others.ask(...asked), STILL);
     this.pending = new Map();
     this.told = part("told");
     for (const button of document.querySelectorAll("[data-save]")) {
@@ -144,9 +173,13 @@ class Page {
     this.map.stage.dataset.state = "refining";
     this.asked = performance.now();
     this.refiner.ask({ view, scene, columns, rows, table: this.table, kind, scale: null });
-    if (motion && view.cell && this.source.live) this.askMotion(view.cell, true);
-    if (view.cut) this.askCut();
-    else this.cut.hide();
+    if (motion && view.cell && this.source.live) this.motions.ask(view.cell, true);
+    if (view.cut) {
+      this.cuts.ask();
+    } else {
+      this.cuts.stop();
+      this.cut.hide();
+    }
     this.settle();
   }
 
@@ -185,11 +218,28 @@ class Page {
       const told = await this.source.scene(queryOf(this.view, this.scene));
       part("system").textContent = told.system;
       this.map.marks = this.marks = told.marks;
-      this.scene.physical = told.physical;
-      this.map.drawOver();
+      this.#takeUnits(told);
+      this.#offer(told.quantities);
     } catch {
       // what is wrong with the view the map says
     }
+  }
+
+  /** What lengths and forces are over: a base that moves has others than a load. */
+  #takeUnits({ units, physical }) {
+    const others = units.length !== this.scene.units.length;
+    [this.scene.units, this.scene.physical] = [units, physical];
+    [this.map.names, this.map.seconds] = [namesOf(units), secondsOf(physical)];
+    this.#onSize(); // second axes take room
+    this.cut.draw();
+    if (others && this.view.cell) this.motions.ask(this.view.cell, true);
+  }
+
+  /** What cells can be coloured by: a structure that is reduced has other masses for another contact. */
+  #offer(quantities) {
+    this.scene.quantities = quantities;
+    this.controls.offer("quantity", quantities, this.view);
+    if (!quantities.some(({ key }) => key === this.view.quantity)) this.change({ quantity: quantities[0].key });
   }
 
   #onAddress() {
@@ -321,7 +371,7 @@ class Page {
     if (cell?.r === before?.r && cell?.beta === before?.beta) return;
     this.#point(cell);
     if (!cell || this.view.cell) return;
-    if (this.source.live) this.askMotion([cell.r, cell.beta], false);
+    if (this.source.live) this.motions.ask([cell.r, cell.beta], false);
     else this.#tellStored(cell);
   }
 
@@ -339,12 +389,14 @@ class Page {
     this.#pick(map.cellAt(map.x(from[0] + 5 * across * size.r), map.y(from[1] + 5 * up * size.beta)));
   }
 
-  async #fetchMotion(cell, kept) {
-    const motion = await this.#slowly(this.source.motion(this.view, this.scene, cell), cell, kept);
+  async #fetchMotion(signal, cell, kept) {
+    const { view } = this;
+    this.others.stop();
+    const motion = await this.#slowly(this.source.motion(view, this.scene, cell, signal), cell, kept);
     if (kept !== Boolean(this.view.cell)) return;
     this.motion.show(motion, this.scene.classes[motion.class], kept);
     requestAnimationFrame(() => part("motion").dispatchEvent(new CustomEvent("painted", { detail: { r: motion.r, beta: motion.beta } })));
-    this.rest(cell);
+    this.rest(motion, view, cell);
   }
 
   /** A motion that takes long: no other cell's stands beside the map until it is there. */
@@ -354,15 +406,18 @@ class Page {
     try {
       return await this.#waiting(motion);
     } catch (error) {
-      if (!this.motion.motion) this.motion.tell(this.hint);
+      if (!this.motion.motion && error.name !== "AbortError") this.motion.tell(this.hint);
       throw error;
     } finally {
       clearTimeout(slow);
     }
   }
 
-  async #fetchOthers(cell) {
-    this.motion.add(await this.#waiting(this.source.others(this.view, this.scene, cell)));
+  /** What else is known of a cell whose motion, in that view, is shown. */
+  async #fetchOthers(signal, motion, view, cell) {
+    if (this.motion.motion !== motion) return;
+    const others = await this.#waiting(this.source.others(view, this.scene, cell, signal));
+    if (this.motion.motion === motion) this.motion.add(others);
   }
 
   #tellStored(cell) {
@@ -371,12 +426,11 @@ class Page {
       "This file holds maps; to see motions, run frictionmap explore on the configuration.");
   }
 
-  async #fetchCut() {
+  async #fetchCut(signal) {
     const { view, scene, map } = this;
     if (!view.cut) return;
     const place = (view.cell ?? [(view.r[0] + view.r[1]) / 2, (view.beta[0] + view.beta[1]) / 2])[view.cut === "r" ? 1 : 0];
-    const found = await this.#waiting(this.source.cut(view, scene, view.cut, place, Math.max(2, Math.round(map.area.width))));
-    if (!this.view.cut) return;
+    const found = await this.#waiting(this.source.cut(view, scene, view.cut, place, Math.max(2, Math.round(map.area.width)), signal));
     const { width } = map.stage.getBoundingClientRect();
     this.cut.show(found, { left: map.area.x, right: width - map.area.x - map.area.width });
   }

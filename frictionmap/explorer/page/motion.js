@@ -87,7 +87,6 @@ export class MotionPanel {
 
   /** What else is known of the cell that is shown. */
   add(others) {
-    if (!this.motion || others.r !== this.motion.r || others.beta !== this.motion.beta) return;
     const words = this.#part(".others");
     const start = others.start === "moving" ? "a large sliding motion" : "rest";
     const told = others.same

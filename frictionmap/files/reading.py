@@ -21,7 +21,7 @@ from ..errors import InputError
 from .estimates import estimates_form
 from .slices import choose, further_axes
 
-__all__ = ["kind", "read", "standard_form"]
+__all__ = ["kind", "naming", "opened", "read", "standard_form"]
 
 
 def read(
@@ -46,7 +46,7 @@ def read(
     """
     with opened(path) as ds:
         ds = _load(path, ds, only, at or {})
-    with _naming(path):
+    with naming(path):
         return standard_form(ds)
 
 
@@ -131,7 +131,7 @@ def _check_ours(path: Path, ds: xr.Dataset) -> None:
 
 
 @contextlib.contextmanager
-def _naming(path: Path) -> Iterator[None]:
+def naming(path: Path) -> Iterator[None]:
     """The name of the file, put before what is wrong with it."""
     try:
         yield
@@ -144,7 +144,7 @@ def _load(
 ) -> xr.Dataset:
     """The wanted variables of a file; their values are read once all else about them is known to be well."""
     in_store = MARKS in ds
-    with _naming(path):
+    with naming(path):
         if at or further_axes(ds):
             ds = choose(ds, at)
         if MARKS in ds and not ds[MARKS].values.all():  # boundaries of blocks to come are not known

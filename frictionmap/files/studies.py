@@ -10,8 +10,9 @@ import xarray as xr
 
 from .. import regimes
 from ..datasets.labels import CELL, CELL_VARIABLES, COORDINATES, LABELS, MARKS
-from ..datasets.schema import check_structure
-from .reading import opened
+from ..datasets.schema import check_structure, in_brackets
+from ..errors import InputError
+from .reading import naming, opened
 from .slices import further_axes, natural
 from .summary import axis_lines, header_lines, in_causes, in_cells, variable_lines
 
@@ -21,15 +22,23 @@ _AT_ONCE = 1 << 20
 
 def is_study(path: Path) -> bool:
     """Whether a file is a store or has further axes."""
-    with opened(path) as ds:
+    with opened(path) as ds, naming(path):
         check_structure(ds, in_parts=True)
         return MARKS in ds or bool(further_axes(ds))
 
 
 def describe_study(path: Path) -> str:
-    """One screen: title, system, axes, variables, blocks that are done, regimes of the cells in them."""
+    """One screen: title, system, axes, variables, blocks that are done, regimes of the cells in them.
+
+    Raises
+    ------
+    InputError
+        An axis has no value, or the marks of blocks are not along the axes of the cells.
+    """
     with opened(path) as found:
-        ds = _in_order(found)
+        with naming(path):
+            ds = _in_order(found)
+            _check_sizes(ds)
         lines = [*header_lines(ds, "map"), *axis_lines(ds), *variable_lines(ds)]
         lines += _blocks(ds)
         cells, *causes = cell_lines(ds)
@@ -38,11 +47,26 @@ def describe_study(path: Path) -> str:
 
 def _in_order(ds: xr.Dataset) -> xr.Dataset:
     """Axes and variables as a map has them: a store lists them in any order."""
-    numbers = sorted((str(name) for name in ds.coords if name not in COORDINATES), key=natural)
+    others = [name for name in ds.coords if name not in COORDINATES and ds[name].dtype.kind in "iuf"]
+    numbers = sorted(map(str, others), key=natural)
     known = dict.fromkeys((*further_axes(ds), *numbers, *COORDINATES))
     coords = {name: ds.variables[name] for name in known if name in ds.coords}
     variables = {name: ds.variables[name] for name in (*LABELS, MARKS) if name in ds.data_vars}
     return xr.Dataset(variables, coords, ds.attrs)
+
+
+def _check_sizes(ds: xr.Dataset) -> None:
+    """Refuse what has no cells, and marks that are not those of its blocks."""
+    for dim in (*further_axes(ds), *CELL):
+        if ds.sizes.get(dim, 1) == 0:
+            raise InputError(f"{dim} must have at least one value; got none")
+    for name in {"regime", "status"} & set(ds.variables) if MARKS in ds else ():
+        dims = {*ds[name].dims, "row_block"} - {"r", "beta"}
+        if set(ds[MARKS].dims) != dims:
+            raise InputError(
+                f"{MARKS} must have the dimensions {in_brackets(sorted(map(str, dims)))}; "
+                f"got {in_brackets(ds[MARKS].dims)}"
+            )
 
 
 def describe_cells(path: Path) -> list[str]:

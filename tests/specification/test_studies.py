@@ -111,6 +111,36 @@ def test_info(files, end, capsys):
     assert "modal damping ratios 0.05" in capsys.readouterr().out
 
 
+def _marks_along_beta(ds):
+    return ds.assign(block_done=(("beta",), np.ones(ds.beta.size)))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda ds: ds.isel(beta=[]), "beta must have at least one value; got none"),
+        (lambda ds: ds.isel(sample=[]), "sample must have at least one value; got none"),
+        (_marks_along_beta, "block_done must have the dimensions (damping_ratios, mu, row_block, sample)"),
+    ],
+)
+def test_malformed_files_are_refused_in_one_line(files, tmp_path, capsys, change, message):
+    path = tmp_path / "malformed.nc"
+    with xr.open_dataset(files[".nc"]) as ds:
+        change(ds).to_netcdf(path)
+    assert main(["info", str(path)]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith(f"frictionmap: file {path}: {message}")
+    assert told.count("\n") == 1
+
+
+def test_what_is_no_number_beside_an_axis_is_left_out(files, tmp_path, capsys):
+    path = tmp_path / "named.nc"
+    with xr.open_dataset(files[".nc"]) as ds:
+        ds.assign_coords(who=("sample", ["a", "b", "c"])).to_netcdf(path)
+    assert main(["info", str(path)]) == 0
+    assert "who" not in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("end", [".nc", ".zarr"])
 def test_plot(files, end, tmp_path):
     where = ["--at", "damping_ratios=0", "--at", "sample=1"]

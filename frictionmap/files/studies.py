@@ -47,7 +47,7 @@ def describe_study(path: Path) -> str:
 
 def _in_order(ds: xr.Dataset) -> xr.Dataset:
     """Axes and variables as a map has them: a store lists them in any order."""
-    others = [name for name in ds.coords if name not in COORDINATES and ds[name].dtype.kind in "iuf"]
+    others = [name for name in ds.coords if name not in COORDINATES and ds[name].dtype.kind in "iufU"]
     numbers = sorted(map(str, others), key=natural)
     known = dict.fromkeys((*further_axes(ds), *numbers, *COORDINATES))
     coords = {name: ds.variables[name] for name in known if name in ds.coords}

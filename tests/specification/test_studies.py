@@ -133,12 +133,15 @@ def test_malformed_files_are_refused_in_one_line(files, tmp_path, capsys, change
     assert told.count("\n") == 1
 
 
-def test_what_is_no_number_beside_an_axis_is_left_out(files, tmp_path, capsys):
+def test_what_is_beside_an_axis_is_told_if_it_is_numbers_or_text(files, tmp_path, capsys):
     path = tmp_path / "named.nc"
     with xr.open_dataset(files[".nc"]) as ds:
-        ds.assign_coords(who=("sample", ["a", "b", "c"])).to_netcdf(path)
+        beside = {"who": ("sample", ["a", "b", "c"]), "good": ("sample", [True, False, True])}
+        ds.assign_coords(beside).to_netcdf(path)
     assert main(["info", str(path)]) == 0
-    assert "who" not in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "a, b, c" in told
+    assert "good" not in told
 
 
 @pytest.mark.parametrize("end", [".nc", ".zarr"])

@@ -92,7 +92,7 @@ def test_the_configurations_that_come_with_the_program_are_legal(path):
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
 def test_configurations_are_named_by_their_figures(path):
-    """fig-4-7.toml says Fig. 4.7 in its title; those of motions and curves what is drawn, and ask for no other."""
+    """fig-4-7.toml says Fig. 4.7 in its title; motions and curves say that they are, and ask for no more."""
     config = load_config(path)
     figure = re.match(r"fig-(\d)-(\d+)", path.stem)
     if figure:

@@ -3,7 +3,9 @@
 import json
 import os
 import signal
+import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -66,3 +68,11 @@ def measured() -> Path:
 def curve_rows() -> tuple[dict, list[dict]]:
     """Systems and rows of the 17-digit quantities of response curves."""
     return _rows("curves.json")
+
+
+@pytest.fixture(autouse=True)
+def _close_figures() -> Iterator[None]:
+    """Once anything has imported pyplot, figures are kept by it."""
+    yield
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")

@@ -123,14 +123,20 @@ def _numbers(ds: xr.Dataset, name: str) -> np.ndarray:
 def _values(ds: xr.Dataset, name: str) -> str:
     """The values of an axis in words."""
     values = _numbers(ds, name)
-    if values.size > _LISTED:
+    if values.size > _LISTED and values.dtype.kind != "U":
         return f"{name} = {values.min():g} to {values.max():g} ({values.size} values)"
-    return f"{name} = {', '.join(f'{value:g}' for value in values)}"
+    words = [_word(value) for value in values[:_LISTED]]
+    return f"{name} = {', '.join(words)}{', ...' * (values.size > _LISTED)}"
+
+
+def _word(value: object) -> str:
+    """A value of an axis; what is not ours may have texts."""
+    return checks.one_line(value) if isinstance(value, str) else f"{value:g}"
 
 
 def _of_point(ds: xr.Dataset, point: Mapping[str, int]) -> dict[str, str]:
     """Title, system and configuration of a point; the latter two are empty where the file does not tell."""
-    words = ", ".join(f"{name} = {_numbers(ds, name)[place]:g}" for name, place in point.items())
+    words = ", ".join(f"{name} = {_word(_numbers(ds, name)[place])}" for name, place in point.items())
     title = f"{ds.attrs.get('title', '')}, {words}".removeprefix(", ")
     system = text = ""
     config = _config(ds)

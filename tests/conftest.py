@@ -5,7 +5,6 @@ import os
 import signal
 import sys
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -71,8 +70,6 @@ def curve_rows() -> tuple[dict, list[dict]]:
 
 
 @pytest.fixture(autouse=True)
-def _close_figures() -> Iterator[None]:
-    """Once anything has imported pyplot, figures are kept by it."""
-    yield
-    if "matplotlib.pyplot" in sys.modules:
-        sys.modules["matplotlib.pyplot"].close("all")
+def _without_pyplot(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A package that imports pyplot has it keep every figure: no test may see what another has imported."""
+    monkeypatch.delitem(sys.modules, "matplotlib.pyplot", raising=False)

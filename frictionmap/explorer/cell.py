@@ -198,14 +198,14 @@ def others(view: View, r: float, beta: float, follower: Follower) -> Packet:
     view.check(r)
     start = _STARTS[view.solver.start]
     there = replace(view, solver=replace(view.solver, start=start))
-    own = _one(view, r, beta, follower, "multiplier", "also_reachable")
-    ours, theirs = (_one(one, r, beta, follower, "contact_amplitude") for one in (view, there))
+    own = _one(view, r, beta, follower, "contact_amplitude", "multiplier", "also_reachable")
+    other_end = _one(there, r, beta, follower, "contact_amplitude")
     flags = int(own["also_reachable"])
     header: dict[str, Any] = {
         "r": r,
         "beta": beta,
         "start": start,
-        "same": _alike(ours, theirs),
+        "same": _alike(own, other_end),
         "told": [],
         "reachable": [code.name for code in regimes.REACHABLE if flags & code.value],
     }

@@ -44,9 +44,6 @@ from .verdict import Family
 
 Part = Callable[[Path], list[Family]]
 
-#: What takes many whole runs is left out of the quick form.
-_NOT_QUICK = ("interrupts", "several runs")
-
 
 def _parts(child: Child, package: Path, quick: bool) -> dict[str, Part]:
     """What is tried, each in a folder of its own; those that need a long-lived child come first."""
@@ -55,7 +52,7 @@ def _parts(child: Child, package: Path, quick: bool) -> dict[str, Part]:
     def in_processes(part: Callable) -> Part:
         return lambda folder: part(moments.inputs(folder / "inputs", env, quick), folder, env, quick)
 
-    parts = {
+    return {
         "command line": lambda folder: refusals.run(child, folder, quick),
         "Python": lambda folder: calls.run(child, refusals.template(folder / "prepared"), quick),
         "malformed files": lambda folder: mutants.run(child, folder, quick),
@@ -64,7 +61,6 @@ def _parts(child: Child, package: Path, quick: bool) -> dict[str, Part]:
         "places": in_processes(places.run),
         "caches": lambda folder: caches.run(package, folder / "cache", quick),
     }
-    return {name: part for name, part in parts.items() if not (quick and name in _NOT_QUICK)}
 
 
 @contextlib.contextmanager

@@ -1,4 +1,4 @@
-"""The arguments of the command line."""
+"""Command-line arguments: every command with its options and help texts."""
 
 import argparse
 from argparse import Namespace as Options
@@ -10,33 +10,34 @@ from .version import __version__
 
 __all__ = ["CONTACTS", "RIGS", "SHELLS", "Argument", "Command", "Options", "described", "one_line", "parse"]
 
-#: Contacts of `System` and kinds of data of `identify`, held to them by a test:
-#: importing them would take longer than all of `--help`.
+#: Valid contacts of `System` and kinds of data of `identify`.  They are repeated here because importing them
+#: would take longer than all of `--help`; a test compares them.
 CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 RIGS = ("free-decay", "forced", "record", "sweep")
 
 SHELLS = ("bash", "zsh", "fish")
 
 _DESCRIPTION = """\
-Exact regime maps of a vibrating structure with one dry-friction contact: does it slide without stopping,
-stick and slip, or stick for good, over frequency ratio r, friction ratio beta and static/kinetic ratio mu?"""
+Exact regime maps of a vibrating structure with one dry-friction contact: does the contact slide
+continuously, stick and slip, or stay stuck, for each frequency ratio r, friction ratio beta and
+static-to-kinetic ratio mu?"""
 
 _EPILOG = """\
-to begin with:
-  frictionmap init                                           a configuration, map.toml
-  frictionmap explore map.toml                               its map in a browser
-  frictionmap map map.toml && frictionmap plot map.nc        the same as files
+getting started:
+  frictionmap init                                           write a configuration, map.toml
+  frictionmap explore map.toml                               show its map in the browser
+  frictionmap map map.toml && frictionmap plot map.nc        write the map and its picture to files
 
-exit status: 0 done, 2 the input is at fault, 130 interrupted (also by termination), 1 anything else"""
+exit status: 0 success, 1 any other error, 2 invalid input, 130 interrupted"""
 
 
 def one_line(message: object) -> str:
-    """A message without the line breaks that a name or a key put into it."""
+    """Join a message into one line: names and keys in it may contain line breaks."""
     return " ".join(str(message).split())
 
 
 class _Parser(argparse.ArgumentParser):
-    """argparse, with errors on one line and no options cut short: --over is not --overwrite."""
+    """Parser with one-line errors that accepts no abbreviated options: --over is not --overwrite."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(allow_abbrev=False, **settings)
@@ -46,7 +47,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 class _Once(argparse.Action):
-    """An option with one value, which a second one would drop in silence."""
+    """Option that may be given once; argparse would silently drop the first of two values."""
 
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: Options, values: object, option: str | None = None
@@ -57,7 +58,7 @@ class _Once(argparse.Action):
 
 
 def _file(text: str) -> Path:
-    """The name of a file to write, or of a store, which is a folder."""
+    """Check the name of an output: a file, or a store, which is a folder."""
     if text in ("", "-") or (text.endswith(("/", "\\")) and not text.rstrip("/\\").endswith(".zarr")):
         raise argparse.ArgumentTypeError(f"must be the name of a file; got {text!r}")
     return Path(text)
@@ -75,11 +76,11 @@ def _port(text: str) -> int:
     return number
 
 
-_threads.__name__ = _port.__name__ = "whole number"  # what argparse calls it
+_threads.__name__ = _port.__name__ = "whole number"  # its name in argparse's errors
 
 
 def _ratio(text: str) -> float | str:
-    """A ratio, or a number with its unit, which is checked where the units are known."""
+    """Convert a ratio; leave a number with a unit as text, to be checked where the units are known."""
     try:
         return float(text)
     except ValueError:
@@ -88,7 +89,7 @@ def _ratio(text: str) -> float | str:
         return text
 
 
-_ratio.__name__ = "float"  # what argparse calls it
+_ratio.__name__ = "float"  # its name in argparse's errors
 
 
 def _address(text: str) -> str:
@@ -104,35 +105,35 @@ def _takes_output(sub: argparse.ArgumentParser, metavar: str, text: str) -> None
 
 def _takes_replacement(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--overwrite", action="store_true", help="replace an existing output")
-    sub.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    sub.add_argument("--quiet", action="store_true", help="print errors only")
 
 
 def _takes_config(
     sub: argparse.ArgumentParser,
     name: str = "CONFIG",
-    what: str = "what to compute",
+    what: str = "configuration of the computation",
     key: str = "grid.r.step=0.01",
     out: str = "OUT.nc",
 ) -> None:
     sub.add_argument("config", metavar=f"{name}.toml", type=Path, help=what)
-    _takes_output(sub, out, f"file to write; default: named after {name}, in the current folder")
+    _takes_output(sub, out, f"output file (default: named after {name}, in the current folder)")
     _takes_overrides(sub, name, key)
 
 
 def _takes_overrides(
     sub: argparse.ArgumentParser, name: str = "CONFIG", key: str = "grid.r.step=0.01"
 ) -> None:
-    text = f"override a key of {name}, e.g. --set {key}; repeatable, each key once"
+    text = f"override a key of {name}, e.g. --set {key}; repeatable, once per key"
     sub.add_argument("--set", dest="overrides", metavar="KEY=VALUE", action="append", default=[], help=text)
 
 
 def _takes_yes(sub: argparse.ArgumentParser) -> None:
-    text = "compute what this machine seems to have too little memory for"
+    text = "run even if the estimated memory exceeds what is available"
     sub.add_argument("--yes", action="store_true", help=text)
 
 
 def _takes_threads(sub: argparse.ArgumentParser) -> None:
-    text = "threads to use (default: all processors); the result is the same to the bit"
+    text = "number of threads (default: all processors); results do not depend on it"
     sub.add_argument("--threads", metavar="N", type=_threads, action=_Once, help=text)
 
 
@@ -144,39 +145,39 @@ def _takes_cell(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--beta", type=_ratio, required=True, action=_Once, help=f"friction ratio, >= 0{with_unit}2 N'"
     )
-    text = "static over kinetic friction, >= 1 (default: grid.mu of CONFIG if that is one value, else needed)"
+    text = "static over kinetic friction, >= 1 (default: grid.mu of CONFIG if it is a single value)"
     sub.add_argument("--mu", type=float, action=_Once, help=text)
 
 
 def _takes_choices(sub: argparse.ArgumentParser) -> None:
-    text = "the point of a further axis, e.g. --at damping_ratios=0.01; repeatable"
+    text = "select a value on a further axis, e.g. --at damping_ratios=0.01; repeatable"
     sub.add_argument("--at", metavar="NAME=VALUE", action="append", default=[], help=text)
 
 
 def _takes_over(sub: argparse.ArgumentParser, what: str) -> None:
     text = (
-        f"{what} the shares of regimes over a further axis, such as sample, and quantiles of the boundaries"
+        f"{what} the share of each regime over a further axis such as sample, and quantiles of the boundaries"
     )
     sub.add_argument("--over", metavar="NAME", action=_Once, help=text)
 
 
 def _takes_page(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument("config", metavar="CONFIG.toml", type=Path, help="what to explore, and where to begin")
+    sub.add_argument("config", metavar="CONFIG.toml", type=Path, help="configuration of the map to explore")
     _takes_overrides(sub)
-    text = "port of this machine to serve the page at (default: 8712, or any that is free)"
+    text = "local port of the page (default: 8712, or any free port)"
     sub.add_argument("--port", metavar="N", type=_port, action=_Once, help=text)
-    text = "print the address and open no browser"
+    text = "print the address without opening a browser"
     sub.add_argument("--no-browser", action="store_true", help=text)
-    text = "write the page as one file, with maps computed for its sliders, and serve nothing"
+    text = "save the page as a single file, with precomputed maps for its sliders, instead of serving it"
     sub.add_argument("--export", dest="output", metavar="PAGE.html", type=_file, action=_Once, help=text)
     _takes_replacement(sub)
 
 
 def _takes_workers(sub: argparse.ArgumentParser) -> None:
     where = sub.add_mutually_exclusive_group()
-    text = "compute OUT.zarr on N processes of this machine (needs dask)"
+    text = "compute OUT.zarr with N local worker processes (needs dask)"
     where.add_argument("--workers", metavar="N", type=_threads, action=_Once, help=text)
-    text = "compute OUT.zarr on the workers of a dask scheduler that is running"
+    text = "compute OUT.zarr on the workers of a running dask scheduler"
     where.add_argument("--scheduler", metavar="ADDRESS", type=_address, action=_Once, help=text)
 
 
@@ -193,82 +194,86 @@ def _parser() -> argparse.ArgumentParser:
     def command(name: str, text: str, description: str) -> argparse.ArgumentParser:
         return commands.add_parser(name, help=text, description=description)
 
-    text = "Classify every cell of a grid and count its stops per cycle; write NetCDF."
-    sub = command("map", "classify every cell of a grid", text)
+    text = "Determine the regime and the stops per cycle of every cell of a grid; write NetCDF."
+    sub = command("map", "regime of every cell of a grid", text)
     _takes_config(sub, out="OUT.nc|OUT.zarr")
     _takes_threads(sub)
     _takes_yes(sub)
     _takes_workers(sub)
-    text = "Compute response curves over frequency: amplitude, phase, harmonics, energy; write NetCDF."
-    sub = command("curves", "amplitude, phase, harmonics and energy over frequency", text)
+    text = "Compute amplitude, phase, harmonics and energy over frequency; write NetCDF."
+    sub = command("curves", "response curves: amplitude, phase, harmonics, energy", text)
     _takes_config(sub)
     _takes_threads(sub)
     _takes_yes(sub)
-    text = "Compute the boundaries of the regimes over frequency (no cell is classified); write NetCDF."
-    _takes_config(command("boundaries", "curves only", text))
-    sub = command("response", "one steady state in time", "Compute one steady state in time; write NetCDF.")
+    text = "Compute the regime boundaries over frequency, without classifying cells; write NetCDF."
+    _takes_config(command("boundaries", "regime boundaries only", text))
+    text = "Compute the time history of one steady state; write NetCDF."
+    sub = command("response", "time history of one steady state", text)
     _takes_config(sub)
     _takes_cell(sub)
-    text = "Show the map in a browser, to move about in; on this machine only."
-    _takes_page(command("explore", "the map in a browser", text))
-    text = "Fit friction, damping and frequency to measured data; print estimates with errors, write NetCDF."
-    sub = command("identify", "friction, damping and frequency from measured data", text)
-    _takes_config(sub, "RIG", "which data, and what is known", "data.window=[0.5,4]")
-    sub = command("plot", "a picture of any file", "Draw any file that the other commands wrote.")
-    sub.add_argument("file", metavar="FILE", type=Path, help="what to draw: FILE.nc, or a store FILE.zarr")
-    _takes_output(sub, "PICTURE", ".png, .pdf or .svg; default: FILE.png in the current folder")
+    text = "Open an interactive map in the browser; it runs locally and sends nothing over the network."
+    _takes_page(command("explore", "interactive map in the browser", text))
     text = (
-        "what to draw of response curves: amplitude (with the phase), first_harmonic, contact, harmonics, "
-        "energy or transmitted_force (default: the first there is); of a response: history (default) or orbit"
+        "Fit friction, damping and natural frequency to measured data; print the estimates with their "
+        "standard errors, write NetCDF."
+    )
+    sub = command("identify", "friction, damping and natural frequency from measured data", text)
+    _takes_config(sub, "RIG", "description of the data and of the known parameters", "data.window=[0.5,4]")
+    sub = command("plot", "picture of any output file", "Draw any file written by the other commands.")
+    sub.add_argument("file", metavar="FILE", type=Path, help="file to draw: FILE.nc, or a store FILE.zarr")
+    _takes_output(sub, "PICTURE", ".png, .pdf or .svg (default: FILE.png in the current folder)")
+    text = (
+        "quantity to draw; response curves: amplitude (with the phase), first_harmonic, contact, harmonics, "
+        "energy or transmitted_force (default: the first available); a response: history (default) or orbit"
     )
     sub.add_argument("--quantity", metavar="NAME", action=_Once, help=text)
     _takes_choices(sub)
     _takes_over(sub, "draw")
-    sub.add_argument("--log", action="store_true", help="amplitudes of curves on a logarithmic axis")
+    sub.add_argument("--log", action="store_true", help="logarithmic amplitude axis for response curves")
     text = "Write a map, or a slice of one, as NetCDF or as a table (CSV)."
-    sub = command("export", "a slice of a file or a store as NetCDF or CSV", text)
-    sub.add_argument("file", metavar="FILE", type=Path, help="what to read: FILE.nc, or a store FILE.zarr")
-    _takes_output(sub, "OUT", "OUT.nc or OUT.csv; default: FILE.csv in the current folder")
+    sub = command("export", "map or slice as NetCDF or CSV", text)
+    sub.add_argument("file", metavar="FILE", type=Path, help="file to read: FILE.nc, or a store FILE.zarr")
+    _takes_output(sub, "OUT", "OUT.nc or OUT.csv (default: FILE.csv in the current folder)")
     _takes_choices(sub)
     _takes_over(sub, "write")
-    sub = command("info", "what is in a file", "Print what is in a file, in one screen.")
-    sub.add_argument("file", metavar="FILE", type=Path, help="what to read: FILE.nc, or a store FILE.zarr")
+    sub = command("info", "summary of a file", "Summarise the contents of a file in one screen.")
+    sub.add_argument("file", metavar="FILE", type=Path, help="file to read: FILE.nc, or a store FILE.zarr")
     _takes_choices(sub)
     _takes_beginnings(command)
     return parser
 
 
 def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:
-    """What helps to write configurations and command lines."""
-    text = "Write a configuration to begin with, every key explained; it runs as it stands."
-    sub = command("init", "a commented configuration to begin with", text)
-    text = "file to write; default: map.toml, or rig.toml with --rig, in the current folder"
+    """Add the commands that help to write configurations and command lines."""
+    text = "Write a commented configuration that explains every key and runs as it stands."
+    sub = command("init", "write a commented configuration", text)
+    text = "output file (default: map.toml, or rig.toml with --rig, in the current folder)"
     sub.add_argument("config", metavar="NAME.toml", type=_file, nargs="?", help=text)
     which = sub.add_mutually_exclusive_group()
-    text = f"where the friction acts: {', '.join(CONTACTS)} (default: {CONTACTS[0]})"
+    text = f"kind of contact: {', '.join(CONTACTS)} (default: {CONTACTS[0]})"
     which.add_argument("--contact", choices=CONTACTS, metavar="CONTACT", action=_Once, help=text)
-    text = f"of measured data instead, with synthetic data beside it: {', '.join(RIGS)}"
+    text = f"configuration for measured data, with a synthetic data file: {', '.join(RIGS)}"
     which.add_argument("--rig", choices=RIGS, metavar="KIND", action=_Once, help=text)
     _takes_replacement(sub)
-    text = "Print what a configuration may hold as JSON Schema, by which editors complete and check it."
-    sub = command("schema", "a JSON schema of configurations, for editors", text)
-    sub.add_argument("--rig", action="store_true", help="of configurations for identify")
-    text = "Print what lets a shell complete the command line, for it to read when it starts."
-    sub = command("completion", "completion for bash, zsh or fish", text)
+    text = "Print the JSON Schema of configurations, with which editors complete and check them."
+    sub = command("schema", "JSON schema of configurations, for editors", text)
+    sub.add_argument("--rig", action="store_true", help="schema of configurations for identify")
+    text = "Print the completion script of a shell, to be loaded when the shell starts."
+    sub = command("completion", "shell completion for bash, zsh or fish", text)
     sub.add_argument("shell", choices=SHELLS, metavar="SHELL", help=f"one of {', '.join(SHELLS)}")
 
 
 class Argument(NamedTuple):
-    """An argument of a command, as its help tells it."""
+    """An argument of a command as shown in its help."""
 
-    flags: tuple[str, ...]  # none: by its place
-    metavar: str  # empty: takes no value
+    flags: tuple[str, ...]  # empty for a positional argument
+    metavar: str  # empty if it takes no value
     choices: tuple[str, ...]
     help: str
 
 
 class Command(NamedTuple):
-    """A command, as its help tells it."""
+    """A command as shown in its help."""
 
     name: str
     help: str
@@ -278,7 +283,7 @@ class Command(NamedTuple):
 
 
 def described() -> Iterator[Command]:
-    """Every command with its arguments: for completion and for the manual."""
+    """List every command with its arguments, for completion and for the manual."""
     parser = _parser()
     (commands,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
     for listed in commands._choices_actions:
@@ -296,5 +301,5 @@ def _described(action: argparse.Action) -> Argument:
 
 
 def parse(arguments: Sequence[str]) -> Options:
-    """The arguments, checked; help, version and errors end the program."""
+    """Parse and check the arguments; help, version and errors end the program."""
     return _parser().parse_args(arguments)

@@ -1,8 +1,8 @@
-"""The keys of a configuration: what each means, its default, and what is legal, as JSON Schema says it.
+"""The keys of a configuration: meaning, default and valid values, as JSON Schema.
 
-`config` takes from here which keys there are, `template` writes them with their meanings, `json_schema` makes
-of them what editors check by.  The checks themselves are those of `System`, `Solver`, `curve_settings` and
-`checks.axis`; ranges and words stand with them and are taken from there.
+`config` refuses keys that are not listed here, `template` writes them with their meanings, and `json_schema`
+builds the schema that editors use.  Values are checked by `System`, `Solver`, `curve_settings` and
+`checks.axis`, which own the ranges and names quoted here.
 """
 
 import re
@@ -19,7 +19,7 @@ from ..units.table import spellings, units_of
 
 Legal = Mapping[str, Any]
 
-#: Least and most value of the axes of a grid.
+#: Smallest and largest valid value of each axis of the grid.
 AXES: dict[str, dict[str, float]] = {
     "r": {"least": 0.0, "most": checks.LARGEST_RATIO},
     "beta": {"least": 0.0},
@@ -33,39 +33,39 @@ class Key(NamedTuple):
     name: str
     meaning: str
     legal: Legal  # JSON Schema
-    default: Any = None  # None: there is none that a file could say
+    default: Any = None  # None: no default that a file could state
     example: str = ""  # TOML, where there is no default
-    words: str = ""  # what is legal, where the schema alone is hard to read
+    words: str = ""  # the valid values in words, where the schema alone is hard to read
 
 
 def number(*, least: float | None = None, most: float | None = None, above: float | None = None) -> Legal:
-    """A number in a range."""
+    """Schema of a number in a range."""
     ends = {"minimum": least, "maximum": most, "exclusiveMinimum": above}
     return {"type": "number", **{name: end for name, end in ends.items() if end is not None}}
 
 
 def whole(**ends: float) -> Legal:
-    """A whole number in a range."""
+    """Schema of an integer in a range."""
     return {**number(**ends), "type": "integer"}
 
 
 def word(*legal: str) -> Legal:
-    """One of these words."""
+    """Schema of one of several words."""
     return {"enum": list(legal)}
 
 
 def several(item: Legal, least: int = 1, **more: Any) -> Legal:
-    """A list."""
+    """Schema of a list."""
     return {"type": "array", "items": item, "minItems": least, **more}
 
 
 def either(*kinds: Legal) -> Legal:
-    """Any of these."""
+    """Schema of a value that matches any of several schemas."""
     return {"anyOf": list(kinds)}
 
 
 def table(keys: Mapping[str, Legal], required: tuple[str, ...] = ()) -> Legal:
-    """A table with no other keys."""
+    """Schema of a table without further keys."""
     return {
         "type": "object", "properties": dict(keys), "required": list(required),
         "additionalProperties": False,
@@ -73,13 +73,13 @@ def table(keys: Mapping[str, Legal], required: tuple[str, ...] = ()) -> Legal:
 
 
 def with_unit(kind: str) -> Legal:
-    """A number with a unit of a kind."""
+    """Schema of a number with a unit of the given kind."""
     units = "|".join(re.escape(unit) for unit in spellings(kind))
     return {"type": "string", "pattern": rf"^{NUMBER} ?({units})$"}
 
 
 def axis(kind: str, **ends: float) -> Legal:
-    """Values, or a range of them; `kind`: what they measure if they may have a unit, or ""."""
+    """Schema of an axis: values or a range; `kind` is the kind of unit that values may have, or ""."""
     value, step = number(**ends), number(above=0.0)
     if kind:
         value, step = either(value, with_unit(kind)), either(step, with_unit(kind))
@@ -136,49 +136,52 @@ def _unit(name: str, meaning: str) -> Key:
 
 #: Keys by table; "" is no table.
 KEYS: dict[str, tuple[Key, ...]] = {
-    "": (Key("title", "what pictures and files are called", _TEXT, example='"A title"'),),
+    "": (Key("title", "title of plots and files", _TEXT, example='"A title"'),),
     "system": (
-        _of_system("contact", "where the friction acts", word(*CONTACTS)),
+        _of_system("contact", "kind of contact", word(*CONTACTS)),
         _of_system(
             "contact_masses",
-            "the mass in contact, or the two for between-masses, A < B; counted from 1",
+            "the mass in contact, or for between-masses the two masses A < B; counted from 1",
             several(_DOF, maxItems=2),
-            words='a list of one whole number >= 1, or of two; or of labels of a file, "NODE.DOF"',
+            words='a list of one or two whole numbers >= 1, or of labels of a file, "NODE.DOF"',
         ),
-        _of_system("load_mass", "the mass that the harmonic load acts on, counted from 1", _DOF),
+        _of_system("load_mass", "the mass on which the harmonic load acts, counted from 1", _DOF),
         Key(
             "load",
-            "instead of load_mass, one load a mass, over P",
+            "instead of load_mass: the load on every mass, over P",
             several(either(number(), several(number(), 2, maxItems=2))),
             example="[1.0]",
-            words="a number, or [real part, imaginary part], for every mass",
+            words="for every mass a number or [real part, imaginary part]",
         ),
         _of_system(
-            "mass_ratios", "gamma_i = m_i/m_1 of a chain, the first one 1", _RATIOS, words="numbers > 0"
+            "mass_ratios",
+            "gamma_i = m_i/m_1 of a chain; the first is 1",
+            _RATIOS,
+            words="numbers > 0",
         ),
         _of_system(
             "stiffness_ratios",
-            "kappa_i = k_i/k_1 of its springs, the first one 1; spring 1 ties mass 1 to the ground",
+            "kappa_i = k_i/k_1 of a chain; the first is 1; spring 1 connects mass 1 to the ground",
             _RATIOS,
             words="numbers > 0",
         ),
         Key(
             "damping_ratios",
-            "zeta of every mode, or a list, one a mode",
+            "damping ratio zeta of all modes, or a list with one value per mode",
             either(_ZETA, several(_ZETA)),
             0.0,
             words=f"numbers from 0 to {checks.LARGEST_DAMPING:g}",
         ),
         Key(
             "matrices",
-            "instead of the ratios, any structure: arrays M, K, optionally C instead of damping_ratios",
+            "instead of the ratios: matrices M, K and, instead of damping_ratios, C of any structure",
             either(_NAME, _MATRICES),
             example='"frame.npz"',
-            words='the path of a file with all, or { M = "m.mtx", K = "k.mtx" }, or { M = [[...]], ... }',
+            words='path of a file with all of them, or { M = "m.mtx", K = "k.mtx" }, or { M = [[...]], ... }',
         ),
         Key(
             "reduce",
-            "with matrices, reduce them to contact, load, the degrees of freedom kept and so many modes",
+            "with matrices: reduce them to contact, load, the degrees of freedom to keep and some modes",
             table(
                 {
                     "keep": several(_DOF, 0),
@@ -188,67 +191,73 @@ KEYS: dict[str, tuple[Key, ...]] = {
                 ("modes",),
             ),
             example="{ keep = [17, 112], modes = 16 }",
-            words="{ keep, modes, allow }; allow is the relative error, 0.001 if left out",
+            words="{ keep, modes, allow }; allow is the largest relative error (default 0.001)",
         ),
         Key(
             "rayleigh",
-            "with matrices, instead of damping_ratios, [a, b] of C = a M + b K",
+            "with matrices, instead of damping_ratios: [a, b] of C = a M + b K",
             several(number(least=0.0), 2, maxItems=2),
             example="[0.1, 1e-5]",
             words="two numbers >= 0",
         ),
         Key(
             "decouple",
-            "with a C that couples the modes, take its diagonal, if linear responses change by no more",
+            "if C couples the modes: use its diagonal if linear responses change by no more than this",
             number(above=0.0, most=1.0),
             example="0.02",
         ),
         Key(
             "frequency_scale",
-            "with matrices, what r = 1 is, in the units of sqrt(K/M); else the first natural frequency",
+            "with matrices: frequency at r = 1, in units of sqrt(K/M); default: first natural frequency",
             number(above=0.0),
             example="12.3",
         ),
         _of_system(
             "stiffness_scale",
-            "with matrices, displacements are over P/stiffness_scale, in the units of K",
+            "with matrices: displacements are over P/stiffness_scale; in the units of K",
             number(above=0.0),
         ),
         _of_system(
             "excitation",
-            "what shakes it: a force, or the base; always the base with a joined base-wall",
+            "excitation by a force or by the base; a joined base-wall always has base excitation",
             word(*EXCITATIONS),
         ),
         _of_system(
             "damping_reference",
-            "whether damping acts on velocities in space or relative to the base, which must move for that",
+            "whether damping acts on absolute velocities or on those relative to a moving base",
             word(*DAMPING_REFERENCES),
         ),
     ),
     "grid": (
         Key(
             "r",
-            "excitation frequency over natural frequency",
+            "frequency ratio: excitation frequency over natural frequency",
             axis(KINDS["r"], **AXES["r"]),
             example="1.0",
             words=_RANGE,
         ),
         Key(
             "beta",
-            "kinetic friction force over load amplitude",
+            "friction ratio: kinetic friction force over load amplitude",
             axis(KINDS["beta"], **AXES["beta"]),
             example="1.0",
             words=_RANGE,
         ),
-        _of_grid("mu", "static over kinetic friction force, >= 1", default=[1.0]),
+        _of_grid("mu", "static-to-kinetic friction ratio, >= 1", default=[1.0]),
     ),
     "solver": (
         _setting(
-            "start", "at rest, or in a large sliding motion; matters for mu > 1", word(*get_args(Start))
+            "start",
+            "initial state: at rest or in a large sliding motion",
+            word(*get_args(Start)),
         ),
-        _setting("cycles", "give up after so many excitation periods", whole(**RANGES["cycles"])),
-        _setting("tolerance", "on the state after one return", number(**RANGES["tolerance"])),
-        _setting("steps", "scan steps a period; changes speed only", whole(**RANGES["steps"])),
+        _setting("cycles", "maximum number of excitation periods", whole(**RANGES["cycles"])),
+        _setting(
+            "tolerance",
+            "tolerance on the change of the state over one period",
+            number(**RANGES["tolerance"]),
+        ),
+        _setting("steps", "scan steps per period; affects speed only", whole(**RANGES["steps"])),
         _setting(
             "skip",
             "integrate only the cells that no proof decides, or every cell with friction",
@@ -256,12 +265,12 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         _setting(
             "steady",
-            "solve for the periodic orbit, or march until the motion returns",
+            "solve for the periodic orbit, or integrate until the motion repeats",
             word(*get_args(Steady)),
         ),
         Key(
             "outputs",
-            "what is computed and kept of every cell",
+            "output variables of every cell",
             several(word(*OUTPUTS)),
             list(_SOLVER.outputs),
         ),
@@ -269,43 +278,44 @@ KEYS: dict[str, tuple[Key, ...]] = {
     "curves": (
         Key(
             "quantities",
-            "what response curves hold",
+            "output variables of response curves",
             several(word(*get_args(Quantity))),
             list(_CURVES.quantities),
         ),
-        Key(
-            "harmonics", "the highest harmonic kept; 0: none", whole(**RANGES["harmonics"]), _CURVES.harmonics
-        ),
+        Key("harmonics", "highest harmonic; 0: none", whole(**RANGES["harmonics"]), _CURVES.harmonics),
     ),
     "units": (
-        _unit("natural_frequency", "what r = 1 is: sqrt(k_1/m_1)/(2 pi), or frequency_scale/(2 pi)"),
-        _unit("load", "what beta = 1 is: the load's amplitude P, with a base that moves k_1 Y"),
-        _unit("base_amplitude", "instead of the load: Y, where the base moves"),
-        _unit("base_acceleration", "instead of the load: that of the base, at acceleration_frequency"),
-        _unit("acceleration_frequency", "the frequency at which base_acceleration holds"),
-        _unit("stiffness", "k_1, or stiffness_scale: amplitudes are over P/k_1"),
-        _unit("mass", "instead of the stiffness of a chain: m_1"),
+        _unit("natural_frequency", "frequency at r = 1: sqrt(k_1/m_1)/(2 pi), or frequency_scale/(2 pi)"),
+        _unit("load", "friction force at beta = 1: the load amplitude P, or k_1 Y for base excitation"),
+        _unit("base_amplitude", "instead of the load: base displacement amplitude Y"),
+        _unit(
+            "base_acceleration",
+            "instead of the load: base acceleration at acceleration_frequency",
+        ),
+        _unit("acceleration_frequency", "frequency of base_acceleration"),
+        _unit("stiffness", "k_1, or stiffness_scale: displacements are over P/k_1"),
+        _unit("mass", "instead of the stiffness, for a chain: m_1"),
     ),
 }
 
-#: What is said of a table as a whole.
+#: Descriptions of the tables.
 TABLES = {
     "system": "The structure, its contact and its load.",
-    "grid": "The map: rows, columns, and one map for every mu.",
-    "solver": "How steady states are found, and what is kept of them.",
-    "curves": "For `frictionmap curves` only: beta is then a short list.",
-    "units": "Optional: what r = 1 and beta = 1 are. [grid] may then be in hertz and newtons.",
-    "axes": "Further axes: numbers of [system] that change, alone or several together from a CSV.",
+    "grid": "The grid of the map: r, beta, and one map per mu.",
+    "solver": "How steady states are found, and the output variables.",
+    "curves": "For `frictionmap curves` only, which takes a short list of beta.",
+    "units": "Optional: reference values that convert ratios to Hz and N; [grid] may then use these units.",
+    "axes": "Further axes: values of [system] that vary, one per axis, or several together from a CSV.",
 }
 
 
 def names(section: str) -> tuple[str, ...]:
-    """The keys of a table."""
+    """List the names of the keys of a table."""
     return tuple(key.name for key in KEYS[section])
 
 
 def in_words(key: Key) -> str:
-    """What is legal for a key, in a few words."""
+    """Describe the valid values of a key in a few words."""
     return key.words or _in_words(key.legal)
 
 

@@ -1,4 +1,4 @@
-"""Configurations to begin with: every key with its meaning, what is legal, and its default."""
+"""Commented configurations: every key with its meaning, valid values and default."""
 
 import textwrap
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ _WIDTH = 100
 
 
 class _Start(NamedTuple):
-    """What a configuration to begin with says of a contact."""
+    """The entries of a commented configuration that depend on the kind of contact."""
 
     title: str
     system: Mapping[str, str]  # TOML, by keys
@@ -39,8 +39,8 @@ _HEAD = """\
 #     frictionmap explore {name}.toml
 #     frictionmap map {name}.toml && frictionmap plot {name}.nc
 #
-# Above each key: what it means, and what is legal.  A line such as #cycles = 2000 shows the default, where
-# there is one, else an example.  `frictionmap schema` prints what editors complete and check this file by.
+# Above each key: its meaning and its valid values.  A line such as #cycles = 2000 shows the default or, if
+# there is none, an example.  With the output of `frictionmap schema` editors complete and check this file.
 """
 
 _AXES = """\
@@ -48,15 +48,15 @@ _AXES = """\
 # ---- [axes]: {what}
 #[axes]
 #damping_ratios = [0.0, 0.01, 0.05]
-#"stiffness_ratios[2]" = {{ start = 0.5, stop = 2.0, num = 4 }}    # one of a list, counted from 1
+#"stiffness_ratios[2]" = {{ start = 0.5, stop = 2.0, num = 4 }}    # one entry of a list, counted from 1
 #sample = {{ file = "variants.csv" }}    # columns named like the keys above
 """
 
 
 def starting_configuration(name: str, contact: str = "fixed-wall") -> str:
-    """The text of a configuration of a map, which runs as it stands.
+    """Return the text of a commented configuration of a map, which runs as it stands.
 
-    name : of the file, without its ending
+    name : file name without its suffix
     contact : one of `System`
     """
     start = _STARTS[contact]
@@ -74,7 +74,7 @@ def starting_configuration(name: str, contact: str = "fixed-wall") -> str:
 
 
 def section_text(section: str, keys: tuple[Key, ...], said: Mapping[str, str], what: str = "") -> str:
-    """A table with all its keys; what is not said is a comment."""
+    """Write a table with all its keys; keys without a given value are commented out."""
     lines = ["", f"# ---- [{section}]: {what or TABLES[section]}", f"[{section}]"] if section else []
     for key in keys:
         lines += ["", *_explained(key), _line(key, said)]

@@ -8,14 +8,39 @@ from typing import Any, NamedTuple, NoReturn
 
 from .version import __version__
 
-__all__ = ["CONTACTS", "RIGS", "SHELLS", "Argument", "Command", "Options", "described", "one_line", "parse"]
+__all__ = [
+    "CONTACTS",
+    "QUANTITIES",
+    "RIGS",
+    "SHELLS",
+    "Argument",
+    "Command",
+    "Options",
+    "build_parser",
+    "described",
+    "one_line",
+    "parse",
+]
 
 #: Valid contacts of `System` and kinds of data of `identify`.  They are repeated here because importing them
 #: would take longer than all of `--help`; a test compares them.
 CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 RIGS = ("free-decay", "forced", "record", "sweep")
 
-SHELLS = ("bash", "zsh", "fish")
+#: Shells that shtab knows; repeated here as the above, and compared by the same test.
+SHELLS = ("bash", "zsh", "tcsh", "fish", "powershell")
+
+#: Quantities of response curves and of responses that `plot` draws, compared by the same test.
+QUANTITIES = (
+    "amplitude",
+    "first_harmonic",
+    "contact",
+    "harmonics",
+    "energy",
+    "transmitted_force",
+    "history",
+    "orbit",
+)
 
 _DESCRIPTION = """\
 Exact regime maps of a vibrating structure with one dry-friction contact: does the contact slide
@@ -181,7 +206,8 @@ def _takes_workers(sub: argparse.ArgumentParser) -> None:
     where.add_argument("--scheduler", metavar="ADDRESS", type=_address, action=_Once, help=text)
 
 
-def _parser() -> argparse.ArgumentParser:
+def build_parser() -> argparse.ArgumentParser:
+    """Build the parser of the whole command line."""
     parser = _Parser(
         prog="frictionmap",
         description=_DESCRIPTION,
@@ -259,7 +285,7 @@ def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser
     sub = command("schema", "JSON schema of configurations, for editors", text)
     sub.add_argument("--rig", action="store_true", help="schema of configurations for identify")
     text = "Print the completion script of a shell, to be loaded when the shell starts."
-    sub = command("completion", "shell completion for bash, zsh or fish", text)
+    sub = command("completion", "shell completion for bash, zsh, tcsh, fish or PowerShell", text)
     sub.add_argument("shell", choices=SHELLS, metavar="SHELL", help=f"one of {', '.join(SHELLS)}")
 
 
@@ -284,7 +310,7 @@ class Command(NamedTuple):
 
 def described() -> Iterator[Command]:
     """List every command with its arguments, for completion and for the manual."""
-    parser = _parser()
+    parser = build_parser()
     (commands,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
     for listed in commands._choices_actions:
         sub = commands.choices[listed.dest]
@@ -302,4 +328,4 @@ def _described(action: argparse.Action) -> Argument:
 
 def parse(arguments: Sequence[str]) -> Options:
     """Parse and check the arguments; help, version and errors end the program."""
-    return _parser().parse_args(arguments)
+    return build_parser().parse_args(arguments)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .arguments import CONTACTS, Options, described, one_line, parse
+from .arguments import CONTACTS, QUANTITIES, Options, build_parser, one_line, parse
 from .errors import InputError, NoSteadyState
 
 if TYPE_CHECKING:
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from .progress import Progress
     from .stores.run import Fill
 
+
+#: Beginnings of --at that a shell completes: the further axes in most frequent use.
+_FURTHER_AXES = ("damping_ratios=", "mass_ratios_2=", "stiffness_ratios_2=", "sample=")
 
 #: Cells of a map from which on its cost is told before it is taken.
 _MANY = 3_000_000
@@ -354,8 +357,12 @@ def _completion(options: Options) -> None:
     from .files.keys import KEYS
     from .identify.rig_keys import rig_settings
 
-    settings = [f"{section}.{key.name}" for section, keys in KEYS.items() if section for key in keys]
-    _print(completion(options.shell, list(described()), {"identify": rig_settings(), "": settings}))
+    settings = [f"{section}.{key.name}=" for section, keys in KEYS.items() if section for key in keys]
+    words: dict[str, dict[str, Sequence[str]]] = {
+        "identify": {"--set": [f"{key}=" for key in rig_settings()]},
+        "": {"--set": settings, "--at": _FURTHER_AXES, "--quantity": QUANTITIES},
+    }
+    _print(completion(build_parser(), options.shell, words))
 
 
 def _print(text: str) -> None:

@@ -9,13 +9,14 @@ import tomllib
 import jsonschema
 import numpy as np
 import pytest
+import shtab
 from conftest import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
 from test_cli import BAD_CONFIGURATIONS, listing, toml
 
 from frictionmap import InputError, load_config
-from frictionmap.arguments import CONTACTS, RIGS, SHELLS, described
+from frictionmap.arguments import CONTACTS, QUANTITIES, RIGS, SHELLS, build_parser, described
 from frictionmap.cli import main
 from frictionmap.completion import completion
 from frictionmap.examples import TRUTHS, starting_rig
@@ -27,6 +28,7 @@ from frictionmap.identify.rig_keys import rig_keys, rig_schema
 from frictionmap.identify.rig_record import SYSTEM_KEYS as RECORD_SYSTEM
 from frictionmap.identify.rig_sweep import SYSTEM_KEYS as SWEEP_SYSTEM
 from frictionmap.model import system
+from frictionmap.pictures.curves import CURVE_QUANTITIES
 
 MAPS = sorted([*(ROOT / "configs").glob("*.toml"), *(ROOT / "configs" / "studies").glob("*.toml")])
 RIG_FILES = sorted((ROOT / "configs" / "rigs").glob("*.toml"))
@@ -120,6 +122,8 @@ def test_nothing_is_overwritten_unasked(tmp_path, monkeypatch, capsys):
 def test_words_of_the_command_line_are_those_of_the_program():
     assert CONTACTS == system.CONTACTS
     assert tuple(KINDS) == RIGS
+    assert set(shtab.SUPPORTED_SHELLS) >= set(SHELLS)
+    assert (*CURVE_QUANTITIES, "history", "orbit") == QUANTITIES
 
 
 # schema
@@ -313,24 +317,26 @@ def test_completion(shell, ask, tmp_path, capsys):
         "solver.steady=",
     }
     assert ask(["identify", "--set", "known.x_"], tmp_path) == {"known.x_F="}
+    assert ask(["plot", "--quantity", "o"], tmp_path) == {"orbit"}
+    assert ask(["plot", "--at", "damp"], tmp_path) == {"damping_ratios="}
     assert {one.rstrip("/") for one in ask(["map", ""], tmp_path)} == {"one.toml", "folder"}
     assert {one.rstrip("/") for one in ask(["plot", ""], tmp_path)} == {"map.nc", "folder"}
 
 
 @pytest.mark.parametrize("shell", SHELLS)
 def test_completion_is_a_script_of_its_shell_and_names_every_option(shell):
-    script = completion(shell, list(described()), {"": ["grid.r"]})
+    script = completion(build_parser(), shell, {"": {"--set": ["grid.r="]}})
     for command in described():
         assert command.name in script
         for argument in command.arguments:
             for flag in argument.flags:
-                assert (flag if shell != "fish" else flag.lstrip("-")) in script
+                assert (flag if shell not in ("fish", "tcsh") else flag.lstrip("-")) in script
     if shutil.which(shell):
         assert subprocess.run([shell, "-n", "-c", script], check=False).returncode == 0
 
 
 def test_an_unknown_shell_is_refused(capsys):
     with pytest.raises(SystemExit) as stop:
-        main(["completion", "tcsh"])
+        main(["completion", "sh"])
     assert stop.value.code == 2
-    assert "invalid choice: 'tcsh'" in capsys.readouterr().err
+    assert "invalid choice: 'sh'" in capsys.readouterr().err

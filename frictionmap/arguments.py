@@ -1,6 +1,7 @@
 """Command-line arguments: every command with its options and help texts."""
 
 import argparse
+from argparse import Action, ArgumentParser
 from argparse import Namespace as Options
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -13,13 +14,16 @@ __all__ = [
     "QUANTITIES",
     "RIGS",
     "SHELLS",
+    "Action",
     "Argument",
+    "ArgumentParser",
     "Command",
     "Options",
     "build_parser",
     "described",
     "one_line",
     "parse",
+    "subcommands",
 ]
 
 #: Valid contacts of `System` and kinds of data of `identify`.  They are repeated here because importing them
@@ -308,10 +312,15 @@ class Command(NamedTuple):
     arguments: tuple[Argument, ...]
 
 
+def subcommands(parser: ArgumentParser) -> argparse._SubParsersAction:
+    """Return the action of a parser that holds the parsers of its commands, by name, as `choices`."""
+    (commands,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    return commands
+
+
 def described() -> Iterator[Command]:
     """List every command with its arguments, for completion and for the manual."""
-    parser = build_parser()
-    (commands,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    commands = subcommands(build_parser())
     for listed in commands._choices_actions:
         sub = commands.choices[listed.dest]
         usage = " ".join(sub.format_usage().removeprefix("usage: ").split())

@@ -3,12 +3,13 @@
 The scripts contain all words, so the program does not run when the Tab key is pressed.
 """
 
-import argparse
 import re
 import shlex
 from collections.abc import Mapping, Sequence
 
 import shtab
+
+from .arguments import Action, ArgumentParser, subcommands
 
 #: Suffixes of the files that a metavar stands for; other metavars contain their suffixes.
 _FILES = {"FILE": ("nc", "zarr"), "PICTURE": ("png", "pdf", "svg"), "OUT": ("nc", "csv")}
@@ -27,15 +28,14 @@ complete -o bashdefault -F _frictionmap frictionmap
 """
 
 
-def completion(parser: argparse.ArgumentParser, shell: str, words: Words) -> str:
+def completion(parser: ArgumentParser, shell: str, words: Words) -> str:
     """Return the completion script of a shell.
 
     parser : of the whole command line; its arguments get the attribute `complete` that shtab reads
     shell : one of `shtab.SUPPORTED_SHELLS`
     words : what may follow an option such as "--set", by command
     """
-    (commands,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
-    for name, sub in commands.choices.items():
+    for name, sub in subcommands(parser).choices.items():
         for action in sub._actions:
             complete = _completer(action, words.get(name, {}), words[""])
             if complete is not None:
@@ -44,7 +44,7 @@ def completion(parser: argparse.ArgumentParser, shell: str, words: Words) -> str
     return script + _BASH_NO_SPACE if shell == "bash" else script
 
 
-def _completer(action: argparse.Action, own: Mapping, common: Mapping) -> dict | None:
+def _completer(action: Action, own: Mapping, common: Mapping) -> dict | None:
     """Return what shtab needs to complete an argument: words or files; None: its choices, or nothing."""
     for flag in action.option_strings:
         if found := own.get(flag) or common.get(flag):

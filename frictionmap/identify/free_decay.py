@@ -10,11 +10,14 @@ from ..errors import InputError
 from ..units.table import checked_unit, conversion
 from .cautions import bounded, coloured, trading
 from .decay_checks import checked_record, checked_turning_points, largest_gap, unclipped, within
-from .decay_fit import DRIFT, X_F, ZETA, Fit, Record, fit_decay
+from .decay_errors import decay_errors, decay_solution
+from .decay_fit import Fit, fit_decay, noise_variance
 from .decay_motion import PARAMETERS
+from .decay_problem import DRIFT, X_F, ZETA, Record
+from .decay_wander import fit_with_wander
 from .estimates import estimates, number, verdict
-from .least_squares import Errors, Problem, Solution, errors
-from .robust import LOSSES, effective_variance, softened
+from .least_squares import Errors
+from .robust import LOSSES
 from .turning_points import TurningPoints, linear_decrement, noise_level, without_spikes
 
 #: Estimates so many standard errors above zero are found.
@@ -112,12 +115,13 @@ def free_decay(
     points = checked_turning_points(t, without_spikes(data) if loss == "soft_l1" else data)
     outliers = noise_level(data) if loss == "soft_l1" else 0.0
     record = Record(t, data, held, names, outliers or None)  # exact data have none
-    fit, problem = fit_decay(record, points)
-    found, variance, solution = _errors(record, fit, problem)
-    losses = _losses(record, points, fit, variance * found.inflation**2)
+    record, fits = fit_with_wander(record, points)
+    fit = fits[0]
+    found, solution = decay_errors(record, fits), decay_solution(record, fit)
+    losses = _losses(record, points, fit)
     meanings = {name: _MEANINGS[name] for name in names}
     units = (*_units(unit), f"{unit}/s")[: len(names)]
-    ds = estimates(meanings, units, solution, found, problem.free, data, unit)
+    ds = estimates(meanings, units, solution, found, record.free[: len(names)], data, unit)
     ds["time"] = xr.Variable("sample", t, {"long_name": "time", "units": "s"})
     ds["verdict"] = verdict(_verdict(fit, found, losses), _VERDICTS)
     ds["likelihood_ratio_friction"] = number(losses["x_F"], _LOSS.format("friction"))
@@ -129,7 +133,7 @@ def free_decay(
         )
     ds = ds.assign(_motion(fit, unit)).assign(_scaled(fit, found, unit, base, stiffness))
     ds.attrs["title"] = "Free decay"
-    ds.attrs["warnings"] = "; ".join(_warnings(times, good, fit, found))
+    ds.attrs["warnings"] = "; ".join(_warnings(times, good, record, fits, found))
     return ds
 
 
@@ -155,21 +159,9 @@ def _units(unit: str) -> tuple[str, ...]:
     return ("Hz", "1", unit, unit, "s", unit)
 
 
-def _errors(record: Record, fit: Fit, problem: Problem) -> tuple[Errors, float, Solution]:
-    """Errors, the variance of a sample that they rest on, and the solution with its plain residuals."""
-    if record.outliers is None:
-        found = errors(problem, fit.solution)
-        return found, found.variance, fit.solution
-    variance = effective_variance(problem, fit.solution, record.outliers)
-    found = errors(softened(problem, record.outliers), fit.solution, variance)
-    plain = fit.solution._replace(residual=problem.residuals(fit.solution.values)[0])
-    freedom = plain.residual.size - int(problem.free.sum())
-    return found._replace(variance=plain.sum / freedom), variance, plain
-
-
-def _losses(record: Record, points: TurningPoints, fit: Fit, variance: float) -> dict[str, float]:
+def _losses(record: Record, points: TurningPoints, fit: Fit) -> dict[str, float]:
     """Growth of the sum of squares without friction, and without damping, over the variance of a sample."""
-    losses = {}
+    losses, variance = {}, noise_variance(record, fit)
     for name in ("x_F", "zeta"):
         if name in record.known:
             losses[name] = 0.0
@@ -230,7 +222,9 @@ def _scaled(
     return result
 
 
-def _warnings(time: np.ndarray, good: np.ndarray, fit: Fit, found: Errors) -> list[str]:
+def _warnings(
+    time: np.ndarray, good: np.ndarray, record: Record, fits: list[Fit], found: Errors
+) -> list[str]:
     """What to mind, in words."""
     words = []
     if not good.all():
@@ -239,5 +233,22 @@ def _warnings(time: np.ndarray, good: np.ndarray, fit: Fit, found: Errors) -> li
         words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
     pair = np.ix_((ZETA, X_F), (ZETA, X_F))
     words += coloured(found) + trading(("zeta", "x_F"), found.correlation[pair])
-    names = (*PARAMETERS, DRIFT)[: fit.solution.values.size]
-    return words + bounded(names, np.zeros(len(names)), fit.solution.at_bound)
+    words += _wandering(record) + _other_counts(fits)
+    named = len(record.names)
+    return words + bounded(record.names, np.zeros(named), fits[0].solution.at_bound[:named])
+
+
+def _wandering(record: Record) -> list[str]:
+    """A slow part of the residuals, in words."""
+    if record.terms == 0:
+        return []
+    drift = "" if DRIFT in record.names else "; drift = true fits a linear one"
+    return [
+        f"the residuals have a low-frequency part: the zero of the measurement wanders (fitted by a polynomial "
+        f"of time, degree {record.terms + (DRIFT in record.names)}{drift})"
+    ]
+
+
+def _other_counts(fits: list[Fit]) -> list[str]:
+    """Other numbers of half cycles that fit alike, in words."""
+    return []

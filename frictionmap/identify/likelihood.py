@@ -10,9 +10,9 @@ from ..errors import InputError
 from .chain_estimates import chain_names
 from .chain_fit import Measured
 from .chain_fit import problem as chain_problem
-from .decay_fit import DRIFT, Record
-from .decay_fit import problem as decay_problem
 from .decay_motion import PARAMETERS
+from .decay_problem import DRIFT, Record
+from .decay_problem import problem as decay_problem
 from .least_squares import Problem
 
 #: Half cycles of a decay that does not come to rest within any record.

@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .decay_motion import PARAMETERS, Decay, amplitudes, half_period
+from .correlation import long_inflation
+from .decay_motion import PARAMETERS, Decay, amplitudes, half_period, in_record, is_possible
 from .decay_problem import Record, plain_problem, problem
 from .decay_starts import Start, improving, starts
-from .least_squares import Problem, Solution, inflation, minimise
+from .least_squares import Problem, Solution, minimise
 from .robust import effective_variance
 from .turning_points import TurningPoints
 
@@ -47,51 +48,58 @@ class Fit(NamedTuple):
     @property
     def possible(self) -> bool:
         """Whether the spring overcame friction at every turning point that the mass left."""
-        left = self.heights[:-1] if self.at_rest else self.heights
-        return bool((left > self.decay.x_F).all()) or self.decay.x_F == 0.0
+        return is_possible(self.decay, self.half_cycles)
 
 
 def fit_decay(record: Record, points: TurningPoints) -> list[Fit]:
     """Fits with different numbers of half cycles that the noise cannot distinguish, the best one first.
 
-    The best one has the least sum of those in which friction would not have held the mass before, if there are any.
+    It has the least sum, if possible of those in which friction would not have held the mass before.
     """
     some = improving(record)
     least = reference = np.inf
     allowed = 0.0
     fits: list[Fit] = []
-    for start in sorted(starts(record, points), key=lambda start: start.sum):
-        if start.sum > reference + _HOPELESS * allowed or len(fits) == _MOST_FITS:
-            break
+    for start in sorted(starts(record, points), key=lambda start: (not start.possible, start.sum)):
+        # what friction would have held counts only if it fits clearly better
+        margin = _HOPELESS if start.possible else -_AS_GOOD
+        if start.sum > reference + margin * allowed or len(fits) == _MOST_FITS:
+            continue
         fits.append(_fit(record, start))
         if fits[-1].solution.sum < least:
             least, allowed = fits[-1].solution.sum, noise_variance(record, fits[-1])
             reference = _sum(some, start.n, fits[-1].solution.values)
     alike = [fit for fit in fits if fit.solution.sum <= least + _AS_GOOD * allowed]
     alike.sort(key=lambda fit: (not fit.possible, fit.solution.sum))
-    return [fit for fit in alike if _same_release(fit, alike[0])]
+    best = alike[0]
+    return [best, *(fit for fit in alike[1:] if fit.possible and _same_release(fit, best))]
 
 
 def noise_variance(record: Record, fit: Fit) -> float:
     """The variance of a sample that tells chance from a worse fit: larger where residuals are correlated."""
     rounding = (_ROUNDING * float(np.ptp(record.x))) ** 2
-    return max(sample_variance(record, fit) * inflation(fit.solution.residual)[1] ** 2, rounding)
+    return max(sample_variance(record, fit) * long_inflation(fit.solution.residual) ** 2, rounding)
 
 
 def sample_variance(record: Record, fit: Fit) -> float:
     """The variance of a sample by which slopes give the errors of estimates."""
     if record.outliers is not None:
         return effective_variance(fit.plain, fit.solution, record.outliers)
-    return fit.solution.sum / (record.time.size - int(record.free.sum()))
+    return fit.solution.sum / freedom_of(record)
+
+
+def freedom_of(record: Record) -> int:
+    """Samples less unknowns."""
+    return record.time.size - int(record.free.sum())
 
 
 def _fit(record: Record, start: Start) -> Fit:
     task = problem(record, start.n, start.values)
     solution = minimise(task, start.values)
     decay = Decay(*solution.values[: len(PARAMETERS)])
-    in_record = int((record.time[-1] - decay.t0) / half_period(decay))
+    most = in_record(decay, record.time[-1])
     plain = plain_problem(record, start.n, start.values)
-    return Fit(start.n, solution, min(start.n, in_record + 1), start.n <= in_record, task, plain)
+    return Fit(start.n, solution, min(start.n, most + 1), start.n <= most, task, plain)
 
 
 def _sum(record: Record, n: int, values: np.ndarray) -> float:

@@ -32,7 +32,9 @@ class Record(NamedTuple):
     known: Mapping[str, float]  # parameters that are held
     names: tuple[str, ...]  # of all parameters: those of a decay, and perhaps the drift
     outliers: float | None = None  # residuals beyond this have little weight
-    wander: np.ndarray | None = None  # shape (samples, terms): slow functions of time that the zero may follow
+    wander: np.ndarray | None = (
+        None  # shape (samples, terms): slow functions of time that the zero may follow
+    )
 
     def thinned(self, most: int) -> "Record":
         """The record with no more samples than `most`, or a few."""

@@ -1,14 +1,14 @@
 """Where the fit of a decay starts: each number of half cycles before rest, at a least sum of its own.
 
-A decay is linear in x_F, X0, the centre and the drift.  Frequency and t0 are taken from the turning points and
-zeta from a list, and the linear unknowns are solved for.  Steps of Levenberg and Marquardt improve the result.
+A decay is linear in x_F, X0, the centre and the drift.  Frequency and t0 are taken from the turning points,
+zeta from a list, the linear unknowns are solved for, and steps of Levenberg and Marquardt improve the result.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from .decay_motion import PARAMETERS
+from .decay_motion import PARAMETERS, Decay, in_record, is_possible
 from .decay_problem import X_F, Record, model, problem
 from .turning_points import TurningPoints, hides_turning_points
 
@@ -38,6 +38,13 @@ class Start(NamedTuple):
     n: int  # half cycles before rest
     values: np.ndarray  # shape (unknowns,)
     sum: float  # of squares, of the samples of `improving`
+    end: float  # of the record, s
+
+    @property
+    def possible(self) -> bool:
+        """Whether the spring overcomes friction at every turning point that the mass leaves in the record."""
+        decay = Decay(*self.values[: len(PARAMETERS)])
+        return is_possible(decay, max(1, min(self.n, in_record(decay, self.end) + 1)))
 
 
 class _Release(NamedTuple):
@@ -54,13 +61,24 @@ def improving(record: Record) -> Record:
 
 
 def starts(record: Record, points: TurningPoints) -> list[Start]:
-    """The best start for each number of half cycles that is possible, and for no rest within the record."""
+    """The best start for each number of half cycles before rest, and for no rest, by their sums."""
     half = _half_period(points)
-    return [
+    found = [
         start
         for release in _releases(record.time, points, half)
         for start in _of_release(record, release, half)
     ]
+    different: list[Start] = []
+    for start in sorted(found, key=lambda start: start.sum):
+        if not any(_alike(start, other, half) for other in different):
+            different.append(start)
+    return different
+
+
+def _alike(one: Start, other: Start, half: float) -> bool:
+    """Whether two starts have the same number of half cycles after the same turning point."""
+    t0 = PARAMETERS.index("t0")
+    return one.n == other.n and abs(one.values[t0] - other.values[t0]) < 0.5 * half
 
 
 def _half_period(points: TurningPoints) -> float:
@@ -88,13 +106,13 @@ def _releases(time: np.ndarray, points: TurningPoints, half: float) -> list[_Rel
 def _of_release(record: Record, release: _Release, half: float) -> list[Start]:
     """The best start for each number of half cycles after a release."""
     compared, improved = record.thinned(_COMPARED), improving(record)
-    in_record = int((record.time[-1] - record.known.get("t0", release.t0)) / half)
+    most = int((record.time[-1] - record.known.get("t0", release.t0)) / half)
     guesses = _guesses(record, release, half)
-    found = [_best_start(compared, improved, in_record + 2, guesses)]  # not at rest in the record
+    found = [_best_start(compared, improved, most + 2, guesses)]  # not at rest in the record
     if record.known.get("x_F") == 0.0:
         return found
     least, failed = np.inf, 0
-    for n in range(max(1, release.seen - _DOUBTED), in_record + 1):
+    for n in range(max(1, release.seen - _DOUBTED), most + 1):
         if n > release.seen and failed >= _HIDDEN:
             break
         found.append(_best_start(compared, improved, n, [*guesses, found[-1].values]))
@@ -155,7 +173,7 @@ def _improved(record: Record, n: int, values: np.ndarray) -> Start:
         values, residual, slopes, least, damping = trial, tried, its_slopes, found, damping * _FALL
         if settled:
             break
-    return Start(n, values, least)
+    return Start(n, values, least, float(record.time[-1]))
 
 
 def _step(residual: np.ndarray, slopes: np.ndarray, damping: float) -> np.ndarray:

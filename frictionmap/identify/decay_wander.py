@@ -1,17 +1,17 @@
 """A slow wander of the measured zero: found in the residuals, and described by polynomials of time.
 
-The lag-1 correlation of residuals does not see a wander that is smaller than the noise, although it moves the place of
-rest, and with it x_F, by many standard errors.  Legendre polynomials of degree d follow up to about d/pi cycles
-in a record.
+The lag-1 correlation of residuals does not see a wander that is smaller than the noise, although it moves the
+place of rest, and with it x_F, by many standard errors.  Legendre polynomials up to degree d follow about d/pi
+cycles in a record.
 """
 
 import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import chdtri
 
+from .correlation import long_inflation
 from .decay_fit import Fit, fit_decay
 from .decay_problem import DRIFT, Record, problem
-from .least_squares import inflation
 from .turning_points import TurningPoints
 
 #: Terms for each cycle of the decay: they follow what is slower than a quarter of its frequency.
@@ -47,7 +47,7 @@ def fit_with_wander(record: Record, points: TurningPoints) -> tuple[Record, list
 
 def _wander_terms(record: Record, fit: Fit) -> np.ndarray:
     """Slow functions of time, shape (samples, terms), that the residuals of a decay follow; perhaps none."""
-    basis = _polynomials(record, fit)
+    basis = polynomials(record, _most_terms(record, fit))
     wide = record._replace(wander=basis)
     named = len(record.names)
     values = np.concatenate((fit.solution.values[:named], np.zeros(basis.shape[1])))
@@ -56,7 +56,7 @@ def _wander_terms(record: Record, fit: Fit) -> np.ndarray:
     directions = np.linalg.qr(slopes[:, fitted])[0]
     shares = directions.T @ residual
     left = residual - directions @ shares
-    variance = float(left @ left) / (left.size - shares.size) * inflation(left)[1] ** 2
+    variance = float(left @ left) / (left.size - shares.size) * long_inflation(left) ** 2
     gains = np.cumsum(shares[-basis.shape[1] :] ** 2)
     if variance == 0.0:
         return basis[:, :0]
@@ -66,12 +66,16 @@ def _wander_terms(record: Record, fit: Fit) -> np.ndarray:
     return basis[:, : best + 1 if found else 0]
 
 
-def _polynomials(record: Record, fit: Fit) -> np.ndarray:
-    """Legendre polynomials over the record, from the first degree that is no unknown already."""
+def _most_terms(record: Record, fit: Fit) -> int:
+    """Terms that are slower than the decay."""
+    cycles = float(np.ptp(record.time)) * fit.decay.f_n
+    most = min(_MOST_TERMS, record.time.size // _SAMPLES_PER_TERM)
+    return int(np.clip(np.ceil(_TERMS_PER_CYCLE * cycles), min(_FEWEST_TERMS, most), most))
+
+
+def polynomials(record: Record, terms: int) -> np.ndarray:
+    """Legendre polynomials over a record, shape (samples, terms), above the degree of the named unknowns."""
     time = record.time
-    cycles = float(np.ptp(time)) * fit.decay.f_n
-    most = min(_MOST_TERMS, time.size // _SAMPLES_PER_TERM)
-    terms = int(np.clip(np.ceil(_TERMS_PER_CYCLE * cycles), min(_FEWEST_TERMS, most), most))
     lowest = 2 if DRIFT in record.names else 1
     scaled = 2.0 * (time - time[0]) / np.ptp(time) - 1.0
     return legendre.legvander(scaled, lowest + terms - 1)[:, lowest:]

@@ -16,8 +16,8 @@ _LEAST_SAMPLES = 8
 #: A step between two samples is a gap if it is longer than so many usual ones.
 _GAP = 3.0
 
-#: A gap of this share of half a cycle, or less, hides one turning point at most, and a parabola through both of
-#: its edges still locates that one.  A longer gap can hide several.
+#: A gap of this share of half a cycle, or less, hides one turning point at most, and a parabola through both
+#: of its edges still locates that one.  A longer gap can hide several.
 _BRIDGED = 0.9
 
 #: Samples on each side of an extreme one through which a parabola locates the turning point.
@@ -87,7 +87,7 @@ def gaps_after(time: np.ndarray, least: float = 0.0) -> np.ndarray:
 
 
 def hides_turning_points(time: np.ndarray, half: float) -> bool:
-    """Whether there is a gap in which more than one turning point may hide, half a period of `half` [s] apart."""
+    """Whether there is a gap that can hide more than one turning point, `half` [s] apart."""
     return time.size > 1 and gaps_after(time, _BRIDGED * half).size > 0
 
 
@@ -104,7 +104,7 @@ def _usual_half(time: np.ndarray, found: np.ndarray) -> float:
 
 
 def _numbered(times: np.ndarray, upper: np.ndarray, half: float) -> np.ndarray:
-    """Half cycles since the first turning point: odd between a maximum and a minimum, even between two alike."""
+    """Half cycles since the first turning point: odd from a maximum to a minimum, even between two alike."""
     odd = (upper[1:] != upper[:-1]).astype(int)
     steps = 2 * np.rint((np.diff(times) / half - odd) / 2.0).astype(int) + odd
     return np.concatenate(([0], np.cumsum(np.maximum(steps, 2 - odd))))[: times.size]

@@ -1,8 +1,8 @@
 """A slow wander of the measured zero: found in the residuals, and described by polynomials of time.
 
 The lag-1 correlation of residuals does not see a wander that is smaller than the noise, although it moves the
-place of rest, and with it x_F, by many standard errors.  Legendre polynomials up to degree d follow about d/pi
-cycles in a record.
+place of rest, and with it x_F, by many standard errors.  Legendre polynomials up to degree d follow d/pi
+cycles in a record, roughly.
 """
 
 import numpy as np

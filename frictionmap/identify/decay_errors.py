@@ -1,7 +1,7 @@
 """Errors of a decay: those of the best fit, and of others that the noise cannot distinguish from it.
 
-Where two numbers of half cycles fit alike, the profile of the sum over a parameter is the least one of two
-parabolas.  The 95 % interval holds all values at which one of them has grown by no more than is allowed.
+Where the noise hides the number of half cycles, an interval holds whichever number is right: it reaches from
+the least end of the intervals of all numbers that fit alike to the largest one.
 """
 
 import numpy as np
@@ -9,22 +9,15 @@ import numpy as np
 from .correlation import long_inflation
 from .decay_fit import Fit, freedom_of, sample_variance
 from .decay_problem import Record
-from .least_squares import Errors, Solution, errors, inflation, one_sided, two_sided
+from .least_squares import Errors, Solution, errors, inflation, one_sided
 
 
 def decay_errors(record: Record, fits: list[Fit]) -> Errors:
-    """Errors of the named parameters; the best fit is the first one."""
-    best, each = _of_one(record, fits[0]), [_of_one(record, fit) for fit in fits[1:]]
-    allowed = two_sided(freedom_of(record)) ** 2 * sample_variance(record, fits[0]) * best.inflation**2
-    lower, upper = best.lower.copy(), best.upper.copy()
-    for fit, found in zip(fits[1:], each, strict=True):
-        growth = max(fit.solution.sum - fits[0].solution.sum, 0.0)
-        if growth < allowed:
-            share = np.sqrt(1.0 - growth / allowed)
-            values = fit.solution.values[: lower.size]
-            lower = np.minimum(lower, values - share * (values - found.lower))
-            upper = np.maximum(upper, values + share * (found.upper - values))
-    return best._replace(lower=lower, upper=upper)
+    """Errors of the named parameters: intervals of all fits, the rest of the first one, which is the best."""
+    each = [_of_one(record, fit) for fit in fits]
+    lower = np.min([found.lower for found in each], axis=0)
+    upper = np.max([found.upper for found in each], axis=0)
+    return each[0]._replace(lower=lower, upper=upper)
 
 
 def decay_solution(record: Record, fit: Fit) -> Solution:

@@ -14,7 +14,12 @@ least_squares    least squares with bounds, standard errors, intervals, correlat
 robust           least squares in which outliers have little weight
 phasors          harmonics of a record, by least squares on one frequency
 cautions         what to mind of any fit, in words
-decay_fit        the decay nearest to all samples
+correlation      how much larger errors are because residuals are correlated
+decay_problem    least squares of a record on the exact decay
+decay_starts     where that starts, for each number of half cycles before rest
+decay_fit        the decays nearest to all samples
+decay_wander     a slow wander of the measured zero
+decay_errors     errors of decays that the noise cannot distinguish
 estimates        estimates as a dataset
 free_decay       `free_decay`: from arrays to estimates
 two_masses       two masses without friction in closed form

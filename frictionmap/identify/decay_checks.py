@@ -11,6 +11,10 @@ from .turning_points import TurningPoints, grows, noise_level, resolution, turni
 _CLIPPED_ROW = 3
 _CLIPPED_STEPS = 4.0
 
+#: Residuals so many times as large as the noise between samples, and beyond this share of the motion, are not
+#: those of a free decay.  Higher harmonics, and friction that is not constant, leave far less of a real one.
+_MISFIT, _MISFIT_SHARE = 10.0, 0.1
+
 #: A gap is longer than so many usual steps.
 _GAP = 3.0
 
@@ -82,8 +86,11 @@ def checked_turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
         raise InputError(f"time must have more samples: {wrong}")
     points = turning_points(time, x)
     if points.time.size < 2:  # the last extremum is where it rests, or where the record ends
+        gap = largest_gap(time)
+        outside = f" outside a gap of {gap:.4g} s" if gap else ""
         raise InputError(
-            f"x must be a longer decay: fewer than 3 extrema in {x.size} samples, no damping can be told"
+            f"x must be a longer decay: fewer than 3 extrema in {x.size} samples{outside}, "
+            "no damping can be told"
         )
     if grows(points, noise_level(x)):
         raise InputError(
@@ -91,3 +98,19 @@ def checked_turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
             f"{abs(points.place[1] - points.place[0]):.4g} to {abs(points.place[-1] - points.place[-2]):.4g})"
         )
     return points
+
+
+def check_misfit(x: np.ndarray, rms: float) -> None:
+    """Refuse a fit whose residuals are far above the noise between samples.
+
+    Raises
+    ------
+    InputError
+        The record does not follow a free decay, or no fit of it was found.
+    """
+    noise = noise_level(x)
+    if rms > _MISFIT * noise and rms > _MISFIT_SHARE * float(np.std(x)):
+        raise InputError(
+            f"cannot fit x as a free decay: the residuals ({rms:.4g} rms) are far above the noise between "
+            f"samples ({noise:.4g}); choose a window of one decay, without gaps, impacts or other motion"
+        )

@@ -47,6 +47,16 @@ def amplitudes(decay: Decay, n: int) -> np.ndarray:
     return result
 
 
+def is_possible(decay: Decay, left: int) -> bool:
+    """Whether the spring overcomes friction at the first `left` turning points, which the mass leaves."""
+    return decay.x_F == 0.0 or bool((amplitudes(decay, left - 1) > decay.x_F).all())
+
+
+def in_record(decay: Decay, end: float) -> int:
+    """Half cycles that are over at a time [s], if the mass does not come to rest."""
+    return int((end - decay.t0) / half_period(decay))
+
+
 def envelope(decay: Decay, time: np.ndarray) -> np.ndarray:
     """Distances from the centre, shape (samples,), of the smooth curve through all turning points.
 

@@ -9,12 +9,15 @@ from .. import checks
 from ..errors import InputError
 from ..units.table import checked_unit, conversion
 from .cautions import bounded, coloured, trading
-from .decay_checks import checked_record, checked_turning_points, largest_gap, unclipped, within
-from .decay_fit import DRIFT, X_F, ZETA, Fit, Record, fit_decay
+from .decay_checks import check_misfit, checked_record, checked_turning_points, largest_gap, unclipped, within
+from .decay_errors import decay_errors, decay_solution
+from .decay_fit import Fit, fit_decay, noise_variance
 from .decay_motion import PARAMETERS
+from .decay_problem import DRIFT, X_F, ZETA, Record
+from .decay_wander import fit_with_wander
 from .estimates import estimates, number, verdict
-from .least_squares import Errors, Problem, Solution, errors
-from .robust import LOSSES, effective_variance, softened
+from .least_squares import Errors
+from .robust import LOSSES
 from .turning_points import TurningPoints, linear_decrement, noise_level, without_spikes
 
 #: Estimates so many standard errors above zero are found.
@@ -29,6 +32,11 @@ _VERDICTS = {
 }
 
 _LOSS = "growth of the sum of squares without {}, over the variance of a sample"
+
+_IMPOSSIBLE = (
+    "in the best fit the mass leaves a turning point at which friction would hold it: friction is not "
+    "constant, or the record is no free decay, and mu has no bounds"
+)
 
 _MEANINGS = {
     "f_n": "natural frequency without friction and damping",
@@ -85,12 +93,15 @@ def free_decay(
         model, residual; scalars `reduced_chi_square` (the variance of a sample, as no error of the data is
         given), `residual_rms`, `verdict`, `half_cycles` before rest or the end, `at_rest`, and
         `mu_lower` <= mu < `mu_upper` from where it came to rest and where it did not.  Attribute `warnings`.
+        Intervals and bounds of mu also hold for other numbers of half cycles that fit as well within the
+        noise; `standard_error` is that of the best one.  Where the zero wanders slowly, a polynomial of time
+        is fitted beside the decay (`wander_terms`, `wander_rms`); model and residual are of the decay alone.
 
     Raises
     ------
     InputError
         An argument is illegal, or the record is no free decay: no motion, fewer than 3 extrema, an amplitude
-        that grows, fewer than 8 samples a cycle.
+        that grows, fewer than 8 samples a cycle, residuals far above the noise between samples.
 
     Notes
     -----
@@ -112,12 +123,15 @@ def free_decay(
     points = checked_turning_points(t, without_spikes(data) if loss == "soft_l1" else data)
     outliers = noise_level(data) if loss == "soft_l1" else 0.0
     record = Record(t, data, held, names, outliers or None)  # exact data have none
-    fit, problem = fit_decay(record, points)
-    found, variance, solution = _errors(record, fit, problem)
-    losses = _losses(record, points, fit, variance * found.inflation**2)
+    record, fits = fit_with_wander(record, points)
+    fit = fits[0]
+    if not held:  # a value that is held may be wrong on purpose
+        check_misfit(data, float(np.sqrt(fit.solution.sum / data.size)))
+    found, solution = decay_errors(record, fits), decay_solution(record, fit)
+    losses = _losses(record, points, fit)
     meanings = {name: _MEANINGS[name] for name in names}
     units = (*_units(unit), f"{unit}/s")[: len(names)]
-    ds = estimates(meanings, units, solution, found, problem.free, data, unit)
+    ds = estimates(meanings, units, solution, found, record.free[: len(names)], data, unit)
     ds["time"] = xr.Variable("sample", t, {"long_name": "time", "units": "s"})
     ds["verdict"] = verdict(_verdict(fit, found, losses), _VERDICTS)
     ds["likelihood_ratio_friction"] = number(losses["x_F"], _LOSS.format("friction"))
@@ -127,9 +141,13 @@ def free_decay(
         ds["linear_decrement"] = number(
             decrement, "x_F by the linear decrement T(4.3), true if zeta = 0", unit
         )
-    ds = ds.assign(_motion(fit, unit)).assign(_scaled(fit, found, unit, base, stiffness))
+    ds = (
+        ds.assign(_motion(fits, unit))
+        .assign(_wander(record, fit, unit))
+        .assign(_scaled(fit, found, unit, base, stiffness))
+    )
     ds.attrs["title"] = "Free decay"
-    ds.attrs["warnings"] = "; ".join(_warnings(times, good, fit, found))
+    ds.attrs["warnings"] = "; ".join(_warnings(times, good, record, fits, found))
     return ds
 
 
@@ -155,21 +173,9 @@ def _units(unit: str) -> tuple[str, ...]:
     return ("Hz", "1", unit, unit, "s", unit)
 
 
-def _errors(record: Record, fit: Fit, problem: Problem) -> tuple[Errors, float, Solution]:
-    """Errors, the variance of a sample that they rest on, and the solution with its plain residuals."""
-    if record.outliers is None:
-        found = errors(problem, fit.solution)
-        return found, found.variance, fit.solution
-    variance = effective_variance(problem, fit.solution, record.outliers)
-    found = errors(softened(problem, record.outliers), fit.solution, variance)
-    plain = fit.solution._replace(residual=problem.residuals(fit.solution.values)[0])
-    freedom = plain.residual.size - int(problem.free.sum())
-    return found._replace(variance=plain.sum / freedom), variance, plain
-
-
-def _losses(record: Record, points: TurningPoints, fit: Fit, variance: float) -> dict[str, float]:
+def _losses(record: Record, points: TurningPoints, fit: Fit) -> dict[str, float]:
     """Growth of the sum of squares without friction, and without damping, over the variance of a sample."""
-    losses = {}
+    losses, variance = {}, noise_variance(record, fit)
     for name in ("x_F", "zeta"):
         if name in record.known:
             losses[name] = 0.0
@@ -190,12 +196,11 @@ def _verdict(fit: Fit, found: Errors, losses: Mapping[str, float]) -> int:
     return int(friction) + 2 * int(damping)
 
 
-def _motion(fit: Fit, unit: str) -> dict[str, xr.Variable]:
+def _motion(fits: list[Fit], unit: str) -> dict[str, xr.Variable]:
     """How many half cycles there were, where it came to rest, and what that says of mu."""
-    heights, friction = fit.heights, fit.decay.x_F
-    passed = heights[:-1] if fit.at_rest else heights
-    lower = abs(float(heights[-1])) / friction if fit.at_rest and friction > 0.0 else 0.0
-    upper = float(passed[-1]) / friction if friction > 0.0 else np.inf
+    fit = fits[0]
+    bounds = np.array([_bounds_of_mu(one) for one in fits])
+    lower, upper = bounds[:, 0].min(), bounds[:, 1].max()
     result = {
         "half_cycles": xr.Variable(
             (), np.int32(fit.half_cycles), {"long_name": "half cycles before rest, or begun in the record"}
@@ -207,9 +212,32 @@ def _motion(fit: Fit, unit: str) -> dict[str, xr.Variable]:
         ),
     }
     if fit.at_rest:
+        heights = fit.heights
         side = np.sign(fit.decay.X0) * (-1.0) ** fit.half_cycles
         result["rest"] = number(fit.decay.centre + side * float(heights[-1]), "place of rest", unit)
     return result
+
+
+def _bounds_of_mu(fit: Fit) -> tuple[float, float]:
+    """Least and largest mu, from where the mass came to rest and which turning point it left last."""
+    heights, friction = fit.heights, fit.decay.x_F
+    if friction == 0.0 or not fit.possible:
+        return 0.0, np.inf
+    passed = heights[:-1] if fit.at_rest else heights
+    return abs(float(heights[-1])) / friction if fit.at_rest else 0.0, float(passed[-1]) / friction
+
+
+def _wander(record: Record, fit: Fit, unit: str) -> dict[str, xr.Variable]:
+    """The wander of the zero that was fitted, if there is one."""
+    if record.wander is None or not record.terms:
+        return {}
+    slow = record.wander @ fit.solution.values[len(record.names) :]
+    return {
+        "wander_terms": xr.Variable(
+            (), np.int32(record.terms), {"long_name": "terms of the polynomial that the zero follows"}
+        ),
+        "wander_rms": number(float(np.std(slow)), "slow wander of the zero, root mean square", unit),
+    }
 
 
 def _scaled(
@@ -230,7 +258,9 @@ def _scaled(
     return result
 
 
-def _warnings(time: np.ndarray, good: np.ndarray, fit: Fit, found: Errors) -> list[str]:
+def _warnings(
+    time: np.ndarray, good: np.ndarray, record: Record, fits: list[Fit], found: Errors
+) -> list[str]:
     """What to mind, in words."""
     words = []
     if not good.all():
@@ -239,5 +269,32 @@ def _warnings(time: np.ndarray, good: np.ndarray, fit: Fit, found: Errors) -> li
         words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
     pair = np.ix_((ZETA, X_F), (ZETA, X_F))
     words += coloured(found) + trading(("zeta", "x_F"), found.correlation[pair])
-    names = (*PARAMETERS, DRIFT)[: fit.solution.values.size]
-    return words + bounded(names, np.zeros(len(names)), fit.solution.at_bound)
+    words += _wandering(record) + _other_counts(fits)
+    named = len(record.names)
+    return words + bounded(record.names, np.zeros(named), fits[0].solution.at_bound[:named])
+
+
+def _wandering(record: Record) -> list[str]:
+    """A slow part of the residuals, in words."""
+    if record.terms == 0:
+        return []
+    return [
+        "the residuals have a low-frequency part, as if the zero of the measurement wandered: "
+        f"a polynomial of time with {record.terms} terms is fitted beside the decay"
+    ]
+
+
+def _other_counts(fits: list[Fit]) -> list[str]:
+    """Other numbers of half cycles before rest that fit as well, in words."""
+    words = [] if fits[0].possible else [_IMPOSSIBLE]
+    others = sorted({_count(fit) for fit in fits[1:]} - {_count(fits[0])})
+    if others:
+        words.append(
+            f"the noise hides the number of half cycles ({_count(fits[0])} fit best, {', '.join(others)} as "
+            "well): intervals and bounds of mu hold for all of them, standard errors for the best fit only"
+        )
+    return words
+
+
+def _count(fit: Fit) -> str:
+    return str(fit.half_cycles) if fit.at_rest else "no rest in the record"

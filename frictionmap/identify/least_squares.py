@@ -107,7 +107,7 @@ def errors(problem: Problem, best: Solution, known_variance: float | None = None
     reach = two_sided(freedom) * standard_error
     lower, upper = best.values - reach, best.values + reach
     lower = np.where(free, np.maximum(lower, problem.floor), lower)
-    allowed = float(stdtrit(freedom, _ONE_SIDED)) ** 2 * variance * grown**2
+    allowed = one_sided(freedom) ** 2 * variance * grown**2
     for index in np.flatnonzero(best.at_bound):
         lower[index] = problem.floor[index]
         upper[index] = _profile_end(problem, best, int(index), allowed, float(standard_error[index]))
@@ -117,6 +117,11 @@ def errors(problem: Problem, best: Solution, known_variance: float | None = None
 def two_sided(freedom: int) -> float:
     """Half the width of a 95 % interval, over the standard error."""
     return float(stdtrit(freedom, _TWO_SIDED))
+
+
+def one_sided(freedom: int) -> float:
+    """Width of a one-sided 95 % interval, over the standard error."""
+    return float(stdtrit(freedom, _ONE_SIDED))
 
 
 def undetermined(problem: Problem, best: Solution, rank: float = _RANK) -> tuple[np.ndarray, int]:

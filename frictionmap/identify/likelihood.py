@@ -10,9 +10,10 @@ from ..errors import InputError
 from .chain_estimates import chain_names
 from .chain_fit import Measured
 from .chain_fit import problem as chain_problem
-from .decay_fit import DRIFT, Record
-from .decay_fit import problem as decay_problem
 from .decay_motion import PARAMETERS
+from .decay_problem import DRIFT, Record
+from .decay_problem import problem as decay_problem
+from .decay_wander import polynomials
 from .least_squares import Problem
 
 #: Half cycles of a decay that does not come to rest within any record.
@@ -67,7 +68,8 @@ def log_likelihood(ds: xr.Dataset) -> LogLikelihood:
     -------
     LogLikelihood
         A function of theta; its attribute `names` says which parameters theta holds.  Errors of the samples
-        are those of the variable `sigma`.  A decay has as many half cycles before rest as the fit found.
+        are those of the variable `sigma`.  A decay has as many half cycles before rest as the fit found;
+        the polynomial of a wandering zero is integrated out.
 
     Raises
     ------
@@ -106,8 +108,13 @@ def _of_decay(ds: xr.Dataset) -> LogLikelihood:
     sigma = ds["sigma"].values
     plain = decay_problem(record, n, values)
 
+    # coefficients of a wander have a flat prior: what they can follow is no residual
+    terms = int(ds["wander_terms"]) if "wander_terms" in ds else 0
+    slow = np.linalg.qr(polynomials(record, terms))[0]
+
     def residuals(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         found, slopes = plain.residuals(at)
+        found, slopes = found - slow @ (slow.T @ found), slopes - slow @ (slow.T @ slopes)
         return found / sigma, slopes / sigma[:, np.newaxis]
 
     return _function(

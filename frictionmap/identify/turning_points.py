@@ -13,12 +13,24 @@ _LARGE = 0.2
 #: Samples a cycle; with fewer, a turning point is not seen between two of them.
 _LEAST_SAMPLES = 8
 
+#: A step between two samples is a gap if it is longer than so many usual ones.
+_GAP = 3.0
+
+#: A gap of this share of half a cycle, or less, hides one turning point at most, and a parabola through both
+#: of its edges still locates that one.  A longer gap can hide several.
+_BRIDGED = 0.9
+
+#: Samples on each side of an extreme one through which a parabola locates the turning point.
+_BESIDE = 3
+
 
 class TurningPoints(NamedTuple):
     """Turning points in the order of time."""
 
     time: np.ndarray  # s
     place: np.ndarray
+    upper: np.ndarray  # bool: a maximum
+    number: np.ndarray  # half cycles since the first one, whole; those that a gap hides are counted
 
 
 def noise_level(x: np.ndarray) -> float:
@@ -48,8 +60,54 @@ def turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
     # normal deviates span about 2 sqrt(2 ln n) deviations, give or take one
     noise = (2.0 * np.sqrt(2.0 * np.log(max(x.size, 2))) + 1.0) * noise_level(x)
     swing = max(noise, _SHARE * float(np.ptp(x)))
-    refined = [_vertex(time, x, index) for index in turns(x, swing)]
-    return TurningPoints(np.array([t for t, _ in refined]), np.array([place for _, place in refined]))
+    found = np.array(turns(x, swing), dtype=int)
+    if found.size < 2:
+        return _located(time, x, found, np.zeros(found.size, dtype=bool), np.inf)
+    upper = x[found] > x[np.roll(found, 1)]  # maxima and minima follow in turn
+    upper[0] = not upper[1]
+    half = _usual_half(time, found)
+    gaps = gaps_after(time, _BRIDGED * half)
+    # beside a long gap an extreme sample is where the record breaks off, not where the motion turns back
+    kept = ~_spanned(found - _BESIDE, found + _BESIDE, gaps)
+    return _located(time, x, found[kept], upper[kept], half)
+
+
+def _located(
+    time: np.ndarray, x: np.ndarray, found: np.ndarray, upper: np.ndarray, half: float
+) -> TurningPoints:
+    """Turning points at some samples, refined and numbered."""
+    refined = np.array([_vertex(time, x, index) for index in found]).reshape(-1, 2)
+    return TurningPoints(refined[:, 0], refined[:, 1], upper, _numbered(refined[:, 0], upper, half))
+
+
+def gaps_after(time: np.ndarray, least: float = 0.0) -> np.ndarray:
+    """Samples, by their indices, after which there is a gap that is longer than `least` [s]."""
+    steps = np.diff(time)
+    return np.flatnonzero(steps > max(_GAP * float(np.median(steps)), least))
+
+
+def hides_turning_points(time: np.ndarray, half: float) -> bool:
+    """Whether there is a gap that can hide more than one turning point, `half` [s] apart."""
+    return time.size > 1 and gaps_after(time, _BRIDGED * half).size > 0
+
+
+def _spanned(begins: np.ndarray, ends: np.ndarray, gaps: np.ndarray) -> np.ndarray:
+    """Whether there is a gap between two samples, for many pairs of their indices."""
+    return np.searchsorted(gaps, ends) > np.searchsorted(gaps, begins)
+
+
+def _usual_half(time: np.ndarray, found: np.ndarray) -> float:
+    """Usual time between two turning points, if possible of those with no gap between them."""
+    spanned = _spanned(found[:-1], found[1:], gaps_after(time))
+    steps = np.diff(time[found])
+    return float(np.median(steps if spanned.all() else steps[~spanned]))
+
+
+def _numbered(times: np.ndarray, upper: np.ndarray, half: float) -> np.ndarray:
+    """Half cycles since the first turning point: odd from a maximum to a minimum, even between two alike."""
+    odd = (upper[1:] != upper[:-1]).astype(int)
+    steps = 2 * np.rint((np.diff(times) / half - odd) / 2.0).astype(int) + odd
+    return np.concatenate(([0], np.cumsum(np.maximum(steps, 2 - odd))))[: times.size]
 
 
 def samples_a_cycle(x: np.ndarray) -> float:
@@ -66,7 +124,7 @@ def undersampled(x: np.ndarray) -> str:
 
 def grows(points: TurningPoints, noise: float) -> bool:
     """Whether the later swings are larger than the earlier ones, by more than noise can make them."""
-    swings = np.abs(np.diff(points.place))
+    swings = np.abs(np.diff(points.place))[np.diff(points.number) == 1]
     half = swings.size // 2
     if half == 0:
         return False
@@ -80,10 +138,11 @@ def linear_decrement(points: TurningPoints) -> float | None:
     Whatever damps counts as friction.  With viscous damping the drop gets smaller and smaller, so that the
     average depends on which maxima are seen; all are taken.  If there is but one, minima are.
     """
-    begins_low = bool(points.place[0] < points.place[1])
-    maxima, minima = points.place[int(begins_low) :: 2], points.place[int(not begins_low) :: 2]
-    peaks = maxima if maxima.size > 1 else minima
-    return float(abs(peaks[0] - peaks[-1])) / (4.0 * (peaks.size - 1)) if peaks.size > 1 else None
+    peaks = points.upper if points.upper.sum() > 1 else ~points.upper
+    if peaks.sum() < 2:
+        return None
+    places, numbers = points.place[peaks], points.number[peaks]
+    return float(abs(places[0] - places[-1])) / (2.0 * float(numbers[-1] - numbers[0]))
 
 
 def turns(x: np.ndarray, swing: float) -> list[int]:
@@ -107,7 +166,7 @@ def turns(x: np.ndarray, swing: float) -> list[int]:
 
 def _vertex(time: np.ndarray, x: np.ndarray, index: int) -> tuple[float, float]:
     """The turning point of a parabola through up to seven samples around an extreme one."""
-    around = slice(max(index - 3, 0), index + 4)
+    around = slice(max(index - _BESIDE, 0), index + _BESIDE + 1)
     t, values = time[around] - time[index], x[around]
     curvature, slope, place = np.polyfit(t, values, 2)
     offset = -0.5 * slope / curvature if curvature else 0.0

@@ -133,7 +133,7 @@ def test_two_friction_ratios_next_to_an_extreme(r, lag, beta):
 
 @pytest.mark.parametrize("r", [1.066, 1.2])
 def test_extremes_of_continuous_motions(r):
-    """The least lag above resonance, by another formula: friction ratios on both of its sides, ever nearer."""
+    """The least lag above resonance, by another formula: friction ratios on both sides, ever nearer."""
     system = fm.System(excitation="base", damping_reference="base", damping_ratios=0.01)
     high = 0.9995 * float(fm.boundaries(system, [r]).beta_lim[0, 0])
     least = minimize_scalar(lambda beta: lag_of(r, beta, 0.01), bounds=(0.8 * high, high), method="bounded",

@@ -1,6 +1,6 @@
 """Columns of a table by what they are, with their units: no unit is guessed, no value is repaired."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +12,9 @@ from .tables import Table
 
 #: What is done about values that are no numbers.
 MISSING = ("refuse", "drop")
+
+#: Columns that are not used are named, no more than these.
+_NAMED = 8
 
 #: The share of rows that may be dropped.
 _DROPPED = 0.01
@@ -50,7 +53,7 @@ def pick_columns(
         one line with file, column and row.
     """
     checks.choice(missing, "data.missing", MISSING)
-    found = {role: _find(table, role, names.get(role), measures) for role, measures in wanted.items()}
+    found = {role: _find(table, role, names, measures) for role, measures in wanted.items()}
     _check_lengths(table, found)
     bad = np.zeros(next(iter(found.values())).values.size, dtype=bool)
     for column in found.values():
@@ -62,9 +65,28 @@ def pick_columns(
     return Columns(kept, rows, int(bad.sum()))
 
 
-def has_column(table: Table, role: str, measures: str, names: Mapping[str, str]) -> bool:
-    """Whether there is a column that `pick_columns` would take, or refuse for its unit."""
-    return role in names or bool(_named_like(table, role, suffixes(measures)))
+def columns_like(
+    table: Table, role: str, measures: str, names: Mapping[str, str], sure: bool = False
+) -> list[str]:
+    """Columns that `pick_columns` would take for a role, or refuse for their unit.
+
+    sure : whether only columns count that have a unit of what is measured
+    """
+    if role in names:
+        return [names[role]]
+    others = set(names.values())
+    free = [name for name in table.columns if name not in others]
+    return _named_like(free, role, suffixes(measures), sure)
+
+
+def unused_columns(table: Table, used: Collection[str]) -> str:
+    """A line that names the columns of a file that nothing was read from, or nothing."""
+    others = [name for name in table.columns if name not in used]
+    if not others:
+        return ""
+    more = len(others) - _NAMED
+    words = ", ".join(others[:_NAMED]) + (f" and {more} more" if more > 0 else "")
+    return f"not used of {table.file.name}: {words}"
 
 
 def check_increasing(table: Table, time: Column, rows: np.ndarray) -> None:
@@ -87,9 +109,9 @@ def check_positive(table: Table, column: Column, rows: np.ndarray) -> None:
         )
 
 
-def _find(table: Table, role: str, name: str | None, measures: str) -> Column:
+def _find(table: Table, role: str, names: Mapping[str, str], measures: str) -> Column:
     """The column of a name, or the one whose name is what it is and a unit."""
-    legal = suffixes(measures)
+    legal, name = suffixes(measures), names.get(role)
     has = f"it has {', '.join(table.columns) or 'none'}"
     known = f" (suffixes: {', '.join(legal)})" if legal else ""
     wanted = f"a column {name or role + next(iter(legal), '')}{known}"
@@ -98,7 +120,7 @@ def _find(table: Table, role: str, name: str | None, measures: str) -> Column:
             f"file {table.file} must have {wanted}, named by data.columns.{role}; {has}"
             f"{checks.nearest(name, table.columns)}"
         )
-    candidates = [name] if name is not None else _named_like(table, role, legal)
+    candidates = columns_like(table, role, measures, names)
     if not candidates:
         raise InputError(f"file {table.file} must have {wanted}, or data.columns.{role} names another; {has}")
     if len(candidates) > 1:
@@ -122,14 +144,23 @@ def _unit(table: Table, column: str, legal: Sequence[str]) -> str:
     return unit
 
 
-def _named_like(table: Table, role: str, legal: Sequence[str]) -> list[str]:
-    """Columns of a role: its name, followed by a unit or by what should be one."""
+def _named_like(columns: Sequence[str], role: str, legal: Sequence[str], sure: bool = False) -> list[str]:
+    """Columns of a role: its name and a unit, or else a name that begins with it.
+
+    The latter has a unit of what is measured at its end, or, unless it must be sure, nothing but one word or
+    another unit behind it: base_frequency_rad_s is no base.
+    """
     if not legal:
-        return [name for name in table.columns if name == role]
-    known = [
-        name for name in table.columns if ending(name) in COLUMN_UNITS and name == f"{role}_{ending(name)}"
-    ]
-    return known or [name for name in table.columns if name == role or name.startswith(f"{role}_")]
+        return [name for name in columns if name == role]
+    exact = [name for name in columns if name in {f"{role}{unit}" for unit in legal}]
+    if exact:
+        return exact
+    like = [name for name in columns if name == role or name.startswith(f"{role}_")]
+    measured = [name for name in like if f"_{ending(name)}" in legal]
+    if measured or sure:
+        return measured
+    rests = {name: name.removeprefix(role).removeprefix("_") for name in like}
+    return [name for name, rest in rests.items() if "_" not in rest or rest in COLUMN_UNITS]
 
 
 def _check_lengths(table: Table, found: Mapping[str, Column]) -> None:

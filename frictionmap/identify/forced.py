@@ -12,7 +12,7 @@ from ..model.system import System
 from .estimates import verdict
 from .forced_data import ForcedTable, Values, checked_table
 from .forced_fit import Fit, fit_forced
-from .forced_labels import labelled
+from .forced_labels import friction_forces, labelled
 from .forced_lags import friction_ratios, impossible, refuse_impossible, without
 from .forced_model import F_N, MU, ZETA
 from .forced_told import told
@@ -46,10 +46,11 @@ def forced(
     sigma_phase: Error = None,
     sigma_amplitude: Error = None,
     unreachable: object = "refuse",
+    stiffness: float | None = None,
 ) -> xr.Dataset:
     """Fit the exact steady states to first harmonics of forced responses, all friction forces at once.
 
-    Eleven arguments: the columns of a table, and what is known.
+    Twelve arguments: the columns of a table, and what is known.
 
     Parameters
     ----------
@@ -74,6 +75,9 @@ def forced(
     unreachable : "refuse" or "drop"
         What is done about lags of one mass that no friction ratio gives, by five of their errors (5 deg if
         they are not given).
+    stiffness : float
+        k1 [N/m] > 0 of the first spring; with the amplitudes of the base as `load` it gives the friction
+        force k1 x_F of every set [N].
 
     Returns
     -------
@@ -115,10 +119,17 @@ def forced(
     if possible is not table:
         table, fit = possible, fit_forced(possible, system, held)
     ds = labelled(table, fit, unit if load is not None else None).assign(friction_ratios(fit))
+    if stiffness is not None:
+        newtons = checks.number(stiffness, "stiffness", above=0.0)
+        ds = ds.assign(friction_forces(table, fit, unit, newtons) if load is not None else {})
     ds["verdict"] = verdict(_verdict(fit), _VERDICTS)
     ds.attrs["title"] = "Forced responses"
     ds.attrs["system"] = fit.model.with_zeta(float(fit.solution.values[ZETA])).describe()
     ds.attrs["config"] = system_text(system)
+    if stiffness is not None and load is None:
+        warnings.append(
+            "no friction force in N: there are no amplitudes of the base, over which beta is taken"
+        )
     ds.attrs["warnings"] = "; ".join(warnings + told(table, fit))
     return ds
 

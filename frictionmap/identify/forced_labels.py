@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
+from ..units.table import checked_unit, conversion
 from .estimates import estimates, number
 from .forced_data import ForcedTable
 from .forced_fit import Fit, parameter_names
@@ -97,15 +98,32 @@ def _is_one(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return (np.abs(other - one) <= _SAME * np.abs(one)).all(axis=1)
 
 
+def friction_forces(table: ForcedTable, fit: Fit, unit: str, stiffness: float) -> dict[str, xr.Variable]:
+    """Friction force k1 x_F [N] of every set on a shaken base, with its error; `stiffness` k1 [N/m].
+
+    Under a force it is told in the unit of the force already: nothing is added.
+    """
+    if fit.model.system.excitation != "base":
+        return {}
+    newtons = stiffness * conversion(checked_unit(unit, "length", "unit"), "m")
+    return _per_set(table, fit, "friction_force", "kinetic friction force k1 x_F", newtons, "N")
+
+
 def _friction(table: ForcedTable, fit: Fit, unit: str) -> dict[str, xr.Variable]:
     """Friction of every set in the unit of its loads: of a base a length, F/k1; of a force a force."""
-    names = parameter_names(table)[:F_N]
     base = fit.model.system.excitation == "base"
     what, words = ("x_F", "F/k1") if base else ("friction_force", "F")
+    return _per_set(table, fit, what, f"kinetic friction, {words}", 1.0, unit)
+
+
+def _per_set(
+    table: ForcedTable, fit: Fit, what: str, words: str, scale: float, unit: str
+) -> dict[str, xr.Variable]:
+    """beta of every set as friction, times its load and `scale`, with the standard error."""
     result = {}
-    for k, name in enumerate(names):
-        own = name.replace("beta", what)
-        result[own] = number(fit.solution.values[k] * table.load[k], f"kinetic friction, {words}", unit)
-        error = fit.errors.standard_error[k] * table.load[k]
+    for k, name in enumerate(parameter_names(table)[:F_N]):
+        own, size = name.replace("beta", what), table.load[k] * scale
+        result[own] = number(fit.solution.values[k] * size, words, unit)
+        error = fit.errors.standard_error[k] * size
         result[f"{own}_standard_error"] = number(error, f"standard error of {own}", unit)
     return result

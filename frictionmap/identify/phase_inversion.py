@@ -12,10 +12,15 @@ from ..model.system import System
 from ..roots import polish
 from ..steady.points import steady_states
 from ..theory.boundary_curves import find_curves
+from .lag_extremes import Extremes, extremes_near_zero
 
 #: Friction ratios over beta_stick at which lags are looked at: evenly, then ever closer to sticking, where
 #: the lag of one mass comes back from beyond 90 deg.
 _SHARES = np.concatenate((np.linspace(0.0, 0.9, 31), 1.0 - 0.1 * 0.6 ** np.arange(1.0, 16.0)))
+
+#: Intervals next to a lag are looked at in so many parts: where motions with one more stop begin, the lag
+#: bends so sharply that a rise and a fall may lie between two of the samples above.
+_PARTS = np.linspace(0.0, 1.0, 11)
 
 #: Lags that change less than this [rad] per unit of beta tell no friction.
 _LEAST_SLOPE = np.radians(10.0)
@@ -23,8 +28,15 @@ _LEAST_SLOPE = np.radians(10.0)
 #: Step of beta by which the slope is told.
 _STEP = 1e-5
 
-#: A lag at an end of the range that double precision cannot tell from it [rad].
+#: Lags nearer to each other than this [rad] are one: steady states are exact to some 1e-12.
 _ROUNDING = 1e-12
+
+#: Friction ratios nearer to each other than this are one that was found twice, where the motion ceases to be
+#: continuous: two beside an extreme of the lag are further apart, by the root of its rounding.
+_SAME = 1e-9
+
+#: Decimals of the range of lags that a message has at most.
+_MOST_DECIMALS = 6
 
 ONE, SEVERAL, NONE, FLAT = 0, 1, 2, 3
 
@@ -46,6 +58,33 @@ class _Lags(NamedTuple):
 
     beta: np.ndarray
     lag: np.ndarray
+
+
+class _Brackets(NamedTuple):
+    """Friction ratios between which the lags `which` pass those measured; arrays of one size."""
+
+    which: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    at_low: np.ndarray
+    at_high: np.ndarray
+
+
+class _Measured(NamedTuple):
+    """Lags of masses of a structure, one a point."""
+
+    system: System
+    r: np.ndarray
+    lag: np.ndarray  # rad
+    mass: np.ndarray  # from 0
+
+    def at(self, some: np.ndarray) -> "_Measured":
+        """Some of the points."""
+        return self._replace(r=self.r[some], lag=self.lag[some], mass=self.mass[some])
+
+    def off(self, beta: np.ndarray, which: np.ndarray) -> np.ndarray:
+        """Lags at friction ratios, less those of the points `which` [rad]."""
+        return wrapped(_lag(self.system, self.r[which], beta, self.mass[which]) - self.lag[which])
 
 
 def friction_ratio(
@@ -108,20 +147,19 @@ def friction_ratio(
 
 def invert(system: System, r: np.ndarray, lag: np.ndarray, mass: np.ndarray) -> list[FrictionRatios]:
     """What lags [rad] of masses, from 0, tell of friction, as `friction_ratio`; all (points,)."""
+    measured = _Measured(system, r, lag, mass)
     seen = _look(system, r, mass)
-    beta, which = _roots(system, r, lag, mass, seen)
+    beta, which = _roots(measured, seen)
     slope = _slopes(system, r[which], beta, mass[which])
     both = is_one_on_wall(system)
     steps = np.diff(np.unwrap(seen.lag, axis=0), axis=0)
     unsure = (steps.min(axis=0) < -_ROUNDING) & (steps.max(axis=0) > _ROUNDING)
     found = []
     for k in range(r.size):
-        own = which == k
-        order = np.argsort(beta[own])
-        values, slopes = beta[own][order], slope[own][order]
+        values, slopes = _distinct(beta[which == k], slope[which == k])
         reason, code = "", ONE if values.size == 1 else SEVERAL
         if values.size == 0:
-            code, reason = NONE, _none_reason(system, r[k], lag[k], seen.lag[:, k])
+            code, reason = NONE, _none_reason(measured, k, seen)
         elif not both and (unsure[k] or (np.abs(slopes) < _LEAST_SLOPE).any()):
             code, reason = FLAT, _flat_reason(r[k], unsure[k])
             values = slopes = np.empty(0)
@@ -136,8 +174,22 @@ def is_one_on_wall(system: System) -> bool:
 
 def reach(system: System, r: np.ndarray, lag: np.ndarray) -> np.ndarray:
     """How far lags [rad] of the first mass are off all that any friction gives, (points,)."""
-    seen = _look(system, r, np.zeros(r.size, dtype=int))
-    return np.maximum(np.maximum(seen.lag.min(axis=0) - lag, lag - seen.lag.max(axis=0)), 0.0)
+    mass = np.zeros(r.size, dtype=int)
+    return _reach(_Measured(system, r, lag, mass), _look(system, r, mass))
+
+
+def _reach(measured: _Measured, seen: _Lags) -> np.ndarray:
+    """How far the lags are off all that friction gives, (points,): 0 of those within."""
+    low, high = np.nanmin(seen.lag, axis=0), np.nanmax(seen.lag, axis=0)
+    off = np.maximum(np.maximum(low - measured.lag, measured.lag - high), 0.0)
+    beyond = np.flatnonzero(off)
+    if beyond.size:  # the extremes lie between the samples
+        some = measured.at(beyond)
+        x = seen.beta[:, beyond]
+        found = extremes_near_zero(some.off, x, wrapped(seen.lag[:, beyond] - some.lag), far=True)
+        nearest = np.where(found.crossed, 0.0, np.abs(found.value))
+        np.minimum.at(off, beyond[found.which], nearest)
+    return off
 
 
 def continuous_friction_ratios(r: np.ndarray, lag: np.ndarray) -> np.ndarray:
@@ -183,29 +235,78 @@ def _look(system: System, r: np.ndarray, mass: np.ndarray) -> _Lags:
     return _Lags(beta, lag.reshape(beta.shape))
 
 
-def _roots(
-    system: System, r: np.ndarray, lag: np.ndarray, mass: np.ndarray, seen: _Lags
-) -> tuple[np.ndarray, np.ndarray]:
-    """Friction ratios that give the lags, and of which point each is."""
-    off = wrapped(seen.lag - lag)
-    closed = _has_closed_form(system)
-    k, which = np.nonzero((off[:-1] * off[1:] < 0.0) & (np.abs(off[:-1] - off[1:]) < 0.5 * np.pi))
-    wanted = (k > 0) | (not closed)
-    k, which = k[wanted], which[wanted]
-
-    def difference(beta: np.ndarray, points: np.ndarray) -> np.ndarray:
-        return wrapped(_lag(system, r[points], beta, mass[points]) - lag[points])
-
-    beta = polish(
-        difference, which, seen.beta[k, which], seen.beta[k + 1, which], off[k, which], off[k + 1, which]
-    )
-    on_grid, points = np.nonzero(off[1:] == 0.0)
-    beta, which = np.append(beta, seen.beta[1 + on_grid, points]), np.append(which, points)
+def _roots(measured: _Measured, seen: _Lags) -> tuple[np.ndarray, np.ndarray]:
+    """Friction ratios that give the lags, and of which point each is; one may be found twice."""
+    closed = _has_closed_form(measured.system)
+    x = seen.beta[1:] if closed else seen.beta
+    off = wrapped((seen.lag[1:] if closed else seen.lag) - measured.lag)
+    beta, which = _crossings(measured, x, off)
+    on_grid, points = np.nonzero(off == 0.0)
+    beta, which = np.append(beta, x[on_grid, points]), np.append(which, points)
     if closed:
-        direct = continuous_friction_ratios(r, lag)
-        root, valid = np.nonzero(direct <= seen.beta[1])
+        direct = continuous_friction_ratios(measured.r, measured.lag)
+        root, valid = np.nonzero(direct <= x[0])
         beta, which = np.append(beta, direct[root, valid]), np.append(which, valid)
     return beta, which
+
+
+def _crossings(measured: _Measured, x: np.ndarray, off: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where lags pass those measured, and where they come to them and turn back.
+
+    x, off : (tried, points) friction ratios, and lags less those measured
+    """
+    k, which = np.nonzero(_near(off))
+    some = measured.at(which)
+    x = x[k, which] + (x[k + 1, which] - x[k, which]) * _PARTS[:, np.newaxis]
+    inner = some.off(x[1:-1].ravel(), np.tile(np.arange(which.size), _PARTS.size - 2))
+    off = np.vstack((off[k, which], inner.reshape(_PARTS.size - 2, which.size), off[k + 1, which]))
+    k, column = np.nonzero(off[:-1] * off[1:] < 0.0)
+    passed = _Brackets(column, x[k, column], x[k + 1, column], off[k, column], off[k + 1, column])
+    extreme = extremes_near_zero(some.off, x, off)
+    brackets = _Brackets(*map(np.concatenate, zip(passed, *_beside(extreme), strict=True)))
+
+    def difference(beta: np.ndarray, bracket: np.ndarray) -> np.ndarray:
+        one = _Brackets(*(part[bracket] for part in brackets))
+        found = some.off(beta, one.which)
+        # next to where motion ceases to be continuous a steady state may not be found: a line takes its place
+        line = one.at_low + (beta - one.low) / (one.high - one.low) * (one.at_high - one.at_low)
+        return np.where(np.isnan(found), line, found)
+
+    beta = polish(difference, np.arange(brackets.which.size), *brackets[1:])
+    touched = ~extreme.crossed & (np.abs(extreme.value) <= _ROUNDING)
+    column = np.append(brackets.which, extreme.which[touched])
+    return np.append(beta, extreme.place[touched]), which[column]
+
+
+def _near(off: np.ndarray) -> np.ndarray:
+    """Intervals of samples in which zero may lie, bool (tried - 1, points): no further off than lags change.
+
+    Between samples a lag may rise and fall by some of the change from one sample to the next.
+    """
+    change = np.abs(np.diff(off, axis=0))
+    around = np.pad(change, ((1, 1), (0, 0)))
+    around = np.maximum(np.maximum(around[:-2], around[2:]), change)
+    nearest = np.minimum(np.abs(off[:-1]), np.abs(off[1:]))
+    return (nearest <= around) & (change < 0.5 * np.pi)
+
+
+def _beside(extreme: Extremes) -> tuple[_Brackets, _Brackets]:
+    """Brackets below and above the extremes beyond zero."""
+    below = extreme.crossed & (extreme.place > extreme.low) & (extreme.at_low * extreme.value < 0.0)
+    above = extreme.crossed & (extreme.place < extreme.high) & (extreme.at_high * extreme.value < 0.0)
+    which, low, high, at_low, at_high, place, value = extreme
+    return (
+        _Brackets(*(part[below] for part in (which, low, place, at_low, value))),
+        _Brackets(*(part[above] for part in (which, place, high, value, at_high))),
+    )
+
+
+def _distinct(beta: np.ndarray, slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Friction ratios in order, each once, and their slopes."""
+    order = np.argsort(beta)
+    beta, slope = beta[order], slope[order]
+    first = np.diff(beta, prepend=-np.inf) > _SAME
+    return beta[first], slope[first]
 
 
 def _slopes(system: System, r: np.ndarray, beta: np.ndarray, mass: np.ndarray) -> np.ndarray:
@@ -221,13 +322,23 @@ def _has_closed_form(system: System) -> bool:
     return is_one_on_wall(system) and system.normalised and not system.modes.zeta.any()
 
 
-def _none_reason(system: System, r: float, lag: float, seen: np.ndarray) -> str:
-    low, high = np.degrees(np.nanmin(seen)), np.degrees(np.nanmax(seen))
-    words = f"no friction ratio gives a lag of {np.degrees(lag):.4g} deg at r = {r:.4g}"
-    if not is_one_on_wall(system):
+def _none_reason(measured: _Measured, k: int, seen: _Lags) -> str:
+    """Which lags friction gives at the frequency of a point, none of which is the one measured."""
+    r, lag = float(measured.r[k]), float(np.degrees(measured.lag[k]))
+    point = np.array([k])
+    off = np.degrees(_reach(measured.at(point), _Lags(seen.beta[:, point], seen.lag[:, point]))[0])
+    low, high = np.degrees(np.nanmin(seen.lag[:, k])), np.degrees(np.nanmax(seen.lag[:, k]))
+    low, high = (min(low, lag + off), high) if lag < low else (low, max(high, lag - off))
+    words = f"no friction ratio gives a lag of {lag:.4g} deg at r = {r:.4g}"
+    if not is_one_on_wall(measured.system):
         return f"{words}: it is {low:.4g} to {high:.4g} deg"
+    for decimals in range(_MOST_DECIMALS + 1):
+        size = 10.0**decimals
+        ends = np.floor(low * size) / size, np.ceil(high * size) / size
+        if not ends[0] <= lag <= ends[1]:
+            break
     side = "above" if r > 1.0 else "below"
-    return f"{words}: {side} resonance it is {np.floor(low):.0f} to {np.ceil(high):.0f} deg"
+    return f"{words}: {side} resonance it is {ends[0]:.{decimals}f} to {ends[1]:.{decimals}f} deg"
 
 
 def _flat_reason(r: float, unsure: bool) -> str:

@@ -1,13 +1,13 @@
 """A rig: what a configuration says of measured data, and what a kind of data has to tell of itself."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import xarray as xr
 
 from ..files.config import unknown_key
-from .columns import Columns
+from .columns import Columns, unused_columns
 from .tables import Table
 
 
@@ -54,7 +54,18 @@ def check_columns(rig: Rig, legal: Sequence[str]) -> None:
             raise unknown_key(key, "data.columns", tuple(legal))
 
 
-def dropped_rows(table: Table, picked: Columns) -> str:
+def with_remarks(ds: xr.Dataset, table: Table, picked: Columns, known_of: Collection[str] = ()) -> xr.Dataset:
+    """The dataset with what is to be minded of the table before its own warnings.
+
+    known_of : columns that the configuration leaves out itself, or that are no numbers; they are not named
+    """
+    used = {column.name for column in picked.columns.values()} | set(known_of)
+    remarks = (_dropped_rows(table, picked), unused_columns(table, used), ds.attrs["warnings"])
+    ds.attrs["warnings"] = "; ".join(filter(None, remarks))
+    return ds
+
+
+def _dropped_rows(table: Table, picked: Columns) -> str:
     """A warning of rows that were left out, or nothing."""
     if not picked.dropped:
         return ""

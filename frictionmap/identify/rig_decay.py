@@ -9,7 +9,7 @@ from ..units.table import conversion
 from .columns import check_increasing, pick_columns
 from .decay_motion import PARAMETERS
 from .free_decay import free_decay
-from .rig import Kind, Rig, check_columns, dropped_rows
+from .rig import Kind, Rig, check_columns, with_remarks
 from .tables import Table
 
 #: What is given in mm, whatever the unit of the data.
@@ -34,8 +34,7 @@ def _free_decay(rig: Rig, table: Table) -> xr.Dataset:
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"file {rig.file}, columns {time.name} and {x.name}: {error}") from None
-    ds.attrs["warnings"] = "; ".join(filter(None, (dropped_rows(table, picked), ds.attrs["warnings"])))
-    return ds
+    return with_remarks(ds, table, picked)
 
 
 FREE_DECAY = Kind(

@@ -1,5 +1,7 @@
 """Forced responses from the file of a rig."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import xarray as xr
 
@@ -7,17 +9,21 @@ from .. import checks
 from ..errors import InputError
 from ..files.config import read_system
 from ..model.system import System
-from ..units.table import conversion
-from .columns import Columns, check_positive, has_column, pick_columns
+from ..units.table import conversion, derivative_order
+from .columns import Columns, check_positive, columns_like, pick_columns
 from .forced import forced
 from .forced_data import check_lag
-from .rig import Kind, Rig, check_columns, dropped_rows
+from .integration import amplitude_factors
+from .rig import Kind, Rig, check_columns, with_remarks
 from .tables import Table
 
 #: What may be fitted: the columns, and what they measure.
 _USE = {"phase": ("phase_lag", "angle"), "amplitude": ("amplitude_ratio", "ratio")}
 
-_LOADS = {"base": ("base", "length"), "force": ("force", "force")}
+#: Amplitudes of masses, where the table has no ratios of them.
+_MOTION = ("x", "motion")
+
+_LOADS = {"base": ("base", "motion"), "force": ("force", "force")}
 
 #: Columns of errors, and what they measure.
 _ERRORS = {"sigma_phase": "angle", "sigma_amplitude": "ratio"}
@@ -35,30 +41,34 @@ def _forced(rig: Rig, table: Table) -> xr.Dataset:
         if not role.startswith("phase_lag"):
             check_positive(table, column, picked.rows)
     lags = _by_mass(system, picked, "phase_lag", "deg")
-    ratios = _by_mass(system, picked, "amplitude_ratio", "1")
     sigmas = _errors(rig, picked)
     for mass, lag in lags.items():
         name = picked.columns[_role(system, "phase_lag", mass)].name
         places = [table.place(name, int(row)) for row in picked.rows]
         check_lag(system, mass - 1, lag, sigmas[0], places)
-    load = next((picked.columns[role] for role in _LOADS if role in picked.columns), None)
+    frequency = _frequency(rig, picked)
+    load, unit = _load(picked, frequency)
+    ratios = _ratios(rig, system, picked, frequency, load)
+    known = dict(rig.known)
+    stiffness = known.pop("stiffness", None)
     try:
         ds = forced(
-            _frequency(rig, picked), lags or None, ratios or None, system=system,
-            load=None if load is None else load.values, unit="" if load is None else load.unit,
-            sets=_sets(rig, table, picked.rows), known=rig.known, sigma_phase=sigmas[0],
+            frequency, lags or None, ratios or None, system=system, load=load, unit=unit, stiffness=stiffness,
+            sets=_sets(rig, table, picked.rows), known=known, sigma_phase=sigmas[0],
             sigma_amplitude=sigmas[1], unreachable=rig.data.get("unreachable", "refuse"),
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"file {rig.file}: {error}") from None
-    ds.attrs["warnings"] = "; ".join(filter(None, (dropped_rows(table, picked), ds.attrs["warnings"])))
-    return ds
+    return with_remarks(ds, table, picked, _left_out(system, rig, table))
 
 
 def _check_load(system: System, rig: Rig, table: Table) -> None:
     """Refuse a table of a shaken base for a system under a force, and the other way round."""
+    own, own_measures = _LOADS[system.excitation or "force"]
+    if columns_like(table, own, own_measures, rig.columns, sure=True):
+        return
     for excitation, (role, measures) in _LOADS.items():
-        if system.excitation != excitation and has_column(table, role, measures, rig.columns):
+        if system.excitation != excitation and columns_like(table, role, measures, rig.columns, sure=True):
             raise InputError(
                 f"system.excitation must be {excitation} for a file with a column {role}; "
                 f"got {system.excitation}"
@@ -67,23 +77,56 @@ def _check_load(system: System, rig: Rig, table: Table) -> None:
 
 def _wanted(system: System, rig: Rig, table: Table) -> dict[str, str]:
     """What every column that is made use of measures."""
-    roles = {
-        use: {_role(system, role, mass): measures for mass in range(1, system.n + 1)}
-        for use, (role, measures) in _USE.items()
-    }
+    roles = _roles_by_use(system)
     load = _LOADS[system.excitation or "force"]
+    motions = _roles(system, *_MOTION)
     check_columns(
-        rig, ("frequency", "frequency_ratio", *roles["phase"], *roles["amplitude"], load[0], *_ERRORS, "set")
+        rig,
+        (
+            "frequency",
+            "frequency_ratio",
+            *roles["phase"],
+            *roles["amplitude"],
+            *motions,
+            load[0],
+            *_ERRORS,
+            "set",
+        ),
     )
 
-    def there(wanted: dict[str, str]) -> dict[str, str]:
-        return {role: what for role, what in wanted.items() if has_column(table, role, what, rig.columns)}
+    def there(wanted: Mapping[str, str], sure: bool = False) -> dict[str, str]:
+        return {
+            role: what for role, what in wanted.items() if columns_like(table, role, what, rig.columns, sure)
+        }
 
-    ratio = there({"frequency_ratio": "ratio"})
-    wanted = ratio or {"frequency": "frequency"}
+    if not there(roles["amplitude"]) and there(motions, sure=True):
+        roles["amplitude"] = motions
+    measured, ratio = {"frequency": "frequency"}, there({"frequency_ratio": "ratio"})
+    wanted = ratio if "frequency_ratio" in rig.columns or not there(measured, sure=True) else measured
+    wanted = wanted or measured
     for use in _checked_use(rig, [name for name in _USE if there(roles[name])]):
         wanted |= there(roles[use]) or dict([next(iter(roles[use].items()))])
-    return wanted | there(dict([load])) | there(_ERRORS)
+    return wanted | there(dict([load]), sure=True) | there(_ERRORS, sure=True)
+
+
+def _roles_by_use(system: System) -> dict[str, dict[str, str]]:
+    """Roles of the columns that may be fitted, and what they measure."""
+    return {use: _roles(system, role, measures) for use, (role, measures) in _USE.items()}
+
+
+def _roles(system: System, role: str, measures: str) -> dict[str, str]:
+    return {_role(system, role, mass): measures for mass in range(1, system.n + 1)}
+
+
+def _left_out(system: System, rig: Rig, table: Table) -> list[str]:
+    """The column of sets, and columns that `data.use` leaves out."""
+    names = [rig.columns.get("set", "set")]
+    use = _checked_use(rig, list(_USE))
+    for roles in (roles for name, roles in _roles_by_use(system).items() if name not in use):
+        names += [
+            name for role, what in roles.items() for name in columns_like(table, role, what, rig.columns)
+        ]
+    return names
 
 
 def _role(system: System, role: str, mass: int) -> str:
@@ -107,6 +150,49 @@ def _by_mass(system: System, picked: Columns, role: str, unit: str) -> dict[int,
             scale = 1.0 if column.unit == unit else conversion(column.unit, unit)
             found[mass] = column.values * scale
     return found
+
+
+def _load(picked: Columns, frequency: np.ndarray) -> tuple[np.ndarray | None, str]:
+    """Loads row by row, those of a base as displacements, and their unit."""
+    if "force" in picked.columns:
+        force = picked.columns["force"]
+        return force.values, force.unit
+    if "base" not in picked.columns:
+        return None, "mm"
+    base = picked.columns["base"]
+    unit = "mm" if derivative_order(base.unit) else base.unit
+    return base.values * amplitude_factors(base.unit, unit, frequency), unit
+
+
+def _ratios(
+    rig: Rig, system: System, picked: Columns, frequency: np.ndarray, load: np.ndarray | None
+) -> dict[int, np.ndarray]:
+    """Amplitude ratios by mass, as given or of the amplitudes of masses over the load."""
+    ratios = _by_mass(system, picked, "amplitude_ratio", "1")
+    for mass in range(1, system.n + 1):
+        column = picked.columns.get(_role(system, _MOTION[0], mass))
+        if column is not None:
+            amplitude = column.values * amplitude_factors(column.unit, "m", frequency)
+            ratios[mass] = amplitude / _unit_response(rig, picked, frequency, column.name)
+    return ratios
+
+
+def _unit_response(rig: Rig, picked: Columns, frequency: np.ndarray, name: str) -> np.ndarray:
+    """Amplitudes that make the ratio one [m]: of the base, or force over stiffness."""
+    if "base" in picked.columns:
+        return picked.columns["base"].values * amplitude_factors(picked.columns["base"].unit, "m", frequency)
+    if "force" not in picked.columns:
+        raise InputError(
+            f"file {rig.file} must have a column base_mm or force_N, over which the amplitudes {name} are "
+            "taken; it has none (a column amplitude_ratio needs neither)"
+        )
+    if "stiffness" not in rig.known:
+        raise InputError(
+            f"known.stiffness must be given for a force and amplitudes {name}: what is fitted is their "
+            "ratio times the stiffness"
+        )
+    force = picked.columns["force"]
+    return force.values * conversion(force.unit, "N") / rig.known["stiffness"]
 
 
 def _errors(rig: Rig, picked: Columns) -> list[np.ndarray | None]:
@@ -151,6 +237,7 @@ def _sets(rig: Rig, table: Table, rows: np.ndarray) -> list[object] | None:
 FORCED = Kind(
     _forced,
     ("beta", "f_n", "zeta", "mu"),
+    known=("stiffness",),
     data=("use", "sigma_phase_deg", "sigma_amplitude", "unreachable"),
     system=True,
 )

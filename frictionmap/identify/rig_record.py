@@ -9,7 +9,7 @@ from ..units.table import conversion
 from .columns import check_increasing, pick_columns
 from .record import record
 from .record_motion import CONTACTS, DAMPING_REFERENCES, PARAMETERS
-from .rig import Kind, Rig, check_columns, dropped_rows
+from .rig import Kind, Rig, check_columns, with_remarks
 from .tables import Table
 
 _WANTED = {"time": "time", "base": "length", "x": "length"}
@@ -40,8 +40,7 @@ def _record(rig: Rig, table: Table) -> xr.Dataset:
     except InputError as error:
         names = f"columns {time.name}, {base.name} and {x.name}"
         raise InputError(f"file {rig.file}, {names}: {error}") from None
-    ds.attrs["warnings"] = "; ".join(filter(None, (dropped_rows(table, picked), ds.attrs["warnings"])))
-    return ds
+    return with_remarks(ds, table, picked)
 
 
 def _checked_system(rig: Rig) -> tuple[str, str]:

@@ -10,8 +10,8 @@ from ..errors import InputError
 from ..files.config import unknown_key
 from ..units.table import conversion
 from .chain_estimates import chain_names
-from .columns import Column, Columns, check_positive, has_column, pick_columns
-from .rig import Kind, Rig, check_columns, dropped_rows
+from .columns import Column, Columns, check_positive, columns_like, pick_columns
+from .rig import Kind, Rig, check_columns, with_remarks
 from .robust import LOSSES
 from .sweep import COSTS, DAMPINGS, sweep
 from .sweep_data import MOST_MASSES
@@ -39,8 +39,7 @@ def _sweep(rig: Rig, table: Table) -> xr.Dataset:
     except InputError as error:
         names = ", ".join(column.name for column in picked.columns.values())
         raise InputError(f"file {rig.file}, columns {names}: {error}") from None
-    ds.attrs["warnings"] = "; ".join(filter(None, (dropped_rows(table, picked), ds.attrs["warnings"])))
-    return ds
+    return with_remarks(ds, table, picked)
 
 
 def _wanted(rig: Rig, table: Table, masses: int) -> dict[str, str]:
@@ -49,7 +48,7 @@ def _wanted(rig: Rig, table: Table, masses: int) -> dict[str, str]:
         f"{role}_{mass}": what for mass in range(1, MOST_MASSES + 1) for role, what in _MEASURES.items()
     }
     check_columns(rig, ("frequency", *measures))
-    there = {role: what for role, what in measures.items() if has_column(table, role, what, rig.columns)}
+    there = {role: what for role, what in measures.items() if columns_like(table, role, what, rig.columns)}
     for role in there:
         if int(role[-1]) > masses:
             raise InputError(f"system.masses must be at least {role[-1]}, as there is {role}; got {masses}")

@@ -59,7 +59,7 @@ def _smooth(system: System, points: _Points) -> list[States]:
     lim, stick = curves.beta_lim[0, place], curves.beta_stick[0, place]
     friction = points.beta > 0.0
     stuck = friction & (points.beta >= stick)
-    continuous = ~friction | (points.beta < lim) & ~stuck
+    continuous = ~friction | (points.beta <= lim) & ~stuck
     states = _nowhere(points.r.size, system.n)
     states.phasors[stuck] = system.modes.held_response(at)[place[stuck]]
     states.regime[stuck] = regimes.PERMANENT_STICKING

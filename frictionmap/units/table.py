@@ -47,8 +47,11 @@ UNITS = {
     "kN/m": Unit("stiffness", Fraction(1000)),
     "kN/mm": Unit("stiffness", Fraction(10**6)),
     "lbf/in": Unit("stiffness", _POUND_FORCE / _INCH),
-    "m/s^2": Unit("acceleration", Fraction(1)),
-    "g": Unit("acceleration", _GRAVITY),
+    "m/s": Unit("velocity", Fraction(1), "m_s"),
+    "mm/s": Unit("velocity", Fraction(1, 1000), "mm_s"),
+    "m/s^2": Unit("acceleration", Fraction(1), "m_s2"),
+    "mm/s^2": Unit("acceleration", Fraction(1, 1000), "mm_s2"),
+    "g": Unit("acceleration", _GRAVITY, "g"),
     "J": Unit("work", Fraction(1)),
     "mJ": Unit("work", Fraction(1, 1000)),
     "s": Unit("time", Fraction(1), "s"),
@@ -63,9 +66,12 @@ _ALIASES = {"\u00b5m": "um", "\u03bcm": "um", "m/s\u00b2": "m/s^2"}
 #: Units that names of columns may end in, by how they do.
 COLUMN_UNITS = {unit.column: unit for unit in UNITS.values() if unit.column}
 
+#: What motion is measured as, in the order of its derivatives.
+MOTIONS = ("length", "velocity", "acceleration")
+
 
 def units_of(measures: str) -> tuple[str, ...]:
-    """Units of frequency, force, length, mass, stiffness, acceleration, time or angle."""
+    """Units of frequency, force, length, mass, stiffness, velocity, acceleration, time or angle."""
     return tuple(name for name, unit in UNITS.items() if unit.measures == measures)
 
 
@@ -82,8 +88,12 @@ def known_unit(text: str) -> str | None:
 
 
 def suffixes(measures: str) -> tuple[str, ...]:
-    """How columns of time, length, frequency, angle or force may end; one of a ratio has no unit."""
-    return tuple(f"_{name}" for name, unit in COLUMN_UNITS.items() if unit.measures == measures)
+    """How columns of time, length, frequency, angle or force may end; one of a ratio has no unit.
+
+    A column of "motion" is one of `MOTIONS`.
+    """
+    kinds = MOTIONS if measures == "motion" else (measures,)
+    return tuple(f"_{name}" for kind in kinds for name, unit in COLUMN_UNITS.items() if unit.measures == kind)
 
 
 def ending(name: str) -> str:
@@ -95,6 +105,11 @@ def ending(name: str) -> str:
 def conversion(unit: str, into: str) -> float:
     """What a number in one unit of columns is multiplied by to be in another."""
     return float(COLUMN_UNITS[unit].size / COLUMN_UNITS[into].size)
+
+
+def derivative_order(unit: str) -> int:
+    """How often a displacement was differentiated to give what is in this unit: 0, 1 or 2."""
+    return MOTIONS.index(COLUMN_UNITS[unit].measures)
 
 
 def checked_unit(unit: str, measures: str, name: str) -> str:

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 from responses import continuous
+from scipy.optimize import minimize_scalar
 
 import frictionmap as fm
+from frictionmap.steady.points import steady_states
 
 #: r, beta and the exact lag [deg] of one mass on a fixed wall, by integration in 40 digits.
 EXACT = [
@@ -114,3 +116,80 @@ def test_base_wall_above_resonance():
 def test_bad_arguments(r, lag, message):
     with pytest.raises(fm.InputError, match=message):
         fm.identify.friction_ratio(r, lag)
+
+
+@pytest.mark.parametrize(
+    ("r", "lag", "beta"),
+    [
+        (1.065919144067727, 116.87754740448655, (0.65250, 0.78303, 0.78379)),
+        (0.8769076947157068, 111.88985605556766, (0.84524, 0.85654)),
+    ],
+)
+def test_two_friction_ratios_next_to_an_extreme(r, lag, beta):
+    """Both sides of an extreme that lies between two of the friction ratios that are looked at."""
+    found = fm.identify.friction_ratio(r, lag, system=fm.System(damping_ratios=0.01))[0]
+    assert found.beta == pytest.approx(beta, abs=1e-5)
+
+
+@pytest.mark.parametrize("r", [1.066, 1.2])
+def test_extremes_of_continuous_motions(r):
+    """The least lag above resonance, by another formula: friction ratios on both sides, ever nearer."""
+    system = fm.System(excitation="base", damping_reference="base", damping_ratios=0.01)
+    high = 0.9995 * float(fm.boundaries(system, [r]).beta_lim[0, 0])
+    least = minimize_scalar(lambda beta: lag_of(r, beta, 0.01), bounds=(0.8 * high, high), method="bounded",
+                            options={"xatol": 1e-9})  # fmt: skip
+    assert least.x < 0.9999 * high  # not an end
+    for distance in (1e-2, 1e-3, 1e-4):
+        for beta in (least.x - distance, least.x + min(distance, 0.5 * (high - least.x))):
+            found = fm.identify.friction_ratio(r, lag_of(r, beta, 0.01), system=system)[0]
+            # rounding of a lag moves beta by some 1e-14 over its slope, here above distance/10
+            assert off(found, beta) < 1e-12 / distance
+            assert len(found.beta) >= 2
+    at = fm.identify.friction_ratio(r, least.fun, system=system)[0]
+    assert off(at, least.x) < 1e-5
+    beyond = fm.identify.friction_ratio(r, least.fun - 1e-6, system=system)[0]
+    assert off(beyond, least.x) > 1e-2
+
+
+def exact_points(seed, count, zeta):
+    """Random r, beta and the exact lag [deg], of one mass on a fixed wall."""
+    rng = np.random.default_rng(seed)
+    system = fm.System(damping_ratios=zeta)
+    r = rng.uniform(0.05, 3.0, count)
+    beta = rng.uniform(0.001, 0.9999, count) * np.abs(system.contact_load(r))
+    lag = -np.degrees(np.angle(steady_states(system, r, beta, 1.0)[0].phasors[:, 0]))
+    return system, r, beta, lag
+
+
+def check_inverse(seed, count):
+    for zeta in (0.0, 0.005, 0.01, 0.05):
+        system, r, beta, lag = exact_points(seed, count, zeta)
+        found = fm.identify.friction_ratio(r, lag, system=system)
+        assert max(map(off, found, beta)) < 1e-7, zeta
+
+
+def test_inverse_of_exact_lags():
+    """Every friction ratio is among those of its lag, continuous or stick-slip."""
+    check_inverse(3, 60)
+
+
+@pytest.mark.slow
+def test_inverse_of_many_exact_lags():
+    check_inverse(4, 600)
+
+
+def test_motion_that_just_slides():
+    """At beta_lim motion is continuous: its lag is that just below."""
+    r = np.array([2.38883556722757, 0.365, 1.7])
+    lim = fm.boundaries(fm.System(), np.sort(r)).beta_lim.values[0][np.argsort(np.argsort(r))]
+    at, below = (steady_states(fm.System(), r, beta, 1.0)[0].phasors for beta in (lim, lim * (1.0 - 1e-12)))
+    np.testing.assert_allclose(at, below, rtol=1e-9)
+    lag = 134.89039285029645  # between beta_lim and the next friction ratio that is looked at
+    assert len(fm.identify.friction_ratio(r[0], lag)[0].beta) == 1
+
+
+def test_a_lag_beside_the_range_is_named_with_enough_digits():
+    reason = fm.identify.friction_ratio(0.8769076947157068, 111.3, system=fm.System(damping_ratios=0.05))[
+        0
+    ].reason
+    assert "a lag of 111.3 deg at r = 0.8769: below resonance it is 20.7 to 111.2 deg" in reason

@@ -306,3 +306,23 @@ def test_the_room_is_loaded_when_used():
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=600
     )
     assert shown.stdout.split() == ["False", "free_decay"]
+
+
+def test_columns_that_are_not_used_are_named(rig, capsys):
+    """What is mapped elsewhere is no candidate, and what is unknown does not matter."""
+    time, x = synthetic(TRUTH, 1)
+    rows = "\n".join(f"{t:.6g},{place:.6g},{place:.6g},note" for t, place in zip(time, x, strict=True))
+    text = f"time_s,x_mm,x_volt,remark\n{rows}\n"
+    assert main(["identify", str(rig(text))]) == 0
+    assert "warning: not used of decay.csv: x_volt, remark\n" in capsys.readouterr().out
+    text = text.replace("x_volt", "x_time_s")
+    assert main(["identify", str(rig(text, 'columns = { x = "x_mm" }')), "--overwrite"]) == 0
+    assert "warning: not used of decay.csv: x_time_s, remark\n" in capsys.readouterr().out
+
+
+def test_unused_columns_of_large_files(rig, capsys):
+    time, x = synthetic(TRUTH, 1)
+    names = ",".join(f"channel_{k}" for k in range(20))
+    rows = "\n".join(f"{t:.6g},{place:.6g}" + 20 * ",1" for t, place in zip(time, x, strict=True))
+    assert main(["identify", str(rig(f"time_s,x_mm,{names}\n{rows}\n"))]) == 0
+    assert "channel_6, channel_7 and 12 more\n" in capsys.readouterr().out

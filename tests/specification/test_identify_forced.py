@@ -159,6 +159,131 @@ def test_sets_by_any_name(rig):
         assert ds.parameter.values.tolist() == ["beta_loose", "beta_b2", "f_n", "zeta", "mu"]
 
 
+def without_column(lines, head, k):
+    names = head.split(",")
+    kept = [index for index in range(len(names)) if index != k]
+    return [columns(line, *kept) for line in lines], columns(head, *kept)
+
+
+def estimates_of(path):
+    with xr.open_dataset(path) as ds:
+        return ds.load()
+
+
+def test_columns_that_nobody_asked_for(rig, capsys):
+    """A frequency that begins like a base is none, mapped or not; columns left alone are named."""
+    assert main(["identify", rig(), "--quiet"]) == 0
+    capsys.readouterr()
+    lines = [f"{line},{2.0 * np.pi * f:.8f},a,7" for line, f in zip(LINES, FREQUENCY, strict=True)]
+    head = f"{HEAD},base_frequency_rad_s,note,base_inch"
+    for k, (text, left) in enumerate([
+        (RIG, "base_frequency_rad_s, note, base_inch"),
+        (RIG.replace("sigma_p", "columns = { frequency = 'base_frequency_rad_s' }\nsigma_p"),
+         "frequency_Hz, note, base_inch"),
+    ]):  # fmt: skip
+        assert main(["identify", rig(lines, text, head), "-o", f"{k}.nc"]) == 0
+        assert f"not used of table.csv: {left}\n" in capsys.readouterr().out
+        np.testing.assert_allclose(
+            estimates_of(f"{k}.nc").estimate, estimates_of("rig-identify.nc").estimate, rtol=1e-4
+        )
+
+
+def test_no_base_but_a_frequency_that_begins_like_one(rig):
+    lines, head = without_column(LINES, HEAD, 4)
+    lines = [f"{line},{2.0 * np.pi * f:.8f}" for line, f in zip(lines, FREQUENCY, strict=True)]
+    text = RIG.replace("sigma_p", "columns = { frequency = 'base_frequency_rad_s' }\nsigma_p")
+    head = head.replace("frequency_Hz", "f") + ",base_frequency_rad_s"
+    assert main(["identify", rig(lines, text, head), "--quiet"]) == 0
+
+
+def test_what_data_use_leaves_out_is_not_named(rig, capsys):
+    text = RIG.replace("sigma_p", 'use = ["amplitude"]\nsigma_p')
+    assert main(["identify", rig(text=text)]) == 0
+    assert "not used" not in capsys.readouterr().out
+
+
+def test_a_measured_frequency_goes_before_its_ratio(rig):
+    """A column frequency_ratio beside it asks for no known f_n."""
+    lines = [f"{line},{f / 3.0}" for line, f in zip(LINES, FREQUENCY, strict=True)]
+    assert main(["identify", rig(lines, head=f"{HEAD},frequency_ratio"), "--quiet"]) == 0
+
+
+def test_the_load_of_the_other_excitation_beside_its_own(rig, capsys):
+    lines = [f"{line},3.0" for line in LINES]
+    assert main(["identify", rig(lines, head=f"{HEAD},force_N")]) == 0
+    assert "not used of table.csv: force_N" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("unit", "order", "size"),
+    [("mm_s", 1, 1.0), ("m_s", 1, 1e3), ("m_s2", 2, 1e3), ("mm_s2", 2, 1.0), ("g", 2, 9806.65)],
+)
+def test_accelerations_and_velocities_of_base_and_mass(rig, unit, order, size):
+    """x_F is that of the displacements: amplitudes over omega or its square."""
+    assert main(["identify", rig(), "--quiet"]) == 0
+    true = estimates_of("rig-identify.nc")
+    rate = (2.0 * np.pi * FREQUENCY) ** order / size
+    lines, _ = without_column(LINES, HEAD, 4)
+    lines = [f"{line},{1.5 * w:.9g}" for line, w in zip(lines, rate, strict=True)]
+    head = HEAD.replace("base_mm", f"base_{unit}")
+    assert main(["identify", rig(lines, head=head), "--quiet", "-o", "base.nc"]) == 0
+    lines = [
+        f"{s},{f:.5f},{p:.5f},{1.5 * w:.9g},{x * 1.5:.9g}"
+        for s, f, p, x, w in zip(SETS, FREQUENCY, LAG, RATIO, rate, strict=True)
+    ]
+    head = f"set,frequency_Hz,phase_lag_deg,base_{unit},x_mm"
+    assert main(["identify", rig(lines, head=head), "--quiet", "-o", "mixed.nc"]) == 0
+    lines = [
+        f"{s},{f:.5f},{p:.5f},1.5,{x * 1.5 * w:.9g}"
+        for s, f, p, x, w in zip(SETS, FREQUENCY, LAG, RATIO, rate, strict=True)
+    ]
+    head = f"set,frequency_Hz,phase_lag_deg,base_mm,x_{unit}"
+    assert main(["identify", rig(lines, head=head), "--quiet", "-o", "mass.nc"]) == 0
+    for name in ("base.nc", "mixed.nc", "mass.nc"):
+        found = estimates_of(name)
+        np.testing.assert_allclose(found.estimate, true.estimate, rtol=2e-4)
+        assert float(found.x_F_1) == pytest.approx(float(true.x_F_1), rel=2e-4)
+        assert found.x_F_1.attrs["units"] == "mm"
+
+
+def test_friction_in_newtons(rig, capsys):
+    """k1 beta Y of every set, with its error."""
+    text = RIG.replace("mu = 1.0", 'mu = 1.0\nstiffness = "2 N/mm"')
+    assert main(["identify", rig(text=text)]) == 0
+    assert "friction_force_2  " in capsys.readouterr().out
+    ds = estimates_of("rig-identify.nc")
+    for name in ("1", "2"):
+        one = ds.sel(parameter=f"beta_{name}")
+        force, error = ds[f"friction_force_{name}"], ds[f"friction_force_{name}_standard_error"]
+        assert float(force) == pytest.approx(2000.0 * 1.5e-3 * float(one.estimate), rel=1e-12)
+        assert float(error) == pytest.approx(2000.0 * 1.5e-3 * float(one.standard_error), rel=1e-12)
+        assert force.attrs["units"] == error.attrs["units"] == "N"
+    lines, head = without_column(LINES, HEAD, 4)
+    assert main(["identify", rig(lines, text, head), "--overwrite"]) == 0
+    assert "warning: no friction force in N: there are no amplitudes of the base" in capsys.readouterr().out
+
+
+def test_amplitudes_of_a_mass_under_a_force(rig, capsys):
+    """X k1/P of a force P [N] and a spring k1."""
+    lines = [
+        f"{s},{f:.5f},{p:.5f},3.0,{x * 3.0 / 2000.0 * (2.0 * np.pi * f) ** 2:.9g}"
+        for s, f, p, x in zip(SETS, FREQUENCY, LAG, RATIO, strict=True)
+    ]
+    head = "set,frequency_Hz,phase_lag_deg,force_N,x_m_s2"
+    text = RIG.replace('excitation = "base"\ndamping_reference = "base"', 'excitation = "force"')
+    assert "known.stiffness must be given for a force and amplitudes x_m_s2" in refusal(
+        capsys, "identify", rig(lines, text, head)
+    )
+    text = text.replace("mu = 1.0", "mu = 1.0\nstiffness = 2000.0")
+    assert main(["identify", rig(lines, text, head), "--quiet"]) == 0
+    ratios = estimates_of("rig-identify.nc").data.values[len(RATIO) :]
+    np.testing.assert_allclose(ratios, RATIO, rtol=1e-5)
+    lines, head = without_column(lines, head, 3)
+    assert "must have a column base_mm or force_N, over which the amplitudes x_m_s2 are taken" in refusal(
+        capsys, "identify", rig(lines, text, head), "--overwrite"
+    )
+
+
 @pytest.mark.parametrize(
     ("lines", "head", "message"),
     [

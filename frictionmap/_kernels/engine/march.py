@@ -124,6 +124,7 @@ def _around(motion, contact):
     if not contact.b < contact.b_lim or math.isinf(motion.v_abs):
         return Around(False, 0.0, 0.0, 0.0)
     amplitude, phase, radius = stop_free(motion, contact)
+    motion.scratch.left[0] -= TURN / motion.h  # about what that takes
     return Around(True, amplitude, phase, radius)
 
 
@@ -286,7 +287,7 @@ def _follow(motion, contact, at, moves, limits, cancel):
 
 @kernel
 def steady_state(motion, contact, at, moves, limits, cancel):
-    """The steady state of a cell.
+    """The steady state of a cell, found within so many scan steps; else it is unresolved.
 
     Parameters
     ----------
@@ -301,6 +302,7 @@ def steady_state(motion, contact, at, moves, limits, cancel):
     -------
     Cell
     """
+    motion.scratch.left[0] = limits.steps
     if contact.unique and limits.newton and contact.b >= contact.b_lim and not lasting_vibration(motion):
         orbit = seek_nearby(motion, contact, limits)
         if orbit.found:

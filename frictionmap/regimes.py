@@ -1,8 +1,8 @@
 """Codes of the variables `regime`, `origin` and `status`, and the bits of `also_reachable`.
 
 Datasets and files hold these numbers, so a regime is compared with a constant, not with a name.  Each
-constant is the name of its code in capitals.  Bit 1 << regime of `also_reachable` is set where a start ends in
-that regime.
+constant is the name of its code in capitals.  Bit 1 << regime of `also_reachable` is set where a start ends
+in that regime.
 
 Examples
 --------
@@ -29,12 +29,12 @@ __all__ = [
     "NOT_PERIODIC",
     "NOT_REACHED",
     "ORIGINS",
+    "PERIODIC_ORBIT",
     "PERMANENT_STICKING",
     "QUASI_STATIC",
     "REACHABLE",
     "REGIMES",
     "RESOLVED",
-    "PERIODIC_ORBIT",
     "STATUSES",
     "STICK_SLIP",
     "TOO_MANY_EVENTS",

@@ -90,7 +90,8 @@ def _no_friction(beta_lim: np.ndarray, beta_stick: np.ndarray) -> np.ndarray:
 def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Plan:
     """Sort the cells into those that a formula decides and those that are open (theory.md 6).
 
-    - beta = 0 is linear, and so is friction that is lost in the rounding of the load, below beta_lim; where nothing loads the contact (joined base-wall, r = 0), nothing moves.
+    - beta = 0 is linear; where nothing loads the contact (joined base-wall, r = 0), nothing moves.
+    - skip = "exact": friction lost in the rounding of the load, below beta_lim, counts as none.
     - skip = "exact", mu = 1: continuous below beta_lim, stuck from beta_stick on, whatever the start.
     - skip = "exact", start from rest: one mass with beta >= beta_stick never begins to move.
     - r = 0 has no motion to integrate; a regime, but no number of stops, follows from the boundaries.

@@ -23,9 +23,8 @@ from .policies import ABOVE, AROUND, EIGHTHS, NO_FRICTION, RUNGS
 #: Halvings of the step of the ladder in which a sliding motion ends.
 _HALVINGS = 22
 
-#: Scan steps of all motions along the ladders of a row, the search for the end of sliding included, and of all
-#: motions of a cell, over those of one motion: at low frequency each of these many motions may take all of its
-#: own.
+#: Scan steps of all motions along the ladders of a row, with the search for the end of sliding, and of all
+#: motions of a cell, over those of one motion: at low frequency each of so many may take all of its own.
 _ROW_SHARE, _CELL_SHARE = 4.0, 2.0
 
 #: Beyond mu beta_stick by more than this, relative to it: the rounding of either.
@@ -215,7 +214,7 @@ def _from_ladders(motion, system, row, beta, around, above, flags, limits, cance
 
 @kernel
 def _decided(row, beta):
-    """Whether what is proved is all: no friction, or none beside the rounding of the load; or too much of it."""
+    """Whether what is proved is all: no friction, or none beside the load's rounding; or too much of it."""
     lost = beta < row.lim and beta < NO_FRICTION * row.stick and row.stick < math.inf
     return beta == 0.0 or lost or beta > row.mu * row.stick * (1.0 + _ROUNDING)
 
@@ -223,10 +222,10 @@ def _decided(row, beta):
 @kernel
 def _any_open(row, beta):
     """Whether a cell of a row is not decided."""
+    found = False
     for j in range(beta.size):
-        if not _decided(row, beta[j]):
-            return True
-    return False
+        found = found or not _decided(row, beta[j])
+    return found
 
 
 @kernel

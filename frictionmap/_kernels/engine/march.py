@@ -9,7 +9,15 @@ distance is less than that at which a stop is possible at all (`motion.stop_free
 import math
 from typing import NamedTuple
 
-from ...regimes import INTEGRATED, MARGINAL, NOT_COMPUTED, RESOLVED, PERIODIC_ORBIT, TOO_MANY_EVENTS, UNRESOLVED
+from ...regimes import (
+    INTEGRATED,
+    MARGINAL,
+    NOT_COMPUTED,
+    PERIODIC_ORBIT,
+    RESOLVED,
+    TOO_MANY_EVENTS,
+    UNRESOLVED,
+)
 from ..jit import inner_kernel, kernel
 from ..one_mass.events import GRAZING, NO_END, STUCK
 from ..structure.events import NO_RELEASE

@@ -10,7 +10,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import entry, inner_kernel, kernel
-from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, EventSequence, Scratch, after_slide, make_scratch, slide_within
+from ..one_mass.events import (
+    REVERSE,
+    STOP_THEN_BACK,
+    STOP_THEN_ON,
+    EventSequence,
+    Scratch,
+    after_slide,
+    make_scratch,
+    slide_within,
+)
 from ..one_mass.newton import first_contact_force, solve_orbit
 from ..one_mass.scan_step import Step, step_constants
 from ..one_mass.sliding_orbit import (

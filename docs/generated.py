@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 import frictionmap as fm
+from frictionmap import regimes
 from frictionmap.arguments import Command, described
 from frictionmap.datasets.labels import LABELS, Label
 from frictionmap.datasets.provenance import value_text
@@ -133,7 +134,7 @@ def api() -> Iterator[str]:
     """The public names with their docstrings."""
     yield "Python API\n==========\n\n``import frictionmap as fm``"
     named = [name for names in _GROUPS.values() for name in names]
-    public = [name for name in fm.__all__ if name not in ("__version__", "features", "identify")]
+    public = [name for name in fm.__all__ if name not in ("__version__", "features", "identify", "regimes")]
     others = [name for name in public if name not in named]
     for title, names in _GROUPS.items():
         yield f"\n{title}\n{'-' * len(title)}\n"
@@ -146,6 +147,24 @@ def api() -> Iterator[str]:
         yield f".. automodule:: frictionmap.{module}\n   :no-members:\n" if module == "features" else ""
         for name in _public(module):
             yield _documented(f"frictionmap.{module}", name)
+    yield from _codes()
+
+
+def _codes() -> Iterator[str]:
+    """The constants of `frictionmap.regimes`, a table for each coded variable."""
+    title = "frictionmap.regimes"
+    yield f"\n{title}\n{'-' * len(title)}\n"
+    yield f".. automodule:: {title}\n   :no-members:\n"
+    for variable, table in (
+        ("regime", regimes.REGIMES), ("origin", regimes.ORIGINS), ("status", regimes.STATUSES)
+    ):  # fmt: skip
+        yield f".. list-table:: Codes of ``{variable}``\n   :header-rows: 1\n"
+        yield "   * - constant\n     - value\n     - meaning"
+        for code in table:
+            yield f"   * - {code.name.upper()}\n     - {code.value}\n     - {code.meaning}"
+        yield ""
+    for name in ("regime_name", "status_meaning"):
+        yield _documented(title, name)
 
 
 def _public(module: str) -> list[str]:

@@ -36,7 +36,7 @@ from .errors import InputError, NoSteadyState
 from .version import __version__
 
 if TYPE_CHECKING:
-    from . import features, identify
+    from . import features, identify, regimes
     from .explorer.notebook import explore
     from .files.config import load_config
     from .model.settings import Solver
@@ -79,6 +79,7 @@ __all__ = [
     "plot_regimes",
     "plot_response",
     "plot_shares",
+    "regimes",
     "response",
     "shares",
     "sweep",
@@ -113,7 +114,7 @@ def __dir__() -> list[str]:
 
 
 def __getattr__(name: str) -> object:
-    if name in ("features", "identify"):
+    if name in ("features", "identify", "regimes"):
         return import_module(f".{name}", __name__)
     if name in _HOME:
         value = getattr(import_module(f".{_HOME[name]}", __name__), name)

@@ -78,7 +78,7 @@ def _fill_cells(
 ) -> None:
     """Compute a grid of cells with progress shown, write it, and tell what came out."""
     from ._kernels.cache import listeners
-    from .files.summary import describe_causes, describe_map
+    from .files.summary import describe_causes, describe_map, describe_reduction
     from .progress import Progress
 
     with Progress(what, options.quiet) as progress:
@@ -88,7 +88,8 @@ def _fill_cells(
         took = time.perf_counter() - began
         output.fill(_finish(ds, config, options), lambda size: progress.writing(output.path, size))
         listeners.remove(progress.compiling)
-    _tell(options, output, f"{describe_map(ds)} in {took:.2g} s", *describe_causes(ds))
+    first = f"{describe_map(ds)} in {took:.2g} s"
+    _tell(options, output, first, *describe_causes(ds), *describe_reduction(ds))
 
 
 def _cost(options: Options, config: "Config") -> str:
@@ -105,11 +106,12 @@ def _cost(options: Options, config: "Config") -> str:
 
 
 def _boundaries(options: Options, config: "Config", output: "Output") -> None:
+    from .files.summary import describe_reduction
     from .theory.boundaries import boundaries
 
     ds = boundaries(config.system, config.r, config.mu, units=config.units)
     output.fill(_finish(ds, config, options))
-    _tell(options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu")
+    _tell(options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu", *describe_reduction(ds))
 
 
 def _response(options: Options, config: "Config", output: "Output") -> None:

@@ -1,9 +1,47 @@
-"""The one table of regime, origin and status codes: name, meaning, colour, advice.
+"""Codes of the variables `regime`, `origin` and `status`, and the bits of `also_reachable`.
 
-Files have the numbers and names: they may grow, not change.  Meanings, colours and advice may.
+Datasets and files hold these numbers, so a regime is compared with a constant, not with a name.  Each
+constant is the name of its code in capitals.  Bit 1 << regime of `also_reachable` is set where a start ends
+in that regime.
+
+Examples
+--------
+>>> import frictionmap as fm
+>>> ds = fm.sweep(fm.System(), r=[0.3], beta=[0.01, 0.5, 1.0])
+>>> (ds.regime == fm.regimes.CONTINUOUS).values
+array([[[ True, False, False]]])
+>>> [fm.regimes.regime_name(code) for code in ds.regime.values.ravel()]
+['continuous', 'stick_slip', 'permanent_sticking']
 """
 
+# Numbers and names stand in files: they may grow, not change.  Meanings and advice may change.
+
 from typing import NamedTuple
+
+from .errors import InputError
+
+__all__ = [
+    "CLOSED_FORM",
+    "CONTINUOUS",
+    "INTEGRATED",
+    "MARGINAL",
+    "NOT_COMPUTED",
+    "NOT_PERIODIC",
+    "NOT_REACHED",
+    "ORIGINS",
+    "PERIODIC_ORBIT",
+    "PERMANENT_STICKING",
+    "QUASI_STATIC",
+    "REACHABLE",
+    "REGIMES",
+    "RESOLVED",
+    "STATUSES",
+    "STICK_SLIP",
+    "TOO_MANY_EVENTS",
+    "UNRESOLVED",
+    "regime_name",
+    "status_meaning",
+]
 
 UNRESOLVED = -1
 PERMANENT_STICKING = 0
@@ -12,7 +50,7 @@ CONTINUOUS = 2
 
 CLOSED_FORM = 0
 INTEGRATED = 1
-SOLVED = 2
+PERIODIC_ORBIT = 2
 
 RESOLVED = 0
 NOT_REACHED = 1
@@ -49,7 +87,7 @@ REACHABLE = (
 ORIGINS = (
     Code(CLOSED_FORM, "closed_form", "decided by a formula"),
     Code(INTEGRATED, "integrated", "followed from the starting state to the steady state"),
-    Code(SOLVED, "periodic_orbit", "followed for a while, then solved as a periodic orbit"),
+    Code(PERIODIC_ORBIT, "periodic_orbit", "followed for a while, then solved as a periodic orbit"),
 )
 
 STATUSES = (
@@ -92,6 +130,19 @@ STATUSES = (
 )
 
 
+def _code(codes: tuple[Code, ...], value: int, what: str) -> Code:
+    """The code with this value."""
+    for code in codes:
+        if code.value == value:
+            return code
+    raise InputError(f"unknown {what} {value!r}; valid: {', '.join(str(code.value) for code in codes)}")
+
+
+def regime_name(regime: int) -> str:
+    """Name of a regime code, such as "stick_slip" of 1."""
+    return _code(REGIMES, regime, "regime").name
+
+
 def status_meaning(status: int) -> str:
-    """What a status says, and what to do about it."""
-    return next(code.meaning for code in STATUSES if code.value == status)
+    """Cause that a status code stands for, and what to do about it."""
+    return _code(STATUSES, status, "status").meaning

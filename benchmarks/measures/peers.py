@@ -94,7 +94,8 @@ def prepare(cells: list[Cell]) -> tuple:
     stick = np.hstack([one.curves.beta_stick for one in found])
     beta, mu = (np.array([getattr(cell, name) for cell in cells]) for name in ("beta", "mu"))
     return (
-        OneMassSystem(frequencies, BODY.zeta, 24.0, lim, stick, 1, 1.0), beta, mu, Limits(2000.0, 1e-12, True)
+        OneMassSystem(frequencies, BODY.zeta, 24.0, lim, stick, 1, 1.0), beta, mu,
+        Limits(2000.0, 1e-12, True, math.inf),
     )  # fmt: skip
 
 

@@ -24,7 +24,10 @@ from .labels import (
 )
 
 #: Global attributes that are text, if they are there.
-TEXTS = ("title", "system", "source", "history", "references", "config", "reduction", "decoupling")
+TEXTS = (
+    "title", "system", "source", "history", "references", "config", "reduction", "reduction_check",
+    "decoupling",
+)  # fmt: skip
 
 
 def _known(what: str) -> dict[str, Label]:

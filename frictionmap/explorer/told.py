@@ -6,12 +6,16 @@ import numpy as np
 
 from ..errors import InputError
 from ..pictures.palette import CLASSES
+from ..theory.refinement import boundary_check
 from ..units.scales import scales_of
 from ..units.table import UNITS, handy_unit
 from ..version import __version__
 from .queries import Query
 from .scene import Scene
 from .views import marks, quantities
+
+#: Frequencies of the range shown at which boundaries of a reduced structure are compared with finer ones.
+_COMPARED = 60
 
 #: What friction and lengths are over.
 _UNITS = {
@@ -36,13 +40,21 @@ def _physical(scene: Scene, query: Query) -> dict[str, dict[str, Any]]:
     return found
 
 
+def _costs(query: Query) -> list[str]:
+    """What the structure that is computed differs from the one given, in the range of r that is shown."""
+    view = query.view
+    costs = view.system.costs(np.array(view.r))
+    some = np.linspace(*view.r, _COMPARED)
+    return [*costs.values(), *boundary_check(view.system, some, np.array([view.mu])).values()]
+
+
 def told(scene: Scene, query: Query) -> dict[str, Any]:
     """The scene, and the system as a query changes it."""
     system = query.view.system
     return {
         "title": scene.title,
         "version": __version__,
-        "system": "; ".join((system.describe(), *system.costs(np.array(query.view.r)).values())),
+        "system": "; ".join((system.describe(), *_costs(query))),
         "masses": system.n,
         "r": scene.r,
         "beta": scene.beta,

@@ -14,7 +14,7 @@ from ..datasets.schema import check_structure, in_brackets
 from ..errors import InputError
 from .reading import naming, opened
 from .slices import further_axes, natural
-from .summary import axis_lines, header_lines, in_causes, in_cells, variable_lines
+from .summary import axis_lines, describe_reduction, header_lines, in_causes, in_cells, variable_lines
 
 #: Cells that are read at a time: those of a block of a store.
 _AT_ONCE = 1 << 20
@@ -72,7 +72,7 @@ def _check_sizes(ds: xr.Dataset) -> None:
 def describe_cells(path: Path) -> list[str]:
     """How many cells a store has of each regime, and why some are unresolved."""
     with opened(path) as ds:
-        return cell_lines(ds)
+        return [*cell_lines(ds), *describe_reduction(ds)]
 
 
 def cell_lines(ds: xr.Dataset) -> list[str]:

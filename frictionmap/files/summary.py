@@ -46,6 +46,12 @@ def describe_causes(ds: xr.Dataset) -> list[str]:
     return in_causes(_counts(ds["status"], regimes.STATUSES))
 
 
+def describe_reduction(ds: xr.Dataset) -> list[str]:
+    """A line on what twice as many modes change, of a structure that is reduced."""
+    found = ds.attrs.get("reduction_check")
+    return [] if found is None else [f"reduction: {found}"]
+
+
 def in_causes(counts: Sequence[tuple[regimes.Code, int]]) -> list[str]:
     """A line for every status but that of cells that are well."""
     return [
@@ -133,9 +139,9 @@ def header_lines(ds: xr.Dataset, what: str) -> list[str]:
     """Title and kind, system, source, history."""
     texts = {name: _printable(ds.attrs.get(name, "")) for name in TEXTS}
     lines = [textwrap.shorten(texts["title"], _WIDTH - len(what) - 3, placeholder="...") + f" [{what}]"]
-    for name in ("system", "reduction", "decoupling", "source", "history"):
+    for name in ("system", "reduction", "reduction_check", "decoupling", "source", "history"):
         if texts[name]:
-            lines += _entry(name, texts[name])
+            lines += _entry(name.replace("_", " "), texts[name])
     units = in_words(ds)
     return [*lines, *(_entry("units", units) if units else [])]
 

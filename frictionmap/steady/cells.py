@@ -25,12 +25,17 @@ from .kernel_data import Structures, structures
 from .quantity_data import Asked, quantity_numbers, results
 from .quantity_limits import put_resonance, put_static
 
+#: Periods of its fastest free motion for which a motion is followed, over the excitation periods `cycles`: at
+#: low frequency an excitation period has very many of them.
+_FREE_PERIODS = 4000.0
+
 Job = tuple[Callable[..., None], tuple]
 
 
 def limits(solver: Solver) -> Limits:
     """When the kernels give up."""
-    return Limits(float(solver.cycles), solver.tolerance, solver.steady == "solved")
+    steps = _FREE_PERIODS * solver.cycles * solver.steps
+    return Limits(float(solver.cycles), solver.tolerance, solver.steady == "solved", steps)
 
 
 class Cells:

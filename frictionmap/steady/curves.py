@@ -19,6 +19,7 @@ from ..theory.limit_curves import limit_variables
 from ..units.scales import Units, scales_of
 from .maps import Progress, Watch, checked_axes, compute
 from .quantity_data import PARTS, VARIABLES, asked_for, read_result
+from .refinement import reduction_check
 
 #: What every cell tells.
 _ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "period", "status")
@@ -141,4 +142,5 @@ def curves(
     coords = {name: coordinate(name, values) for name, values in axes.items()}
     ds = xr.Dataset(variables, coords=coords)
     ds = stamp(ds, "curves", "Response curves", system, grid, solver, asdict(asked), units=units)
+    ds.attrs |= reduction_check(system, grid, solver, threads)
     return with_units(ds, scales)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from .. import checks
 from .._kernels.engine.fill import RESTART, OpenCells
+from .._kernels.engine.policies import NO_FRICTION
 from ..datasets.labels import CELL, CELL_VARIABLES
 from ..errors import InputError
 from ..model.settings import Solver
@@ -77,10 +78,20 @@ class Plan:
             yield first, begin
 
 
+def _no_friction(beta_lim: np.ndarray, beta_stick: np.ndarray) -> np.ndarray:
+    """Friction ratios (n_mu, n_r) below which friction is lost in rounding and the motion is continuous.
+
+    Nothing says how large the load is where beta_stick is infinite, at a resonance of the held structure.
+    """
+    lost = np.where(np.isfinite(beta_stick), NO_FRICTION * beta_stick, 0.0)
+    return np.minimum(beta_lim, lost)
+
+
 def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Plan:
     """Sort the cells into those that a formula decides and those that are open (theory.md 6).
 
     - beta = 0 is linear; where nothing loads the contact (joined base-wall, r = 0), nothing moves.
+    - skip = "exact": friction lost in the rounding of the load, below beta_lim, counts as none.
     - skip = "exact", mu = 1: continuous below beta_lim, stuck from beta_stick on, whatever the start.
     - skip = "exact", start from rest: one mass with beta >= beta_stick never begins to move.
     - r = 0 has no motion to integrate; a regime, but no number of stops, follows from the boundaries.
@@ -96,7 +107,8 @@ def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: 
         smooth = (mu == 1.0)[:, np.newaxis]
         proved = smooth | (solver.start == "rest" and cells.rest_sticks)
         high = np.where(proved, stuck_from, high)
-        low = np.where(smooth, np.maximum(low, np.searchsorted(beta, beta_lim)), low)
+        sliding = np.where(smooth, beta_lim, _no_friction(beta_lim, beta_stick))
+        low = np.maximum(low, np.searchsorted(beta, sliding))
     high = np.where(no_motion, stuck_from, high)
     low = np.where(no_load, 0, np.minimum(low, high))
     open_cells = np.where(no_motion, 0, high - low).ravel()

@@ -14,6 +14,7 @@ from ..errors import InputError
 from ..model.settings import HARMONICS, Output, Solver, SolverSettings, merged
 from ..model.system import System
 from ..theory.boundaries import boundary_variables
+from ..theory.refinement import boundary_check
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales, Units, scales_of
 from .motion import Question, find_motion
@@ -141,7 +142,9 @@ def response(
     labelled |= _further(question, [name for name in solver.outputs if name not in labelled])
     coords = {name: coordinate(name, values) for name, values in {**own, **cell}.items()}
     ds = xr.Dataset(labelled, coords=coords)  # all at once: piece by piece took a third of the time
-    ds = with_units(stamp(ds, "response", "Steady state in time", system, cell, solver, units=units), scales)
+    ds = stamp(ds, "response", "Steady state in time", system, cell, solver, units=units)
+    ds.attrs |= boundary_check(system, np.array([r]), np.array([mu]))
+    ds = with_units(ds, scales)
     if found.comment:
         ds.attrs |= {"title": "Motion in time, a part of it", "comment": found.comment}
     return ds

@@ -18,6 +18,7 @@ from ..model.variations import Variations, checked_variations
 from ..theory.boundaries import boundary_variables
 from ..units.scales import Units, scales_of
 from .maps import Progress, Watch, checked_axes, solve_map
+from .refinement import reduction_check
 
 
 def sweep(
@@ -67,7 +68,8 @@ def sweep(
         On (mu, r, beta): the outputs asked for, and `status` if it has anything to say.  On (mu, r):
         `beta_lim`, `beta_lim_modal`, `beta_stick`.  Unresolved cells have regime -1; `status` says why.
         With units `frequency(r)` [Hz] and `friction_force(beta)` [N] beside the axes, and what is in m, N or
-        J beside its ratio, such as `contact_amplitude_m` and `beta_lim_N`.
+        J beside its ratio, such as `contact_amplitude_m` and `beta_lim_N`.  For a reduced structure the
+        attribute `reduction` gives its errors, and `reduction_check` what twice as many modes change.
 
     Raises
     ------
@@ -113,6 +115,7 @@ def swept(
         study=None if variations is None else variations.described,
         units=units,
     )
+    ds.attrs |= reduction_check(system, grid, solver, threads, watch)
     ds = ds if variations is None else ds.assign_attrs(system=variations.describe())
     return with_units(ds, scales)
 

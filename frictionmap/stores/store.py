@@ -140,7 +140,7 @@ def make_store(path: Path, study: Study, title: str) -> None:
         attributes = {
             "Conventions": "CF-1.11", "title": title, "source": _SOURCE, "references": REFERENCES,
             "system": study.variations.describe(), "config": text,
-            **study.system.costs(study.r), **scale_attributes(study.scales),
+            **study.system.costs(study.r), **study.reduction_check, **scale_attributes(study.scales),
         }  # fmt: skip
         group = zarr.create_group(away, attributes=attributes)
         for name, array in arrays_of(study, sample).items():

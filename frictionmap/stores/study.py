@@ -16,6 +16,7 @@ import xarray as xr
 from ..model.settings import Solver
 from ..model.system import System
 from ..model.variations import Variations
+from ..steady.refinement import reduction_check
 from ..steady.sweep import regime_map, study_coordinates
 from ..units.scales import Scales, Units, scales_of
 
@@ -65,6 +66,11 @@ class Study:
     def scales(self) -> Scales:
         """What the ratios are in SI units."""
         return scales_of(self.units, self.system, self.variations)
+
+    @property
+    def reduction_check(self) -> dict[str, str]:
+        """What twice as many modes of a reduced structure change, see `steady.refinement`."""
+        return reduction_check(self.system, {"mu": self.mu, "r": self.r, "beta": self.beta}, self.solver)
 
     @property
     def rows(self) -> int:

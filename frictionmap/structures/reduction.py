@@ -16,6 +16,9 @@ from .structure import Structure
 _MORE = 8
 _STEP = 1.25
 
+#: Modes that a reduction is compared with at least, where it has hardly any itself.
+_LEAST_REFINED = 8
+
 
 @dataclass(frozen=True, eq=False)
 class Reduction:
@@ -39,6 +42,20 @@ class Reduction:
         """The first natural frequency of the whole structure, in the units of sqrt(K/M)."""
         arrays = _sparse(self.structure)
         return float(slowest(arrays["M"], arrays["K"], 1)[0][0])
+
+    @property
+    def most_modes(self) -> int:
+        """How many modes there are with the kept degrees of freedom held."""
+        return int(np.count_nonzero(self.structure.arrays["M"].diagonal())) - len(self.kept)
+
+    @cached_property
+    def refined(self) -> "Reduction | None":
+        """The same structure reduced to twice as many modes, or to all; None if it has all of them."""
+        modes = min(max(2 * self.asked.modes, _LEAST_REFINED), self.most_modes)
+        if modes <= self.asked.modes:
+            return None
+        asked = self.asked._replace(modes=modes, allow=1.0)  # it is compared with, and not held to anything
+        return reduce_structure(self.structure, asked, self.kept, self.contact, self.base)
 
     def checked(self, low: float, high: float) -> Accuracy:
         """Its accuracy from one angular frequency to another, in the units of sqrt(K/M).
@@ -71,8 +88,7 @@ class Reduction:
 
     def _refuse(self, comparison: Comparison, accuracy: Accuracy) -> None:
         whole = _with_sparse(self.structure)
-        most = int(np.count_nonzero(whole.arrays["M"].diagonal())) - len(self.kept)
-        tried = min(_MORE * max(self.asked.modes, 8), most)
+        tried = min(_MORE * max(self.asked.modes, 8), self.most_modes)
         fixed = fixed_interface(whole, whole.dofs.rows(self.kept), tried)
 
         def do(modes: int) -> bool:

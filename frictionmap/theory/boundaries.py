@@ -21,6 +21,7 @@ from ..model.system import System
 from ..units.axes import KINDS, ratios
 from ..units.scales import Units, scales_of
 from .boundary_curves import Curves, find_curves
+from .refinement import boundary_check
 
 #: About so many invariant points beyond one a mode are listed, from the highest down: below them hardly any
 #: motion is continuous.  Those of masses are listed up to so many masses: they cost the square of it.
@@ -174,4 +175,6 @@ def boundaries(
     axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
     ds = xr.Dataset(variables, coords={name: coordinate(name, axis) for name, axis in axes.items()})
     title = "Boundaries of the motion regimes"
-    return with_units(stamp(ds, "boundaries", title, system, {"r": r, "mu": mu}, units=units), scales)
+    ds = stamp(ds, "boundaries", title, system, {"r": r, "mu": mu}, units=units)
+    ds.attrs |= boundary_check(system, r, mu)
+    return with_units(ds, scales)

@@ -11,7 +11,8 @@ from ..errors import InputError
 from ..model.modes import angles, modulus
 from ..model.system import System
 
-#: Least r over the fastest rate of a structure: some 10^6 intervals are searched for S there.
+#: Least r over the fastest rate of free motion: some 10^6 intervals are searched for S there, and a period of
+#: the load has some 10^7 scan steps.
 _LEAST_RATIO = 1e-6
 
 
@@ -88,11 +89,29 @@ def find_beta_stick(force: np.ndarray, mu: np.ndarray) -> np.ndarray:
     return modulus(force) / mu[:, np.newaxis]
 
 
+def _refuse_low(r: np.ndarray, omega: np.ndarray, zeta: np.ndarray) -> None:
+    """Refuse 0 < r far below the rates of free motion of oscillators."""
+    rates = omega * np.where(zeta > 1.0, 2.0 * zeta, 1.0)
+    least = _LEAST_RATIO * float(rates.max())
+    small = (r > 0.0) & (r < least)
+    if small.any():
+        raise InputError(
+            f"r must be 0, or >= {least:.3g} for this system: below, a period of the load has more than 10^6 "
+            f"periods of the fastest free motion; got {r[small][0]:g}"
+        )
+
+
 def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
     """All curves of a normalised system, whose one mode has w = 1; `r` and `mu` are checked axes.
 
     One mass has its own search of S, with intervals in closed form, and one equation for both contacts.
+
+    Raises
+    ------
+    InputError
+        0 < r is too low, see `find_curves`.
     """
+    _refuse_low(r, system.modes.w, system.modes.zeta)
     load = system.contact_load(r)
     v_abs, v_arg, u, g, h, s = np.empty((6, r.size))
     response_functions(r, system.zeta, u, g, v_abs, v_arg, h, s)
@@ -120,14 +139,7 @@ def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
 def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     """All curves of a system of any number of masses; `r` and `mu` are checked axes."""
     modes, free = system.modes, system.modes.free
-    rates = free.omega * np.where(free.zeta > 1.0, 2.0 * free.zeta, 1.0)
-    least = _LEAST_RATIO * float(rates.max())
-    small = (r > 0.0) & (r < least)
-    if small.any():
-        raise InputError(
-            f"r must be 0, or >= {least:.3g} for this structure: below, S takes too many steps to find; "
-            f"got {r[small][0]:g}"
-        )
+    _refuse_low(r, free.omega, free.zeta)
     v = modes.contact_response(r)
     u, g, h, s, by_modes = np.empty((5, r.size))
     weights = free.weights(modes.chi[modes.participating])
@@ -153,7 +165,13 @@ def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
 
 
 def find_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
-    """All curves of any system; `r` and `mu` are checked axes."""
+    """All curves of any system; `r` and `mu` are checked axes.
+
+    Raises
+    ------
+    InputError
+        0 < r < 1e-6 times the fastest rate of free motion.
+    """
     if system.normalised:
         return one_mass_curves(system, r, mu).curves
     return many_mode_curves(system, r, mu)

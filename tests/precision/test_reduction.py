@@ -14,6 +14,7 @@ from structures import chain_matrices
 import frictionmap as fm
 from frictionmap.cli import main
 from frictionmap.datasets.provenance import to_toml
+from frictionmap.theory.refinement import boundary_changes, with_more_modes
 
 RNG = np.random.default_rng(20)
 CHAIN = chain_matrices(RNG.uniform(0.5, 2.0, 40), RNG.uniform(0.5, 2.0, 40))
@@ -324,3 +325,107 @@ def test_matrices_that_cannot_be_reduced():
     large = csr_array(eye_array(3000))
     with pytest.raises(fm.InputError, match="at most 2000 degrees of freedom, unless they are reduced"):
         fm.System(matrices={"M": large, "K": large})
+
+
+# What twice as many modes change
+
+
+def of_chain(modes, **reduce):
+    return fm.System(
+        matrices=CHAIN, damping_ratios=0.01, reduce={"modes": modes, "allow": 1.0} | reduce, **SYSTEM
+    )
+
+
+WHOLE = fm.System(matrices=CHAIN, damping_ratios=0.01, **SYSTEM)
+AXIS = np.linspace(0.3, 2.2, 45)
+
+
+@pytest.mark.parametrize(("modes", "factor"), [(4, 5.0), (6, 3.0), (10, 2.0)])
+def test_twice_the_modes_show_how_far_beta_lim_is_off(modes, factor):
+    """beta_lim of the whole structure is off by more than these factors; the check finds most of it."""
+    system = of_chain(modes)
+    found, true = (fm.boundaries(one, AXIS) for one in (system, WHOLE))
+    off = np.abs(found.beta_lim / true.beta_lim - 1.0).values[0]
+    assert off.max() > factor - 1.0
+    assert system.accuracy(AXIS).worst < 2e-3  # the statement on compliances says nothing of it
+    finer = with_more_modes(system)
+    changes = boundary_changes(system, finer, AXIS, 1.0)
+    assert changes.modes == 2 * modes == finer.reduction.asked.modes
+    assert 0.6 * off.max() < changes.beta_lim.share < 1.2 * off.max()
+    assert off[np.argmin(np.abs(AXIS - changes.beta_lim.r))] > 0.4 * off.max()
+    stick = np.abs(found.beta_stick / true.beta_stick - 1.0).max().item()
+    assert 0.5 * stick < changes.beta_stick.share < 2.0 * stick
+    words = found.attrs["reduction_check"]
+    assert words == f"against {2 * modes} modes beta_lim changes by " + (
+        f"up to {100.0 * changes.beta_lim.share:.0f} % (at r = {changes.beta_lim.r:.4g}), beta_stick "
+        f"{changes.beta_stick.words()}"
+    )
+
+
+def test_twice_the_modes_show_which_regimes_change(tmp_path, capsys):
+    """The cells of the coarse map that change are those that the two reductions have, cell by cell."""
+    beta = np.linspace(0.02, 1.0, 15)
+    r = AXIS[::5]
+    systems = [of_chain(4), of_chain(8)]
+    maps = [fm.sweep(system, r, beta, outputs=["regime"]) for system in systems]
+    changed = int((maps[0].regime != maps[1].regime).sum())
+    assert changed > 1
+    words = maps[0].attrs["reduction_check"]
+    assert words.endswith(f"; {changed} of {r.size * 15} cells of a coarse map (mu = 1) change regime")
+    tree = {
+        "system": {
+            "matrices": {name: matrix.tolist() for name, matrix in CHAIN.items()},
+            **SYSTEM,
+            "damping_ratios": 0.01,
+            "reduce": {"modes": 4, "allow": 1.0},
+        },
+        "grid": {"r": r.tolist(), "beta": beta.tolist()},
+        "solver": {"outputs": ["regime"]},
+    }
+    (tmp_path / "c.toml").write_text(to_toml(tree))
+    for command, of_command in (("map", words), ("boundaries", words.split("; ")[0])):
+        path = tmp_path / f"{command}.nc"
+        assert main([command, str(tmp_path / "c.toml"), "-o", str(path)]) == 0
+        assert f"reduction: {of_command}" in capsys.readouterr().out
+        assert xr.load_dataset(path).attrs["reduction_check"] == of_command
+        assert main(["info", str(path)]) == 0
+        shown = " ".join(capsys.readouterr().out.split())
+        assert f"reduction check {of_command}" in shown
+
+
+def test_all_modes_have_none_to_be_compared_with():
+    assert "reduction_check" not in fm.boundaries(of_chain(38), [0.5]).attrs
+    assert "reduction_check" not in fm.boundaries(WHOLE, [0.5]).attrs
+    assert "against 38 modes" in fm.boundaries(of_chain(30), [0.5]).attrs["reduction_check"]
+    assert "against 8 modes" in fm.boundaries(of_chain(0), [0.1]).attrs["reduction_check"]
+
+
+def test_finer_reductions_keep_load_damping_and_scale():
+    """Each kind of damping, and loads by mass: the finer one is the one that is made by hand."""
+    for settings in (
+        {"rayleigh": [0.001, 0.01]},
+        {"damping_ratios": [0.01 * k for k in range(1, 7)]},
+        {"load": [0.0] * 10 + [1.0, 0.5j] + [0.0] * 28, "load_mass": None, "damping_ratios": 0.02},
+        {"contact": "joined-base-wall", "load_mass": None, "damping_ratios": 0.02},
+        {"frequency_scale": 0.1},
+    ):
+        given = SYSTEM | settings
+        few = 4  # and contact and load
+        coarse = fm.System(matrices=CHAIN, reduce={"modes": few, "allow": 1.0}, **given)
+        if isinstance(settings.get("damping_ratios"), list):
+            given["damping_ratios"] = [*settings["damping_ratios"], *[0.06] * few]
+        by_hand = fm.System(matrices=CHAIN, reduce={"modes": 2 * few, "allow": 1.0}, **given)
+        finer = with_more_modes(coarse)
+        assert finer.n == by_hand.n
+        r = np.array([0.4, 1.1])
+        for name in ("beta_lim", "beta_stick"):
+            found, expected = (fm.boundaries(one, r)[name].values for one in (finer, by_hand))
+            np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def test_a_comparison_that_cannot_be_made_says_why():
+    """Frequencies that one reduction just reaches are too low for the faster modes of the other."""
+    system = of_chain(4)
+    least = 1e-6 * system.modes.free.omega.max()
+    words = fm.boundaries(system, [1.0001 * least]).attrs["reduction_check"]
+    assert words.startswith("not compared with more modes: r must be 0, or >= ")

@@ -369,7 +369,7 @@ def test_neighbours_help_and_change_nothing():
         )
         r, beta = np.linspace(0.11, 2.4, 12), np.linspace(0.01, 1.5, 60)
         ds = fm.sweep(system, r, beta, outputs=PLAIN).squeeze("mu")
-        solved = (ds.origin == regimes.SOLVED).values
+        solved = (ds.origin == regimes.PERIODIC_ORBIT).values
         assert np.mean(ds.cycles.values[solved] == 0.0) > 0.5  # most: nothing was followed
         for i, j in np.argwhere(solved)[::7]:
             alone = steady(system, r[i], beta[j])

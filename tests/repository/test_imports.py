@@ -159,6 +159,9 @@ def test_data_flows_one_way():
 
 # Public names
 
+#: Public names that are modules by intent.
+MODULES = {"features", "identify", "regimes"}
+
 
 def test_public_names_stay_what_they_are_whatever_is_imported():
     """`fm.sweep` is the function, also once all modules, some with similar names, are loaded."""
@@ -168,13 +171,13 @@ def test_public_names_stay_what_they_are_whatever_is_imported():
             importlib.import_module(module.name)
     for name, value in before.items():
         assert getattr(fm, name) is value
-        assert isinstance(value, ModuleType) == (name in ("features", "identify")), name
+        assert isinstance(value, ModuleType) == (name in MODULES), name
         assert isinstance(value, (str, ModuleType)) or callable(value)
         assert isinstance(value, str) or value.__doc__, name
 
 
 def test_public_names_with_a_module_imported_first():
-    names = set(fm.__all__) - {"features", "identify"}  # modules by intent
+    names = set(fm.__all__) - MODULES
     types = f"import frictionmap as fm; print(*(type(getattr(fm, name)) for name in {names!r}))"
     assert "module" not in run(f"import frictionmap.steady.sweep; {types}")
 

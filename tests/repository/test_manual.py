@@ -67,10 +67,14 @@ def test_every_key_and_output_is_told(manual):
 
 def test_every_public_name_is_told(manual):
     page = text(manual, "reference/api.html")
-    for name in set(fm.__all__) - {"__version__", "features", "identify"}:
+    for name in set(fm.__all__) - {"__version__", "features", "identify", "regimes"}:
         assert f'id="frictionmap.{name}"' in page, name
     for name in fm.identify.__all__:
         assert f'id="frictionmap.identify.{name}"' in page, name
+    constants = [name for name in fm.regimes.__all__ if isinstance(getattr(fm.regimes, name), int)]
+    assert constants
+    for name in constants:
+        assert f">{name}<" in page, name
 
 
 def test_every_guide_can_be_found(manual):

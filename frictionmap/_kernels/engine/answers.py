@@ -33,6 +33,7 @@ class Limits(NamedTuple):
     cycles: float
     tolerance: float
     newton: bool  # solve for the periodic orbit instead of waiting for it
+    steps: float  # scan steps of a motion at most, those of the search for its orbit included
 
 
 class Contact(NamedTuple):

@@ -13,15 +13,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...regimes import CONTINUOUS, PERMANENT_STICKING, STICK_SLIP
+from ...regimes import CONTINUOUS, NOT_REACHED, PERMANENT_STICKING, STICK_SLIP
 from ..jit import entry, kernel
-from .answers import Moment
+from .answers import Limits, Moment, unresolved
 from .march import steady_state
 from .motion import at_frequency, bring_back, contact_at, forget_neighbour, keep_state, on_continuous, start
-from .policies import ABOVE, AROUND, EIGHTHS, RUNGS
+from .policies import ABOVE, AROUND, EIGHTHS, NO_FRICTION, RUNGS
 
 #: Halvings of the step of the ladder in which a sliding motion ends.
 _HALVINGS = 22
+
+#: Scan steps of all motions along the ladders of a row, with the search for the end of sliding, and of all
+#: motions of a cell, over those of one motion: at low frequency each of so many may take all of its own.
+_ROW_SHARE, _CELL_SHARE = 4.0, 2.0
 
 #: Beyond mu beta_stick by more than this, relative to it: the rounding of either.
 _ROUNDING = 1e-12
@@ -41,6 +45,7 @@ class Row(NamedTuple):
     mu: float
     lim: float
     stick: float
+    left: np.ndarray  # (1,) scan steps that its motions may still take
 
 
 class Ladder(NamedTuple):
@@ -86,17 +91,23 @@ def _contact(system, row, beta):
 
 
 @kernel
-def _settle(motion, contact, at, moves, limits, cancel):
-    """Where a motion ends, whatever was solved for before."""
+def _settle(motion, row, contact, at, moves, limits, cancel):
+    """Where a motion ends, whatever was solved for before; unresolved where no scan steps are left."""
+    allowed = min(limits.steps, row.left[0])
+    if not allowed > 0.0:
+        return unresolved(NOT_REACHED, 0.0)
     forget_neighbour(motion)
-    return steady_state(motion, contact, at, moves, limits, cancel)
+    bounded = Limits(limits.cycles, limits.tolerance, limits.newton, allowed)
+    found = steady_state(motion, contact, at, moves, bounded, cancel)
+    row.left[0] -= allowed - motion.scratch.left[0]
+    return found
 
 
 @kernel
 def _from_start(motion, system, row, beta, moving, limits, cancel):
     contact = _contact(system, row, beta)
     at = start(motion, system, row.i, contact, moving)
-    return _settle(motion, contact, at, moving, limits, cancel)
+    return _settle(motion, row, contact, at, moving, limits, cancel)
 
 
 @kernel
@@ -105,7 +116,7 @@ def _from_node(motion, system, row, ladder, way, k, beta, limits, cancel):
     bring_back(motion, ladder.slot + way * ladder.beta.size + k)
     at = ladder.at[way, k]
     moment = Moment(at[0], at[1], at[2], at[3], at[4])
-    return _settle(motion, _contact(system, row, beta), moment, False, limits, cancel)
+    return _settle(motion, row, _contact(system, row, beta), moment, False, limits, cancel)
 
 
 @kernel
@@ -202,10 +213,26 @@ def _from_ladders(motion, system, row, beta, around, above, flags, limits, cance
 
 
 @kernel
+def _decided(row, beta):
+    """Whether what is proved is all: no friction, or none beside the load's rounding; or too much of it."""
+    lost = beta < row.lim and beta < NO_FRICTION * row.stick and row.stick < math.inf
+    return beta == 0.0 or lost or beta > row.mu * row.stick * (1.0 + _ROUNDING)
+
+
+@kernel
+def _any_open(row, beta):
+    """Whether a cell of a row is not decided."""
+    found = False
+    for j in range(beta.size):
+        found = found or not _decided(row, beta[j])
+    return found
+
+
+@kernel
 def _reachable(motion, system, row, beta, around, above, limits, cancel):
     """Flags of the regimes that a cell can end in."""
     flags = _proved(row, beta)
-    if beta == 0.0 or beta > row.mu * row.stick * (1.0 + _ROUNDING):
+    if _decided(row, beta):
         return flags
     if row.mu == 1.0:  # one answer
         if flags == 0:
@@ -264,20 +291,25 @@ def fill_reachable(first, last, axes, lim, stick, no_load, system, limits, out, 
     reachable, sliding_limit = out.also_reachable, out.sliding_limit
     beta, n_r = axes.beta, axes.r.size
     around, above = _make_ladder(EIGHTHS, AROUND), _make_ladder(RUNGS, ABOVE)
+    left = np.empty(1)
     for place in range(first, last):
         m, i = place // n_r, place % n_r
-        row = Row(m, i, axes.mu[m], lim[m, i], stick[m, i])
+        row = Row(m, i, axes.mu[m], lim[m, i], stick[m, i], left)
         if axes.r[i] == 0.0:
             _fill_still(row, no_load[i], beta, reachable, sliding_limit)
             continue
         motion = at_frequency(system, i)
-        if row.mu > 1.0:
+        left[0] = _ROW_SHARE * limits.steps
+        if row.mu > 1.0 and (sliding_limit.size or _any_open(row, beta)):
             _fill_ladders(motion, system, row, around, above, limits, cancel)
+        on_ladders = left[0]
         for j in range(beta.size if reachable.size else 0):
             if cancel[0] != 0:
                 return
+            left[0] = _CELL_SHARE * limits.steps
             reachable[m, i, j] = _reachable(
                 motion, system, row, beta[j], around, above, limits, cancel
             )  # fmt: skip
         if sliding_limit.size:
+            left[0] = on_ladders
             sliding_limit[m, i] = _sliding_limit(motion, system, row, above, limits, cancel)

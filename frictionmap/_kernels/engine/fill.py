@@ -177,6 +177,7 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, wanted, can
             at = start(motion, system, i, contact, moving)
             found = steady_state(motion, contact, at, moving, limits, cancel)
             store(out, m, i, j, found, motion.load)
+            motion.scratch.left[0] = math.inf  # an orbit that was found ends
             _note(details, motion, contact, found, out, m, i, j, beta, mu * beta)
             _take(quantities, motion, contact, found, m, j, beta)
         cell = cells.ends[k]
@@ -197,6 +198,7 @@ def one_cell(system, beta, mu, limits, moving):
     table = np.empty((2 * found.slides, phase_columns(system.modes)))
     phases = 0
     if found.slides > 0:
+        motion.scratch.left[0] = math.inf  # an orbit that was found ends
         orbit = known_orbit(found.at, found.event, found.sign, found.slides)
         phases = measure(motion, contact, orbit, table).phases
     return found, table[:phases]

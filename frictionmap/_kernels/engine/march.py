@@ -9,7 +9,15 @@ distance is less than that at which a stop is possible at all (`motion.stop_free
 import math
 from typing import NamedTuple
 
-from ...regimes import INTEGRATED, MARGINAL, NOT_COMPUTED, RESOLVED, SOLVED, TOO_MANY_EVENTS, UNRESOLVED
+from ...regimes import (
+    INTEGRATED,
+    MARGINAL,
+    NOT_COMPUTED,
+    PERIODIC_ORBIT,
+    RESOLVED,
+    TOO_MANY_EVENTS,
+    UNRESOLVED,
+)
 from ..jit import inner_kernel, kernel
 from ..one_mass.events import GRAZING, NO_END, STUCK
 from ..structure.events import NO_RELEASE
@@ -124,6 +132,7 @@ def _around(motion, contact):
     if not contact.b < contact.b_lim or math.isinf(motion.v_abs):
         return Around(False, 0.0, 0.0, 0.0)
     amplitude, phase, radius = stop_free(motion, contact)
+    motion.scratch.left[0] -= TURN / motion.h  # about what that takes
     return Around(True, amplitude, phase, radius)
 
 
@@ -272,7 +281,7 @@ def _follow(motion, contact, at, moves, limits, cancel):
         if limits.newton and (near.lag > 0 or contact.unique):
             orbit = _seek(motion, contact, at, event, trail, near, tries, limits)
             if orbit.found:
-                return _orbit_cell(motion, contact, orbit, SOLVED, trail.time)
+                return _orbit_cell(motion, contact, orbit, PERIODIC_ORBIT, trail.time)
             tries = put_off(tries, half)
         if not limits.newton:
             if _has_settled(near, last, limits.tolerance):
@@ -286,7 +295,7 @@ def _follow(motion, contact, at, moves, limits, cancel):
 
 @kernel
 def steady_state(motion, contact, at, moves, limits, cancel):
-    """The steady state of a cell.
+    """The steady state of a cell, found within so many scan steps; else it is unresolved.
 
     Parameters
     ----------
@@ -301,10 +310,11 @@ def steady_state(motion, contact, at, moves, limits, cancel):
     -------
     Cell
     """
+    motion.scratch.left[0] = limits.steps
     if contact.unique and limits.newton and contact.b >= contact.b_lim and not lasting_vibration(motion):
         orbit = seek_nearby(motion, contact, limits)
         if orbit.found:
-            cell = _orbit_cell(motion, contact, orbit, SOLVED, 0.0)
+            cell = _orbit_cell(motion, contact, orbit, PERIODIC_ORBIT, 0.0)
             if cell.regime != UNRESOLVED:
                 return cell
     return _follow(motion, contact, at, moves, limits, cancel)

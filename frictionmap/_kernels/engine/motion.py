@@ -7,8 +7,8 @@ move along with it.
 
 The fields of a kind of motion that the driver reads: `h`, the scan step in tau; `r`; `v_abs`, the response
 function of the contact; `marginal`, whether continuous motions are a continuum; `memory`; `load`, the unit of
-its forces and displacements; `near_return`, how close a return is worth looking for an orbit; and `no_table`,
-no table of phases.
+its forces and displacements; `near_return`, how close a return is worth looking for an orbit; `scratch`,
+whose `left` are the scan steps that may still be taken; and `no_table`, no table of phases.
 """
 
 from ..kinds import by_class

@@ -10,9 +10,18 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import entry, inner_kernel, kernel
-from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, EventSequence, after_slide, slide
+from ..one_mass.events import (
+    REVERSE,
+    STOP_THEN_BACK,
+    STOP_THEN_ON,
+    EventSequence,
+    Scratch,
+    after_slide,
+    make_scratch,
+    slide_within,
+)
 from ..one_mass.newton import first_contact_force, solve_orbit
-from ..one_mass.scan_step import MAX_TERMS, Step, step_constants
+from ..one_mass.scan_step import Step, step_constants
 from ..one_mass.sliding_orbit import (
     Oscillator,
     continuous_amplitude,
@@ -88,7 +97,7 @@ class OneMass(NamedTuple):
     step: Step
     fine: Step  # a step at least as short, for bounds over a whole orbit
     memory: Memory
-    work: np.ndarray  # (MAX_TERMS,)
+    scratch: Scratch
     neighbour: np.ndarray  # (NEIGHBOUR,)
     no_table: np.ndarray  # (0, 0)
 
@@ -103,7 +112,7 @@ def at_frequency(system, i):
     return OneMass(
         step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _NEAR_RETURN,
         oscillator, step, step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
-        make_memory(step.h, 1), np.empty(MAX_TERMS), np.zeros(NEIGHBOUR), np.empty((0, 0)),
+        make_memory(step.h, 1), make_scratch(), np.zeros(NEIGHBOUR), np.empty((0, 0)),
     )  # fmt: skip
 
 
@@ -144,9 +153,10 @@ def start(motion, system, i, contact, moving):
 def slide_to_turn(motion, contact, at, allowed):
     """See `motion.slide_to_turn`."""
     step = motion.step
-    steps, z, c, s = slide(
-        step, contact.b, at.z, at.w, step.stiffness * at.contact_force, at.cos, at.sin, allowed, motion.work
-    )
+    steps, z, c, s = slide_within(
+        step, contact.b, at.z, at.w, step.stiffness * at.contact_force, at.cos, at.sin, allowed,
+        motion.scratch,
+    )  # fmt: skip
     return steps, Moment(z, 0.0, c, s, 0.0)
 
 
@@ -258,7 +268,7 @@ def seek(motion, contact, at, event, sign, events, near, tries, limits):
             slides = guess
         found, z, c, s, contraction = solve_orbit(
             motion.step, motion.oscillator, contact.b, contact.mu_b, start, at.cos, at.sin, stopped,
-            EventSequence(motion.memory.events, events - slides, slides), limits.tolerance, motion.work,
+            EventSequence(motion.memory.events, events - slides, slides), limits.tolerance, motion.scratch,
         )  # fmt: skip
         if found:
             if stopped:
@@ -303,7 +313,7 @@ def seek_nearby(motion, contact, limits):
     neighbour[COUNT] = 0.0
     found, z, c, s, _ = solve_orbit(
         motion.step, motion.oscillator, contact.b, contact.mu_b, neighbour[PLACE], 1.0, 0.0, True,
-        EventSequence(neighbour[FIRST:], np.int64(0), slides), limits.tolerance, motion.work,
+        EventSequence(neighbour[FIRST:], np.int64(0), slides), limits.tolerance, motion.scratch,
     )  # fmt: skip
     if not found:
         return no_orbit()

@@ -6,6 +6,9 @@
 MOVING = 1.5
 MOVING_CAP = 10.0
 
+#: Static friction below this share of the load in the contact counts as none: half a unit of rounding of it.
+NO_FRICTION = 2.0**-53
+
 #: Scan steps per fastest period for bounds over a whole orbit: their slack is of second order in the step.
 FINE_STEPS = 64.0
 

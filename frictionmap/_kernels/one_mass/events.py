@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import kernel
+from ..jit import entry, inner_kernel, kernel
 from .scan_step import MAX_TERMS, expand
 
 #: What follows the end of a slide.
@@ -26,6 +26,19 @@ class EventSequence(NamedTuple):
     events: np.ndarray  # a ring
     first: int  # place in it
     count: int
+
+
+class Scratch(NamedTuple):
+    """Arrays that kernels write into."""
+
+    series: np.ndarray  # (MAX_TERMS,)
+    left: np.ndarray  # (1,) scan steps that may still be taken
+
+
+@entry
+def make_scratch():
+    """Scratch for one mass, with no bound on the scan steps."""
+    return Scratch(np.empty(MAX_TERMS), np.full(1, np.inf))
 
 
 #: A slide's end was not found within the scan steps allowed.
@@ -245,6 +258,15 @@ def slide(step, b, z, w, acceleration, c, s, max_steps, work):
         acceleration = acceleration1
         sure = False
     return float(NO_END), z, c, s
+
+
+@inner_kernel
+def slide_within(step, b, z, w, acceleration, c, s, max_steps, scratch):
+    """`slide` within the scan steps that are left, and takes off what it needs: at least one."""
+    allowed = min(max_steps, scratch.left[0])
+    steps, z, c, s = slide(step, b, z, w, acceleration, c, s, allowed, scratch.series)
+    scratch.left[0] -= 1.0 + (allowed if steps == NO_END else steps)
+    return steps, z, c, s
 
 
 @kernel

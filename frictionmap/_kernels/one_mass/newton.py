@@ -12,7 +12,7 @@ import math
 
 from ..closed_form import decay
 from ..jit import kernel
-from .events import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, slide
+from .events import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, slide_within
 
 _MAX_NEWTON = 16
 
@@ -55,7 +55,7 @@ def longest_slide(step, r):
 
 
 @kernel
-def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, work):
+def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, scratch):
     """One return through a sequence of events.
 
     Returns (fits, z, c, s, z_z, z_t, t_z, t_t): the state, and the derivatives of its displacement z and
@@ -69,7 +69,9 @@ def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, work):
     z_z, t_z = 1.0, -1.0 / s if after_stop else 0.0
     z_t, t_t = 0.0, 0.0 if after_stop else 1.0
     for m in range(sequence.count):
-        n, z, c, s = slide(step, b, z, 0.0, step.stiffness * contact_force, c, s, max_steps, work)
+        n, z, c, s = slide_within(
+            step, b, z, 0.0, step.stiffness * contact_force, c, s, max_steps, scratch
+        )  # fmt: skip
         if n == NO_END:
             return False, z, c, s, 0.0, 0.0, 0.0, 0.0
         q, e = decay(oscillator.zeta, a * n * step.h)
@@ -100,7 +102,7 @@ def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, work):
 
 
 @kernel
-def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolerance, work):
+def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolerance, scratch):
     """Newton's method on the return map: (found, z, c, s, contraction).
 
     `found` also says that the orbit is stable; `contraction` is the largest modulus of the multipliers
@@ -113,7 +115,7 @@ def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolera
             if not s < 0.0:
                 break
         fits, z1, c1, s1, z_z, z_t, t_z, t_t = _return_map(
-            step, oscillator, b, mu_b, z, c, s, after_stop, sequence, work
+            step, oscillator, b, mu_b, z, c, s, after_stop, sequence, scratch
         )
         if not fits:
             break

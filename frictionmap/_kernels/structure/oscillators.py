@@ -45,14 +45,16 @@ class Scratch(NamedTuple):
     watched: np.ndarray  # (MAX_TERMS + 1,) of y
     below: np.ndarray  # (MAX_TERMS,) of the distance to an end of the range
     next: np.ndarray  # (2, n) state at the other end of a step
+    left: np.ndarray  # (1,) scan steps that may still be taken
 
 
 @entry
 def make_scratch(n):
-    """Scratch for up to n oscillators."""
+    """Scratch for up to n oscillators, with no bound on the scan steps."""
     return Scratch(
-        np.zeros((MAX_TERMS + 1, n)), np.zeros(MAX_TERMS + 1), np.zeros(MAX_TERMS), np.zeros((2, n))
-    )
+        np.zeros((MAX_TERMS + 1, n)), np.zeros(MAX_TERMS + 1), np.zeros(MAX_TERMS), np.zeros((2, n)),
+        np.full(1, np.inf),
+    )  # fmt: skip
 
 
 @kernel
@@ -393,7 +395,8 @@ def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
     Returns
     -------
     (steps, end, cos, sin, slope) : steps taken, one of AT_LIMIT, FELL, ROSE, FAILED, the load's phase, and
-        dy/dx where y leaves its range.
+        dy/dx where y leaves its range.  FAILED, too, where scratch.left has no more steps; those taken, and
+        one for the call, are taken off it.
 
     Notes
     -----
@@ -406,7 +409,8 @@ def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
     second, third, fourth, second_growth, third_growth, fourth_growth = bounds(table, friction, state, c, s)
     y = low if rise >= 0.0 else value(table, state, c, s)
     done = 0.0
-    while y == y:  # a number
+    left = scratch.left[0]
+    while y == y and done < left:  # a number
         c1 = turn_c * c - turn_s * s
         s1 = turn_c * s + turn_s * c
         y1 = step_on(table, n, friction, state, scratch.next, c, s) + (yc * c1 + ys * s1)
@@ -426,12 +430,14 @@ def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
                 _move(table, friction, scratch.next, c, s, x, scratch.watched, state)
             if x <= rest:
                 c, s = _turned(start[0], start[1], (done + x) * table[n, H])
+                scratch.left[0] = left - done - 1.0
                 return done + x, end, c, s, slope
         done += 1.0
         second += second_growth
         third += third_growth
         fourth += fourth_growth
         y, c, s = y1, c1, s1
+    scratch.left[0] = left - done - 1.0
     return done, FAILED, c, s, 0.0
 
 

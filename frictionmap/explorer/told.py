@@ -9,9 +9,8 @@ from ..pictures.palette import CLASSES
 from ..units.scales import scales_of
 from ..units.table import UNITS, handy_unit
 from ..version import __version__
-from .queries import Query
 from .scene import Scene
-from .views import marks, quantities
+from .views import View, marks, quantities
 
 #: What friction and lengths are over.
 _UNITS = {
@@ -20,10 +19,10 @@ _UNITS = {
 }
 
 
-def _physical(scene: Scene, query: Query) -> dict[str, dict[str, Any]]:
+def _physical(scene: Scene, view: View) -> dict[str, dict[str, Any]]:
     """Of r, beta, lengths and works, if the scene has units: the unit, and how many of it 1 is."""
     try:
-        scales = scales_of(scene.units, query.view.system)
+        scales = scales_of(scene.units, view.system)
     except InputError:  # a contact was chosen that the units do not go with
         return {}
     largest = {"frequency": scene.r[1], "force": scene.beta[1], "length": 1.0, "work": 1.0}
@@ -36,25 +35,39 @@ def _physical(scene: Scene, query: Query) -> dict[str, dict[str, Any]]:
     return found
 
 
-def told(scene: Scene, query: Query) -> dict[str, Any]:
-    """The scene, and the system as a query changes it."""
-    system = query.view.system
+def units_of(scene: Scene, view: View) -> dict[str, Any]:
+    """Units of the results of a view: `units`, the reference of each ratio; `physical`, their SI units."""
+    return {"units": _UNITS[str(view.system.excitation)], "physical": _physical(scene, view)}
+
+
+def description(scene: Scene, view: View) -> dict[str, Any]:
+    """What results of a view belong to: the system in words, its units, frequencies and quantities.
+
+    The page shows and saves it with the cells that come with it, whatever its controls say by then.
+    """
+    system = view.system
+    return {
+        "system": "; ".join((system.describe(), *system.costs(np.array(view.r)).values())),
+        "quantities": [
+            {"key": one.key, "label": one.label, "scale": one.scale} for one in quantities(system)
+        ],
+        "marks": marks(system),
+        **units_of(scene, view),
+    }
+
+
+def told(scene: Scene, view: View) -> dict[str, Any]:
+    """The scene, and the system as a view changes it."""
     return {
         "title": scene.title,
         "version": __version__,
-        "system": "; ".join((system.describe(), *system.costs(np.array(query.view.r)).values())),
-        "masses": system.n,
+        "masses": view.system.n,
         "r": scene.r,
         "beta": scene.beta,
         "mu": scene.mu,
         "start": scene.solver.start,
         "sliders": [slider._asdict() for slider in scene.sliders],
         "contacts": [{"key": contact.key, "label": contact.label} for contact in scene.contacts],
-        "quantities": [
-            {"key": one.key, "label": one.label, "scale": one.scale} for one in quantities(system)
-        ],
         "classes": [look._asdict() for look in CLASSES],
-        "units": _UNITS[str(system.excitation)],
-        "physical": _physical(scene, query),
-        "marks": marks(system),
+        **description(scene, view),
     }

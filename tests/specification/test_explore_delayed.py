@@ -218,10 +218,11 @@ def test_units_come_with_what_they_are_of(browser, one):
 
 def test_a_late_answer_about_compiling_changes_nothing(browser, one):
     with page_of(browser, one.url) as page:
-        with held(page, "state"), page.expect_request("**/state?**"), held(page, "map"):
-            page.click("[data-zoom=in]")
-            page.wait_for_timeout(1500)
-        page.wait_for_selector(DONE)
+        with held(page, "state"):
+            with page.expect_request("**/state?**"), held(page, "map"):
+                page.click("[data-zoom=in]")
+                page.wait_for_timeout(1500)  # until the page would say that it waits
+            page.wait_for_selector(DONE)
         page.wait_for_timeout(1000)
         assert page.is_hidden("#told")
 

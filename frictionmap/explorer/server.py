@@ -146,7 +146,7 @@ class Page:
         from .queries import read_query
         from .told import told
 
-        return _json(told(self.scene, read_query(self.scene, query)))
+        return _json(told(self.scene, read_query(self.scene, query).view))
 
     def _state(self, query: str, gone: Callable[[], bool]) -> Answer:
         return _json({"compiling": self.jobs.state()})
@@ -160,6 +160,7 @@ class Page:
 
     def _map(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
+        from .told import description
         from .views import piece_of_map
 
         query = queries.read_query(self.scene, text, queries.PIECE)
@@ -167,7 +168,8 @@ class Page:
         with self._enter("map", query, gone) as job:
             job.watch()
             header, arrays = piece_of_map(query.view, quantity, piece, job, queries.lines_of(query))
-        return _packet(({**header, "compiled": job.kernels > 0}, arrays))
+            header |= {"compiled": job.kernels > 0, "about": description(self.scene, query.view)}
+        return _packet((header, arrays))
 
     def _motion(self, text: str, gone: Callable[[], bool]) -> Answer:
         from .cell import motion
@@ -181,21 +183,25 @@ class Page:
 
     def _of_cell(self, kind: str, work: Callable, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
+        from .told import units_of
 
         query = queries.read_query(self.scene, text, queries.CELL)
         cell = queries.cell_of(query)
         with self._enter(kind, query, gone) as job:
             job.watch()
-            return _packet(work(query.view, *cell, job))
+            header, arrays = work(query.view, *cell, job)
+        return _packet(({**header, **units_of(self.scene, query.view)}, arrays))
 
     def _cut(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
         from .cut import cut
+        from .told import units_of
 
         query = queries.read_query(self.scene, text, queries.CUT)
         line = queries.cut_of(query)
         with self._enter("cut", query, gone) as job:
-            return _packet(cut(query.view, *line, job))
+            header, arrays = cut(query.view, *line, job)
+        return _packet(({**header, **units_of(self.scene, query.view)}, arrays))
 
     def _configuration(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries

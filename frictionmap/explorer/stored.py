@@ -19,7 +19,7 @@ from ..errors import InputError
 from .queries import read_query
 from .scene import Scene, Slider
 from .server import page_files
-from .told import told
+from .told import description, told
 from .views import Follower, Piece, Quantity, View, classes_of, quantities, solve_piece, values_of
 
 #: Cells of every map, each way: of one mass, and of structures, whose cells take some hundred times as long
@@ -140,16 +140,21 @@ def _content(scene: Scene, progress: Progress) -> dict[str, Any]:
     first = read_query(scene, "")
     offered = quantities(scene.system)
     maps, count = {}, len(kept.points)
+    systems: list[dict[str, Any]] = []  # few of them: not all sliders change them
     for done, point in enumerate(kept.points):
         text = "&".join(f"{key}={value!r}" for key, value in zip(kept.values, point, strict=True))
         query = read_query(scene, text)
-        maps[_name(kept, point)] = _map(query.view, offered, _OneOf(progress, done, count))
+        of_map = _map(query.view, offered, _OneOf(progress, done, count))
+        about = description(scene, query.view)
+        if about not in systems:
+            systems.append(about)
+        maps[_name(kept, point)] = {**of_map, "about": systems.index(about)}
         progress(done + 1, count)
     columns, rows = _CELLS[scene.system.n > 1]
     own = tuple(slider.value for slider in scene.sliders)
     return {
-        "scene": told(scene, first), "r": scene.r, "beta": scene.beta, "columns": columns, "rows": rows,
-        "values": kept.values, "first": _name(kept, own), "maps": maps,
+        "scene": told(scene, first.view), "r": scene.r, "beta": scene.beta, "columns": columns, "rows": rows,
+        "values": kept.values, "first": _name(kept, own), "maps": maps, "systems": systems,
     }  # fmt: skip
 
 
@@ -188,6 +193,6 @@ def write_page(scene: Scene, progress: Progress) -> bytes:
     """The page of a scene as one file.
 
     Places of sliders: all of mu together with all of the next slider; of further ones each by itself, with
-    the others where the scene has them.  The page shows the nearest.
+    the others where the scene has them.  Its sliders move to places only that have a map.
     """
     return _page(_content(scene, progress)).encode()

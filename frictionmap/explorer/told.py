@@ -10,9 +10,8 @@ from ..theory.refinement import boundary_check
 from ..units.scales import scales_of
 from ..units.table import UNITS, handy_unit
 from ..version import __version__
-from .queries import Query
 from .scene import Scene
-from .views import marks, quantities
+from .views import View, marks, quantities
 
 #: Frequencies of the range shown at which boundaries of a reduced structure are compared with finer ones.
 _COMPARED = 60
@@ -24,10 +23,10 @@ _UNITS = {
 }
 
 
-def _physical(scene: Scene, query: Query) -> dict[str, dict[str, Any]]:
+def _physical(scene: Scene, view: View) -> dict[str, dict[str, Any]]:
     """Of r, beta, lengths and works, if the scene has units: the unit, and how many of it 1 is."""
     try:
-        scales = scales_of(scene.units, query.view.system)
+        scales = scales_of(scene.units, view.system)
     except InputError:  # a contact was chosen that the units do not go with
         return {}
     largest = {"frequency": scene.r[1], "force": scene.beta[1], "length": 1.0, "work": 1.0}
@@ -40,33 +39,46 @@ def _physical(scene: Scene, query: Query) -> dict[str, dict[str, Any]]:
     return found
 
 
-def _costs(query: Query) -> list[str]:
-    """What the structure that is computed differs from the one given, in the range of r that is shown."""
-    view = query.view
+def _costs(view: View) -> list[str]:
+    """Describe how the computed structure differs from the given one in the visible range of r."""
     costs = view.system.costs(np.array(view.r))
     some = np.linspace(*view.r, _COMPARED)
     return [*costs.values(), *boundary_check(view.system, some, np.array([view.mu])).values()]
 
 
-def told(scene: Scene, query: Query) -> dict[str, Any]:
-    """The scene, and the system as a query changes it."""
-    system = query.view.system
+def units_of(scene: Scene, view: View) -> dict[str, Any]:
+    """Units of the results of a view: `units`, the reference of each ratio; `physical`, their SI units."""
+    return {"units": _UNITS[str(view.system.excitation)], "physical": _physical(scene, view)}
+
+
+def description(scene: Scene, view: View) -> dict[str, Any]:
+    """What results of a view belong to: the system in words, its units, frequencies and quantities.
+
+    The page shows and saves it with the cells that come with it, whatever its controls say by then.
+    """
+    system = view.system
+    return {
+        "system": "; ".join((system.describe(), *_costs(view))),
+        "quantities": [
+            {"key": one.key, "label": one.label, "scale": one.scale} for one in quantities(system)
+        ],
+        "marks": marks(system),
+        **units_of(scene, view),
+    }
+
+
+def told(scene: Scene, view: View) -> dict[str, Any]:
+    """The scene, and the system as a view changes it."""
     return {
         "title": scene.title,
         "version": __version__,
-        "system": "; ".join((system.describe(), *_costs(query))),
-        "masses": system.n,
+        "masses": view.system.n,
         "r": scene.r,
         "beta": scene.beta,
         "mu": scene.mu,
         "start": scene.solver.start,
         "sliders": [slider._asdict() for slider in scene.sliders],
         "contacts": [{"key": contact.key, "label": contact.label} for contact in scene.contacts],
-        "quantities": [
-            {"key": one.key, "label": one.label, "scale": one.scale} for one in quantities(system)
-        ],
         "classes": [look._asdict() for look in CLASSES],
-        "units": _UNITS[str(system.excitation)],
-        "physical": _physical(scene, query),
-        "marks": marks(system),
+        **description(scene, view),
     }

@@ -46,6 +46,21 @@ function pairsOf(view, scene) {
   return [...pairs, ...Object.entries(view.numbers)];
 }
 
+/** What decides the motion in a cell: views that agree in it have the same motion in the same cell. @param {View} view */
+export function systemKey({ mu, start, contact, numbers }) {
+  return JSON.stringify([mu, start, contact, Object.entries(numbers).sort()]);
+}
+
+/** What decides the colour of a cell. @param {View} view */
+export function cellsKey(view) {
+  return `${systemKey(view)} ${view.quantity}`;
+}
+
+/** What decides a picture: its cells and its ranges. @param {View} view */
+export function pictureKey(view) {
+  return `${cellsKey(view)} ${view.r} ${view.beta}`;
+}
+
 /** The query of a view, with further keys. @param {View} view */
 export function queryOf(view, scene, further = {}) {
   return joined([...pairsOf(view, scene), ...Object.entries(further)]);

@@ -16,8 +16,8 @@ const HELD = 0.97;
 
 export class CutPanel {
   /** @param {HTMLElement} panel */
-  constructor(panel, scene, onClose) {
-    [this.panel, this.scene] = [panel, scene];
+  constructor(panel, classes, onClose) {
+    [this.panel, this.classes] = [panel, classes];
     panel.innerHTML = `<div><span class="what"></span><label>show <select aria-label="What the curve shows"></select></label>
       <button type="button" title="Close the curve" aria-label="Close the curve">×</button><span class="key"></span></div>
       <canvas role="img" aria-label="response curve"></canvas>`;
@@ -29,9 +29,10 @@ export class CutPanel {
     this.room = { left: 64, right: 16 };
   }
 
-  /** @param {object} curves  as the server sends them  @param {{left: number, right: number}} room  of the map */
-  show(curves, room) {
-    [this.curves, this.room] = [curves, room];
+  /** @param {object} curves  as the server sends them, in the units of their system  @param {{left: number, right: number}} room  of the map
+   *  @param {string} asked  what decides the curve: the system, and where it lies */
+  show(curves, room, asked) {
+    [this.curves, this.room, this.asked] = [curves, room, asked];
     this.panel.hidden = false;
     this.draw();
   }
@@ -43,13 +44,13 @@ export class CutPanel {
 
   draw() {
     if (!this.curves) return;
-    const { along, at, ends, classes } = this.curves;
+    const { along, at, ends, classes, units } = this.curves;
     const count = classes.length;
     const step = (ends[1] - ends[0]) / count;
     const x = Float64Array.from({ length: count }, (_, k) => ends[0] + (k + 0.5) * step);
     const lines = this.#lines(x);
     this.panel.querySelector(".what").textContent = along === "r" ? `along r at β = ${short(at)}` : `along β at r = ${short(at)}`;
-    const unit = { amplitude: this.scene.units.length, work: this.scene.units.energy, phase: "rad" }[this.select.value];
+    const unit = { amplitude: units.length, work: units.energy, phase: "rad" }[this.select.value];
     draw(this.panel.querySelector("canvas"), {
       x: ends, y: this.#range(lines), lines, bands: this.#bands(x, step), left: this.room.left, right: this.room.right,
       xName: along === "r" ? "frequency ratio r" : "friction ratio β", yName: `${this.select.value} / ${unit}`,
@@ -91,7 +92,7 @@ export class CutPanel {
     for (let k = 0; k < classes.length; k += 1) {
       const last = bands.at(-1);
       if (last && last.index === classes[k]) last.to = x[k] + step / 2;
-      else bands.push({ index: classes[k], from: x[k] - step / 2, to: x[k] + step / 2, colour: `${this.scene.classes[classes[k]].colour}40` });
+      else bands.push({ index: classes[k], from: x[k] - step / 2, to: x[k] + step / 2, colour: `${this.classes[classes[k]].colour}40` });
     }
     return bands;
   }

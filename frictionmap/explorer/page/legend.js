@@ -3,7 +3,7 @@
 import { short } from "./axes.js";
 import { CLASS, rampColour } from "./colours.js";
 import { keyLine, make } from "./dom.js";
-import { LINES } from "./map.js";
+import { LINES } from "./plate.js";
 
 /** Name of a class, with the numbers of stops that its colour does not tell. */
 function nameOf(picture, index, look) {
@@ -26,7 +26,7 @@ function percent(share) {
 /** Entries of the classes of a picture: all, or those that a quantity has no number for. */
 export function classesOf(picture, classes) {
   const counts = picture.counts();
-  const all = picture.filled * picture.rows;
+  const all = counts.reduce((sum, count) => sum + count, 0);
   const shown = picture.values ? [CLASS.stuck, CLASS.unresolved] : [...counts.keys()];
   return shown
     .filter((index) => counts[index])
@@ -34,25 +34,25 @@ export function classesOf(picture, classes) {
 }
 
 /** Lay out the legend of a picture. */
-export function legend(element, picture, scene, view, marks) {
-  const entries = picture.scale ? [scaleEntry(picture.scale)] : [];
+export function legend(element, picture, classes) {
+  const entries = picture.scale ? [scaleEntry(picture.quantity.label, picture.scale)] : [];
   for (const { index, dash, meaning } of Object.values(LINES)) {
     const name = make("span", {}, "β", make("sub", {}, index));
     entries.push(make("span", {}, keyLine("currentColor", name, dash.length ? "dashed" : "solid"), meaning));
   }
-  entries.push(...classesOf(picture, scene.classes).map(({ colour, text }) => make("span", {}, swatch(colour), text)));
-  for (const [name, places] of Object.entries(marks)) {
+  entries.push(...classesOf(picture, classes).map(({ colour, text }) => make("span", {}, swatch(colour), text)));
+  for (const [name, places] of Object.entries(picture.about.marks)) {
     if (places.length) entries.push(make("span", {}, make("span", {}, name.includes("held") ? "▽" : "▼"), name));
   }
   element.replaceChildren(...entries);
 }
 
-function scaleEntry({ low, high, log }) {
+function scaleEntry(label, { low, high, log }) {
   const stops = Array.from({ length: 12 }, (_, k) => rampColour(k / 11)).join(", ");
   const middle = log ? Math.sqrt(low * high) : (low + high) / 2;
   const bar = make("i", {
     title: `${short(middle, 2)} in the middle`,
     style: { width: "8rem", background: `linear-gradient(to right, ${stops})` },
   });
-  return make("span", {}, short(low, 2), bar, `${short(high, 2)}${log ? " (logarithmic)" : ""}`);
+  return make("span", {}, `${label}:`, short(low, 2), bar, `${short(high, 2)}${log ? " (logarithmic)" : ""}`);
 }

@@ -1,6 +1,6 @@
 // The page: what it shows is one view; whatever changes that, here it is followed up.
 
-import { firstView, hashOf, queryOf, tidy, viewOf } from "./address.js";
+import { cellsKey, firstView, hashOf, pictureKey, queryOf, systemKey, tidy, viewOf } from "./address.js";
 import { forgetColours, short } from "./axes.js";
 import { classTable } from "./colours.js";
 import { Controls } from "./controls.js";
@@ -10,7 +10,7 @@ import { legend } from "./legend.js";
 import { RegimeMap } from "./map.js";
 import { MotionPanel } from "./motion.js";
 import { Refiner } from "./refine.js";
-import { copy, picture, save } from "./save.js";
+import { copy, pngOf, save } from "./save.js";
 import { Server } from "./source.js";
 import { Stored } from "./stored.js";
 
@@ -82,30 +82,18 @@ function later(work, milliseconds) {
   };
 }
 
-/** Further axes of the map in units, where the scene tells them. */
-function secondsOf({ frequency, force }) {
-  const axis = (name, one) => (one ? { factor: one.factor, name: `${name} [${one.unit}]` } : null);
-  return { r: axis("frequency", frequency), beta: axis("friction force", force) };
-}
-
-/** Names of the axes of the map. */
-function namesOf(units) {
-  return { r: "frequency ratio r = ω/ω₁", beta: `friction ratio β = ${units.beta}` };
-}
-
 class Page {
   constructor(source, scene) {
     [this.source, this.scene] = [source, scene];
+    this.quantities = scene.quantities;
     this.#readAddress();
     this.table = classTable(scene.classes);
-    this.map = new RegimeMap(part("stage"));
-    this.map.names = namesOf(scene.units);
-    this.marks = scene.marks;
-    this.map.seconds = secondsOf(scene.physical);
+    this.map = new RegimeMap(part("stage"), scene);
     this.hint = part("motion").innerText;
-    this.motion = new MotionPanel(part("motion"), scene);
-    this.cut = new CutPanel(part("cut"), scene, () => this.change({ cut: "" }));
-    this.refiner = new Refiner(source, (found, view) => this.#onPicture(found, view), (state) => this.#onState(state));
+    this.motion = new MotionPanel(part("motion"));
+    this.pointed = null; // the cell that was pointed at last, whose motion is shown while none is kept
+    this.cut = new CutPanel(part("cut"), scene.classes, () => this.change({ cut: "" }));
+    this.refiner = new Refiner(source, (found) => this.#onPicture(found), (state) => this.#onState(state));
     this.controls = new Controls(part("controls"), scene, (change) => this.#onControl(change), source.fixed);
     this.motions = new Newest((...asked) => this.#fetchMotion(...asked), (error) => this.#wrong(error), GRACE);
     this.others = new Newest((...asked) => this.#fetchOthers(...asked), () => {});
@@ -118,7 +106,7 @@ class Page {
       button.hidden = !source.live && !["link", "picture"].includes(button.dataset.save);
     }
     part("title").textContent = document.title = scene.title;
-    part("system").textContent = scene.system;
+    if (systemKey(this.view) === systemKey(firstView(scene))) part("system").textContent = scene.system; // else it comes with the cells
     document.title += " – frictionmap";
   }
 
@@ -165,28 +153,54 @@ class Page {
     const { map, view, scene } = this;
     map.view = view;
     map.kept = view.cell;
-    map.marks = this.marks;
     this.controls.set(view);
     map.draw();
     const { columns, rows } = (this.size = map.size);
-    const kind = scene.quantities.find((quantity) => quantity.key === view.quantity).scale;
+    const kind = this.quantities.find((quantity) => quantity.key === view.quantity).scale;
     this.map.stage.dataset.state = "refining";
     this.asked = performance.now();
     this.refiner.ask({ view, scene, columns, rows, table: this.table, kind, scale: null });
-    if (motion && view.cell && this.source.live) this.motions.ask(view.cell, true);
+    const cell = view.cell ?? this.pointed;
+    if (motion && cell && this.source.live) this.motions.ask(cell, Boolean(view.cell));
     if (view.cut) {
       this.cuts.ask();
     } else {
       this.cuts.stop();
       this.cut.hide();
     }
+    this.#markOutdated();
     this.settle();
   }
 
+  /** Fade what is not of the view any more: until its successor is there, it must not be read as such. */
+  #markOutdated() {
+    const { view, map: { whole }, motion, cut } = this;
+    const fade = (name, outdated) => part(name).classList.toggle("outdated", outdated);
+    fade("cells", whole !== null && cellsKey(whole.view) !== cellsKey(view));
+    const words = whole !== null && pictureKey(whole.view) !== pictureKey(view);
+    for (const name of ["system", "legend"]) fade(name, words);
+    fade("motion", motion.motion !== null && motion.asked !== this.#motionKey(view, view.cell ?? this.pointed));
+    fade("cut", cut.curves !== null && cut.asked !== this.#cutKey(view));
+  }
+
+  /** What decides the motion that is shown, and the response curve. */
+  #motionKey(view, cell) {
+    return `${systemKey(view)} ${cell}`;
+  }
+
+  #cutKey(view) {
+    return `${systemKey(view)} ${view.cut} ${this.#placeOfCut(view)} ${view[view.cut]}`;
+  }
+
   #onSize() {
-    const { columns, rows } = this.map.size;
-    if (columns !== this.size?.columns || rows !== this.size?.rows) this.update();
+    if (this.#resized) this.update();
     else this.map.draw();
+  }
+
+  /** Whether the map has another size than it was asked for. */
+  get #resized() {
+    const { columns, rows } = this.map.size;
+    return columns !== this.size?.columns || rows !== this.size?.rows;
   }
 
   home() {
@@ -199,45 +213,40 @@ class Page {
       return;
     }
     const [key, value] = change.number;
-    if (key === "mu") {
-      this.change({ mu: value });
-      return;
-    }
-    const numbers = { ...this.view.numbers, [key]: value };
+    const numbers = { ...this.view.numbers };
+    if (key !== "mu") numbers[key] = value;
     if (value === this.scene.sliders.find((slider) => slider.key === key).value) delete numbers[key];
-    this.change({ numbers });
+    const { view, note } = this.#inFile({ ...this.view, numbers, mu: key === "mu" ? value : this.view.mu }, key);
+    this.change({ mu: view.mu, numbers: view.numbers });
+    this.#note(note);
   }
 
-  /** The view has stood still: address, words and marks follow. */
+  /** A view that a page that is a file has a map of, and what had to be changed for that; any other page has all. */
+  #inFile(view, moved) {
+    if (this.source.live) return { view, note: "" };
+    const { view: kept, back } = this.source.kept(view, this.scene, moved);
+    const names = back.map(({ label, value }) => `${label} is back at ${short(value)}`).join(", ");
+    return { view: kept, note: names && `${names}: this file has no map with all these values.` };
+  }
+
+  /** The view has stood still: the address follows, and what its system can be coloured by. */
   async #settled() {
     const hash = hashOf(this.view, this.scene);
     if (hash !== location.hash) history.replaceState(null, "", hash);
     this.hash = location.hash;
     if (!this.source.live) return;
+    const asked = queryOf(this.view, this.scene);
     try {
-      const told = await this.source.scene(queryOf(this.view, this.scene));
-      part("system").textContent = told.system;
-      this.map.marks = this.marks = told.marks;
-      this.#takeUnits(told);
-      this.#offer(told.quantities);
+      const { quantities } = await this.source.scene(asked);
+      if (asked === queryOf(this.view, this.scene)) this.#offer(quantities); // else another answer is to come
     } catch {
       // what is wrong with the view the map says
     }
   }
 
-  /** What lengths and forces are over: a base that moves has others than a load. */
-  #takeUnits({ units, physical }) {
-    const others = units.length !== this.scene.units.length;
-    [this.scene.units, this.scene.physical] = [units, physical];
-    [this.map.names, this.map.seconds] = [namesOf(units), secondsOf(physical)];
-    this.#onSize(); // second axes take room
-    this.cut.draw();
-    if (others && this.view.cell) this.motions.ask(this.view.cell, true);
-  }
-
   /** What cells can be coloured by: a structure that is reduced has other masses for another contact. */
   #offer(quantities) {
-    this.scene.quantities = quantities;
+    this.quantities = quantities;
     this.controls.offer("quantity", quantities, this.view);
     if (!quantities.some(({ key }) => key === this.view.quantity)) this.change({ quantity: quantities[0].key });
   }
@@ -250,9 +259,11 @@ class Page {
 
   /** The view that the address names; what is wrong in it is told until the view is changed. */
   #readAddress() {
-    const { view, wrong } = viewOf(location.hash, this.scene, this.source.fixed?.values);
+    const known = { ...this.scene, quantities: this.quantities };
+    const { view: asked, wrong } = viewOf(location.hash, known, this.source.fixed?.values);
+    const { view, note } = this.#inFile(asked);
     this.view = view;
-    this.#note(wrong.join("\n"));
+    this.#note([...wrong, note].filter(Boolean).join("\n"));
   }
 
   #redraw() {
@@ -262,13 +273,16 @@ class Page {
     this.cut.draw();
   }
 
-  #onPicture(found, view) {
+  #onPicture(found) {
     this.map.show(found);
-    if (found.whole) legend(part("legend"), found, this.scene, view, this.marks);
-    if (view.cell && !this.source.live) {
-      const kept = this.map.cellAt(this.map.x(view.cell[0]), this.map.y(view.cell[1]));
-      if (kept) this.#tellStored(kept); // another system may do something else there
+    if (found.whole) {
+      part("system").textContent = found.about.system;
+      legend(part("legend"), found, this.scene.classes);
+      if (this.#resized) this.update(); // second axes take room
     }
+    const cell = found.view.cell ?? this.pointed;
+    if (cell && !this.source.live) this.#tellStored(found.cellAt(cell), found); // another system may do something else there
+    this.#markOutdated();
     const detail = { columns: found.columns, rows: found.rows, whole: found.whole };
     this.map.stage.dataset.cells = `${found.columns} ${found.rows}`;
     requestAnimationFrame(() => {
@@ -338,17 +352,17 @@ class Page {
 
   /** If something is waited for, say what: kernels are compiled once on a machine, and that takes a while. */
   async #lookAtWaiting() {
-    const waits = this.map.stage.dataset.state === "refining" || this.pending.size;
-    if (!waits || !this.source.live || this.looking) return;
+    if (!this.#waits || !this.source.live || this.looking) return;
     this.looking = true;
     try {
       const { compiling } = await this.source.state();
-      if (compiling.seconds) {
+      if (!this.#waits) {
+        this.#compiled(); // what was waited for has come meanwhile
+      } else if (compiling.seconds) {
         this.compiled = true;
         this.#tell(`compiling kernels, once on this machine: ${Math.round(compiling.seconds)} s so far`);
       } else if (this.compiled) {
-        this.compiled = false;
-        this.#tell("");
+        this.#compiled();
       } else if (this.told.hidden && performance.now() - this.asked > SLOW) {
         this.#tell("computing");
       }
@@ -356,6 +370,16 @@ class Page {
       // the request that waits will say so
     }
     this.looking = false;
+  }
+
+  get #waits() {
+    return this.map.stage.dataset.state === "refining" || this.pending.size > 0;
+  }
+
+  /** Nothing is being compiled any more. */
+  #compiled() {
+    if (this.compiled) this.#tell("");
+    this.compiled = false;
   }
 
   // the cell that is pointed at
@@ -371,14 +395,23 @@ class Page {
     if (cell?.r === before?.r && cell?.beta === before?.beta) return;
     this.#point(cell);
     if (!cell || this.view.cell) return;
-    if (this.source.live) this.motions.ask([cell.r, cell.beta], false);
-    else this.#tellStored(cell);
+    this.pointed = [cell.r, cell.beta];
+    if (this.source.live) this.motions.ask(this.pointed, false);
+    else this.#tellStored(cell, cell.picture);
+    this.#markOutdated();
   }
 
   #pick(cell) {
-    if (cell && !this.source.live) this.#tellStored(cell);
+    if (cell && !this.source.live) this.#tellStored(cell, cell.picture);
+    if (!cell) this.#release();
     this.change({ cell: cell && [cell.r, cell.beta], cut: cell ? this.view.cut : "" });
-    if (!cell && this.source.live) this.motion.tell(this.hint);
+  }
+
+  /** No cell is shown any more. */
+  #release() {
+    this.pointed = null;
+    this.motions.stop();
+    this.motion.tell(this.hint);
   }
 
   /** The next cell by keys: some pixels on from the one that is kept, or from the middle. */
@@ -394,7 +427,8 @@ class Page {
     this.others.stop();
     const motion = await this.#slowly(this.source.motion(view, this.scene, cell, signal), cell, kept);
     if (kept !== Boolean(this.view.cell)) return;
-    this.motion.show(motion, this.scene.classes[motion.class], kept);
+    this.motion.show(motion, this.scene.classes[motion.class], kept, this.#motionKey(view, cell));
+    this.#markOutdated();
     requestAnimationFrame(() => part("motion").dispatchEvent(new CustomEvent("painted", { detail: { r: motion.r, beta: motion.beta } })));
     this.rest(motion, view, cell);
   }
@@ -420,8 +454,10 @@ class Page {
     if (this.motion.motion === motion) this.motion.add(others);
   }
 
-  #tellStored(cell) {
-    const value = cell.value === null ? "" : ` Value: about ${short(cell.value, 3)}.`;
+  /** What a page that is a file knows of a cell of a picture. */
+  #tellStored(cell, { quantity }) {
+    if (!cell) return;
+    const value = cell.value === null ? "" : ` Value of ${quantity.label}: about ${short(cell.value, 3)}.`;
     this.motion.tell(`r = ${short(cell.r)}, β = ${short(cell.beta)}: ${this.scene.classes[cell.class].label}.${value} ` +
       "This file holds maps; to see motions, run frictionmap explore on the configuration.");
   }
@@ -429,10 +465,16 @@ class Page {
   async #fetchCut(signal) {
     const { view, scene, map } = this;
     if (!view.cut) return;
-    const place = (view.cell ?? [(view.r[0] + view.r[1]) / 2, (view.beta[0] + view.beta[1]) / 2])[view.cut === "r" ? 1 : 0];
-    const found = await this.#waiting(this.source.cut(view, scene, view.cut, place, Math.max(2, Math.round(map.area.width)), signal));
+    const count = Math.max(2, Math.round(map.area.width));
+    const found = await this.#waiting(this.source.cut(view, scene, view.cut, this.#placeOfCut(view), count, signal));
     const { width } = map.stage.getBoundingClientRect();
-    this.cut.show(found, { left: map.area.x, right: width - map.area.x - map.area.width });
+    this.cut.show(found, { left: map.area.x, right: width - map.area.x - map.area.width }, this.#cutKey(view));
+    this.#markOutdated();
+  }
+
+  /** Where the response curve of a view lies on the other axis: at the cell that is kept, or in the middle. */
+  #placeOfCut(view) {
+    return (view.cell ?? [(view.r[0] + view.r[1]) / 2, (view.beta[0] + view.beta[1]) / 2])[view.cut === "r" ? 1 : 0];
   }
 
   // keys and buttons
@@ -454,7 +496,7 @@ class Page {
     if (letter === "?") {
       part("keys").showModal();
     } else if (letter === "q") {
-      const keys = this.scene.quantities.map((quantity) => quantity.key);
+      const keys = this.quantities.map((quantity) => quantity.key);
       this.change({ quantity: keys[(keys.indexOf(this.view.quantity) + 1) % keys.length] });
     } else if (this.source.live) {
       const along = letter === "r" ? "r" : "beta";
@@ -465,15 +507,16 @@ class Page {
   /** Before cells are saved: how large their files will be, and how long they will take if that is long. */
   async #tellSizes() {
     if (!this.source.live) return;
-    let words = () => "";
+    const { view } = this;
+    const write = (words) => part("save").querySelectorAll("[data-size]").forEach((place) => (place.textContent = words(place)));
+    write(() => ""); // those of the view before
     try {
-      const sizes = await this.source.sizes(this.view, this.scene, this.map.size);
+      const sizes = await this.source.sizes(view, this.scene, this.map.size);
       const wait = this.refiner.whole > SLOW ? `, ${this.#duration(this.refiner.whole)}` : "";
-      words = ({ dataset }) => `, about ${sizes[dataset.size]}${wait}`;
+      if (view === this.view) write(({ dataset }) => `, about ${sizes[dataset.size]}${wait}`);
     } catch {
       // what is wrong with the view the map says, and who saves it all the same
     }
-    for (const place of part("save").querySelectorAll("[data-size]")) place.textContent = words(place);
   }
 
   /** The menu is closed, and the keyboard goes on from there. */
@@ -493,18 +536,34 @@ class Page {
         this.#toast("The link to this view is copied.");
       } else if (what === "configuration") {
         await copy(await source.configuration(view, scene, map.size));
-        this.#toast("The configuration of this view is copied: paste it into a .toml file.");
+        this.#toast(`The configuration of this view is copied: paste it into a .toml file.${this.#ahead(view)}`);
       } else if (what === "picture") {
-        const subtitle = [part("system").textContent, `μ = ${short(view.mu)}`].join("; ");
-        map.hovered = null;
-        map.drawOver();
-        const quantity = scene.quantities.find(({ key }) => key === view.quantity).label;
-        save(await picture(map, scene, subtitle, quantity), "map.png");
+        await this.#savePicture(map.whole);
       } else {
+        await source.sizes(view, scene, map.size); // what is wrong with the view is said here, not in the file
         save(source.file(view, scene, map.size, what), `map.${what}`);
+        if (this.#ahead(view)) this.#toast(`The file holds the cells of this view.${this.#ahead(view)}`);
       }
     } catch (error) {
       this.#toast(error.message);
+    }
+  }
+
+  /** Where a view is saved whose cells the map does not show yet, that it is so. */
+  #ahead(view) {
+    const { whole } = this.map;
+    return whole && pictureKey(whole.view) === pictureKey(view) ? "" : ` It is for μ = ${short(view.mu)} and the other settings chosen, which the map does not show yet.`;
+  }
+
+  /** Save the newest picture that is whole, and say so where it is not what the controls ask for. */
+  async #savePicture(whole) {
+    if (!whole) throw new Error("Cannot save a picture: the first map is not complete yet. Wait until it is.");
+    save(await pngOf(whole, this.scene, this.map.stage.getBoundingClientRect()), "map.png");
+    if (pictureKey(whole.view) !== pictureKey(this.view)) {
+      const { quantity, view } = whole;
+      this.#toast(`The new map is still being computed. The saved picture shows the map before it: ${quantity.label}, μ = ${short(view.mu)}.`);
+    } else if (this.map.stage.dataset.state === "refining") {
+      this.#toast(`The saved picture has ${whole.columns} × ${whole.rows} cells. A finer one is being computed.`);
     }
   }
 

@@ -41,8 +41,8 @@ function inUnits(value, one) {
 
 export class MotionPanel {
   /** @param {HTMLElement} panel */
-  constructor(panel, scene) {
-    [this.panel, this.scene] = [panel, scene];
+  constructor(panel) {
+    this.panel = panel;
     this.motion = null;
     this.other = null;
   }
@@ -58,17 +58,18 @@ export class MotionPanel {
   }
 
   /**
-   * @param {object} motion  as the server sends it
+   * @param {object} motion  as the server sends it, in the units of its system
    * @param {{colour: string}} look  of the cell's class
    * @param {boolean} kept   whether the cell is kept
+   * @param {string} asked   what decides the motion: the system and the cell
    */
-  show(motion, look, kept) {
+  show(motion, look, kept, asked) {
     if (!this.#part("h2")) this.panel.innerHTML = TEMPLATE;
-    [this.motion, this.other] = [motion, null];
+    [this.motion, this.other, this.asked] = [motion, null, asked];
     const none = "none" in motion;
     this.#part("h2 i").style.background = look.colour;
     this.#part(".regime").textContent = none ? REGIMES.unresolved : REGIMES[motion.regime];
-    const { frequency, force } = this.scene.physical;
+    const { frequency, force } = motion.physical;
     const place = `r = ${short(motion.r)}${inUnits(motion.r, frequency)}, β = ${short(motion.beta)}${inUnits(motion.beta, force)}`;
     this.#part(".where").textContent = `${kept ? "kept: " : ""}${place}`;
     this.#part(".words").replaceChildren(...(none ? [motion.none] : [...motion.told, motion.comment]).filter(Boolean).map(paragraph));
@@ -79,8 +80,9 @@ export class MotionPanel {
   }
 
   #entry(entry, value) {
-    const unit = { length: this.scene.units.length, energy: this.scene.units.energy }[entry.unit] ?? entry.unit;
-    const physical = this.scene.physical[{ length: "length", energy: "work" }[entry.unit]];
+    const { units } = this.motion;
+    const unit = { length: units.length, energy: units.energy }[entry.unit] ?? entry.unit;
+    const physical = this.motion.physical[{ length: "length", energy: "work" }[entry.unit]];
     if (entry.why) return tableRow(entry.label, `none: ${entry.why}`, "text");
     return tableRow(entry.label, `${short(value, 6)}${Number.isFinite(value) && unit ? ` ${unit}` : ""}${inUnits(value, physical)}`);
   }
@@ -159,11 +161,11 @@ export class MotionPanel {
     lines.push({ x: time, y: motion.z, colour: ink, width: 2.1, dash: masses === 1 ? [1, 3] : [] });
     if (other) lines.push(this.#otherLine("z", time));
     const x = [0, time.at(-1)];
-    draw(this.#part(".displacement"), { x, y: around(...lines.map((line) => line.y)), lines, bands, yName: this.scene.units.length });
+    draw(this.#part(".displacement"), { x, y: around(...lines.map((line) => line.y)), lines, bands, yName: motion.units.length });
     const forces = [{ x: time, y: motion.friction, colour: colour("warm"), width: 1.8 }];
     if (other) forces.push(this.#otherLine("friction", time));
     draw(this.#part(".force"), {
-      x, y: around(...forces.map((line) => line.y)), lines: forces, bands, xName: "time / excitation period", yName: this.scene.units.force,
+      x, y: around(...forces.map((line) => line.y)), lines: forces, bands, xName: "time / excitation period", yName: motion.units.force,
     });
     const names = [];
     for (let k = 0; k < masses; k += 1) names.push(keyLine(massColour(k), masses === 1 ? "x, mass" : `x${motion.dofs[k]}`));

@@ -1,9 +1,12 @@
-// A picture of a view: cells that come in piece by piece, on a canvas of their own.
+// A picture: cells that come in piece by piece, on a canvas of their own, with the view that they were computed for
+// and what the server says they belong to.  Whatever is shown or saved beside cells is taken from their picture.
 
+import { short } from "./axes.js";
 import { painter, scaleOf } from "./colours.js";
 
 export class Picture {
   /**
+   * @param {import("./address.js").View} view  what it was asked for
    * @param {{r: [number, number], beta: [number, number]}} ranges  what it covers
    * @param {number} columns
    * @param {number} rows
@@ -11,7 +14,9 @@ export class Picture {
    * @param {string} kind        scale of its quantity: "classes", "linear" or "log"
    * @param {object | null} scale  of the colours, if it is known already
    */
-  constructor(ranges, columns, rows, table, kind, scale = null) {
+  constructor(view, ranges, columns, rows, table, kind, scale = null) {
+    this.view = view;
+    this.about = null; // the system, its units, marks and quantities, as the server describes them
     this.r = [...ranges.r];
     this.beta = [...ranges.beta];
     [this.columns, this.rows, this.table, this.kind, this.scale] = [columns, rows, table, kind, scale];
@@ -32,6 +37,7 @@ export class Picture {
   /** Put in the columns of a packet from `first` on. */
   put(packet, first) {
     const count = packet.classes.length / this.rows;
+    this.about = packet.about;
     this.classes.set(packet.classes, first * this.rows);
     if (this.values) this.values.set(packet.values, first * this.rows);
     for (const name of Object.keys(this.limits)) this.limits[name].set(packet[name], first);
@@ -70,7 +76,7 @@ export class Picture {
     if (column < 0 || line < 0 || column >= this.filled || line >= this.rows) return null;
     const index = column * this.rows + line;
     return { r: this.#middle("r", column, this.columns), beta: this.#middle("beta", line, this.rows),
-      class: this.classes[index], value: this.values ? this.values[index] : null };
+      picture: this, class: this.classes[index], value: this.values ? this.values[index] : null };
   }
 
   /** The middle of a cell: a number with no more digits than its place has. */
@@ -80,10 +86,33 @@ export class Picture {
     return Number((low + (k + 0.5) * size).toFixed(Math.min(15, Math.max(0, 2 - Math.floor(Math.log10(size))))));
   }
 
-  /** How many cells each class has. */
+  /** How many cells each class has in the ranges of the view: a page that is a file has cells beyond them. */
   counts() {
     const found = new Uint32Array(this.table.length);
-    for (let k = 0; k < this.filled * this.rows; k += 1) found[this.classes[k]] += 1;
+    const [left, right] = this.#within("r", this.columns);
+    const [low, high] = this.#within("beta", this.rows);
+    for (let column = left; column < Math.min(right, this.filled); column += 1) {
+      for (let k = column * this.rows + low; k < column * this.rows + high; k += 1) found[this.classes[k]] += 1;
+    }
     return found;
+  }
+
+  /** The first of the cells whose middles lie in the range of the view, and the one after the last. */
+  #within(axis, count) {
+    const [low, high] = this[axis];
+    const places = this.view[axis].map((end) => Math.round(((end - low) / (high - low)) * count));
+    return places.map((place) => Math.min(count, Math.max(0, place)));
+  }
+
+  /** What the cells are coloured by: {key, label, scale}. */
+  get quantity() {
+    return this.about.quantities.find(({ key }) => key === this.view.quantity);
+  }
+
+  /** What the cells were computed for, in words. */
+  get words() {
+    const start = this.view.start === "rest" ? "start at rest" : "start in motion";
+    const cells = `${this.columns} × ${this.rows} cells`;
+    return [this.about.system, `μ = ${short(this.view.mu)}`, start, this.quantity.label, cells].join("; ");
   }
 }

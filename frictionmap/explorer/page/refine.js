@@ -105,7 +105,7 @@ export class Refiner {
   /** One picture, in pieces. */
   async #fill(asked, run, { columns, rows }, first) {
     const ranges = this.source.fixed ?? asked.view;
-    const picture = new Picture(ranges, columns, rows, asked.table, asked.kind, asked.scale);
+    const picture = new Picture(asked.view, ranges, columns, rows, asked.table, asked.kind, asked.scale);
     const began = performance.now();
     const cost = this.#costs.begin(asked, columns, rows);
     while (!picture.whole) {
@@ -121,7 +121,7 @@ export class Refiner {
       if (packet.seconds && !packet.compiled) cost.add(last - at, 1000 * packet.seconds);
       asked.scale = picture.scale;
       run.seen = true;
-      this.onPicture(picture, asked.view);
+      this.onPicture(picture);
       this.onState({ share: picture.filled / columns, since: began });
       if (this.#waiting) run.control.abort();
       run.control.signal.throwIfAborted();

@@ -1,9 +1,10 @@
 // What can be taken along: a link, a configuration, a picture, the cells.
 
-import { colour, short } from "./axes.js";
+import { colour, keepTo, short } from "./axes.js";
 import { rampColour } from "./colours.js";
 import { classesOf } from "./legend.js";
-import { LINES } from "./map.js";
+import { ring } from "./map.js";
+import { LINES, Plate, areaOf } from "./plate.js";
 
 /** Room of a picture for its title, and for each further line of text, in pixels of the style sheet. */
 const HEAD = 26;
@@ -61,24 +62,28 @@ function wrapped(pen, text, width) {
   return lines;
 }
 
-/** What a legend under a picture lists. */
-function entriesOf(found, scene, quantity) {
+/** What the legend of a picture lists. */
+function entriesOf(found, classes) {
   const boundaries = Object.values(LINES).map(({ index, dash, meaning }) => ({ dash, text: `β ${index}: ${meaning}` }));
-  if (!found.scale) return [...boundaries, ...classesOf(found, scene.classes)];
+  if (!found.scale) return [...boundaries, ...classesOf(found, classes)];
   const { low, high, log } = found.scale;
-  const text = `${quantity}, ${short(low, 2)} to ${short(high, 2)}${log ? ", logarithmic" : ""}`;
-  return [{ scale: found.scale, text }, ...boundaries, ...classesOf(found, scene.classes)];
+  const text = `${found.quantity.label}, ${short(low, 2)} to ${short(high, 2)}${log ? ", logarithmic" : ""}`;
+  return [{ scale: found.scale, text }, ...boundaries, ...classesOf(found, classes)];
 }
 
-/** The map with its axes, title and legend as a picture. @param {import("./map.js").RegimeMap} map */
-export function picture(map, scene, subtitle, quantity) {
+/**
+ * A picture with its axes, title and legend as PNG: all of it is of that picture, whatever the page shows by now.
+ * @param {import("./picture.js").Picture} found  a whole one
+ * @param {{title: string, classes: object[]}} scene  what does not change
+ * @param {{width: number, height: number}} size  of the cells with their axes, in pixels of the style sheet
+ */
+export function pngOf(found, { title, classes }, { width, height }) {
   const ratio = window.devicePixelRatio || 1;
-  const { width, height } = map.stage.getBoundingClientRect();
   const canvas = document.createElement("canvas");
   const pen = canvas.getContext("2d");
   pen.font = FONT;
-  const places = laid(pen, entriesOf(map.picture, scene, quantity), width - 90);
-  const lines = wrapped(pen, subtitle, width - 80);
+  const places = laid(pen, entriesOf(found, classes), width - 90);
+  const lines = wrapped(pen, found.words, width - 80);
   const [head, foot] = [HEAD + 16 * lines.length, places.at(-1).y + LINE + 12];
   [canvas.width, canvas.height] = [width * ratio, (height + head + foot) * ratio];
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -86,13 +91,26 @@ export function picture(map, scene, subtitle, quantity) {
   pen.fillRect(0, 0, width, height + head + foot);
   pen.fillStyle = colour("ink");
   pen.font = "600 14px system-ui, sans-serif";
-  pen.fillText(scene.title, 64, 20);
+  pen.fillText(title, 64, 20);
   pen.font = FONT;
   lines.forEach((line, k) => pen.fillText(line, 64, 37 + 16 * k));
-  pen.drawImage(map.cells, 0, head, width, height);
-  pen.drawImage(map.over, 0, head, width, height);
+  pen.translate(0, head);
+  drawMap(pen, found, { width, height });
+  pen.translate(0, -head);
+  [pen.font, pen.textAlign] = [FONT, "left"];
   for (const place of places) drawEntry(pen, place, 64, head + height + 8);
   return new Promise((done) => canvas.toBlob(done, "image/png"));
+}
+
+/** The cells of a picture under their axes, and the cell that was kept in its view. */
+function drawMap(pen, found, size) {
+  const plate = new Plate(areaOf(size, found.about), found.view, [found], found.about);
+  plate.drawCells(pen);
+  plate.drawLines(pen);
+  if (!found.view.cell) return;
+  keepTo(pen, plate.area);
+  ring(pen, plate, found.view.cell, true);
+  pen.restore();
 }
 
 function drawEntry(pen, { x, y, colour: ink, dash, scale, text }, left, top) {

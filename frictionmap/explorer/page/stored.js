@@ -33,14 +33,11 @@ export class Stored {
     return this.content.scene;
   }
 
-  /** The map of a view: that of the places of its sliders; of two that are not kept together, the first one. */
+  /** The map of a view, which has one: see `kept`. */
   async map(view, scene) {
-    const numbers = { mu: view.mu, ...view.numbers };
-    const place = scene.sliders
-      .filter((slider) => this.fixed.values[slider.key])
-      .map((slider) => this.#nearest(this.fixed.values[slider.key], numbers[slider.key] ?? slider.value));
-    const kept = this.content.maps[place.join(",")] ?? this.content.maps[this.content.first];
-    const packet = { classes: new Uint8Array(await inflated(kept.classes)), stops: kept.stops };
+    const kept = this.content.maps[this.#name(view, scene)];
+    const about = this.content.systems[kept.about];
+    const packet = { about, classes: new Uint8Array(await inflated(kept.classes)), stops: kept.stops };
     const limits = new Float64Array(await inflated(kept.limits));
     const { columns } = this.fixed;
     [packet.beta_lim, packet.beta_stick] = [limits.subarray(0, columns), limits.subarray(columns)];
@@ -49,9 +46,29 @@ export class Stored {
     return packet;
   }
 
-  /** Which of the places of a slider is next to a value. */
-  #nearest(values, value) {
-    const away = values.map((known) => Math.abs(known - value));
-    return away.indexOf(Math.min(...away));
+  /** The name of the map of a view: the places of its sliders. */
+  #name(view, scene) {
+    const numbers = { mu: view.mu, ...view.numbers };
+    const places = scene.sliders.map(({ key, value }) => this.fixed.values[key].indexOf(numbers[key] ?? value));
+    return places.join(",");
+  }
+
+  /**
+   * A view that the file has a map of.  Not all sliders were moved together: where there is no map with the numbers of
+   * a view, as many of them as needed go back to where the scene has them, the last ones first.
+   * @param {string} [moved]  the slider that stays
+   * @returns {{view: object, back: object[]}}  the sliders that went back
+   */
+  kept(view, scene, moved = "") {
+    const back = [];
+    for (const slider of [...scene.sliders].reverse()) {
+      if (this.#name(view, scene) in this.content.maps) break;
+      const { key, value } = slider;
+      if (key === moved || (key === "mu" ? view.mu : view.numbers[key] ?? value) === value) continue;
+      const { [key]: _, ...numbers } = view.numbers;
+      view = { ...view, numbers, mu: key === "mu" ? value : view.mu };
+      back.push(slider);
+    }
+    return { view, back };
   }
 }

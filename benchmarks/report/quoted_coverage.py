@@ -60,13 +60,14 @@ def coverage_notes(kinds: dict) -> Iterator[str]:
         for name, case in cases.items()
         for parameter, one in case["parameters"].items()
     ]
-    short = [words for words, one in counts if one["short"]]
+    short = [text for text, one in counts if one["short"]]
     below = sum(one["below the band"] for _, one in counts)
     yield (
-        f"Parameters whose coverage is below the range that holds 95 % of all counts by chance, 92.8 to 97 % of "
-        f"400 fits: {below} of {len(counts)}; {round(0.025 * len(counts))} are expected. Coverage so low that "
-        f"chance makes it in fewer than one of 1,000 counts: {'; '.join(short) or 'none'}."
+        "Parameters whose coverage is below the range that holds 95 % of all counts by chance, 92.8 to 97 % "
+        f"of 400 fits: {below} of {len(counts)}; {round(0.025 * len(counts))} are expected."
     )
+    words = "; ".join(short) or "none"
+    yield f"Coverage so low that chance makes it in fewer than one of 1,000 counts: {words}."
     for kind, cases in kinds.items():
         for name, case in cases.items():
             for reason, count in case["refusals"].items():
@@ -80,10 +81,10 @@ def coverage_lines(coverage: dict) -> list[str]:
         "",
         "### Intervals of identify",
         "",
-        "Synthetic data of known truth, drawn anew for every seed without the package, are disturbed in one way "
-        "and fitted as a user would fit them. Every interval should hold its truth in 95 % of the fits; fits that "
-        "warn count like the others. The Cramer-Rao bound is that of the noise alone, for the samples that are "
-        "left.",
+        "Synthetic data of known truth, drawn anew for every seed without the package, are disturbed in one "
+        "way and fitted as a user would fit them. Every interval should hold its truth in 95 % of the fits; "
+        "fits that warn count like the others. The Cramer-Rao bound is that of the noise alone, for the "
+        'samples that are left. Outliers are fitted with `loss = "soft_l1"` where the fit has that option.',
         *markdown(HEADER, coverage_rows(kinds)),
         "",
         *(f"- {note}" for note in coverage_notes(kinds)),

@@ -3,6 +3,7 @@
 import re
 import time
 from collections.abc import Callable, Mapping
+from inspect import signature
 from typing import NamedTuple
 
 import numpy as np
@@ -52,6 +53,11 @@ class Trial(NamedTuple):
     refusal: str | None  # why there is no answer, numbers left out
     warnings: tuple[str, ...]  # numbers left out
     estimates: dict[str, Estimate]
+
+
+def robust(fit: Callable[..., xr.Dataset]) -> dict[str, str]:
+    """The option that gives outliers little weight, of a fit that has it."""
+    return {"loss": "soft_l1"} if "loss" in signature(fit).parameters else {}
 
 
 def attempt(made: Made, seed: int) -> Trial:

@@ -8,7 +8,7 @@ import numpy as np
 
 import frictionmap as fm
 
-from .case import Case, Made, cramer_rao
+from .case import Case, Made, cramer_rao, robust
 from .disturbances import clipped, outliers, wander, without_gap
 
 
@@ -172,7 +172,7 @@ CASES = (
     Case("gap of 1 to 1.6 cycles", partial(_made, draw=_light, change=_gap)),
     Case("drift, fitted", partial(_made, draw=_light, change=_drift, drift=True)),
     Case("wander of the zero", partial(_made, draw=_light, change=_wander)),
-    Case("outliers, soft_l1", partial(_made, draw=_light, change=_outliers, loss="soft_l1")),
+    Case("outliers", partial(_made, draw=_light, change=_outliers, **robust(fm.identify.free_decay))),
     Case("clipped", partial(_made, draw=_light, change=_clipped)),
     Case("zeta 0.25 to 0.35", partial(_made, draw=_heavy)),
     Case("4 % noise", partial(_made, draw=partial(_light, noise=0.04))),

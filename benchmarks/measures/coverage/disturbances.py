@@ -15,8 +15,9 @@ def without_gap(time: np.ndarray, begin: float, length: float) -> np.ndarray:
 
 
 def wander(rng: np.random.Generator, time: np.ndarray, noise: float) -> np.ndarray:
-    """The zero at `time`, of a random phase."""
-    return WANDER * noise * np.sin(2.0 * np.pi * (WANDER_FREQUENCY * time + rng.uniform()))
+    """The zero at `time`, of a random phase; its mean is 0, as it would be part of the unloaded place."""
+    zero = WANDER * noise * np.sin(2.0 * np.pi * (WANDER_FREQUENCY * time + rng.uniform()))
+    return zero - np.mean(zero)
 
 
 def outliers(rng: np.random.Generator, size: int, noise: float | np.ndarray) -> np.ndarray:

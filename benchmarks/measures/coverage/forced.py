@@ -10,7 +10,7 @@ import frictionmap as fm
 
 from ...references.chains import chain, continuous
 from ...references.shaken import Rig, steady
-from .case import Case, Made, cramer_rao
+from .case import Case, Made, cramer_rao, robust
 from .disturbances import outliers
 
 
@@ -159,7 +159,7 @@ def _two_storeys(rng: np.random.Generator) -> Made:
 CASES = (
     Case("two sets, noise only", partial(_made, draw=_random)),
     Case("zeta 0.08 to 0.12", partial(_made, draw=partial(_random, heavy=True))),
-    Case("outliers", partial(_made, draw=_random, far=True)),
+    Case("outliers", partial(_made, draw=_random, far=True, **robust(fm.identify.forced))),
     Case("two storeys", _two_storeys),
     Case("curves-wall, three sets", partial(_made, draw=_fixed(WALL), given=True), 100),
     Case("wall on the base, three sets", partial(_made, draw=_fixed(BASE_WALL), given=True), 100),

@@ -8,7 +8,7 @@ import numpy as np
 import frictionmap as fm
 
 from ...references.shaken import Rig, Steady, steady
-from .case import Case, Made
+from .case import Case, Made, robust
 from .disturbances import clipped, outliers, wander, without_gap
 
 #: Samples per second, length [s], and standard deviations of the noise of mass and base [mm].
@@ -112,7 +112,7 @@ CASES = (
     Case("gap of 1 to 1.5 cycles", partial(_made, change=_gap)),
     Case("drift of the mass", partial(_made, change=_drift)),
     Case("wander of the zero", partial(_made, change=_wander)),
-    Case("outliers", partial(_made, change=_outliers)),
+    Case("outliers", partial(_made, change=_outliers, **robust(fm.identify.record))),
     Case("clipped", partial(_made, change=_clipped)),
     Case("zeta 0.08 to 0.12", partial(_made, draw=partial(_random, heavy=True))),
     Case("mu 1.25, fitted", partial(_made, draw=lambda rng: STATIC, known={}), 100),

@@ -8,7 +8,7 @@ import numpy as np
 import frictionmap as fm
 
 from ...references.chains import chain
-from .case import Case, Made, cramer_rao
+from .case import Case, Made, cramer_rao, robust
 from .disturbances import outliers
 
 #: Relative error of amplitudes; that of lags is as large in radian.
@@ -86,7 +86,7 @@ def _frequencies(values: np.ndarray) -> dict[str, float]:
 
 CASES = (
     Case("two masses, noise only", partial(_made, n=2)),
-    Case("two masses, outliers, soft_l1", partial(_made, n=2, far=True, loss="soft_l1")),
+    Case("two masses, outliers", partial(_made, n=2, far=True, **robust(fm.identify.sweep))),
     Case("two masses, zeta 0.08 to 0.12", partial(_made, n=2, zeta=(0.08, 0.12))),
     Case("three masses, first one measured", partial(_made, n=3), 100),
     Case("three masses, all measured", partial(_made, n=3, zeta=(0.01, 0.04), measured=(1, 2, 3)), 100),

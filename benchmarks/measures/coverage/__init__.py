@@ -10,8 +10,9 @@ The data are made without the package: decays half cycle by half cycle in closed
 """
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from itertools import groupby
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -56,14 +57,19 @@ def measure(share: float | None = 1.0) -> dict[str, dict[str, dict]]:
     """Rows by kind and case; without a share the quick form, in this process."""
     tasks = list(_tasks(share))
     if share is None:
-        trials = [trial(task) for task in tasks]
-    else:
-        with ProcessPoolExecutor(_PROCESSES, mp_context=get_context("spawn")) as pool:
-            trials = list(pool.map(trial, tasks, chunksize=_AT_ONCE))
-    found: dict[str, dict[str, list[Trial]]] = {}
-    for (kind, place, _), one in zip(tasks, trials, strict=True):
-        found.setdefault(kind, {}).setdefault(KINDS[kind][place].name, []).append(one)
-    return {kind: {name: row(one) for name, one in cases.items()} for kind, cases in found.items()}
+        return _rows(tasks, map(trial, tasks))
+    with ProcessPoolExecutor(_PROCESSES, mp_context=get_context("spawn")) as pool:
+        return _rows(tasks, pool.map(trial, tasks, chunksize=_AT_ONCE))
+
+
+def _rows(tasks: list[tuple[str, int, int]], trials: Iterable[Trial]) -> dict[str, dict[str, dict]]:
+    """A row for every case, said when its last fit is done."""
+    found: dict[str, dict[str, dict]] = {}
+    for (kind, place), some in groupby(zip(tasks, trials, strict=True), key=lambda one: one[0][:2]):
+        name = KINDS[kind][place].name
+        found.setdefault(kind, {})[name] = row([one for _, one in some])
+        print(f"{kind}: {name}", flush=True)
+    return found
 
 
 def run(quick: bool, results: Path) -> dict:

@@ -3,8 +3,8 @@ what bad input, interrupts and damaged files do.
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
-NAME is accuracy, peers, scaling, startup, stress, steady, structures, bound, faults, large or coupling:
-each one is a module of that name in `measures`.  It prints tables, and writes JSON and a figure.
+NAME is accuracy, peers, scaling, startup, stress, steady, structures, bound, faults, large, coupling or
+coverage: each one is a module of that name in `measures`.  It prints tables, and writes JSON and a figure.
 `python -m benchmarks page` puts the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -25,6 +25,7 @@ each one is a module of that name in `measures`.  It prints tables, and writes J
   large                        stores: overhead, memory, workers, random variations, kills
   explore                      the page in a browser: slider to picture, hover to motion; `browser` finds one
   coupling                     what it costs to leave out the coupling of modes by damping
+  coverage                     how often the 95 % intervals of `identify` hold the truth
 `peers/`                       other ways to do the same job: each for one mass and for chains of masses
   solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: one on many cells at a time
   fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean
@@ -35,12 +36,15 @@ each one is a module of that name in `measures`.  It prints tables, and writes J
   steady_states                steady states of one mass in 40 digits
   periodic_orbit               periodic orbits of any structure in 40 digits
   settled                      event-exact steady states of one mass in doubles, for many cells
+  shaken                       steady motions of one mass on a base with several harmonics, in doubles
+  chains                       chains on a shaken base: without friction, and in continuous motion
   naive                        any structure from the equations of motion, in doubles
 `report/`                      what is made of the measurements
   record                       machine, versions, medians, tables; results as JSON; one processor
   figures                      drawn without a display, written beside the numbers they show
   page                         the tables of docs/results.md, made from the committed results
-  quoted_errors                of these the ones about errors; `quoted_faults`: about bad input and bad days
+  quoted_errors                of these the ones about errors; `quoted_faults`: about bad input and bad days;
+                               `quoted_coverage`: about the intervals of `identify`
   quoting                      how numbers are quoted in them
 `results/`                     the committed results, and `results/local` of runs on this machine
 =============================  ========================================================================

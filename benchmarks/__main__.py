@@ -27,6 +27,7 @@ BENCHMARKS = (
     "large",
     "explore",
     "coupling",
+    "coverage",
 )
 
 

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from .. import ROOT
+from .quoted_coverage import coverage_lines
 from .quoted_errors import accuracy_lines, steady_lines, stress_lines
 from .quoted_faults import faults_lines
 from .quoting import duration, markdown, rounded_off, two_digits
@@ -32,6 +33,7 @@ QUOTED = (
     "faults",
     "large",
     "coupling",
+    "coverage",
     "explore",
 )
 
@@ -348,6 +350,8 @@ def block(results: Path) -> str:
         lines += _explore_lines(found["explore"])
     if "coupling" in found:
         lines += _coupling_lines(found["coupling"])
+    if "coverage" in found:
+        lines += coverage_lines(found["coverage"])
     growth = list(_scaling_rows(found["scaling"])) if "scaling" in found else []
     growth += _mass_rows(structures) if structures else []
     growth += _large_rows(found["large"]) if "large" in found else []

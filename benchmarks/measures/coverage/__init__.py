@@ -1,0 +1,84 @@
+"""Intervals of `identify`: how often the stated 95 % intervals hold the truth.
+
+For every kind of measurement synthetic data of known truth are drawn, one seed at a time, disturbed in one
+way (a gap, a drift, a wandering zero, outliers, a range that ends too early, heavy damping), and fitted by
+the public call as a user would.  Each row of the table counts, over its seeds, the intervals that hold their
+truth, the refusals and the warnings, and compares errors with the standard errors that were stated.
+
+The data are made without the package: decays half cycle by half cycle in closed form, records by
+`references.shaken`, forced responses by half-period propagators or marched, sweeps from M, K and C.
+"""
+
+import os
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from itertools import groupby
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+
+from ...report.quoted_coverage import HEADER, coverage_notes, coverage_rows
+from ...report.record import save, table
+from . import decays, forced, records, sweeps
+from .case import SEEDS, Trial, attempt
+from .counting import STATED, row
+from .figure import draw
+
+#: Cases by kind of measurement.
+KINDS = {
+    "free_decay": decays.CASES,
+    "forced": forced.CASES,
+    "record": records.CASES,
+    "sweep": sweeps.CASES,
+}
+
+#: Processes at a time, and fits that one of them is given at once.
+_PROCESSES, _AT_ONCE = min(os.cpu_count() or 1, 16), 5
+
+
+def trial(task: tuple[str, int, int]) -> Trial:
+    """One fit of a kind, the place of its case in the list, and a seed."""
+    kind, place, seed = task
+    rng = np.random.default_rng([list(KINDS).index(kind), place, seed])
+    return attempt(KINDS[kind][place].make(rng), seed)
+
+
+def _tasks(share: float | None) -> Iterator[tuple[str, int, int]]:
+    """All fits of a share of the seeds; without a share one fit of every case that has all seeds."""
+    for kind, cases in KINDS.items():
+        for place, case in enumerate(cases):
+            seeds = int(case.seeds == SEEDS) if share is None else round(share * case.seeds)
+            for seed in range(seeds):
+                yield kind, place, seed
+
+
+def measure(share: float | None = 1.0) -> dict[str, dict[str, dict]]:
+    """Rows by kind and case; without a share the quick form, in this process."""
+    tasks = list(_tasks(share))
+    if share is None:
+        return _rows(tasks, map(trial, tasks))
+    with ProcessPoolExecutor(_PROCESSES, mp_context=get_context("spawn")) as pool:
+        return _rows(tasks, pool.map(trial, tasks, chunksize=_AT_ONCE))
+
+
+def _rows(tasks: list[tuple[str, int, int]], trials: Iterable[Trial]) -> dict[str, dict[str, dict]]:
+    """A row for every case, said when its last fit is done."""
+    found: dict[str, dict[str, dict]] = {}
+    for (kind, place), some in groupby(zip(tasks, trials, strict=True), key=lambda one: one[0][:2]):
+        name = KINDS[kind][place].name
+        found.setdefault(kind, {})[name] = row([one for _, one in some])
+        print(f"{kind}: {name}", flush=True)
+    return found
+
+
+def run(quick: bool, results: Path) -> dict:
+    """Draw, fit, count, print, draw the figure and save."""
+    kinds = measure(None if quick else 1.0)
+    table(HEADER, coverage_rows(kinds))
+    for note in coverage_notes(kinds):
+        print(note)
+    draw(kinds, results / "coverage.png")
+    content = {"stated coverage": STATED, "kinds": kinds}
+    save("coverage", content, results)
+    return content

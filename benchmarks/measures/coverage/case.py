@@ -1,0 +1,114 @@
+"""One case: data with a known truth, the public fit of them, and what a trial of it found."""
+
+import re
+import time
+from collections.abc import Callable, Mapping
+from inspect import signature
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+import frictionmap as fm
+
+#: Steps of the difference quotients of the Cramer-Rao bound, relative to the parameter or absolute.
+_STEP = 1e-6
+
+#: Seeds of a case, unless it is slow or an example.
+SEEDS = 400
+
+#: Numbers in a message: trials with other numbers have the same reason.
+_NUMBER = re.compile(r"-?\d[\d.]*(?:e[+-]?\d+)?")
+
+
+class Made(NamedTuple):
+    """Data drawn for one seed: their truth, and the call that fits them."""
+
+    truth: Mapping[str, float]
+    fit: Callable[[], xr.Dataset]
+    bound: Mapping[str, float] | None = None  # the Cramer-Rao bound of the noise alone, if it is known
+
+
+class Case(NamedTuple):
+    """A row of the table: what is done to the data, and what draws them."""
+
+    name: str
+    make: Callable[[np.random.Generator], Made]
+    seeds: int = SEEDS
+
+
+class Estimate(NamedTuple):
+    """How an estimate compares with its truth."""
+
+    inside: bool  # the 95 % interval holds the truth
+    deviation: float  # estimate less truth, over its standard error; NaN where that is zero
+    of_bound: float  # standard error over the Cramer-Rao bound; NaN where that is not known
+
+
+class Trial(NamedTuple):
+    """One fit."""
+
+    seed: int
+    seconds: float
+    refusal: str | None  # why there is no answer, numbers left out
+    warnings: tuple[str, ...]  # numbers left out
+    estimates: dict[str, Estimate]
+
+
+def robust(fit: Callable[..., xr.Dataset]) -> dict[str, str]:
+    """The option that gives outliers little weight, of a fit that has it."""
+    return {"loss": "soft_l1"} if "loss" in signature(fit).parameters else {}
+
+
+def attempt(made: Made, seed: int) -> Trial:
+    """Fit and compare; an exception other than a refusal is kept with its name, as it is a defect."""
+    began = time.perf_counter()
+    try:
+        ds = made.fit()
+    except fm.InputError as error:
+        return Trial(seed, time.perf_counter() - began, _reason(str(error)), (), {})
+    except Exception as error:  # one defect must not end the benchmark
+        reason = f"{type(error).__name__}: {_reason(str(error))}"
+        return Trial(seed, time.perf_counter() - began, reason, (), {})
+    seconds = time.perf_counter() - began
+    warnings = tuple(dict.fromkeys(_reason(one) for one in ds.attrs["warnings"].split("; ") if one))
+    return Trial(seed, seconds, None, warnings, _compared(ds, made))
+
+
+def _compared(ds: xr.Dataset, made: Made) -> dict[str, Estimate]:
+    found = {}
+    for name, truth in made.truth.items():
+        one = ds.sel(parameter=name)
+        if int(one["known"]):
+            continue
+        value, error, lower, upper = (
+            float(one[key]) for key in ("estimate", "standard_error", "lower", "upper")
+        )
+        deviation = (value - truth) / error if error > 0.0 else np.nan
+        of_bound = error / made.bound[name] if made.bound and name in made.bound else np.nan
+        found[name] = Estimate(bool(lower <= truth <= upper), deviation, of_bound)
+    return found
+
+
+def _reason(message: str) -> str:
+    """A message without its numbers."""
+    return _NUMBER.sub("#", message)
+
+
+def cramer_rao(
+    model: Callable[[np.ndarray], np.ndarray], truth: Mapping[str, float], sigma: float | np.ndarray
+) -> dict[str, float]:
+    """Least standard errors that unbiased estimates of `truth` can have, from normal noise `sigma`.
+
+    model : noiseless data, shape (samples,), from the values of `truth` in their order
+    sigma : standard deviation of a sample, or of each
+    """
+    values = np.array(list(truth.values()))
+    slopes = np.empty((model(values).size, values.size))
+    for k, step in enumerate(_STEP * np.maximum(np.abs(values), _STEP)):
+        change = step * np.eye(values.size)[k]
+        slopes[:, k] = (model(values + change) - model(values - change)) / (2.0 * step)
+    weighted = slopes / np.reshape(sigma, (-1, 1))
+    scale = np.linalg.norm(weighted, axis=0)
+    least = np.sqrt(np.diag(np.linalg.inv((weighted / scale).T @ (weighted / scale)))) / scale
+    return dict(zip(truth, least.tolist(), strict=True))

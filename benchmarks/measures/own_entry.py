@@ -5,7 +5,7 @@ from typing import Any
 
 from numba.core.caching import NullCache
 
-from frictionmap._kernels.jit import entry
+from frictionmap._kernels.compiler import entry
 
 
 def own_entry(function: Callable) -> Any:

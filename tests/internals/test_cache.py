@@ -17,7 +17,7 @@ import pytest
 import frictionmap as fm
 from benchmarks.measures.faults.machine import prepared
 from frictionmap._kernels import cache, cache_folders
-from frictionmap._kernels.jit import entry
+from frictionmap._kernels.compiler import entry
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
 POSIX = pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
@@ -93,7 +93,7 @@ def test_listeners_hear_of_what_is_compiled(place, monkeypatch):
 
 #: A kernel that two others call.
 SHARED = """
-from frictionmap._kernels.jit import entry, kernel
+from frictionmap._kernels.compiler import entry, kernel
 
 @kernel
 def increased(x):
@@ -395,7 +395,7 @@ from collections import Counter
 from frictionmap._kernels import cache, linking
 if "inner" not in sys.argv:
     linking._SMALL = 0  # all are
-from frictionmap._kernels.jit import entry, kernel
+from frictionmap._kernels.compiler import entry, kernel
 
 compiled = []
 cache.listeners.append(lambda: compiled.append(1))

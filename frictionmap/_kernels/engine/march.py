@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from ...regimes import INTEGRATED, MARGINAL, NOT_COMPUTED, RESOLVED, SOLVED, TOO_MANY_EVENTS, UNRESOLVED
-from ..jit import inner_kernel, kernel
+from ..compiler import inner_kernel, kernel
 from ..one_mass.events import GRAZING, NO_END, STUCK
 from ..structure.events import NO_RELEASE
 from .answers import (

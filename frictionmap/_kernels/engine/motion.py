@@ -11,7 +11,7 @@ its forces and displacements; `near_return`, how close a return is worth looking
 no table of phases.
 """
 
-from ..kinds import by_class
+from ..compiler import by_class
 from . import many_masses, one_mass
 from .many_masses import ManyMasses, ManyMassSystem
 from .one_mass import OneMass, OneMassSystem

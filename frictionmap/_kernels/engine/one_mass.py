@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import entry, inner_kernel, kernel
+from ..compiler import entry, inner_kernel, kernel
 from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, EventSequence, after_slide, slide
 from ..one_mass.newton import first_contact_force, solve_orbit
 from ..one_mass.scan_step import MAX_TERMS, Step, step_constants

@@ -1,8 +1,9 @@
 """Compiled kernels on disk, so that each is compiled once on a machine.
 
-numba's own cache does not check its files for damage, needs a folder that can be written to, and does not notice
-that a kernel has changed which another one calls.  Here every file holds a digest of its content and a key; a
-file whose digest or key differs counts as missing.  If no folder can be written to, every run compiles.
+numba's own cache does not check its files for damage, needs a folder that can be written to, and does not
+notice that a kernel has changed which another one calls.  Here every file holds a digest of its content and
+a key; a file whose digest or key differs counts as missing.  If no folder can be written to, every run
+compiles.
 """
 
 import contextlib

@@ -1,7 +1,7 @@
 """Functions whose body is chosen by the class of an argument when their caller is compiled."""
 
 from collections.abc import Callable
-from functools import update_wrapper
+from functools import cached_property, partial, update_wrapper
 from typing import Any, NoReturn
 
 from numba import types
@@ -19,13 +19,16 @@ class _Choice:
         update_wrapper(self, declaration)
         self.py_func = declaration
         self.bodies = bodies
-        self._type = types.Dispatcher(self)
-        mode.preparations.append(lambda: plain.overload_by_class(self, bodies))
+        mode.preparations.append(partial(plain.compile_by_class, self, bodies))
 
     @property
     def _numba_type_(self) -> Any:
-        """The type that asks this object; None lets plain numba find the overload."""
+        """The type of this object in kernels; None if plain numba is to find `compile_by_class`."""
         return None if mode.plain else self._type
+
+    @cached_property
+    def _type(self) -> Any:
+        return types.Dispatcher(self)
 
     def get_call_template(self, args: tuple, kws: dict) -> Any:
         """Compile the body for a call and return its signature."""

@@ -1,7 +1,7 @@
 """The default compiler: each kernel is compiled once, under the same rules, and kept on disk.
 
-It replaces parts of numba's dispatchers (docs/compiler.md).  If numba fails with them, plain numba compiles the
-entry that was called, and from then on all others (`mode`).
+It replaces parts of numba's dispatchers (docs/compiler.md).  If numba fails with them, plain numba compiles
+the entry that was called, and from then on all others (`mode`).
 """
 
 from collections.abc import Callable
@@ -33,9 +33,9 @@ _RULES = {
     "_nrt": True,
 }
 
-#: A kernel needs no wrappers for Python and C, which take a fifth of the compilation.  It has no arrays of its
-#: own and therefore needs no reference counts, which took 30 % of a map's time because threads wait for each
-#: other's counts.
+#: A kernel needs no wrappers for Python and C, which take a fifth of the compilation.  It has no arrays of
+#: its own and therefore needs no reference counts, which took 30 % of a map's time because threads wait for
+#: each other's counts.
 _KERNEL_RULES = {**_RULES, "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
 
 
@@ -50,26 +50,20 @@ class _Compiled(CPUDispatcher):
     """
 
     def get_call_template(self, args: tuple, kws: dict) -> Any:
-        return super().get_call_template(tuple(types.unliteral(kind) for kind in args), kws)
+        compiler = self.plain_form if mode.plain else super()
+        return compiler.get_call_template(tuple(types.unliteral(kind) for kind in args), kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        return (self.plain_form if mode.plain else super()).get_overload(sig)
+
+    @cached_property
+    def plain_form(self) -> Any:
+        """The function for kernels that plain numba compiles."""
+        return plain.dispatcher(self.py_func)
 
 
 class _Kernel(_Compiled):
     """A kernel, compiled when a kernel that calls it is compiled."""
-
-    @cached_property
-    def plain_twin(self) -> Any:
-        """The same kernel for plain numba."""
-        return plain.kernel(self.py_func)
-
-    def get_call_template(self, args: tuple, kws: dict) -> Any:
-        return (
-            self.plain_twin.get_call_template(args, kws)
-            if mode.plain
-            else super().get_call_template(args, kws)
-        )
-
-    def get_overload(self, sig: Any) -> Any:
-        return self.plain_twin.get_overload(sig) if mode.plain else super().get_overload(sig)
 
     def add_overload(self, cres: Any) -> None:
         if not self.targetoptions["_nrt"] and _holds_array(cres.signature.return_type):
@@ -87,17 +81,17 @@ class _Kernel(_Compiled):
 class _Entry(_Compiled):
     """A function that Python calls; for kernels that call it, it is compiled once more as a kernel.
 
-    keep   : whether it is kept on disk
+    kept   : whether it is kept on disk
     inside : its form for kernels, without the wrappers for Python, which take longer to compile
     """
 
-    keep: bool
+    kept: bool
     inside: _Kernel
 
     @cached_property
-    def plain_twin(self) -> Any:
-        """The same entry for plain numba."""
-        return plain.entry(self.py_func, keep=self.keep)
+    def plain_entry(self) -> Any:
+        """The same entry for Python, compiled by plain numba."""
+        return plain.entry(self.py_func, keep=self.kept)
 
     def get_call_template(self, args: tuple, kws: dict) -> Any:
         return self.inside.get_call_template(args, kws)
@@ -108,7 +102,7 @@ class _Entry(_Compiled):
     def _compile_for_args(self, *args: Any, **kws: Any) -> Any:
         """Return the compiled function for arguments of new types, which numba then calls."""
         if mode.plain:
-            return self.plain_twin
+            return self.plain_entry
         try:
             return super()._compile_for_args(*args, **kws)
         except (RuleBroken, MemoryError):
@@ -119,8 +113,8 @@ class _Entry(_Compiled):
     def _plain_instead(self, error: Exception, args: tuple) -> Any:
         with mode.plain_instead(error):
             plain.prepare()
-            self.plain_twin.compile(tuple(map(numba.typeof, args)))
-        return self.plain_twin
+            self.plain_entry.compile(tuple(map(numba.typeof, args)))
+        return self.plain_entry
 
 
 def _holds_array(kind: types.Type) -> bool:
@@ -129,24 +123,26 @@ def _holds_array(kind: types.Type) -> bool:
     return isinstance(kind, types.Array)
 
 
-def _compiled(kind: type[_Compiled], function: Callable, rules: dict, inner: bool | None) -> Any:
+def _compiled(kind: type[_Compiled], function: Callable, rules: dict[str, Any], inner: bool | None) -> Any:
     return kind(function, targetoptions=dict(rules), pipeline_class=compiler(inner))
 
 
-def _kernel(function: Callable, rules: dict, inner: bool | None) -> Any:
-    compiled = _compiled(_Kernel, function, rules, inner)
-    compiled._cache = KernelCache(function)
+def _kept(compiled: _Compiled, kind: str = "") -> Any:
+    """Keep on disk what is compiled of a function."""
+    if not hasattr(compiled, "_cache"):
+        raise AttributeError("numba.core.registry.CPUDispatcher._cache is missing")
+    compiled._cache = KernelCache(compiled.py_func, kind)
     return compiled
 
 
 def kernel(function: Callable) -> Any:
     """Decorate a function that only kernels call."""
-    return _kernel(function, _KERNEL_RULES, inner=None)
+    return _kept(_compiled(_Kernel, function, _KERNEL_RULES, inner=None))
 
 
 def inner_kernel(function: Callable) -> Any:
     """Decorate a kernel called so often that a call would cost more than the work (48 ns and 16 ns)."""
-    return _kernel(function, {**_KERNEL_RULES, "forceinline": True}, inner=True)
+    return _kept(_compiled(_Kernel, function, {**_KERNEL_RULES, "forceinline": True}, inner=True))
 
 
 def entry(function: Callable, *, keep: bool = True) -> Any:
@@ -156,8 +152,8 @@ def entry(function: Callable, *, keep: bool = True) -> Any:
     """
     compiled = _compiled(_Entry, function, _RULES, inner=False)
     compiled.inside = _compiled(_Kernel, function, {**_KERNEL_RULES, "_nrt": True}, inner=None)
-    compiled.keep = keep
+    compiled.kept = keep
     if keep:
-        compiled._cache = KernelCache(function)
-        compiled.inside._cache = KernelCache(function, ".inside")
+        _kept(compiled)
+        _kept(compiled.inside, ".inside")
     return compiled

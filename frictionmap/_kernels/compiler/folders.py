@@ -1,7 +1,7 @@
 """Folders that compiled kernels are kept in: one for each state of the source files of all kernels.
 
-The folder lies in the package or in NUMBA_CACHE_DIR; if that cannot be written to, in the user's cache; if that
-cannot be written to either, in a private folder for temporary files.
+The folder lies in the package or in NUMBA_CACHE_DIR; if that cannot be written to, in the user's cache; if
+that cannot be written to either, in a private folder for temporary files.
 """
 
 import contextlib
@@ -107,7 +107,7 @@ def _can_be_written(folder: Path) -> bool:
 
 @functools.cache
 def folders() -> tuple[Path, ...]:
-    """Return the folders to look for kernels in: any that can only be read, then one that can be written to."""
+    """Return the folders to look for kernels in: read-only ones, then one that can be written to, if any."""
     found = []
     temporary = _temporary_place()
     for place in places():
@@ -139,7 +139,7 @@ def _forget(place: Path) -> None:
 
 
 def _remove_state(folder: Path) -> None:
-    """Remove compiled kernels, those of plain numba in folders of their own, and folders that are empty then."""
+    """Remove compiled kernels, also those in the folders of plain numba, and folders left empty."""
     inner = [path for path in folder.glob("*") if path.is_dir() and not path.is_symlink()]
     for path in (*inner, folder):
         for file in path.glob("*"):

@@ -1,8 +1,9 @@
 """Linking of compiled kernels: each is compiled once, on its own, and called where it lies in memory.
 
-numba copies all that a kernel calls into the kernel, optimises it again and generates its code again: a driver
-ten calls deep is compiled ten times.  Here only inner kernels and small kernels, which are worth it, are copied
-into their callers.  The others are called by name: the linker of numba's single execution engine finds them.
+numba copies all that a kernel calls into the kernel, optimises it again and generates its code again: a
+driver ten calls deep is compiled ten times.  Here only inner kernels and small kernels, which are worth it,
+are copied into their callers.  The others are called by name: the linker of numba's single execution engine
+finds them.
 """
 
 import functools
@@ -143,7 +144,7 @@ class _KernelFlags(Flags):
 
 @functools.cache
 def compiler(inner: bool | None) -> type[Compiler]:
-    """Return numba's compiler, changed to put each kernel in a library with the same name in every process."""
+    """Return numba's compiler, changed to give each kernel a library with a name that is always the same."""
 
     class KernelCompiler(Compiler):
         def compile_extra(self, func: Callable) -> Any:

@@ -1,7 +1,7 @@
 """Which compiler a process uses: the fast one of this package, or plain numba.
 
-The fast compiler relies on private parts of numba.  If one is missing, or fails when a kernel is compiled, the
-whole process changes to plain numba, which gives the same results after a longer compilation.
+The fast compiler relies on private parts of numba.  If one is missing, or fails when a kernel is compiled,
+the whole process changes to plain numba, which gives the same results after a longer compilation.
 """
 
 import os
@@ -32,8 +32,8 @@ def warn_of_plain(error: Exception) -> None:
     reason = f"{type(error).__name__}: {str(error).strip()}".splitlines()[0]
     log.debug("the fast compiler failed", exc_info=error)
     warn_once(
-        f"cannot use the fast kernel compiler with numba {numba.__version__} ({reason}); plain numba compiles "
-        f"the kernels: same results, longer compilation ({VARIABLE}=plain silences this message)"
+        f"cannot use the fast kernel compiler with numba {numba.__version__} ({reason}); plain numba "
+        f"compiles the kernels: same results, longer compilation ({VARIABLE}=plain silences this)"
     )
 
 

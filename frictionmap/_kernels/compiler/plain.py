@@ -1,7 +1,8 @@
 """The fall-back: kernels compiled and kept by numba's public interface alone.
 
-Results are those of the fast compiler, bit for bit.  Compilation takes longer, because numba compiles what a
-kernel calls again for each kernel that calls it.  Files on disk carry no digest of their content.
+Results are those of the fast compiler, bit for bit.  Compilation takes longer, because numba optimises and
+generates code for a kernel again in each kernel that calls it.  Files on disk carry no digest of their
+content.
 """
 
 import functools
@@ -23,12 +24,21 @@ _RULES = {"nogil": True, "error_model": "numpy", "fastmath": False}
 _PACKAGE = f"{__name__.partition('.')[0]}."
 
 
-def kernel(function: Callable) -> Any:
-    """Decorate a function that only kernels call; it becomes part of the entries that call it."""
-    return njit(**_RULES)(function)
+def kernel(function: Callable) -> Callable:
+    """Decorate a function that only kernels call; it becomes part of the entries that call it.
+
+    Under `njit` it would be compiled once more for each constant that it is called with.
+    """
+    overload(function, jit_options=_RULES, strict=False)(lambda *_: function)
+    return function
 
 
 inner_kernel = kernel
+
+
+def dispatcher(function: Callable) -> Any:
+    """Compile a function under the rules of kernels, without keeping it."""
+    return njit(**_RULES)(function)
 
 
 def entry(function: Callable, *, keep: bool = True) -> Any:
@@ -42,7 +52,7 @@ def entry(function: Callable, *, keep: bool = True) -> Any:
                 return njit(cache=True, **_RULES)(function)
         except Exception as error:  # numba finds no source file or no folder
             warn_once(f"compiled kernels cannot be kept ({error}): every run compiles them again")
-    return njit(**_RULES)(function)
+    return dispatcher(function)
 
 
 @contextmanager
@@ -59,23 +69,24 @@ def _numba_folder(folder: Path) -> Iterator[None]:
         config.CACHE_DIR = before
 
 
-def by_class(*bodies: tuple[type, Any]) -> Callable[[Callable], Callable]:
+def by_class(*bodies: tuple[type, Callable]) -> Callable[[Callable], Callable]:
     """Replace a declaration by the bodies for the classes of its first argument, a named tuple."""
 
     def declare(declaration: Callable) -> Callable:
-        overload_by_class(declaration, dict(bodies))
+        compile_by_class(declaration, dict(bodies))
         return declaration
 
     return declare
 
 
-def overload_by_class(function: Callable, bodies: dict[type, Any]) -> None:
-    """Let numba compile, for a call of `function`, the body for the class of the first argument."""
+def compile_by_class(name: Callable, bodies: dict[type, Any]) -> None:
+    """Let numba compile the body for the class of the first argument where a kernel calls `name`."""
 
     def choose(first: Any, *_: Any) -> Callable:
-        return bodies[first.instance_class].py_func
+        body = bodies[first.instance_class]
+        return getattr(body, "py_func", body)
 
-    overload(function, jit_options=_RULES, strict=False)(choose)
+    overload(name, jit_options=_RULES, strict=False)(choose)
 
 
 @functools.cache

@@ -26,10 +26,12 @@ class Names(NamedTuple):
 NAMES = (
     Names(
         "numba.core.registry:CPUDispatcher",
-        ("get_call_template", "get_overload", "add_overload", "_insert", "_compile_for_args"),
-        "a kernel is compiled once for constant and variable arguments, has no wrapper for Python and returns "
-        "no array; an entry is compiled by plain numba after a failure",
-        ("_cache", "targetoptions", "py_func"),
+        (
+            "get_call_template", "get_overload", "add_overload", "_compile_for_args", "_insert",
+        ),
+        "a kernel is compiled once for constant and variable arguments, has no wrapper for Python and "
+        "returns no array; an entry is compiled by plain numba if the fast compiler fails",
+        ("_cache", "targetoptions"),
     ),
     Names(
         "numba.core.types:Dispatcher",
@@ -53,11 +55,11 @@ NAMES = (
         (
             "add_linking_library", "enable_object_caching", "serialize_using_object_code",
             "has_dynamic_globals", "codegen", "_ensure_finalized", "_finalize_dynamic_globals",
-            "_finalize_final_module", "_get_compiled_object", "_optimize_final_module",
+            "_finalize_final_module", "_finalized", "_get_compiled_object", "_optimize_final_module",
             "_optimize_functions", "_set_compiled_object",
         ),
         "a kernel is optimised once, then called by name or copied into its callers",
-        ("_codegen", "_final_module", "_finalized"),
+        ("_codegen", "_final_module"),
     ),
     Names(
         "numba.core.codegen:JITCPUCodegen",
@@ -81,7 +83,7 @@ NAMES = (
     Names("numba.core.cpu:CPUContext", ("get_executable",), "a kernel loaded from disk gets its entry point"),
     Names("numba.core.runtime.nrt:rtsys", ("initialize",), "a kernel loaded from disk may count references"),
     Names("numba.core.serialize", ("dumps",), "numba's objects are pickled"),
-    Names("numba.core.sigutils", ("normalize_signature",), "a kernel's file names the types it is compiled for"),
+    Names("numba.core.sigutils", ("normalize_signature",), "a kernel's file names its argument types"),
 )  # fmt: skip
 
 

@@ -1,6 +1,6 @@
 """What is asked for of steady states beyond their regime: amplitudes, multipliers, asymmetry.
 
-All of it is read from their tables of phases.  Chosen by the class of `wanted` (`kinds`): who asks for
+All of it is read from their tables of phases.  Chosen by the class of `wanted` (`by_class`): who asks for
 nothing compiles nothing of it.
 """
 

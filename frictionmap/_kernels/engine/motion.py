@@ -1,7 +1,7 @@
 """The interface of a kind of motion: what the driver asks of it.
 
 A kind of motion is two named tuples, of a system over a map and of the system at one frequency, and a body
-for each of the functions here (`kinds`).  Every slide is followed as an upward one: a motion that goes back
+for each of the functions here (`by_class`).  Every slide is followed as an upward one: a motion that goes back
 is mirrored.  Where a motion is, a `Moment` says, together with arrays of the kind's own that these functions
 move along with it.
 

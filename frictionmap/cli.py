@@ -77,7 +77,7 @@ def _fill_cells(
     options: Options, config: "Config", output: "Output", what: str, run: Callable[["Progress"], "xr.Dataset"]
 ) -> None:
     """Compute a grid of cells with progress shown, write it, and tell what came out."""
-    from ._kernels.cache import listeners
+    from ._kernels.compiler.notices import listeners
     from .files.summary import describe_causes, describe_map, describe_reduction
     from .progress import Progress
 
@@ -171,7 +171,7 @@ def _refuse_store(options: Options) -> None:
 
 def _store(options: Options) -> None:
     """Compute a map into a store, or go on with one."""
-    from ._kernels.cache import listeners
+    from ._kernels.compiler.notices import listeners
     from .files.config import load_config
     from .files.studies import describe_cells
     from .progress import Progress
@@ -231,7 +231,7 @@ def _put(content: bytes, path: Path) -> None:
 
 
 def _export_page(options: Options, scene: "Scene") -> None:
-    from ._kernels.cache import listeners
+    from ._kernels.compiler.notices import listeners
     from .explorer.stored import check_page, write_page
     from .files.places import claimed
     from .progress import Progress

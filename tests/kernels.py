@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from frictionmap._kernels.jit import entry
+from frictionmap._kernels.compiler import entry
 
 
 def callable_kernel(kernel: Callable) -> Callable:

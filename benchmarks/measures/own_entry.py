@@ -3,17 +3,13 @@
 from collections.abc import Callable
 from typing import Any
 
-from numba.core.caching import NullCache
-
-from frictionmap._kernels.jit import entry
+from frictionmap._kernels.compiler import entry
 
 
 def own_entry(function: Callable) -> Any:
-    """Compile a function that calls kernels, as the package does; every process does so anew.
+    """Compile a function that calls kernels as the package does, in every process again.
 
-    What the package keeps on disk it knows by its own sources: it would not see that this one has changed.
+    The package identifies compiled kernels by its own source files; it would not notice that this one
+    changed.
     """
-    compiled = entry(function)
-    if compiled is not function:  # as it is where the JIT is off
-        compiled._cache = compiled.inside._cache = NullCache()
-    return compiled
+    return entry(function, keep=False)

@@ -3,10 +3,8 @@
 ==============  =========================================================================
 room            what is in it
 ==============  =========================================================================
-jit, kinds      the decorators that all kernels are compiled under; one function for several
-                kinds of motion, chosen by class
-linking         each kernel compiled once and called by name, or part of its callers
-cache           compiled kernels on disk, and the folders they are kept in
+compiler        the decorators that all kernels are compiled under, how kernels are linked and
+                kept on disk, and the fall-back to plain numba
 closed_form     trigonometry of pi/(2R); decay and damping functions of a mode
 boundary        V, U, G, H, S of one mass and of structures
 one_mass        scan step, events, return map and sliding orbit of one mass

@@ -7,7 +7,7 @@ continuation (sin -> sinh); every form below stays accurate through ``zeta = 1``
 
 import math
 
-from .jit import entry, kernel
+from .compiler import entry, kernel
 
 HALF_PI = 0.5 * math.pi
 _SPLIT = 134217729.0  # 2**27 + 1, Dekker's constant for splitting a double in two halves

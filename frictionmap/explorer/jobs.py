@@ -54,13 +54,13 @@ class Jobs:
 
     def listen(self) -> None:
         """Hear of kernels that are compiled, from now on; it takes the import of the compiler."""
-        from .._kernels.cache import listeners
+        from .._kernels.compiler.notices import listeners
 
         listeners.append(self._compiling)
 
     def close(self) -> None:
         """No more is heard of compiling; everything is outdated."""
-        from .._kernels.cache import listeners
+        from .._kernels.compiler.notices import listeners
 
         if self._compiling in listeners:
             listeners.remove(self._compiling)

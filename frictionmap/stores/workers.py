@@ -14,7 +14,7 @@ from pathlib import Path
 from socket import gethostname
 from typing import TYPE_CHECKING, Any
 
-from .._kernels.cache_folders import folders
+from .._kernels.compiler.folders import folders
 from ..errors import InputError
 from ..version import __version__
 from .run import Fill

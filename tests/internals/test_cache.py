@@ -9,15 +9,13 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from types import SimpleNamespace
 
 import numba
 import pytest
 
 import frictionmap as fm
 from benchmarks.measures.faults.machine import prepared
-from frictionmap._kernels import cache, cache_folders
-from frictionmap._kernels.jit import entry
+from frictionmap._kernels.compiler import entry, folders, notices
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
 POSIX = pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
@@ -32,14 +30,14 @@ def thrice(x):
 
 
 def user_cache(monkeypatch, path):
-    monkeypatch.setattr(cache_folders, "AppDirs", lambda **names: SimpleNamespace(user_cache_dir=path))
+    monkeypatch.setattr(folders, "_user_cache", lambda: Path(path))
 
 
 def forget():
     """As in a new process."""
-    cache_folders.folders.cache_clear()
-    cache_folders.state.cache_clear()
-    cache._say.cache_clear()
+    folders.folders.cache_clear()
+    folders.state.cache_clear()
+    notices.warn_once.cache_clear()
 
 
 @pytest.fixture(autouse=True)
@@ -84,7 +82,7 @@ def test_each_type_and_each_function_has_a_file_of_its_own(place):
 
 def test_listeners_hear_of_what_is_compiled(place, monkeypatch):
     heard = []
-    monkeypatch.setattr(cache, "listeners", [lambda: heard.append(1)])
+    monkeypatch.setattr(notices, "listeners", [lambda: heard.append(1)])
     hits()
     assert heard == [1]
     hits()
@@ -93,7 +91,7 @@ def test_listeners_hear_of_what_is_compiled(place, monkeypatch):
 
 #: A kernel that two others call.
 SHARED = """
-from frictionmap._kernels.jit import entry, kernel
+from frictionmap._kernels.compiler import entry, kernel
 
 @kernel
 def increased(x):
@@ -184,7 +182,7 @@ def test_what_is_damaged_is_compiled_anew_and_that_is_said_once(place, caplog, d
     one, two = entry(twice), entry(twice)
     assert one(1.5) == two(1.5) == 3.0
     assert len(one.stats.cache_hits) == 0
-    message = f"frictionmap: the compiled kernels in {file.parent} are damaged and compiled anew"
+    message = f"frictionmap: the compiled kernels in {file.parent} are damaged; they are compiled again"
     assert caplog.messages == [message]
     assert hits() == 1
     assert caplog.messages == [message]
@@ -199,7 +197,7 @@ def test_a_folder_with_something_in_it_instead_of_a_kernel(place, caplog):
     assert hits() == 0
     damaged, lost = caplog.messages
     assert "damaged" in damaged
-    assert f"cannot be kept in {file.parent} (Directory not empty)" in lost
+    assert f"cannot keep compiled kernels in {file.parent}: Directory not empty;" in lost
     assert (file / "thesis.tex").read_text() == "all of it"
 
 
@@ -221,13 +219,16 @@ def test_the_next_place_is_taken_if_one_cannot_be_written(place, unwritable, tmp
     unwritable.add(place)
     assert [hits(), hits()] == [0, 1]
     assert list((tmp_path / "user").rglob("*.nbc"))
-    message = f"frictionmap: {place} cannot be written to: compiled kernels are kept in {tmp_path / 'user'}"
+    message = (
+        f"frictionmap: cannot keep compiled kernels in {place}: it cannot be written to; "
+        f"they are kept in {tmp_path / 'user'}"
+    )
     assert caplog.messages == [message]
 
     unwritable.add(tmp_path / "user")
     assert [hits(thrice), hits(thrice)] == [0, 1]
     (temporary,) = (tmp_path / "temporary").iterdir()
-    assert caplog.messages[1].endswith(f"are kept in {temporary}")
+    assert caplog.messages[1].endswith(f"they are kept in {temporary}")
     if os.name != "nt":
         assert stat.S_IMODE(temporary.stat().st_mode) == 0o700
 
@@ -245,8 +246,9 @@ def test_no_place_at_all(place, unwritable, tmp_path, caplog):
     assert [hits(), hits()] == [0, 0]
     lines = caplog.messages
     assert len(lines) == 2  # one a process
-    assert lines[0].startswith(f"frictionmap: none of {place}, {tmp_path / 'user'}, {tmp_path / 'temporary'}")
-    assert lines[0].endswith("can be written to: every run compiles the kernels anew")
+    where = f"{place}, {tmp_path / 'user'}, {tmp_path / 'temporary'}"
+    assert lines[0].startswith(f"frictionmap: cannot keep compiled kernels: none of {where}")
+    assert lines[0].endswith("can be written to; every run compiles them again")
 
 
 @POSIX
@@ -270,13 +272,13 @@ def test_a_temporary_folder_that_is_a_link_is_not_trusted(place, unwritable, tmp
 
 def test_the_current_folder_is_no_temporary_one(place, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path / "temporary")
-    assert len(cache_folders.places()) == 2
+    assert len(folders.places()) == 2
 
 
 def test_without_a_home(place, monkeypatch):
     """What would be a folder named ~ in the current one is no place."""
     user_cache(monkeypatch, "~/.cache")
-    assert all(path.is_absolute() for path in cache_folders.places())
+    assert all(path.is_absolute() for path in folders.places())
 
 
 # States
@@ -287,7 +289,7 @@ def test_another_state_of_the_kernels_has_another_folder(place, tmp_path, monkey
     sources.mkdir(parents=True)
     (sources / "one.py").write_text("a = 1")
     (sources.parent / "regimes.py").write_text("")
-    monkeypatch.setattr(cache_folders, "_SOURCES", sources)
+    monkeypatch.setattr(folders, "_SOURCES", sources)
     assert [hits(), hits()] == [0, 1]
     (sources / "one.py").write_text("a = 2")  # called by the kernel, perhaps
     assert [hits(), hits()] == [0, 1]
@@ -355,13 +357,15 @@ def test_package_and_home_that_cannot_be_written(installed):
         if path.is_dir():
             path.chmod(0o555)
     own = package / "_kernels" / "__pycache__"
-    none = f"frictionmap: none of {own}, {home}/.cache/frictionmap can be written to: every run compiles"
+    places = f"{own}, {home}/.cache/frictionmap"
+    none = f"frictionmap: cannot keep compiled kernels: none of {places} can be written to"
     said = run(installed, HOME=str(home), TMPDIR=str(work))  # the current folder does not count
     assert said.startswith(none)
 
     temporary = installed / "temporary"
     kept = temporary / f"frictionmap-{os.getuid()}"
-    message = f"frictionmap: {own} cannot be written to: compiled kernels are kept in {kept}\n"
+    cannot = f"frictionmap: cannot keep compiled kernels in {own}: it cannot be written to"
+    message = f"{cannot}; they are kept in {kept}\n"
     assert run(installed, HOME=str(home), TMPDIR=str(temporary)) == message
     assert run(installed, HOME=str(home), TMPDIR=str(temporary)) == ""
 
@@ -383,7 +387,10 @@ def test_a_cache_in_ruins(installed):
     for path, damage in zip(files, (cut, flip, folder, loop, DAMAGES["empty"]) * 10, strict=False):
         damage(path)
     err = run(installed, NUMBA_CACHE_DIR=str(own))
-    assert err == f"frictionmap: the compiled kernels in {files[0].parent} are damaged and compiled anew\n"
+    assert (
+        err
+        == f"frictionmap: the compiled kernels in {files[0].parent} are damaged; they are compiled again\n"
+    )
     assert run(installed, NUMBA_CACHE_DIR=str(own)) == ""
 
 
@@ -392,13 +399,13 @@ def test_a_cache_in_ruins(installed):
 CALLS = """
 import sys
 from collections import Counter
-from frictionmap._kernels import cache, linking
+from frictionmap._kernels.compiler import linking, notices
 if "inner" not in sys.argv:
     linking._SMALL = 0  # all are
-from frictionmap._kernels.jit import entry, kernel
+from frictionmap._kernels.compiler import entry, kernel
 
 compiled = []
-cache.listeners.append(lambda: compiled.append(1))
+notices.listeners.append(lambda: compiled.append(1))
 
 @kernel
 def half(x):

@@ -5,7 +5,7 @@ import pytest
 from kernels import callable_kernel
 from numba import config, njit
 
-from frictionmap._kernels.jit import entry, kernel
+from frictionmap._kernels.compiler import entry, kernel
 
 compiled_only = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
 

@@ -14,9 +14,8 @@ import pytest
 import frictionmap as fm
 
 PACKAGE = Path(fm.__file__).parent
-#: How kernels are compiled and kept on disk is no kernel.
-PLUMBING = ("jit.py", "kinds.py", "cache.py", "cache_folders.py", "linking.py")
-KERNELS = sorted(path for path in (PACKAGE / "_kernels").rglob("*.py") if path.name not in PLUMBING)
+#: Modules of kernels: those that compile them are none.
+KERNELS = sorted(path for path in (PACKAGE / "_kernels").rglob("*.py") if path.parent.name != "compiler")
 SOURCES = sorted(PACKAGE.rglob("*.py"))
 HEAVY = ("numba", "xarray", "matplotlib", "scipy", "netCDF4", "pandas")
 
@@ -110,7 +109,7 @@ def test_kernels_know_numbers_and_codes_only(path):
 def test_imports_are_read_right():
     """The check above sees relative imports as what they are."""
     names = set(imported(PACKAGE / "_kernels" / "engine" / "fill.py"))
-    assert "frictionmap._kernels.jit.entry" in names
+    assert "frictionmap._kernels.compiler.entry" in names
     assert any(name.startswith("frictionmap.regimes") for path in KERNELS for name in imported(path))
 
 
@@ -127,7 +126,7 @@ def test_one_home(module, home):
     assert users == home
 
 
-@pytest.mark.parametrize(("module", "folder"), [("numba", "_kernels"), ("matplotlib", "pictures")])
+@pytest.mark.parametrize(("module", "folder"), [("numba", "compiler"), ("matplotlib", "pictures")])
 def test_one_folder(module, folder):
     users = {
         path.parent.name for path in SOURCES if any(name.split(".")[0] == module for name in imported(path))

@@ -24,7 +24,7 @@ from structures import chain_matrices
 
 import frictionmap as fm
 from frictionmap import InputError, regimes
-from frictionmap._kernels.cache import listeners
+from frictionmap._kernels.compiler.notices import listeners
 from frictionmap.explorer import cell, stored
 from frictionmap.explorer.cell import motion
 from frictionmap.explorer.jobs import Jobs, Outdated

@@ -1,7 +1,7 @@
 """Damping functions of several modes over many frequencies, for searches of zeros of their sums."""
 
 from ..closed_form import damping_functions
-from ..jit import entry
+from ..compiler import entry
 
 
 @entry

@@ -3,7 +3,7 @@
 import math
 
 from ..closed_form import damping_functions
-from ..jit import entry
+from ..compiler import entry
 from .one_mass import largest_bracket
 
 

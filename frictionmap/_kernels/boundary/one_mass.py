@@ -14,7 +14,7 @@ when a bound on all that is left there cannot beat the best value: the maximum i
 import math
 
 from ..closed_form import HALF_PI, decay
-from ..jit import kernel
+from ..compiler import kernel
 
 #: Newton's method inside a bracket halves it at worst; 60 halvings exhaust a double.
 MAX_ITERATIONS = 60

@@ -20,7 +20,7 @@ import math
 import numpy as np
 
 from ..closed_form import damping_functions, decay, fastest_rate
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 from .one_mass import ANGLE_TOLERANCE, MAX_ITERATIONS, largest_bracket, narrow
 
 #: First intervals per period of the fastest mode; fewer make more halvings, more are wasted.

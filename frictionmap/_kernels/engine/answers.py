@@ -16,7 +16,7 @@ from ...regimes import (
     STICK_SLIP,
     UNRESOLVED,
 )
-from ..jit import kernel
+from ..compiler import kernel
 from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from ..one_mass.newton import full_period
 

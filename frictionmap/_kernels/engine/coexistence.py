@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...regimes import CONTINUOUS, NOT_REACHED, PERMANENT_STICKING, STICK_SLIP
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 from .answers import Limits, Moment, unresolved
 from .march import steady_state
 from .motion import at_frequency, bring_back, contact_at, forget_neighbour, keep_state, on_continuous, start

@@ -1,6 +1,6 @@
 """What is asked for of steady states beyond their regime: amplitudes, multipliers, asymmetry.
 
-All of it is read from their tables of phases.  Chosen by the class of `wanted` (`kinds`): who asks for
+All of it is read from their tables of phases.  Chosen by the class of `wanted` (`by_class`): who asks for
 nothing compiles nothing of it.
 """
 
@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import entry, kernel
-from ..kinds import by_class
+from ..compiler import by_class, entry, kernel
 from ..one_mass.sliding_orbit import orbit_phase
 from ..structure.newton import Workspace, make_workspace
 from ..structure.oscillators import Scratch, make_scratch

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import kernel
+from ..compiler import kernel
 from ..structure.oscillators import COLUMNS, OW, OZ, bounds, derivatives, expand, step_on, watch, watch_load
 from ..structure.state import DIRECT_COS, DIRECT_SIN
 from .phase_table import COS, LENGTH, PLACE, SENSE, SIN, Z_END, take_start

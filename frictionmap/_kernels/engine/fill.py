@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...regimes import CLOSED_FORM, CONTINUOUS, PERMANENT_STICKING, RESOLVED
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 from ..one_mass.sliding_orbit import continuous_amplitude
 from .answers import continuous_cell, known_orbit, quasi_static_cell, stuck_cell
 from .details import Details, Nothing, details_at, note_continuous, note_orbit, note_stuck

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 from ..one_mass.events import REVERSE, EventSequence
 from ..one_mass.newton import half_periods
 from ..one_mass.sliding_orbit import orbit_phase

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 from ..one_mass.newton import half_periods
 from ..structure.oscillators import F1, FC, FS, OW, OZ, YC, YS, D, K
 from ..structure.state import DAMPING, PUSH, STATIC_SHAPE, W

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import entry, inner_kernel, kernel
+from ..compiler import entry, inner_kernel, kernel
 from ..one_mass.events import NO_END, STOP_THEN_BACK, EventSequence
 from ..one_mass.sliding_orbit import continuous_amplitude, orbit_phase
 from ..structure.events import MOVING, after_slide, slide_on

@@ -18,7 +18,7 @@ from ...regimes import (
     TOO_MANY_EVENTS,
     UNRESOLVED,
 )
-from ..jit import inner_kernel, kernel
+from ..compiler import inner_kernel, kernel
 from ..one_mass.events import GRAZING, NO_END, STUCK
 from ..structure.events import NO_RELEASE
 from .answers import (

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ..jit import kernel
+from ..compiler import kernel
 from ..one_mass.events import NO_END
 from ..one_mass.newton import half_periods
 from .answers import SHORTEST_STOP, TURN, stops_at, turns_at

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import entry, inner_kernel, kernel
+from ..compiler import entry, inner_kernel, kernel
 from ..one_mass.newton import full_period, half_periods
 
 #: Anchors remembered, at least and at most: a steady period with more is not recognised.

@@ -1,7 +1,7 @@
 """The interface of a kind of motion: what the driver asks of it.
 
 A kind of motion is two named tuples, of a system over a map and of the system at one frequency, and a body
-for each of the functions here (`kinds`).  Every slide is followed as an upward one: a motion that goes back
+for each of the functions here (`by_class`).  Every slide is followed as an upward one: a motion that goes back
 is mirrored.  Where a motion is, a `Moment` says, together with arrays of the kind's own that these functions
 move along with it.
 
@@ -11,7 +11,7 @@ its forces and displacements; `near_return`, how close a return is worth looking
 whose `left` are the scan steps that may still be taken; and `no_table`, no table of phases.
 """
 
-from ..kinds import by_class
+from ..compiler import by_class
 from . import many_masses, one_mass
 from .many_masses import ManyMasses, ManyMassSystem
 from .one_mass import OneMass, OneMassSystem

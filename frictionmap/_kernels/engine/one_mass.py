@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import entry, inner_kernel, kernel
+from ..compiler import entry, inner_kernel, kernel
 from ..one_mass.events import (
     REVERSE,
     STOP_THEN_BACK,

@@ -7,7 +7,7 @@ motion was followed.  All that is asked of a steady state beyond its regime is r
 
 import math
 
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 from ..structure.sliding_orbit import orbit_state
 from ..structure.state import place
 

@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import entry, kernel
-from ..kinds import by_class
+from ..compiler import by_class, entry, kernel
 from ..one_mass.newton import full_period
 from ..one_mass.sliding_orbit import continuous_amplitude, orbit_phase
 from ..structure.newton import Workspace, make_workspace

@@ -2,7 +2,7 @@
 
 import math
 
-from ..jit import kernel
+from ..compiler import kernel
 from ..structure.oscillators import advance, expand, watch
 from .extremes import set_watch
 from .phase_table import COS, LENGTH, SIGN, SIN, take_start

@@ -2,7 +2,7 @@
 
 import math
 
-from ..jit import kernel
+from ..compiler import kernel
 from .memory import TIME, Near, could_return, halves_between
 from .motion import return_distance, size_now
 

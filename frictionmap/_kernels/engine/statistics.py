@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ..jit import inner_kernel, kernel
+from ..compiler import inner_kernel, kernel
 from .answers import SHORTEST_STOP, TURN
 
 #: Excitation periods over which a motion that does not repeat is averaged.

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import entry
+from ..compiler import entry
 from ..structure.newton import copy_state
 from ..structure.oscillators import advance, expand
 from ..structure.state import held_load, place, release

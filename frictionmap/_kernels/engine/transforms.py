@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from ..closed_form import decay
-from ..jit import kernel
+from ..compiler import kernel
 
 #: Relative distance from a harmonic below which an oscillator is integrated as divided differences: beyond
 #: it the quotient of the plain form takes a digit or two from what rounding leaves.

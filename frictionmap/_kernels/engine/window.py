@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 from ..one_mass.events import NO_END, STUCK
 from ..structure.events import NO_RELEASE
 from .answers import known_orbit, stops_at, turns_at

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import kernel
+from ..compiler import kernel
 from ..structure.oscillators import advance, expand
 from ..structure.state import DIRECT_COS, DIRECT_SIN, place
 from .phase_table import COS, LENGTH, SENSE, SIN, Z_END, take_start

@@ -8,7 +8,7 @@ import math
 from typing import NamedTuple
 
 from ..closed_form import decay
-from ..jit import kernel
+from ..compiler import kernel
 from .slides import load_and_rate, settle, slide, wait
 
 PERIOD = 2.0 * math.pi

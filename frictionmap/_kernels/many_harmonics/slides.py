@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..closed_form import fastest_rate
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 from ..one_mass.events import first_root
 
 #: The fastest part turns by no more than this in one step [rad] ...

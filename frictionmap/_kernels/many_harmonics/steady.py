@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 from .cycle import follow
 from .slides import Samples, oscillator, scratch
 

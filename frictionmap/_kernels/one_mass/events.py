@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import entry, inner_kernel, kernel
+from ..compiler import entry, inner_kernel, kernel
 from .scan_step import MAX_TERMS, expand
 
 #: What follows the end of a slide.

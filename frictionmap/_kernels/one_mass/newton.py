@@ -11,7 +11,7 @@ shift of its phase (saltation).
 import math
 
 from ..closed_form import decay
-from ..jit import kernel
+from ..compiler import kernel
 from .events import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, slide_within
 
 _MAX_NEWTON = 16

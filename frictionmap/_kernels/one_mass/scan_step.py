@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..closed_form import fastest_rate
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 
 #: Terms of the Taylor series that any legal number of scan steps per period may need.
 MAX_TERMS = 44

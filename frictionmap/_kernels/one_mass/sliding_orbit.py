@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from ..closed_form import decay
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 
 
 class Oscillator(NamedTuple):

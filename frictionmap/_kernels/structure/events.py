@@ -3,7 +3,7 @@ mirrored."""
 
 import math
 
-from ..jit import kernel
+from ..compiler import kernel
 from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
 from .oscillators import AT_LIMIT, ELSEWHERE, FAILED, ROSE, scan
 from .state import (

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..closed_form import decay
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
 from .events import MOVING, NO_RELEASE, after_slide, slide_on
 from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import entry, inner_kernel, kernel
+from ..compiler import entry, inner_kernel, kernel
 from ..one_mass.events import MAX_POLISH, NEARLY, ONE_STEP, cubic_root, first_root, reversion
 from ..one_mass.scan_step import MAX_TERMS
 

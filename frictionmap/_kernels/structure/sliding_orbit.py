@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..closed_form import decay
-from ..jit import kernel
+from ..compiler import kernel
 from ..one_mass.sliding_orbit import since_maximum
 from .oscillators import OW, OZ, YC, YS, bounds, step_on, watch_load
 from .state import DAMPING, LOAD, LOAD_RATE, PUSH, W, contact_load

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..closed_form import fastest_rate
-from ..jit import entry, kernel
+from ..compiler import entry, kernel
 from ..one_mass.scan_step import series_terms
 from .oscillators import (
     COLUMNS,

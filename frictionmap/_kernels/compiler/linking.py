@@ -1,8 +1,9 @@
-"""How compiled kernels come together: each is compiled once, on its own, and called where it lies.
+"""Linking of compiled kernels: each is compiled once, on its own, and called where it lies in memory.
 
-numba makes all that a kernel calls part of the kernel, optimises it again and emits it again: a driver ten
-calls deep is compiled ten times.  Here only inner kernels, which are worth it, become part of their callers.
-The others are called by name: the linker of numba's one execution engine finds them.
+numba copies all that a kernel calls into the kernel, optimises it again and generates its code again: a
+driver ten calls deep is compiled ten times.  Here only inner kernels and small kernels, which are worth it,
+are copied into their callers.  The others are called by name: the linker of numba's single execution engine
+finds them.
 """
 
 import functools
@@ -14,8 +15,8 @@ from llvmlite import binding
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
 
-#: Lines of code of a kernel that becomes part of its callers: those that LLVM would make part of them.  With
-#: 250 a map takes up to a sixth longer; compiling takes as long with either.
+#: Lines of LLVM code below which a kernel is copied into its callers; LLVM would inline most of these.
+#: With 250 a map takes up to a sixth longer; the compile time is the same.
 _SMALL = 500
 
 #: How often a kernel was compiled or loaded in this process: no two may have the same name.
@@ -23,32 +24,41 @@ _times: Counter[str] = Counter()
 
 
 class Code(NamedTuple):
-    """What makes a library again."""
+    """What a library is rebuilt from.
+
+    name    : of the kernel
+    number  : of kernels of that name in this process
+    inner   : whether callers copy it
+    code    : machine code, or LLVM bitcode of an inner kernel
+    defined : names of the symbols that it defines
+    """
 
     name: str
     number: int
     inner: bool
-    code: bytes  # for the machine, or of an inner kernel for the compiler
-    defined: list[str]  # names
+    code: bytes
+    defined: list[str]
 
 
 class KernelLibrary(JITCodeLibrary):
-    """A kernel, as code to call or, of an inner kernel, as code to become part of its callers.
+    """A compiled kernel: machine code to call, or LLVM code that callers copy if it is an inner kernel.
 
-    inner : None to tell by its size
+    inner : None to decide by its size
+    calls : kernels that it calls by name
+    place : name of its file in the cache, and the key stored there
     """
 
     def __init__(self, codegen: Any, name: str, number: int, inner: bool | None) -> None:
         super().__init__(codegen, name)
-        self.number = number  # of kernels of that name in this process
+        self.number = number
         self.inner = inner
-        self.calls: list[KernelLibrary] = []  # by name
-        self.place: tuple[str, tuple] | None = None  # its file in the cache, and what that is of
+        self.calls: list[KernelLibrary] = []
+        self.place: tuple[str, tuple] | None = None
         _times[name] = max(_times[name], number + 1)
         self.enable_object_caching()
 
     def add_linking_library(self, library: Any) -> None:
-        """What the kernel calls."""
+        """Add a function that the kernel calls."""
         if not isinstance(library, KernelLibrary):
             super().add_linking_library(library)
         elif library.inner:
@@ -62,13 +72,13 @@ class KernelLibrary(JITCodeLibrary):
         self.calls += [library for library in libraries if library not in self.calls]
 
     def _optimize_functions(self, module: Any) -> None:
-        """Together with all that is part of the kernel, below."""
+        """Leave functions as they are: they are optimised with all that is copied into the kernel, below."""
         module.data_layout = self._codegen._data_layout
 
     def _optimize_final_module(self) -> None:
-        """Once: numba's first pass is for the counting of references, which kernels have none of."""
+        """Optimise once: numba's first pass is for reference counts, which kernels do not have."""
         manager = self._codegen._module_pass_manager()
-        if isinstance(manager, tuple):  # newer versions of numba: with what made it
+        if isinstance(manager, tuple):  # numba 0.61 and newer: (manager, builder)
             manager, builder = manager
             manager.run(self._final_module, builder)
         else:
@@ -85,14 +95,14 @@ class KernelLibrary(JITCodeLibrary):
 
     @property
     def codegen(self) -> Any:
-        """Who sets a kernel's environment; an inner one has no code of its own that would look for it."""
+        """The object that sets a kernel's environment; an inner kernel has no code that would read it."""
         return self if self.inner else self._codegen
 
     def set_env(self, name: str, env: object) -> None:
-        """See `codegen`."""
+        """Do nothing: see `codegen`."""
 
     def serialize_using_object_code(self) -> Code:
-        """See `stored`."""
+        """Return what `rebuilt` needs."""
         self._ensure_finalized()
         values = (*self._final_module.functions, *self._final_module.global_variables)
         defined = [value.name for value in values if not value.is_declaration]
@@ -100,8 +110,8 @@ class KernelLibrary(JITCodeLibrary):
         return Code(self.name, self.number, bool(self.inner), code, defined)
 
 
-def stored(codegen: Any, kernel: Code, calls: list[KernelLibrary]) -> KernelLibrary:
-    """The library of a kernel that was compiled before; those it calls are loaded."""
+def rebuilt(codegen: Any, kernel: Code, calls: list[KernelLibrary]) -> KernelLibrary:
+    """Rebuild the library of a kernel from the cache; the kernels it calls are loaded already."""
     library = KernelLibrary(codegen, kernel.name, kernel.number, kernel.inner)
     library.calls = calls
     if kernel.inner:
@@ -115,31 +125,32 @@ def stored(codegen: Any, kernel: Code, calls: list[KernelLibrary]) -> KernelLibr
 
 
 class _KernelFlags(Flags):
-    """Rules of a kernel; what numba's own functions take from those that call them is alike for all.
+    """Compiler flags of a kernel; numba's own functions inherit the same flags from every kernel.
 
-    Else numba compiles its own once more for every set of rules, and compares the sets at every operation.
+    Otherwise numba compiles its functions once more for every set of flags, and compares the sets at every
+    operation.
     """
 
-    _taken: dict[bool, Flags] = {}  # noqa: RUF012
+    _inherited: dict[bool, Flags] = {}  # noqa: RUF012
 
     def copy(self) -> Flags:
-        """What the functions take that are called from here."""
-        if self.nrt not in self._taken:
-            taken = Flags(self)
-            taken.forceinline = False
-            self._taken[self.nrt] = taken
-        return self._taken[self.nrt]
+        """Return the flags of functions called from here."""
+        if self.nrt not in self._inherited:
+            inherited = Flags(self)
+            inherited.forceinline = False
+            self._inherited[self.nrt] = inherited
+        return self._inherited[self.nrt]
 
 
 @functools.cache
 def compiler(inner: bool | None) -> type[Compiler]:
-    """numba's compiler, which puts a kernel in a library of its own, named alike in every process."""
+    """Return numba's compiler, changed to give each kernel a library with a name that is always the same."""
 
     class KernelCompiler(Compiler):
         def compile_extra(self, func: Callable) -> Any:
             state = self.state
             state.flags = _KernelFlags(state.flags)
-            state.flags.no_rewrites = True  # they are for expressions of whole arrays
+            state.flags.no_rewrites = True  # rewrites are for expressions of whole arrays
             name = f"{func.__module__}.{func.__qualname__}{state.args}{state.flags.get_mangle_string()}"
             state.library = KernelLibrary(state.targetctx.codegen(), name, _times[name], inner)
             return super().compile_extra(func)

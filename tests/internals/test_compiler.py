@@ -1,0 +1,242 @@
+"""The fall-back of the compiler: another numba, or a forced choice, costs compile time and no answers."""
+
+import ast
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import FunctionType
+
+import example_kernels
+import numba
+import pytest
+
+import frictionmap as fm
+from frictionmap._kernels.compiler import decorators, fast, kernel, mode
+from frictionmap._kernels.compiler.private_names import NAMES
+
+TESTS = Path(__file__).parent.parent
+COMPILER = Path(decorators.__file__).parent
+PAGE = TESTS.parent / "docs" / "compiler.md"
+
+pytestmark = [
+    pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled"),
+    pytest.mark.skipif(mode.requested() == "plain", reason="the fast compiler is tested"),
+]
+
+FOUND_AT_ONCE = [(group.owner, name) for group in NAMES for name in group.names]
+FOUND_IN_USE = [(group.owner, name) for group in NAMES for name in group.on_objects]
+DIFFERENCES = ["other_dispatcher", "other_type", "other_library", "longer_result"]
+
+
+def run(*arguments, place, directory=None, asked="", **environment):
+    """A new process that keeps its kernels in a place; what it prints and what it reports."""
+    search = os.pathsep.join([str(TESTS.parent), str(TESTS)])
+    kept = os.environ | {"PYTHONPATH": search, "NUMBA_CACHE_DIR": str(place), **environment}
+    done = subprocess.run(
+        [sys.executable, *arguments], env=kept, input=asked, cwd=directory or place,
+        capture_output=True, text=True, timeout=1800,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout, done.stderr
+
+
+def test_this_numba_has_all_that_the_fast_compiler_needs():
+    assert decorators.compiler_in_use() == "fast"
+
+
+# Each private name taken away
+
+
+@pytest.fixture(scope="module")
+def taken_away(tmp_path_factory):
+    """What came of taking each name away, with compiled kernels on disk."""
+    if os.name == "nt":
+        pytest.skip("children of a process are needed")
+    place = tmp_path_factory.mktemp("kernels")
+    run("-c", "import example_kernels as e; e.answers(); e.answers(e.twice_compiled)", place=place)
+    asked = [(*found, False) for found in FOUND_AT_ONCE] + [(*found, True) for found in FOUND_IN_USE]
+    return json.loads(run(str(TESTS / "taken_away.py"), place=place, asked=json.dumps(asked))[0])
+
+
+@pytest.mark.slow
+def test_nothing_is_missed_if_nothing_is_taken_away(taken_away):
+    assert taken_away["nothing"] == {"answers": example_kernels.ANSWERS, "compiler": "fast", "warnings": []}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*map(".".join, FOUND_AT_ONCE + FOUND_IN_USE), *DIFFERENCES])
+def test_without_a_private_name_plain_numba_gives_the_answers_and_one_warning(taken_away, name):
+    found = taken_away[name]
+    assert (found.get("answers"), found.get("compiler")) == (example_kernels.ANSWERS, "plain"), found
+    (warning,) = found["warnings"]
+    assert warning.startswith(
+        f"frictionmap: cannot use the fast kernel compiler with numba {numba.__version__} ("
+    )
+    assert "\n" not in warning
+    if name in map(".".join, FOUND_AT_ONCE):
+        assert f"{name.replace(':', '.')} is missing" in warning or "cannot import name" in warning
+
+
+def test_the_page_lists_every_private_name():
+    """With the purpose that the table in the code states."""
+    rows = re.findall(
+        r"^\| `(numba[^`]*|llvmlite[^`]*)` \| (.*) \| (.*) \|$", PAGE.read_text(encoding="utf-8"), re.M
+    )
+    listed = {owner: (set(re.findall(r"`(\w+)`", names)), purpose) for owner, names, purpose in rows}
+    assert listed == {
+        group.owner.replace(":", "."): ({*group.names, *group.on_objects}, group.purpose) for group in NAMES
+    }
+
+
+def imports_of(path):
+    """(module, name) of what a source file imports from numba and llvmlite."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in ("numba", "llvmlite"):
+            yield from ((node.module, alias.name) for alias in node.names)
+
+
+#: What numba documents for its users.
+PUBLIC = {
+    ("numba", "config"), ("numba", "njit"), ("numba", "types"), ("numba.extending", "overload"),
+    ("numba.core", "event"),
+}  # fmt: skip
+
+
+def test_the_list_of_private_names_has_all_that_are_imported():
+    owners = {group.owner for group in NAMES}
+    listed = {f"{group.owner}.{name}" for group in NAMES for name in group.names}
+    for path in sorted(COMPILER.glob("*.py")):
+        for module, name in set(imports_of(path)) - PUBLIC:
+            known = {f"{module}:{name}", f"{module}.{name}"} & (owners | listed)
+            assert known or f"{module}.{name}" in owners, f"{path.name}: {module}.{name}"
+
+
+def own_names(nodes):
+    """Names that a module defines: functions, classes, fields, attributes of `self`."""
+    for node in nodes:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            yield node.name
+        elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            yield node.target.id
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            yield node.attr if getattr(node.value, "id", "") == "self" else ""
+
+
+def test_the_list_of_private_names_has_all_attributes_with_an_underscore():
+    """Of objects that are not the package's own."""
+    listed = {name for group in NAMES for name in (*group.names, *group.on_objects)}
+    for path in sorted(COMPILER.glob("*.py")):
+        nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+        used = {node.attr for node in nodes if isinstance(node, ast.Attribute)}
+        private = {name for name in used if name.startswith("_") and not name.endswith("__")}
+        assert private - set(own_names(nodes)) <= listed, path.name
+
+
+def test_replaced_methods_are_in_the_list():
+    """numba would not call a method that it has renamed."""
+    from frictionmap._kernels.compiler.linking import KernelLibrary, _KernelFlags, compiler
+
+    listed = {name for group in NAMES for name in group.names}
+    for own in (fast._Kernel, fast._Entry, fast._Compiled, KernelLibrary, _KernelFlags, compiler(None)):
+        foreign = next(base for base in own.__mro__ if not base.__module__.startswith("frictionmap"))
+        written = {name for name, value in vars(own).items() if isinstance(value, (FunctionType, property))}
+        replaced = {name for name in written - {"__init__"} if hasattr(foreign, name)}
+        assert replaced <= listed, own
+
+
+# Faults of kernels
+
+
+@kernel
+def _wrong(x):
+    return x.no_such_attribute
+
+
+def test_a_kernel_that_no_compiler_takes_is_at_fault_itself(caplog):
+    """It is no reason to change the compiler."""
+
+    def call(x):
+        return _wrong(x)
+
+    with pytest.raises(numba.TypingError, match="no_such_attribute"):
+        decorators.entry(call, keep=False)(1.0)
+    assert decorators.compiler_in_use() == "fast"
+    assert caplog.messages == []
+
+
+# The choice
+
+
+CALL = (
+    "import example_kernels as e; from frictionmap._kernels.compiler.decorators import compiler_in_use as c;"
+)
+
+
+def test_the_environment_chooses_plain_numba(tmp_path):
+    """Without a warning; in a second process everything is found on disk."""
+    for _ in range(2):
+        count = "import numba.core.event as v; n = v.RecordingListener(); v.register('numba:compile', n);"
+        end = "print(e.answers(), c(), len(n.buffer))"
+        out, err = run("-c", f"{count} {CALL} {end}", place=tmp_path, FRICTIONMAP_COMPILER="plain")
+        assert err == ""
+    assert out == f"{example_kernels.ANSWERS} plain 0\n"
+
+
+def test_an_unknown_compiler_is_refused(monkeypatch):
+    monkeypatch.setenv("FRICTIONMAP_COMPILER", "quick")
+    with pytest.raises(fm.InputError, match="unknown FRICTIONMAP_COMPILER 'quick'; valid: fast, plain"):
+        mode.requested()
+
+
+def test_plain_numba_announces_compilations(tmp_path):
+    code = """
+from frictionmap._kernels.closed_form import damping_functions
+from frictionmap._kernels.compiler.notices import listeners
+heard = []
+listeners.append(lambda: heard.append(1))
+damping_functions(1.0, 0.05, 0.5)
+first = len(heard)
+damping_functions(1.0, 0.05, 0.7)
+print(first > 0, len(heard) == first)
+"""
+    assert run("-c", code, place=tmp_path, FRICTIONMAP_COMPILER="plain") == ("True True\n", "")
+
+
+# Whole maps
+
+MAP = """
+import hashlib, sys
+import numpy as np
+import frictionmap as fm
+from frictionmap._kernels.compiler.decorators import compiler_in_use
+systems = {
+    "one mass": fm.System(contact="joined-base-wall"),
+    "structure": fm.System(mass_ratios=[1.0, 0.7], stiffness_ratios=[1.0, 1.3], damping_ratios=0.03),
+}
+ds = fm.sweep(systems[sys.argv[1]], np.linspace(0.1, 2.4, 8), np.linspace(0.05, 1.2, 6), [1.0, 1.5])
+digest = hashlib.sha256(b"".join(np.ascontiguousarray(ds[name]).tobytes() for name in sorted(ds.variables)))
+print(compiler_in_use(), sorted(set(ds.regime.values.ravel().tolist())), digest.hexdigest())
+"""
+
+STRUCTURES = pytest.mark.skipif(
+    "FRICTIONMAP_TEST_PLAIN" not in os.environ,
+    reason="compiles for two minutes; FRICTIONMAP_TEST_PLAIN=1 runs it",
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("system", ["one mass", pytest.param("structure", marks=STRUCTURES)])
+def test_maps_are_equal_to_the_bit(system):
+    """With kernels kept where those of the package are."""
+    place = TESTS.parent
+    kept = os.environ.get("NUMBA_CACHE_DIR", "")
+    fast_map, plain_map = (
+        run("-c", MAP, system, place=kept, directory=place, FRICTIONMAP_COMPILER=name)[0].split(" ", 1)
+        for name in ("fast", "plain")
+    )
+    assert (fast_map[0], plain_map[0]) == ("fast", "plain")
+    assert fast_map[1] == plain_map[1]
+    assert len(json.loads(fast_map[1].rpartition(" ")[0])) == 3  # regimes: all of them were met

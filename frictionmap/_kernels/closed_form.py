@@ -84,7 +84,7 @@ def decay(zeta, theta):
 
 
 @kernel
-def _sinh_less_argument(x):
+def _sinh_minus_argument(x):
     """``sinh(x) - x`` without cancellation."""
     if abs(x) > 1.0:
         return math.sinh(x) - x
@@ -100,7 +100,7 @@ def _sinh_less_argument(x):
 
 
 @kernel
-def _argument_less_sin(x):
+def _argument_minus_sin(x):
     """``x - sin(x)`` without cancellation."""
     if abs(x) > 1.0:
         return x - math.sin(x)
@@ -165,7 +165,7 @@ def damping_functions(w, zeta, r):
         swing = 2.0 * sine * cosine * small / s
         angle = s * math.pi * a
         if angle < 1.0 and x < 1.0:
-            above = small * (_sinh_less_argument(x) + (zeta / s) * _argument_less_sin(angle))
+            above = small * (_sinh_minus_argument(x) + (zeta / s) * _argument_minus_sin(angle))
         else:
             above = 0.5 * gap * (1.0 + small) - zeta * swing
         return a * swing / below, above / below
@@ -173,7 +173,7 @@ def damping_functions(w, zeta, r):
         swing = small * math.pi * a
         below = 0.5 * (1.0 + small * small) + small
         if x < 1.0:
-            return a * swing / below, small * _sinh_less_argument(x) / below
+            return a * swing / below, small * _sinh_minus_argument(x) / below
         return a * swing / below, (0.5 * (1.0 - small * small) - swing) / below
     s = math.sqrt((zeta - 1.0) * (zeta + 1.0))
     angle = s * math.pi * a

@@ -10,18 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from .._kernels.engine.answers import Limits
-from .._kernels.engine.details import Details, Displacements, Nothing
-from .._kernels.engine.extremes import Alone
-from .._kernels.engine.fill import Axes, ClosedForm, OpenCells, Wanted, fill_closed, fill_open
+from .._kernels.engine.details import Details, Displacements, NotRequested
+from .._kernels.engine.extremes import UncoupledResponse
+from .._kernels.engine.fill import Axes, ClosedForm, OpenCells, Requested, fill_closed, fill_open
 from .._kernels.engine.many_masses import ManyMassSystem
 from .._kernels.engine.one_mass import OneMassSystem
 from .._kernels.engine.quantities import Quantities
+from .._kernels.engine.records import Limits
 from ..datasets.labels import CELL_VARIABLES
 from ..model.settings import Solver
 from ..model.system import System
 from ..theory.boundary_curves import OneMass, many_mode_curves, one_mass_curves
-from .kernel_data import Structures, structures
+from .kernel_data import StructureArrays, arrays_of_structure
 from .quantity_data import Asked, quantity_numbers, results
 from .quantity_limits import put_resonance, put_static
 
@@ -64,9 +64,9 @@ class Cells:
         return self._one is not None
 
     @cached_property
-    def structures(self) -> Structures:
+    def arrays_of_structure(self) -> StructureArrays:
         """The system in the numbers of a structure."""
-        return structures(self._system, self._axes.r, self.curves)
+        return arrays_of_structure(self._system, self._axes.r, self.curves)
 
     @cached_property
     def motion(self) -> OneMassSystem | ManyMassSystem:
@@ -78,7 +78,7 @@ class Cells:
                 self._one.frequencies, system.zeta, steps, self._one.lim, self.curves.beta_stick, 1,
                 float(system.modes.chi[0]),
             )  # fmt: skip
-        f = self.structures
+        f = self.arrays_of_structure
         return ManyMassSystem(
             self._axes.r, f.model, f.loads, f.orbit, f.marginal, f.rest, f.moving, steps,
             self.curves.beta_lim, f.participating.size,
@@ -89,8 +89,10 @@ class Cells:
         if self._one is not None:
             f = self._one.frequencies
             return ClosedForm(f.load, f.v_abs, f.u, f.g, f.marginal)
-        orbit = self.structures.orbit
-        return ClosedForm(np.ones(self._axes.r.size), orbit.v_abs, orbit.u, orbit.g, self.structures.marginal)
+        orbit = self.arrays_of_structure.orbit
+        return ClosedForm(
+            np.ones(self._axes.r.size), orbit.v_abs, orbit.u, orbit.g, self.arrays_of_structure.marginal
+        )
 
     @property
     def unit(self) -> float:
@@ -98,35 +100,36 @@ class Cells:
         return float(self._closed_form.load[0])
 
     @cached_property
-    def _details(self) -> Details | Nothing:
+    def _details(self) -> Details | NotRequested:
         if "details" not in self._needs:
-            return Nothing(0)
-        f = self.structures
-        parts = Displacements(f.shapes, Alone(f.alone, f.alone), f.held)
+            return NotRequested(0)
+        f = self.arrays_of_structure
+        parts = Displacements(f.outputs, UncoupledResponse(f.uncoupled, f.uncoupled), f.held)
         return Details(self._axes.r, f.model, f.loads, f.orbit, float(self._solver.steps), parts)
 
     @cached_property
-    def quantities(self) -> Quantities | Nothing:
+    def quantities(self) -> Quantities | NotRequested:
         """What a cycle is asked for, in numbers."""
         if self._asked is None:
-            return Nothing(0)
+            return NotRequested(0)
         return quantity_numbers(
-            self._system, self._axes.r, self.structures, float(self._solver.steps), self._asked, self.results
+            self._system, self._axes.r, self.arrays_of_structure, float(self._solver.steps), self._asked,
+            self.results,
         )  # fmt: skip
 
     @cached_property
-    def _wanted(self) -> Wanted:
-        return Wanted(self._details, self.quantities)
+    def _requested(self) -> Requested:
+        return Requested(self._details, self.quantities)
 
     def closed(self, first: int, last: int, cells: OpenCells, out: Any) -> Job:
         """A job for the cells of rows first..last-1 that formulas decide."""
-        return fill_closed, (first, last, cells, self._axes, self._closed_form, out, self._wanted)
+        return fill_closed, (first, last, cells, self._axes, self._closed_form, out, self._requested)
 
     def opened(self, first: int, last: int, cells: OpenCells, out: Any, cancel: np.ndarray) -> Job:
         """A job for cells first..last-1 of the list of open cells."""
         moving = self._solver.start == "moving"
         return fill_open, (
-            first, last, cells, self._axes, self.motion, limits(self._solver), moving, out, self._wanted,
+            first, last, cells, self._axes, self.motion, limits(self._solver), moving, out, self._requested,
             cancel,
         )  # fmt: skip
 
@@ -150,10 +153,10 @@ class Cells:
             if axes.beta[0] == 0.0:
                 static = np.abs(self._system.modes.static_response())
                 out.amplitude[:, axes.r == 0.0, 0, :] = static
-            where = np.broadcast_to(self.structures.resonant[:, np.newaxis, :], out.amplitude.shape)
+            where = np.broadcast_to(self.arrays_of_structure.resonant[:, np.newaxis, :], out.amplitude.shape)
             out.amplitude[where & ~np.isnan(out.amplitude)] = np.inf
         if self._asked is not None:
-            put_resonance(self._system, axes.r, self.structures.resonant, self.results)
+            put_resonance(self._system, axes.r, self.arrays_of_structure.resonant, self.results)
             if axes.r[0] == 0.0:
                 static = put_static(self._system, axes.beta, out.status[:, 0], self.results)
                 if out.contact_amplitude.size:

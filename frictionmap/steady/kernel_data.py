@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .._kernels.closed_form import damping_functions
-from .._kernels.engine.extremes import Shapes
+from .._kernels.engine.extremes import OutputMatrices
 from .._kernels.engine.many_masses import Starts
-from .._kernels.engine.policies import MOVING, MOVING_CAP
+from .._kernels.engine.policies import MOVING_START, MOVING_START_CAP
 from .._kernels.structure.sliding_orbit import Continuous
 from .._kernels.structure.state import MODE_ROWS, STATIC_SHAPE, Loads, Model
 from ..model.balance import dynamic_stiffness
@@ -27,7 +27,7 @@ Phase = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
-class Structures:
+class StructureArrays:
     """A system at frequencies r: everything that its cells need; nothing of what moves is meant at r = 0."""
 
     participating: np.ndarray  # the modes that move the contact, chi != 0
@@ -37,8 +37,8 @@ class Structures:
     marginal: np.ndarray  # (n_r,) bool
     rest: Starts
     moving: Starts
-    shapes: Shapes
-    alone: np.ndarray  # (n_r, n_dof) phasor of what moves with the load alone; 0 where infinite
+    outputs: OutputMatrices
+    uncoupled: np.ndarray  # (n_r, n_dof) phasor of what moves with the load alone; 0 where infinite
     resonant: np.ndarray  # (n_r, n_dof) bool, where that is infinite
     held: np.ndarray  # (n_r, n_dof) phasor of the displacements with the contact held
 
@@ -89,8 +89,8 @@ class _Driven(NamedTuple):
 
     cos: np.ndarray
     sin: np.ndarray
-    direct_cos: np.ndarray
-    direct_sin: np.ndarray
+    feedthrough_cos: np.ndarray
+    feedthrough_sin: np.ndarray
 
 
 def _driven(rate: np.ndarray, r: np.ndarray, on_y: Phase, on_p: Phase) -> _Driven:
@@ -155,7 +155,9 @@ def _start(
         state = times(np.concatenate((place, velocity), axis=1), free.to_oscillators.T).real
         # contiguous, both: another memory layout would be another type to the kernels
         place, velocity = np.ascontiguousarray(state[:, :n]), np.ascontiguousarray(state[:, n:])
-        velocity += driven.direct_cos * cosine[:, np.newaxis] + driven.direct_sin * sine[:, np.newaxis]
+        velocity += (
+            driven.feedthrough_cos * cosine[:, np.newaxis] + driven.feedthrough_sin * sine[:, np.newaxis]
+        )
     return Starts(place, velocity, cosine, sine)
 
 
@@ -180,21 +182,21 @@ def _moving(
     w = modes.w[participating]
     stiffness = np.ascontiguousarray(modulus(modes.dynamic_stiffness(r)[:, participating]))
     with np.errstate(divide="ignore"):
-        gain = np.minimum(1.0 / stiffness, MOVING_CAP / w**2)
-    size = MOVING * modulus(participation) * gain * np.maximum(w, r[:, np.newaxis])
+        gain = np.minimum(1.0 / stiffness, MOVING_START_CAP / w**2)
+    size = MOVING_START * modulus(participation) * gain * np.maximum(w, r[:, np.newaxis])
     lead = np.where(np.isfinite(force), angles(force), 0.0)
     sine, cosine = (np.array([function(angle) for angle in lead]) for function in (math.sin, math.cos))
     velocity = size * np.sign(modes.chi[participating])
     return _start(modes.free, np.zeros_like(size), velocity, (sine, cosine), driven)
 
 
-def _alone(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _uncoupled_response(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Phasor (n_r, n_dof) of the base's motion and of the modes that do not participate; where infinite."""
     idle = ~modes.participating
     parts = modes.answers(r, np.where(idle, modes.relative_participation(r), 0.0))[:, idle]
     resonant = np.isinf(parts)
-    alone = modes.base_motion + times(np.where(resonant, 0.0, parts), modes.phi[:, idle].T)
-    return alone, (resonant.astype(float) @ np.abs(modes.phi[:, idle].T)) > 0.0
+    uncoupled = modes.base_motion + times(np.where(resonant, 0.0, parts), modes.phi[:, idle].T)
+    return uncoupled, (resonant.astype(float) @ np.abs(modes.phi[:, idle].T)) > 0.0
 
 
 def _marginal(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> np.ndarray:
@@ -215,37 +217,37 @@ def _marginal(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> np.ndarray:
     return found
 
 
-def _shapes(model: Model, free: FreeStructure, phi: np.ndarray) -> Shapes:
+def _displacement_outputs(model: Model, free: FreeStructure, phi: np.ndarray) -> OutputMatrices:
     """Displacements of the masses; `phi` (n_dof, n) of the participating modes."""
     n = phi.shape[1]
     # contiguous, all of them: another memory layout would be another type to the kernels, compiled anew
     nothing = np.zeros(phi.shape[0])
     if free.coupled:
         rows = phi @ free.to_modes[:n]
-        return Shapes(rows, rows @ model.to_free, rows[:, :n] @ model.modes[STATIC_SHAPE], nothing)
-    return Shapes(
+        return OutputMatrices(rows, rows @ model.to_free, rows[:, :n] @ model.modes[STATIC_SHAPE], nothing)
+    return OutputMatrices(
         np.concatenate((phi, np.zeros_like(phi)), axis=1), np.ascontiguousarray(phi @ model.to_free[:n]),
         phi @ model.modes[STATIC_SHAPE], nothing,
     )  # fmt: skip
 
 
-def structures(system: System, r: np.ndarray, curves: Curves) -> Structures:
+def arrays_of_structure(system: System, r: np.ndarray, curves: Curves) -> StructureArrays:
     """Everything that the cells of a system need at frequencies r, for which `curves` are."""
     modes, free = system.modes, system.modes.free
     which = np.flatnonzero(modes.participating)
     chi = modes.chi[which]
     fixed = held_structure(modes.w[which], modes.zeta[which], chi, modes.seen_coupling())
     model = _model(modes, which, fixed)
-    alone, resonant = _alone(modes, r)
+    uncoupled, resonant = _uncoupled_response(modes, r)
     held, force = modes.held(r)
     held = held + modes.base_motion
     r = np.where(r > 0.0, r, 1.0)  # no cell at r = 0 is followed: any other number does
     participation = np.ascontiguousarray(modes.relative_participation(r)[:, which])
     on_free, on_held = _on_free(free, r, participation), _on_held(fixed, r, participation)
-    return Structures(
+    return StructureArrays(
         which, model, _loads(model, on_free, on_held, times(participation, chi[:, np.newaxis])[:, 0]),
         _orbit(free, r, on_free, curves), _marginal(free.omega, free.zeta, r),
         _rest(modes, which, on_free), _moving(modes, which, r, participation, force, on_free),
-        _shapes(model, free, modes.phi[:, which]), np.ascontiguousarray(alone), resonant,
+        _displacement_outputs(model, free, modes.phi[:, which]), np.ascontiguousarray(uncoupled), resonant,
         np.ascontiguousarray(held),
     )  # fmt: skip

@@ -7,15 +7,15 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import regimes
-from .._kernels.engine import phase_table
-from .._kernels.engine.answers import Cell
+from .._kernels.engine import segment_table
 from .._kernels.engine.fill import one_cell
 from .._kernels.engine.quantities import (
     continuous_cell_quantities,
     stuck_cell_quantities,
     table_cell_quantities,
 )
-from .._kernels.engine.time_history import Samples, sample_phases
+from .._kernels.engine.records import Cell
+from .._kernels.engine.time_history import Samples, sample_segments
 from .._kernels.engine.window import window_table
 from .._kernels.one_mass.sliding_orbit import orbit_phase
 from .._kernels.structure.newton import make_workspace
@@ -26,7 +26,7 @@ from ..model.settings import HARMONICS, Solver
 from ..model.system import System
 from ..theory.boundary_curves import Curves
 from .cells import Cells, limits
-from .kernel_data import Structures
+from .kernel_data import StructureArrays
 from .maps import plan
 from .quantity_data import VARIABLES, asked_for, read_result
 
@@ -132,23 +132,23 @@ def _decided(cells: Cells, question: Question) -> int:
 
 def _with_mirror_image(table: np.ndarray) -> np.ndarray:
     """The table of phases over one steady period: twice as long where the motion returns mirrored."""
-    length = float(table[:, phase_table.LENGTH].sum())
+    length = float(table[:, segment_table.LENGTH].sum())
     if round(length / math.pi) % 2 == 0:
         return table
     mirrored = table.copy()
-    mirrored[:, phase_table.SIGN] *= -1.0
-    mirrored[:, phase_table.BEGIN] += length
+    mirrored[:, segment_table.SIGN] *= -1.0
+    mirrored[:, segment_table.BEGIN] += length
     return np.concatenate((table, mirrored))
 
 
 def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
     """The table of phases of the continuous orbit, one phase."""
-    found = cells.structures
+    found = cells.arrays_of_structure
     orbit, n = found.orbit, found.participating.size
     st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
-    table = np.empty((1, phase_table.phase_columns(n)))
+    table = np.empty((1, segment_table.segment_columns(n)))
     phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], question.beta)
-    phase_table.continuous_phase(st, orbit, 0, question.beta, phase, table[0], make_workspace(n))
+    segment_table.continuous_segment(st, orbit, 0, question.beta, phase, table[0], make_workspace(n))
     return table
 
 
@@ -176,26 +176,26 @@ def _find(question: Question, cells: Cells) -> Found:
             return _window(question, cells, cell)
         if cell.period == 0:
             raise _no_steady_state(question, regimes.status_meaning(status))
-        regime, rest = cell.regime, cells.unit * cell.sign * cell.at.z
+        regime, rest = cell.regime, cells.unit * cell.sign * cell.contact_state.z
     if regime == regimes.PERMANENT_STICKING:
         return Found(None, status, rest)
     once = table if table.shape[0] else None
     if once is None:
-        if math.isinf(cells.structures.orbit.v_abs[0]):
+        if math.isinf(cells.arrays_of_structure.orbit.v_abs[0]):
             raise _no_steady_state(question, _UNBOUNDED)
         table = _continuous_table(question, cells)
-        marginal = bool(cells.structures.marginal[0]) and question.beta > 0.0
+        marginal = bool(cells.arrays_of_structure.marginal[0]) and question.beta > 0.0
         status = regimes.MARGINAL if marginal else status
     return Found(_with_mirror_image(table), status, once=once)
 
 
 def _stuck_history(question: Question, cells: Cells, rest: float) -> History:
     """The contact held at `rest` for good."""
-    found = cells.structures
+    found = cells.arrays_of_structure
     tau = _times(1, question.points)
     turn = np.exp(1j * tau)
     held = found.held[0][:, np.newaxis] * turn
-    offset = found.shapes.static_shape[:, np.newaxis] * rest
+    offset = found.outputs.static_shape[:, np.newaxis] * rest
     force = question.system.modes.held_load(np.array([question.r]))[0] * turn
     return History(
         1, tau, held.real + offset, -held.imag, np.full(tau.size, rest),
@@ -206,9 +206,9 @@ def _stuck_history(question: Question, cells: Cells, rest: float) -> History:
 
 def _phase_starts(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Phases that begin, and z there."""
-    sign = table[:, phase_table.SIGN]
+    sign = table[:, segment_table.SIGN]
     # a slide starts where the phase before it ended
-    return sign * table[:, phase_table.SENSE], np.roll(sign * table[:, phase_table.Z_END], 1)
+    return sign * table[:, segment_table.SENSE], np.roll(sign * table[:, segment_table.Z_END], 1)
 
 
 def _place(found: Found, tau: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -218,10 +218,10 @@ def _place(found: Found, tau: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray
     """
     table = found.table
     assert table is not None
-    sign = table[0, phase_table.SIGN]
-    start = math.atan2(sign * table[0, phase_table.SIN], sign * table[0, phase_table.COS])
+    sign = table[0, segment_table.SIGN]
+    start = math.atan2(sign * table[0, segment_table.SIN], sign * table[0, segment_table.COS])
     if found.averages is None:
-        total = float(table[:, phase_table.LENGTH].sum())
+        total = float(table[:, segment_table.LENGTH].sum())
         times = np.mod(begin + start, total)
         order = np.argsort(times, kind="stable")
         return _since(tau, start, total), order, times[order]
@@ -231,47 +231,53 @@ def _place(found: Found, tau: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray
 
 
 def _displacements(
-    question: Question, numbers: Structures, coordinates: np.ndarray, velocities: np.ndarray, tau: np.ndarray
+    question: Question,
+    numbers: StructureArrays,
+    coordinates: np.ndarray,
+    velocities: np.ndarray,
+    tau: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """x and x' in tau (n_dof, tau.size), from coordinates and velocities of the oscillators (n, tau.size)."""
     modes, n = question.system.modes, len(coordinates)
     if not modes.free.coupled:
-        shapes = numbers.shapes.free[:, :n]
-        return shapes @ coordinates, shapes @ velocities
+        outputs = numbers.outputs.free[:, :n]
+        return outputs @ coordinates, outputs @ velocities
     r, loads = question.r, numbers.loads
-    direct = np.outer(loads.free_direct_cos[0], np.cos(tau)) + np.outer(loads.free_direct_sin[0], np.sin(tau))
-    motion = modes.free.to_modes @ np.concatenate((coordinates, r * velocities - direct))
+    feedthrough = np.outer(loads.free_feedthrough_cos[0], np.cos(tau)) + np.outer(
+        loads.free_feedthrough_sin[0], np.sin(tau)
+    )
+    motion = modes.free.to_modes @ np.concatenate((coordinates, r * velocities - feedthrough))
     phi = modes.phi[:, numbers.participating]
     return phi @ motion[:n], phi @ motion[n:] / r
 
 
 def _moving_history(question: Question, cells: Cells, found: Found) -> History:
     """A motion that slides, sampled along its phases."""
-    numbers, table = cells.structures, found.table
+    numbers, table = cells.arrays_of_structure, found.table
     assert table is not None
     if numbers.resonant.any():
         raise _no_steady_state(question, _UNBOUNDED)
     n = numbers.participating.size
-    lengths = table[:, phase_table.LENGTH]
+    lengths = table[:, segment_table.LENGTH]
     period = WINDOW if found.averages else max(1, round(float(lengths.sum()) / _TURN))
     tau = _times(period, question.points)
-    since, shown, times = _place(found, tau, table[:, phase_table.BEGIN])
+    since, shown, times = _place(found, tau, table[:, segment_table.BEGIN])
     order = np.argsort(since, kind="stable")
     st = make_structure(numbers.model, numbers.loads, 0, question.r, float(question.solver.steps))
     coordinates, velocities = np.empty((2, n, tau.size))
     z, friction = np.empty((2, tau.size))
     sense = np.empty(tau.size, dtype=np.int8)
     samples = Samples(coordinates, velocities, z, friction, sense)
-    sample_phases(st, question.beta, table, since[order], samples, make_workspace(n), make_scratch(n))
+    sample_segments(st, question.beta, table, since[order], samples, make_workspace(n), make_scratch(n))
     back = np.empty_like(order)
     back[order] = np.arange(order.size)
-    alone = numbers.alone[0][:, np.newaxis] * np.exp(1j * tau)
+    uncoupled = numbers.uncoupled[0][:, np.newaxis] * np.exp(1j * tau)
     x, v = _displacements(question, numbers, coordinates[:, back], velocities[:, back], tau)
     begins, places = _phase_starts(table)
     return History(
-        period, tau, x + alone.real, v - alone.imag, z[back], friction[back], sense[back],
-        (times, begins[shown], places[shown]), lengths[table[:, phase_table.SENSE] == 0.0],
-        float(np.abs(table[:, phase_table.Z_END]).max()), False,
+        period, tau, x + uncoupled.real, v - uncoupled.imag, z[back], friction[back], sense[back],
+        (times, begins[shown], places[shown]), lengths[table[:, segment_table.SENSE] == 0.0],
+        float(np.abs(table[:, segment_table.Z_END]).max()), False,
     )  # fmt: skip
 
 
@@ -310,7 +316,7 @@ def _cycle(question: Question, cells: Cells, found: Found) -> dict[str, np.ndarr
             table_cell_quantities(cells.quantities, question.beta, found.once)
     values = {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
     if found.table is None:  # here the place where the contact rests is shown, too
-        values["amplitude"] += np.abs(cells.structures.shapes.static_shape * found.rest)
+        values["amplitude"] += np.abs(cells.arrays_of_structure.outputs.static_shape * found.rest)
     values["phase_lag"] = values.pop("phase")
     return values
 

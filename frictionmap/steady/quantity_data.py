@@ -5,7 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .._kernels.engine.extremes import FOUND, PHASE, PHASE_BEGIN, PHASE_END, VALUE, Alone, Shapes
+from .._kernels.engine.dissipation import Dampers
+from .._kernels.engine.extremes import (
+    FOUND,
+    PHASE,
+    PHASE_BEGIN,
+    PHASE_END,
+    VALUE,
+    OutputMatrices,
+    UncoupledResponse,
+)
 from .._kernels.engine.quantities import (
     BY_DAMPING,
     BY_FRICTION,
@@ -16,18 +25,17 @@ from .._kernels.engine.quantities import (
     LAG,
     MODULUS,
     RMS,
-    WORKS,
+    WORK_TERMS,
     Balance,
     Linear,
     Quantities,
     Results,
 )
-from .._kernels.engine.works import Dampers
 from .._kernels.structure.state import STATIC_SHAPE
 from ..datasets.labels import COORDINATES
 from ..model.modes import ModalModel, times
 from ..model.system import System
-from .kernel_data import Structures
+from .kernel_data import StructureArrays
 
 #: Where every variable is found: kind of result, rows, and column.
 _MASSES, _FORCE, _CONTACT, _CELL = "masses", "force", "contact", "cell"
@@ -48,13 +56,13 @@ _PLACES = {
     "displacement_harmonic": ("harmonics", _MASSES, None),
     "contact_harmonic": ("harmonics", _CONTACT, None),
     "friction_harmonic": ("harmonics", _FORCE, None),
-    "sliding_distance": ("works", _CELL, DISTANCE),
-    "work_friction": ("works", _CELL, BY_FRICTION),
-    "work_input": ("works", _CELL, BY_LOAD),
-    "work_damping": ("works", _CELL, BY_DAMPING),
-    "equivalent_damping": ("works", _CELL, EQUIVALENT),
-    "rms": ("rests", _MASSES, RMS),
-    "distortion": ("rests", _MASSES, DISTORTION),
+    "sliding_distance": ("work_terms", _CELL, DISTANCE),
+    "work_friction": ("work_terms", _CELL, BY_FRICTION),
+    "work_input": ("work_terms", _CELL, BY_LOAD),
+    "work_damping": ("work_terms", _CELL, BY_DAMPING),
+    "equivalent_damping": ("work_terms", _CELL, EQUIVALENT),
+    "rms": ("distortions", _MASSES, RMS),
+    "distortion": ("distortions", _MASSES, DISTORTION),
 }
 
 
@@ -98,7 +106,7 @@ def read_result(name: str, found: Results) -> np.ndarray:
     array = getattr(found, kind)
     if rows == _CELL:
         return np.ascontiguousarray(array[..., column])
-    masses = array.shape[3] - (0 if kind == "rests" else 2)
+    masses = array.shape[3] - (0 if kind == "distortions" else 2)
     row = {_MASSES: slice(masses), _FORCE: masses, _CONTACT: masses + 1}[rows]
     chosen = np.ascontiguousarray(array[:, :, :, row])
     if column is None:
@@ -116,17 +124,17 @@ def results(cells: tuple[int, int, int], masses: int, asked: Asked) -> Results:
     rows = masses + 2
     return Results(
         array("extremes", rows, FOUND), array("firsts", rows, 2),
-        array("harmonics", rows, asked.harmonics + 1, dtype=complex), array("works", WORKS),
-        array("rests", masses, 2),
+        array("harmonics", rows, asked.harmonics + 1, dtype=complex), array("work_terms", WORK_TERMS),
+        array("distortions", masses, 2),
     )  # fmt: skip
 
 
-def _at_wall(system: System) -> int:
+def _wall_mass(system: System) -> int:
     """The mass whose displacement is that in the contact, counted from 0; -1 if there is none."""
     return system.contact_rows[0] if system.contact == "fixed-wall" else -1
 
 
-def _with_force(shapes: Shapes, found: Structures, modes: ModalModel) -> Shapes:
+def _with_force(outputs: OutputMatrices, found: StructureArrays, modes: ModalModel) -> OutputMatrices:
     """The shapes, and as one more row the transmitted force, the loads less the inertia.
 
     Inertia is replaced by what the equations of the modes make of it; friction, in a stop, by the load.
@@ -144,9 +152,9 @@ def _with_force(shapes: Shapes, found: Structures, modes: ModalModel) -> Shapes:
     friction = float(mass @ modes.chi[participating])
     held = row @ model.to_free - friction * model.watch
     static = float(row[: mass.size] @ model.modes[STATIC_SHAPE]) - friction * model.stiffness
-    return Shapes(
-        np.vstack((shapes.free, row)), np.vstack((shapes.held, held)),
-        np.append(shapes.static_shape, static), np.append(shapes.friction, friction),
+    return OutputMatrices(
+        np.vstack((outputs.free, row)), np.vstack((outputs.held, held)),
+        np.append(outputs.static_shape, static), np.append(outputs.friction, friction),
     )  # fmt: skip
 
 
@@ -162,18 +170,22 @@ def _scaled(values: np.ndarray, factors: np.ndarray) -> np.ndarray:
     return found
 
 
-def _alone(found: Structures, modes: ModalModel, r: np.ndarray, balance: Balance, force: bool) -> Alone:
+def _uncoupled_response(
+    found: StructureArrays, modes: ModalModel, r: np.ndarray, balance: Balance, force: bool
+) -> UncoupledResponse:
     """Phasors of what moves with the load alone, of the masses and, if it is asked for, of the force."""
     if not force:
-        return Alone(found.alone, found.alone)
+        return UncoupledResponse(found.uncoupled, found.uncoupled)
     participating, model = found.participating, found.model
     mass = modes.phi[:, participating].T @ modes.mass.sum(axis=0)
     loads = np.ascontiguousarray(modes.relative_participation(r)[:, participating])
     sliding = balance.load - _column(loads, mass)
-    sliding += _scaled(_column(found.alone, modes.mass.sum(axis=0)), r * r)
+    sliding += _scaled(_column(found.uncoupled, modes.mass.sum(axis=0)), r * r)
     chi = modes.chi[participating]
     held = sliding + _column(loads, chi * (float(mass @ chi) / model.inverse_mass))
-    return Alone(np.column_stack((found.alone, sliding)), np.column_stack((found.alone, held)))
+    return UncoupledResponse(
+        np.column_stack((found.uncoupled, sliding)), np.column_stack((found.uncoupled, held))
+    )
 
 
 def _base_share(system: System) -> float:
@@ -184,7 +196,7 @@ def _base_share(system: System) -> float:
     return float(system.base_motion) - float(system.damping_reference == "base")
 
 
-def _dampers(modes: ModalModel, found: Structures, base: np.ndarray) -> Dampers:
+def _dampers(modes: ModalModel, found: StructureArrays, base: np.ndarray) -> Dampers:
     """The dashpots of what the contact sees; `base` (n,) its share of the base's motion, by modes.
 
     One a mode; where the damping couples them one along each principal direction of it.
@@ -199,7 +211,7 @@ def _dampers(modes: ModalModel, found: Structures, base: np.ndarray) -> Dampers:
     return Dampers(weights, place, speed, speed @ found.model.to_free, forms @ base)
 
 
-def _balance(system: System, found: Structures, r: np.ndarray) -> Balance:
+def _balance(system: System, found: StructureArrays, r: np.ndarray) -> Balance:
     modes = system.modes
     loads = modes.total_load(r)
     to_base = system.damping_reference == "base"
@@ -207,7 +219,7 @@ def _balance(system: System, found: Structures, r: np.ndarray) -> Balance:
     participating = np.isin(np.arange(modes.w.size), found.participating)
     mass = modes.phi.T @ total_mass
     moving = modes.answers(r, np.where(participating, 0.0, modes.relative_participation(r)))
-    alone = np.where(participating, 0.0, np.where(np.isinf(moving), 0.0, moving) + share * mass)
+    uncoupled = np.where(participating, 0.0, np.where(np.isinf(moving), 0.0, moving) + share * mass)
     held = np.where(np.isfinite(found.held), found.held, 0.0) - float(to_base)
     drag = times(held, modes.damping)
     held_rate = (held.real * drag.real + held.imag * drag.imag).sum(axis=1)
@@ -215,16 +227,16 @@ def _balance(system: System, found: Structures, r: np.ndarray) -> Balance:
         load=loads.sum(axis=1),
         inertia=r[:, np.newaxis] ** 2 * total_mass,
         power=-(loads if to_base else loads.conj()),
-        power_alone=loads.sum(axis=1) if to_base else np.zeros(r.size, complex),
+        base_power=loads.sum(axis=1) if to_base else np.zeros(r.size, complex),
         base_motion=float(system.base_motion),
         dampers=_dampers(modes, found, share * mass[participating]),
         damped=bool(modes.zeta[found.participating].any()),
-        damping_alone=np.pi * r * modes.drag(alone),
+        damping_uncoupled=np.pi * r * modes.drag(uncoupled),
         damping_held=np.pi * r * held_rate,
     )  # fmt: skip
 
 
-def _growing(system: System, found: Structures, r: np.ndarray) -> np.ndarray:
+def _growth(system: System, found: StructureArrays, r: np.ndarray) -> np.ndarray:
     """Directions (n_r, n_dof + 2) of masses, transmitted force and contact that grow at a resonance.
 
     A quarter of a period behind the load on the mode; 0 elsewhere.
@@ -239,15 +251,15 @@ def _growing(system: System, found: Structures, r: np.ndarray) -> np.ndarray:
 
 
 def quantity_numbers(
-    system: System, r: np.ndarray, found: Structures, steps: float, asked: Asked, out: Results
+    system: System, r: np.ndarray, found: StructureArrays, steps: float, asked: Asked, out: Results
 ) -> Quantities:
     """Everything that the quantities of a system's cells need at frequencies r."""
     modes = system.modes
     balance = _balance(system, found, r)
-    shapes = _with_force(found.shapes, found, modes) if asked.force else found.shapes
-    linear = Linear(found.held, modes.held_load(r), _growing(system, found, r))
+    outputs = _with_force(found.outputs, found, modes) if asked.force else found.outputs
+    linear = Linear(found.held, modes.held_load(r), _growth(system, found, r))
     return Quantities(
-        r, found.model, found.loads, found.orbit, steps, _at_wall(system), shapes,
-        _alone(found, modes, r, balance, asked.force), linear, balance, out,
+        r, found.model, found.loads, found.orbit, steps, _wall_mass(system), outputs,
+        _uncoupled_response(found, modes, r, balance, asked.force), linear, balance, out,
         asked.harmonics,
     )  # fmt: skip

@@ -64,10 +64,10 @@ def _put_linear(phasors: np.ndarray, found: Results) -> None:
     if found.harmonics.size:
         found.harmonics[:, 0, 0] = 0.0
         found.harmonics[:, 0, 0, :, 1] = np.where(np.arange(phasors.size) == masses, 0.0, phasors)
-    if found.works.size:
+    if found.work_terms.size:
         for column in (BY_FRICTION, BY_LOAD, BY_DAMPING, EQUIVALENT):
-            found.works[:, 0, 0, column] = 0.0
-        found.works[:, 0, 0, DISTANCE] = 4.0 * abs(phasors[-1])
+            found.work_terms[:, 0, 0, column] = 0.0
+        found.work_terms[:, 0, 0, DISTANCE] = 4.0 * abs(phasors[-1])
 
 
 def _ends(system: System, beta: float) -> np.ndarray:
@@ -100,8 +100,10 @@ def put_resonance(system: System, r: np.ndarray, resonant: np.ndarray, found: Re
         push = modes.phi[:, mode] @ modes.participation(at)[0, mode]
         for k in np.flatnonzero(resonant[i]).tolist():
             _put_unbounded(-1j * push[k], i, k, found)
-        if found.works.size:
-            found.works[:, i, :, BY_LOAD] = np.where(np.isnan(found.works[:, i, :, BY_LOAD]), np.nan, np.inf)
+        if found.work_terms.size:
+            found.work_terms[:, i, :, BY_LOAD] = np.where(
+                np.isnan(found.work_terms[:, i, :, BY_LOAD]), np.nan, np.inf
+            )
 
 
 def _put_unbounded(direction: complex, i: int, k: int, found: Results) -> None:

@@ -10,7 +10,7 @@
 | `statistics` | what a motion that does not repeat does on average; when to try Newton's method |
 | `march` | the driver |
 | `measure` | stops, amplitude and share stuck of a periodic orbit, and its table of phases |
-| `phase_table` | the table of phases of a steady state |
+| `segment_table` | the table of phases of a steady state |
 | `extremes`, `transforms`, `harmonics`, `works`, `rests`, `floquet`, `time_history` | what is read from it |
 | `details`, `quantities` | those of them that a map was asked for |
 | `coexistence` | what else a cell could end in |

@@ -15,10 +15,10 @@ import numpy as np
 
 from ...regimes import CONTINUOUS, PERMANENT_STICKING, STICK_SLIP
 from ..jit import entry, kernel
-from .answers import Moment
 from .march import steady_state
 from .motion import at_frequency, bring_back, contact_at, forget_neighbour, keep_state, on_continuous, start
 from .policies import ABOVE, AROUND, EIGHTHS, RUNGS
+from .records import ContactState
 
 #: Halvings of the step of the ladder in which a sliding motion ends.
 _HALVINGS = 22
@@ -104,7 +104,7 @@ def _from_node(motion, system, row, ladder, way, k, beta, limits, cancel):
     """Where the motion at beta ends that starts from the state at a node."""
     bring_back(motion, ladder.slot + way * ladder.beta.size + k)
     at = ladder.at[way, k]
-    moment = Moment(at[0], at[1], at[2], at[3], at[4])
+    moment = ContactState(at[0], at[1], at[2], at[3], at[4])
     return _settle(motion, _contact(system, row, beta), moment, False, limits, cancel)
 
 
@@ -115,7 +115,7 @@ def _keep(motion, system, row, ladder, way, k, beta, found):
     if not (continuous or found.regime == STICK_SLIP):
         return
     ladder.moves[k] = True
-    at = found.at
+    at = found.contact_state
     if found.slides == 0:
         if not continuous or math.isinf(motion.v_abs) or (beta < row.lim and beta < row.stick):
             return

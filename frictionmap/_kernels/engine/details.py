@@ -1,6 +1,6 @@
 """What is asked for of steady states beyond their regime: amplitudes, multipliers, asymmetry.
 
-All of it is read from their tables of phases.  Chosen by the class of `wanted` (`kinds`): who asks for
+All of it is read from their tables of phases.  Chosen by the class of `requested` (`kinds`): who asks for
 nothing compiles nothing of it.
 """
 
@@ -15,16 +15,16 @@ from ..one_mass.sliding_orbit import orbit_phase
 from ..structure.newton import Workspace, make_workspace
 from ..structure.oscillators import Scratch, make_scratch
 from ..structure.sliding_orbit import Continuous
-from ..structure.state import Loads, Model, Structure, make_structure
-from .answers import known_orbit
-from .extremes import FOUND, VALUE, Alone, Shapes, largest_moduli
+from ..structure.state import Loads, Model, StructureAtFrequency, make_structure
+from .extremes import FOUND, VALUE, OutputMatrices, UncoupledResponse, largest_moduli
 from .floquet import asymmetry, continuous_multiplier, orbit_multiplier
 from .measure import measure
-from .phase_table import continuous_phase, phase_columns
 from .policies import FINE_STEPS
+from .records import known_orbit
+from .segment_table import continuous_segment, segment_columns
 
 
-class Nothing(NamedTuple):
+class NotRequested(NamedTuple):
     """No details are asked for."""
 
     size: int
@@ -33,8 +33,8 @@ class Nothing(NamedTuple):
 class Displacements(NamedTuple):
     """What the displacements of the masses are made of; arrays (n_r, n_dof)."""
 
-    shapes: Shapes
-    alone: Alone
+    outputs: OutputMatrices
+    uncoupled: UncoupledResponse
     held: np.ndarray  # phasor of the displacements with the contact held
 
 
@@ -49,12 +49,12 @@ class Details(NamedTuple):
     displacements: Displacements
 
 
-class DetailsHere(NamedTuple):
+class DetailsAtFrequency(NamedTuple):
     """Details at one frequency; at r = 0 nothing moves, and the structures are those of another."""
 
     i: int
-    st: Structure
-    fine: Structure
+    st: StructureAtFrequency
+    fine: StructureAtFrequency
     orbit: Continuous
     displacements: Displacements
     extremes: np.ndarray  # (n_dof, FOUND) of a cell
@@ -63,18 +63,18 @@ class DetailsHere(NamedTuple):
 
 
 @kernel
-def _nothing_at(wanted, i):
-    return wanted
+def _not_requested(requested, i):
+    return requested
 
 
 @entry
-def _details_at(wanted, i):
-    r = wanted.r[i] if wanted.r[i] > 0.0 else 1.0
-    st = make_structure(wanted.model, wanted.loads, i, r, wanted.steps)
-    fine = make_structure(wanted.model, wanted.loads, i, r, max(wanted.steps, FINE_STEPS))
+def _details_at(requested, i):
+    r = requested.r[i] if requested.r[i] > 0.0 else 1.0
+    st = make_structure(requested.model, requested.loads, i, r, requested.steps)
+    fine = make_structure(requested.model, requested.loads, i, r, max(requested.steps, FINE_STEPS))
     work, scratch = make_workspace(st.n), make_scratch(st.n)
-    extremes = np.empty((wanted.displacements.held.shape[1], FOUND))
-    return DetailsHere(i, st, fine, wanted.orbit, wanted.displacements, extremes, work, scratch)
+    extremes = np.empty((requested.displacements.held.shape[1], FOUND))
+    return DetailsAtFrequency(i, st, fine, requested.orbit, requested.displacements, extremes, work, scratch)
 
 
 @kernel
@@ -87,7 +87,7 @@ def _stuck(details, out, m, i, j, z):
     """Where the contact is held at z: the masses swing about where that puts them."""
     displacements = details.displacements
     for mass in range(out.amplitude.shape[3]):
-        offset = abs(displacements.shapes.static_shape[mass] * z)
+        offset = abs(displacements.outputs.static_shape[mass] * z)
         out.amplitude[m, i, j, mass] = abs(displacements.held[i, mass]) + offset
 
 
@@ -111,9 +111,9 @@ def _continuous(details, out, m, i, j, beta, mu_beta):
     if out.multiplier.size:
         out.multiplier[m, i, j] = continuous_multiplier(fine, orbit, i, beta, mu_beta, work, scratch)
     if out.amplitude.size:
-        table = np.empty((1, phase_columns(fine.n)))
+        table = np.empty((1, segment_columns(fine.n)))
         phase = orbit_phase(orbit.v_abs[i], orbit.v_arg[i], orbit.u[i], beta)
-        continuous_phase(fine, orbit, i, beta, phase, table[0], work)
+        continuous_segment(fine, orbit, i, beta, phase, table[0], work)
         _masses(details, out, m, i, j, beta, table)
 
 
@@ -122,7 +122,7 @@ def _masses(details, out, m, i, j, beta, table):
     """Amplitudes of the masses."""
     parts, found = details.displacements, details.extremes
     largest_moduli(
-        details.st, beta, parts.shapes, parts.alone, details.i, -1, table, found, details.work,
+        details.st, beta, parts.outputs, parts.uncoupled, details.i, -1, table, found, details.work,
         details.scratch,
     )  # fmt: skip
     out.amplitude[m, i, j] = found[:, VALUE]
@@ -130,16 +130,16 @@ def _masses(details, out, m, i, j, beta, table):
 
 @kernel
 def _no_orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude):
-    """Nothing; see `note_orbit` for its arguments."""
+    """Nothing; see `write_orbit_details` for its arguments."""
 
 
 @entry
 def _orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude):
-    """Of a periodic orbit, whose table of phases is written first; see `note_orbit` for its arguments."""
+    """Of a periodic orbit, whose table of phases is written first; see `write_orbit_details` for its arguments."""
     st, work, scratch = details.st, details.work, details.scratch
-    table = np.empty((2 * found.slides, phase_columns(st.n)))
-    orbit = known_orbit(found.at, found.event, found.sign, found.slides)
-    table = table[: measure(motion, contact, orbit, table).phases]
+    table = np.empty((2 * found.slides, segment_columns(st.n)))
+    orbit = known_orbit(found.contact_state, found.event, found.sign, found.slides)
+    table = table[: measure(motion, contact, orbit, table).segments]
     if out.multiplier.size:
         out.multiplier[m, i, j] = orbit_multiplier(st, beta, mu_beta, table, work, scratch)
     if out.asymmetry.size:
@@ -148,23 +148,23 @@ def _orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitu
         _masses(details, out, m, i, j, beta, table)
 
 
-@by_class((Nothing, _nothing_at), (Details, _details_at))
-def details_at(wanted, i):
+@by_class((NotRequested, _not_requested), (Details, _details_at))
+def details_at(requested, i):
     """The details at the i-th frequency."""
 
 
-@by_class((Nothing, _no_stuck), (DetailsHere, _stuck))
-def note_stuck(details, out, m, i, j, z):
+@by_class((NotRequested, _no_stuck), (DetailsAtFrequency, _stuck))
+def write_stuck_details(details, out, m, i, j, z):
     """Write those of a cell whose contact sticks at z."""
 
 
-@by_class((Nothing, _no_continuous), (DetailsHere, _continuous))
-def note_continuous(details, out, m, i, j, beta, mu_beta):
+@by_class((NotRequested, _no_continuous), (DetailsAtFrequency, _continuous))
+def write_continuous_details(details, out, m, i, j, beta, mu_beta):
     """Write those of a cell on the continuous orbit."""
 
 
-@by_class((Nothing, _no_orbit), (DetailsHere, _orbit))
-def note_orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude):
+@by_class((NotRequested, _no_orbit), (DetailsAtFrequency, _orbit))
+def write_orbit_details(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude):
     """Write those of a cell on the periodic orbit that was found.
 
     Eleven arguments: the cell's friction is told in units of the map, the contact's in those of the motion.

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..jit import kernel
 from ..structure.oscillators import COLUMNS, OW, OZ, bounds, derivatives, expand, step_on, watch, watch_load
-from ..structure.state import DIRECT_COS, DIRECT_SIN
-from .phase_table import COS, LENGTH, PLACE, SENSE, SIN, Z_END, take_start
+from ..structure.state import FEEDTHROUGH_COS, FEEDTHROUGH_SIN
+from .segment_table import COS, LENGTH, SENSE, SIN, STOP_Z, Z_END, take_start
 
 #: Columns of what is found: the largest modulus, the load's phase at it, and where it is held over a stop the
 #: load's phases at which that begins and ends.
@@ -28,7 +28,7 @@ _SHORTEST = 1e-6
 _NEXT = 1e-9
 
 
-class Shapes(NamedTuple):
+class OutputMatrices(NamedTuple):
     """What each of the things looked at, the masses first, has of the state; velocities in t = tau/r."""
 
     free: np.ndarray  # (rows, 2n) of the free oscillators (q, p)
@@ -37,7 +37,7 @@ class Shapes(NamedTuple):
     friction: np.ndarray  # (rows,) of the friction force while the contact slides
 
 
-class Alone(NamedTuple):
+class UncoupledResponse(NamedTuple):
     """Phasors (n_r, rows) of what moves with the load alone: modes that do not participate, the base."""
 
     sliding: np.ndarray
@@ -68,8 +68,8 @@ def largest_in_contact(table, out):
 
 
 @kernel
-def set_watch(st, shapes, k, beta, phasor, row, slides, n, table):
-    """Fill a table of the n oscillators of a phase, in which the k-th row of `shapes` is watched.
+def set_watch(st, outputs, k, beta, phasor, row, slides, n, table):
+    """Fill a table of the n oscillators of a phase, in which the k-th row of `outputs` is watched.
 
     phasor : of what moves with the load alone
     Returns (friction force, what the row has beside what is watched).
@@ -81,18 +81,18 @@ def set_watch(st, shapes, k, beta, phasor, row, slides, n, table):
             table[i, column] = source[i, column]
     for i in range(n):
         if slides:
-            place, rate = shapes.free[k, i], shapes.free[k, n + i]
-            yc -= rate * st.modes[DIRECT_COS, i]
-            ys -= rate * st.modes[DIRECT_SIN, i]
+            of_q, of_p = outputs.free[k, i], outputs.free[k, n + i]
+            yc -= of_p * st.modes[FEEDTHROUGH_COS, i]
+            ys -= of_p * st.modes[FEEDTHROUGH_SIN, i]
         else:
-            place, rate = shapes.held[k, i], shapes.held[k, n + i]
-            yc -= rate * st.direct[0, i]
-            ys -= rate * st.direct[1, i]
-        table[i, OZ], table[i, OW] = place, rate * st.rate
+            of_q, of_p = outputs.held[k, i], outputs.held[k, n + i]
+            yc -= of_p * st.held_feedthrough[0, i]
+            ys -= of_p * st.held_feedthrough[1, i]
+        table[i, OZ], table[i, OW] = of_q, of_p * st.rate
     watch_load(table, yc, ys)
     if slides:
-        return beta, shapes.friction[k] * beta
-    return 0.0, shapes.static_shape[k] * row[PLACE]
+        return beta, outputs.friction[k] * beta
+    return 0.0, outputs.static_shape[k] * row[STOP_Z]
 
 
 @kernel
@@ -120,7 +120,7 @@ def _search(st, table, n, friction, offset, row, state, scratch, out):
             watch(table, c, s, scratch.series, scratch.watched)
             scratch.watched[0] += offset
             begin, end = 0.0 if first else -_SHORTEST, length - done if last else 1.0 + _SHORTEST
-            most, x = _largest(scratch.watched, st.terms, begin, end, first, last, out[VALUE])
+            most, x = _largest_modulus(scratch.watched, st.terms, begin, end, first, last, out[VALUE])
             if abs(most) > out[VALUE]:
                 out[VALUE], out[PHASE] = abs(most), turned_half(angle + (done + x) * st.h, most)
         value, slope, c, s = value1, slope1, c1, s1
@@ -128,13 +128,13 @@ def _search(st, table, n, friction, offset, row, state, scratch, out):
 
 
 @kernel
-def largest_moduli(st, beta, shapes, alone, i, skipped, table, out, work, scratch):
-    """The largest modulus, and when, of every row of `shapes` over the table's phases; `out` (rows, FOUND).
+def largest_moduli(st, beta, outputs, uncoupled, i, skipped, table, out, work, scratch):
+    """The largest modulus, and when, of every row of `outputs` over the table's phases; `out` (rows, FOUND).
 
     alone : Alone, at the i-th frequency
     skipped : a row to leave out, or -1
     """
-    for k in range(shapes.static_shape.size):
+    for k in range(outputs.static_shape.size):
         if k == skipped:
             continue
         for column in range(FOUND):
@@ -144,13 +144,13 @@ def largest_moduli(st, beta, shapes, alone, i, skipped, table, out, work, scratc
             row = table[j]
             slides, n, state = take_start(st, row, work)
             watched = work.table[: n + 1]
-            phasor = alone.sliding[i, k] if slides else alone.held[i, k]
-            force, offset = set_watch(st, shapes, k, beta, phasor, row, slides, n, watched)
+            phasor = uncoupled.sliding[i, k] if slides else uncoupled.held[i, k]
+            force, offset = set_watch(st, outputs, k, beta, phasor, row, slides, n, watched)
             _search(st, watched, n, force, offset, row, state, scratch, out[k])
 
 
 @kernel
-def _at(p, terms, x):
+def _polynomial(p, terms, x):
     """A polynomial, its slope and its bend at x."""
     value = slope = bend = 0.0
     for k in range(terms - 1, -1, -1):
@@ -161,7 +161,7 @@ def _at(p, terms, x):
 
 
 @kernel
-def _bounds(p, terms):
+def _derivative_bounds(p, terms):
     """Bounds over [0, 1] on the moduli of the second and the third derivative of a polynomial."""
     second = third = 0.0
     for k in range(2, terms):
@@ -172,11 +172,11 @@ def _bounds(p, terms):
 
 
 @kernel
-def _turn(p, terms, low, high, slope_low):
+def _turning_point(p, terms, low, high, slope_low):
     """(value, x) where a polynomial turns in [low, high], the only place: Newton's method, kept inside."""
     x = 0.5 * (low + high)
     while True:
-        value, slope, bend = _at(p, terms, x)
+        value, slope, bend = _polynomial(p, terms, x)
         if slope * slope_low > 0.0:
             low = x
         else:
@@ -188,7 +188,7 @@ def _turn(p, terms, low, high, slope_low):
 
 
 @kernel
-def _largest(p, terms, begin, end, opens, closes, most):
+def _largest_modulus(p, terms, begin, end, opens, closes, most):
     """(value, x) of the largest modulus over [begin, end] of a polynomial beyond `most`; value 0 if none is.
 
     opens, closes : whether the phase begins or ends here.  Its ends count where the modulus falls from or
@@ -197,15 +197,15 @@ def _largest(p, terms, begin, end, opens, closes, most):
     An interval of length l holds nothing beyond its larger end by l^2/8 max |p''|; and no turn where the
     slopes differ by less than they would if it had one, or one where the bend keeps its sign.
     """
-    second, third = _bounds(p, terms)
-    best, at = 0.0, begin
+    second, third = _derivative_bounds(p, terms)
+    best, x_best = 0.0, begin
     a, length = begin, end - begin
-    value_a, slope_a, bend_a = _at(p, terms, begin)
+    value_a, slope_a, bend_a = _polynomial(p, terms, begin)
     if opens and value_a * slope_a <= 0.0 and abs(value_a) > most:
         best, most = value_a, abs(value_a)
     while a < end:
         b = min(a + length, end)
-        value, slope, bend = _at(p, terms, b)
+        value, slope, bend = _polynomial(p, terms, b)
         size = b - a
         low = max(abs(value_a), abs(value)) + 0.125 * size * size * second <= most
         straight = slope_a * slope > 0.0 and abs(slope_a) + abs(slope) >= size * second
@@ -215,11 +215,11 @@ def _largest(p, terms, begin, end, opens, closes, most):
                 length = 0.5 * size
                 continue
             if slope_a * slope <= 0.0:
-                turn, x = _turn(p, terms, a, b, slope_a)
+                turn, x = _turning_point(p, terms, a, b, slope_a)
                 if abs(turn) > most:
-                    best, at, most = turn, x, abs(turn)
+                    best, x_best, most = turn, x, abs(turn)
         a, value_a, slope_a, bend_a = b, value, slope, bend
         length = end - a
     if closes and value_a * slope_a >= 0.0 and abs(value_a) > most:
-        best, at = value_a, end
-    return best, at
+        best, x_best = value_a, end
+    return best, x_best

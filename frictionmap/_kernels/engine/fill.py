@@ -8,13 +8,26 @@ import numpy as np
 from ...regimes import CLOSED_FORM, CONTINUOUS, PERMANENT_STICKING, RESOLVED
 from ..jit import entry, kernel
 from ..one_mass.sliding_orbit import continuous_amplitude
-from .answers import continuous_cell, known_orbit, quasi_static_cell, stuck_cell
-from .details import Details, Nothing, details_at, note_continuous, note_orbit, note_stuck
+from .details import (
+    Details,
+    NotRequested,
+    details_at,
+    write_continuous_details,
+    write_orbit_details,
+    write_stuck_details,
+)
 from .march import steady_state
 from .measure import measure
 from .motion import at_frequency, contact_at, forget_neighbour, start
-from .phase_table import phase_columns
-from .quantities import Quantities, quantities_at, take_continuous, take_orbit, take_stuck
+from .quantities import (
+    Quantities,
+    quantities_at,
+    write_continuous_quantities,
+    write_orbit_quantities,
+    write_stuck_quantities,
+)
+from .records import continuous_cell, known_orbit, quasi_static_cell, stuck_cell
+from .segment_table import segment_columns
 
 #: Open cells of a row after which the search from the neighbour's orbit starts anew.  Work is cut only there
 #: and at the ends of rows, so that no answer depends on how it is cut.
@@ -48,11 +61,11 @@ class ClosedForm(NamedTuple):
     marginal: np.ndarray  # bool
 
 
-class Wanted(NamedTuple):
+class Requested(NamedTuple):
     """What is asked for beyond the outputs that every cell has."""
 
-    details: Details | Nothing
-    quantities: Quantities | Nothing
+    details: Details | NotRequested
+    quantities: Quantities | NotRequested
 
 
 @kernel
@@ -77,7 +90,7 @@ def store(out, m, i, j, cell, load):
 
 
 @entry
-def fill_closed(first, last, cells, axes, closed, out, wanted):
+def fill_closed(first, last, cells, axes, closed, out, requested):
     """Rows first..last-1 of (mu, r): below the open cells all is continuous, above them it sticks.
 
     At r = 0, where no motion can be followed, the open cells are filled too.
@@ -87,45 +100,45 @@ def fill_closed(first, last, cells, axes, closed, out, wanted):
         m = row // n_r
         i = row % n_r
         load = closed.load[i]
-        details, quantities = details_at(wanted.details, i), quantities_at(wanted.quantities, i)
+        details, quantities = details_at(requested.details, i), quantities_at(requested.quantities, i)
         for j in range(cells.low[row]):
             b = axes.beta[j] / load
             amplitude = continuous_amplitude(closed.v_abs[i], closed.u[i], closed.g[i], b)
             marginal = closed.marginal[i] and b > 0.0
             store(out, m, i, j, continuous_cell(amplitude, marginal, CLOSED_FORM, 0.0), load)
             if axes.r[i] > 0.0:
-                note_continuous(details, out, m, i, j, axes.beta[j], axes.mu[m] * axes.beta[j])
-                take_continuous(quantities, m, j, axes.beta[j])
+                write_continuous_details(details, out, m, i, j, axes.beta[j], axes.mu[m] * axes.beta[j])
+                write_continuous_quantities(quantities, m, j, axes.beta[j])
         if axes.r[i] == 0.0:
             for j in range(cells.low[row], cells.high[row]):
                 store(out, m, i, j, quasi_static_cell(), load)
         for j in range(cells.high[row], axes.beta.size):
             store(out, m, i, j, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
-            note_stuck(details, out, m, i, j, 0.0)
-            take_stuck(quantities, m, j)
+            write_stuck_details(details, out, m, i, j, 0.0)
+            write_stuck_quantities(quantities, m, j)
 
 
 @kernel
-def _take(quantities, motion, contact, found, m, j, beta):
+def _write_quantities(quantities, motion, contact, found, m, j, beta):
     """Write the quantities that were asked for of an open cell."""
     if found.regime == PERMANENT_STICKING:
-        take_stuck(quantities, m, j)
+        write_stuck_quantities(quantities, m, j)
     elif found.slides > 0:
-        take_orbit(quantities, motion, contact, found, m, j, beta)
+        write_orbit_quantities(quantities, motion, contact, found, m, j, beta)
     elif found.regime == CONTINUOUS:
-        take_continuous(quantities, m, j, beta)
+        write_continuous_quantities(quantities, m, j, beta)
 
 
 @kernel
-def _note(details, motion, contact, found, out, m, i, j, beta, mu_beta):
+def _write_details(details, motion, contact, found, out, m, i, j, beta, mu_beta):
     """Write the details that were asked for of an open cell."""
     if found.regime == PERMANENT_STICKING:
-        note_stuck(details, out, m, i, j, motion.load * found.at.z)
+        write_stuck_details(details, out, m, i, j, motion.load * found.contact_state.z)
     elif found.slides > 0:
         amplitude = motion.load * found.amplitude
-        note_orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude)
+        write_orbit_details(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude)
     elif found.regime == CONTINUOUS:
-        note_continuous(details, out, m, i, j, beta, mu_beta)
+        write_continuous_details(details, out, m, i, j, beta, mu_beta)
 
 
 @kernel
@@ -142,7 +155,7 @@ def _row_of(cells, cell):
 
 
 @entry
-def fill_open(first, last, cells, axes, system, limits, moving, out, wanted, cancel):
+def fill_open(first, last, cells, axes, system, limits, moving, out, requested, cancel):
     """Cells first..last-1 of the list of open cells; ends soon after cancel[0] is set.
 
     Parameters
@@ -165,20 +178,20 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, wanted, can
         i = row % n_r
         begin = cells.ends[k - 1] if k > 0 else 0
         motion = at_frequency(system, i)
-        details, quantities = details_at(wanted.details, i), quantities_at(wanted.quantities, i)
-        for place in range(cell - begin, min(last, cells.ends[k]) - begin):
+        details, quantities = details_at(requested.details, i), quantities_at(requested.quantities, i)
+        for position in range(cell - begin, min(last, cells.ends[k]) - begin):
             if cancel[0] != 0:
                 return
-            if place % RESTART == 0:
+            if position % RESTART == 0:
                 forget_neighbour(motion)
-            j = cells.low[row] + place
+            j = cells.low[row] + position
             beta, mu = axes.beta[j], axes.mu[m]
             contact = contact_at(system, m, i, beta, mu)
-            at = start(motion, system, i, contact, moving)
-            found = steady_state(motion, contact, at, moving, limits, cancel)
+            contact_state = start(motion, system, i, contact, moving)
+            found = steady_state(motion, contact, contact_state, moving, limits, cancel)
             store(out, m, i, j, found, motion.load)
-            _note(details, motion, contact, found, out, m, i, j, beta, mu * beta)
-            _take(quantities, motion, contact, found, m, j, beta)
+            _write_details(details, motion, contact, found, out, m, i, j, beta, mu * beta)
+            _write_quantities(quantities, motion, contact, found, m, j, beta)
         cell = cells.ends[k]
         k += 1
 
@@ -192,11 +205,11 @@ def one_cell(system, beta, mu, limits, moving):
     motion = at_frequency(system, 0)
     forget_neighbour(motion)
     contact = contact_at(system, 0, 0, beta, mu)
-    at = start(motion, system, 0, contact, moving)
-    found = steady_state(motion, contact, at, moving, limits, np.zeros(1, dtype=np.uint8))
-    table = np.empty((2 * found.slides, phase_columns(system.modes)))
-    phases = 0
+    contact_state = start(motion, system, 0, contact, moving)
+    found = steady_state(motion, contact, contact_state, moving, limits, np.zeros(1, dtype=np.uint8))
+    table = np.empty((2 * found.slides, segment_columns(system.modes)))
+    segments = 0
     if found.slides > 0:
-        orbit = known_orbit(found.at, found.event, found.sign, found.slides)
-        phases = measure(motion, contact, orbit, table).phases
-    return found, table[:phases]
+        orbit = known_orbit(found.contact_state, found.event, found.sign, found.slides)
+        segments = measure(motion, contact, orbit, table).segments
+    return found, table[:segments]

@@ -11,15 +11,15 @@ from ..one_mass.sliding_orbit import orbit_phase
 from ..structure.events import slide_on
 from ..structure.newton import copy_state, return_map, spectral_radius
 from ..structure.sliding_orbit import orbit_state
-from .phase_table import CONTACT_FORCE, COS, EVENT, LENGTH, SENSE, SIN, take_start
-from .time_history import Samples, sample_phases
+from .segment_table import CONTACT_FORCE, COS, EVENT, LENGTH, SENSE, SIN, take_start
+from .time_history import Samples, sample_segments
 
 #: Samples of z in half a period of the excitation for its asymmetry.
 _SAMPLES = 256
 
 
 @kernel
-def _around(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
+def _multiplier(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
     """Largest modulus over the steady period from work.middle in a slide; nan if it does not fit."""
     if not return_map(st, beta, mu_beta, work.middle, c, s, sequence, halves, True, work, scratch):
         return math.nan
@@ -45,7 +45,7 @@ def orbit_multiplier(st, beta, mu_beta, table, work, scratch):
     half = 0.5 * table[0, LENGTH] / st.h
     sequence = EventSequence(events, np.int64(0), slides)
     _, _, c, s, _ = slide_on(st, beta, table[0, CONTACT_FORCE], work.middle, c, s, half, scratch)
-    return _around(st, beta, mu_beta, c, s, sequence, half_periods(time), work, scratch)
+    return _multiplier(st, beta, mu_beta, c, s, sequence, half_periods(time), work, scratch)
 
 
 @kernel
@@ -61,7 +61,7 @@ def continuous_multiplier(st, orbit, i, beta, mu_beta, work, scratch):
     work.events[0] = REVERSE
     once = np.int64(1)  # not a literal, which would be compiled for itself
     sequence = EventSequence(work.events, np.int64(0), once)
-    return _around(st, beta, mu_beta, c, s, sequence, once, work, scratch)
+    return _multiplier(st, beta, mu_beta, c, s, sequence, once, work, scratch)
 
 
 @kernel
@@ -98,5 +98,5 @@ def asymmetry(st, beta, table, amplitude, work, scratch):
     samples = Samples(
         np.empty((st.n, size)), np.empty((st.n, size)), z, np.empty(size), np.empty(size, dtype=np.int8)
     )  # fmt: skip
-    sample_phases(st, beta, table, tau, samples, work, scratch)
+    sample_segments(st, beta, table, tau, samples, work, scratch)
     return _least_difference(z, halves) / amplitude

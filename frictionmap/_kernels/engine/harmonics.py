@@ -15,7 +15,7 @@ from ..jit import entry, kernel
 from ..one_mass.newton import half_periods
 from ..structure.oscillators import F1, FC, FS, OW, OZ, YC, YS, D, K
 from ..structure.state import DAMPING, PUSH, STATIC_SHAPE, W
-from .phase_table import COS, LENGTH, PLACE, SENSE, SIGN, SIN, STATE
+from .segment_table import COS, LENGTH, SENSE, SIGN, SIN, STATE, STOP_Z
 from .transforms import Driven, end_of, near_harmonic, transform
 
 
@@ -82,7 +82,7 @@ def _one_transform(o, spectrum, i, n, length):
 
 
 @kernel
-def _set_out(st, row, oscillators, n, friction, spectrum):
+def _prepare_segment(st, row, oscillators, n, friction, spectrum):
     """Fill what all harmonics of a phase share; n oscillators are needed of it."""
     length = row[LENGTH]
     step = cmath.exp(complex(0.0, -length))
@@ -99,7 +99,7 @@ def _set_out(st, row, oscillators, n, friction, spectrum):
 @kernel
 def _add_slide(st, row, beta, near, spectrum):
     """Add a slide; `near`: whether any mode is integrated."""
-    _set_out(st, row, st.free, st.n if near else 0, beta, spectrum)
+    _prepare_segment(st, row, st.free, st.n if near else 0, beta, spectrum)
     sign, turn = row[SIGN], row[SIGN] * complex(row[COS], -row[SIN])
     factor = complex(sign, 0.0)
     for n in range(spectrum.friction.size):
@@ -117,13 +117,13 @@ def _add_slide(st, row, beta, near, spectrum):
 def _held_parts(st, row, phase, n, spectrum):
     """Fill the integrals of the held oscillators, and return that of the load in the contact."""
     shared = complex(st.held[st.m, YC], -st.held[st.m, YS]) * phase
-    load = _under_load(spectrum, shared, st.stiffness * row[PLACE], n)
+    load = _under_load(spectrum, shared, st.stiffness * row[STOP_Z], n)
     for k in range(st.m):
         o = _driven(st, st.held, k, st.m, 0.0, row)
         moved, rate = _one_transform(o, spectrum, k, n, row[LENGTH])
-        direct = complex(st.direct[0, k], -st.direct[1, k]) * phase
+        feedthrough = complex(st.held_feedthrough[0, k], -st.held_feedthrough[1, k]) * phase
         spectrum.parts[0, k] = moved
-        spectrum.parts[1, k] = st.r * rate - _under_load(spectrum, direct, 0.0, n)
+        spectrum.parts[1, k] = st.r * rate - _under_load(spectrum, feedthrough, 0.0, n)
         load += st.held[k, OZ] * moved + st.held[k, OW] * st.h * rate
     return load
 
@@ -131,7 +131,7 @@ def _held_parts(st, row, phase, n, spectrum):
 @kernel
 def _add_stop(st, row, near, spectrum):
     """Add a stop, in which friction carries the load."""
-    _set_out(st, row, st.held, st.m, 0.0, spectrum)
+    _prepare_segment(st, row, st.held, st.m, 0.0, spectrum)
     phase = complex(row[COS], row[SIN])
     sign, turn = row[SIGN], row[SIGN] * phase.conjugate()
     factor = complex(sign, 0.0)
@@ -140,7 +140,7 @@ def _add_stop(st, row, near, spectrum):
         if near:
             for i in range(st.n):
                 if spectrum.near[n, i]:
-                    moved = st.modes[STATIC_SHAPE, i] * row[PLACE] * spectrum.waves[n]
+                    moved = st.modes[STATIC_SHAPE, i] * row[STOP_Z] * spectrum.waves[n]
                     for k in range(st.m):
                         moved += st.to_free[i, k] * spectrum.parts[0, k]
                         moved += st.to_free[i, st.m + k] * spectrum.parts[1, k]
@@ -149,7 +149,7 @@ def _add_stop(st, row, near, spectrum):
 
 
 @kernel
-def _any_near(spectrum):
+def _any_near_harmonic(spectrum):
     found = False
     for n in range(spectrum.near.shape[0]):
         for i in range(spectrum.near.shape[1]):
@@ -158,7 +158,7 @@ def _any_near(spectrum):
 
 
 @kernel
-def _answer_of(st, i, n, friction):
+def _modal_response(st, i, n, friction):
     """Harmonic of a mode under load and friction; 0 where nothing drives it, in step with it or not.
 
     Where an undamped mode is driven in step with it that has no bound; who asks knows.
@@ -175,9 +175,9 @@ def _answer_of(st, i, n, friction):
 
 
 @kernel
-def harmonics_of_phases(st, beta, table, spectrum):
+def harmonics_of_segments(st, beta, table, spectrum):
     """Fill the harmonics of the steady state of a table of phases; the half periods that it lasts."""
-    near = _any_near(spectrum)
+    near = _any_near_harmonic(spectrum)
     for n in range(spectrum.friction.size):
         spectrum.friction[n] = 0j
         for i in range(st.n):
@@ -199,7 +199,7 @@ def harmonics_of_phases(st, beta, table, spectrum):
             if spectrum.near[n, i]:
                 spectrum.modes[n, i] *= scale
             else:
-                spectrum.modes[n, i] = _answer_of(st, i, n, spectrum.friction[n])
+                spectrum.modes[n, i] = _modal_response(st, i, n, spectrum.friction[n])
     return halves
 
 
@@ -212,5 +212,5 @@ def harmonics_of_continuous(st, beta, phase, spectrum):
         odd = n % 2 == 1
         spectrum.friction[n] = factor * complex(0.0, 4.0 * beta / (math.pi * n)) if odd else 0j
         for i in range(st.n):
-            spectrum.modes[n, i] = _answer_of(st, i, n, spectrum.friction[n])
+            spectrum.modes[n, i] = _modal_response(st, i, n, spectrum.friction[n])
         factor *= turn

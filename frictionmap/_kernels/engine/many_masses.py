@@ -12,7 +12,7 @@ import numpy as np
 from ..jit import entry, inner_kernel, kernel
 from ..one_mass.events import NO_END, STOP_THEN_BACK, EventSequence
 from ..one_mass.sliding_orbit import continuous_amplitude, orbit_phase
-from ..structure.events import MOVING, after_slide, slide_on
+from ..structure.events import UNDER_WAY, after_slide, slide_on
 from ..structure.newton import (
     BETA,
     EARLIER_BETA,
@@ -35,19 +35,19 @@ from ..structure.sliding_orbit import Continuous, orbit_state, stop_free_radius
 from ..structure.state import (
     Loads,
     Model,
-    Structure,
+    StructureAtFrequency,
     W,
+    contact_displacement,
     energy,
     hold,
     make_structure,
-    place,
     release_steady,
     vibrates_in_step,
 )
-from .answers import TURN, Contact, Moment, known_orbit, no_orbit, nowhere, turns_at
-from .memory import STATE, Memory, Near, make_memory, turned
-from .phase_table import put_state
+from .memory import STATE, Memory, Recurrence, make_memory, turned
 from .policies import FINE_STEPS, SLOTS
+from .records import TURN, Contact, ContactState, known_orbit, no_orbit, turns_at, undefined_state
+from .segment_table import put_state
 
 #: The load's phase at a return has to be this close even where any state will do to start from.
 _NEAR_PHASE = 0.3
@@ -60,7 +60,7 @@ _MOST_ORDERS = 8
 
 #: A return this close (relative to the motion) is worth a Newton iteration: one that is 0.1 off says too
 #: little of where a structure is heading.
-_NEAR_RETURN = 0.01
+_RECURRENCE_THRESHOLD = 0.01
 
 #: With several steady states the one solved for must be where the motion is heading: no further off than
 #: this many times what the last return and the contraction there make one expect.
@@ -76,7 +76,7 @@ _SAME = 1e-8
 class Starts(NamedTuple):
     """Starting states at every r: of the free modes, velocities in t = tau/r, and the load's phase."""
 
-    place: np.ndarray  # (n_r, n)
+    coordinates: np.ndarray  # (n_r, n)
     velocity: np.ndarray  # (n_r, n)
     cos: np.ndarray  # (n_r,)
     sin: np.ndarray
@@ -105,12 +105,12 @@ class ManyMasses(NamedTuple):
     load: float  # unit of force and displacement: 1, that of the system
     v_abs: float
     marginal: bool  # where continuous motions are a continuum
-    near_return: float
+    recurrence_threshold: float
     i: int  # the frequency's place
-    st: Structure
-    fine: Structure  # with steps at least as short, for bounds over a whole orbit
+    st: StructureAtFrequency
+    fine: StructureAtFrequency  # with steps at least as short, for bounds over a whole orbit
     orbit: Continuous
-    state: np.ndarray  # (2, n) where the motion is, with its `Moment`
+    state: np.ndarray  # (2, n) where the motion is, with its `ContactState`
     kept: np.ndarray  # (SLOTS, 2, n) states to come back to
     memory: Memory
     work: Workspace
@@ -126,8 +126,8 @@ def at_frequency(system, i):
     fine = make_structure(system.model, system.loads, i, r, max(system.steps, FINE_STEPS))
     n = st.n
     return ManyMasses(
-        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _NEAR_RETURN, i, st, fine, system.orbit,
-        np.empty((2, n)), np.empty((SLOTS, 2, n)), make_memory(st.h, 2 * n), make_workspace(n),
+        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _RECURRENCE_THRESHOLD, i, st, fine,
+        system.orbit, np.empty((2, n)), np.empty((SLOTS, 2, n)), make_memory(st.h, 2 * n), make_workspace(n),
         make_scratch(n), np.empty((0, 0)),
     )  # fmt: skip
 
@@ -144,30 +144,34 @@ def start(motion, system, i, contact, moving):
     st, state = motion.st, motion.state
     starts = system.moving if moving else system.rest
     for j in range(st.n):
-        state[0, j] = starts.place[i, j]
+        state[0, j] = starts.coordinates[i, j]
         state[1, j] = starts.velocity[i, j] / st.rate
-    return Moment(place(st, state, starts.cos[i], starts.sin[i]), 0.0, starts.cos[i], starts.sin[i], MOVING)
+    return ContactState(
+        contact_displacement(st, state, starts.cos[i], starts.sin[i]), 0.0, starts.cos[i], starts.sin[i],
+        UNDER_WAY,
+    )  # fmt: skip
 
 
 @inner_kernel
-def slide_to_turn(motion, contact, at, allowed):
+def slide_to_turn(motion, contact, contact_state, allowed):
     """See `motion.slide_to_turn`."""
     steps, end, c, s, _ = slide_on(
-        motion.st, contact.b, at.contact_force, motion.state, at.cos, at.sin, allowed, motion.scratch
-    )
+        motion.st, contact.b, contact_state.contact_force, motion.state, contact_state.cos, contact_state.sin,
+        allowed, motion.scratch,
+    )  # fmt: skip
     done = steps if end == FELL else float(NO_END)
-    return done, Moment(place(motion.st, motion.state, c, s), 0.0, c, s, 0.0)
+    return done, ContactState(contact_displacement(motion.st, motion.state, c, s), 0.0, c, s, 0.0)
 
 
 @inner_kernel
-def after_turn(motion, contact, at, allowed):
+def after_turn(motion, contact, contact_state, allowed):
     """See `motion.after_turn`."""
     event, c, s, contact_force, wait, _, _ = after_slide(
-        motion.st, contact.b, contact.mu_b, motion.state, motion.work.held, at.cos, at.sin, allowed,
-        motion.scratch,
+        motion.st, contact.b, contact.mu_b, motion.state, motion.work.held, contact_state.cos,
+        contact_state.sin, allowed, motion.scratch,
     )  # fmt: skip
-    z = -at.z if turns_at(event) else at.z
-    return event, Moment(z, 0.0, c, s, contact_force), wait
+    z = -contact_state.z if turns_at(event) else contact_state.z
+    return event, ContactState(z, 0.0, c, s, contact_force), wait
 
 
 @kernel
@@ -190,10 +194,10 @@ def stop_free(motion, contact):
 
 
 @kernel
-def off_continuous(motion, contact, amplitude, phase, at):
-    """See `motion.off_continuous`."""
+def distance_from_continuous(motion, contact, amplitude, phase, contact_state):
+    """See `motion.distance_from_continuous`."""
     st, state, moved = motion.st, motion.state, motion.work.moved
-    orbit_state(st, motion.orbit, motion.i, contact.b, phase, at.cos, at.sin, moved)
+    orbit_state(st, motion.orbit, motion.i, contact.b, phase, contact_state.cos, contact_state.sin, moved)
     for j in range(st.n):
         moved[0, j] -= state[0, j]
         moved[1, j] -= state[1, j]
@@ -201,8 +205,8 @@ def off_continuous(motion, contact, amplitude, phase, at):
 
 
 @kernel
-def note_state(motion, at, column):
-    """See `motion.note_state`."""
+def record_state(motion, contact_state, column):
+    """See `motion.record_state`."""
     n = motion.st.n
     row = motion.memory.anchors[column]
     for i in range(n):
@@ -211,14 +215,14 @@ def note_state(motion, at, column):
 
 
 @kernel
-def size_now(motion, at):
-    """See `motion.size_now`."""
+def motion_size(motion, contact_state):
+    """See `motion.motion_size`."""
     return energy(motion.st, motion.state)
 
 
 @kernel
-def return_distance(motion, now, then, size):
-    """See `motion.return_distance`."""
+def recurrence_distance(motion, now, then, size):
+    """See `motion.recurrence_distance`."""
     turn = turned(motion.memory, now, then)
     if turn > _NEAR_PHASE:
         return math.inf
@@ -264,7 +268,7 @@ def _expect(work, n, b):
 
 
 @kernel
-def _converge(motion, contact, anchored, sign, sequence, near, limits):
+def _converge(motion, contact, anchored, sign, sequence, recurrence, limits):
     """A periodic orbit by Newton's method, with its anchor.
 
     The unknown, work.middle, is the state in a slide at the load's phase of the moment `anchored`; `sign`
@@ -272,26 +276,26 @@ def _converge(motion, contact, anchored, sign, sequence, near, limits):
     the slides of `sequence`.  The state becomes the orbit's at the anchor that follows.
     """
     st, work = motion.st, motion.work
-    b, mu_b, halves = contact.b, contact.mu_b, near.halves
+    b, mu_b, halves = contact.b, contact.mu_b, recurrence.halves
     copy_state(work.middle, work.start, st.n)
     if not solve_return(
         st, b, mu_b, anchored.cos, anchored.sin, sequence, halves, limits.tolerance, work,
         motion.scratch,
     ):  # fmt: skip
         return no_orbit()
-    if not contact.unique and not _attracts(motion, contact, anchored, sequence, near):
+    if not contact.unique and not _attracts(motion, contact, anchored, sequence, recurrence):
         return no_orbit()
     copy_state(work.middle, motion.state, st.n)
-    steps, at = slide_to_turn(motion, contact, anchored, _LONGEST_SLIDE / st.h)
+    steps, contact_state = slide_to_turn(motion, contact, anchored, _LONGEST_SLIDE / st.h)
     if steps == NO_END:
         return no_orbit()
-    event, at, _ = after_turn(motion, contact, at, TURN * limits.cycles)
+    event, contact_state, _ = after_turn(motion, contact, contact_state, TURN * limits.cycles)
     _keep_orbit(work, st.n, b, anchored, halves, sign, sequence.count)
-    return known_orbit(at, event, -sign if turns_at(event) else sign, sequence.count)
+    return known_orbit(contact_state, event, -sign if turns_at(event) else sign, sequence.count)
 
 
 @kernel
-def _attracts(motion, contact, anchored, sequence, near):
+def _attracts(motion, contact, anchored, sequence, recurrence):
     """Whether the orbit in work.middle attracts, and is where the motion is heading from work.start.
 
     Unlike one mass, an undamped structure comes nearer to its orbit in no simple way: returns tell nothing.
@@ -299,38 +303,40 @@ def _attracts(motion, contact, anchored, sequence, near):
     st, work, n = motion.st, motion.work, motion.st.n
     copy_state(work.middle, work.moved, n)
     if not return_map(
-        st, contact.b, contact.mu_b, work.moved, anchored.cos, anchored.sin, sequence, near.halves, True,
-        work, motion.scratch,
+        st, contact.b, contact.mu_b, work.moved, anchored.cos, anchored.sin, sequence, recurrence.halves,
+        True, work, motion.scratch,
     ):  # fmt: skip
         return False
     contraction = spectral_radius(work.flow, 2 * n, work.square)
     for i in range(n):
         work.moved[0, i] = work.middle[0, i] - work.start[0, i]
         work.moved[1, i] = work.middle[1, i] - work.start[1, i]
-    expected = near.distance * energy(st, work.middle) / (1.0 - contraction)
+    expected = recurrence.distance * energy(st, work.middle) / (1.0 - contraction)
     return contraction < 1.0 and energy(st, work.moved) <= _HEADING * expected
 
 
 @kernel
-def _from_anchor(motion, contact, at, sign, sequence, near, limits):
+def _from_anchor(motion, contact, contact_state, sign, sequence, recurrence, limits):
     """`_converge` from the middle of the slide that starts at an anchor, the state there."""
     st, work, b = motion.st, motion.work, contact.b
     copy_state(motion.state, work.middle, st.n)
     most = _LONGEST_SLIDE / st.h
     steps, end, _, _, _ = slide_on(
-        st, b, at.contact_force, motion.state, at.cos, at.sin, most, motion.scratch
-    )
+        st, b, contact_state.contact_force, motion.state, contact_state.cos, contact_state.sin, most,
+        motion.scratch,
+    )  # fmt: skip
     if end != FELL:
         return no_orbit()
     _, _, c, s, _ = slide_on(
-        st, b, at.contact_force, work.middle, at.cos, at.sin, 0.5 * steps, motion.scratch
-    )
-    middle = Moment(0.0, 0.0, c, s, MOVING)
-    return _converge(motion, contact, middle, sign, sequence, near, limits)
+        st, b, contact_state.contact_force, work.middle, contact_state.cos, contact_state.sin, 0.5 * steps,
+        motion.scratch,
+    )  # fmt: skip
+    middle = ContactState(0.0, 0.0, c, s, UNDER_WAY)
+    return _converge(motion, contact, middle, sign, sequence, recurrence, limits)
 
 
 @kernel
-def seek(motion, contact, at, event, sign, events, near, tries, limits):
+def seek(motion, contact, contact_state, event, sign, events, recurrence, failures, limits):
     """See `motion.seek`.
 
     Just below beta_stick the motion creeps for thousands of periods to where it slides, by little, from its
@@ -338,16 +344,16 @@ def seek(motion, contact, at, event, sign, events, near, tries, limits):
     """
     st, work = motion.st, motion.work
     copy_state(motion.state, work.anchor, st.n)
-    sequence = EventSequence(motion.memory.events, np.int64(events - near.lag), near.lag)
-    if near.lag == 0 or (contact.unique and tries % 3 == 2):
+    sequence = EventSequence(motion.memory.events, np.int64(events - recurrence.lag), recurrence.lag)
+    if recurrence.lag == 0 or (contact.unique and failures % 3 == 2):
         starts, c, s = release_steady(st, contact.mu_b, work.held, motion.state)
-        at = Moment(0.0, 0.0, c, s, contact.mu_b - contact.b)
+        contact_state = ContactState(0.0, 0.0, c, s, contact.mu_b - contact.b)
         work.events[0] = STOP_THEN_BACK
         sequence = EventSequence(work.events, np.int64(0), 1 if starts else 0)
-        near, sign = Near(0, near.distance, 1), 1.0
+        recurrence, sign = Recurrence(0, recurrence.distance, 1), 1.0
     orbit = no_orbit()
     if sequence.count > 0:
-        orbit = _from_anchor(motion, contact, at, sign, sequence, near, limits)
+        orbit = _from_anchor(motion, contact, contact_state, sign, sequence, recurrence, limits)
     if not orbit.found:
         copy_state(work.anchor, motion.state, st.n)
     return orbit
@@ -370,15 +376,15 @@ def _nearest(motion, contact):
     halves = int(work.anchored[HALVES])
     if halves > 0:
         _expect(work, motion.st.n, b)
-        at = Moment(0.0, 0.0, work.anchored[PHASE_COS], work.anchored[PHASE_SIN], MOVING)
-        return True, at, work.anchored[SIDE], halves
+        contact_state = ContactState(0.0, 0.0, work.anchored[PHASE_COS], work.anchored[PHASE_SIN], UNDER_WAY)
+        return True, contact_state, work.anchored[SIDE], halves
     if math.isinf(motion.v_abs) or not b * abs(orbit.u[i]) < motion.v_abs:
-        return False, nowhere(), 1.0, 0
+        return False, undefined_state(), 1.0, 0
     phase = orbit_phase(motion.v_abs, orbit.v_arg[i], orbit.u[i], b)
     # in the middle of the rising half
-    at = Moment(0.0, 0.0, math.sin(phase), -math.cos(phase), MOVING)
-    orbit_state(motion.st, orbit, i, b, phase, at.cos, at.sin, work.middle)
-    return True, at, 1.0, 1
+    contact_state = ContactState(0.0, 0.0, math.sin(phase), -math.cos(phase), UNDER_WAY)
+    orbit_state(motion.st, orbit, i, b, phase, contact_state.cos, contact_state.sin, work.middle)
+    return True, contact_state, 1.0, 1
 
 
 @kernel
@@ -386,23 +392,27 @@ def seek_nearby(motion, contact, limits):
     """See `motion.seek_nearby`: `_converge` with the events that follow, as they change on the way."""
     st, work, scratch = motion.st, motion.work, motion.scratch
     b, mu_b = contact.b, contact.mu_b
-    found, at, sign, halves = _nearest(motion, contact)
+    found, contact_state, sign, halves = _nearest(motion, contact)
     if not found:
         return no_orbit()
     copy_state(motion.state, work.anchor, st.n)
     for _ in range(_MOST_ORDERS):
         copy_state(work.middle, work.moved, st.n)
-        slides = follow_events(st, b, mu_b, work.moved, at.cos, at.sin, halves, work, scratch)
+        slides = follow_events(
+            st, b, mu_b, work.moved, contact_state.cos, contact_state.sin, halves, work, scratch
+        )
         if slides == 0:
             break
         sequence = EventSequence(work.events, np.int64(0), slides)
-        copy_state(work.middle, work.near, st.n)
-        orbit = _converge(motion, contact, at, sign, sequence, Near(0, 0.0, halves), limits)
+        copy_state(work.middle, work.trial, st.n)
+        orbit = _converge(motion, contact, contact_state, sign, sequence, Recurrence(0, 0.0, halves), limits)
         if orbit.found:
             return orbit
         # the order changes on the way: a step with this one, then on with what follows there
-        copy_state(work.near, work.middle, st.n)
-        move, _ = newton_step(st, b, mu_b, at.cos, at.sin, sequence, halves, work, scratch)
+        copy_state(work.trial, work.middle, st.n)
+        move, _ = newton_step(
+            st, b, mu_b, contact_state.cos, contact_state.sin, sequence, halves, work, scratch
+        )
         if not move < math.inf:
             break
         for j in range(st.n):
@@ -426,19 +436,23 @@ def bring_back(motion, slot):
 
 
 @kernel
-def distance_from(motion, slot, then, at, stopped):
+def distance_from(motion, slot, saved, contact_state, stopped):
     """See `motion.distance_from`."""
     st, state, moved, kept = motion.st, motion.state, motion.work.moved, motion.kept[slot]
     for i in range(st.n):
         moved[0, i] = state[0, i] - kept[0, i]
         moved[1, i] = state[1, i] - kept[1, i]
-    return abs(at.cos - then.cos) + abs(at.sin - then.sin) + energy(st, moved) / energy(st, kept)
+    return (
+        abs(contact_state.cos - saved.cos)
+        + abs(contact_state.sin - saved.sin)
+        + energy(st, moved) / energy(st, kept)
+    )
 
 
 @kernel
-def back_at(motion, slot, then, at):
-    """See `motion.back_at`."""
-    return distance_from(motion, slot, then, at, False) <= _SAME
+def has_returned(motion, slot, saved, contact_state):
+    """See `motion.has_returned`."""
+    return distance_from(motion, slot, saved, contact_state, False) <= _SAME
 
 
 @kernel
@@ -448,18 +462,18 @@ def on_continuous(motion, contact):
     phase = orbit_phase(motion.v_abs, orbit.v_arg[i], orbit.u[i], contact.b)
     c, s = -math.cos(phase), -math.sin(phase)
     orbit_state(motion.st, orbit, i, contact.b, phase, c, s, motion.state)
-    return Moment(place(motion.st, motion.state, c, s), 0.0, c, s, MOVING)
+    return ContactState(contact_displacement(motion.st, motion.state, c, s), 0.0, c, s, UNDER_WAY)
 
 
 @kernel
-def put_slide(motion, at, row):
+def put_slide(motion, contact_state, row):
     """See `motion.put_slide`."""
-    put_state(motion.state, motion.st.n, motion.st.rate, at.cos, at.sin, row)
+    put_state(motion.state, motion.st.n, motion.st.rate, contact_state.cos, contact_state.sin, row)
 
 
 @kernel
-def put_stop(motion, at, row):
+def put_stop(motion, contact_state, row):
     """See `motion.put_stop`."""
     st, held = motion.st, motion.work.held
-    hold(st, motion.state, at.z, at.cos, at.sin, held)
-    put_state(held, st.m, st.rate, at.cos, at.sin, row)
+    hold(st, motion.state, contact_state.z, contact_state.cos, contact_state.sin, held)
+    put_state(held, st.m, st.rate, contact_state.cos, contact_state.sin, row)

@@ -26,7 +26,7 @@ class Memory(NamedTuple):
     anchors: np.ndarray  # (length, STATE + numbers of a state)
 
 
-class Near(NamedTuple):
+class Recurrence(NamedTuple):
     """A moment when the motion was nearly where it is now."""
 
     lag: int  # slides since then; 0 if there was none
@@ -45,11 +45,11 @@ def make_memory(h, size):
 
 
 @inner_kernel
-def note_anchor(memory, column, event, at, time, sign):
+def record_anchor(memory, column, event, contact_state, time, sign):
     """Note an anchor, all but its state."""
     memory.events[column] = event
-    memory.anchors[column, COS] = at.cos
-    memory.anchors[column, SIN] = at.sin
+    memory.anchors[column, COS] = contact_state.cos
+    memory.anchors[column, SIN] = contact_state.sin
     memory.anchors[column, TIME] = time
     memory.anchors[column, SIGN] = sign
 
@@ -72,7 +72,7 @@ def halves_between(memory, now, then):
 
 
 @kernel
-def could_return(halves):
+def could_recur(halves):
     """Whether a steady motion may take so many half periods to return."""
     return halves >= 1 and full_period(halves) <= LONGEST_PERIOD
 

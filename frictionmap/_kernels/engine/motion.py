@@ -2,12 +2,12 @@
 
 A kind of motion is two named tuples, of a system over a map and of the system at one frequency, and a body
 for each of the functions here (`kinds`).  Every slide is followed as an upward one: a motion that goes back
-is mirrored.  Where a motion is, a `Moment` says, together with arrays of the kind's own that these functions
+is mirrored.  Where a motion is, a `ContactState` says, together with arrays of the kind's own that these functions
 move along with it.
 
 The fields of a kind of motion that the driver reads: `h`, the scan step in tau; `r`; `v_abs`, the response
 function of the contact; `marginal`, whether continuous motions are a continuum; `memory`; `load`, the unit of
-its forces and displacements; `near_return`, how close a return is worth looking for an orbit; and `no_table`,
+its forces and displacements; `find_recurrence`, how close a return is worth looking for an orbit; and `no_table`,
 no table of phases.
 """
 
@@ -41,12 +41,12 @@ def start(motion, system, i, contact, moving):
 
 
 @by_class(*_both("slide_to_turn"))
-def slide_to_turn(motion, contact, at, allowed):
+def slide_to_turn(motion, contact, contact_state, allowed):
     """(steps, moment): a slide to where it ends; NO_END where not within `allowed` scan steps."""
 
 
 @by_class(*_both("after_turn"))
-def after_turn(motion, contact, at, allowed):
+def after_turn(motion, contact, contact_state, allowed):
     """(event, moment, wait): what follows a slide, see `events`, the next anchor, and the time in between.
 
     NO_RELEASE: a stop that is not known to end within `allowed` tau.  Where it sticks, the moment stays.
@@ -63,23 +63,23 @@ def stop_free(motion, contact):
     """(amplitude, phase, radius) of the continuous orbit; within the radius no motion can stop."""
 
 
-@by_class(*_both("off_continuous"))
-def off_continuous(motion, contact, amplitude, phase, at):
+@by_class(*_both("distance_from_continuous"))
+def distance_from_continuous(motion, contact, amplitude, phase, contact_state):
     """(distance, size): energy norms, of an anchor's distance from the continuous orbit and of the motion."""
 
 
-@by_class(*_both("note_state"))
-def note_state(motion, at, column):
+@by_class(*_both("record_state"))
+def record_state(motion, contact_state, column):
     """Write the state at an anchor into the memory."""
 
 
-@by_class(*_both("size_now"))
-def size_now(motion, at):
+@by_class(*_both("motion_size"))
+def motion_size(motion, contact_state):
     """The size of the motion at an anchor."""
 
 
-@by_class(*_both("return_distance"))
-def return_distance(motion, now, then, size):
+@by_class(*_both("recurrence_distance"))
+def recurrence_distance(motion, now, then, size):
     """How far apart two remembered anchors are, relative to the motion; infinite if too far for a return."""
 
 
@@ -89,7 +89,7 @@ def creeps(motion, contact, events):
 
 
 @by_class(*_both("seek"))
-def seek(motion, contact, at, event, sign, events, near, tries, limits):
+def seek(motion, contact, contact_state, event, sign, events, recurrence, failures, limits):
     """The periodic `Orbit` that a motion approaches, by Newton's method; then the motion is at its anchor.
 
     at, event, sign : the last of the `events` anchors
@@ -119,15 +119,15 @@ def bring_back(motion, slot):
 
 
 @by_class(*_both("distance_from"))
-def distance_from(motion, slot, then, at, stopped):
+def distance_from(motion, slot, saved, contact_state, stopped):
     """How far the motion, at a moment, is from where it was when its state was kept, at the moment `then`.
 
     Relative to the motion; `stopped` : both are the ends of stops.
     """
 
 
-@by_class(*_both("back_at"))
-def back_at(motion, slot, then, at):
+@by_class(*_both("has_returned"))
+def has_returned(motion, slot, saved, contact_state):
     """Whether the motion, at a moment, is where it was when its state was kept, at the moment `then`."""
 
 
@@ -137,10 +137,10 @@ def on_continuous(motion, contact):
 
 
 @by_class(*_both("put_slide"))
-def put_slide(motion, at, row):
+def put_slide(motion, contact_state, row):
     """Write the start of a slide into a row of the table of phases."""
 
 
 @by_class(*_both("put_stop"))
-def put_stop(motion, at, row):
+def put_stop(motion, contact_state, row):
     """Write the start of a stop, at the end of a slide."""

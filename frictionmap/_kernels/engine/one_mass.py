@@ -20,14 +20,14 @@ from ..one_mass.sliding_orbit import (
     orbit_phase,
     stop_free_radius,
 )
-from .answers import Contact, Moment, Orbit, known_orbit, no_orbit, stops_at
 from .memory import STATE, Memory, make_memory, turned
-from .phase_table import put_mass
-from .policies import FINE_STEPS, MOVING, MOVING_CAP
+from .policies import FINE_STEPS, MOVING_START, MOVING_START_CAP
+from .records import Contact, ContactState, Orbit, known_orbit, no_orbit, stops_at
+from .segment_table import put_mass
 
 #: The orbit solved for last, from which the next cell's may be found: slides until it returns (0: there is
 #: none), displacement and sign at the end of a stop, and from there on the events, at most MOST_EVENTS.
-COUNT, PLACE, SIDE, FIRST = 0, 1, 2, 3
+COUNT, DISPLACEMENT, SIDE, FIRST = 0, 1, 2, 3
 MOST_EVENTS = 32
 NEIGHBOUR = FIRST + MOST_EVENTS
 
@@ -36,7 +36,7 @@ _SAME = 1e-9
 
 #: A return this close (relative to the motion) is worth a Newton iteration; whether the motion goes to the
 #: orbit found is seen from two returns (`march`).
-_NEAR_RETURN = 0.1
+_RECURRENCE_THRESHOLD = 0.1
 
 #: Distance to an end of the places of rest, over r^2, below which a slide takes less than a tenth of it.
 _CREEPING = 0.02
@@ -83,7 +83,7 @@ class OneMass(NamedTuple):
     chi: float
     v_abs: float
     marginal: bool  # where continuous motions are a continuum
-    near_return: float
+    recurrence_threshold: float
     oscillator: Oscillator
     step: Step
     fine: Step  # a step at least as short, for bounds over a whole orbit
@@ -101,7 +101,7 @@ def at_frequency(system, i):
     oscillator = Oscillator(r, system.zeta, f.v_abs[i], f.v_arg[i], f.u[i], f.g[i], f.marginal[i])
     step = step_constants(r, system.zeta, system.steps)
     return OneMass(
-        step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _NEAR_RETURN,
+        step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _RECURRENCE_THRESHOLD,
         oscillator, step, step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
         make_memory(step.h, 1), np.empty(MAX_TERMS), np.zeros(NEIGHBOUR), np.empty((0, 0)),
     )  # fmt: skip
@@ -132,29 +132,32 @@ def start(motion, system, i, contact, moving):
     """
     if not moving:
         c, s = math.cos(motion.lead), math.sin(motion.lead)
-        return Moment(0.0, 0.0, c, s, c - contact.b)
+        return ContactState(0.0, 0.0, c, s, c - contact.b)
     oscillator = motion.oscillator
-    size = MOVING * min(oscillator.v_abs, MOVING_CAP) * max(1.0, oscillator.r)
+    size = MOVING_START * min(oscillator.v_abs, MOVING_START_CAP) * max(1.0, oscillator.r)
     speed = size / oscillator.r
     contact_force = -contact.b - 2.0 * oscillator.zeta * oscillator.r * speed
-    return Moment(0.0, speed * motion.h, 0.0, 1.0, contact_force)
+    return ContactState(0.0, speed * motion.h, 0.0, 1.0, contact_force)
 
 
 @inner_kernel
-def slide_to_turn(motion, contact, at, allowed):
+def slide_to_turn(motion, contact, contact_state, allowed):
     """See `motion.slide_to_turn`."""
     step = motion.step
     steps, z, c, s = slide(
-        step, contact.b, at.z, at.w, step.stiffness * at.contact_force, at.cos, at.sin, allowed, motion.work
-    )
-    return steps, Moment(z, 0.0, c, s, 0.0)
+        step, contact.b, contact_state.z, contact_state.w, step.stiffness * contact_state.contact_force,
+        contact_state.cos, contact_state.sin, allowed, motion.work,
+    )  # fmt: skip
+    return steps, ContactState(z, 0.0, c, s, 0.0)
 
 
 @inner_kernel
-def after_turn(motion, contact, at, allowed):
+def after_turn(motion, contact, contact_state, allowed):
     """See `motion.after_turn`."""
-    event, z, c, s, contact_force, wait = after_slide(contact.b, contact.mu_b, at.z, at.cos, at.sin)
-    return event, Moment(z, 0.0, c, s, contact_force), wait
+    event, z, c, s, contact_force, wait = after_slide(
+        contact.b, contact.mu_b, contact_state.z, contact_state.cos, contact_state.sin
+    )
+    return event, ContactState(z, 0.0, c, s, contact_force), wait
 
 
 @kernel
@@ -176,27 +179,29 @@ def stop_free(motion, contact):
 
 
 @kernel
-def off_continuous(motion, contact, amplitude, phase, at):
-    """See `motion.off_continuous`."""
-    distance = distance_to_orbit(motion.oscillator, contact.b, amplitude, phase, at.z, at.cos, at.sin)
+def distance_from_continuous(motion, contact, amplitude, phase, contact_state):
+    """See `motion.distance_from_continuous`."""
+    distance = distance_to_orbit(
+        motion.oscillator, contact.b, amplitude, phase, contact_state.z, contact_state.cos, contact_state.sin
+    )
     return distance, amplitude
 
 
 @inner_kernel
-def note_state(motion, at, column):
-    """See `motion.note_state`."""
-    motion.memory.anchors[column, STATE] = at.z
+def record_state(motion, contact_state, column):
+    """See `motion.record_state`."""
+    motion.memory.anchors[column, STATE] = contact_state.z
 
 
 @kernel
-def size_now(motion, at):
-    """See `motion.size_now`."""
-    return abs(at.z)
+def motion_size(motion, contact_state):
+    """See `motion.motion_size`."""
+    return abs(contact_state.z)
 
 
 @kernel
-def return_distance(motion, now, then, size):
-    """See `motion.return_distance`; at a stop the load's phase is a function of the place."""
+def recurrence_distance(motion, now, then, size):
+    """See `motion.recurrence_distance`; at a stop the load's phase is a function of the place."""
     memory = motion.memory
     distance = abs(memory.anchors[now, STATE] - memory.anchors[then, STATE])
     turn = turned(memory, now, then) if memory.events[now] == REVERSE else 0.0
@@ -238,7 +243,7 @@ def _middle(memory, events):
 
 
 @kernel
-def seek(motion, contact, at, event, sign, events, near, tries, limits):
+def seek(motion, contact, contact_state, event, sign, events, recurrence, failures, limits):
     """See `motion.seek`.
 
     First the order of events of the last return is tried, from where the motion is now.  Next to a multiplier
@@ -246,27 +251,29 @@ def seek(motion, contact, at, event, sign, events, near, tries, limits):
     between its two halves does not have.  So, where the steady state is unique and an orbit found is the one
     however it was found, the symmetric orbits with one or two stops a half period are tried too.
     """
-    if near.lag == 0:
+    if recurrence.lag == 0:
         return no_orbit()
     stopped = stops_at(event)
     guesses = 3 if contact.unique and event == STOP_THEN_BACK else 1
-    start = at.z
+    start = contact_state.z
     for guess in range(guesses):
-        slides = near.lag
+        slides = recurrence.lag
         if guess > 0:
             start = _middle(motion.memory, events)
             slides = guess
         found, z, c, s, contraction = solve_orbit(
-            motion.step, motion.oscillator, contact.b, contact.mu_b, start, at.cos, at.sin, stopped,
-            EventSequence(motion.memory.events, events - slides, slides), limits.tolerance, motion.work,
+            motion.step, motion.oscillator, contact.b, contact.mu_b, start, contact_state.cos,
+            contact_state.sin, stopped, EventSequence(motion.memory.events, events - slides, slides),
+            limits.tolerance, motion.work,
         )  # fmt: skip
         if found:
             if stopped:
                 _keep(motion, z, sign, events, slides)
             contact_force = first_contact_force(contact.b, contact.mu_b, z, c)
             return Orbit(
-                True, Moment(z, 0.0, c, s, contact_force), event, sign, slides, contact.unique, contraction
-            )
+                True, ContactState(z, 0.0, c, s, contact_force), event, sign, slides, contact.unique,
+                contraction,
+            )  # fmt: skip
     return no_orbit()
 
 
@@ -276,7 +283,7 @@ def _keep(motion, z, sign, events, slides):
     neighbour, ring = motion.neighbour, motion.memory.events
     if slides > MOST_EVENTS:
         return
-    neighbour[COUNT], neighbour[PLACE], neighbour[SIDE] = slides, z, sign
+    neighbour[COUNT], neighbour[DISPLACEMENT], neighbour[SIDE] = slides, z, sign
     for m in range(slides):
         neighbour[FIRST + m] = ring[(events - slides + m) % ring.size]
 
@@ -297,21 +304,21 @@ def seek_nearby(motion, contact, limits):
         if math.isinf(f.v_abs) or not contact.b_lim > 0.0:
             return no_orbit()
         slides = 1
-        neighbour[PLACE] = -continuous_amplitude(f.v_abs, f.u, f.g, contact.b_lim)
+        neighbour[DISPLACEMENT] = -continuous_amplitude(f.v_abs, f.u, f.g, contact.b_lim)
         neighbour[SIDE] = 1.0
         neighbour[FIRST] = STOP_THEN_BACK
     neighbour[COUNT] = 0.0
     found, z, c, s, _ = solve_orbit(
-        motion.step, motion.oscillator, contact.b, contact.mu_b, neighbour[PLACE], 1.0, 0.0, True,
+        motion.step, motion.oscillator, contact.b, contact.mu_b, neighbour[DISPLACEMENT], 1.0, 0.0, True,
         EventSequence(neighbour[FIRST:], np.int64(0), slides), limits.tolerance, motion.work,
     )  # fmt: skip
     if not found:
         return no_orbit()
     neighbour[COUNT] = slides
-    neighbour[PLACE] = z
+    neighbour[DISPLACEMENT] = z
     contact_force = first_contact_force(contact.b, contact.mu_b, z, c)
     event = int(neighbour[FIRST + slides - 1])
-    return known_orbit(Moment(z, 0.0, c, s, contact_force), event, neighbour[SIDE], slides)
+    return known_orbit(ContactState(z, 0.0, c, s, contact_force), event, neighbour[SIDE], slides)
 
 
 @kernel
@@ -325,16 +332,16 @@ def bring_back(motion, slot):
 
 
 @kernel
-def distance_from(motion, slot, then, at, stopped):
+def distance_from(motion, slot, saved, contact_state, stopped):
     """See `motion.distance_from`; after a stop the load's phase is a function of the place."""
-    turn = 0.0 if stopped else abs(at.cos - then.cos) + abs(at.sin - then.sin)
-    return turn + abs(at.z - then.z) / abs(then.z)
+    turn = 0.0 if stopped else abs(contact_state.cos - saved.cos) + abs(contact_state.sin - saved.sin)
+    return turn + abs(contact_state.z - saved.z) / abs(saved.z)
 
 
 @kernel
-def back_at(motion, slot, then, at):
-    """See `motion.back_at`."""
-    return distance_from(motion, slot, then, at, False) <= _SAME
+def has_returned(motion, slot, saved, contact_state):
+    """See `motion.has_returned`."""
+    return distance_from(motion, slot, saved, contact_state, False) <= _SAME
 
 
 @kernel
@@ -344,17 +351,20 @@ def on_continuous(motion, contact):
     z = -continuous_amplitude(f.v_abs, f.u, f.g, contact.b)
     phase = orbit_phase(f.v_abs, f.v_arg, f.u, contact.b)
     c, s = -math.cos(phase), -math.sin(phase)
-    return Moment(z, 0.0, c, s, c - z - contact.b)
+    return ContactState(z, 0.0, c, s, c - z - contact.b)
 
 
 @kernel
-def put_slide(motion, at, row):
+def put_slide(motion, contact_state, row):
     """See `motion.put_slide`."""
     c, s = math.cos(motion.lead), math.sin(motion.lead)
-    put_mass(motion.chi * motion.load * at.z, at.cos * c + at.sin * s, at.sin * c - at.cos * s, row)
+    put_mass(
+        motion.chi * motion.load * contact_state.z, contact_state.cos * c + contact_state.sin * s,
+        contact_state.sin * c - contact_state.cos * s, row,
+    )  # fmt: skip
 
 
 @kernel
-def put_stop(motion, at, row):
+def put_stop(motion, contact_state, row):
     """See `motion.put_stop`: nothing else moves."""
-    put_slide(motion, at, row)
+    put_slide(motion, contact_state, row)

@@ -3,8 +3,8 @@
 #: The moving start, in units of the motion that the load alone sustains: energy amplitude, and the cap on
 #: that motion near resonance.  Of 25 starts tried on 4,000 cells where sliding and sticking coexist this one
 #: slid on in the largest share, 95 %.
-MOVING = 1.5
-MOVING_CAP = 10.0
+MOVING_START = 1.5
+MOVING_START_CAP = 10.0
 
 #: Scan steps per fastest period for bounds over a whole orbit: their slack is of second order in the step.
 FINE_STEPS = 64.0

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..jit import inner_kernel, kernel
-from .answers import SHORTEST_STOP, TURN
+from .records import SHORTEST_STOP, TURN
 
 #: Excitation periods over which a motion that does not repeat is averaged.
 AVERAGED = 100.0
@@ -45,7 +45,7 @@ def count_event(windows, time, size, stopped, wait):
     return Windows(windows.length, end, last, Window(now.opened, stops, stuck, max(now.largest, size)))
 
 
-class Tries(NamedTuple):
+class NewtonSchedule(NamedTuple):
     """The schedule of Newton's method, in half periods of the excitation."""
 
     made: int
@@ -54,13 +54,13 @@ class Tries(NamedTuple):
 
 
 @kernel
-def first_try():
+def first_schedule():
     """The schedule of a motion that starts."""
-    return Tries(0, 1, 2)
+    return NewtonSchedule(0, 1, 2)
 
 
 @kernel
-def put_off(tries, half):
+def postpone(schedule, half):
     """The schedule after a try that failed."""
-    delay = tries.delay + 1 + tries.delay // 4
-    return Tries(tries.made + 1, delay, half + delay)
+    delay = schedule.delay + 1 + schedule.delay // 4
+    return NewtonSchedule(schedule.made + 1, delay, half + delay)

@@ -8,8 +8,8 @@ import numpy as np
 from ..jit import entry
 from ..structure.newton import copy_state
 from ..structure.oscillators import advance, expand
-from ..structure.state import held_load, place, release
-from .phase_table import BEGIN, COS, LENGTH, PLACE, SENSE, SIGN, SIN, take_start
+from ..structure.state import contact_displacement, held_load, release
+from .segment_table import BEGIN, COS, LENGTH, SENSE, SIGN, SIN, STOP_Z, take_start
 
 
 class Samples(NamedTuple):
@@ -23,7 +23,7 @@ class Samples(NamedTuple):
 
 
 @entry
-def sample_phases(st, beta, table, tau, samples, work, scratch):
+def sample_segments(st, beta, table, tau, samples, work, scratch):
     """Fill `samples` with the motion at times `tau` >= 0, increasing, since the table's first phase began."""
     z, friction = samples.z, samples.friction
     j = 0
@@ -50,12 +50,12 @@ def sample_phases(st, beta, table, tau, samples, work, scratch):
             c, s = math.cos(angle + tau[j] - begin), math.sin(angle + tau[j] - begin)
             if slides:
                 copy_state(scratch.next, work.start, n)
-                z[j] = row[SIGN] * place(st, work.start, c, s)
+                z[j] = row[SIGN] * contact_displacement(st, work.start, c, s)
                 friction[j] = row[SIGN] * beta
             else:
-                release(st, scratch.next, row[PLACE], c, s, work.start)
-                z[j] = row[SIGN] * row[PLACE]
-                friction[j] = -row[SIGN] * held_load(st, scratch.next, row[PLACE], c, s)
+                release(st, scratch.next, row[STOP_Z], c, s, work.start)
+                z[j] = row[SIGN] * row[STOP_Z]
+                friction[j] = -row[SIGN] * held_load(st, scratch.next, row[STOP_Z], c, s)
             samples.sense[j] = int(row[SIGN] * row[SENSE])
             for i in range(st.n):
                 samples.coordinates[i, j] = row[SIGN] * work.start[0, i]

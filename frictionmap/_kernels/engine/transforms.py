@@ -100,11 +100,13 @@ def _circling(y, v, s):
 def _light_end(o, length):
     """`end_of` where the damping is light; resonance is no case of its own."""
     s = _root(o)
-    at = s * length
+    exponent = s * length
     turn = complex(0.0, length)
-    drive = 0.5 * (o.force * first_difference(turn, at) + o.force.conjugate() * first_difference(-turn, at))
-    drive += o.constant * first_difference(0j, at)
-    u = cmath.exp(at) * _circling(o.y, o.v, s) + length * drive
+    drive = 0.5 * (
+        o.force * first_difference(turn, exponent) + o.force.conjugate() * first_difference(-turn, exponent)
+    )
+    drive += o.constant * first_difference(0j, exponent)
+    u = cmath.exp(exponent) * _circling(o.y, o.v, s) + length * drive
     y = u.imag / s.imag
     return y, u.real + s.real * y
 
@@ -114,13 +116,13 @@ def _heavy_end(o, length):
     """`end_of` where the damping keeps resonance away; up to and beyond the critical ratio."""
     omega = math.sqrt(o.k)
     zeta = 0.5 * o.d / omega
-    steady, rest = o.force / complex(o.k - 1.0, o.d), o.constant / o.k
+    steady, static = o.force / complex(o.k - 1.0, o.d), o.constant / o.k
     q, e = decay(zeta, omega * length)
-    place, speed = o.y - rest - steady.real, (o.v + steady.imag) / omega
+    displacement, speed = o.y - static - steady.real, (o.v + steady.imag) / omega
     turned = steady * cmath.exp(complex(0.0, length))
     return (
-        rest + turned.real + place * (e + 2.0 * zeta * q) + speed * q,
-        -turned.imag + omega * (speed * e - place * q),
+        static + turned.real + displacement * (e + 2.0 * zeta * q) + speed * q,
+        -turned.imag + omega * (speed * e - displacement * q),
     )
 
 
@@ -151,9 +153,11 @@ def transform(o, n, length, change, push, drive):
     if not near_harmonic(o.k, o.d, n):
         return (drive - push - complex(o.d, n) * change) / complex(o.k - n * n, n * o.d)
     s = _root(o)
-    at = (s - complex(0.0, n)) * length
+    exponent = (s - complex(0.0, n)) * length
     up, down = complex(0.0, (1.0 - n) * length), complex(0.0, -(1.0 + n) * length)
-    drive = 0.5 * (o.force * second_difference(up, at) + o.force.conjugate() * second_difference(down, at))
-    drive += o.constant * second_difference(complex(0.0, -n * length), at)
-    circling = _circling(o.y, o.v, s) * first_difference(at, 0j) + length * drive
+    drive = 0.5 * (
+        o.force * second_difference(up, exponent) + o.force.conjugate() * second_difference(down, exponent)
+    )
+    drive += o.constant * second_difference(complex(0.0, -n * length), exponent)
+    circling = _circling(o.y, o.v, s) * first_difference(exponent, 0j) + length * drive
     return (length * circling - change) / (complex(0.0, n) - s.conjugate())

@@ -29,7 +29,7 @@ class Tangent(NamedTuple):
 class Cycle(NamedTuple):
     """The state after one period, and what happened in it."""
 
-    whole: bool  # False: it hangs in slides without length
+    complete: bool  # False: it hangs in slides without length
     q: float
     v: float
     tangent: Tangent
@@ -86,7 +86,7 @@ def follow(mass, q, v, work, samples):
             stuck += (tau - begin) / PERIOD
             if tau >= PERIOD:
                 return Cycle(True, q, 0.0, tangent, event, stops, stuck, turn_load)
-            force = mass.held - mass.friction
+            force = mass.static_friction - mass.friction
             tangent = _after_stop(mass, tangent, sense, force, load_and_rate(mass.load, tau)[1])
             v = 0.0
         else:

@@ -24,13 +24,13 @@ _TURN = 0.5
 _TERMS = 20
 
 
-class Oscillator(NamedTuple):
+class FrictionMass(NamedTuple):
     """The mass, its load and its friction."""
 
     r: float
     zeta: float
     friction: float  # b
-    held: float  # mu b, what holds in a stop
+    static_friction: float  # mu b, what holds in a stop
     load: np.ndarray  # complex G_n, n = 0, 1, ...
     step: float  # the longest step in tau
 
@@ -47,15 +47,15 @@ class Samples(NamedTuple):
     """Where the motion is wanted."""
 
     phases: np.ndarray  # increasing, in [0, 2 pi)
-    places: np.ndarray  # filled
+    displacements: np.ndarray  # filled
     next: np.ndarray  # shape (1,), int: the first one that is not filled
 
 
 @entry
-def oscillator(r, zeta, friction, mu, load):
+def friction_mass(r, zeta, friction, mu, load):
     """The mass with the step that suits it."""
     rate = max(float(load.size), fastest_rate(1.0 / r, zeta))
-    return Oscillator(r, zeta, friction, mu * friction, load, _TURN / rate)
+    return FrictionMass(r, zeta, friction, mu * friction, load, _TURN / rate)
 
 
 @entry
@@ -97,7 +97,7 @@ def settle(mass, q, g):
     force = r^2 times the acceleration along the slide, friction taken off.
     """
     pull = g - q
-    if abs(pull) <= mass.held:
+    if abs(pull) <= mass.static_friction:
         return 0.0, 0.0
     return math.copysign(1.0, pull), abs(pull) - mass.friction
 
@@ -120,7 +120,7 @@ def _slide_series(mass, length, sense, q, v, pull, work):
 
 
 @kernel
-def _place(work, sense, q, x):
+def _displacement(work, sense, q, x):
     """q at x in a step that began at q."""
     rise = 0.0
     for k in range(_TERMS - 1, -1, -1):
@@ -129,7 +129,7 @@ def _place(work, sense, q, x):
 
 
 @kernel
-def _speed(work, x):
+def _velocity(work, x):
     value = 0.0
     for k in range(_TERMS - 1, -1, -1):
         value = value * x + work.speed[k]
@@ -155,12 +155,12 @@ def slide(mass, tau, sense, q, v, force, end, work, samples):
         stop = tau + min(x, 1.0) * length
         while samples.next[0] < samples.phases.size and samples.phases[samples.next[0]] < stop:
             k = samples.next[0]
-            samples.places[k] = _place(work, sense, q, (samples.phases[k] - tau) / length)
+            samples.displacements[k] = _displacement(work, sense, q, (samples.phases[k] - tau) / length)
             samples.next[0] = k + 1
         if x <= 1.0:
-            return stop, _place(work, sense, q, x), 0.0, True
-        q = _place(work, sense, q, 1.0)
-        v = sense * _speed(work, 1.0) / length
+            return stop, _displacement(work, sense, q, x), 0.0, True
+        q = _displacement(work, sense, q, 1.0)
+        v = sense * _velocity(work, 1.0) / length
         tau = stop if length == mass.step else end
         at_rest = False
     return end, q, v, False
@@ -169,7 +169,7 @@ def slide(mass, tau, sense, q, v, force, end, work, samples):
 @kernel
 def _breaks_free(mass, q, sense, work):
     """Where in a step the load first overcomes what holds, in that sense; 2.0 if it does not."""
-    work.gap[0] = mass.held - sense * (work.load[0] - q)
+    work.gap[0] = mass.static_friction - sense * (work.load[0] - q)
     for k in range(1, _TERMS):
         work.gap[k] = -sense * work.load[k]
     return first_root(work.gap, 0, _TERMS)
@@ -191,6 +191,6 @@ def wait(mass, tau, q, end, work, samples):
         else:
             tau = tau + length if length == mass.step else end
     while samples.next[0] < samples.phases.size and samples.phases[samples.next[0]] < tau:
-        samples.places[samples.next[0]] = q
+        samples.displacements[samples.next[0]] = q
         samples.next[0] += 1
     return tau, sense

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..jit import entry, kernel
 from .cycle import follow
-from .slides import Samples, oscillator, scratch
+from .slides import Samples, friction_mass, scratch
 
 REPEATS = 0
 NO_REPEAT = 1  # not within the cycles allowed, or not after one period
@@ -72,7 +72,7 @@ def _largest_multiplier(t):
 
 
 @kernel
-def _find(mass, q, v, most, work, nowhere):
+def _find(mass, q, v, most, work, no_samples):
     """(status, q, v, cycles) of the state that repeats."""
     events = -1
     last = math.inf
@@ -80,8 +80,8 @@ def _find(mass, q, v, most, work, nowhere):
     scale = 0.0
     linear = mass.friction == 0.0
     for n in range(most):
-        cycle = follow(mass, q, v, work, nowhere)
-        if not cycle.whole:
+        cycle = follow(mass, q, v, work, no_samples)
+        if not cycle.complete:
             return HANGS, q, v, n
         scale = max(scale, abs(cycle.q), mass.r * abs(cycle.v))
         move = max(abs(cycle.q - q), mass.r * abs(cycle.v - v))
@@ -111,7 +111,7 @@ def _find(mass, q, v, most, work, nowhere):
 
 
 @entry
-def steady_motion(r, zeta, friction, mu, load, q, v, phases, places, most):
+def steady_motion(r, zeta, friction, mu, load, q, v, phases, displacements, most):
     """The `Steady` state that the motion from (q, v) at tau = 0 leads to.
 
     Parameters
@@ -122,9 +122,9 @@ def steady_motion(r, zeta, friction, mu, load, q, v, phases, places, most):
     phases, places : increasing phases in [0, 2 pi); filled with q there
     most : cycles allowed
     """
-    mass = oscillator(r, zeta, friction, mu, load)
+    mass = friction_mass(r, zeta, friction, mu, load)
     work = scratch()
-    nowhere = Samples(phases[:0], places[:0], np.zeros(1, np.int64))
-    status, q, v, cycles = _find(mass, q, v, most, work, nowhere)
-    cycle = follow(mass, q, v, work, Samples(phases, places, np.zeros(1, np.int64)))
+    no_samples = Samples(phases[:0], displacements[:0], np.zeros(1, np.int64))
+    status, q, v, cycles = _find(mass, q, v, most, work, no_samples)
+    cycle = follow(mass, q, v, work, Samples(phases, displacements, np.zeros(1, np.int64)))
     return Steady(status, q, v, cycle.stops, cycle.stuck, cycle.turn_load, cycles)

@@ -135,13 +135,13 @@ def _at_root(step, b, z, c, s, x, work):
     """
     for _ in range(MAX_POLISH):
         velocity, rise = _sum_at(work, step.terms, x)
-        place = z + rise
+        displacement = z + rise
         angle = step.h * x
         cosine = math.cos(angle)
         sine = math.sin(angle)
         c1 = cosine * c - sine * s
         s1 = cosine * s + sine * c
-        acceleration = step.stiffness * (c1 - b - place) - step.damping * velocity
+        acceleration = step.stiffness * (c1 - b - displacement) - step.damping * velocity
         jerk = -step.stiffness * (s1 * step.h + velocity) - step.damping * acceleration
         if (
             not abs(velocity) < NEARLY * abs(acceleration)
@@ -152,7 +152,7 @@ def _at_root(step, b, z, c, s, x, work):
         move = reversion(velocity, acceleration, jerk, snap)
         x += move
         if abs(move) < ONE_STEP:
-            place += move * (
+            displacement += move * (
                 velocity
                 + move * (0.5 * acceleration + move * (jerk * (1.0 / 6.0) + move * snap * (1.0 / 24.0)))
             )
@@ -164,7 +164,7 @@ def _at_root(step, b, z, c, s, x, work):
             c1 = c2
             break
     norm = 1.5 - 0.5 * (c1 * c1 + s1 * s1)  # back to the unit circle
-    return x, place, norm * c1, norm * s1
+    return x, displacement, norm * c1, norm * s1
 
 
 @kernel

@@ -5,14 +5,14 @@ import math
 
 from ..jit import kernel
 from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
-from .oscillators import AT_LIMIT, ELSEWHERE, FAILED, ROSE, scan
+from .oscillators import AT_LIMIT, FAILED, ROSE, STARTS_INSIDE, scan
 from .state import (
+    contact_displacement,
     contact_load,
     held_period,
     hold,
     largest_load_to_come,
     mirror,
-    place,
     release,
     vibrates_in_step,
 )
@@ -21,7 +21,7 @@ from .state import (
 NO_RELEASE = 5
 
 #: In place of a force at the start of a slide: it is under way already.
-MOVING = -1.0
+UNDER_WAY = -1.0
 
 #: Excess of the load over mu beta, relative to it, below which slides take off no more than rounding.
 _CREEPING = 1e-9
@@ -35,7 +35,7 @@ def slide_on(st, beta, contact_force, state, c, s, limit, scratch):
 
     It starts with no velocity under `contact_force` >= 0, friction taken off; or contact_force = MOVING.
     """
-    slope = contact_force * st.inverse_mass / (st.rate * st.rate) if contact_force >= 0.0 else ELSEWHERE
+    slope = contact_force * st.inverse_mass / (st.rate * st.rate) if contact_force >= 0.0 else STARTS_INSIDE
     return scan(st.free, beta, 0.0, math.inf, slope, state, c, s, limit, scratch)
 
 
@@ -56,7 +56,7 @@ def wait_for_release(st, mu_beta, z, held, c, s, allowed, scratch):
         if largest_load_to_come(st, held, z, c, s) <= most:
             return AT_LIMIT, c, s, wait, 0.0
         n, end, c, s, slope = scan(
-            st.held, 0.0, -mu_beta - level, mu_beta - level, ELSEWHERE, held, c, s, period, scratch
+            st.held, 0.0, -mu_beta - level, mu_beta - level, STARTS_INSIDE, held, c, s, period, scratch
         )
         wait += n * st.h
         if end != AT_LIMIT:
@@ -83,7 +83,7 @@ def after_slide(st, beta, mu_beta, state, held, c, s, allowed, scratch):
         return REVERSE, -c, -s, load - beta, 0.0, load, 0.0
     if load < -mu_beta:
         return GRAZING, c, s, -load - beta, 0.0, load, 0.0
-    z = place(st, state, c, s)
+    z = contact_displacement(st, state, c, s)
     hold(st, state, z, c, s, held)
     end, c, s, wait, slope = wait_for_release(st, mu_beta, z, held, c, s, allowed, scratch)
     if end == AT_LIMIT:

@@ -14,7 +14,7 @@ import numpy as np
 from ..closed_form import decay
 from ..jit import entry, kernel
 from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
-from .events import MOVING, NO_RELEASE, after_slide, slide_on
+from .events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
 from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA
 from .state import PUSH, SPEED, SPEED_RATE, STATIC_SHAPE, Z_RATE, Z, energy
 
@@ -52,7 +52,7 @@ class Workspace(NamedTuple):
     anchor: np.ndarray  # (2, n)
     table: np.ndarray  # (n + 1, COLUMNS)
     events: np.ndarray  # (LONGEST_SEQUENCE,) of an event sequence
-    near: np.ndarray  # (2, n)
+    trial: np.ndarray  # (2, n)
     solved: np.ndarray  # (2, n) middle of a slide of the orbit solved for last
     earlier: np.ndarray  # (2, n) of the one before
     anchored: np.ndarray  # (ANCHORED,)
@@ -79,7 +79,7 @@ def copy_state(source, target, n):
 
 
 @kernel
-def _carry(table, n, time, rows, columns):
+def _free_motion(table, n, time, rows, columns):
     """Free motion of n oscillators over `time` in t = tau/r: row i a coordinate, n + i its velocity in t."""
     for i in range(n):
         omega = table[i, OMEGA]
@@ -95,12 +95,12 @@ def _carry(table, n, time, rows, columns):
 
 
 @kernel
-def _contact_row(st, place, rate, rows, columns, out):
+def _contact_row(st, coordinate_row, rate, rows, columns, out):
     """What the contact has of coordinates and their velocities by two rows of `st.modes`, Z or SPEED."""
     for j in range(columns):
         out[j] = 0.0
     for i in range(st.n):
-        for row, part in ((i, st.modes[place, i]), (st.n + i, st.modes[rate, i])):
+        for row, part in ((i, st.modes[coordinate_row, i]), (st.n + i, st.modes[rate, i])):
             if part != 0.0:
                 for j in range(columns):
                     out[j] += part * rows[row, j]
@@ -129,7 +129,7 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
                 shift = a * st.modes[STATIC_SHAPE, i]
                 for j in range(size):
                     stopped[k, j] += a * flow[i, j] + b * flow[n + i, j] - shift * stopped[2 * m, j]
-        _carry(st.held, m, wait / st.r, stopped, size)
+        _free_motion(st.held, m, wait / st.r, stopped, size)
         for j in range(size):
             row[j] = st.stiffness * stopped[2 * m, j]
         for k in range(m):
@@ -175,7 +175,7 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
     odd = halves % 2 == 1
     mirrored = False
     time = 0.0
-    contact_force = MOVING
+    contact_force = UNDER_WAY
     events = sequence.events
     for m in range(sequence.count):
         n, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, limit, scratch)
@@ -183,7 +183,7 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
             return False
         time += n * st.h
         if derive:
-            _carry(st.free, st.n, n * st.h / st.r, work.flow, size)
+            _free_motion(st.free, st.n, n * st.h / st.r, work.flow, size)
         code, c, s, contact_force, wait, load, slope = after_slide(
             st, beta, mu_beta, state, work.held, c, s, whole, scratch
         )
@@ -199,15 +199,15 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
     if mirrored != odd:
         return False
     # what is left, as exactly as the load's phase says it
-    rest = math.atan2(s0 * c - c0 * s, c0 * c + s0 * s)
-    rest += _TURN * math.floor((whole - time - rest) / _TURN + 0.5)
-    if not rest > 0.0:
+    remaining = math.atan2(s0 * c - c0 * s, c0 * c + s0 * s)
+    remaining += _TURN * math.floor((whole - time - remaining) / _TURN + 0.5)
+    if not remaining > 0.0:
         return False
-    n, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, rest / st.h, scratch)
+    n, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, remaining / st.h, scratch)
     if end != AT_LIMIT:
         return False
     if derive:
-        _carry(st.free, st.n, rest / st.r, work.flow, size)
+        _free_motion(st.free, st.n, remaining / st.r, work.flow, size)
     return True
 
 
@@ -220,7 +220,7 @@ def follow_events(st, beta, mu_beta, state, c, s, halves, work, scratch):
     whole = math.pi * halves
     mirrored = False
     time = 0.0
-    contact_force = MOVING
+    contact_force = UNDER_WAY
     count = 0
     while True:
         n, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, (whole - time) / st.h, scratch)
@@ -330,7 +330,7 @@ def newton_step(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
 
 
 @kernel
-def _nothing_to_come(move, last, miss, scale, tolerance):
+def _next_step_negligible(move, last, miss, scale, tolerance):
     """Whether the step after one of size `move` would be rounding: quadratically it gets this much smaller.
 
     Where steps make much of what an orbit misses by, they do so of rounding, and nothing is to be expected.
@@ -356,7 +356,7 @@ def solve_return(st, beta, mu_beta, c, s, sequence, halves, tolerance, work, scr
         for i in range(n):
             work.middle[0, i] += work.moved[0, i]
             work.middle[1, i] += work.moved[1, i]
-        if move <= 1e-15 * scale or _nothing_to_come(move, last, miss, scale, tolerance):
+        if move <= 1e-15 * scale or _next_step_negligible(move, last, miss, scale, tolerance):
             return True
         last = move
     return False

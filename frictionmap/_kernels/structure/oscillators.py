@@ -35,7 +35,7 @@ H, TURN_COS, TURN_SIN, TERMS, YC, YS, SWING = 0, 1, 2, 3, 4, 5, 6
 AT_LIMIT, FELL, ROSE, FAILED = 0, 1, 2, 3
 
 #: In place of a slope at the start: y starts inside its range.
-ELSEWHERE = -1.0
+STARTS_INSIDE = -1.0
 
 
 class Scratch(NamedTuple):
@@ -56,7 +56,7 @@ def make_scratch(n):
 
 
 @kernel
-def _answer(k, d, h, terms, z, w, cosine, sine, constant):
+def _step_response(k, d, h, terms, z, w, cosine, sine, constant):
     """(z, w) after one step from (z, w) under cosine cos(h x) + sine sin(h x) + constant."""
     z_k = z
     z_next = w
@@ -88,11 +88,13 @@ def fill_steps(table, h, terms):
         d = table[i, D]
         table[i, ROOT] = math.sqrt(k)
         table[i, GROWTH] = h * h * math.hypot(table[i, FC], table[i, FS])
-        table[i, ZZ], table[i, WZ] = _answer(k, d, h, terms, 1.0, 0.0, 0.0, 0.0, 0.0)
-        table[i, ZW], table[i, WW] = _answer(k, d, h, terms, 0.0, 1.0, 0.0, 0.0, 0.0)
-        table[i, ZC], table[i, WC] = _answer(k, d, h, terms, 0.0, 0.0, table[i, FC], table[i, FS], 0.0)
-        table[i, ZS], table[i, WS] = _answer(k, d, h, terms, 0.0, 0.0, table[i, FS], -table[i, FC], 0.0)
-        table[i, Z1], table[i, W1] = _answer(k, d, h, terms, 0.0, 0.0, 0.0, 0.0, table[i, F1])
+        table[i, ZZ], table[i, WZ] = _step_response(k, d, h, terms, 1.0, 0.0, 0.0, 0.0, 0.0)
+        table[i, ZW], table[i, WW] = _step_response(k, d, h, terms, 0.0, 1.0, 0.0, 0.0, 0.0)
+        table[i, ZC], table[i, WC] = _step_response(k, d, h, terms, 0.0, 0.0, table[i, FC], table[i, FS], 0.0)
+        table[i, ZS], table[i, WS] = _step_response(
+            k, d, h, terms, 0.0, 0.0, table[i, FS], -table[i, FC], 0.0
+        )
+        table[i, Z1], table[i, W1] = _step_response(k, d, h, terms, 0.0, 0.0, 0.0, 0.0, table[i, F1])
     table[n, H] = h
     table[n, TURN_COS], table[n, TURN_SIN] = math.cos(h), math.sin(h)
     table[n, TERMS] = terms
@@ -269,7 +271,7 @@ def _turned(c, s, angle):
 
 
 @kernel
-def _move(table, friction, before, c, s, x, powers, state):
+def _state_inside(table, friction, before, c, s, x, powers, state):
     """The state at x inside the step that starts from `before`, by the derivatives of every z there."""
     n = table.shape[0] - 1
     h = table[n, H]
@@ -297,7 +299,7 @@ def _move(table, friction, before, c, s, x, powers, state):
 
 
 @kernel
-def _nudge(table, friction, state, c, s, x):
+def _advance_slightly(table, friction, state, c, s, x):
     """Move the state on by a small part x of a step."""
     n = table.shape[0] - 1
     h = table[n, H]
@@ -320,7 +322,7 @@ def _at_crossing(table, friction, level, x, done, start, now, state, scratch):
     """
     h = table[table.shape[0] - 1, H]
     for _ in range(MAX_POLISH):
-        _move(table, friction, scratch.next, now[0], now[1], x, scratch.watched, state)
+        _state_inside(table, friction, scratch.next, now[0], now[1], x, scratch.watched, state)
         c, s = _turned(start[0], start[1], (done + x) * h)
         y, slope, bend, third = derivatives(table, friction, state, c, s)
         y -= level
@@ -329,13 +331,13 @@ def _at_crossing(table, friction, level, x, done, start, now, state, scratch):
         move = reversion(y, slope, bend, third)
         x += move
         if abs(move) < ONE_STEP:
-            _nudge(table, friction, state, c, s, move)
+            _advance_slightly(table, friction, state, c, s, move)
             return True, x, slope + move * (bend + 0.5 * move * third)
     return False, x, 0.0
 
 
 @kernel
-def _exit(table, friction, low, high, rise, ends, errors, done, start, now, state, scratch):
+def _exit_range(table, friction, low, high, rise, ends, errors, done, start, now, state, scratch):
     """Where y leaves [low, high] from scratch.next to `state`: (x, end, dy/dx); x = 2 if it does not.
 
     So many arguments: this is the seldom part of `scan`, whose arguments they are.  rise : as there, of
@@ -365,11 +367,11 @@ def _exit(table, friction, low, high, rise, ends, errors, done, start, now, stat
             found, x, slope = _at_crossing(table, friction, level, x, done, start, now, state, scratch)
             if found:
                 return x, FELL if falls else ROSE, slope
-            _move(table, friction, scratch.next, c, s, 1.0, scratch.watched, state)
+            _state_inside(table, friction, scratch.next, c, s, 1.0, scratch.watched, state)
     terms = int(table[n, TERMS])
     expand(table, n, friction, scratch.next, c, s, table[n, H], terms, scratch.series)
     watch(table, c, s, scratch.series, scratch.watched)
-    x, end = _leaves(scratch.watched, scratch.below, terms, low, high, rise)
+    x, end = _first_exit(scratch.watched, scratch.below, terms, low, high, rise)
     if end == AT_LIMIT:
         return 2.0, end, 0.0
     advance(scratch.series, n, terms, x, state)
@@ -398,7 +400,7 @@ def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
     Notes
     -----
     A step is passed where y cannot come to an end of the range inside it: by the bound on y'', or by the
-    cubic through its ends and the bound on y''''.  Any other step is looked into (`_exit`).
+    cubic through its ends and the bound on y''''.  Any other step is looked into (`_exit_range`).
     """
     n = table.shape[0] - 1
     turn_c, turn_s, yc, ys = table[n, TURN_COS], table[n, TURN_SIN], table[n, YC], table[n, YS]
@@ -416,15 +418,15 @@ def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
         if not (sure and whole):
             x, end, slope = 2.0, AT_LIMIT, 0.0
             if not sure:
-                x, end, slope = _exit(
-                    table, friction, low, high, rise if done == 0.0 else ELSEWHERE, (y, y1),
+                x, end, slope = _exit_range(
+                    table, friction, low, high, rise if done == 0.0 else STARTS_INSIDE, (y, y1),
                     (second, third, fourth), done, start, (c, s), state, scratch,
                 )  # fmt: skip
-            rest = 1.0 if whole else limit - done
-            if x > rest and not whole:
-                x, end = rest, AT_LIMIT
-                _move(table, friction, scratch.next, c, s, x, scratch.watched, state)
-            if x <= rest:
+            remaining = 1.0 if whole else limit - done
+            if x > remaining and not whole:
+                x, end = remaining, AT_LIMIT
+                _state_inside(table, friction, scratch.next, c, s, x, scratch.watched, state)
+            if x <= remaining:
                 c, s = _turned(start[0], start[1], (done + x) * table[n, H])
                 return done + x, end, c, s, slope
         done += 1.0
@@ -436,7 +438,7 @@ def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
 
 
 @kernel
-def _leaves(watched, below, terms, low, high, rise):
+def _first_exit(watched, below, terms, low, high, rise):
     """(x, end): where y first leaves [low, high] in the step whose series this is; x = 2 if it does not."""
     x = 2.0
     end = AT_LIMIT

@@ -40,14 +40,14 @@ from .oscillators import (
 # shape; what the contact's load, its displacement z, and dz/dt have of the coordinate and of p; cos and sin
 # part of the load in the velocity.
 W, DAMPING, PUSH, STATIC_SHAPE, LOAD, LOAD_RATE, Z, Z_RATE, SPEED, SPEED_RATE = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
-DIRECT_COS, DIRECT_SIN = 10, 11
+FEEDTHROUGH_COS, FEEDTHROUGH_SIN = 10, 11
 MODE_ROWS = 12
 
 #: Load periods beyond which `held_period` does not look for a repetition.
 _LONGEST_REPEAT = 256
 
 
-class Structure(NamedTuple):
+class StructureAtFrequency(NamedTuple):
     """Everything here depends on (system, r, steps) only."""
 
     n: int  # free oscillators that the contact sees
@@ -62,12 +62,12 @@ class Structure(NamedTuple):
     norm: float  # energy over that of the free oscillators, at most; 1 of modes
     free_cos: float  # the load in the contact while it slides, less the oscillators' part
     free_sin: float
-    place_cos: float  # the same of z
-    place_sin: float
+    displacement_cos: float  # the same of z
+    displacement_sin: float
     modes: np.ndarray  # (MODE_ROWS, n)
     free: np.ndarray  # (n + 1, COLUMNS) tables of `oscillators`
     held: np.ndarray  # (m + 1, COLUMNS)
-    direct: np.ndarray  # (2, m) cos and sin part of the load in y' of the held oscillators
+    held_feedthrough: np.ndarray  # (2, m) cos and sin part of the load in y' of the held oscillators
     to_free: np.ndarray  # (2n, 2m), see `held.HeldStructure`
     to_held: np.ndarray  # (2m, 2n)
 
@@ -75,7 +75,7 @@ class Structure(NamedTuple):
 class Model(NamedTuple):
     """A system in numbers; nothing here depends on r."""
 
-    modes: np.ndarray  # those of `Structure`, but for the load's part
+    modes: np.ndarray  # those of `StructureAtFrequency`, but for the load's part
     omega: np.ndarray  # (m,) held oscillators
     ratio: np.ndarray
     watch: np.ndarray  # (2m,) the load in the contact of (y, p)
@@ -92,12 +92,12 @@ class Loads(NamedTuple):
 
     free_cos: np.ndarray  # (n_r, n) load on the free oscillators
     free_sin: np.ndarray
-    free_direct_cos: np.ndarray  # (n_r, n)
-    free_direct_sin: np.ndarray
+    free_feedthrough_cos: np.ndarray  # (n_r, n)
+    free_feedthrough_sin: np.ndarray
     held_cos: np.ndarray  # (n_r, m) load on the held oscillators
     held_sin: np.ndarray
-    direct_cos: np.ndarray  # (n_r, m)
-    direct_sin: np.ndarray
+    held_feedthrough_cos: np.ndarray  # (n_r, m)
+    held_feedthrough_sin: np.ndarray
     contact_cos: np.ndarray  # (n_r,) load on the contact's mass alone
     contact_sin: np.ndarray
 
@@ -118,12 +118,12 @@ def _fill_free(loads, i, scale, modes, free):
         free[j, OW] = modes[SPEED_RATE, j]
         free[j, OMEGA] = w
         free[j, ZETA] = zeta
-        modes[DIRECT_COS, j] = loads.free_direct_cos[i, j]
-        modes[DIRECT_SIN, j] = loads.free_direct_sin[i, j]
+        modes[FEEDTHROUGH_COS, j] = loads.free_feedthrough_cos[i, j]
+        modes[FEEDTHROUGH_SIN, j] = loads.free_feedthrough_sin[i, j]
 
 
 @kernel
-def _fill_held(model, loads, i, scale, held, direct):
+def _fill_held(model, loads, i, scale, held, feedthrough):
     """The held oscillators; returns cos and sin part of the load in the contact, less theirs."""
     m = model.omega.size
     square = scale * scale
@@ -139,26 +139,26 @@ def _fill_held(model, loads, i, scale, held, direct):
         held[j, OW] = model.watch[m + j] / scale
         held[j, OMEGA] = omega
         held[j, ZETA] = model.ratio[j]
-        direct[0, j] = loads.direct_cos[i, j]
-        direct[1, j] = loads.direct_sin[i, j]
-        contact_cos -= model.watch[m + j] * direct[0, j]
-        contact_sin -= model.watch[m + j] * direct[1, j]
+        feedthrough[0, j] = loads.held_feedthrough_cos[i, j]
+        feedthrough[1, j] = loads.held_feedthrough_sin[i, j]
+        contact_cos -= model.watch[m + j] * feedthrough[0, j]
+        contact_sin -= model.watch[m + j] * feedthrough[1, j]
     return contact_cos, contact_sin
 
 
 @kernel
-def _less_direct(modes, row):
+def _feedthrough(modes, row):
     """cos and sin part of what a row of p has less than of the velocities."""
     cosine, sine = 0.0, 0.0
     for j in range(modes.shape[1]):
-        cosine -= modes[row, j] * modes[DIRECT_COS, j]
-        sine -= modes[row, j] * modes[DIRECT_SIN, j]
+        cosine -= modes[row, j] * modes[FEEDTHROUGH_COS, j]
+        sine -= modes[row, j] * modes[FEEDTHROUGH_SIN, j]
     return cosine, sine
 
 
 @entry
 def make_structure(model, loads, i, r, steps):
-    """The `Structure` at the i-th frequency, r > 0, for `steps` scan steps per period of the fastest part."""
+    """The `StructureAtFrequency` at the i-th frequency, r > 0, for `steps` scan steps per period of the fastest part."""
     n = model.modes.shape[1]
     m = model.omega.size
     fastest = 0.0
@@ -173,26 +173,26 @@ def make_structure(model, loads, i, r, steps):
     modes = model.modes.copy()
     _fill_free(loads, i, scale, modes, free)
     fill_steps(free, h, terms)
-    speed_cos, speed_sin = _less_direct(modes, SPEED_RATE)
+    speed_cos, speed_sin = _feedthrough(modes, SPEED_RATE)
     watch_load(free, speed_cos * scale, speed_sin * scale)
     held = np.zeros((m + 1, COLUMNS))
-    direct = np.empty((2, m))
-    held_cos, held_sin = _fill_held(model, loads, i, scale, held, direct)
+    feedthrough = np.empty((2, m))
+    held_cos, held_sin = _fill_held(model, loads, i, scale, held, feedthrough)
     fill_steps(held, h, terms)
     watch_load(held, held_cos, held_sin)
-    load_cos, load_sin = _less_direct(modes, LOAD_RATE)
-    place_cos, place_sin = _less_direct(modes, Z_RATE)
-    return Structure(
+    load_cos, load_sin = _feedthrough(modes, LOAD_RATE)
+    displacement_cos, displacement_sin = _feedthrough(modes, Z_RATE)
+    return StructureAtFrequency(
         n, m, r, h, r / h, terms, model.inverse_mass, model.stiffness, model.reach, model.norm,
-        load_cos - loads.contact_cos[i], load_sin - loads.contact_sin[i], place_cos, place_sin, modes, free,
-        held, direct, model.to_free, model.to_held,
+        load_cos - loads.contact_cos[i], load_sin - loads.contact_sin[i], displacement_cos, displacement_sin,
+        modes, free, held, feedthrough, model.to_free, model.to_held,
     )  # fmt: skip
 
 
 @kernel
-def place(st, state, c, s):
+def contact_displacement(st, state, c, s):
     """z of a free state."""
-    total = st.place_cos * c + st.place_sin * s
+    total = st.displacement_cos * c + st.displacement_sin * s
     rate = 0.0
     for i in range(st.n):
         total += st.modes[Z, i] * state[0, i]
@@ -224,12 +224,12 @@ def hold(st, state, z, c, s, held):
         held[1, k] = 0.0
     for i in range(n):
         u = state[0, i] - modes[STATIC_SHAPE, i] * z
-        v = st.rate * state[1, i] - (modes[DIRECT_COS, i] * c + modes[DIRECT_SIN, i] * s)
+        v = st.rate * state[1, i] - (modes[FEEDTHROUGH_COS, i] * c + modes[FEEDTHROUGH_SIN, i] * s)
         for k in range(m):
             held[0, k] += st.to_held[k, i] * u + st.to_held[k, n + i] * v
             held[1, k] += st.to_held[m + k, i] * u + st.to_held[m + k, n + i] * v
     for k in range(m):
-        held[1, k] = (held[1, k] + st.direct[0, k] * c + st.direct[1, k] * s) / st.rate
+        held[1, k] = (held[1, k] + st.held_feedthrough[0, k] * c + st.held_feedthrough[1, k] * s) / st.rate
 
 
 @kernel
@@ -241,12 +241,14 @@ def release(st, held, z, c, s, state):
         state[1, i] = 0.0
     for k in range(m):
         y = held[0, k]
-        p = st.rate * held[1, k] - st.direct[0, k] * c - st.direct[1, k] * s
+        p = st.rate * held[1, k] - st.held_feedthrough[0, k] * c - st.held_feedthrough[1, k] * s
         for i in range(n):
             state[0, i] += st.to_free[i, k] * y + st.to_free[i, m + k] * p
             state[1, i] += st.to_free[n + i, k] * y + st.to_free[n + i, m + k] * p
     for i in range(n):
-        state[1, i] = (state[1, i] + (modes[DIRECT_COS, i] * c + modes[DIRECT_SIN, i] * s)) / st.rate
+        state[1, i] = (
+            state[1, i] + (modes[FEEDTHROUGH_COS, i] * c + modes[FEEDTHROUGH_SIN, i] * s)
+        ) / st.rate
 
 
 @kernel

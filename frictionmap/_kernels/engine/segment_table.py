@@ -1,7 +1,7 @@
 """The table of phases of a steady state: slides and stops in order, each with its exact motion.
 
 One row a phase; a phase that is a mirror image is told so by its sign.  The state at its start is that of
-`structure.Structure`, free oscillators in a slide and held oscillators in a stop, whatever kind of
+`structure.StructureAtFrequency`, free oscillators in a slide and held oscillators in a stop, whatever kind of
 motion was followed.  All that is asked of a steady state beyond its regime is read from here.
 """
 
@@ -9,7 +9,7 @@ import math
 
 from ..jit import entry, kernel
 from ..structure.sliding_orbit import orbit_state
-from ..structure.state import place
+from ..structure.state import contact_displacement
 
 BEGIN = 0  # in tau, since the first phase
 LENGTH = 1  # in tau
@@ -17,7 +17,7 @@ SENSE = 2  # 1 for a slide (upwards, mirrored or not), 0 for a stop
 SIGN = 3  # -1 where the row is the mirror image of the motion
 COS = 4  # load's phase at the start
 SIN = 5
-PLACE = 6  # z of a stop
+STOP_Z = 6  # z of a stop
 Z_END = 7  # z at the end
 CONTACT_FORCE = 8  # force in the contact at the start of a slide, friction taken off
 EVENT = 9  # which ended a slide, see `one_mass.events`
@@ -25,7 +25,7 @@ STATE = 10  # 2n of a slide, or 2m of a stop: coordinates, and velocities in t =
 
 
 @entry
-def phase_columns(n):
+def segment_columns(n):
     """Columns of the table for n modes."""
     return STATE + 2 * n
 
@@ -50,24 +50,24 @@ def put_mass(z, c, s, row):
 
 
 @kernel
-def put_phase(row, begin, length, sense, sign, z_end):
+def put_segment(row, begin, length, sense, sign, z_end):
     """What else there is to a phase."""
     row[BEGIN] = begin
     row[LENGTH] = length
     row[SENSE] = sense
     row[SIGN] = sign
-    row[PLACE] = z_end if sense == 0.0 else math.nan
+    row[STOP_Z] = z_end if sense == 0.0 else math.nan
     row[Z_END] = z_end
 
 
 @entry
-def continuous_phase(st, orbit, i, beta, phase, row, work):
+def continuous_segment(st, orbit, i, beta, phase, row, work):
     """The rising half of the continuous orbit, a table of one phase; `phase` is the load's at its maximum."""
     c, s = -math.cos(phase), -math.sin(phase)
     orbit_state(st, orbit, i, beta, phase, c, s, work.start)
-    z = place(st, work.start, c, s)
+    z = contact_displacement(st, work.start, c, s)
     put_state(work.start, st.n, st.rate, c, s, row)
-    put_phase(row, 0.0, math.pi, 1.0, 1.0, -z)
+    put_segment(row, 0.0, math.pi, 1.0, 1.0, -z)
 
 
 @entry

@@ -44,7 +44,7 @@ class Contact(NamedTuple):
     unique: bool  # mu = 1: there is one steady state, whatever the start
 
 
-class Moment(NamedTuple):
+class ContactState(NamedTuple):
     """Where a motion is, as far as numbers tell; a structure's modes are in its `state`."""
 
     z: float  # displacement in the contact
@@ -58,7 +58,7 @@ class Orbit(NamedTuple):
     """What the search for a periodic orbit found."""
 
     found: bool
-    at: Moment  # its anchor, the start of an upward slide
+    contact_state: ContactState  # its anchor, the start of an upward slide
     event: int  # which ended the slide before
     sign: float  # -1.0 where that is the mirror image of the true motion
     slides: int  # until it returns, or a multiple of that
@@ -77,29 +77,29 @@ class Cell(NamedTuple):
     stuck: float  # share of the steady period
     period: int  # excitation periods
     cycles: float  # excitation periods followed
-    at: Moment  # anchor from which the steady state starts over, or place where it sticks
+    contact_state: ContactState  # anchor from which the steady state starts over, or place where it sticks
     event: int  # which ended the slide before
     sign: float  # -1.0 where that is the mirror image of the true motion
     slides: int  # until it returns; 0 where stuck and for the closed form
 
 
 @kernel
-def nowhere():
+def undefined_state():
     """A moment that is none."""
     nan = math.nan
-    return Moment(nan, nan, nan, nan, nan)
+    return ContactState(nan, nan, nan, nan, nan)
 
 
 @kernel
 def no_orbit():
     """A search that failed."""
-    return Orbit(False, nowhere(), REVERSE, 1.0, 0, True, math.nan)
+    return Orbit(False, undefined_state(), REVERSE, 1.0, 0, True, math.nan)
 
 
 @kernel
-def known_orbit(at, event, sign, slides):
+def known_orbit(contact_state, event, sign, slides):
     """The orbit of an anchor that the motion is at already."""
-    return Orbit(True, at, event, sign, slides, True, math.nan)
+    return Orbit(True, contact_state, event, sign, slides, True, math.nan)
 
 
 @kernel
@@ -117,7 +117,9 @@ def turns_at(event):
 @kernel
 def plain_cell(regime, status, origin, stops, amplitude, stuck, period, cycles):
     """A cell with no anchor."""
-    return Cell(regime, status, origin, stops, amplitude, stuck, period, cycles, nowhere(), REVERSE, 1.0, 0)
+    return Cell(
+        regime, status, origin, stops, amplitude, stuck, period, cycles, undefined_state(), REVERSE, 1.0, 0
+    )
 
 
 @kernel
@@ -131,8 +133,10 @@ def unresolved(status, time):
 def stuck_cell(origin, status, time, z, sign):
     """Permanent sticking at z."""
     nan = math.nan
-    at = Moment(z, 0.0, nan, nan, nan)
-    return Cell(PERMANENT_STICKING, status, origin, nan, 0.0, 1.0, 1, time / TURN, at, REVERSE, sign, 0)
+    contact_state = ContactState(z, 0.0, nan, nan, nan)
+    return Cell(
+        PERMANENT_STICKING, status, origin, nan, 0.0, 1.0, 1, time / TURN, contact_state, REVERSE, sign, 0
+    )
 
 
 @kernel
@@ -158,7 +162,7 @@ def periodic_cell(measured, stops, orbit, origin, time):
     regime = STICK_SLIP if stops > 0 else CONTINUOUS
     return Cell(
         regime, RESOLVED, origin, 2.0 * stops / halves, measured.amplitude, measured.stuck,
-        full_period(halves), time / TURN, orbit.at, orbit.event, orbit.sign, measured.slides,
+        full_period(halves), time / TURN, orbit.contact_state, orbit.event, orbit.sign, measured.slides,
     )  # fmt: skip
 
 

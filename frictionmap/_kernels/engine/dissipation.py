@@ -7,8 +7,8 @@ import numpy as np
 
 from ..jit import kernel
 from ..structure.oscillators import advance, expand
-from ..structure.state import DIRECT_COS, DIRECT_SIN, place
-from .phase_table import COS, LENGTH, SENSE, SIN, Z_END, take_start
+from ..structure.state import FEEDTHROUGH_COS, FEEDTHROUGH_SIN, contact_displacement
+from .segment_table import COS, LENGTH, SENSE, SIN, Z_END, take_start
 
 
 @kernel
@@ -18,7 +18,7 @@ def sliding_distance(st, table, work):
     for k in range(table.shape[0]):
         if table[k, SENSE] > 0.0:
             _, _, state = take_start(st, table[k], work)
-            total += abs(table[k, Z_END] - place(st, state, table[k, COS], table[k, SIN]))
+            total += abs(table[k, Z_END] - contact_displacement(st, state, table[k, COS], table[k, SIN]))
     return total
 
 
@@ -26,7 +26,7 @@ class Dampers(NamedTuple):
     """Damping as k dashpots that the motion of what the contact sees works on; velocities in t = tau/r."""
 
     weights: np.ndarray  # (k,) work rate over the square of the velocity
-    place: np.ndarray  # (k, 2n) displacements of the free oscillators (q, p)
+    displacement: np.ndarray  # (k, 2n) displacements of the free oscillators (q, p)
     free: np.ndarray  # (k, 2n) their velocities
     held: np.ndarray  # (k, 2m) those of the held oscillators
     base: np.ndarray  # (k,) share of the base's motion in what they see
@@ -41,8 +41,8 @@ def _speed(st, dampers, slides, i, c, s, series, out):
     yc, ys = 0.0, -dampers.base[i]
     for k in range(count):
         rate = rows[i, count + k]
-        yc -= rate * (st.modes[DIRECT_COS, k] if slides else st.direct[0, k]) / st.r
-        ys -= rate * (st.modes[DIRECT_SIN, k] if slides else st.direct[1, k]) / st.r
+        yc -= rate * (st.modes[FEEDTHROUGH_COS, k] if slides else st.held_feedthrough[0, k]) / st.r
+        ys -= rate * (st.modes[FEEDTHROUGH_SIN, k] if slides else st.held_feedthrough[1, k]) / st.r
     c_j, s_j = c, s
     c_next, s_next = -s * st.h, c * st.h
     for j in range(st.terms):
@@ -51,10 +51,10 @@ def _speed(st, dampers, slides, i, c, s, series, out):
         c_j, c_next = c_next, fall * c_j
         s_j, s_next = s_next, fall * s_j
     for k in range(count):
-        place, rate = rows[i, k], rows[i, count + k]
-        if place != 0.0 or rate != 0.0:
+        share, rate = rows[i, k], rows[i, count + k]
+        if share != 0.0 or rate != 0.0:
             for j in range(st.terms):
-                out[j] += place * series[j, k] / st.r
+                out[j] += share * series[j, k] / st.r
                 out[j] += rate * ((j + 1.0) * series[j + 1, k] / st.h)
 
 

@@ -4,14 +4,14 @@ import math
 
 from ..jit import kernel
 from ..structure.oscillators import advance, expand, watch
+from .dissipation import integral_of_square
 from .extremes import set_watch
-from .phase_table import COS, LENGTH, SIGN, SIN, take_start
-from .works import integral_of_square
+from .segment_table import COS, LENGTH, SIGN, SIN, take_start
 
 
 @kernel
-def rest_square(st, beta, shapes, alone, i, k, mean, first, table, work, scratch):
-    """int (x - X_0 - Re X_1 e^{i tau})^2 dtau over a table of phases, x the k-th row of `shapes`.
+def distortion_square(st, beta, outputs, uncoupled, i, k, mean, first, table, work, scratch):
+    """int (x - X_0 - Re X_1 e^{i tau})^2 dtau over a table of phases, x the k-th row of `outputs`.
 
     What is small is not left over from what is large: mean and first harmonic go before the square is taken.
     Eleven arguments: of a structure, of a frequency, of a row.
@@ -21,8 +21,8 @@ def rest_square(st, beta, shapes, alone, i, k, mean, first, table, work, scratch
         row = table[j]
         slides, n, state = take_start(st, row, work)
         watched = work.table[: n + 1]
-        phasor = (alone.sliding[i, k] if slides else alone.held[i, k]) - first
-        force, offset = set_watch(st, shapes, k, beta, phasor, row, slides, n, watched)
+        phasor = (uncoupled.sliding[i, k] if slides else uncoupled.held[i, k]) - first
+        force, offset = set_watch(st, outputs, k, beta, phasor, row, slides, n, watched)
         # in a mirror image the mean changes its sign; so does the load, and with it the first harmonic
         offset -= row[SIGN] * mean
         angle, length = math.atan2(row[SIN], row[COS]), row[LENGTH] / st.h

@@ -1,7 +1,8 @@
-"""What is asked for of steady states beyond their regime: amplitudes, multipliers, asymmetry.
+"""Details of steady states requested beyond the basic outputs: amplitudes of the masses, multipliers,
+asymmetry.
 
-All of it is read from their tables of phases.  Chosen by the class of `requested` (`kinds`): who asks for
-nothing compiles nothing of it.
+All of them are read from the segment table.  The implementation is chosen by the class of `requested`
+(`kinds`): nothing is compiled for details that are not requested.
 """
 
 import math
@@ -25,21 +26,21 @@ from .segment_table import continuous_segment, segment_columns
 
 
 class NotRequested(NamedTuple):
-    """No details are asked for."""
+    """Placeholder for details or quantities that are not requested."""
 
     size: int
 
 
 class Displacements(NamedTuple):
-    """What the displacements of the masses are made of; arrays (n_r, n_dof)."""
+    """Matrices and phasors that give the displacements of the masses."""
 
     outputs: OutputMatrices
     uncoupled: UncoupledResponse
-    held: np.ndarray  # phasor of the displacements with the contact held
+    held: np.ndarray  # displacement phasors with the contact held
 
 
 class Details(NamedTuple):
-    """Details over a map."""
+    """Data for the details over a whole map."""
 
     r: np.ndarray
     model: Model
@@ -50,25 +51,27 @@ class Details(NamedTuple):
 
 
 class DetailsAtFrequency(NamedTuple):
-    """Details at one frequency; at r = 0 nothing moves, and the structures are those of another."""
+    """Data for the details at one frequency; at r = 0 a placeholder (r = 1) that is never read."""
 
     i: int
     st: StructureAtFrequency
     fine: StructureAtFrequency
     orbit: Continuous
     displacements: Displacements
-    extremes: np.ndarray  # (n_dof, FOUND) of a cell
+    extremes: np.ndarray  # (n_dof, FOUND) work array for one cell
     work: Workspace
     scratch: Scratch
 
 
 @kernel
 def _not_requested(requested, i):
+    """Return the placeholder itself."""
     return requested
 
 
 @entry
 def _details_at(requested, i):
+    """Build the data for the i-th frequency."""
     r = requested.r[i] if requested.r[i] > 0.0 else 1.0
     st = make_structure(requested.model, requested.loads, i, r, requested.steps)
     fine = make_structure(requested.model, requested.loads, i, r, max(requested.steps, FINE_STEPS))
@@ -79,12 +82,13 @@ def _details_at(requested, i):
 
 @kernel
 def _no_stuck(details, out, m, i, j, z):
+    """Write nothing."""
     pass
 
 
 @kernel
 def _stuck(details, out, m, i, j, z):
-    """Where the contact is held at z: the masses swing about where that puts them."""
+    """Write the amplitudes with the contact held at z: those of the vibration plus the static offsets."""
     displacements = details.displacements
     for mass in range(out.amplitude.shape[3]):
         offset = abs(displacements.outputs.static_shape[mass] * z)
@@ -93,12 +97,23 @@ def _stuck(details, out, m, i, j, z):
 
 @kernel
 def _no_continuous(details, out, m, i, j, beta, mu_beta):
+    """Write nothing.
+
+    Parameters
+    ----------
+    details, out, m, i, j, beta, mu_beta : see `write_continuous_details`
+    """
     pass
 
 
 @entry
 def _continuous(details, out, m, i, j, beta, mu_beta):
-    """Of the continuous orbit."""
+    """Write the details of the continuous orbit.
+
+    Parameters
+    ----------
+    details, out, m, i, j, beta, mu_beta : see `write_continuous_details`
+    """
     fine, orbit, work, scratch = details.fine, details.orbit, details.work, details.scratch
     if not orbit.v_abs[i] < math.inf:
         if out.asymmetry.size:
@@ -119,7 +134,16 @@ def _continuous(details, out, m, i, j, beta, mu_beta):
 
 @entry
 def _masses(details, out, m, i, j, beta, table):
-    """Amplitudes of the masses."""
+    """Write the amplitudes of the masses.
+
+    Parameters
+    ----------
+    details : DetailsAtFrequency
+    out : named tuple of output arrays
+    m, i, j : indices of mu, r and beta
+    beta : kinetic friction force
+    table : (segments, columns) segment table
+    """
     parts, found = details.displacements, details.extremes
     largest_moduli(
         details.st, beta, parts.outputs, parts.uncoupled, details.i, -1, table, found, details.work,
@@ -130,12 +154,22 @@ def _masses(details, out, m, i, j, beta, table):
 
 @kernel
 def _no_orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude):
-    """Nothing; see `write_orbit_details` for its arguments."""
+    """Write nothing.
+
+    Parameters
+    ----------
+    details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude : see `write_orbit_details`
+    """
 
 
 @entry
 def _orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude):
-    """Of a periodic orbit, whose table of phases is written first; see `write_orbit_details` for its arguments."""
+    """Write the details of a periodic orbit from its segment table.
+
+    Parameters
+    ----------
+    details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude : see `write_orbit_details`
+    """
     st, work, scratch = details.st, details.work, details.scratch
     table = np.empty((2 * found.slides, segment_columns(st.n)))
     orbit = known_orbit(found.contact_state, found.event, found.sign, found.slides)
@@ -150,22 +184,39 @@ def _orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitu
 
 @by_class((NotRequested, _not_requested), (Details, _details_at))
 def details_at(requested, i):
-    """The details at the i-th frequency."""
+    """Build the data for the details at the i-th frequency."""
 
 
 @by_class((NotRequested, _no_stuck), (DetailsAtFrequency, _stuck))
 def write_stuck_details(details, out, m, i, j, z):
-    """Write those of a cell whose contact sticks at z."""
+    """Write the details of a cell whose contact sticks at z."""
 
 
 @by_class((NotRequested, _no_continuous), (DetailsAtFrequency, _continuous))
 def write_continuous_details(details, out, m, i, j, beta, mu_beta):
-    """Write those of a cell on the continuous orbit."""
+    """Write the details of a cell on the continuous orbit.
+
+    Parameters
+    ----------
+    details : DetailsAtFrequency or NotRequested
+    out : named tuple of output arrays
+    m, i, j : indices of mu, r and beta
+    beta, mu_beta : kinetic and static friction force
+    """
 
 
 @by_class((NotRequested, _no_orbit), (DetailsAtFrequency, _orbit))
 def write_orbit_details(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude):
-    """Write those of a cell on the periodic orbit that was found.
+    """Write the details of a cell on a periodic orbit.
 
-    Eleven arguments: the cell's friction is told in units of the map, the contact's in those of the motion.
+    Parameters
+    ----------
+    details : DetailsAtFrequency or NotRequested
+    motion : a kind of motion, at the anchor of the orbit
+    contact : Contact, in the units of the motion
+    found : Cell
+    out : named tuple of output arrays
+    m, i, j : indices of mu, r and beta
+    beta, mu_beta : kinetic and static friction force, in the units of the map
+    amplitude : amplitude of z, in the units of the map
     """

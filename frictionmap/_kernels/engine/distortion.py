@@ -1,4 +1,4 @@
-"""What is left of a steady motion when its mean and its first harmonic are taken away, by its square."""
+"""Integral of the square of a steady motion without its mean and first harmonic."""
 
 import math
 
@@ -11,10 +11,20 @@ from .segment_table import COS, LENGTH, SIGN, SIN, take_start
 
 @kernel
 def distortion_square(st, beta, outputs, uncoupled, i, k, mean, first, table, work, scratch):
-    """int (x - X_0 - Re X_1 e^{i tau})^2 dtau over a table of phases, x the k-th row of `outputs`.
+    """Integral of (x - X_0 - Re X_1 e^{i tau})^2 over a segment table, x being the k-th row of `outputs`.
 
-    What is small is not left over from what is large: mean and first harmonic go before the square is taken.
-    Eleven arguments: of a structure, of a frequency, of a row.
+    Mean and first harmonic are subtracted before squaring, so that a small remainder is not the difference of
+    large numbers.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta : kinetic friction force
+    outputs : OutputMatrices; k : its row
+    uncoupled : UncoupledResponse; i : index of the frequency
+    mean, first : X_0, and X_1 (complex)
+    table : (segments, columns) segment table
+    work, scratch : Workspace, Scratch
     """
     total = 0.0
     for j in range(table.shape[0]):
@@ -23,7 +33,7 @@ def distortion_square(st, beta, outputs, uncoupled, i, k, mean, first, table, wo
         watched = work.table[: n + 1]
         phasor = (uncoupled.sliding[i, k] if slides else uncoupled.held[i, k]) - first
         force, offset = set_watch(st, outputs, k, beta, phasor, row, slides, n, watched)
-        # in a mirror image the mean changes its sign; so does the load, and with it the first harmonic
+        # mirroring changes the sign of the mean; the load changes sign too, and with it the first harmonic
         offset -= row[SIGN] * mean
         angle, length = math.atan2(row[SIN], row[COS]), row[LENGTH] / st.h
         for step in range(int(math.ceil(length))):

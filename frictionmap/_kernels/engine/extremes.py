@@ -1,7 +1,8 @@
-"""When masses are farthest out, and the force to the ground largest, in a steady state.
+"""Largest displacement of each mass, and largest force to the ground, in a steady state.
 
-What is looked at is linear in the state, so in a scan step it is a polynomial.  Times are those of a maximum:
-what is largest at a minimum has its maximum half a period later, in its mirror image if it is symmetric.
+Every such quantity is linear in the state, hence a polynomial within a scan step.  Phases are those of a
+maximum: a quantity that is largest at a minimum has its maximum half a period later, in the mirror image, if
+the motion is symmetric.
 """
 
 import math
@@ -14,31 +15,33 @@ from ..structure.oscillators import COLUMNS, OW, OZ, bounds, derivatives, expand
 from ..structure.state import FEEDTHROUGH_COS, FEEDTHROUGH_SIN
 from .segment_table import COS, LENGTH, SENSE, SIN, STOP_Z, Z_END, take_start
 
-#: Columns of what is found: the largest modulus, the load's phase at it, and where it is held over a stop the
-#: load's phases at which that begins and ends.
+#: Columns of the result: the largest modulus and its load phase; for a modulus held during a stop, the load
+#: phases at which the stop begins and ends.
 VALUE, PHASE, PHASE_BEGIN, PHASE_END = 0, 1, 2, 3
 FOUND = 4
 
-#: Part of a scan step that is not cut further, what a polynomial could hide in it being of the third order;
-#: and by which steps overlap.
+#: Shortest interval, as a share of a scan step, that is still divided, and the overlap of scan steps: the
+#: error of stopping there is of third order in it.
 _SHORTEST = 1e-6
 
 
-#: A step of Newton's method after which the next one would be rounding.
+#: Newton step after which the next one would be rounding error.
 _NEXT = 1e-9
 
 
 class OutputMatrices(NamedTuple):
-    """What each of the things looked at, the masses first, has of the state; velocities in t = tau/r."""
+    """Rows that map the state to displacements (the masses first) and to the transmitted force; velocities in
+    t = tau/r.
+    """
 
-    free: np.ndarray  # (rows, 2n) of the free oscillators (q, p)
-    held: np.ndarray  # (rows, 2m) of the held oscillators (y, p)
-    static_shape: np.ndarray  # (rows,) of a unit displacement of the contact while it is held
-    friction: np.ndarray  # (rows,) of the friction force while the contact slides
+    free: np.ndarray  # (rows, 2n) coefficients of the free oscillators (q, p)
+    held: np.ndarray  # (rows, 2m) coefficients of the held oscillators (y, p)
+    static_shape: np.ndarray  # (rows,) response to a unit displacement of the held contact
+    friction: np.ndarray  # (rows,) coefficient of the friction force while the contact slides
 
 
 class UncoupledResponse(NamedTuple):
-    """Phasors (n_r, rows) of what moves with the load alone: modes that do not participate, the base."""
+    """Response of the modes that the contact does not excite, and of the base; phasors (n_r, rows)."""
 
     sliding: np.ndarray
     held: np.ndarray
@@ -46,7 +49,7 @@ class UncoupledResponse(NamedTuple):
 
 @kernel
 def turned_half(angle, value):
-    """The phase of a maximum, in (-pi, pi], of what is `value` at an angle of the load."""
+    """Load phase in (-pi, pi] of the maximum of a quantity that has this value at a load phase."""
     if value < 0.0:
         angle += math.pi
     angle -= 2.0 * math.pi * math.ceil((angle - math.pi) / (2.0 * math.pi))
@@ -55,7 +58,13 @@ def turned_half(angle, value):
 
 @kernel
 def largest_in_contact(table, out):
-    """The same of z, `out` (FOUND,): it turns only where slides end, and stops hold it there."""
+    """Find the largest modulus of z, and when; z turns only at the ends of slides, and stops hold it there.
+
+    Parameters
+    ----------
+    table : (segments, columns) segment table
+    out : (FOUND,) filled with modulus and load phases
+    """
     out[VALUE] = -1.0
     for k in range(table.shape[0]):
         row = table[k]
@@ -69,10 +78,22 @@ def largest_in_contact(table, out):
 
 @kernel
 def set_watch(st, outputs, k, beta, phasor, row, slides, n, table):
-    """Fill a table of the n oscillators of a phase, in which the k-th row of `outputs` is watched.
+    """Fill a table of the n oscillators of a segment, whose watched sum is the k-th row of `outputs`.
 
-    phasor : of what moves with the load alone
-    Returns (friction force, what the row has beside what is watched).
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    outputs : OutputMatrices; k : its row
+    beta : kinetic friction force
+    phasor : complex response of the row that the contact does not influence
+    row : (columns,) row of the segment table
+    slides : whether the segment is a slide
+    n : number of oscillators
+    table : (n + 1, COLUMNS) table of `oscillators` to fill
+
+    Returns
+    -------
+    (friction, offset) : friction force on the oscillators, and the constant part of the row
     """
     source = st.free if slides else st.held
     yc, ys = phasor.real, -phasor.imag
@@ -97,10 +118,23 @@ def set_watch(st, outputs, k, beta, phasor, row, slides, n, table):
 
 @kernel
 def _search(st, table, n, friction, offset, row, state, scratch, out):
-    """Enter the largest modulus over a phase of what a table watches, from its state at the start.
+    """Update the largest modulus of the watched sum of a table over one segment.
 
-    Scan steps are expanded in which it may turn beyond what was found before, and the first and the last.
-    They overlap a little, so that no turn falls between them by rounding.
+    Scan steps in which the sum may exceed the largest value so far at a turning point are expanded, and so
+    are the first and the last.  The steps overlap slightly, so that rounding hides no turning point between
+    them.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    table : (n + 1, COLUMNS) table of `oscillators`
+    n : number of oscillators
+    friction : friction force on the oscillators
+    offset : constant part of the sum
+    row : (columns,) row of the segment table
+    state : (2, n) state at the start of the segment; advanced to its end
+    scratch : Scratch
+    out : (FOUND,) largest modulus and its load phase, updated
     """
     angle = math.atan2(row[SIN], row[COS])
     c, s = row[COS], row[SIN]
@@ -129,10 +163,18 @@ def _search(st, table, n, friction, offset, row, state, scratch, out):
 
 @kernel
 def largest_moduli(st, beta, outputs, uncoupled, i, skipped, table, out, work, scratch):
-    """The largest modulus, and when, of every row of `outputs` over the table's phases; `out` (rows, FOUND).
+    """Find the largest modulus, and its load phase, of the rows of `outputs` over a segment table.
 
-    alone : Alone, at the i-th frequency
-    skipped : a row to leave out, or -1
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta : kinetic friction force
+    outputs : OutputMatrices
+    uncoupled : UncoupledResponse; i : index of the frequency
+    skipped : row to leave out, or -1
+    table : (segments, columns) segment table
+    out : (rows, FOUND) filled with moduli and load phases
+    work, scratch : Workspace, Scratch
     """
     for k in range(outputs.static_shape.size):
         if k == skipped:
@@ -151,7 +193,7 @@ def largest_moduli(st, beta, outputs, uncoupled, i, skipped, table, out, work, s
 
 @kernel
 def _polynomial(p, terms, x):
-    """A polynomial, its slope and its bend at x."""
+    """Evaluate a polynomial and its first two derivatives at x."""
     value = slope = bend = 0.0
     for k in range(terms - 1, -1, -1):
         bend = bend * x + 2.0 * slope
@@ -162,7 +204,7 @@ def _polynomial(p, terms, x):
 
 @kernel
 def _derivative_bounds(p, terms):
-    """Bounds over [0, 1] on the moduli of the second and the third derivative of a polynomial."""
+    """Bounds over [0, 1] on the moduli of the second and third derivative of a polynomial."""
     second = third = 0.0
     for k in range(2, terms):
         size = k * (k - 1.0) * abs(p[k])
@@ -173,7 +215,9 @@ def _derivative_bounds(p, terms):
 
 @kernel
 def _turning_point(p, terms, low, high, slope_low):
-    """(value, x) where a polynomial turns in [low, high], the only place: Newton's method, kept inside."""
+    """Return (value, x) at the only turning point of a polynomial in [low, high], by safeguarded Newton
+    iteration.
+    """
     x = 0.5 * (low + high)
     while True:
         value, slope, bend = _polynomial(p, terms, x)
@@ -189,13 +233,23 @@ def _turning_point(p, terms, low, high, slope_low):
 
 @kernel
 def _largest_modulus(p, terms, begin, end, opens, closes, most):
-    """(value, x) of the largest modulus over [begin, end] of a polynomial beyond `most`; value 0 if none is.
+    """Return (value, x) of the largest modulus of a polynomial over [begin, end] above `most`; value 0 if
+    there is none.
 
-    opens, closes : whether the phase begins or ends here.  Its ends count where the modulus falls from or
-    rises to them.  Other nodes do not: beside a turn they are as large to rounding, at another time.
+    Ends of the segment count where the modulus falls from them or rises to them.  Other nodes do not count:
+    next to a turning point their modulus is the same to rounding, at a different time.
 
-    An interval of length l holds nothing beyond its larger end by l^2/8 max |p''|; and no turn where the
-    slopes differ by less than they would if it had one, or one where the bend keeps its sign.
+    An interval of length l exceeds its larger end by at most l^2/8 max |p''|.  It holds no turning point
+    where the slopes at its ends differ by less than a turning point requires, and at most one where the
+    second derivative keeps its sign.
+
+    Parameters
+    ----------
+    p : (terms,) coefficients
+    terms : number of coefficients
+    begin, end : interval, within [0, 1] except for the overlap
+    opens, closes : whether the segment begins or ends in this interval
+    most : modulus to exceed
     """
     second, third = _derivative_bounds(p, terms)
     best, x_best = 0.0, begin

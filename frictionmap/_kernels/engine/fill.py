@@ -1,4 +1,4 @@
-"""The cells of a map: whole runs of them by closed form, the open ones one by one."""
+"""Cells of a map: whole runs of cells by closed form, the open cells one by one."""
 
 import math
 from typing import NamedTuple
@@ -29,13 +29,13 @@ from .quantities import (
 from .records import continuous_cell, known_orbit, quasi_static_cell, stuck_cell
 from .segment_table import segment_columns
 
-#: Open cells of a row after which the search from the neighbour's orbit starts anew.  Work is cut only there
-#: and at the ends of rows, so that no answer depends on how it is cut.
+#: Number of open cells of a row after which the search from the neighbour's orbit starts anew.  Jobs begin
+#: only there and at the start of rows, so that no result depends on how the map is divided into jobs.
 RESTART = 256
 
 
 class Axes(NamedTuple):
-    """The axes of a map."""
+    """Axes of a map."""
 
     mu: np.ndarray
     r: np.ndarray
@@ -43,18 +43,18 @@ class Axes(NamedTuple):
 
 
 class OpenCells(NamedTuple):
-    """The cells that no formula decides."""
+    """Cells that no closed form decides."""
 
-    rows: np.ndarray  # (k,) the (mu, r) rows that have any
-    ends: np.ndarray  # (k,) number of open cells up to and with each of them
-    low: np.ndarray  # (n_mu n_r,) first open cell in beta, by row
-    high: np.ndarray  # (n_mu n_r,) and the one after the last
+    rows: np.ndarray  # (k,) the (mu, r) rows with open cells
+    ends: np.ndarray  # (k,) cumulative number of open cells of these rows
+    low: np.ndarray  # (n_mu n_r,) index in beta of the first open cell of each row
+    high: np.ndarray  # (n_mu n_r,) index after the last one
 
 
 class ClosedForm(NamedTuple):
-    """What the closed forms need at every r."""
+    """Quantities that the closed forms need at every r; arrays of shape (n_r,)."""
 
-    load: np.ndarray  # unit of force and displacement
+    load: np.ndarray  # unit of force and displacement, the load amplitude
     v_abs: np.ndarray
     u: np.ndarray
     g: np.ndarray
@@ -62,7 +62,7 @@ class ClosedForm(NamedTuple):
 
 
 class Requested(NamedTuple):
-    """What is asked for beyond the outputs that every cell has."""
+    """Results requested beyond the outputs of every cell."""
 
     details: Details | NotRequested
     quantities: Quantities | NotRequested
@@ -70,7 +70,7 @@ class Requested(NamedTuple):
 
 @kernel
 def store(out, m, i, j, cell, load):
-    """Write what was asked for of a cell; outputs that were not asked for have no size."""
+    """Write the requested outputs of a cell; outputs that are not requested have size 0."""
     if out.regime.size:
         out.regime[m, i, j] = cell.regime
     if out.stops_per_cycle.size:
@@ -91,9 +91,19 @@ def store(out, m, i, j, cell, load):
 
 @entry
 def fill_closed(first, last, cells, axes, closed, out, requested):
-    """Rows first..last-1 of (mu, r): below the open cells all is continuous, above them it sticks.
+    """Fill the cells that closed forms decide: continuous motion below the open cells, permanent sticking
+    above them.
 
     At r = 0, where no motion can be followed, the open cells are filled too.
+
+    Parameters
+    ----------
+    first, last : rows first..last-1 of the (mu, r) grid
+    cells : OpenCells
+    axes : Axes
+    closed : ClosedForm
+    out : named tuple of arrays (n_mu, n_r, n_beta, ...), one for every output
+    requested : Requested
     """
     n_r = axes.r.size
     for row in range(first, last):
@@ -120,7 +130,17 @@ def fill_closed(first, last, cells, axes, closed, out, requested):
 
 @kernel
 def _write_quantities(quantities, motion, contact, found, m, j, beta):
-    """Write the quantities that were asked for of an open cell."""
+    """Write the requested quantities of an open cell.
+
+    Parameters
+    ----------
+    quantities : QuantitiesAtFrequency or NotRequested
+    motion : a kind of motion, at the anchor of the steady state
+    contact : Contact
+    found : Cell
+    m, j : indices of mu and beta
+    beta : friction ratio
+    """
     if found.regime == PERMANENT_STICKING:
         write_stuck_quantities(quantities, m, j)
     elif found.slides > 0:
@@ -131,7 +151,18 @@ def _write_quantities(quantities, motion, contact, found, m, j, beta):
 
 @kernel
 def _write_details(details, motion, contact, found, out, m, i, j, beta, mu_beta):
-    """Write the details that were asked for of an open cell."""
+    """Write the requested details of an open cell.
+
+    Parameters
+    ----------
+    details : DetailsAtFrequency or NotRequested
+    motion : a kind of motion, at the anchor of the steady state
+    contact : Contact
+    found : Cell
+    out : named tuple of output arrays
+    m, i, j : indices of mu, r and beta
+    beta, mu_beta : kinetic and static friction force
+    """
     if found.regime == PERMANENT_STICKING:
         write_stuck_details(details, out, m, i, j, motion.load * found.contact_state.z)
     elif found.slides > 0:
@@ -143,7 +174,7 @@ def _write_details(details, motion, contact, found, out, m, i, j, beta, mu_beta)
 
 @kernel
 def _row_of(cells, cell):
-    """The place in the list of rows of an open cell, by bisection."""
+    """Find the row of an open cell in the list of rows, by bisection."""
     low, high = 0, cells.ends.size
     while low < high:
         middle = (low + high) // 2
@@ -156,18 +187,18 @@ def _row_of(cells, cell):
 
 @entry
 def fill_open(first, last, cells, axes, system, limits, moving, out, requested, cancel):
-    """Cells first..last-1 of the list of open cells; ends soon after cancel[0] is set.
+    """Fill cells first..last-1 of the list of open cells; stop soon after cancel[0] is set.
 
     Parameters
     ----------
-    first : a cell at which the search from neighbours starts anew: see RESTART
+    first, last : range of open cells; the search from neighbours starts anew at `first`, see RESTART
     cells, axes : OpenCells, Axes
     system : a system over the map, see `motion`
     limits : Limits
-    moving : which start
-    out : named tuple of arrays, one for every output
-    wanted : Wanted, see `details` and `quantities`
-    cancel : (1,) set by another thread to end the work
+    moving : whether the initial state is the moving start; else the contact starts at rest
+    out : named tuple of arrays (n_mu, n_r, n_beta, ...), one for every output
+    requested : Requested, see `details` and `quantities`
+    cancel : (1,) set by another thread to end the computation
     """
     n_r = axes.r.size
     k = _row_of(cells, first)
@@ -198,9 +229,9 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, requested, 
 
 @entry
 def one_cell(system, beta, mu, limits, moving):
-    """The steady state of one open cell of a system at one frequency, and its table of phases.
+    """Find the steady state of one open cell of a system at one frequency, and its segment table.
 
-    Returns (cell, table); the table has no rows where the contact sticks or a closed form tells the motion.
+    Returns (cell, table); the table has no rows where the contact sticks or a closed form gives the motion.
     """
     motion = at_frequency(system, 0)
     forget_neighbour(motion)

@@ -1,4 +1,4 @@
-"""Stability and symmetry of a steady state: its Floquet multipliers, and how far from antiperiodic it is."""
+"""Stability and symmetry of a steady state: Floquet multipliers, and deviation from antiperiodicity."""
 
 import math
 
@@ -14,13 +14,27 @@ from ..structure.sliding_orbit import orbit_state
 from .segment_table import CONTACT_FORCE, COS, EVENT, LENGTH, SENSE, SIN, take_start
 from .time_history import Samples, sample_segments
 
-#: Samples of z in half a period of the excitation for its asymmetry.
+#: Samples of z per half period of the excitation.
 _SAMPLES = 256
 
 
 @kernel
 def _multiplier(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
-    """Largest modulus over the steady period from work.middle in a slide; nan if it does not fit."""
+    """Largest modulus of the multipliers over the steady period, from work.middle in a slide.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta, mu_beta : kinetic and static friction force
+    c, s : cosine and sine of the load phase of work.middle
+    sequence : EventSequence of one recurrence
+    halves : half periods of one recurrence
+    work, scratch : Workspace, Scratch; work.middle is the (2, n) state on the orbit
+
+    Returns
+    -------
+    float : NaN if the events do not fit the sequence
+    """
     if not return_map(st, beta, mu_beta, work.middle, c, s, sequence, halves, True, work, scratch):
         return math.nan
     radius = spectral_radius(work.flow, 2 * st.n, work.square)
@@ -29,7 +43,7 @@ def _multiplier(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
 
 @entry
 def orbit_multiplier(st, beta, mu_beta, table, work, scratch):
-    """Largest modulus of the multipliers of the periodic orbit of a table of phases."""
+    """Largest modulus of the Floquet multipliers of the periodic orbit of a segment table."""
     events = np.empty(table.shape[0])
     slides = 0
     time = 0.0
@@ -50,7 +64,15 @@ def orbit_multiplier(st, beta, mu_beta, table, work, scratch):
 
 @kernel
 def continuous_multiplier(st, orbit, i, beta, mu_beta, work, scratch):
-    """The same of the continuous orbit, which turns once in half a period."""
+    """Largest modulus of the Floquet multipliers of the continuous orbit, which turns once per half period.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    orbit : Continuous; i : index of the frequency
+    beta, mu_beta : kinetic and static friction force
+    work, scratch : Workspace, Scratch
+    """
     v_abs = orbit.v_abs[i]
     if math.isinf(v_abs):
         return math.nan
@@ -66,9 +88,9 @@ def continuous_multiplier(st, orbit, i, beta, mu_beta, work, scratch):
 
 @kernel
 def _least_difference(z, halves):
-    """Least over odd m of the largest |z(tau + m pi) + z(tau)|; `z` has _SAMPLES in each of `halves` pi."""
+    """Least over odd m of the largest |z(tau + m pi) + z(tau)|; `z` has _SAMPLES values per half period."""
     least = math.inf
-    # m and halves - m make the same pairs
+    # m and halves - m give the same pairs
     for m in range(1, halves // 2 + 1, 2):
         most = 0.0
         for j in range(z.size):
@@ -79,10 +101,10 @@ def _least_difference(z, halves):
 
 @entry
 def asymmetry(st, beta, table, amplitude, work, scratch):
-    """How far the motion in a table of phases is from a mirror image of itself, over the amplitude.
+    """Deviation of the motion of a segment table from its mirror image, relative to the amplitude.
 
-    The least over odd m of the largest |z(tau + m pi) + z(tau)|; 0 if it returns mirrored, that is after an
-    odd number of half periods.
+    It is the least over odd m of the largest |z(tau + m pi) + z(tau)|, and 0 for a motion that recurs after
+    an odd number of half periods.
     """
     total = 0.0
     for k in range(table.shape[0]):

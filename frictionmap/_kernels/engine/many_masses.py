@@ -1,7 +1,7 @@
-"""A structure as a kind of motion: all its modes, free and held.
+"""A structure as a kind of motion: all its modes, with the contact sliding and held.
 
-Where one mass forgets all but its displacement in a stop, the rest of a structure remembers, so anchors are
-compared, and solved for, with the whole state (`structure.newton`).
+At a stop of one mass only the displacement is left of the state; the other modes of a structure keep moving.
+Anchors are therefore compared, and solved for, with the whole state (`structure.newton`).
 """
 
 import math
@@ -49,32 +49,35 @@ from .policies import FINE_STEPS, SLOTS
 from .records import TURN, Contact, ContactState, known_orbit, no_orbit, turns_at, undefined_state
 from .segment_table import put_state
 
-#: The load's phase at a return has to be this close even where any state will do to start from.
+#: Largest distance of the load phases of a recurrence, also where any state may be used as first guess.
 _NEAR_PHASE = 0.3
 
-#: An orbit with a slide longer than this (in tau) is not solved for, but waited for.
+#: An orbit with a slide longer than this (in tau) is not solved for; the motion is followed to it instead.
 _LONGEST_SLIDE = 8.0 * math.pi
 
-#: Orders of events that are tried on the way from a neighbour's orbit.
+#: Largest number of event sequences tried from a neighbour's orbit.
 _MOST_ORDERS = 8
 
-#: A return this close (relative to the motion) is worth a Newton iteration: one that is 0.1 off says too
-#: little of where a structure is heading.
+#: Recurrence distance, relative to the motion, below which Newton's method is tried; at 0.1 it would not yet
+#: show which orbit a structure approaches.
 _RECURRENCE_THRESHOLD = 0.01
 
-#: With several steady states the one solved for must be where the motion is heading: no further off than
-#: this many times what the last return and the contraction there make one expect.
+#: Where several steady states exist the orbit found must be the one that the motion approaches: its distance
+#: may exceed the one expected from the last recurrence and the contraction by at most this factor.
 _HEADING = 4.0
 
-#: An orbit is expected on the line through its neighbours up to this many times their distance.
+#: Largest extrapolation along the line through the last two orbits, in units of their distance in beta.
 _FURTHEST = 2.0
 
-#: Anchors this close are one: ten times the one mass's, for the rounding of sums over many modes.
+#: Two anchors closer than this are the same; ten times the value for one mass, because sums over many modes
+#: round more.
 _SAME = 1e-8
 
 
 class Starts(NamedTuple):
-    """Starting states at every r: of the free modes, velocities in t = tau/r, and the load's phase."""
+    """Initial states at every r: coordinates and velocities in t = tau/r of the free oscillators, and the
+    load phase.
+    """
 
     coordinates: np.ndarray  # (n_r, n)
     velocity: np.ndarray  # (n_r, n)
@@ -83,7 +86,7 @@ class Starts(NamedTuple):
 
 
 class ManyMassSystem(NamedTuple):
-    """A structure over a map."""
+    """A structure over a whole map."""
 
     r: np.ndarray
     model: Model
@@ -102,16 +105,16 @@ class ManyMasses(NamedTuple):
 
     h: float  # scan step in tau
     r: float
-    load: float  # unit of force and displacement: 1, that of the system
+    load: float  # unit of force and displacement, 1
     v_abs: float
-    marginal: bool  # where continuous motions are a continuum
+    marginal: bool  # whether the continuous motions form a continuum
     recurrence_threshold: float
-    i: int  # the frequency's place
+    i: int  # index of the frequency
     st: StructureAtFrequency
-    fine: StructureAtFrequency  # with steps at least as short, for bounds over a whole orbit
+    fine: StructureAtFrequency  # with scan steps at least as short, for bounds over a whole orbit
     orbit: Continuous
-    state: np.ndarray  # (2, n) where the motion is, with its `ContactState`
-    kept: np.ndarray  # (SLOTS, 2, n) states to come back to
+    state: np.ndarray  # (2, n) present state of the free oscillators
+    kept: np.ndarray  # (SLOTS, 2, n) saved states
     memory: Memory
     work: Workspace
     scratch: Scratch
@@ -120,7 +123,7 @@ class ManyMasses(NamedTuple):
 
 @entry
 def at_frequency(system, i):
-    """The structure at the i-th frequency, r > 0."""
+    """Build the motion of the structure at the i-th frequency, r > 0."""
     r = system.r[i]
     st = make_structure(system.model, system.loads, i, r, system.steps)
     fine = make_structure(system.model, system.loads, i, r, max(system.steps, FINE_STEPS))
@@ -134,13 +137,13 @@ def at_frequency(system, i):
 
 @kernel
 def contact_at(system, m, i, beta, mu):
-    """The contact of a cell."""
+    """Build the contact of a cell."""
     return Contact(beta, mu * beta, system.lim[m, i], mu == 1.0)
 
 
 @kernel
 def start(motion, system, i, contact, moving):
-    """Where the motion starts; see `steady/kernel_data`."""
+    """Set the initial state, see `steady/kernel_data`."""
     st, state = motion.st, motion.state
     starts = system.moving if moving else system.rest
     for j in range(st.n):
@@ -238,13 +241,28 @@ def recurrence_distance(motion, now, then, size):
 
 @kernel
 def creeps(motion, contact, events):
-    """See `motion.creeps`: `wait_for_release` sees it itself."""
+    """See `motion.creeps`: `wait_for_release` detects creeping itself."""
     return False, 0.0
 
 
 @kernel
 def _keep_orbit(work, n, b, anchored, halves, sign, slides):
-    """Keep the orbit of work.middle, and the one before it if that is anchored alike: see `_nearest`."""
+    """Save the orbit in work.middle as the first guess of the next cell, and the previous one for
+    extrapolation.
+
+    The previous orbit is kept only if it is anchored at the same load phase, sign, number of slides and of
+    half periods; see `_nearest`.
+
+    Parameters
+    ----------
+    work : Workspace
+    n : number of free oscillators
+    b : kinetic friction force of the orbit
+    anchored : ContactState whose load phase the orbit is anchored at
+    halves : half periods per recurrence
+    sign : -1.0 where the slide is mirrored, else 1.0
+    slides : slides per recurrence
+    """
     kept = work.anchored
     alike = kept[HALVES] == halves and kept[SIDE] == sign and kept[SLIDES] == slides
     alike = alike and kept[PHASE_COS] == anchored.cos and kept[PHASE_SIN] == anchored.sin
@@ -257,7 +275,7 @@ def _keep_orbit(work, n, b, anchored, halves, sign, slides):
 
 @kernel
 def _expect(work, n, b):
-    """The state in work.middle at friction b: on the line through the last two orbits, or else the last."""
+    """Extrapolate the state in work.middle to friction b from the last two orbits, or copy the last one."""
     kept = work.anchored
     copy_state(work.solved, work.middle, n)
     share = (b - kept[BETA]) / (kept[BETA] - kept[EARLIER_BETA])
@@ -269,11 +287,23 @@ def _expect(work, n, b):
 
 @kernel
 def _converge(motion, contact, anchored, sign, sequence, recurrence, limits):
-    """A periodic orbit by Newton's method, with its anchor.
+    """Solve for a periodic orbit by Newton's method, and follow it to its next anchor.
 
-    The unknown, work.middle, is the state in a slide at the load's phase of the moment `anchored`; `sign`
-    says of that slide whether it is a mirror image.  The orbit returns after near.halves half periods and
-    the slides of `sequence`.  The state becomes the orbit's at the anchor that follows.
+    The unknown, work.middle, is the state within a slide at the load phase of `anchored`.
+
+    Parameters
+    ----------
+    motion : ManyMasses; its state becomes that of the orbit at the anchor that follows
+    contact : Contact
+    anchored : ContactState of the unknown
+    sign : -1.0 where that slide is mirrored, else 1.0
+    sequence : EventSequence of one recurrence
+    recurrence : Recurrence; its `halves` are the half periods of one recurrence
+    limits : Limits
+
+    Returns
+    -------
+    Orbit
     """
     st, work = motion.st, motion.work
     b, mu_b, halves = contact.b, contact.mu_b, recurrence.halves
@@ -296,9 +326,11 @@ def _converge(motion, contact, anchored, sign, sequence, recurrence, limits):
 
 @kernel
 def _attracts(motion, contact, anchored, sequence, recurrence):
-    """Whether the orbit in work.middle attracts, and is where the motion is heading from work.start.
+    """Whether the orbit in work.middle is stable, and close enough for the motion to be approaching it from
+    work.start.
 
-    Unlike one mass, an undamped structure comes nearer to its orbit in no simple way: returns tell nothing.
+    The approach of an undamped structure to its orbit is not monotonic, so recurrences alone cannot decide
+    this.
     """
     st, work, n = motion.st, motion.work, motion.st.n
     copy_state(work.middle, work.moved, n)
@@ -317,7 +349,15 @@ def _attracts(motion, contact, anchored, sequence, recurrence):
 
 @kernel
 def _from_anchor(motion, contact, contact_state, sign, sequence, recurrence, limits):
-    """`_converge` from the middle of the slide that starts at an anchor, the state there."""
+    """Apply `_converge` from the middle of the slide that starts at an anchor.
+
+    Parameters
+    ----------
+    motion : ManyMasses, at the anchor
+    contact : Contact
+    contact_state : ContactState at the anchor
+    sign, sequence, recurrence, limits : see `_converge`
+    """
     st, work, b = motion.st, motion.work, contact.b
     copy_state(motion.state, work.middle, st.n)
     most = _LONGEST_SLIDE / st.h
@@ -339,8 +379,12 @@ def _from_anchor(motion, contact, contact_state, sign, sequence, recurrence, lim
 def seek(motion, contact, contact_state, event, sign, events, recurrence, failures, limits):
     """See `motion.seek`.
 
-    Just below beta_stick the motion creeps for thousands of periods to where it slides, by little, from its
-    held motion; where the steady state is unique that is tried too.
+    Just below beta_stick the motion creeps for thousands of periods towards an orbit that slides very little
+    out of the held motion; where the steady state is unique, that orbit is tried as well.
+
+    Parameters
+    ----------
+    motion, contact, contact_state, event, sign, events, recurrence, failures, limits : see `motion.seek`
     """
     st, work = motion.st, motion.work
     copy_state(motion.state, work.anchor, st.n)
@@ -367,10 +411,10 @@ def forget_neighbour(motion):
 
 @kernel
 def _nearest(motion, contact):
-    """(found, moment, sign, half periods): the orbit to start from, its state into work.middle.
+    """Set work.middle to the first guess of the orbit, and return (found, contact_state, sign, half periods).
 
-    What the last cells make one expect, if they were solved for, or the motion without stops whose velocity
-    touches zero where the strip of the open cells begins.
+    The guess is extrapolated from the last cells, if they were solved for; otherwise it is the continuous
+    orbit at the boundary where its velocity first touches zero.
     """
     work, orbit, i, b = motion.work, motion.orbit, motion.i, contact.b
     halves = int(work.anchored[HALVES])
@@ -389,7 +433,9 @@ def _nearest(motion, contact):
 
 @kernel
 def seek_nearby(motion, contact, limits):
-    """See `motion.seek_nearby`: `_converge` with the events that follow, as they change on the way."""
+    """See `motion.seek_nearby`: Newton's method with the event sequence that follows each guess, which may
+    change on the way.
+    """
     st, work, scratch = motion.st, motion.work, motion.scratch
     b, mu_b = contact.b, contact.mu_b
     found, contact_state, sign, halves = _nearest(motion, contact)
@@ -408,7 +454,8 @@ def seek_nearby(motion, contact, limits):
         orbit = _converge(motion, contact, contact_state, sign, sequence, Recurrence(0, 0.0, halves), limits)
         if orbit.found:
             return orbit
-        # the order changes on the way: a step with this one, then on with what follows there
+        # the event sequence changes on the way: take one Newton step with this one, then follow the motion
+        # again
         copy_state(work.trial, work.middle, st.n)
         move, _ = newton_step(
             st, b, mu_b, contact_state.cos, contact_state.sin, sequence, halves, work, scratch

@@ -1,9 +1,9 @@
-"""The steady state of one cell: followed event by event, then solved as a periodic orbit.
+"""Steady state of one cell: follow the motion from event to event, then solve for the periodic orbit.
 
-Once the order of events repeats, Newton's method on the return map finishes in a few returns (`motion.seek`).
-A motion that no longer stops approaches the continuous orbit of theory.md 2.  Two motions that both never
-stick approach each other in the energy norm whatever mu is, so the approach is certain as soon as the
-distance is less than that at which a stop is possible at all (`motion.stop_free`).
+Once the sequence of events repeats, Newton's method on the return map converges in a few iterations
+(`motion.seek`).  A motion that no longer stops approaches the continuous orbit of theory.md 2.  Two motions
+that never stick approach each other in the energy norm for every mu; the approach is therefore certain once
+the distance is below the radius within which no motion can stop (`motion.stop_free`).
 """
 
 import math
@@ -45,56 +45,74 @@ from .records import (
 from .recurrence import find_recurrence
 from .statistics import Windows, count_event, first_schedule, open_windows, postpone
 
-#: Events per excitation period (over four scan steps, if that is less than 1) of a motion that only chatters.
+#: Events per excitation period (times one quarter over the scan step, if that exceeds 1) beyond which a
+#: motion counts as chattering without end.
 _EVENTS_PER_CYCLE = 4096.0
 
-#: Half periods of ever larger motion after which an undamped resonance counts as unbounded.
+#: Successive slides of growing amplitude after which an undamped resonance counts as unbounded.
 _GROWING = 64
 
-#: Slides without a stop after which one that is not about the continuous orbit may be periodic.
+#: Slides without a stop after which a motion away from the continuous orbit is also searched for recurrences.
 _SLIDES_WITHOUT_STOP = 8
 
-#: A motion this near to an orbit is there.
+#: Relative distance from an orbit that is rounding error.
 _ROUNDING = 1e-12
 
-#: Slides at most to the next look at how far the continuous orbit is, and the share of those foretold.
+#: Largest number of slides between two comparisons with the continuous orbit, and the share of the predicted
+#: number of slides after which the next comparison is made.
 _MOST_SLIDES_UNCHECKED = 8.0
 _PREDICTED_SHARE = 0.75
 
 
 class MotionHistory(NamedTuple):
-    """How a motion went so far."""
+    """Course of the motion up to the present anchor."""
 
     time: float
     events: int
-    sign: float  # -1.0 where the next slide is a mirror image
+    sign: float  # -1.0 where the next slide is mirrored
     slides: int  # since the last stop
-    growing: int  # of these, the last ones each larger than the one before
-    size: float  # of the last one
+    growing: int  # successive slides, each larger than the one before
+    size: float  # displacement at the end of the last slide
     windows: Windows
 
 
 class ContinuousOrbit(NamedTuple):
-    """The continuous orbit that a motion may approach."""
+    """Continuous orbit that the motion may approach."""
 
     exists: bool
     amplitude: float
     phase: float
-    radius: float  # no motion this near can stop
+    radius: float  # no motion within this distance can stop
 
 
 class OrbitCheck(NamedTuple):
-    """A look at how far from it a motion is."""
+    """Result of comparing the motion with the continuous orbit."""
 
     arrived: bool
     distance: float
-    events: int  # when that was
-    due: int  # when the next look is
+    events: int  # number of events at this comparison
+    due: int  # number of events at which the next one is made
 
 
 @inner_kernel
 def _next_anchor(motion, contact, contact_state, history, moves, end, most_steps):
-    """(event, z, moment, trail): a slide and what follows it; NO_END where that is not found."""
+    """Follow one slide and what comes after it.
+
+    Parameters
+    ----------
+    motion : a kind of motion
+    contact : Contact
+    contact_state : ContactState at the present anchor
+    history : MotionHistory
+    moves : whether the motion starts with a velocity
+    end : time in tau at which to give up
+    most_steps : largest number of scan steps
+
+    Returns
+    -------
+    (event, z, contact_state, history) : event code, or NO_END if it is not found; displacement at the end of
+        the slide; the next anchor; the history up to it
+    """
     time = history.time
     if moves or history.events > 0:
         steps, contact_state = slide_to_turn(motion, contact, contact_state, most_steps)
@@ -120,7 +138,7 @@ def _next_anchor(motion, contact, contact_state, history, moves, end, most_steps
 
 @kernel
 def _continuous_orbit(motion, contact):
-    """The continuous orbit of a cell, if there is one."""
+    """Find the continuous orbit of a cell, if it exists."""
     if not contact.b < contact.b_lim or math.isinf(motion.v_abs):
         return ContinuousOrbit(False, 0.0, 0.0, 0.0)
     amplitude, phase, radius = stop_free(motion, contact)
@@ -129,7 +147,23 @@ def _continuous_orbit(motion, contact):
 
 @kernel
 def _check_approach(motion, contact, continuous, contact_state, history, last, tolerance):
-    """How far the continuous orbit is now, and when to look again: at the rate of approach, soon before."""
+    """Compare the motion with the continuous orbit, and schedule the next comparison from the rate of
+    approach.
+
+    Parameters
+    ----------
+    motion : a kind of motion
+    contact : Contact
+    continuous : ContinuousOrbit
+    contact_state : ContactState at the present anchor
+    history : MotionHistory
+    last : OrbitCheck before this one
+    tolerance : distance, relative to the motion, at which the orbit counts as reached
+
+    Returns
+    -------
+    OrbitCheck
+    """
     distance, size = distance_from_continuous(
         motion, contact, continuous.amplitude, continuous.phase, contact_state
     )
@@ -146,7 +180,7 @@ def _check_approach(motion, contact, continuous, contact_state, history, last, t
 
 @kernel
 def _may_recur(event, history, continuous, unbounded):
-    """Whether an anchor is one to look for returns at: a stop, or a turn where it no longer stops."""
+    """Whether to look for recurrences at an anchor: at a stop, or at a turn if the motion no longer stops."""
     if event == GRAZING:
         return False
     return history.slides == 0 or not (
@@ -156,8 +190,8 @@ def _may_recur(event, history, continuous, unbounded):
 
 @kernel
 def _nearest_recurrence(motion, contact, contact_state, history, schedule, newton):
-    """The nearest return; where a short one leads nowhere the closest is tried."""
-    shortest = newton and schedule.made % 2 == 0  # it is the better conditioned one
+    """Find the nearest recurrence; if the shortest one led to no orbit, the closest one is tried."""
+    shortest = newton and schedule.made % 2 == 0  # the shortest is better conditioned
     recurrence = find_recurrence(motion, contact_state, history.events, contact.unique and newton, shortest)
     if history.slides > 0 and history.slides < 2 * recurrence.lag:
         return Recurrence(0, math.inf, 0)
@@ -166,7 +200,7 @@ def _nearest_recurrence(motion, contact, contact_state, history, schedule, newto
 
 @kernel
 def _check_is_due(history, check):
-    """Whether to look now; the slide after a stop says nothing."""
+    """Whether to compare with the continuous orbit now; the first slide after a stop is not informative."""
     return (history.slides > 1 or history.events == history.slides == 1) and (
         history.slides == 2 or history.events >= check.due
     )
@@ -174,7 +208,9 @@ def _check_is_due(history, check):
 
 @kernel
 def _has_settled(recurrence, last, tolerance):
-    """Whether marching may end: two returns of one order of events, the rest of which is nothing."""
+    """Whether marching may end: two recurrences with the same event sequence whose extrapolated remainder is
+    below tolerance.
+    """
     if recurrence.lag == 0 or recurrence.lag != last.lag or recurrence.distance > tolerance:
         return False
     return settled(recurrence.distance, last.distance, tolerance)
@@ -182,17 +218,18 @@ def _has_settled(recurrence, last, tolerance):
 
 @kernel
 def _orbit_cell(motion, contact, orbit, origin, time):
-    """The steady state that returns to the orbit's anchor after its number of slides, or sooner."""
+    """Build the cell of an orbit that returns to its anchor after at most its number of slides."""
     measured = measure(motion, contact, orbit, motion.no_table)
     return periodic_cell(measured, proven_stops(measured, contact), orbit, origin, time)
 
 
 @kernel
 def _approaches(motion, contact, contact_state, orbit, allowed):
-    """Whether the motion, its state kept in NOW, goes to an orbit, whose state is kept in GOAL.
+    """Whether the motion, its state saved in NOW, approaches an orbit, whose state is saved in GOAL.
 
-    A motion that passes by, or repeats in some multiple of the orbit's period, may be near it too.  What is
-    heading there comes nearer with two returns in a row, each time about as fast as the orbit attracts.
+    A motion that merely passes by, or whose period is a multiple of the orbit's, may also be close to it.  A
+    motion that approaches the orbit comes closer with two successive recurrences, each time at about the rate
+    at which the orbit attracts.
     """
     bring_back(motion, NOW)
     stopped = stops_at(orbit.event)
@@ -218,7 +255,24 @@ def _approaches(motion, contact, contact_state, orbit, allowed):
 
 @kernel
 def _seek(motion, contact, contact_state, event, history, recurrence, schedule, limits):
-    """The periodic orbit that a motion goes to; if there is none, the motion stays where it is."""
+    """Find the periodic orbit that the motion approaches; without one, the state of the motion is left
+    unchanged.
+
+    Parameters
+    ----------
+    motion : a kind of motion
+    contact : Contact
+    contact_state : ContactState at the present anchor
+    event : event that ended the slide before it
+    history : MotionHistory
+    recurrence : Recurrence of the present anchor
+    schedule : NewtonSchedule
+    limits : Limits
+
+    Returns
+    -------
+    Orbit
+    """
     keep_state(motion, NOW)
     orbit = seek(
         motion, contact, contact_state, event, history.sign, history.events, recurrence, schedule.made, limits
@@ -235,7 +289,7 @@ def _seek(motion, contact, contact_state, event, history, recurrence, schedule, 
 
 @kernel
 def _follow(motion, contact, contact_state, moves, limits, cancel):
-    """The steady state reached from a moment, by following the motion."""
+    """Follow the motion from a contact state to the steady state."""
     end = TURN * limits.cycles
     most_steps = end / motion.h + 1.0
     most_events = _EVENTS_PER_CYCLE * limits.cycles * max(1.0, 0.25 / motion.h)
@@ -274,7 +328,7 @@ def _follow(motion, contact, contact_state, moves, limits, cancel):
                 return continuous_cell(continuous.amplitude, motion.marginal, INTEGRATED, history.time)
         now = int(history.time / math.pi)
         if now == half or not _may_recur(event, history, continuous, unbounded):
-            continue  # once a half period is enough
+            continue  # one search per half period is enough
         half = now
         if limits.newton and half < schedule.due:
             continue
@@ -296,16 +350,17 @@ def _follow(motion, contact, contact_state, moves, limits, cancel):
 
 @kernel
 def steady_state(motion, contact, contact_state, moves, limits, cancel):
-    """The steady state of a cell.
+    """Find the steady state of a cell.
 
     Parameters
     ----------
-    motion : a kind of motion, see `motion`; it becomes that of the anchor, where there is one
+    motion : a kind of motion, see `motion`; afterwards it is at the anchor of the steady state, if there is
+        one
     contact : Contact; b > 0
-    at : where it starts
-    moves : whether it starts with a velocity; else with a turn
+    contact_state : ContactState of the initial state
+    moves : whether the initial state has a velocity; otherwise it is an anchor
     limits : Limits
-    cancel : (1,) set by another thread to end the work
+    cancel : (1,) set by another thread to end the computation
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A periodic orbit once round: what it does, and its table of phases."""
+"""Follow a periodic orbit once: its stops, amplitude and share stuck, and its segment table."""
 
 from typing import NamedTuple
 
@@ -10,16 +10,17 @@ from .policies import ANCHOR
 from .records import SHORTEST_STOP, TURN, stops_at, turns_at
 from .segment_table import CONTACT_FORCE, EVENT, put_segment
 
-#: Longest slide of an orbit, in periods of its slower part: one that was followed once has none so long.
+#: Longest slide of an orbit, in periods of the slower of oscillator and load; no resolved orbit has a longer
+#: one.
 _LONGEST_SLIDE = 100.0
 
 
 class Measured(NamedTuple):
-    """A periodic orbit from an anchor to its return, mirrored or not."""
+    """One recurrence of a periodic orbit, mirrored or not."""
 
     slides: int
-    segments: int  # of the table
-    halves: int  # half periods of the excitation; 0 where it does not return
+    segments: int  # rows of the segment table
+    halves: int  # half periods of the excitation; 0 where the motion does not recur
     stops: int
     amplitude: float
     stuck: float  # share of the time
@@ -27,10 +28,20 @@ class Measured(NamedTuple):
 
 @kernel
 def measure(motion, contact, orbit, table):
-    """The orbit that returns to its anchor after its number of slides, or sooner.
+    """Follow the orbit until it returns to its anchor, for at most `orbit.slides` slides.
 
-    table : becomes the phases, two rows for every slide, see `segment_table`; or (0, 0) where it is not wanted.
-    The state is that of the anchor, before and after.
+    The motion is at the anchor before and after the call.
+
+    Parameters
+    ----------
+    motion : a kind of motion, see `motion`
+    contact : Contact
+    orbit : Orbit
+    table : (2 orbit.slides, columns) filled with the segments, see `segment_table`; (0, 0) to skip this
+
+    Returns
+    -------
+    Measured
     """
     writes = table.shape[0] > 0
     keep_state(motion, ANCHOR)
@@ -74,10 +85,10 @@ def measure(motion, contact, orbit, table):
 
 @kernel
 def proven_stops(measured, contact):
-    """The stops: one in each half period where none was seen but one there must be.
+    """Number of stops; one per half period where none was resolved but theory requires one.
 
-    From b_lim on, and with mu = 1, no motion with two turns a period is without stops.  Next to b_lim they
-    last shorter than rounding can tell.
+    For b >= b_lim and mu = 1 every motion with two turns per period stops.  Close to b_lim these stops are
+    too short to be resolved in floating point.
     """
     proved = contact.unique and contact.b >= contact.b_lim
     if measured.stops == 0 and measured.slides <= measured.halves and proved:

@@ -1,7 +1,8 @@
 """One mass as a kind of motion: the normalised oscillator of `one_mass.scan_step`.
 
-A stop forgets all but its displacement, so the return map of a motion with stops has one unknown
-(`one_mass.newton`).  Forces are in units of the load in the contact, whose phase is counted from its maximum.
+At a stop only the displacement is left of the state, so the return map of a motion with stops has one unknown
+(`one_mass.newton`).  Forces are divided by the amplitude of the load in the contact, and the load phase is
+counted from the maximum of that load.
 """
 
 import math
@@ -25,35 +26,36 @@ from .policies import FINE_STEPS, MOVING_START, MOVING_START_CAP
 from .records import Contact, ContactState, Orbit, known_orbit, no_orbit, stops_at
 from .segment_table import put_mass
 
-#: The orbit solved for last, from which the next cell's may be found: slides until it returns (0: there is
-#: none), displacement and sign at the end of a stop, and from there on the events, at most MOST_EVENTS.
+#: Columns of the orbit solved for last, the first guess of the next cell: slides per recurrence (0: no
+#: orbit), displacement and sign at the end of a stop, and the events that follow it, at most MOST_EVENTS.
 COUNT, DISPLACEMENT, SIDE, FIRST = 0, 1, 2, 3
 MOST_EVENTS = 32
 NEIGHBOUR = FIRST + MOST_EVENTS
 
-#: Anchors this close are one: Newton's method may have gone round a short orbit more than once.
+#: Two anchors closer than this are the same: Newton's method may have converged to a repeated short orbit.
 _SAME = 1e-9
 
-#: A return this close (relative to the motion) is worth a Newton iteration; whether the motion goes to the
-#: orbit found is seen from two returns (`march`).
+#: Recurrence distance, relative to the motion, below which Newton's method is tried; `march` then checks with
+#: two recurrences whether the motion approaches the orbit found.
 _RECURRENCE_THRESHOLD = 0.1
 
-#: Distance to an end of the places of rest, over r^2, below which a slide takes less than a tenth of it.
+#: Distance to an end of the range of sticking positions, over r^2, below which one slide reduces it by less
+#: than a tenth.
 _CREEPING = 0.02
 
-#: A radius without stops beyond this share of the amplitude is not looked for with fine steps: what the
-#: scan's own steps leave out of it is a sixth of that.
+#: A stop-free radius above this share of the amplitude is not refined with fine steps: the scan's own steps
+#: underestimate it by about a sixth of that share.
 _WIDE = 0.1
 
 _BELOW_ONE = 0.9999999999999999  # the double before 1
 
 
 class Frequencies(NamedTuple):
-    """What depends on r only; arrays of shape (n_r,)."""
+    """Quantities that depend on r only; arrays of shape (n_r,)."""
 
     r: np.ndarray
     load: np.ndarray  # amplitude A of the load in the contact
-    phase: np.ndarray  # its phase ahead of cos(tau)
+    phase: np.ndarray  # phase lead of that load over cos(tau)
     v_abs: np.ndarray
     v_arg: np.ndarray
     u: np.ndarray
@@ -62,7 +64,7 @@ class Frequencies(NamedTuple):
 
 
 class OneMassSystem(NamedTuple):
-    """A system of one mass over a map."""
+    """A system of one mass over a whole map."""
 
     frequencies: Frequencies
     zeta: float
@@ -70,7 +72,7 @@ class OneMassSystem(NamedTuple):
     lim: np.ndarray  # (n_mu, n_r) boundary of b to continuous motion
     stick: np.ndarray  # (n_mu, n_r) boundary of beta to permanent sticking
     modes: int  # 1
-    chi: float  # displacement in the contact of its mode, 1 or -1
+    chi: float  # participation factor of the mode in the contact, 1 or -1
 
 
 class OneMass(NamedTuple):
@@ -79,10 +81,10 @@ class OneMass(NamedTuple):
     h: float  # scan step in tau
     r: float
     load: float  # amplitude of the load in the contact
-    lead: float  # its phase ahead of cos(tau)
+    lead: float  # phase lead of that load over cos(tau)
     chi: float
     v_abs: float
-    marginal: bool  # where continuous motions are a continuum
+    marginal: bool  # whether the continuous motions form a continuum
     recurrence_threshold: float
     oscillator: Oscillator
     step: Step
@@ -95,7 +97,7 @@ class OneMass(NamedTuple):
 
 @entry
 def at_frequency(system, i):
-    """The mass at the i-th frequency, r > 0."""
+    """Build the motion of the mass at the i-th frequency, r > 0."""
     f = system.frequencies
     r = f.r[i]
     oscillator = Oscillator(r, system.zeta, f.v_abs[i], f.v_arg[i], f.u[i], f.g[i], f.marginal[i])
@@ -109,10 +111,10 @@ def at_frequency(system, i):
 
 @kernel
 def contact_at(system, m, i, beta, mu):
-    """The contact of a cell.
+    """Build the contact of a cell.
 
-    The division by the load rounds, so where beta ties with beta_stick it could decide against the comparison
-    that the closed form makes; the comparison is made once, on beta, and holds here too.
+    The division by the load amplitude rounds.  Where beta equals beta_stick it could contradict the
+    comparison made by the closed form; that comparison, made on beta, decides here too.
     """
     b = beta / system.frequencies.load[i]
     mu_b = mu * b
@@ -125,10 +127,10 @@ def contact_at(system, m, i, beta, mu):
 
 @kernel
 def start(motion, system, i, contact, moving):
-    """Where the motion starts.
+    """Return the initial state.
 
-    At rest: z = z' = 0 at tau = 0.  Moving: z = 0 at 1.5 times the speed that gives the amplitude (in energy)
-    of the motion without friction, that amplitude taken as 10 at most, while the load falls through zero.
+    At rest: z = z' = 0 at tau = 0.  Moving: z = 0 with 1.5 times the speed that has the energy amplitude of
+    the response without friction, that amplitude limited to 10, while the load falls through zero.
     """
     if not moving:
         c, s = math.cos(motion.lead), math.sin(motion.lead)
@@ -162,7 +164,7 @@ def after_turn(motion, contact, contact_state, allowed):
 
 @kernel
 def lasting_vibration(motion):
-    """See `motion.lasting_vibration`: a stop forgets all."""
+    """See `motion.lasting_vibration`: a stop leaves no velocity."""
     return False
 
 
@@ -201,7 +203,7 @@ def motion_size(motion, contact_state):
 
 @kernel
 def recurrence_distance(motion, now, then, size):
-    """See `motion.recurrence_distance`; at a stop the load's phase is a function of the place."""
+    """See `motion.recurrence_distance`; at a stop the load phase is a function of the displacement."""
     memory = motion.memory
     distance = abs(memory.anchors[now, STATE] - memory.anchors[then, STATE])
     turn = turned(memory, now, then) if memory.events[now] == REVERSE else 0.0
@@ -210,10 +212,11 @@ def recurrence_distance(motion, now, then, size):
 
 @kernel
 def creeps(motion, contact, events):
-    """See `motion.creeps`: stops may creep to an end of |z| <= mu b - 1, where the contact sticks for good.
+    """See `motion.creeps`: stops may creep to an end of |z| <= mu b - 1, where the contact sticks
+    permanently.
 
-    At a small distance y from it a slide takes some 4.5 y^2/r^2 off y: the end is never passed, and never
-    reached in a finite time.
+    At a small distance y from that end a slide reduces y by about 4.5 y^2/r^2: the end is never passed, and
+    never reached in finite time.
     """
     memory = motion.memory
     length = memory.events.size
@@ -232,7 +235,7 @@ def creeps(motion, contact, events):
 
 @kernel
 def _middle(memory, events):
-    """Displacement between the last stop and the one before; nan if there is none before."""
+    """Mean displacement of the last two stops; NaN if there is no earlier stop."""
     length = memory.events.size
     now = events - 1
     for lag in range(1, min(events, length)):
@@ -246,10 +249,14 @@ def _middle(memory, events):
 def seek(motion, contact, contact_state, event, sign, events, recurrence, failures, limits):
     """See `motion.seek`.
 
-    First the order of events of the last return is tried, from where the motion is now.  Next to a multiplier
-    of -1 a motion stays asymmetric for thousands of periods, with an order of events that the symmetric orbit
-    between its two halves does not have.  So, where the steady state is unique and an orbit found is the one
-    however it was found, the symmetric orbits with one or two stops a half period are tried too.
+    The event sequence of the last recurrence is tried first, from the present state.  Close to a multiplier
+    of -1 a motion stays asymmetric for thousands of periods, with an event sequence that the symmetric orbit
+    between its two halves does not have.  Where the steady state is unique, any orbit found is the right one;
+    the symmetric orbits with one or two stops per half period are then tried too.
+
+    Parameters
+    ----------
+    motion, contact, contact_state, event, sign, events, recurrence, failures, limits : see `motion.seek`
     """
     if recurrence.lag == 0:
         return no_orbit()
@@ -279,7 +286,7 @@ def seek(motion, contact, contact_state, event, sign, events, recurrence, failur
 
 @kernel
 def _keep(motion, z, sign, events, slides):
-    """Keep an orbit that starts at the end of a stop for the next cell."""
+    """Save an orbit that starts at the end of a stop, as the first guess of the next cell."""
     neighbour, ring = motion.neighbour, motion.memory.events
     if slides > MOST_EVENTS:
         return
@@ -296,7 +303,9 @@ def forget_neighbour(motion):
 
 @kernel
 def seek_nearby(motion, contact, limits):
-    """See `motion.seek_nearby`; the motion without stops begins to stop where it turns."""
+    """See `motion.seek_nearby`; the first guess is the orbit at the onset of stopping, which stops where it
+    turns.
+    """
     neighbour = motion.neighbour
     slides = int(neighbour[COUNT])
     if slides == 0:
@@ -323,7 +332,7 @@ def seek_nearby(motion, contact, limits):
 
 @kernel
 def keep_state(motion, slot):
-    """See `motion.keep_state`: the moment tells all."""
+    """See `motion.keep_state`; the contact state is the whole state."""
 
 
 @kernel
@@ -333,7 +342,7 @@ def bring_back(motion, slot):
 
 @kernel
 def distance_from(motion, slot, saved, contact_state, stopped):
-    """See `motion.distance_from`; after a stop the load's phase is a function of the place."""
+    """See `motion.distance_from`; after a stop the load phase is a function of the displacement."""
     turn = 0.0 if stopped else abs(contact_state.cos - saved.cos) + abs(contact_state.sin - saved.sin)
     return turn + abs(contact_state.z - saved.z) / abs(saved.z)
 
@@ -366,5 +375,5 @@ def put_slide(motion, contact_state, row):
 
 @kernel
 def put_stop(motion, contact_state, row):
-    """See `motion.put_stop`: nothing else moves."""
+    """See `motion.put_stop`; one mass has the same state in a stop as in a slide."""
     put_slide(motion, contact_state, row)

@@ -1,7 +1,8 @@
-"""What a steady state does in a cycle: extremes and their phases, harmonics, works.
+"""Quantities of a steady state over one excitation cycle: extremes and their phases, harmonics, work,
+distortion.
 
-Asked for apart from `details`, and as they are, by the class of `requested`: who asks for nothing of it compiles
-nothing of it.  Results are in rows: the masses, one more force, the contact.
+They are requested separately from `details`, and in the same way by the class of `requested`: nothing is
+compiled for quantities that are not requested.  Rows of results are the masses, one force, and the contact.
 """
 
 import math
@@ -58,51 +59,53 @@ RMS, DISTORTION = 0, 1
 
 
 class Results(NamedTuple):
-    """What is asked for, over (mu, r, beta); what is not has no size.
+    """Requested results over (mu, r, beta); arrays that are not requested have size 0.
 
-    Rows are the masses, then a force, then the contact.  The force is the one transmitted to the ground, in
-    `harmonics` the friction force.
+    Rows are the masses, then a force, then the contact.  The force is the one transmitted to the ground; in
+    `harmonics` it is the friction force.
     """
 
     extremes: np.ndarray  # (..., rows, FOUND)
-    firsts: np.ndarray  # (..., rows, 2) modulus and lag of the first harmonics
+    firsts: np.ndarray  # (..., rows, 2) modulus and phase lag of the first harmonics
     harmonics: np.ndarray  # (..., rows, N + 1) complex
-    work_terms: np.ndarray  # (..., WORKS)
+    work_terms: np.ndarray  # (..., WORK_TERMS)
     distortions: np.ndarray  # (..., masses, 2) root mean square and distortion
 
 
 class Linear(NamedTuple):
-    """Phasors of motions with the contact held, or without friction; arrays (n_r, ...)."""
+    """Phasors of the linear responses: with the contact held, and without friction; arrays (n_r, ...)."""
 
-    held: np.ndarray  # (n_r, n_dof) complex, of the masses with the contact held
-    force: np.ndarray  # (n_r,) complex, of the force that holds it
-    growth: np.ndarray  # (n_r, rows) complex, directions of what grows without bound at a resonance
+    held: np.ndarray  # (n_r, n_dof) complex displacements of the masses with the contact held
+    force: np.ndarray  # (n_r,) complex force that holds the contact
+    growth: np.ndarray  # (n_r, rows) complex directions of the growing motion at an undamped resonance
 
 
 class Balance(NamedTuple):
-    """Forces and works as functions of first harmonics X and F; arrays (n_r, ...)."""
+    """Forces and work as functions of the first harmonics X of the masses and F of friction; arrays (n_r,
+    ...).
+    """
 
     load: np.ndarray  # (n_r,) complex, sum of the loads
     inertia: np.ndarray  # (n_r, n_dof) r^2 times the mass
-    power: np.ndarray  # (n_r, n_dof) complex; the work of the load is pi Im(power.X + power_alone - s F)
+    power: np.ndarray  # (n_r, n_dof) complex; the work of the load is pi Im(power.X + base_power - s F)
     base_power: np.ndarray  # (n_r,) complex
     base_motion: float  # s
-    dampers: Dampers  # of what the contact sees
-    damped: bool  # whether they take any work
-    damping_uncoupled: np.ndarray  # (n_r,) work of the dampers of the modes that it does not see
-    damping_held: np.ndarray  # (n_r,) work of all of them with the contact held
+    dampers: Dampers  # of the participating modes
+    damped: bool  # whether any of them dissipates energy
+    damping_uncoupled: np.ndarray  # (n_r,) work of the dampers of the modes that do not participate
+    damping_held: np.ndarray  # (n_r,) work of all dampers with the contact held
 
 
 class Quantities(NamedTuple):
-    """Quantities over a map."""
+    """Data for the quantities over a whole map."""
 
     r: np.ndarray
     model: Model
     loads: Loads
     orbit: Continuous
     steps: float
-    wall_mass: int  # the mass whose displacement is that in the contact, or -1
-    outputs: OutputMatrices  # of the masses and, if it is asked for, of the transmitted force
+    wall_mass: int  # mass whose displacement equals the contact displacement, or -1
+    outputs: OutputMatrices  # of the masses and, if requested, of the transmitted force
     uncoupled: UncoupledResponse
     linear: Linear
     balance: Balance
@@ -111,39 +114,41 @@ class Quantities(NamedTuple):
 
 
 class QuantitiesAtFrequency(NamedTuple):
-    """Quantities at one frequency; at r = 0 nothing moves, and the structure is that of another."""
+    """Data for the quantities at one frequency; at r = 0 a placeholder (r = 1) that is never read."""
 
     i: int
     st: StructureAtFrequency
     request: Quantities
     spectrum: Spectrum
-    rows: np.ndarray  # (rows, N + 1) complex, harmonics of a cell; the force is that of friction
-    extremes: np.ndarray  # (rows, FOUND) of a cell
-    table: np.ndarray  # (1, columns) that of a continuous orbit
+    rows: np.ndarray  # (rows, N + 1) complex harmonics of one cell; the force is the friction force
+    extremes: np.ndarray  # (rows, FOUND) extremes of one cell
+    table: np.ndarray  # (1, columns) segment table of a continuous orbit
     work: Workspace
     scratch: Scratch
 
 
 @kernel
 def _not_requested(requested, i):
+    """Return the placeholder itself."""
     return requested
 
 
 @entry
 def _quantities_at(requested, i):
+    """Build the data for the i-th frequency."""
     r = requested.r[i] if requested.r[i] > 0.0 else 1.0
     st = make_structure(requested.model, requested.loads, i, r, requested.steps)
-    rows = requested.linear.growth.shape[1]
+    rows, harmonics = requested.linear.growth.shape[1], max(1, requested.harmonics)
     return QuantitiesAtFrequency(
-        i, st, requested, make_spectrum(st, max(1, requested.harmonics)),
-        np.zeros((rows, max(1, requested.harmonics) + 1), dtype=np.complex128), np.full((rows, FOUND), math.nan),
+        i, st, requested, make_spectrum(st, harmonics),
+        np.zeros((rows, harmonics + 1), dtype=np.complex128), np.full((rows, FOUND), math.nan),
         np.empty((1, segment_columns(st.n))), make_workspace(st.n), make_scratch(st.n),
     )  # fmt: skip
 
 
 @kernel
 def _copy(rows, target):
-    """Copy as many columns as the target has."""
+    """Copy the leading columns of the rows into an array with at most as many columns."""
     for k in range(target.shape[0]):
         for n in range(target.shape[1]):
             target[k, n] = rows[k, n]
@@ -151,7 +156,7 @@ def _copy(rows, target):
 
 @kernel
 def _lag(x):
-    """-arg x in (-pi, pi]; of nothing there is none."""
+    """Phase lag -arg x in (-pi, pi]; NaN for x = 0."""
     if x == 0.0:
         return math.nan
     angle = math.atan2(-x.imag, x.real)
@@ -160,7 +165,7 @@ def _lag(x):
 
 @kernel
 def _transmitted(quantities):
-    """First harmonic of the transmitted force, the loads less the inertia."""
+    """First harmonic of the transmitted force: the loads less the inertia forces."""
     balance, i = quantities.request.balance, quantities.i
     total = balance.load[i]
     for k in range(balance.inertia.shape[1]):
@@ -170,14 +175,14 @@ def _transmitted(quantities):
 
 @kernel
 def _rate(st, spectrum, n, i):
-    """Harmonic of p of a free oscillator."""
+    """n-th harmonic of the reduced velocity p of the i-th free oscillator."""
     rate = complex(0.0, n * st.r) * spectrum.modes[n, i]
     return rate - complex(st.modes[FEEDTHROUGH_COS, i], -st.modes[FEEDTHROUGH_SIN, i]) if n == 1 else rate
 
 
 @kernel
 def _put_harmonics(quantities):
-    """Harmonics of all rows from those of friction and modes."""
+    """Compute the harmonics of all rows from those of friction and modes."""
     st, spectrum, request = quantities.st, quantities.spectrum, quantities.request
     force = request.balance.inertia.shape[1]
     for n in range(spectrum.friction.size):
@@ -197,7 +202,7 @@ def _put_harmonics(quantities):
 
 @kernel
 def _put_held(quantities):
-    """Harmonics of all rows with the contact held: of the oscillation, wherever the contact rests."""
+    """Compute the harmonics of all rows with the contact held, without the position of the contact."""
     linear, i = quantities.request.linear, quantities.i
     force = linear.held.shape[1]
     for k in range(quantities.rows.shape[0]):
@@ -210,7 +215,7 @@ def _put_held(quantities):
 
 @kernel
 def _extremes_of_one_harmonic(quantities):
-    """Extremes of a motion that is its first harmonic."""
+    """Compute the extremes of a motion that equals its first harmonic."""
     force = quantities.request.balance.inertia.shape[1]
     for k in range(quantities.extremes.shape[0]):
         phasor = quantities.rows[k, 1] if k != force else _transmitted(quantities)
@@ -220,7 +225,7 @@ def _extremes_of_one_harmonic(quantities):
 
 @kernel
 def _store(quantities, m, j, beta, distance, damping):
-    """Write what was asked for of a cell, from its rows; distance, damping : sliding distance and work."""
+    """Write the requested results of a cell, given its sliding distance and the work of its dampers."""
     request, out, i = quantities.request, quantities.request.out, quantities.i
     force = request.balance.inertia.shape[1]
     if out.extremes.size:
@@ -245,7 +250,7 @@ def _store(quantities, m, j, beta, distance, damping):
 
 @kernel
 def _store_distortion(quantities, m, j, k, remainder):
-    """Write root mean square and distortion of a mass, `remainder` the root mean square but for X_0 and X_1."""
+    """Write rms value and distortion of a mass; `remainder` is the rms value without X_0 and X_1."""
     first = abs(quantities.rows[k, 1])
     out = quantities.request.out.distortions[m, quantities.i, j, k]
     out[RMS] = math.hypot(math.hypot(quantities.rows[k, 0].real, first / math.sqrt(2.0)), remainder)
@@ -254,7 +259,7 @@ def _store_distortion(quantities, m, j, k, remainder):
 
 @kernel
 def _no_distortion(quantities, m, j):
-    """Of a motion that is its first harmonic."""
+    """Write rms values and zero distortion for a motion that equals its first harmonic."""
     for k in range(
         quantities.request.out.distortions.shape[3] if quantities.request.out.distortions.size else 0
     ):
@@ -263,7 +268,7 @@ def _no_distortion(quantities, m, j):
 
 @kernel
 def _write_distortions(quantities, m, j, beta, table, halves):
-    """Of a motion over its table of phases, so many half periods long."""
+    """Write rms values and distortions from a segment table that covers this many half periods."""
     request = quantities.request
     for k in range(request.out.distortions.shape[3] if request.out.distortions.size else 0):
         square = distortion_square(
@@ -275,12 +280,13 @@ def _write_distortions(quantities, m, j, beta, table, halves):
 
 @kernel
 def _no_stuck(quantities, m, j):
+    """Write nothing."""
     pass
 
 
 @kernel
 def _stuck(quantities, m, j):
-    """Where the contact sticks; what it is held at is no part of the oscillation."""
+    """Write the quantities of a cell whose contact sticks; its static offset is not part of the vibration."""
     _put_held(quantities)
     _extremes_of_one_harmonic(quantities)
     _store(quantities, m, j, 0.0, 0.0, quantities.request.balance.damping_held[quantities.i])
@@ -289,7 +295,7 @@ def _stuck(quantities, m, j):
 
 @kernel
 def _find_extremes(quantities, beta, table):
-    """The extremes of the rows but the contact's, if they were asked for."""
+    """Find the extremes of all requested rows but the contact's."""
     request = quantities.request
     if request.out.extremes.size and not (request.outputs.static_shape.size == 1 and request.wall_mass == 0):
         largest_moduli(
@@ -305,7 +311,7 @@ def _find_extremes(quantities, beta, table):
 
 @kernel
 def _viscous_work(quantities, beta, table, halves):
-    """The work of the dampers per cycle, if it was asked for, of a motion that slides."""
+    """Work of the dampers per excitation cycle."""
     balance = quantities.request.balance
     if not quantities.request.out.work_terms.size:
         return 0.0
@@ -318,12 +324,13 @@ def _viscous_work(quantities, beta, table, halves):
 
 @kernel
 def _no_continuous(quantities, m, j, beta):
+    """Write nothing."""
     pass
 
 
 @kernel
 def _continuous(quantities, m, j, beta):
-    """On the continuous orbit."""
+    """Write the quantities of the continuous orbit."""
     orbit, i = quantities.request.orbit, quantities.i
     contact = quantities.extremes[quantities.extremes.shape[0] - 1]
     if not orbit.v_abs[i] < math.inf:
@@ -351,7 +358,7 @@ def _continuous(quantities, m, j, beta):
 
 @kernel
 def _linear_damping(quantities):
-    """The work of the dampers without friction."""
+    """Work of the dampers per excitation cycle without friction."""
     st, dampers = quantities.st, quantities.request.balance.dampers
     total = 0.0
     for k in range(dampers.weights.size):
@@ -366,7 +373,7 @@ def _linear_damping(quantities):
 
 @kernel
 def _unbounded(direction):
-    """Infinite along a direction; parts that it does not have stay 0."""
+    """Infinity in the direction of a phasor; real or imaginary parts that are zero stay zero."""
     re = math.copysign(math.inf, direction.real) if direction.real != 0.0 else 0.0
     im = math.copysign(math.inf, direction.imag) if direction.imag != 0.0 else 0.0
     return complex(re, im)
@@ -374,7 +381,9 @@ def _unbounded(direction):
 
 @kernel
 def _write_growing(quantities, m, j, beta):
-    """At an undamped resonance: the phases to which a motion goes that grows without bound."""
+    """Write the quantities at an undamped resonance: infinite amplitudes, with the phases that the growing
+    motion approaches.
+    """
     request, out, i = quantities.request, quantities.request.out, quantities.i
     directions = request.linear.growth[i]
     contact = directions.size - 1
@@ -402,12 +411,23 @@ def _write_growing(quantities, m, j, beta):
 
 @kernel
 def _no_orbit(quantities, motion, contact, found, m, j, beta):
+    """Write nothing.
+
+    Parameters
+    ----------
+    quantities, motion, contact, found, m, j, beta : see `write_orbit_quantities`
+    """
     pass
 
 
 @entry
 def _orbit(quantities, motion, contact, found, m, j, beta):
-    """On a periodic orbit, whose table of phases is written first."""
+    """Write the quantities of a periodic orbit from its segment table.
+
+    Parameters
+    ----------
+    quantities, motion, contact, found, m, j, beta : see `write_orbit_quantities`
+    """
     table = np.empty((2 * found.slides, segment_columns(quantities.st.n)))
     orbit = known_orbit(found.contact_state, found.event, found.sign, found.slides)
     table = table[: measure(motion, contact, orbit, table).segments]
@@ -416,7 +436,7 @@ def _orbit(quantities, motion, contact, found, m, j, beta):
 
 @kernel
 def _write_periodic(quantities, m, j, beta, table):
-    """Of the steady state of a table of phases."""
+    """Write the quantities of the steady state of a segment table."""
     halves = harmonics_of_segments(quantities.st, beta, table, quantities.spectrum)
     _put_harmonics(quantities)
     largest_in_contact(table, quantities.extremes[quantities.extremes.shape[0] - 1])
@@ -430,42 +450,52 @@ def _write_periodic(quantities, m, j, beta, table):
     _write_distortions(quantities, m, j, beta, table, halves)
 
 
-# For the only cell of a map: an entry a branch, so that who has one cell compiles one branch.
+# For the only cell of a map: one entry per branch, so that only the branch in use is compiled.
 
 
 @entry
 def stuck_cell_quantities(requested):
-    """Write those of the only cell of a map, whose contact sticks."""
+    """Write the quantities of the only cell of a map, whose contact sticks."""
     _stuck(_quantities_at(requested, 0), 0, 0)
 
 
 @entry
 def continuous_cell_quantities(requested, beta):
-    """Write those of the only cell of a map, on the continuous orbit of the closed form."""
+    """Write the quantities of the only cell of a map, on the continuous orbit of the closed form."""
     _continuous(_quantities_at(requested, 0), 0, 0, beta)
 
 
 @entry
 def table_cell_quantities(requested, beta, table):
-    """Write those of the only cell of a map, of the steady state of a table of phases."""
+    """Write the quantities of the only cell of a map, from its segment table."""
     _write_periodic(_quantities_at(requested, 0), 0, 0, beta, table)
 
 
 @by_class((NotRequested, _not_requested), (Quantities, _quantities_at))
 def quantities_at(requested, i):
-    """The quantities at the i-th frequency."""
+    """Build the data for the quantities at the i-th frequency."""
 
 
 @by_class((NotRequested, _no_stuck), (QuantitiesAtFrequency, _stuck))
 def write_stuck_quantities(quantities, m, j):
-    """Write those of a cell whose contact sticks."""
+    """Write the quantities of a cell whose contact sticks."""
 
 
 @by_class((NotRequested, _no_continuous), (QuantitiesAtFrequency, _continuous))
 def write_continuous_quantities(quantities, m, j, beta):
-    """Write those of a cell on the continuous orbit."""
+    """Write the quantities of a cell on the continuous orbit."""
 
 
 @by_class((NotRequested, _no_orbit), (QuantitiesAtFrequency, _orbit))
 def write_orbit_quantities(quantities, motion, contact, found, m, j, beta):
-    """Write those of a cell on the periodic orbit that was found."""
+    """Write the quantities of a cell on a periodic orbit.
+
+    Parameters
+    ----------
+    quantities : QuantitiesAtFrequency or NotRequested
+    motion : a kind of motion, at the anchor of the orbit
+    contact : Contact, in the units of the motion
+    found : Cell
+    m, j : indices of mu and beta
+    beta : kinetic friction force, in the units of the map
+    """

@@ -1,4 +1,4 @@
-"""What the driver takes and gives.  Forces and displacements are those of the kind of motion (`motion`)."""
+"""Records passed to and returned by the solver, in the units of force and displacement of the motion."""
 
 import math
 from typing import NamedTuple
@@ -20,54 +20,54 @@ from ..jit import kernel
 from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from ..one_mass.newton import full_period
 
-#: A stop shorter than this (in tau) is a grazing of no duration, told from none by rounding: that of one
-#: mass's load phase is some 1e-15, of the sum over many modes up to 1e-13.
+#: A stop shorter than this (in tau) counts as a turn without a stop: its duration is rounding error, about
+#: 1e-15 for the load phase of one mass and up to 1e-13 for a sum over many modes.
 SHORTEST_STOP = 1e-12
 
 TURN = 2.0 * math.pi
 
 
 class Limits(NamedTuple):
-    """When to give up; constant over a sweep."""
+    """Limits of the solver, constant over a map."""
 
     cycles: float
     tolerance: float
-    newton: bool  # solve for the periodic orbit instead of waiting for it
+    newton: bool  # solve for the periodic orbit; False: march until the motion recurs
 
 
 class Contact(NamedTuple):
-    """The contact of one cell."""
+    """Friction of the contact of one cell."""
 
     b: float  # kinetic friction
     mu_b: float  # static friction
     b_lim: float  # boundary of b to continuous motion
-    unique: bool  # mu = 1: there is one steady state, whatever the start
+    unique: bool  # mu = 1: the steady state does not depend on the initial state
 
 
 class ContactState(NamedTuple):
-    """Where a motion is, as far as numbers tell; a structure's modes are in its `state`."""
+    """State at the contact; the modal coordinates of a structure are in the `state` of its motion."""
 
-    z: float  # displacement in the contact
-    w: float  # its change per scan step; 0 at an anchor
-    cos: float  # of the load's phase
+    z: float  # contact displacement
+    w: float  # change of z per scan step; 0 at an anchor
+    cos: float  # of the load phase
     sin: float
-    contact_force: float  # force in the contact, friction taken off
+    contact_force: float  # contact force less the friction
 
 
 class Orbit(NamedTuple):
-    """What the search for a periodic orbit found."""
+    """Result of the search for a periodic orbit."""
 
     found: bool
-    contact_state: ContactState  # its anchor, the start of an upward slide
-    event: int  # which ended the slide before
-    sign: float  # -1.0 where that is the mirror image of the true motion
-    slides: int  # until it returns, or a multiple of that
-    certain: bool  # whether the motion that it was looked for from goes there; else that is to be seen
-    contraction: float  # largest modulus of the multipliers of a return, < 1; not told where it is certain
+    contact_state: ContactState  # at its anchor, the start of an upward slide
+    event: int  # event that ended the preceding slide
+    sign: float  # -1.0 where the anchor is the mirror image of the true motion
+    slides: int  # slides per recurrence, or a multiple of that
+    certain: bool  # whether the motion is known to approach this orbit; if False the caller must check
+    contraction: float  # largest modulus of the multipliers of one recurrence, < 1; NaN where `certain`
 
 
 class Cell(NamedTuple):
-    """The steady state of one cell."""
+    """Steady state of one cell."""
 
     regime: int
     status: int
@@ -77,28 +77,28 @@ class Cell(NamedTuple):
     stuck: float  # share of the steady period
     period: int  # excitation periods
     cycles: float  # excitation periods followed
-    contact_state: ContactState  # anchor from which the steady state starts over, or place where it sticks
-    event: int  # which ended the slide before
-    sign: float  # -1.0 where that is the mirror image of the true motion
-    slides: int  # until it returns; 0 where stuck and for the closed form
+    contact_state: ContactState  # at the anchor of the steady state, or where the contact sticks
+    event: int  # event that ended the slide before the anchor
+    sign: float  # -1.0 where the anchor is the mirror image of the true motion
+    slides: int  # slides per recurrence; 0 where stuck and for the closed form
 
 
 @kernel
 def undefined_state():
-    """A moment that is none."""
+    """Return a contact state of NaN."""
     nan = math.nan
     return ContactState(nan, nan, nan, nan, nan)
 
 
 @kernel
 def no_orbit():
-    """A search that failed."""
+    """Return the `Orbit` of a failed search."""
     return Orbit(False, undefined_state(), REVERSE, 1.0, 0, True, math.nan)
 
 
 @kernel
 def known_orbit(contact_state, event, sign, slides):
-    """The orbit of an anchor that the motion is at already."""
+    """Return the `Orbit` of an anchor that the motion has already reached."""
     return Orbit(True, contact_state, event, sign, slides, True, math.nan)
 
 
@@ -110,13 +110,23 @@ def stops_at(event):
 
 @kernel
 def turns_at(event):
-    """Whether the motion goes back after an event: the slide that follows is a mirror image."""
+    """Whether the motion reverses at an event, so that the slide that follows is mirrored."""
     return event == REVERSE or event == STOP_THEN_BACK
 
 
 @kernel
 def plain_cell(regime, status, origin, stops, amplitude, stuck, period, cycles):
-    """A cell with no anchor."""
+    """Build a cell without an anchor.
+
+    Parameters
+    ----------
+    regime, status, origin : codes of `regimes`
+    stops : stops per excitation period
+    amplitude : amplitude of z
+    stuck : share of the steady period that the contact is stuck
+    period : steady period [excitation periods]; 0 if unknown
+    cycles : excitation periods followed
+    """
     return Cell(
         regime, status, origin, stops, amplitude, stuck, period, cycles, undefined_state(), REVERSE, 1.0, 0
     )
@@ -124,14 +134,14 @@ def plain_cell(regime, status, origin, stops, amplitude, stuck, period, cycles):
 
 @kernel
 def unresolved(status, time):
-    """Followed over `time` in vain."""
+    """Build an unresolved cell, whose motion was followed over `time` in tau."""
     nan = math.nan
     return plain_cell(UNRESOLVED, status, INTEGRATED, nan, nan, nan, 0, time / TURN)
 
 
 @kernel
 def stuck_cell(origin, status, time, z, sign):
-    """Permanent sticking at z."""
+    """Build a cell whose contact sticks permanently at z."""
     nan = math.nan
     contact_state = ContactState(z, 0.0, nan, nan, nan)
     return Cell(
@@ -141,21 +151,21 @@ def stuck_cell(origin, status, time, z, sign):
 
 @kernel
 def continuous_cell(amplitude, marginal, origin, time):
-    """Continuous motion, by the closed form."""
+    """Build a cell in continuous motion, from the closed form."""
     status = MARGINAL if marginal else RESOLVED
     return plain_cell(CONTINUOUS, status, origin, 0.0, amplitude, 0.0, 1, time / TURN)
 
 
 @kernel
 def quasi_static_cell():
-    """r = 0 between the boundaries: stick-slip whose number of stops has no limit."""
+    """Build a cell at r = 0 between the boundaries: stick-slip whose number of stops has no limit."""
     nan = math.nan
     return plain_cell(STICK_SLIP, QUASI_STATIC, CLOSED_FORM, nan, nan, nan, 0, 0.0)
 
 
 @kernel
 def periodic_cell(measured, stops, orbit, origin, time):
-    """A steady state that returns, as its mirror image if need be, as `measured` says."""
+    """Build the cell of a periodic orbit, which recurs as itself or as its mirror image."""
     halves = measured.halves
     if halves < 1:
         return unresolved(NOT_REACHED, time)
@@ -168,9 +178,10 @@ def periodic_cell(measured, stops, orbit, origin, time):
 
 @kernel
 def averaged_cell(windows, time, end):
-    """Stick-slip that does not repeat, by what it did in the last whole window and the one under way.
+    """Build the stick-slip cell of a motion that does not repeat, from its last full window and the present
+    one.
 
-    A motion that was left before its end, or did not stop at all in that time, is not decided.
+    The cell is unresolved if the motion was not followed to `end` or did not stop in these windows.
     """
     last, now = windows.last, windows.now
     stops = last.stops + now.stops

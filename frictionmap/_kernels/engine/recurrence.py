@@ -1,4 +1,4 @@
-"""The recogniser of returns."""
+"""Recurrence detection."""
 
 import math
 
@@ -6,19 +6,27 @@ from ..jit import kernel
 from .memory import TIME, Recurrence, could_recur, halves_between
 from .motion import motion_size, recurrence_distance
 
-#: Anchors looked back over for a return: symmetric motions need one or a few, sub-harmonic ones more.
+#: Largest number of candidates compared: symmetric motions need one or a few, subharmonic ones more.
 _MOST_RECURRENCES = 64
 
-#: Half periods of the longest return.
+#: Longest recurrence [half periods of the excitation].
 _LONGEST_RECURRENCE = 16
 
 
 @kernel
 def find_recurrence(motion, contact_state, events, any_will_do, shortest):
-    """When the motion was nearly where it is now, a `Recurrence`.
+    """Find the earlier anchor that the present one nearly equals, as a `Recurrence`.
 
-    The shortest return, or the one beyond which a longer one is not closer by far: a sub-harmonic motion may
-    be nearly symmetric.  Where there is one steady state any start will do to look for it.
+    The shortest recurrence wins unless a longer one is at least four times closer: a subharmonic motion may
+    be nearly symmetric.
+
+    Parameters
+    ----------
+    motion : a kind of motion, see `motion`
+    contact_state : ContactState at the present anchor
+    events : number of anchors so far
+    any_will_do : True accepts any distance, because the steady state is unique
+    shortest : True stops the search at the first recurrence
     """
     memory = motion.memory
     length = memory.events.size

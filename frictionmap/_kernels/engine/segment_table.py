@@ -1,8 +1,8 @@
-"""The table of phases of a steady state: slides and stops in order, each with its exact motion.
+"""Segment table of a steady state: its slides and stops in order, each with its exact motion.
 
-One row a phase; a phase that is a mirror image is told so by its sign.  The state at its start is that of
-`structure.StructureAtFrequency`, free oscillators in a slide and held oscillators in a stop, whatever kind of
-motion was followed.  All that is asked of a steady state beyond its regime is read from here.
+Each row is one segment.  A segment that is the mirror image of the true motion has sign -1.  The state at its
+start is that of `structure.state.StructureAtFrequency`, of the free oscillators in a slide and of the held
+oscillators in a stop, for both kinds of motion.  All results except the regime are read from this table.
 """
 
 import math
@@ -11,28 +11,28 @@ from ..jit import entry, kernel
 from ..structure.sliding_orbit import orbit_state
 from ..structure.state import contact_displacement
 
-BEGIN = 0  # in tau, since the first phase
-LENGTH = 1  # in tau
+BEGIN = 0  # start in tau, since the first segment began
+LENGTH = 1  # duration in tau
 SENSE = 2  # 1 for a slide (upwards, mirrored or not), 0 for a stop
-SIGN = 3  # -1 where the row is the mirror image of the motion
-COS = 4  # load's phase at the start
+SIGN = 3  # -1 where the row is the mirror image of the true motion
+COS = 4  # load phase at the start
 SIN = 5
 STOP_Z = 6  # z of a stop
 Z_END = 7  # z at the end
-CONTACT_FORCE = 8  # force in the contact at the start of a slide, friction taken off
-EVENT = 9  # which ended a slide, see `one_mass.events`
-STATE = 10  # 2n of a slide, or 2m of a stop: coordinates, and velocities in t = tau/r
+CONTACT_FORCE = 8  # contact force less the friction at the start of a slide
+EVENT = 9  # event that ended a slide, see `one_mass.events`
+STATE = 10  # 2n numbers for a slide, 2m for a stop: coordinates, then velocities in t = tau/r
 
 
 @entry
 def segment_columns(n):
-    """Columns of the table for n modes."""
+    """Columns of the segment table for n modes."""
     return STATE + 2 * n
 
 
 @kernel
 def put_state(state, n, rate, c, s, row):
-    """The start of a phase in which n oscillators move."""
+    """Write load phase and state at the start of a segment with n moving oscillators."""
     row[COS] = c
     row[SIN] = s
     for i in range(n):
@@ -42,7 +42,7 @@ def put_state(state, n, rate, c, s, row):
 
 @kernel
 def put_mass(z, c, s, row):
-    """The start of a phase of one mass, which has no velocity there; in a stop nothing else moves."""
+    """Write load phase and displacement at the start of a segment of one mass; its velocity is zero there."""
     row[COS] = c
     row[SIN] = s
     row[STATE] = z
@@ -51,7 +51,7 @@ def put_mass(z, c, s, row):
 
 @kernel
 def put_segment(row, begin, length, sense, sign, z_end):
-    """What else there is to a phase."""
+    """Write the remaining columns of a segment."""
     row[BEGIN] = begin
     row[LENGTH] = length
     row[SENSE] = sense
@@ -62,7 +62,17 @@ def put_segment(row, begin, length, sense, sign, z_end):
 
 @entry
 def continuous_segment(st, orbit, i, beta, phase, row, work):
-    """The rising half of the continuous orbit, a table of one phase; `phase` is the load's at its maximum."""
+    """Write the rising half of the continuous orbit, which is a segment table of one row.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    orbit : Continuous; i : index of the frequency
+    beta : kinetic friction force
+    phase : load phase at the maximum of z
+    row : (columns,) row to fill
+    work : Workspace
+    """
     c, s = -math.cos(phase), -math.sin(phase)
     orbit_state(st, orbit, i, beta, phase, c, s, work.start)
     z = contact_displacement(st, work.start, c, s)
@@ -72,7 +82,7 @@ def continuous_segment(st, orbit, i, beta, phase, row, work):
 
 @entry
 def take_start(st, row, work):
-    """(slides, n, state): whether a phase slides, and the state of its n oscillators at its start."""
+    """Read the start of a segment: (slides, n, state), the state being that of its n moving oscillators."""
     slides = row[SENSE] > 0.0
     n = st.n if slides else st.m
     state = work.moved if slides else work.held

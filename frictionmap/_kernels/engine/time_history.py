@@ -1,4 +1,4 @@
-"""A steady state in time: samples of its table of phases."""
+"""Time history of a steady state, sampled from its segment table."""
 
 import math
 from typing import NamedTuple
@@ -15,8 +15,8 @@ from .segment_table import BEGIN, COS, LENGTH, SENSE, SIGN, SIN, STOP_Z, take_st
 class Samples(NamedTuple):
     """A motion at k times."""
 
-    coordinates: np.ndarray  # (n, k) of the free oscillators
-    velocities: np.ndarray  # (n, k) in tau
+    coordinates: np.ndarray  # (n, k) coordinates of the free oscillators
+    velocities: np.ndarray  # (n, k) their derivatives in tau
     z: np.ndarray  # (k,)
     friction: np.ndarray  # (k,)
     sense: np.ndarray  # (k,) int8
@@ -24,7 +24,17 @@ class Samples(NamedTuple):
 
 @entry
 def sample_segments(st, beta, table, tau, samples, work, scratch):
-    """Fill `samples` with the motion at times `tau` >= 0, increasing, since the table's first phase began."""
+    """Fill `samples` with the motion at given times.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta : kinetic friction force
+    table : (segments, columns) segment table
+    tau : (k,) increasing times >= 0 since the first segment began
+    samples : Samples
+    work, scratch : Workspace, Scratch
+    """
     z, friction = samples.z, samples.friction
     j = 0
     for k in range(table.shape[0]):

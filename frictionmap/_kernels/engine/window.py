@@ -1,4 +1,4 @@
-"""A motion that does not repeat: the table of phases of its last periods."""
+"""Segment table of a motion that does not repeat."""
 
 import math
 
@@ -13,15 +13,18 @@ from .policies import NOW
 from .records import known_orbit, stops_at, turns_at
 from .segment_table import segment_columns
 
-#: In place of the event at which an orbit returns: it does not.
+#: Event code of an orbit that never recurs.
 _NEVER = -1
 
 
 @kernel
 def _follow(motion, contact, contact_state, moves, duration):
-    """(events, moment, sign): followed for `duration` in tau, to the end of what follows the slide then.
+    """Follow the motion for at least `duration` in tau, to the end of the last event.
 
-    `sign` : -1.0 where the slide that follows is a mirror image.  No events where it sticks for good.
+    Returns
+    -------
+    (events, contact_state, sign) : number of events, 0 where the contact sticks permanently or no event is
+        found; the state after them; -1.0 where the next slide is mirrored
     """
     time = 0.0
     sign = 1.0
@@ -45,9 +48,10 @@ def _follow(motion, contact, contact_state, moves, duration):
 
 @entry
 def window_table(system, beta, mu, moving, before, duration):
-    """The table of phases from some time `before` on, for `duration` or little longer, both in tau.
+    """Segment table of a motion from the time `before` on, over at least `duration`, both in tau.
 
-    Of the motion of a system at one frequency, as `march` follows it; no rows where it sticks for good.
+    The motion is that of a system at one frequency, followed from the same initial state as in `march`.  The
+    table has no rows where the contact sticks permanently.
     """
     motion = at_frequency(system, 0)
     contact = contact_at(system, 0, 0, beta, mu)

@@ -15,7 +15,7 @@ from .errors import InputError
 from .model.free_structure import FreeStructure
 from .model.modes import ModalModel
 from .model.system import System
-from .roots import Stretch, find_roots, shaped, union, with_poles, without
+from .roots import FrequencyRange, find_roots, shaped, union, with_poles, without
 
 #: Invariant points crowd towards r = 0, where hardly any motion is continuous: no more than so many are
 #: looked for, from the highest down.
@@ -45,7 +45,7 @@ def peak_thresholds(system: System) -> np.ndarray:
     # (cosh x - 1)/(2 zeta sinh x) = tanh(x/2)/(2 zeta), which is pi/4 at zeta = 0
     factor = np.full(x.size, 0.25 * math.pi)
     np.divide(np.tanh(0.5 * x), 2.0 * modes.zeta, out=factor, where=modes.zeta > 0.0)
-    return np.where(modes.joined, np.nan, np.where(modes.chi == 0.0, np.inf, ratio * factor))
+    return np.where(modes.coupled_modes, np.nan, np.where(modes.chi == 0.0, np.inf, ratio * factor))
 
 
 def peak_amplitudes(system: System, beta: float) -> np.ndarray:
@@ -61,7 +61,7 @@ def peak_amplitudes(system: System, beta: float) -> np.ndarray:
         # |phi chi|/w^2 sinh/(cosh - 1) is the frictionless peak over the threshold
         left = 1.0 - beta / peak_thresholds(system) if beta > 0.0 else np.ones(modes.w.size)
         peaks = np.where(part > 0.0, part / (2.0 * modes.zeta) * left, 0.0)
-    return np.where((left > 0.0) & ~modes.joined, peaks, np.nan)
+    return np.where((left > 0.0) & ~modes.coupled_modes, peaks, np.nan)
 
 
 def high_frequency_limits(system: System, mu: float = 1.0) -> HighFrequency:
@@ -92,7 +92,7 @@ def quasi_static_displacement(system: System, beta: float) -> np.ndarray:
     return np.linalg.solve(modes.stiffness, modes.load.real - beta * modes.contact)
 
 
-def _range(modes: ModalModel, low: object, high: object, most: object) -> Stretch:
+def _range(modes: ModalModel, low: object, high: object, most: object) -> FrequencyRange:
     """The checked range, cut at its lower end so that it has at most about `most` edges.
 
     Edges are the natural frequencies and, of every participating mode or oscillator that vibrates, the
@@ -117,7 +117,7 @@ def _range(modes: ModalModel, low: object, high: object, most: object) -> Stretc
     if inside[0].size > most:
         low = float(inside[0][-most - 1])
         inside = [part[part > low] for part in inside]
-    return Stretch(low, high, *inside)
+    return FrequencyRange(low, high, *inside)
 
 
 def _damping_functions(free: FreeStructure, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -165,14 +165,14 @@ def invariant_points(system: System, low: float, high: float, most: int = MOST_P
     return find_roots(lambda r, which=None: _sums(_first_damping(modes, r), row, which), where)[0]
 
 
-def _turned_load(modes: ModalModel) -> np.ndarray:
+def _real_load(modes: ModalModel) -> np.ndarray:
     """The load with its largest entry made real and positive, which turns the whole motion with it."""
     return modes.load * np.exp(-1j * np.angle(modes.load[np.argmax(np.abs(modes.load))]))
 
 
 def one_phase(system: System) -> bool:
     """Whether all masses are loaded in phase, or in opposition: with two phases no amplitude is invariant."""
-    turned = _turned_load(system.modes)
+    turned = _real_load(system.modes)
     return bool(np.all(np.abs(turned.imag) <= _ONE_PHASE * np.abs(turned)))
 
 
@@ -183,7 +183,7 @@ def _undamped(system: System) -> ModalModel:
             f"load must have one phase for invariant points of a mass; got {system.modes.load.tolist()}"
         )
     modes = system.modes
-    turned = _turned_load(modes)
+    turned = _real_load(modes)
     none = np.zeros(modes.w.size)
     return ModalModel(
         modes.w, modes.phi, none, modes.contact, turned.real.astype(complex), none.astype(complex),
@@ -207,7 +207,7 @@ def _follows_contact(modes: ModalModel, rows: np.ndarray) -> np.ndarray:
     return (not modes.base_motion) & np.isclose(np.abs(rows), np.abs(modes.chi), 1e-12, 1e-13).all(axis=1)
 
 
-def _antiresonances(modes: ModalModel, where: Stretch) -> np.ndarray:
+def _antiresonances(modes: ModalModel, where: FrequencyRange) -> np.ndarray:
     """Zeros of V, where V_k/V has its poles, unless V_k is zero there, too."""
     return find_roots(lambda r, which=None: shaped(modes.contact_response(r).real, which), where)[0]
 

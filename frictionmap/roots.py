@@ -27,7 +27,7 @@ _ONE_ROOT = 1e-11
 _STEPS = 200
 
 
-class Stretch(NamedTuple):
+class FrequencyRange(NamedTuple):
     """A stretch of frequencies, and where in it the sums over modes turn sharply."""
 
     low: float
@@ -36,7 +36,7 @@ class Stretch(NamedTuple):
     poles: np.ndarray  # of the edges, those where a sum may be infinite
 
 
-def with_poles(where: Stretch, poles: np.ndarray) -> Stretch:
+def with_poles(where: FrequencyRange, poles: np.ndarray) -> FrequencyRange:
     """The same stretch with more poles in it."""
     inside = poles[(poles > where.low) & (poles < where.high)]
     return where._replace(edges=np.union1d(where.edges, inside), poles=np.union1d(where.poles, inside))
@@ -134,7 +134,7 @@ def _joined(brackets: list[_Brackets]) -> _Brackets:
     return _Brackets(*(np.concatenate(part) for part in zip(*brackets, strict=True)))
 
 
-def find_roots(f: Callable[..., np.ndarray], where: Stretch) -> list[np.ndarray]:
+def find_roots(f: Callable[..., np.ndarray], where: FrequencyRange) -> list[np.ndarray]:
     """Roots of several functions, all that sampling and a look into every dip of it can find.
 
     f(r) returns the values of all functions, (n_r, n_functions); f(r, which) those of one a frequency,

@@ -74,7 +74,7 @@ def ones_of(ds: xr.Dataset) -> dict[str, float]:
     return ones
 
 
-def in_words(ds: xr.Dataset) -> str:
+def describe_scales(ds: xr.Dataset) -> str:
     """What ratios of 1 are, as the dataset tells; empty if it has no units."""
     said = {"frequency": "r = 1 is", "force": "beta = 1 is", "length": "an amplitude of 1 is"}
     parts = []

@@ -55,7 +55,7 @@ def made_by(
     units: "Units | None" = None,
 ) -> dict[str, str]:
     """Global attributes `history` and `config` of what a function computed; see `configuration`."""
-    call = ", ".join(f"{name} = {_in_words(np.atleast_1d(values))}" for name, values in axes.items())
+    call = ", ".join(f"{name} = {_format_axis(np.atleast_1d(values))}" for name, values in axes.items())
     return {
         "history": f"{now()} frictionmap.{function} of {system.contact}, {call}",
         "config": configuration(title, system, axes, solver, curves, study, units=units),
@@ -94,7 +94,7 @@ def configuration(
     return "\n".join(lines) + "\n"
 
 
-def _in_words(values: np.ndarray) -> str:
+def _format_axis(values: np.ndarray) -> str:
     if values.size <= 3:
         return ", ".join(f"{value:g}" for value in values)
     return f"{values[0]:g} to {values[-1]:g} ({values.size} values)"

@@ -27,7 +27,7 @@ from .labels import (
 TEXTS = ("title", "system", "source", "history", "references", "config", "reduction", "decoupling")
 
 
-def _known(what: str) -> dict[str, Label]:
+def _labels_by_name(what: str) -> dict[str, Label]:
     """The labels of axes and variables in a kind of dataset."""
     return ESTIMATES if what == "estimates" else {**COORDINATES, **BESIDE, **labels_of(what)}
 
@@ -88,7 +88,7 @@ def check_structure(ds: xr.Dataset, in_parts: bool = False) -> None:
     for key in SCALES.values():
         if key in ds.attrs:
             checks.number(ds.attrs[key], f"the attribute {key}", above=0.0)
-    known = _known(what)
+    known = _labels_by_name(what)
     if not any(name in LABELS or name == "estimate" for name in ds.variables):
         names = ", ".join(map(str, ds.variables)) or "none"
         raise InputError(f"a variable of frictionmap must be there, such as regime or beta_lim; got {names}")
@@ -148,7 +148,7 @@ def checked_values(name: str, given: np.ndarray, what: str = "") -> np.ndarray:
 
     Whole numbers may come as floats: other programs make them so, to have a fill value.
     """
-    label = _known(what)[name]
+    label = _labels_by_name(what)[name]
     if label.dtype is np.str_:
         return given.astype(label.dtype)
     with np.errstate(invalid="ignore", over="ignore"):
@@ -159,7 +159,7 @@ def checked_values(name: str, given: np.ndarray, what: str = "") -> np.ndarray:
     if wrong.any():
         index = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
         at = f" at [{', '.join(map(str, index))}]" if index else ""
-        raise InputError(f"{name} must be {_legal(label)}; got {given[index]}{at}")
+        raise InputError(f"{name} must be {_describe_allowed(label)}; got {given[index]}{at}")
     return values
 
 
@@ -201,7 +201,7 @@ def _wrong(values: np.ndarray, label: Label) -> np.ndarray:
     return wrong
 
 
-def _legal(label: Label) -> str:
+def _describe_allowed(label: Label) -> str:
     """The legal values in words."""
     if label.codes:
         how = "a sum of" if label.flags == "flag_masks" else "one of"

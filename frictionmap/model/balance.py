@@ -51,21 +51,21 @@ class Body(NamedTuple):
     mass: np.ndarray  # (n, n)
     stiffness: np.ndarray
     springs: np.ndarray | None  # (n,) of a chain
-    shapes: np.ndarray  # (n, n) M phi
+    mass_phi: np.ndarray  # (n, n) M phi
     load: Polynomial
-    share: Polynomial  # participation of the load
+    participation: Polynomial  # participation of the load
     rounding: float  # what cancels but for this share of its terms, for each of them, is zero
 
 
-class _Load(NamedTuple):
+class _LoadCase(NamedTuple):
     """Frequencies that are solved for."""
 
     r: np.ndarray
     stiffness: Phasors  # dynamic, of every mode
     load: Phasors
 
-    def at(self, which: np.ndarray) -> "_Load":
-        return _Load(self.r[which], self.stiffness[:, which], self.load[:, which])
+    def at(self, which: np.ndarray) -> "_LoadCase":
+        return _LoadCase(self.r[which], self.stiffness[:, which], self.load[:, which])
 
 
 class _Motion(NamedTuple):
@@ -73,14 +73,16 @@ class _Motion(NamedTuple):
 
     x: Phasors
     tail: Phasors  # of x, below its rounding: the stretch of a stiff spring may be
-    left: Phasors  # of the load, not in balance yet
+    residual: Phasors  # of the load, not in balance yet
     z: Phasors
     force: Phasors
-    last: Phasors  # the answer before
+    previous: Phasors  # the answer before
 
     def at(self, which: np.ndarray) -> "_Motion":
-        x, tail, left, *numbers = self
-        return _Motion(x[:, which], tail[:, which], left[:, which], *(number[which] for number in numbers))
+        x, tail, residual, *numbers = self
+        return _Motion(
+            x[:, which], tail[:, which], residual[:, which], *(number[which] for number in numbers)
+        )
 
 
 def dynamic_stiffness(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> Phasors:
@@ -99,7 +101,7 @@ def contact_responses(r: np.ndarray, body: Body) -> np.ndarray:
         found, cancels = _modal_sum(body, r, stiffness)
         at = np.flatnonzero(cancels)
         if at.size:
-            found[at] = _balanced(body, _Load(r[at], stiffness[:, at], body.load.at(r[at])), False)[1]
+            found[at] = _balanced(body, _LoadCase(r[at], stiffness[:, at], body.load.at(r[at])), False)[1]
         return found.complex()
 
 
@@ -112,10 +114,10 @@ def held_motions(r: np.ndarray, body: Body) -> tuple[np.ndarray, np.ndarray, np.
     with np.errstate(all="ignore"):
         stiffness = dynamic_stiffness(body.w, body.zeta, r)
         if body.chi.all():
-            found, _, force, singular = _balanced(body, _Load(r, stiffness, body.load.at(r)), True)
+            found, _, force, singular = _balanced(body, _LoadCase(r, stiffness, body.load.at(r)), True)
         else:
             nothing = Phasors.zeros(r.size)
-            found, force, singular = _solve_arrow(body, stiffness, body.share.at(r), nothing)
+            found, force, singular = _solve_arrow(body, stiffness, body.participation.at(r), nothing)
         return found.rows(), force.complex(), singular
 
 
@@ -134,20 +136,20 @@ def _weighted(columns: np.ndarray, parts: Phasors) -> Phasors:
 
 def _modal_sum(body: Body, r: np.ndarray, stiffness: Phasors) -> tuple[Phasors, np.ndarray]:
     """V as the sum over modes, and whether that cancels by more than their frequencies leave uncertain."""
-    parts = body.share.at(r).times(body.chi[:, np.newaxis])
+    parts = body.participation.at(r).times(body.chi[:, np.newaxis])
     resonant = ~stiffness.nonzero
     infinite = (resonant & parts.nonzero).any(axis=0)
-    answers = (parts / stiffness).where(~resonant, Phasors.zeros(*resonant.shape))
+    responses = (parts / stiffness).where(~resonant, Phasors.zeros(*resonant.shape))
     near = np.where(resonant, np.inf, (body.w[:, np.newaxis] ** 2 + r * r) / stiffness.size).max(axis=0)
     total, size = Phasors.zeros(r.size), np.zeros(r.size)
-    for one in (answers[i] for i in range(body.w.size)):
+    for one in (responses[i] for i in range(body.w.size)):
         total, size = total + one, size + one.size
     total = total.where(~infinite, Phasors(np.full(r.size, np.inf), np.zeros(r.size)))
     return total, (size > near * total.size) & ~infinite
 
 
 def _solve_arrow(
-    body: Body, stiffness: Phasors, parts: Phasors, gap: Phasors
+    body: Body, stiffness: Phasors, parts: Phasors, displacement: Phasors
 ) -> tuple[Phasors, Phasors, np.ndarray]:
     """Modes q and force F of stiffness_i q_i + chi_i F = parts_i, chi.q = gap: q, F and singular.
 
@@ -156,12 +158,16 @@ def _solve_arrow(
     from being so.
     """
     seen = np.flatnonzero(body.chi)
-    columns = np.arange(gap.re.size)
+    columns = np.arange(displacement.re.size)
     chi, stiffness, parts = body.chi[seen][:, np.newaxis], stiffness[seen], parts[seen]
     last = np.argmin(stiffness.size / (chi * chi), axis=0)
     pulled = parts.times(chi)
     compliances, responses = Phasors(chi * chi, np.zeros_like(chi)) / stiffness, pulled / stiffness
-    compliance, response, size = Phasors.zeros(gap.re.size), gap.times(-1.0), np.zeros(gap.re.size)
+    compliance, response, size = (
+        Phasors.zeros(displacement.re.size),
+        displacement.times(-1.0),
+        np.zeros(displacement.re.size),
+    )
     for i in range(seen.size):
         other = last != i
         compliance = (compliance + compliances[i]).where(other, compliance)
@@ -173,11 +179,15 @@ def _solve_arrow(
     below.re += square
     singular = below.size <= body.rounding * seen.size * (square + soft.size * size)
     force = (part.times(weight) + soft * response) / below
-    q = Phasors.zeros(body.chi.size, gap.re.size)
+    q = Phasors.zeros(body.chi.size, displacement.re.size)
     found = (parts - force.times(chi)) / stiffness
     found[last, columns] = (part * compliance - response.times(weight)) / below
     q[seen] = found
-    return q.where(~singular, Phasors.zeros(*q.re.shape)), force.where(~singular, gap.times(0.0)), singular
+    return (
+        q.where(~singular, Phasors.zeros(*q.re.shape)),
+        force.where(~singular, displacement.times(0.0)),
+        singular,
+    )
 
 
 def _chain_forces(body: Body, r: np.ndarray, x: Phasors, tail: Phasors) -> tuple[Phasors, np.ndarray]:
@@ -206,27 +216,27 @@ def _matrix_forces(body: Body, r: np.ndarray, x: Phasors) -> tuple[Phasors, np.n
     return pull - inertia.times(square), size + square * weight
 
 
-def _left(body: Body, of: _Load, x: Phasors, tail: Phasors, force: Phasors) -> Phasors:
+def _residual_force(body: Body, case: _LoadCase, x: Phasors, tail: Phasors, force: Phasors) -> Phasors:
     """What of the load the forces on the masses leave, rounding apart."""
     if body.springs is not None:
-        forces, size = _chain_forces(body, of.r, x, tail)
+        forces, size = _chain_forces(body, case.r, x, tail)
     else:
-        forces, size = _matrix_forces(body, of.r, x)
+        forces, size = _matrix_forces(body, case.r, x)
     if body.zeta.any():
         # each mode's damping, by the masses' own motion
-        rates = _weighted(body.shapes.T, x)
-        rates = rates.times(2.0 * of.r * body.zeta[:, np.newaxis] * body.w[:, np.newaxis])
+        rates = _weighted(body.mass_phi.T, x)
+        rates = rates.times(2.0 * case.r * body.zeta[:, np.newaxis] * body.w[:, np.newaxis])
         for i in range(body.w.size):
-            shape = body.shapes[:, i, np.newaxis]
+            shape = body.mass_phi[:, i, np.newaxis]
             forces = forces + rates[i].turned().times(shape)
             size = size + np.abs(shape) * rates[i].size
     friction = force.times(body.contact[:, np.newaxis])
-    left = of.load - forces - friction
-    rounding = _BALANCE * _EPS * (size + of.load.size + friction.size)
-    return left.where(left.size > rounding, Phasors.zeros(*rounding.shape))
+    residual = case.load - forces - friction
+    rounding = _BALANCE * _EPS * (size + case.load.size + friction.size)
+    return residual.where(residual.size > rounding, Phasors.zeros(*rounding.shape))
 
 
-def _added(body: Body, motion: _Motion, q: Phasors) -> tuple[Phasors, Phasors, Phasors]:
+def _superposed(body: Body, motion: _Motion, q: Phasors) -> tuple[Phasors, Phasors, Phasors]:
     """x and its tail with the motion of the modes q added; z = c.x."""
     part = motion.tail
     for i in range(body.w.size):
@@ -237,43 +247,45 @@ def _added(body: Body, motion: _Motion, q: Phasors) -> tuple[Phasors, Phasors, P
     return x, tail, _total(terms, (q.re.shape[1],))
 
 
-def _corrected(body: Body, of: _Load, motion: _Motion, held: bool) -> tuple[_Motion, np.ndarray, np.ndarray]:
+def _corrected(
+    body: Body, case: _LoadCase, motion: _Motion, held: bool
+) -> tuple[_Motion, np.ndarray, np.ndarray]:
     """The motion with the modes' answer to what is left, where to go on, and where it cannot be had."""
-    parts = _weighted(np.ascontiguousarray(body.phi.T), motion.left)
+    parts = _weighted(np.ascontiguousarray(body.phi.T), motion.residual)
     if held:
-        q, more, singular = _solve_arrow(body, of.stiffness, parts, motion.z.times(-1.0))
+        q, more, singular = _solve_arrow(body, case.stiffness, parts, motion.z.times(-1.0))
         force = motion.force + more
     else:
-        q, force, singular = parts / of.stiffness, motion.force, np.zeros(of.r.size, dtype=bool)
-    x, tail, z = _added(body, motion, q)
+        q, force, singular = parts / case.stiffness, motion.force, np.zeros(case.r.size, dtype=bool)
+    x, tail, z = _superposed(body, motion, q)
     found = force if held else z
-    moved = (found - motion.last).size > _EPS * found.size
-    left = _left(body, of, x, tail, force)
-    unbalanced = left.nonzero.any(axis=0) | (held & z.nonzero)
-    return _Motion(x, tail, left, z, force, found), moved & unbalanced & ~singular, singular
+    moved = (found - motion.previous).size > _EPS * found.size
+    residual = _residual_force(body, case, x, tail, force)
+    unbalanced = residual.nonzero.any(axis=0) | (held & z.nonzero)
+    return _Motion(x, tail, residual, z, force, found), moved & unbalanced & ~singular, singular
 
 
-def _balanced(body: Body, of: _Load, held: bool) -> tuple[Phasors, Phasors, Phasors, np.ndarray]:
+def _balanced(body: Body, case: _LoadCase, held: bool) -> tuple[Phasors, Phasors, Phasors, np.ndarray]:
     """x, z, F and singular, corrected until every mass is in balance.
 
     With `held` the contact holds z = 0 by the force F; else F = 0.
     """
-    n, count = body.w.size, of.r.size
+    n, count = body.w.size, case.r.size
     x, z, force, singular = (
         Phasors.zeros(n, count),
         Phasors.zeros(count),
         Phasors.zeros(count),
         np.zeros(count, bool),
     )
-    no_answer = Phasors(np.full(count, np.inf), np.zeros(count))  # the first one may be zero, as no other
-    motion = _Motion(x, Phasors.zeros(n, count), of.load, z, force, no_answer)
+    no_response = Phasors(np.full(count, np.inf), np.zeros(count))  # the first one may be zero, as no other
+    motion = _Motion(x, Phasors.zeros(n, count), case.load, z, force, no_response)
     places = np.arange(count)
     # one for every link that the load has to pass; beside a resonance each gains a digit at least
     for _ in range(n + _DIGITS):
-        motion, going, singular[places] = _corrected(body, of, motion, held)
+        motion, going, singular[places] = _corrected(body, case, motion, held)
         x[:, places], z[places], force[places] = motion.x, motion.z, motion.force
         if not going.any():
             break
         which = np.flatnonzero(going)
-        places, of, motion = places[which], of.at(which), motion.at(which)
+        places, case, motion = places[which], case.at(which), motion.at(which)
     return x, z, force, singular

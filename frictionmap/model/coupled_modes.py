@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .free_structure import FreeStructure, coupled_structure, modal_structure
-from .modes import ZERO_PRODUCT, ModalModel, load_rate, solve_held, times, weighed
+from .modes import ZERO_PRODUCT, ModalModel, load_rate, solve_held, times, weighted_sum
 
 #: Answers beyond this many times the load over the stiffness are looked at for what rounding alone bounds.
 _SUSPECT = 1e8
@@ -27,19 +27,21 @@ def _unit(direction: np.ndarray, least: float) -> np.ndarray:
     return direction[:, np.newaxis] / size if size > least else np.zeros((direction.size, 0))
 
 
-def _reached(product: np.ndarray, group: np.ndarray, found: np.ndarray, least: float) -> np.ndarray:
+def _reached_directions(
+    product: np.ndarray, group: np.ndarray, found: np.ndarray, least: float
+) -> np.ndarray:
     """Orthonormal columns: what of a group the directions (n, l) reach by damping above `least`."""
     left, sizes, _ = np.linalg.svd(product[group] @ found, full_matrices=False)
     return left[:, sizes > least]
 
 
-def _new(part: np.ndarray, found: np.ndarray) -> np.ndarray:
+def _new_directions(part: np.ndarray, found: np.ndarray) -> np.ndarray:
     """Orthonormal columns of what `part` has beside the span of `found`, orthonormal both."""
     left, sizes, _ = np.linalg.svd(part - found @ (found.T @ part), full_matrices=False)
     return left[:, sizes > _NEW]
 
 
-def sort_seen(
+def sort_participating(
     w: np.ndarray, phi: np.ndarray, damping: np.ndarray, contact: np.ndarray, rounding: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Modes turned among those of one frequency, and which of them the contact sees, itself or by damping.
@@ -65,14 +67,14 @@ def sort_seen(
             column += part.shape[1]
         for k, group in enumerate(groups):
             whole = found[k].shape[1] == group.size
-            part = _reached(product, group, reached[:, : 0 if whole else None], least)
-            new[k] = _new(part, found[k])
-    turned, seen = phi.copy(), np.zeros(w.size, dtype=bool)
+            part = _reached_directions(product, group, reached[:, : 0 if whole else None], least)
+            new[k] = _new_directions(part, found[k])
+    turned, coupled_to_contact = phi.copy(), np.zeros(w.size, dtype=bool)
     for group, part in zip(groups, found, strict=True):
-        seen[group[: part.shape[1]]] = True
+        coupled_to_contact[group[: part.shape[1]]] = True
         if group.size > 1:
             turned[:, group] = phi[:, group] @ _damped_apart(part, product[np.ix_(group, group)])
-    return turned, seen
+    return turned, coupled_to_contact
 
 
 def _damped_apart(part: np.ndarray, damping: np.ndarray) -> np.ndarray:
@@ -94,19 +96,19 @@ class CoupledModel(ModalModel):
     """
 
     coupling: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
-    seen: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    coupled_to_contact: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
 
     @property
-    def joined(self) -> np.ndarray:
+    def coupled_modes(self) -> np.ndarray:
         """As of `ModalModel`."""
         return np.any(self.coupling != 0.0, axis=1)
 
     @property
     def participating(self) -> np.ndarray:
         """Modes that the contact sees, bool (n,)."""
-        return self.seen
+        return self.coupled_to_contact
 
-    def seen_coupling(self) -> np.ndarray:
+    def participating_coupling(self) -> np.ndarray:
         """What the damping has between the modes that the contact sees."""
         return self.coupling[np.ix_(self.participating, self.participating)]
 
@@ -114,7 +116,7 @@ class CoupledModel(ModalModel):
     def free(self) -> FreeStructure:
         """The modes that the contact sees as oscillators."""
         which = self.participating
-        coupling = self.seen_coupling()
+        coupling = self.participating_coupling()
         if not coupling.any():
             return modal_structure(self.w[which], self.zeta[which], self.chi[which])
         return coupled_structure(self.w[which], self.zeta[which], coupling, self.chi[which])
@@ -123,7 +125,7 @@ class CoupledModel(ModalModel):
         """Dynamic stiffness between the modes at one frequency, complex (n, n)."""
         return np.diag(self.dynamic_stiffness(np.array([r]))[0]) + 1j * r * self.coupling
 
-    def answers(self, r: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    def modal_responses(self, r: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Coordinates of the modes under loads on them, complex (n_r, n); infinite as of `ModalModel`."""
         found = np.empty((r.size, self.w.size), dtype=complex)
         for k, at in enumerate(r):
@@ -135,32 +137,32 @@ class CoupledModel(ModalModel):
             found[k, resonant] = load[resonant]
         return found
 
-    def drag(self, q: np.ndarray) -> np.ndarray:
+    def damping_form(self, q: np.ndarray) -> np.ndarray:
         """As of `ModalModel`."""
         across = times(q, self.coupling)
-        return super().drag(q) + (q.real * across.real + q.imag * across.imag).sum(axis=1)
+        return super().damping_form(q) + (q.real * across.real + q.imag * across.imag).sum(axis=1)
 
     def response(self, r: np.ndarray, weights: np.ndarray) -> np.ndarray:
         """As of `ModalModel`."""
         r = np.asarray(r, dtype=float)
-        return weighed(self.answers(r, self.participation(r)), weights)
+        return weighted_sum(self.modal_responses(r, self.participation(r)), weights)
 
     def mass_responses(self, r: np.ndarray) -> np.ndarray:
         """As of `ModalModel`."""
         r = np.asarray(r, dtype=float)
-        q = self.answers(r, self.participation(r))
-        return np.column_stack([weighed(q, row) for row in self.phi])
+        q = self.modal_responses(r, self.participation(r))
+        return np.column_stack([weighted_sum(q, row) for row in self.phi])
 
     def contact_response(self, r: np.ndarray) -> np.ndarray:
         """As of `ModalModel`."""
         r = np.asarray(r, dtype=float)
-        return weighed(self.answers(r, self.relative_participation(r)), self.chi)
+        return weighted_sum(self.modal_responses(r, self.relative_participation(r)), self.chi)
 
     def held(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """As of `ModalModel`; modes that the contact does not see move as if free."""
         r = np.asarray(r, dtype=float)
         which, parts = self.participating, self.relative_participation(r)
-        q = self.answers(r, np.where(which, 0.0, parts))
+        q = self.modal_responses(r, np.where(which, 0.0, parts))
         force = np.empty(r.size, dtype=complex)
         for k in range(r.size):
             q[k, which], force[k] = self._held_at(float(r[k]), parts[k, which])
@@ -183,7 +185,7 @@ class CoupledModel(ModalModel):
         # an undamped resonance of the held structure: rounding alone keeps it finite
         small = np.abs(bordered).max() * np.abs(solution).max() <= _SUSPECT * np.abs(right).max()
         if not small:
-            w, coupling = self.w[which], self.seen_coupling()
+            w, coupling = self.w[which], self.participating_coupling()
             damping = np.diag(2.0 * self.zeta[which] * w) + coupling
             solution = solve_held(
                 np.eye(n), np.diag(w**2), damping, self.chi[which], np.array([r]), load[np.newaxis]
@@ -196,11 +198,11 @@ def coupled_model(
 ) -> CoupledModel:
     """The model of a structure with any damping matrix C1, of its undamped modes; `parts` as they are."""
     rounding = ZERO_PRODUCT * w.size * float(np.finfo(float).eps)
-    phi, seen = sort_seen(w, phi, damping, parts["contact"], rounding)
+    phi, coupled_to_contact = sort_participating(w, phi, damping, parts["contact"], rounding)
     product = phi.T @ damping @ phi
     rates = np.diag(product)
     small = np.abs(product) <= rounding * rates.max()
-    product[small | (seen[:, np.newaxis] != seen)] = 0.0
+    product[small | (coupled_to_contact[:, np.newaxis] != coupled_to_contact)] = 0.0
     return CoupledModel(
         w,
         phi,
@@ -208,6 +210,6 @@ def coupled_model(
         load_rate=load_rate(damping, to_base),
         damping=damping,
         coupling=product - np.diag(np.diag(product)),
-        seen=seen,
+        coupled_to_contact=coupled_to_contact,
         **parts,
     )

@@ -93,7 +93,9 @@ def _basis(matrix: np.ndarray, pairs: list[tuple[complex, complex]], vectors: np
     return np.array([c[:, j] / s for j in range(2) for c, s in zip(columns, sizes, strict=True)]).T
 
 
-def _pushed(basis: np.ndarray, pairs: list[_Pair], force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _aligned_with_force(
+    basis: np.ndarray, pairs: list[_Pair], force: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """The basis in which a force on the velocities acts on y'' alone, and its push on every oscillator.
 
     Of a pair the force is b, a vector of its plane; with the roots' polynomial s^2 + D s + K the motion
@@ -151,7 +153,7 @@ def damped_oscillators(
     if force is not None:
         for k, pairs in enumerate(choices):
             if conditions[k] < 1.0 / _EPS:
-                bases[k], pushes[k] = _pushed(bases[k], pairs, force)
+                bases[k], pushes[k] = _aligned_with_force(bases[k], pairs, force)
                 conditions[k] = _condition(bases[k], pairs)
     k = int(np.argmin(conditions))
     if not conditions[k] < _WORST_BASIS:

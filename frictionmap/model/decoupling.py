@@ -54,12 +54,12 @@ class Decoupling:
             dynamic = modes.stiffness - at * at * modes.mass + 1j * at * damping
             return forces.T @ np.linalg.solve(dynamic, forces)
 
-        places = _places(modes, low, high)
-        pairs = ((compliances(at, modes.damping), compliances(at, self.damping)) for at in places)
+        frequencies = _frequencies(modes, low, high)
+        pairs = ((compliances(at, modes.damping), compliances(at, self.damping)) for at in frequencies)
         return largest_error(pairs, units, np.array([1.0, 0.0]))
 
 
-def _places(modes: ModalModel, low: float, high: float) -> np.ndarray:
+def _frequencies(modes: ModalModel, low: float, high: float) -> np.ndarray:
     """Where responses are compared."""
     resonances = np.concatenate((modes.w, modes.held_frequencies()))
     inside = np.sort(resonances[(resonances >= low) & (resonances <= high)])

@@ -27,12 +27,12 @@ class FreeStructure(NamedTuple):
     push: np.ndarray
     to_modes: np.ndarray
     to_oscillators: np.ndarray
-    joined: np.ndarray
+    coupled_indices: np.ndarray
 
     @property
     def coupled(self) -> bool:
         """Whether the damping couples any modes."""
-        return self.joined.size > 0
+        return self.coupled_indices.size > 0
 
     def compliances(self, rows: np.ndarray) -> np.ndarray:
         """The answers of sums of modes to friction by those of the oscillators: weights of h_i and R_i h_i'.
@@ -43,9 +43,9 @@ class FreeStructure(NamedTuple):
         share = self.push / self.omega**2
         if not self.coupled:
             return rows * share
-        n, joined = self.omega.size, self.joined
+        n, coupled = self.omega.size, self.coupled_indices
         both = rows @ self.to_modes[:n]
-        return np.hstack((both[:, :n] * share, both[:, n + joined] * (share * self.omega)[joined]))
+        return np.hstack((both[:, :n] * share, both[:, n + coupled] * (share * self.omega)[coupled]))
 
     def weights(self, chi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The answer of z to friction by those of the oscillators, h = sum a_i h_i + b_i r h_i'.
@@ -82,13 +82,13 @@ def coupled_structure(
     Raises InputError as `damped_oscillators`.
     """
     free = modal_structure(w, zeta, chi)
-    joined = np.flatnonzero(coupling.any(axis=1))
-    damping = np.diag(2.0 * zeta * w)[np.ix_(joined, joined)] + coupling[np.ix_(joined, joined)]
-    part = damped_oscillators(np.diag(w[joined]), damping, "structure one", chi[joined])
-    both = np.concatenate((joined, w.size + joined))
+    coupled = np.flatnonzero(coupling.any(axis=1))
+    damping = np.diag(2.0 * zeta * w)[np.ix_(coupled, coupled)] + coupling[np.ix_(coupled, coupled)]
+    part = damped_oscillators(np.diag(w[coupled]), damping, "structure one", chi[coupled])
+    both = np.concatenate((coupled, w.size + coupled))
     to_modes, to_oscillators = free.to_modes.copy(), free.to_oscillators.copy()
     to_modes[np.ix_(both, both)] = part.to_coordinates
     to_oscillators[np.ix_(both, both)] = part.to_oscillators
     omega, ratio, push = free.omega.copy(), free.zeta.copy(), free.push.copy()
-    omega[joined], ratio[joined], push[joined] = part.omega, part.zeta, part.push
-    return FreeStructure(omega, ratio, push, to_modes, to_oscillators, joined)
+    omega[coupled], ratio[coupled], push[coupled] = part.omega, part.zeta, part.push
+    return FreeStructure(omega, ratio, push, to_modes, to_oscillators, coupled)

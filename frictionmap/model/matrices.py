@@ -67,7 +67,7 @@ class Matrices:
         return scaled
 
 
-def whole(structure: Structure) -> Matrices:
+def full_matrices(structure: Structure) -> Matrices:
     """The matrices of a structure as they are.
 
     Raises
@@ -95,7 +95,7 @@ def whole(structure: Structure) -> Matrices:
     return definite(dense, structure.dofs, structure.source)
 
 
-def of_reduction(reduction: Reduction) -> Matrices:
+def reduced_matrices(reduction: Reduction) -> Matrices:
     """The matrices of a reduced structure."""
     structure, reduced = reduction.structure, reduction.reduced
     small = definite(reduced.arrays, structure.dofs.at(reduced.rows), structure.source)

@@ -25,7 +25,7 @@ _SAME_FREQUENCY = 8.0
 ZERO_PRODUCT = 64.0
 
 
-def _made_equal(squares: np.ndarray, rounding: np.ndarray) -> np.ndarray:
+def _merge_equal(squares: np.ndarray, rounding: np.ndarray) -> np.ndarray:
     """Increasing squared frequencies, those made equal to the bit that `rounding` (n,) alone tells apart."""
     first_of_group = np.concatenate(([True], np.diff(squares) > rounding[1:]))
     group = np.cumsum(first_of_group) - 1
@@ -44,7 +44,7 @@ def solve_modes(mass: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np
 
     squares, phi = eigh(stiffness, mass)
     gap = _SAME_FREQUENCY * np.sqrt(squares.size) * _EPS * squares[-1]
-    squares = _made_equal(squares, np.full(squares.size, gap))
+    squares = _merge_equal(squares, np.full(squares.size, gap))
     return np.sqrt(np.maximum(squares, 0.0)), phi  # rounding may make one negative
 
 
@@ -61,7 +61,7 @@ def solve_chain_modes(masses: np.ndarray, springs: np.ndarray) -> tuple[np.ndarr
     stretches = np.diag(np.sqrt(springs) / root) - np.diag(np.sqrt(springs[1:]) / root[:-1], 1)  # transposed
     shapes, w, _ = svd(stretches, lapack_driver="gesvd")
     squares = w[::-1] ** 2
-    equal = _made_equal(squares, _SAME_FREQUENCY * np.sqrt(w.size) * _EPS * squares)
+    equal = _merge_equal(squares, _SAME_FREQUENCY * np.sqrt(w.size) * _EPS * squares)
     # the square root of an untouched square would round twice
     w = np.where(equal == squares, w[::-1], np.sqrt(equal))
     return w, np.ascontiguousarray((shapes / root[:, np.newaxis])[:, ::-1])
@@ -108,7 +108,7 @@ def damped_modes(damping: np.ndarray, w: np.ndarray, phi: np.ndarray) -> tuple[n
     return rates / (2.0 * w), phi, float(coupling.max(initial=0.0))
 
 
-def gather_contact(w: np.ndarray, zeta: np.ndarray, phi: np.ndarray, contact: np.ndarray) -> np.ndarray:
+def align_with_contact(w: np.ndarray, zeta: np.ndarray, phi: np.ndarray, contact: np.ndarray) -> np.ndarray:
     """Modes turned among those of one frequency and damping so that the contact sees one of them only.
 
     Any basis of such a group is as good: with this one the group has one pole, and the others none.
@@ -171,10 +171,10 @@ def _modal_sum(stiffness: np.ndarray, parts: np.ndarray) -> np.ndarray:
     return np.where(resonant.any(axis=1), np.inf, np.where(resonant, 0.0, terms).sum(axis=1))
 
 
-def weighed(answers: np.ndarray, weights: np.ndarray) -> np.ndarray:
+def weighted_sum(responses: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """Sum over modes of answers (n_r, n) by weights (n,); infinite where one that has a weight is."""
-    infinite = np.isinf(answers)
-    total = times(np.where(infinite, 0.0, answers), weights[:, np.newaxis])[:, 0]
+    infinite = np.isinf(responses)
+    total = times(np.where(infinite, 0.0, responses), weights[:, np.newaxis])[:, 0]
     return np.where((infinite & (weights != 0.0)).any(axis=1), np.inf, total)
 
 
@@ -189,7 +189,9 @@ def _held_squares(mass: np.ndarray, stiffness: np.ndarray, contact: np.ndarray) 
     return eigh(basis.T @ stiffness @ basis, basis.T @ mass @ basis, eigvals_only=True)
 
 
-def _unfed_resonance(bordered: np.ndarray, mass: np.ndarray, right: np.ndarray) -> np.ndarray | None:
+def _solve_unexcited_resonance(
+    bordered: np.ndarray, mass: np.ndarray, right: np.ndarray
+) -> np.ndarray | None:
     """Solution of equations that rounding alone keeps from being singular, if the load feeds no resonance.
 
     It is the limit, in which the resonant motions are absent: what remains is orthogonal to them with
@@ -232,7 +234,7 @@ def solve_held(
     for k, at in enumerate(r):
         bordered[:n, :n] = stiffness - at**2 * mass + 1j * at * damping
         right = np.append(load[k], 0.0)
-        solution = _unfed_resonance(bordered, mass, right)
+        solution = _solve_unexcited_resonance(bordered, mass, right)
         if solution is None:
             try:
                 solution = np.linalg.solve(bordered, right)
@@ -269,7 +271,7 @@ class ModalModel:
     damping: np.ndarray
     springs: np.ndarray | None = None
 
-    def _shares(self, vector: np.ndarray) -> np.ndarray:
+    def _participation_factors(self, vector: np.ndarray) -> np.ndarray:
         """vector.phi_i (n,), exactly zero where it is zero but for rounding.
 
         |v.phi_i| <= sqrt(v^T M^-1 v) by Cauchy and Schwarz, as phi_i^T M phi_i = 1.  Left as they are, the
@@ -283,7 +285,7 @@ class ModalModel:
     @cached_property
     def chi(self) -> np.ndarray:
         """Participation of the contact, c.phi_i (n,); exactly 0 in modes that the contact does not see."""
-        return self._shares(self.contact)
+        return self._participation_factors(self.contact)
 
     @property
     def participating(self) -> np.ndarray:
@@ -291,11 +293,11 @@ class ModalModel:
         return self.chi != 0.0
 
     @property
-    def joined(self) -> np.ndarray:
+    def coupled_modes(self) -> np.ndarray:
         """Modes that the damping couples to others, bool (n,)."""
         return np.zeros(self.w.size, dtype=bool)
 
-    def seen_coupling(self) -> np.ndarray | None:
+    def participating_coupling(self) -> np.ndarray | None:
         """What the damping has between the modes that the contact sees; None: nothing."""
         return None
 
@@ -306,9 +308,13 @@ class ModalModel:
         return modal_structure(self.w[which], self.zeta[which], self.chi[which])
 
     @cached_property
-    def _load_shares(self) -> Polynomial:
+    def _load_participation(self) -> Polynomial:
         """Participation of load, of load_rate, and of nothing that grows with r^2."""
-        return Polynomial(self._shares(self.load), self._shares(self.load_rate), np.zeros(self.w.size))
+        return Polynomial(
+            self._participation_factors(self.load),
+            self._participation_factors(self.load_rate),
+            np.zeros(self.w.size),
+        )
 
     @cached_property
     def _relative(self) -> Polynomial:
@@ -320,16 +326,16 @@ class ModalModel:
         return Polynomial(nothing, self.load_rate - self.damping @ ones, (self.mass @ ones).astype(complex))
 
     @cached_property
-    def _relative_shares(self) -> Polynomial:
+    def _relative_participation(self) -> Polynomial:
         """Participation of these parts."""
-        return Polynomial(*(self._shares(part).astype(complex) for part in self._relative))
+        return Polynomial(*(self._participation_factors(part).astype(complex) for part in self._relative))
 
     @cached_property
     def _body(self) -> Body:
         """The structure in the numbers that its balance takes."""
         return Body(
             self.w, self.zeta, self.phi, self.chi, self.contact, self.mass, self.stiffness, self.springs,
-            self.mass @ self.phi, self._relative, self._relative_shares,
+            self.mass @ self.phi, self._relative, self._relative_participation,
             ZERO_PRODUCT * _EPS,
         )  # fmt: skip
 
@@ -347,7 +353,7 @@ class ModalModel:
 
     def participation(self, r: np.ndarray) -> np.ndarray:
         """Participation of the load, lambda_i = p(r).phi_i, complex (n_r, n)."""
-        return _rows(self._load_shares, r)
+        return _rows(self._load_participation, r)
 
     def total_load(self, r: np.ndarray) -> np.ndarray:
         """Phasor p(r) of the load on the masses, (n_r, n)."""
@@ -363,7 +369,7 @@ class ModalModel:
 
     def relative_participation(self, r: np.ndarray) -> np.ndarray:
         """relative_load(r).phi_i, (n_r, n)."""
-        return _rows(self._relative_shares, r)
+        return _rows(self._relative_participation, r)
 
     def dynamic_stiffness(self, r: np.ndarray) -> np.ndarray:
         """w_i^2 - r^2 + 2 i zeta_i w_i r, shape (n_r, n), without cancellation at resonance.
@@ -372,14 +378,14 @@ class ModalModel:
         """
         return dynamic_stiffness(self.w, self.zeta, np.asarray(r, dtype=float)).rows()
 
-    def answers(self, r: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    def modal_responses(self, r: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Coordinates of the modes under loads on them, (n_r, n) both; infinite at an undamped resonance."""
         stiffness = self.dynamic_stiffness(r)
         resonant = stiffness == 0.0
         found = np.where(resonant, 0.0, loads) / np.where(resonant, 1.0, stiffness)
         return np.where(resonant & (loads != 0.0), np.inf, found)
 
-    def drag(self, q: np.ndarray) -> np.ndarray:
+    def damping_form(self, q: np.ndarray) -> np.ndarray:
         """q^H C q of phasors of the modes (n_r, n), with the damping between them; (n_r,)."""
         return (2.0 * self.zeta * self.w * modulus(q) ** 2).sum(axis=1)
 
@@ -428,9 +434,9 @@ class ModalModel:
             parts[np.ix_(at, participating)],
         )
         found[np.ix_(at, participating)], force[at] = solved[:, :-1], solved[:, -1]
-        return self._spread(r, parts, found, participating, np.isinf(force)), force
+        return self._displacements(r, parts, found, participating, np.isinf(force)), force
 
-    def _spread(
+    def _displacements(
         self, r: np.ndarray, parts: np.ndarray, q: np.ndarray, participating: np.ndarray, resonant: np.ndarray
     ) -> np.ndarray:
         """Displacements (n_r, n) of participating modes q and of the others, which `parts` move freely."""

@@ -18,11 +18,11 @@ from ..structures.reduction import Reduction, reduce_structure
 from ..structures.structure import Structure, read_structure
 from .coupled_modes import CoupledModel, coupled_model
 from .decoupling import Decoupling
-from .matrices import Matrices, of_reduction, whole
+from .matrices import Matrices, full_matrices, reduced_matrices
 from .modes import (
     ModalModel,
+    align_with_contact,
     damped_modes,
-    gather_contact,
     load_rate,
     modal_damping,
     solve_chain_modes,
@@ -103,7 +103,7 @@ def _load(values: object, n: int) -> tuple[complex, ...]:
     return load
 
 
-def _in_words(values: Sequence[complex]) -> str:
+def _format_values(values: Sequence[complex]) -> str:
     """Numbers with a comma between them; real ones without their imaginary part."""
     return ", ".join(f"{value.real if value.imag == 0.0 else value:g}" for value in values)
 
@@ -217,7 +217,8 @@ class System:
         self._check_load()
         if isinstance(self.matrices, Structure):
             self._set(
-                "matrices", self._reduced(self.matrices, previous) if self.reduce else whole(self.matrices)
+                "matrices",
+                self._reduced(self.matrices, previous) if self.reduce else full_matrices(self.matrices),
             )
         scale = self.frequency_scale
         if scale is None and self.reduction is not None:  # r means the same however much is left
@@ -288,8 +289,8 @@ class System:
         kept: set[int] = {*self.contact_masses, *self.reduce.keep, *loaded}  # type: ignore[arg-type]
         asked = self.reduce, tuple(sorted(kept)), self.contact_vector, base
         if previous is not None and previous.like(*asked):
-            return of_reduction(previous)
-        return of_reduction(reduce_structure(structure, *asked))
+            return reduced_matrices(previous)
+        return reduced_matrices(reduce_structure(structure, *asked))
 
     def _check_rayleigh(self) -> None:
         if self.rayleigh is None:
@@ -556,7 +557,7 @@ class System:
         to_base = self.damping_reference == "base"
         if coupled is not None:
             return coupled_model(w, phi, coupled, to_base, parts)
-        phi = gather_contact(w, zeta, phi, parts["contact"])
+        phi = align_with_contact(w, zeta, phi, parts["contact"])
         damping = modal_damping(mass, w, phi, zeta)
         springs = np.array(self.stiffness_ratios) if self.matrices is None else None
         rate = load_rate(damping, to_base)
@@ -578,12 +579,12 @@ class System:
         """The system in words."""
         if self.n == 1 and self.matrices is None:
             return (
-                f"one mass; {self._contact_in_words()}, {self._load_in_words()}; {self._damping_in_words()}"
+                f"one mass; {self._describe_contact()}, {self._describe_load()}; {self._describe_damping()}"
             )
-        words = (self._contact_in_words(), self._load_in_words(), self._damping_in_words())
-        return "; ".join((self._structure_in_words(), *words))
+        words = (self._describe_contact(), self._describe_load(), self._describe_damping())
+        return "; ".join((self._describe_structure(), *words))
 
-    def _structure_in_words(self) -> str:
+    def _describe_structure(self) -> str:
         if isinstance(self.matrices, Matrices):
             plural = "s" if self.n > 1 else ""
             source = f" from {self.matrices.source}" if self.matrices.source else ""
@@ -596,11 +597,11 @@ class System:
                 f"structure of {self.n} degree{plural} of freedom{source}, r = omega/"
                 f"{self._frequency_scale:g}{first}, displacements in P/{self.stiffness_scale:g}"
             )
-        masses = _in_words(self.mass_ratios)  # type: ignore[arg-type]
-        springs = _in_words(self.stiffness_ratios)  # type: ignore[arg-type]
+        masses = _format_values(self.mass_ratios)  # type: ignore[arg-type]
+        springs = _format_values(self.stiffness_ratios)  # type: ignore[arg-type]
         return f"chain of {self.n} masses ({masses}), springs ({springs})"
 
-    def _contact_in_words(self) -> str:
+    def _describe_contact(self) -> str:
         masses = [self.dofs.word(number) for number in self.contact_masses]  # type: ignore[arg-type]
         a, b = masses[0], masses[-1]
         mass = "the mass" if self.n == 1 else f"mass {b}"
@@ -610,7 +611,7 @@ class System:
             "between-masses": f"friction between masses {a} and {b}",
         }[self.contact]
 
-    def _load_in_words(self) -> str:
+    def _describe_load(self) -> str:
         one = self.n == 1
         if self.excitation == "base":
             through = "the spring" if one else "the springs"
@@ -621,12 +622,12 @@ class System:
             return f"harmonic base motion through {through}"
         if self.load is not None:
             where = "the mass" if one else "the masses"
-            return f"harmonic load ({_in_words(self.load)}) on {where}"
+            return f"harmonic load ({_format_values(self.load)}) on {where}"
         return (
             "harmonic load on the mass" if one else f"harmonic load on mass {self.dofs.word(self.load_mass)}"  # type: ignore[arg-type]
         )
 
-    def _damping_in_words(self) -> str:
+    def _describe_damping(self) -> str:
         if not self.modes.zeta.any():
             return "no viscous damping"
         if self.n == 1:
@@ -640,4 +641,4 @@ class System:
         if self.damping_ratios is None:
             zeta = self.modes.zeta
             return f"modal damping ratios {zeta.min():g} to {zeta.max():g}, from C"
-        return f"modal damping ratios {_in_words(tuple(dict.fromkeys(self.damping_ratios)))}"  # type: ignore[arg-type]
+        return f"modal damping ratios {_format_values(tuple(dict.fromkeys(self.damping_ratios)))}"  # type: ignore[arg-type]

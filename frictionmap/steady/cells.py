@@ -21,8 +21,8 @@ from ..datasets.labels import CELL_VARIABLES
 from ..model.settings import Solver
 from ..model.system import System
 from ..theory.boundary_curves import OneMass, many_mode_curves, one_mass_curves
-from .kernel_data import StructureArrays, arrays_of_structure
-from .quantity_data import Asked, quantity_numbers, results
+from .kernel_data import StructureArrays, structure_arrays
+from .quantity_data import QuantityRequest, quantity_arrays, results
 from .quantity_limits import put_resonance, put_static
 
 Job = tuple[Callable[..., None], tuple]
@@ -38,12 +38,14 @@ class Cells:
 
     def __init__(
         self, system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver,
-        asked: Asked | None = None,
+        request: QuantityRequest | None = None,
     ) -> None:  # fmt: skip
-        self._system, self._solver, self._asked = system, solver, asked
+        self._system, self._solver, self._request = system, solver, request
         self._axes = Axes(mu, r, beta)
         #: what was asked for of a cycle, for the jobs to fill
-        self.results = results((mu.size, r.size, beta.size), system.n, asked or Asked(frozenset()))
+        self.results = results(
+            (mu.size, r.size, beta.size), system.n, request or QuantityRequest(frozenset())
+        )
         self._one: OneMass | None = None
         if system.normalised:
             self._one = one_mass_curves(system, r, mu)
@@ -64,9 +66,9 @@ class Cells:
         return self._one is not None
 
     @cached_property
-    def arrays_of_structure(self) -> StructureArrays:
+    def structure_arrays(self) -> StructureArrays:
         """The system in the numbers of a structure."""
-        return arrays_of_structure(self._system, self._axes.r, self.curves)
+        return structure_arrays(self._system, self._axes.r, self.curves)
 
     @cached_property
     def motion(self) -> OneMassSystem | ManyMassSystem:
@@ -78,7 +80,7 @@ class Cells:
                 self._one.frequencies, system.zeta, steps, self._one.lim, self.curves.beta_stick, 1,
                 float(system.modes.chi[0]),
             )  # fmt: skip
-        f = self.arrays_of_structure
+        f = self.structure_arrays
         return ManyMassSystem(
             self._axes.r, f.model, f.loads, f.orbit, f.marginal, f.rest, f.moving, steps,
             self.curves.beta_lim, f.participating.size,
@@ -89,9 +91,9 @@ class Cells:
         if self._one is not None:
             f = self._one.frequencies
             return ClosedForm(f.load, f.v_abs, f.u, f.g, f.marginal)
-        orbit = self.arrays_of_structure.orbit
+        orbit = self.structure_arrays.orbit
         return ClosedForm(
-            np.ones(self._axes.r.size), orbit.v_abs, orbit.u, orbit.g, self.arrays_of_structure.marginal
+            np.ones(self._axes.r.size), orbit.v_abs, orbit.u, orbit.g, self.structure_arrays.marginal
         )
 
     @property
@@ -103,17 +105,17 @@ class Cells:
     def _details(self) -> Details | NotRequested:
         if "details" not in self._needs:
             return NotRequested(0)
-        f = self.arrays_of_structure
+        f = self.structure_arrays
         parts = Displacements(f.outputs, UncoupledResponse(f.uncoupled, f.uncoupled), f.held)
         return Details(self._axes.r, f.model, f.loads, f.orbit, float(self._solver.steps), parts)
 
     @cached_property
     def quantities(self) -> Quantities | NotRequested:
         """What a cycle is asked for, in numbers."""
-        if self._asked is None:
+        if self._request is None:
             return NotRequested(0)
-        return quantity_numbers(
-            self._system, self._axes.r, self.arrays_of_structure, float(self._solver.steps), self._asked,
+        return quantity_arrays(
+            self._system, self._axes.r, self.structure_arrays, float(self._solver.steps), self._request,
             self.results,
         )  # fmt: skip
 
@@ -153,10 +155,10 @@ class Cells:
             if axes.beta[0] == 0.0:
                 static = np.abs(self._system.modes.static_response())
                 out.amplitude[:, axes.r == 0.0, 0, :] = static
-            where = np.broadcast_to(self.arrays_of_structure.resonant[:, np.newaxis, :], out.amplitude.shape)
+            where = np.broadcast_to(self.structure_arrays.resonant[:, np.newaxis, :], out.amplitude.shape)
             out.amplitude[where & ~np.isnan(out.amplitude)] = np.inf
-        if self._asked is not None:
-            put_resonance(self._system, axes.r, self.arrays_of_structure.resonant, self.results)
+        if self._request is not None:
+            put_resonance(self._system, axes.r, self.structure_arrays.resonant, self.results)
             if axes.r[0] == 0.0:
                 static = put_static(self._system, axes.beta, out.status[:, 0], self.results)
                 if out.contact_amplitude.size:

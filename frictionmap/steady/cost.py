@@ -17,7 +17,7 @@ from ..model.system import System
 from ..units.scales import Units
 
 if TYPE_CHECKING:
-    from .quantity_data import Asked
+    from .quantity_data import QuantityRequest
 
 #: Bytes that a process takes before it has any cells.
 _BASE = 400e6
@@ -47,10 +47,12 @@ def memory_of_map(
 ) -> float:
     """Bytes that a map with so many values of mu, r and beta takes at its peak."""
     from ..datasets.labels import CELL_VARIABLES
-    from .quantity_data import asked_for
+    from .quantity_data import quantity_request
 
     of_cycle = [name for name in outputs if CELL_VARIABLES[name].needs == "cycle"]
-    return _memory({**counts, "dof": masses}, _also_in_si({*outputs, "status"}, units), asked_for(of_cycle))
+    return _memory(
+        {**counts, "dof": masses}, _also_in_si({*outputs, "status"}, units), quantity_request(of_cycle)
+    )
 
 
 def memory_of_curves(
@@ -58,12 +60,12 @@ def memory_of_curves(
 ) -> float:
     """Bytes that response curves at so many values of mu, r and beta take at their peak."""
     from .curves import cycle_variables, plain_outputs
-    from .quantity_data import asked_for
+    from .quantity_data import quantity_request
 
     sizes = {**counts, "dof": masses, "harmonic": settings.harmonics + 1, "part": 2}
     names = cycle_variables(settings)
     variables = _also_in_si({*plain_outputs(settings), *names}, units)
-    return _memory(sizes, variables, asked_for(names, settings.harmonics), "curves")
+    return _memory(sizes, variables, quantity_request(names, settings.harmonics), "curves")
 
 
 def _also_in_si(names: Collection[str], units: Units | None) -> set[str]:
@@ -74,7 +76,9 @@ def _also_in_si(names: Collection[str], units: Units | None) -> set[str]:
     return {*names, *(beside if units is not None else ())}
 
 
-def _memory(counts: Mapping[str, int], names: Collection[str], asked: "Asked", what: str = "") -> float:
+def _memory(
+    counts: Mapping[str, int], names: Collection[str], request: "QuantityRequest", what: str = ""
+) -> float:
     """Bytes of so many values of every dimension: variables of cells, and the results of cycles.
 
     what : the kind of the dataset, see `labels_of`
@@ -84,7 +88,7 @@ def _memory(counts: Mapping[str, int], names: Collection[str], asked: "Asked", w
 
     masses, labels = counts["dof"], labels_of(what)
     points = counts.get("points", 1)  # along further axes
-    kept = sum(array.nbytes for array in results((1, 1, 1), masses, asked))
+    kept = sum(array.nbytes for array in results((1, 1, 1), masses, request))
     one = float(kept) * counts["mu"] * counts["r"] * counts["beta"]  # of a map; they are not kept
     cells = 0.0
     for name in names:

@@ -18,7 +18,7 @@ from ..theory.boundary_curves import Curves
 from ..theory.limit_curves import limit_variables
 from ..units.scales import Units, scales_of
 from .maps import Progress, Watch, checked_axes, compute
-from .quantity_data import PARTS, VARIABLES, asked_for, read_result
+from .quantity_data import PARTS, VARIABLES, quantity_request, read_result
 
 #: What every cell tells.
 _ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "period", "status")
@@ -49,7 +49,9 @@ def solve_curves(
     """What `curves` has over the axes mu, r and beta; `watch` may end it."""
     basic, names = plain_outputs(asked), cycle_variables(asked)
     settings = replace(solver, outputs=basic)
-    cells, out = compute(system, axes, settings, asked_for(names, asked.harmonics), threads, progress, watch)
+    cells, out = compute(
+        system, axes, settings, quantity_request(names, asked.harmonics), threads, progress, watch
+    )
     values: dict[str, np.ndarray] = {name: getattr(out, name) for name in basic}
     values |= {name: read_result(name, cells.results) for name in names}
     variables = {name: label_variable(name, value, "curves") for name, value in values.items()}

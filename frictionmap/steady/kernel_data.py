@@ -47,7 +47,7 @@ def _contact_rows(modes: ModalModel, which: np.ndarray, mass: float) -> tuple[np
     """What the load in the contact has of the modes that it sees, and of their velocities."""
     w, zeta, chi = modes.w[which], modes.zeta[which], modes.chi[which]
     load, load_rate = mass * chi * w**2, 2.0 * mass * chi * zeta * w
-    coupling = modes.seen_coupling()
+    coupling = modes.participating_coupling()
     return load, load_rate if coupling is None else load_rate + mass * (chi @ coupling)
 
 
@@ -193,7 +193,7 @@ def _moving(
 def _uncoupled_response(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Phasor (n_r, n_dof) of the base's motion and of the modes that do not participate; where infinite."""
     idle = ~modes.participating
-    parts = modes.answers(r, np.where(idle, modes.relative_participation(r), 0.0))[:, idle]
+    parts = modes.modal_responses(r, np.where(idle, modes.relative_participation(r), 0.0))[:, idle]
     resonant = np.isinf(parts)
     uncoupled = modes.base_motion + times(np.where(resonant, 0.0, parts), modes.phi[:, idle].T)
     return uncoupled, (resonant.astype(float) @ np.abs(modes.phi[:, idle].T)) > 0.0
@@ -231,12 +231,12 @@ def _displacement_outputs(model: Model, free: FreeStructure, phi: np.ndarray) ->
     )  # fmt: skip
 
 
-def arrays_of_structure(system: System, r: np.ndarray, curves: Curves) -> StructureArrays:
+def structure_arrays(system: System, r: np.ndarray, curves: Curves) -> StructureArrays:
     """Everything that the cells of a system need at frequencies r, for which `curves` are."""
     modes, free = system.modes, system.modes.free
     which = np.flatnonzero(modes.participating)
     chi = modes.chi[which]
-    fixed = held_structure(modes.w[which], modes.zeta[which], chi, modes.seen_coupling())
+    fixed = held_structure(modes.w[which], modes.zeta[which], chi, modes.participating_coupling())
     model = _model(modes, which, fixed)
     uncoupled, resonant = _uncoupled_response(modes, r)
     held, force = modes.held(r)

@@ -21,7 +21,7 @@ from ..theory.boundary_curves import Curves
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales
 from .cells import Cells, Job
-from .quantity_data import Asked, asked_for, read_result
+from .quantity_data import QuantityRequest, quantity_request, read_result
 
 #: Cells a thread takes at a time: some milliseconds of work, so that the threads finish together, progress
 #: is seen and an interrupt is obeyed; and enough for the start of a tile not to count.
@@ -32,7 +32,7 @@ ROW_CELLS = 262144
 
 #: What a cell costs, about, in hundredths of one that is followed: decided by a formula; followed; looked at
 #: for what else it could end in, with mu = 1 and above.
-_DECIDED, _FOLLOWED, _LOOKED_AT_SMOOTH, _LOOKED_AT = 2, 100, 25, 800
+_DECIDED, _FOLLOWED, _SEARCHED_UNIQUE, _SEARCHED = 2, 100, 25, 800
 
 #: The arrays of a map, one for every output but those that are read from the results of a cycle.
 _NAMES = tuple(name for name, label in CELL_VARIABLES.items() if label.needs != "cycle")
@@ -93,10 +93,10 @@ def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: 
     high = np.full(shape, beta.size)
     stuck_from = np.searchsorted(beta, beta_stick)
     if solver.skip == "exact":
-        smooth = (mu == 1.0)[:, np.newaxis]
-        proved = smooth | (solver.start == "rest" and cells.rest_sticks)
+        unique = (mu == 1.0)[:, np.newaxis]
+        proved = unique | (solver.start == "rest" and cells.rest_sticks)
         high = np.where(proved, stuck_from, high)
-        low = np.where(smooth, np.maximum(low, np.searchsorted(beta, beta_lim)), low)
+        low = np.where(unique, np.maximum(low, np.searchsorted(beta, beta_lim)), low)
     high = np.where(no_motion, stuck_from, high)
     low = np.where(no_load, 0, np.minimum(low, high))
     open_cells = np.where(no_motion, 0, high - low).ravel()
@@ -148,10 +148,10 @@ def _run(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None)
 
 
 def _fill(
-    cells: Cells, work: Plan, shape: tuple[int, int, int], smooth: np.ndarray, out: Any, threads: int,
+    cells: Cells, work: Plan, shape: tuple[int, int, int], unique: np.ndarray, out: Any, threads: int,
     progress: Progress | None, watch: Watch | None,
 ) -> None:  # fmt: skip
-    """`smooth` (n_mu,): where mu = 1."""
+    """`unique` (n_mu,): where mu = 1."""
     n_rows, columns = work.low.size, shape[2]
     rows_at_once = max(1, ROW_CELLS // columns)
     opened = OpenCells(work.rows, work.ends, work.low, work.high)
@@ -168,7 +168,7 @@ def _fill(
 
     others = cells.reachable(out, cancel)
     jobs += others
-    per_row = columns * np.repeat(np.where(smooth, _LOOKED_AT_SMOOTH, _LOOKED_AT), shape[1])
+    per_row = columns * np.repeat(np.where(unique, _SEARCHED_UNIQUE, _SEARCHED), shape[1])
     costs += per_row.tolist()[: len(others)]
 
     spent, total = 0, sum(costs)
@@ -200,15 +200,15 @@ def checked_axes(
 
 
 def compute(
-    system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: Asked | None, threads: int | None,
-    progress: Progress | None, watch: Watch | None = None,
+    system: System, axes: Mapping[str, np.ndarray], solver: Solver, request: QuantityRequest | None,
+    threads: int | None, progress: Progress | None, watch: Watch | None = None,
 ) -> tuple[Cells, Any]:  # fmt: skip
-    """The cells of a grid and their arrays, filled; `asked`: what else, in the results of the cells."""
+    """The cells of a grid and their arrays, filled; `request`: what else, in the results of the cells."""
     threads = default_threads() if threads is None else checks.whole(threads, "threads", least=1)
     if progress is not None and not callable(progress):
         raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]
-    cells = Cells(system, r, beta, mu, solver, asked)
+    cells = Cells(system, r, beta, mu, solver, request)
     out = allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
     work = plan(cells, r, mu, beta, solver)
     _fill(cells, work, (mu.size, r.size, beta.size), mu == 1.0, out, threads, progress, watch)
@@ -225,8 +225,8 @@ def solve_map(
 ) -> tuple[dict[str, np.ndarray], Curves]:
     """Outputs and `status` of one system over the axes mu, r and beta as bare arrays, and its curves."""
     of_cycle = [name for name in solver.outputs if CELL_VARIABLES[name].needs == "cycle"]
-    asked = asked_for(of_cycle) if of_cycle else None
-    cells, out = compute(system, axes, solver, asked, threads, progress, watch)
+    request = quantity_request(of_cycle) if of_cycle else None
+    cells, out = compute(system, axes, solver, request, threads, progress, watch)
     names = dict.fromkeys((*solver.outputs, "status"))
     found: dict[str, np.ndarray] = {
         name: read_result(name, cells.results) if name in of_cycle else getattr(out, name) for name in names

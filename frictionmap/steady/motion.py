@@ -28,7 +28,7 @@ from ..theory.boundary_curves import Curves
 from .cells import Cells, limits
 from .kernel_data import StructureArrays
 from .maps import plan
-from .quantity_data import VARIABLES, asked_for, read_result
+from .quantity_data import VARIABLES, quantity_request, read_result
 
 #: Excitation periods shown of a motion that does not repeat: the longest steady state is as long.
 WINDOW = 8
@@ -74,7 +74,7 @@ class History:
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundMotion:
     """The steady state of a cell, or a window of a motion that does not repeat.
 
     once : the phases until the motion returns, mirrored or not; none where the closed form tells them
@@ -82,9 +82,9 @@ class Found:
 
     table: np.ndarray | None  # phases of one period, or of the window; none where it sticks for good
     status: int
-    rest: float = 0.0  # where it sticks
+    stuck_at: float = 0.0  # where it sticks
     averages: Cell | None = None  # of the motion that does not repeat
-    once: np.ndarray | None = None
+    recurrence: np.ndarray | None = None
 
 
 class Motion(NamedTuple):
@@ -143,7 +143,7 @@ def _with_mirror_image(table: np.ndarray) -> np.ndarray:
 
 def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
     """The table of phases of the continuous orbit, one phase."""
-    found = cells.arrays_of_structure
+    found = cells.structure_arrays
     orbit, n = found.orbit, found.participating.size
     st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
     table = np.empty((1, segment_table.segment_columns(n)))
@@ -152,7 +152,7 @@ def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
     return table
 
 
-def _window(question: Question, cells: Cells, cell: Cell) -> Found:
+def _window(question: Question, cells: Cells, cell: Cell) -> FoundMotion:
     """The last periods that the solver followed, of a motion that does not repeat."""
     before = _TURN * max(0.0, question.solver.cycles - WINDOW - 2.0)
     moving = question.solver.start == "moving"
@@ -160,11 +160,11 @@ def _window(question: Question, cells: Cells, cell: Cell) -> Found:
         cells.motion, question.beta, question.mu, moving, before, _TURN * (WINDOW + 2.0)
     )  # fmt: skip
     averages = cell._replace(amplitude=cells.unit * cell.amplitude)
-    return Found(table, cell.status, averages=averages)
+    return FoundMotion(table, cell.status, averages=averages)
 
 
-def _find(question: Question, cells: Cells) -> Found:
-    regime, rest = _decided(cells, question), 0.0
+def _find(question: Question, cells: Cells) -> FoundMotion:
+    regime, stuck_at = _decided(cells, question), 0.0
     status = regimes.RESOLVED
     table = np.empty((0, 0))
     if regime == regimes.UNRESOLVED:
@@ -176,42 +176,44 @@ def _find(question: Question, cells: Cells) -> Found:
             return _window(question, cells, cell)
         if cell.period == 0:
             raise _no_steady_state(question, regimes.status_meaning(status))
-        regime, rest = cell.regime, cells.unit * cell.sign * cell.contact_state.z
+        regime, stuck_at = cell.regime, cells.unit * cell.sign * cell.contact_state.z
     if regime == regimes.PERMANENT_STICKING:
-        return Found(None, status, rest)
-    once = table if table.shape[0] else None
-    if once is None:
-        if math.isinf(cells.arrays_of_structure.orbit.v_abs[0]):
+        return FoundMotion(None, status, stuck_at)
+    recurrence = table if table.shape[0] else None
+    if recurrence is None:
+        if math.isinf(cells.structure_arrays.orbit.v_abs[0]):
             raise _no_steady_state(question, _UNBOUNDED)
         table = _continuous_table(question, cells)
-        marginal = bool(cells.arrays_of_structure.marginal[0]) and question.beta > 0.0
+        marginal = bool(cells.structure_arrays.marginal[0]) and question.beta > 0.0
         status = regimes.MARGINAL if marginal else status
-    return Found(_with_mirror_image(table), status, once=once)
+    return FoundMotion(_with_mirror_image(table), status, recurrence=recurrence)
 
 
-def _stuck_history(question: Question, cells: Cells, rest: float) -> History:
-    """The contact held at `rest` for good."""
-    found = cells.arrays_of_structure
+def _stuck_history(question: Question, cells: Cells, stuck_at: float) -> History:
+    """The contact held at `stuck_at` for good."""
+    found = cells.structure_arrays
     tau = _times(1, question.points)
     turn = np.exp(1j * tau)
     held = found.held[0][:, np.newaxis] * turn
-    offset = found.outputs.static_shape[:, np.newaxis] * rest
+    offset = found.outputs.static_shape[:, np.newaxis] * stuck_at
     force = question.system.modes.held_load(np.array([question.r]))[0] * turn
     return History(
-        1, tau, held.real + offset, -held.imag, np.full(tau.size, rest),
-        force.real - found.model.stiffness * rest, np.zeros(tau.size, np.int8),
+        1, tau, held.real + offset, -held.imag, np.full(tau.size, stuck_at),
+        force.real - found.model.stiffness * stuck_at, np.zeros(tau.size, np.int8),
         (np.empty(0), np.empty(0), np.empty(0)), np.empty(0), 0.0, True,
     )  # fmt: skip
 
 
-def _phase_starts(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _segment_starts(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Phases that begin, and z there."""
     sign = table[:, segment_table.SIGN]
     # a slide starts where the phase before it ended
     return sign * table[:, segment_table.SENSE], np.roll(sign * table[:, segment_table.Z_END], 1)
 
 
-def _place(found: Found, tau: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _align_times(
+    found: FoundMotion, tau: np.ndarray, begin: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Where in time the table of phases lies, whose phases begin `begin` after the first one.
 
     Returns the times of samples since its first phase; which phases begin among them, in order; and when.
@@ -251,9 +253,9 @@ def _displacements(
     return phi @ motion[:n], phi @ motion[n:] / r
 
 
-def _moving_history(question: Question, cells: Cells, found: Found) -> History:
+def _moving_history(question: Question, cells: Cells, found: FoundMotion) -> History:
     """A motion that slides, sampled along its phases."""
-    numbers, table = cells.arrays_of_structure, found.table
+    numbers, table = cells.structure_arrays, found.table
     assert table is not None
     if numbers.resonant.any():
         raise _no_steady_state(question, _UNBOUNDED)
@@ -261,7 +263,7 @@ def _moving_history(question: Question, cells: Cells, found: Found) -> History:
     lengths = table[:, segment_table.LENGTH]
     period = WINDOW if found.averages else max(1, round(float(lengths.sum()) / _TURN))
     tau = _times(period, question.points)
-    since, shown, times = _place(found, tau, table[:, segment_table.BEGIN])
+    since, shown, times = _align_times(found, tau, table[:, segment_table.BEGIN])
     order = np.argsort(since, kind="stable")
     st = make_structure(numbers.model, numbers.loads, 0, question.r, float(question.solver.steps))
     coordinates, velocities = np.empty((2, n, tau.size))
@@ -273,7 +275,7 @@ def _moving_history(question: Question, cells: Cells, found: Found) -> History:
     back[order] = np.arange(order.size)
     uncoupled = numbers.uncoupled[0][:, np.newaxis] * np.exp(1j * tau)
     x, v = _displacements(question, numbers, coordinates[:, back], velocities[:, back], tau)
-    begins, places = _phase_starts(table)
+    begins, places = _segment_starts(table)
     return History(
         period, tau, x + uncoupled.real, v - uncoupled.imag, z[back], friction[back], sense[back],
         (times, begins[shown], places[shown]), lengths[table[:, segment_table.SENSE] == 0.0],
@@ -281,7 +283,7 @@ def _moving_history(question: Question, cells: Cells, found: Found) -> History:
     )  # fmt: skip
 
 
-def _summary(history: History, found: Found) -> dict[str, float]:
+def _summary(history: History, found: FoundMotion) -> dict[str, float]:
     """The cell's numbers; those of a motion that does not repeat are averages, and it has no period."""
     averages = found.averages
     if averages is not None:
@@ -305,25 +307,25 @@ def _summary(history: History, found: Found) -> dict[str, float]:
     }
 
 
-def _cycle(question: Question, cells: Cells, found: Found) -> dict[str, np.ndarray]:
+def _cycle(question: Question, cells: Cells, found: FoundMotion) -> dict[str, np.ndarray]:
     """What the cell's response curves have; NaN of a motion that does not repeat."""
     if found.averages is None:
         if found.table is None:
             stuck_cell_quantities(cells.quantities)
-        elif found.once is None:
+        elif found.recurrence is None:
             continuous_cell_quantities(cells.quantities, question.beta)
         else:
-            table_cell_quantities(cells.quantities, question.beta, found.once)
+            table_cell_quantities(cells.quantities, question.beta, found.recurrence)
     values = {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
     if found.table is None:  # here the place where the contact rests is shown, too
-        values["amplitude"] += np.abs(cells.arrays_of_structure.outputs.static_shape * found.rest)
+        values["amplitude"] += np.abs(cells.structure_arrays.outputs.static_shape * found.stuck_at)
     values["phase_lag"] = values.pop("phase")
     return values
 
 
-def _history(question: Question, cells: Cells, found: Found) -> History:
+def _history(question: Question, cells: Cells, found: FoundMotion) -> History:
     if found.table is None:
-        return _stuck_history(question, cells, found.rest)
+        return _stuck_history(question, cells, found.stuck_at)
     return _moving_history(question, cells, found)
 
 
@@ -337,7 +339,7 @@ def find_motion(question: Question) -> Motion:
     """
     system, solver = question.system, question.solver
     r, beta, mu = (np.array([value]) for value in (question.r, question.beta, question.mu))
-    cells = Cells(system, r, beta, mu, solver, asked_for(CYCLE, HARMONICS))
+    cells = Cells(system, r, beta, mu, solver, quantity_request(CYCLE, HARMONICS))
     found = _find(question, cells)
     history = _history(question, cells, found)
     comment = _WINDOWED.format(solver.cycles) if found.averages is not None else ""

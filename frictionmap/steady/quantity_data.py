@@ -39,7 +39,7 @@ from .kernel_data import StructureArrays
 
 #: Where every variable is found: kind of result, rows, and column.
 _MASSES, _FORCE, _CONTACT, _CELL = "masses", "force", "contact", "cell"
-_PLACES = {
+_LOCATIONS = {
     "amplitude": ("extremes", _MASSES, VALUE),
     "phase": ("extremes", _MASSES, PHASE),
     "phase_begin": ("extremes", _MASSES, PHASE_BEGIN),
@@ -86,7 +86,7 @@ PARTS = np.array(COORDINATES["part"].texts)
 
 
 @dataclass(frozen=True)
-class Asked:
+class QuantityRequest:
     """What is asked for of every cell."""
 
     kinds: frozenset[str]  # of the fields of `Results`
@@ -94,15 +94,17 @@ class Asked:
     force: bool = False  # whether the transmitted force is looked at over time
 
 
-def asked_for(names: Iterable[str], harmonics: int = 1) -> Asked:
+def quantity_request(names: Iterable[str], harmonics: int = 1) -> QuantityRequest:
     """What these variables are read from."""
     names = set(names)
-    return Asked(frozenset(_PLACES[name][0] for name in names), harmonics, "transmitted_force" in names)
+    return QuantityRequest(
+        frozenset(_LOCATIONS[name][0] for name in names), harmonics, "transmitted_force" in names
+    )
 
 
 def read_result(name: str, found: Results) -> np.ndarray:
     """A variable over (mu, r, beta[, dof][, harmonic, part])."""
-    kind, rows, column = _PLACES[name]
+    kind, rows, column = _LOCATIONS[name]
     array = getattr(found, kind)
     if rows == _CELL:
         return np.ascontiguousarray(array[..., column])
@@ -114,17 +116,17 @@ def read_result(name: str, found: Results) -> np.ndarray:
     return np.ascontiguousarray(chosen[..., column])
 
 
-def results(cells: tuple[int, int, int], masses: int, asked: Asked) -> Results:
+def results(cells: tuple[int, int, int], masses: int, request: QuantityRequest) -> Results:
     """Arrays over (mu, r, beta) of what is asked for, NaN until they are filled."""
 
     def array(kind: str, *further: int, dtype: type = float) -> np.ndarray:
-        shape = (*cells, *further) if kind in asked.kinds else (0,) * (3 + len(further))
+        shape = (*cells, *further) if kind in request.kinds else (0,) * (3 + len(further))
         return np.full(shape, np.nan, dtype)
 
     rows = masses + 2
     return Results(
         array("extremes", rows, FOUND), array("firsts", rows, 2),
-        array("harmonics", rows, asked.harmonics + 1, dtype=complex), array("work_terms", WORK_TERMS),
+        array("harmonics", rows, request.harmonics + 1, dtype=complex), array("work_terms", WORK_TERMS),
         array("distortions", masses, 2),
     )  # fmt: skip
 
@@ -145,7 +147,7 @@ def _with_force(outputs: OutputMatrices, found: StructureArrays, modes: ModalMod
         mass * modes.w[participating] ** 2,
         mass * 2.0 * modes.zeta[participating] * modes.w[participating],
     )
-    coupling = modes.seen_coupling()
+    coupling = modes.participating_coupling()
     if coupling is not None:
         rate += mass @ coupling
     row = np.concatenate((stiff, rate)) @ modes.free.to_modes
@@ -202,7 +204,7 @@ def _dampers(modes: ModalModel, found: StructureArrays, base: np.ndarray) -> Dam
     One a mode; where the damping couples them one along each principal direction of it.
     """
     which = found.participating
-    coupling, n = modes.seen_coupling(), which.size
+    coupling, n = modes.participating_coupling(), which.size
     weights, forms = 2.0 * modes.zeta[which] * modes.w[which], np.eye(n)
     if coupling is not None:
         rates, directions = np.linalg.eigh(np.diag(weights) + coupling)
@@ -218,11 +220,11 @@ def _balance(system: System, found: StructureArrays, r: np.ndarray) -> Balance:
     share, total_mass = _base_share(system), modes.mass.sum(axis=0)
     participating = np.isin(np.arange(modes.w.size), found.participating)
     mass = modes.phi.T @ total_mass
-    moving = modes.answers(r, np.where(participating, 0.0, modes.relative_participation(r)))
+    moving = modes.modal_responses(r, np.where(participating, 0.0, modes.relative_participation(r)))
     uncoupled = np.where(participating, 0.0, np.where(np.isinf(moving), 0.0, moving) + share * mass)
     held = np.where(np.isfinite(found.held), found.held, 0.0) - float(to_base)
-    drag = times(held, modes.damping)
-    held_rate = (held.real * drag.real + held.imag * drag.imag).sum(axis=1)
+    dashpot_force = times(held, modes.damping)
+    held_rate = (held.real * dashpot_force.real + held.imag * dashpot_force.imag).sum(axis=1)
     return Balance(
         load=loads.sum(axis=1),
         inertia=r[:, np.newaxis] ** 2 * total_mass,
@@ -231,7 +233,7 @@ def _balance(system: System, found: StructureArrays, r: np.ndarray) -> Balance:
         base_motion=float(system.base_motion),
         dampers=_dampers(modes, found, share * mass[participating]),
         damped=bool(modes.zeta[found.participating].any()),
-        damping_uncoupled=np.pi * r * modes.drag(uncoupled),
+        damping_uncoupled=np.pi * r * modes.damping_form(uncoupled),
         damping_held=np.pi * r * held_rate,
     )  # fmt: skip
 
@@ -250,16 +252,21 @@ def _growth(system: System, found: StructureArrays, r: np.ndarray) -> np.ndarray
     return np.column_stack((masses, times(masses, modes.mass.sum(axis=0)[:, np.newaxis]), contact))
 
 
-def quantity_numbers(
-    system: System, r: np.ndarray, found: StructureArrays, steps: float, asked: Asked, out: Results
+def quantity_arrays(
+    system: System,
+    r: np.ndarray,
+    found: StructureArrays,
+    steps: float,
+    request: QuantityRequest,
+    out: Results,
 ) -> Quantities:
     """Everything that the quantities of a system's cells need at frequencies r."""
     modes = system.modes
     balance = _balance(system, found, r)
-    outputs = _with_force(found.outputs, found, modes) if asked.force else found.outputs
+    outputs = _with_force(found.outputs, found, modes) if request.force else found.outputs
     linear = Linear(found.held, modes.held_load(r), _growth(system, found, r))
     return Quantities(
         r, found.model, found.loads, found.orbit, steps, _wall_mass(system), outputs,
-        _uncoupled_response(found, modes, r, balance, asked.force), linear, balance, out,
-        asked.harmonics,
+        _uncoupled_response(found, modes, r, balance, request.force), linear, balance, out,
+        request.harmonics,
     )  # fmt: skip

@@ -42,10 +42,10 @@ def put_static(system: System, beta: np.ndarray, cell_status: np.ndarray, found:
         _put_linear(phasors, found)
     if not system.modes.load.imag.any():  # else it ends later, or sooner
         for j in np.flatnonzero(quasi_static.any(axis=0)):
-            places = _ends(system, float(beta[j]))
-            amplitude[quasi_static[:, j], j] = abs(places[-1])
+            displacements = _ends(system, float(beta[j]))
+            amplitude[quasi_static[:, j], j] = abs(displacements[-1])
             if found.extremes.size:
-                _put_ends(places, quasi_static[:, j], int(j), found)
+                _put_ends(displacements, quasi_static[:, j], int(j), found)
     return amplitude
 
 
@@ -79,13 +79,13 @@ def _ends(system: System, beta: float) -> np.ndarray:
     return np.append(x, modes.contact @ x)
 
 
-def _put_ends(places: np.ndarray, where: np.ndarray, j: int, found: Results) -> None:
-    masses = places.size - 1
+def _put_ends(displacements: np.ndarray, where: np.ndarray, j: int, found: Results) -> None:
+    masses = displacements.size - 1
     rows = np.append(np.arange(masses), masses + 1)
-    lags = np.where(places > 0.0, 0.0, math.pi)
+    lags = np.where(displacements > 0.0, 0.0, math.pi)
     for m in np.flatnonzero(where):
-        found.extremes[m, 0, j, rows, VALUE] = np.abs(places)
-        found.extremes[m, 0, j, rows, PHASE] = np.where(places == 0.0, np.nan, lags)
+        found.extremes[m, 0, j, rows, VALUE] = np.abs(displacements)
+        found.extremes[m, 0, j, rows, PHASE] = np.where(displacements == 0.0, np.nan, lags)
 
 
 def put_resonance(system: System, r: np.ndarray, resonant: np.ndarray, found: Results) -> None:

@@ -140,28 +140,30 @@ def _study(
     """The maps of all points along further axes, in one dataset."""
     count = variations.count
     dims = [axis.name for axis in variations.axes]
-    whole: dict[str, xr.Variable] = {}
+    variables: dict[str, xr.Variable] = {}
     coords = study_coordinates(variations)
     for done, point in enumerate(variations.points()):
-        ds = regime_map(variations.at(point), grid, solver, threads, _share(progress, done, count), watch)
-        if not whole:
+        ds = regime_map(
+            variations.at(point), grid, solver, threads, _progress_of_one(progress, done, count), watch
+        )
+        if not variables:
             coords |= {str(name): ds[name].variable for name in ds.coords}
-            whole = {
-                str(name): _room(variable.variable, dims, variations.shape)
+            variables = {
+                str(name): _allocate(variable.variable, dims, variations.shape)
                 for name, variable in ds.data_vars.items()
             }
         for name, variable in ds.data_vars.items():
-            whole[str(name)].values[point] = variable.values
-    return xr.Dataset(whole, coords)
+            variables[str(name)].values[point] = variable.values
+    return xr.Dataset(variables, coords)
 
 
-def _room(one: xr.Variable, dims: list[str], shape: tuple[int, ...]) -> xr.Variable:
+def _allocate(one: xr.Variable, dims: list[str], shape: tuple[int, ...]) -> xr.Variable:
     """A variable like that of one map, with room for those of many; not filled."""
     values = np.empty((*shape, *one.shape), one.dtype)
     return xr.Variable((*dims, *one.dims), values, one.attrs)
 
 
-def _share(progress: Progress | None, done: int, count: int) -> Progress | None:
+def _progress_of_one(progress: Progress | None, done: int, count: int) -> Progress | None:
     """What tells the progress of one map of many."""
     if progress is None or not callable(progress):
         return progress

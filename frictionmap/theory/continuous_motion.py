@@ -19,12 +19,12 @@ from ..model.system import System
 from .boundary_curves import find_curves
 from .energy import damping_participation, transmitted_first_harmonic, work_input
 from .half_waves import (
-    FrictionAnswers,
+    FrictionResponses,
     Peaks,
     compliances,
     contact_compliances,
-    dynamic_shares,
-    friction_answers,
+    dynamic_amplification,
+    friction_responses,
     mass_peaks,
     peak_phases,
 )
@@ -53,7 +53,7 @@ class ContinuousMotion:
     contact_amplitude: float
     contact_phase: float
     _modes: ModalModel = field(repr=False)
-    _answers: FrictionAnswers = field(repr=False)  # of this one motion
+    _responses: FrictionResponses = field(repr=False)  # of this one motion
     # phasors of the harmonic part from a maximum of z on: V_k e^{i phi_z}, (n,), and V e^{i phi_z}
     _harmonic: np.ndarray = field(repr=False)
     _contact_harmonic: complex = field(repr=False)
@@ -87,7 +87,7 @@ class ContinuousMotion:
     @cached_property
     def _peaks(self) -> Peaks:
         one = np.array([self.beta]), self._harmonic[np.newaxis], np.array([self.contact_amplitude])
-        return Peaks(*(part[0] for part in mass_peaks(self._modes, self._answers, *one)))
+        return Peaks(*(part[0] for part in mass_peaks(self._modes, self._responses, *one)))
 
     @property
     def amplitude(self) -> np.ndarray:
@@ -108,7 +108,7 @@ class ContinuousMotion:
 
         As from T(7.31), (7.32): the sign of U_dk sin(..) in T(7.33) is a slip.
         """
-        u, g = (self._compliance @ part[0] for part in self._answers.at_maximum())  # T(7.16), (7.17)
+        u, g = (self._compliance @ part[0] for part in self._responses.at_maximum())  # T(7.16), (7.17)
         return np.abs(self._harmonic - self.beta * (g - 1j * u))
 
     @property
@@ -143,7 +143,7 @@ class ContinuousMotion:
         force = self.friction_harmonics(n)
         # at an undamped m r = w_i the force has no harmonic m: none is even, and for odd m no motion with
         # friction is continuous
-        shares = dynamic_shares(self._modes, self.r * np.arange(force.size))
+        shares = dynamic_amplification(self._modes, self.r * np.arange(force.size))
         found = np.zeros((harmonic.size, force.size), dtype=complex)
         found[:, 1:2] = (harmonic * np.exp(-1j * self.contact_phase))[:, np.newaxis]
         return found - force * (compliance @ shares.T)
@@ -167,7 +167,7 @@ class ContinuousMotion:
     def work_damping(self) -> float:
         """Work lost in dashpots: sum_i 2 zeta_i w_i r int q_i'^2, theory.md 9 (6)."""
         modes, r, beta = self._modes, self.r, self.beta
-        if modes.joined.any():
+        if modes.coupled_modes.any():
             return self._coupled_work_damping
         part = damping_participation(modes, r) * np.exp(1j * self.contact_phase)
         rate = 2.0 * math.pi * modes.zeta * modes.w * r
@@ -175,8 +175,8 @@ class ContinuousMotion:
         participating = modes.chi != 0.0
         # the harmonic part against the modes' answers to friction, and these alone
         share = modes.chi[participating] / modes.w[participating] ** 2
-        turned = (1j * part[participating] * np.conj(dynamic_shares(modes, np.array([r]))[0])).real
-        alone = 4.0 * (modes.w[participating] * share) ** 2 * self._answers.g[0]
+        turned = (1j * part[participating] * np.conj(dynamic_amplification(modes, np.array([r]))[0])).real
+        alone = 4.0 * (modes.w[participating] * share) ** 2 * self._responses.g[0]
         work += beta * float(np.sum(8.0 / math.pi * rate[participating] * share * turned))
         return work + beta * beta * float(np.sum(alone))
 
@@ -185,11 +185,13 @@ class ContinuousMotion:
         """The same where the damping couples modes, theory.md 8: first harmonics', and the others'."""
         modes, at = self._modes, np.array([self.r])
         friction = np.zeros((1, modes.w.size), dtype=complex)
-        answers = modes.free.compliances(np.eye(modes.free.omega.size)) @ dynamic_shares(modes, at)[0]
-        friction[0, modes.participating] = -self.friction_harmonics(1)[1] * answers
+        responses = (
+            modes.free.compliances(np.eye(modes.free.omega.size)) @ dynamic_amplification(modes, at)[0]
+        )
+        friction[0, modes.participating] = -self.friction_harmonics(1)[1] * responses
         whole = damping_participation(modes, self.r) + friction
-        first = math.pi * self.r * float((modes.drag(whole) - modes.drag(friction))[0])
-        lift = float(self._contact_compliance[0] @ self._answers.at_maximum()[1][0])  # G
+        first = math.pi * self.r * float((modes.damping_form(whole) - modes.damping_form(friction))[0])
+        lift = float(self._contact_compliance[0] @ self._responses.at_maximum()[1][0])  # G
         return first + 4.0 * self.beta**2 * lift
 
     @property
@@ -226,10 +228,10 @@ class ContinuousMotion:
         values = (harmonic[:, np.newaxis] * (1j * turn if velocity else turn)).real
         which = range(compliance.shape[1])
         if velocity:
-            answers = [self._answers.rates(i, 0, t)[0] for i in which]
+            responses = [self._responses.rates(i, 0, t)[0] for i in which]
         else:
-            answers = [self._answers.displacement(i, 0, t) for i in which]
-        return values + self.beta * (compliance @ answers)
+            responses = [self._responses.displacement(i, 0, t) for i in which]
+        return values + self.beta * (compliance @ responses)
 
 
 def continuous_motion(system: System, r: SupportsFloat, beta: SupportsFloat) -> ContinuousMotion:
@@ -290,7 +292,7 @@ def continuous_motion(system: System, r: SupportsFloat, beta: SupportsFloat) -> 
         contact_amplitude=root - lift,
         contact_phase=phase,
         _modes=modes,
-        _answers=friction_answers(modes, at, np.array([beta])),
+        _responses=friction_responses(modes, at, np.array([beta])),
         _harmonic=responses * np.exp(1j * phase),
         _contact_harmonic=complex(root, -swing),
     )

@@ -34,7 +34,7 @@ def damping_participation(modes: ModalModel, r: float) -> np.ndarray:
     """
     at = np.array([r])
     damped = modes.zeta > 0.0
-    parts = np.where(damped, modes.answers(at, modes.participation(at))[0], 0.0)
+    parts = np.where(damped, modes.modal_responses(at, modes.participation(at))[0], 0.0)
     if modes.load_rate.any():
         parts -= np.where(damped, modes.phi.T @ modes.mass @ np.ones(damped.size), 0.0)
     return parts

@@ -44,7 +44,7 @@ RESONANT_U = -2.0 / math.pi
 RESONANT_FIRST_HARMONIC = -3j / math.pi
 
 
-def free_answers(zeta: float, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def free_response(zeta: float, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """1 - d, q and e = R q' of T(B.8), (B.9) at theta = tau/R >= 0, to a few units of rounding each.
 
     zeta >= 1 is the analytic continuation (sin -> sinh, and the double root at zeta = 1).
@@ -80,7 +80,7 @@ def free_answers(zeta: float, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return rise, q, e
 
 
-class Swing(NamedTuple):
+class ModeMotion(NamedTuple):
     """One mode of several motions: a = w/r, u (0 where it is infinite), g, and whether u is infinite."""
 
     a: np.ndarray
@@ -90,11 +90,11 @@ class Swing(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class FrictionAnswers:
+class FrictionResponses:
     """The answers h_i of theory.md 2 of p participating modes or oscillators, in several motions.
 
     zeta : (p,) damping ratios
-    joined : (j,) of which R_i h_i' are answers, too: numbers p.. of p + j; `FreeStructure.joined`
+    joined : (j,) of which R_i h_i' are answers, too: numbers p.. of p + j; `FreeStructure.coupled_indices`
     pace : (n_motions, p) w_i/r
     u, g : (n_motions, p) damping functions T(7.11), (7.12).  At an undamped resonance u is infinite: its
         part u sin(tau) is in the harmonic motion there, and (2/pi) tau cos(tau) is left, theory.md 9 (5)
@@ -103,25 +103,25 @@ class FrictionAnswers:
     """
 
     zeta: np.ndarray
-    joined: np.ndarray
+    coupled_indices: np.ndarray
     pace: np.ndarray
     u: np.ndarray
     g: np.ndarray
 
-    def displacement(self, answer: int, motion: np.ndarray | int, t: np.ndarray) -> np.ndarray:
+    def displacement(self, index: int, motion: np.ndarray | int, t: np.ndarray) -> np.ndarray:
         """h_i, or R_i h_i', at times t."""
-        if answer >= self.zeta.size:
-            i = int(self.joined[answer - self.zeta.size])
+        if index >= self.zeta.size:
+            i = int(self.coupled_indices[index - self.zeta.size])
             return self._rates(i, motion, t)[0] / self.pace[motion, i]
-        a, u, g, resonant = self._swing(answer, motion)
-        rise, q, _ = free_answers(self.zeta[answer], a * t)
+        a, u, g, resonant = self._mode_motion(index, motion)
+        rise, q, _ = free_response(self.zeta[index], a * t)
         return (1.0 + g) * rise - g - np.where(resonant, RESONANT_U * t * np.cos(t), u / a * q)
 
-    def rates(self, answer: int, motion: np.ndarray | int, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def rates(self, index: int, motion: np.ndarray | int, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Velocity and acceleration of `displacement` at times t."""
-        if answer < self.zeta.size:
-            return self._rates(answer, motion, t)
-        i = int(self.joined[answer - self.zeta.size])
+        if index < self.zeta.size:
+            return self._rates(index, motion, t)
+        i = int(self.coupled_indices[index - self.zeta.size])
         a = self.pace[motion, i]
         swing, bend = self._rates(i, motion, t)
         return bend / a, -2.0 * self.zeta[i] * bend - a * swing
@@ -132,16 +132,16 @@ class FrictionAnswers:
         u and g of the h_i.  The a that h_i''(0)/a has besides is left out: a force moves no velocity at once,
         so that it adds up to nothing.
         """
-        which = self.joined
+        which = self.coupled_indices
         a, u, g = self.pace[:, which], self.u[:, which], self.g[:, which]
         velocity = -(a * g + 2.0 * self.zeta[which] * u)
         return np.hstack((self.u, velocity)), np.hstack((self.g, u / a))
 
     def _rates(self, mode: int, motion: np.ndarray | int, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """h_i' and h_i'' at times t."""
-        a, u, g, resonant = self._swing(mode, motion)
+        a, u, g, resonant = self._mode_motion(mode, motion)
         zeta = self.zeta[mode]
-        _, q, e = free_answers(zeta, a * t)
+        _, q, e = free_response(zeta, a * t)
         swing, bend = u * e, -a * u * (2.0 * zeta * e + q)
         if np.any(resonant):
             sine, cosine = np.sin(t), np.cos(t)
@@ -149,16 +149,16 @@ class FrictionAnswers:
             bend = np.where(resonant, -RESONANT_U * (2.0 * sine + t * cosine), bend)
         return (1.0 + g) * a * q - swing, (1.0 + g) * a * a * e - bend
 
-    def _swing(self, mode: int, motion: np.ndarray | int) -> Swing:
+    def _mode_motion(self, mode: int, motion: np.ndarray | int) -> ModeMotion:
         u = self.u[motion, mode]
         resonant = np.isinf(u)
-        return Swing(self.pace[motion, mode], np.where(resonant, 0.0, u), self.g[motion, mode], resonant)
+        return ModeMotion(self.pace[motion, mode], np.where(resonant, 0.0, u), self.g[motion, mode], resonant)
 
     def largest_displacements(self) -> np.ndarray:
         """Sizes of the parts of h_i, whose rounding is that of the sum; (n_motions, p + j)."""
         swing = np.where(np.isinf(self.u), 2.0, np.abs(self.u) / self.pace)
         size = np.abs(1.0 + self.g) + swing
-        return np.hstack((1.0 + size, size[:, self.joined]))
+        return np.hstack((1.0 + size, size[:, self.coupled_indices]))
 
     def largest_accelerations(self) -> np.ndarray:
         """Bounds of their accelerations over all times; (n_motions, p + j).
@@ -172,10 +172,10 @@ class FrictionAnswers:
         along, across = (1.0 + self.g) * a * a + 2.0 * zeta * a * u, a * u
         bound = np.where(resonant, 1.0 - RESONANT_U * (2.0 + math.pi), np.hypot(along, across))
         further = np.hypot(across - 2.0 * zeta * along, along)
-        return np.hstack((bound, further[:, self.joined]))
+        return np.hstack((bound, further[:, self.coupled_indices]))
 
 
-def friction_answers(modes: ModalModel, r: np.ndarray, beta: np.ndarray) -> FrictionAnswers:
+def friction_responses(modes: ModalModel, r: np.ndarray, beta: np.ndarray) -> FrictionResponses:
     """Those of motions at r > 0 with friction beta, (n_motions,) both.
 
     u and g count for nothing, and are 0, where there is no friction: u may be infinite without a resonance.
@@ -184,11 +184,11 @@ def friction_answers(modes: ModalModel, r: np.ndarray, beta: np.ndarray) -> Fric
     w, zeta = free.omega, free.zeta
     pairs = np.array([[damping_functions(*mode, x) for mode in zip(w, zeta, strict=True)] for x in r])
     u, g = np.where(beta[:, np.newaxis, np.newaxis] > 0.0, pairs, 0.0).transpose(2, 0, 1)
-    return FrictionAnswers(zeta, free.joined, w / r[:, np.newaxis], u, g)
+    return FrictionResponses(zeta, free.coupled_indices, w / r[:, np.newaxis], u, g)
 
 
-def dynamic_shares(modes: ModalModel, s: np.ndarray) -> np.ndarray:
-    """`FrictionAnswers` to a harmonic force in place of a square wave, complex (n_s, p + j).
+def dynamic_amplification(modes: ModalModel, s: np.ndarray) -> np.ndarray:
+    """`FrictionResponses` to a harmonic force in place of a square wave, complex (n_s, p + j).
 
     w_i^2/(w_i^2 - s^2 + 2 i zeta_i w_i s), and i s/w_i times it.  0 where that is infinite, at an undamped
     s = w_i.
@@ -196,12 +196,12 @@ def dynamic_shares(modes: ModalModel, s: np.ndarray) -> np.ndarray:
     free = modes.free
     stiffness, squares = dynamic_stiffness(free.omega, free.zeta, s).complex(), free.omega[:, np.newaxis] ** 2
     shares = np.divide(squares, stiffness, out=np.zeros_like(stiffness), where=stiffness != 0.0)
-    turning = 1j * s / free.omega[free.joined, np.newaxis]
-    return np.vstack((shares, turning * shares[free.joined])).T
+    turning = 1j * s / free.omega[free.coupled_indices, np.newaxis]
+    return np.vstack((shares, turning * shares[free.coupled_indices])).T
 
 
 def compliances(modes: ModalModel) -> np.ndarray:
-    """Answers of displacements to friction by `FrictionAnswers`, (n, p + j); of modes phi_ki chi_i/w_i^2."""
+    """Responses of displacements to friction by `FrictionResponses`, (n, p + j): phi_ki chi_i/w_i^2 of modes."""
     return modes.free.compliances(modes.phi[:, modes.participating])
 
 
@@ -209,7 +209,7 @@ def contact_compliances(modes: ModalModel) -> np.ndarray:
     """The same of z, (p + j,); of modes chi_i^2/w_i^2."""
     free = modes.free
     static, rates = free.weights(modes.chi[modes.participating])
-    return np.append(static, (free.omega * rates)[free.joined])
+    return np.append(static, (free.omega * rates)[free.coupled_indices])
 
 
 class HalfWaves(NamedTuple):
@@ -221,7 +221,7 @@ class HalfWaves(NamedTuple):
     weights : (m, p + j)
     """
 
-    answers: FrictionAnswers
+    responses: FrictionResponses
     motion: np.ndarray
     harmonic: np.ndarray
     weights: np.ndarray
@@ -230,7 +230,7 @@ class HalfWaves(NamedTuple):
         """Those of indices `which` at times t, arrays that fit each other."""
         x = (self.harmonic[which] * np.exp(1j * t)).real
         for i, weight in enumerate(self.weights.T):
-            x = x + weight[which] * self.answers.displacement(i, self.motion[which], t)
+            x = x + weight[which] * self.responses.displacement(i, self.motion[which], t)
         return x
 
     def turning(self, which: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -240,7 +240,7 @@ class HalfWaves(NamedTuple):
         motion, turn = self.motion[which], self.harmonic[which] * np.exp(1j * t)
         velocity, acceleration = -turn.imag, -turn.real
         for i, weight in enumerate(self.weights.T):
-            swing, bend = self.answers.rates(i, motion, t)
+            swing, bend = self.responses.rates(i, motion, t)
             velocity = velocity + weight[which] * swing
             acceleration = acceleration + weight[which] * bend
         sign = np.where(halves % 2.0 == 0.0, 1.0, -1.0)
@@ -263,7 +263,7 @@ def largest_moduli(waves: HalfWaves) -> Peaks:
     found.modulus[with_friction] = -1.0  # less than any sample
     for first in range(0, with_friction.size, _AT_ONCE):
         _search(waves, with_friction[first : first + _AT_ONCE], found)
-    found.t[with_friction] = _turned(waves, with_friction, found.t[with_friction])
+    found.t[with_friction] = _refine_times(waves, with_friction, found.t[with_friction])
     return found
 
 
@@ -273,10 +273,10 @@ def _search(waves: HalfWaves, which: np.ndarray, found: Peaks) -> None:
     An interval of length l holds nothing above the larger of its ends plus l^2/8 max |x''|.  Those that
     could hold more than the best so far are cut up until it is too little to matter.
     """
-    answers, weights, motion = waves.answers, np.abs(waves.weights), waves.motion
-    bend = np.abs(waves.harmonic) + (weights * answers.largest_accelerations()[motion]).sum(axis=1)
+    responses, weights, motion = waves.responses, np.abs(waves.weights), waves.motion
+    bend = np.abs(waves.harmonic) + (weights * responses.largest_accelerations()[motion]).sum(axis=1)
     # next to a pole of u the parts cancel: below the rounding of the largest there is nothing to look for
-    size = np.abs(waves.harmonic) + (weights * answers.largest_displacements()[motion]).sum(axis=1)
+    size = np.abs(waves.harmonic) + (weights * responses.largest_displacements()[motion]).sum(axis=1)
     length = math.pi / _INTERVALS
     nodes = np.tile(np.linspace(0.0, math.pi, _INTERVALS + 1), (which.size, 1))
     for _ in range(_ROUNDS):
@@ -306,7 +306,7 @@ def _keep_largest(which: np.ndarray, t: np.ndarray, x: np.ndarray, found: Peaks)
     found.t[which[new]], found.value[which[new]] = t[rows, node][new], value[new]
 
 
-def _turned(waves: HalfWaves, which: np.ndarray, start: np.ndarray) -> np.ndarray:
+def _refine_times(waves: HalfWaves, which: np.ndarray, start: np.ndarray) -> np.ndarray:
     """Times next to `start` where the velocity is zero, to rounding: Newton's steps while it gets smaller."""
     found = start.copy()
     at = np.arange(start.size)
@@ -323,7 +323,7 @@ def _turned(waves: HalfWaves, which: np.ndarray, start: np.ndarray) -> np.ndarra
 
 
 def mass_peaks(
-    modes: ModalModel, answers: FrictionAnswers, beta: np.ndarray, harmonic: np.ndarray, z: np.ndarray
+    modes: ModalModel, responses: FrictionResponses, beta: np.ndarray, harmonic: np.ndarray, z: np.ndarray
 ) -> Peaks:
     """Peaks of all masses in several motions, (n_motions, n) each.
 
@@ -333,17 +333,17 @@ def mass_peaks(
     shape = harmonic.shape
     weights = beta[:, np.newaxis, np.newaxis] * compliances(modes)
     motion = np.repeat(np.arange(shape[0]), shape[1])
-    at_wall = int(np.argmax(modes.contact))
+    wall_mass = int(np.argmax(modes.contact))
     is_contact = not modes.base_motion and np.count_nonzero(modes.contact) == 1
     if is_contact:
-        weights[:, at_wall] = 0.0  # not looked for
-    waves = HalfWaves(answers, motion, harmonic.ravel(), weights.reshape(harmonic.size, -1))
+        weights[:, wall_mass] = 0.0  # not looked for
+    waves = HalfWaves(responses, motion, harmonic.ravel(), weights.reshape(harmonic.size, -1))
     found = Peaks(*(part.reshape(shape) for part in largest_moduli(waves)))
     if is_contact:
         # this mass is the contact: on beta_lim it turns so slowly that a search has half of the digits
         rows = np.flatnonzero(beta > 0.0)
-        found.modulus[rows, at_wall] = found.value[rows, at_wall] = z[rows]
-        found.t[rows, at_wall] = 0.0
+        found.modulus[rows, wall_mass] = found.value[rows, wall_mass] = z[rows]
+        found.t[rows, wall_mass] = 0.0
     return found
 
 

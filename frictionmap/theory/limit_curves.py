@@ -19,8 +19,8 @@ from .half_waves import (
     RESONANT_U,
     compliances,
     contact_compliances,
-    dynamic_shares,
-    friction_answers,
+    dynamic_amplification,
+    friction_responses,
     mass_peaks,
     peak_phases,
 )
@@ -66,22 +66,22 @@ def _at_resonance(modes: ModalModel, r: float, beta: float, bracket: float) -> t
     at = np.array([r])
     load = modes.participation(at)
     i = int(np.flatnonzero((modes.dynamic_stiffness(at)[0] == 0.0) & (modes.chi != 0.0))[0])
-    u = friction_answers(modes, at, np.array([beta])).at_maximum()[0][0]
+    u = friction_responses(modes, at, np.array([beta])).at_maximum()[0][0]
     u = np.where(np.isinf(u), RESONANT_U, u)
     contact = beta * complex(bracket, -float(np.sum(contact_compliances(modes) * u)))
     turn = 1j * np.abs(load[0, i]) / load[0, i] * np.sign(modes.chi[i])  # e^{i phi_z}
-    others = modes.answers(at, load)[0]
+    others = modes.modal_responses(at, load)[0]
     others[np.isinf(others)] = 0.0
     share = modes.phi[:, i] / modes.chi[i]
-    rest = modes.phi @ others - share * (modes.chi @ others - modes.base_motion)
-    return float(np.angle(turn)), share * contact + turn * rest
+    remaining = modes.phi @ others - share * (modes.chi @ others - modes.base_motion)
+    return float(np.angle(turn)), share * contact + turn * remaining
 
 
 def _first_harmonics(modes: ModalModel, motions: LimitMotions) -> np.ndarray:
     """X_k1, complex (n_r, n)."""
-    shares = dynamic_shares(modes, motions.r)
-    answers = np.where(shares == 0.0, RESONANT_FIRST_HARMONIC, -4j / np.pi * shares)
-    friction = motions.beta[:, np.newaxis] * (answers @ compliances(modes).T)
+    shares = dynamic_amplification(modes, motions.r)
+    responses = np.where(shares == 0.0, RESONANT_FIRST_HARMONIC, -4j / np.pi * shares)
+    friction = motions.beta[:, np.newaxis] * (responses @ compliances(modes).T)
     return (motions.harmonic + friction) * np.exp(-1j * motions.contact_phase)[:, np.newaxis]
 
 
@@ -91,9 +91,9 @@ def _amplitudes_and_phases(
     """The four variables of one mu, (n_r, n) each; `beta` (n_r,) is beta_lim, `bracket` that of S."""
     bracket = np.where(beta > 0.0, bracket, 0.0)
     motions = _limit_motions(modes, r, found, beta, bracket)
-    answers = friction_answers(modes, np.where(beta > 0.0, r, 1.0), beta)
+    responses = friction_responses(modes, np.where(beta > 0.0, r, 1.0), beta)
     z = beta * (bracket - np.where(beta > 0.0, found.g, 0.0))
-    peaks = mass_peaks(modes, answers, beta, motions.harmonic, z)
+    peaks = mass_peaks(modes, responses, beta, motions.harmonic, z)
     first = _first_harmonics(modes, motions)
     size = np.abs(first)
     values = {

@@ -46,11 +46,11 @@ def test_closed_form_of_one_mass(r):
 def set_moving(system, r, beta, mu):
     """(n, structure, its moving start with cos and sin of the load's phase, workspace, scratch)."""
     cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver())
-    found = cells.structures
+    found = cells.structure_arrays
     n = found.participating.size
     st = make_structure(found.model, found.loads, 0, r, 24.0)
     moving = found.moving
-    state = np.array([moving.place[0], moving.velocity[0] / st.rate])
+    state = np.array([moving.coordinates[0], moving.velocity[0] / st.rate])
     return n, st, state, moving.cos[0], moving.sin[0], make_workspace(n), make_scratch(n)
 
 

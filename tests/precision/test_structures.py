@@ -270,7 +270,7 @@ def gauss_samples(system, r, beta, mu):
     cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
     question = Question(system, r, beta, mu, solver, 2)
     rows = _find(question, cells).table
-    found = cells.structures
+    found = cells.structure_arrays
     x, weight = np.polynomial.legendre.leggauss(12)
     begins = np.concatenate(([0.0], np.cumsum(rows[:, segment_table.LENGTH])))
     panels = [np.linspace(left, right, 41) for left, right in pairwise(begins)]
@@ -285,7 +285,7 @@ def gauss_samples(system, r, beta, mu):
     sample_segments(st, beta, rows, since, samples, make_workspace(n), make_scratch(n))
     sign = rows[0, segment_table.SIGN]
     tau = since + math.atan2(sign * rows[0, segment_table.SIN], sign * rows[0, segment_table.COS])
-    relative = found.shapes.free[:, : velocities.shape[0]] @ velocities  # to the base, if it moves
+    relative = found.outputs.free[:, : velocities.shape[0]] @ velocities  # to the base, if it moves
     return (0.5 * width * weight).ravel(), tau, relative, friction
 
 

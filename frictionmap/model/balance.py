@@ -1,11 +1,11 @@
-"""A structure under its harmonic load without friction, free or held at its contact, at many frequencies.
+"""Linear response of a structure, free or held at its contact, at many frequencies.
 
-The modes' answers are right to the rounding of the largest of them, and a mass far from the load may move by
-less.  What is left of the balance of its own forces tells; the modes' answer to that corrects it, and masses
-in balance to rounding are left alone.
+A sum over modes is accurate to the rounding error of its largest term, but a mass far from the load may move
+by less than that.  The residual of the force balance on each mass reveals this; the modal response to the
+residual corrects the motion, until every mass is in balance to rounding.
 
-Arrays are (masses or modes, frequencies) or (frequencies,).  All sums run over masses or modes one by one,
-in their order: what is answered at one frequency does not depend on which others are asked for.
+Arrays are (masses or modes, frequencies) or (frequencies,).  All sums run over masses or modes one by one in
+a fixed order, so that the result at one frequency does not depend on the other frequencies.
 """
 
 from collections.abc import Iterable
@@ -20,7 +20,7 @@ _EPS = float(np.finfo(np.float64).eps)
 #: Decimal digits of a double.
 _DIGITS = 16
 
-#: The forces on a mass add up to zero within so many eps of their sizes: it is in balance.
+#: A mass is in balance if the forces on it add up to zero within this many eps of the sum of their moduli.
 _BALANCE = 4.0
 
 
@@ -32,7 +32,7 @@ class Polynomial(NamedTuple):
     square: np.ndarray
 
     def at(self, r: np.ndarray) -> Phasors:
-        """Shape (n, n_r)."""
+        """Evaluate at frequencies r; shape (n, n_r)."""
         constant, rate, square = (part[:, np.newaxis] for part in self)
         return Phasors(
             constant.real - r * rate.imag + r * r * square.real,
@@ -41,11 +41,11 @@ class Polynomial(NamedTuple):
 
 
 class Body(NamedTuple):
-    """A structure in numbers, and its load."""
+    """A structure as arrays, and its load."""
 
     w: np.ndarray  # (n,)
     zeta: np.ndarray
-    phi: np.ndarray  # (n, n), one mode a column
+    phi: np.ndarray  # (n, n), modes in columns
     chi: np.ndarray  # (n,)
     contact: np.ndarray  # (n,)
     mass: np.ndarray  # (n, n)
@@ -54,14 +54,14 @@ class Body(NamedTuple):
     mass_phi: np.ndarray  # (n, n) M phi
     load: Polynomial
     participation: Polynomial  # participation of the load
-    rounding: float  # what cancels but for this share of its terms, for each of them, is zero
+    rounding: float  # a sum below this share of its terms, times their number, is zero
 
 
 class _LoadCase(NamedTuple):
-    """Frequencies that are solved for."""
+    """Frequencies to solve for, with dynamic stiffness and load there."""
 
     r: np.ndarray
-    stiffness: Phasors  # dynamic, of every mode
+    stiffness: Phasors  # dynamic stiffness of every mode
     load: Phasors
 
     def at(self, which: np.ndarray) -> "_LoadCase":
@@ -69,14 +69,14 @@ class _LoadCase(NamedTuple):
 
 
 class _Motion(NamedTuple):
-    """What is known of the motion there."""
+    """Present approximation of the motion at these frequencies."""
 
     x: Phasors
-    tail: Phasors  # of x, below its rounding: the stretch of a stiff spring may be
-    residual: Phasors  # of the load, not in balance yet
+    tail: Phasors  # digits of x below its rounding, needed for the stretch of a stiff spring
+    residual: Phasors  # force that is not yet in balance
     z: Phasors
     force: Phasors
-    previous: Phasors  # the answer before
+    previous: Phasors  # z or F of the previous approximation
 
     def at(self, which: np.ndarray) -> "_Motion":
         x, tail, residual, *numbers = self
@@ -92,9 +92,10 @@ def dynamic_stiffness(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> Phasors
 
 
 def contact_responses(r: np.ndarray, body: Body) -> np.ndarray:
-    """V of theory.md 2, complex (n_r,); infinite at a loaded undamped resonance.
+    """Response function V of theory.md 2, complex (n_r,); infinite at a loaded undamped resonance.
 
-    Where the sum over modes cancels, the balance of forces has the digits that the sum has not.
+    Where the sum over modes cancels, the force balance is solved instead, which keeps the digits lost in the
+    sum.
     """
     with np.errstate(all="ignore"):
         stiffness = dynamic_stiffness(body.w, body.zeta, r)
@@ -106,10 +107,13 @@ def contact_responses(r: np.ndarray, body: Body) -> np.ndarray:
 
 
 def held_motions(r: np.ndarray, body: Body) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """With the contact held: displacements relative to the base, or modal coordinates, and the force F.
+    """Motion with the contact held: displacements relative to the base, or modal coordinates, and the force
+    F.
 
-    Complex (n_r, n), displacements if all modes participate, else the coordinates of those that do;
-    complex (n_r,) F; bool (n_r,), where neither is found.
+    Returns
+    -------
+    (motion, force, singular) : complex (n_r, n), displacements if all modes participate, else the coordinates
+        of the participating modes; complex (n_r,); bool (n_r,), where neither is found
     """
     with np.errstate(all="ignore"):
         stiffness = dynamic_stiffness(body.w, body.zeta, r)
@@ -129,13 +133,15 @@ def _total(terms: Iterable[Phasors], shape: tuple[int, ...]) -> Phasors:
 
 
 def _weighted(columns: np.ndarray, parts: Phasors) -> Phasors:
-    """columns @ parts, column by column."""
+    """Compute columns @ parts, column by column."""
     shape = (columns.shape[0], parts.re.shape[1])
     return _total((parts[i].times(column[:, np.newaxis]) for i, column in enumerate(columns.T)), shape)
 
 
 def _modal_sum(body: Body, r: np.ndarray, stiffness: Phasors) -> tuple[Phasors, np.ndarray]:
-    """V as the sum over modes, and whether that cancels by more than their frequencies leave uncertain."""
+    """V as the sum over modes, and whether the sum cancels by more than the accuracy of the frequencies
+    explains.
+    """
     parts = body.participation.at(r).times(body.chi[:, np.newaxis])
     resonant = ~stiffness.nonzero
     infinite = (resonant & parts.nonzero).any(axis=0)
@@ -151,11 +157,11 @@ def _modal_sum(body: Body, r: np.ndarray, stiffness: Phasors) -> tuple[Phasors, 
 def _solve_arrow(
     body: Body, stiffness: Phasors, parts: Phasors, displacement: Phasors
 ) -> tuple[Phasors, Phasors, np.ndarray]:
-    """Modes q and force F of stiffness_i q_i + chi_i F = parts_i, chi.q = gap: q, F and singular.
+    """Solve stiffness_i q_i + chi_i F = parts_i, chi.q = displacement for the modes q and the force F.
 
-    One mode, the softest as the contact feels it, is solved for together with F: it may resonate.  The others
-    are eliminated; those with chi = 0 stay out of it.  `singular`: whether rounding alone keeps the equations
-    from being so.
+    The mode that is softest at the contact is solved for together with F, because it may resonate.  The other
+    modes are eliminated; modes with chi = 0 are excluded.  Returns q, F, and whether the equations are
+    singular but for rounding.
     """
     seen = np.flatnonzero(body.chi)
     columns = np.arange(displacement.re.size)
@@ -191,9 +197,9 @@ def _solve_arrow(
 
 
 def _chain_forces(body: Body, r: np.ndarray, x: Phasors, tail: Phasors) -> tuple[Phasors, np.ndarray]:
-    """(K - r^2 M)(x + tail) on the masses of a chain, and the sizes of the single forces, added.
+    """Forces (K - r^2 M)(x + tail) on the masses of a chain, and the sum of the moduli of the single forces.
 
-    Springs pull by their stretch: a stiff one leaves the digits of the others alone.
+    Each spring force follows from its stretch, so that a stiff spring does not cost the digits of the others.
     """
     assert body.springs is not None
     stretch = (x[1:] - x[:-1]) + (tail[1:] - tail[:-1])
@@ -206,7 +212,7 @@ def _chain_forces(body: Body, r: np.ndarray, x: Phasors, tail: Phasors) -> tuple
 
 
 def _matrix_forces(body: Body, r: np.ndarray, x: Phasors) -> tuple[Phasors, np.ndarray]:
-    """The same of any structure."""
+    """Forces (K - r^2 M) x on the masses of any structure, and the sum of the moduli of the single forces."""
     square = r * r
     size, weight = np.zeros(x.re.shape), np.zeros(x.re.shape)
     for j in range(body.w.size):
@@ -217,13 +223,13 @@ def _matrix_forces(body: Body, r: np.ndarray, x: Phasors) -> tuple[Phasors, np.n
 
 
 def _residual_force(body: Body, case: _LoadCase, x: Phasors, tail: Phasors, force: Phasors) -> Phasors:
-    """What of the load the forces on the masses leave, rounding apart."""
+    """Residual of the force balance on the masses, zero where it is rounding error."""
     if body.springs is not None:
         forces, size = _chain_forces(body, case.r, x, tail)
     else:
         forces, size = _matrix_forces(body, case.r, x)
     if body.zeta.any():
-        # each mode's damping, by the masses' own motion
+        # damping force of each mode, from the motion of the masses
         rates = _weighted(body.mass_phi.T, x)
         rates = rates.times(2.0 * case.r * body.zeta[:, np.newaxis] * body.w[:, np.newaxis])
         for i in range(body.w.size):
@@ -237,7 +243,7 @@ def _residual_force(body: Body, case: _LoadCase, x: Phasors, tail: Phasors, forc
 
 
 def _superposed(body: Body, motion: _Motion, q: Phasors) -> tuple[Phasors, Phasors, Phasors]:
-    """x and its tail with the motion of the modes q added; z = c.x."""
+    """Add the motion of the modes q to x and its tail; also return z = c.x."""
     part = motion.tail
     for i in range(body.w.size):
         part = part + q[i].times(body.phi[:, i, np.newaxis])
@@ -250,7 +256,9 @@ def _superposed(body: Body, motion: _Motion, q: Phasors) -> tuple[Phasors, Phaso
 def _corrected(
     body: Body, case: _LoadCase, motion: _Motion, held: bool
 ) -> tuple[_Motion, np.ndarray, np.ndarray]:
-    """The motion with the modes' answer to what is left, where to go on, and where it cannot be had."""
+    """Add the modal response to the residual; return the motion, where to continue, and where there is no
+    solution.
+    """
     parts = _weighted(np.ascontiguousarray(body.phi.T), motion.residual)
     if held:
         q, more, singular = _solve_arrow(body, case.stiffness, parts, motion.z.times(-1.0))
@@ -266,9 +274,9 @@ def _corrected(
 
 
 def _balanced(body: Body, case: _LoadCase, held: bool) -> tuple[Phasors, Phasors, Phasors, np.ndarray]:
-    """x, z, F and singular, corrected until every mass is in balance.
+    """Motion x, z, F and singular, corrected until every mass is in balance.
 
-    With `held` the contact holds z = 0 by the force F; else F = 0.
+    With `held` the force F holds the contact at z = 0; otherwise F = 0.
     """
     n, count = body.w.size, case.r.size
     x, z, force, singular = (
@@ -277,10 +285,12 @@ def _balanced(body: Body, case: _LoadCase, held: bool) -> tuple[Phasors, Phasors
         Phasors.zeros(count),
         np.zeros(count, bool),
     )
-    no_response = Phasors(np.full(count, np.inf), np.zeros(count))  # the first one may be zero, as no other
+    no_response = Phasors(
+        np.full(count, np.inf), np.zeros(count)
+    )  # unlike any first approximation, also zero
     motion = _Motion(x, Phasors.zeros(n, count), case.load, z, force, no_response)
     places = np.arange(count)
-    # one for every link that the load has to pass; beside a resonance each gains a digit at least
+    # one iteration per link between load and mass; near a resonance each gains at least one digit
     for _ in range(n + _DIGITS):
         motion, going, singular[places] = _corrected(body, case, motion, held)
         x[:, places], z[places], force[places] = motion.x, motion.z, motion.force

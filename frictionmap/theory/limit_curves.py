@@ -1,8 +1,8 @@
-"""Amplitude and phase of every mass on the boundary of continuous motion, at beta_lim(r), theory.md 9.
+"""Amplitude and phase of every mass at the boundary of continuous motion, beta_lim(r), theory.md 9.
 
-On the boundary root(|V|^2 - beta^2 U^2) is beta max(S, H + mu/(m_eff r^2)), so z is known without a
-difference of large numbers; where an undamped mode resonates, V and U are infinite and the motion is not.
-Where beta_lim is 0, at r = 0 or a pole of U, motions are those without friction.
+At the boundary root(|V|^2 - beta^2 U^2) equals beta max(S, H + mu/(m_eff r^2)), so that z is known without a
+difference of large numbers.  Where an undamped mode resonates, V and U are infinite but the motion is not.
+Where beta_lim is 0, at r = 0 or a pole of U, the motion is the one without friction.
 """
 
 from typing import NamedTuple
@@ -27,12 +27,12 @@ from .half_waves import (
 
 
 class LimitMotions(NamedTuple):
-    """Continuous motions at beta_lim of one mu, over frequency.
+    """Continuous motions at beta_lim for one mu, over frequency.
 
     r, beta : (n_r,)
     contact_phase : (n_r,) phi_z; 0 where there is no friction
-    harmonic : (n_r, n) complex, from a maximum of z on, as of `HalfWaves`
-    infinite : (n_r, n) bool, of a mass that resonates; its harmonic is 0
+    harmonic : (n_r, n) complex, from a maximum of z, as in `HalfWaves`
+    infinite : (n_r, n) bool, whether a mass resonates; its harmonic is then 0
     """
 
     r: np.ndarray
@@ -45,6 +45,7 @@ class LimitMotions(NamedTuple):
 def _limit_motions(
     modes: ModalModel, r: np.ndarray, found: Curves, beta: np.ndarray, bracket: np.ndarray
 ) -> LimitMotions:
+    """Find the motions at beta_lim for one mu."""
     resonant = (beta > 0.0) & np.isinf(found.v)
     regular = (beta > 0.0) & ~resonant
     u, size, v = (np.where(regular, part, 1.0) for part in (found.u, bracket, found.v))
@@ -58,10 +59,10 @@ def _limit_motions(
 
 
 def _at_resonance(modes: ModalModel, r: float, beta: float, bracket: float) -> tuple[float, np.ndarray]:
-    """phi_z and the harmonic part of every mass where an undamped mode i that is loaded has w_i = r.
+    """phi_z and harmonic part of every mass where an undamped loaded mode i has w_i = r.
 
-    Its u loses the part u sin(tau), with which the harmonic motion is finite.  z fixes that of mode i; in
-    x_k - (phi_ki/chi_i) z mode i has no share.
+    Its u is taken without the part u sin(tau), with which the harmonic motion is finite.  z determines the
+    motion of mode i; x_k - (phi_ki/chi_i) z does not depend on mode i.
     """
     at = np.array([r])
     load = modes.participation(at)
@@ -78,7 +79,7 @@ def _at_resonance(modes: ModalModel, r: float, beta: float, bracket: float) -> t
 
 
 def _first_harmonics(modes: ModalModel, motions: LimitMotions) -> np.ndarray:
-    """X_k1, complex (n_r, n)."""
+    """First harmonics X_k1, complex (n_r, n)."""
     shares = dynamic_amplification(modes, motions.r)
     responses = np.where(shares == 0.0, RESONANT_FIRST_HARMONIC, -4j / np.pi * shares)
     friction = motions.beta[:, np.newaxis] * (responses @ compliances(modes).T)
@@ -88,7 +89,7 @@ def _first_harmonics(modes: ModalModel, motions: LimitMotions) -> np.ndarray:
 def _amplitudes_and_phases(
     modes: ModalModel, r: np.ndarray, found: Curves, beta: np.ndarray, bracket: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """The four variables of one mu, (n_r, n) each; `beta` (n_r,) is beta_lim, `bracket` that of S."""
+    """The four variables for one mu, (n_r, n) each; `beta` (n_r,) is beta_lim, `bracket` that of S."""
     bracket = np.where(beta > 0.0, bracket, 0.0)
     motions = _limit_motions(modes, r, found, beta, bracket)
     responses = friction_responses(modes, np.where(beta > 0.0, r, 1.0), beta)
@@ -109,11 +110,11 @@ def _amplitudes_and_phases(
 
 
 def limit_variables(system: System, r: np.ndarray, mu: np.ndarray, found: Curves) -> dict[str, xr.Variable]:
-    """Amplitude and phase, and those of the first harmonic, at beta_lim; dims (mu, r, dof).
+    """Amplitude and phase, also of the first harmonic, at beta_lim; dims (mu, r, dof).
 
     `r` and `mu` are checked axes, and `found` the curves there.  Phases are lags in radian.  A mass that
-    resonates though the contact does not, in a mode that it does not see, has infinite amplitudes; it has no
-    phase, nor has one at rest: NaN.
+    resonates in a mode that does not participate has infinite amplitude.  Such a mass, and a mass at rest,
+    has no phase: NaN.
     """
     modes = system.modes
     bracket = sliding_bracket(found.h, found.s, over_square(modes.inverse_mass, r), mu)

@@ -1,7 +1,7 @@
-"""What the cells of a map need, and the jobs that fill them.
+"""Data that the cells of a map need, and the jobs that fill them.
 
-One mass is the structure with one mode, but its cells know more: a stop forgets all but one number.  It is a
-kind of motion of its own (`_kernels.engine`), an order of magnitude faster.
+One mass is the structure with one mode, but a stop leaves only one number of its state.  It is a kind of
+motion of its own (`_kernels.engine`), ten times faster.
 """
 
 from collections.abc import Callable
@@ -29,12 +29,12 @@ Job = tuple[Callable[..., None], tuple]
 
 
 def limits(solver: Solver) -> Limits:
-    """When the kernels give up."""
+    """Convert the settings to the limits of the kernels."""
     return Limits(float(solver.cycles), solver.tolerance, solver.steady == "solved")
 
 
 class Cells:
-    """The cells of a map of a system; r, beta and mu are checked axes."""
+    """Cells of a map of a system; r, beta and mu are checked axes."""
 
     def __init__(
         self, system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver,
@@ -42,7 +42,7 @@ class Cells:
     ) -> None:  # fmt: skip
         self._system, self._solver, self._request = system, solver, request
         self._axes = Axes(mu, r, beta)
-        #: what was asked for of a cycle, for the jobs to fill
+        #: requested results over a cycle, filled by the jobs
         self.results = results(
             (mu.size, r.size, beta.size), system.n, request or QuantityRequest(frozenset())
         )
@@ -50,7 +50,7 @@ class Cells:
         if system.normalised:
             self._one = one_mass_curves(system, r, mu)
             self.curves = self._one.curves
-            #: (n_r,) where nothing loads the contact, so that nothing moves
+            #: (n_r,) whether the contact carries no load, so that nothing moves
             self.no_load = self._one.frequencies.load == 0.0
         else:
             self.curves = many_mode_curves(system, r, mu)
@@ -62,12 +62,14 @@ class Cells:
 
     @property
     def rest_sticks(self) -> bool:
-        """Whether from beta_stick on a start from rest never begins to move; what is not held may swing."""
+        """Whether a start from rest never begins to slide at or above beta_stick; masses that are not held
+        may move.
+        """
         return self._one is not None
 
     @cached_property
     def structure_arrays(self) -> StructureArrays:
-        """The system in the numbers of a structure."""
+        """The system as the arrays of a structure."""
         return structure_arrays(self._system, self._axes.r, self.curves)
 
     @cached_property
@@ -111,7 +113,7 @@ class Cells:
 
     @cached_property
     def quantities(self) -> Quantities | NotRequested:
-        """What a cycle is asked for, in numbers."""
+        """Data for the requested quantities of a cycle."""
         if self._request is None:
             return NotRequested(0)
         return quantity_arrays(
@@ -124,11 +126,11 @@ class Cells:
         return Requested(self._details, self.quantities)
 
     def closed(self, first: int, last: int, cells: OpenCells, out: Any) -> Job:
-        """A job for the cells of rows first..last-1 that formulas decide."""
+        """Job for the cells of rows first..last-1 that closed forms decide."""
         return fill_closed, (first, last, cells, self._axes, self._closed_form, out, self._requested)
 
     def opened(self, first: int, last: int, cells: OpenCells, out: Any, cancel: np.ndarray) -> Job:
-        """A job for cells first..last-1 of the list of open cells."""
+        """Job for cells first..last-1 of the list of open cells."""
         moving = self._solver.start == "moving"
         return fill_open, (
             first, last, cells, self._axes, self.motion, limits(self._solver), moving, out, self._requested,
@@ -136,7 +138,7 @@ class Cells:
         )  # fmt: skip
 
     def reachable(self, out: Any, cancel: np.ndarray) -> list[Job]:
-        """Jobs for what else a cell could end in, if that was asked for."""
+        """Jobs for the further regimes that cells can reach, if requested."""
         if "coexistence" not in self._needs:
             return []
         from .._kernels.engine.coexistence import fill_reachable
@@ -149,7 +151,7 @@ class Cells:
         return [(fill_reachable, (row, row + 1, *shared)) for row in range(axes.mu.size * axes.r.size)]
 
     def finish(self, out: Any) -> None:
-        """The limit r = 0 without friction; and modes that the contact does not see may resonate."""
+        """Fill the limit r = 0 without friction, and resonances of modes that do not participate."""
         axes = self._axes
         if out.amplitude.size:
             if axes.beta[0] == 0.0:

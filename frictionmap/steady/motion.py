@@ -1,4 +1,4 @@
-"""One steady state in time, in numbers: motion of the masses and of the contact, friction force, events."""
+"""One steady state in time, as arrays: motion of masses and contact, friction force, events."""
 
 import math
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ from .kernel_data import StructureArrays
 from .maps import plan
 from .quantity_data import VARIABLES, quantity_request, read_result
 
-#: Excitation periods shown of a motion that does not repeat: the longest steady state is as long.
+#: Excitation periods shown of a motion that does not repeat, equal to the longest steady period.
 WINDOW = 8
 
 _WINDOWED = (
@@ -40,13 +40,13 @@ _WINDOWED = (
 
 _TURN = 2.0 * math.pi
 
-#: What response curves have, all of it.
+#: All variables of the quantities of response curves.
 CYCLE = tuple(name for names in VARIABLES.values() for name in names)
 
 
 @dataclass(frozen=True)
 class Question:
-    """One steady state that is asked for."""
+    """One requested steady state."""
 
     system: System
     r: float
@@ -67,33 +67,33 @@ class History:
     z: np.ndarray  # (tau.size,)
     friction: np.ndarray
     phase: np.ndarray
-    events: tuple[np.ndarray, np.ndarray, np.ndarray]  # tau, phase that begins, z
-    durations: np.ndarray  # of the stops
+    events: tuple[np.ndarray, np.ndarray, np.ndarray]  # tau, sense of the segment that starts, z
+    durations: np.ndarray  # durations of the stops
     amplitude: float
-    stuck: bool  # for good
+    stuck: bool  # whether the contact sticks permanently
 
 
 @dataclass(frozen=True)
 class FoundMotion:
-    """The steady state of a cell, or a window of a motion that does not repeat.
+    """Steady state of a cell, or a window of a motion that does not repeat.
 
-    once : the phases until the motion returns, mirrored or not; none where the closed form tells them
+    recurrence : segments of one recurrence, mirrored or not; None where the closed form gives the motion
     """
 
-    table: np.ndarray | None  # phases of one period, or of the window; none where it sticks for good
+    table: np.ndarray | None  # segments of one period, or of the window; None where it sticks permanently
     status: int
-    stuck_at: float = 0.0  # where it sticks
-    averages: Cell | None = None  # of the motion that does not repeat
+    stuck_at: float = 0.0  # z where it sticks
+    averages: Cell | None = None  # averages of a motion that does not repeat
     recurrence: np.ndarray | None = None
 
 
 class Motion(NamedTuple):
-    """A steady state in time and its numbers.
+    """A steady state in time, and its scalars.
 
-    summary : regime, stops per cycle, contact amplitude, share of time stuck, period, status
-    cycle : what response curves have of it; (n,) of masses, (..., 2) of harmonics
+    summary : regime, stops per cycle, contact amplitude, share stuck, period, status
+    cycle : its quantities of response curves; (n,) for masses, (..., 2) for harmonics
     curves : the boundaries there, (1, 1)
-    comment : what is to be said of a motion that does not repeat; else empty
+    comment : remark on a motion that does not repeat; else empty
     """
 
     history: History
@@ -108,9 +108,9 @@ def _times(period: int, points: int) -> np.ndarray:
 
 
 def _since(tau: np.ndarray, start: float, total: float) -> np.ndarray:
-    """Times from `start` on, within one steady period."""
+    """Times since `start`, within one steady period."""
     since = np.mod(tau - start, total)
-    since[since > total * (1.0 - 1e-15)] = 0.0  # rounding must not place a sample past the end
+    since[since > total * (1.0 - 1e-15)] = 0.0  # rounding must not move a sample past the end
     return since
 
 
@@ -122,7 +122,7 @@ _UNBOUNDED = "an undamped resonance; the motion grows without bound"
 
 
 def _decided(cells: Cells, question: Question) -> int:
-    """The regime that a formula gives; unresolved where the cell is open."""
+    """Regime given by a closed form; unresolved where the cell is open."""
     beta, mu = np.array([question.beta]), np.array([question.mu])
     work = plan(cells, np.array([question.r]), mu, beta, question.solver)
     if work.cells:
@@ -131,7 +131,7 @@ def _decided(cells: Cells, question: Question) -> int:
 
 
 def _with_mirror_image(table: np.ndarray) -> np.ndarray:
-    """The table of phases over one steady period: twice as long where the motion returns mirrored."""
+    """Segment table over one steady period: twice as long where the motion recurs as its mirror image."""
     length = float(table[:, segment_table.LENGTH].sum())
     if round(length / math.pi) % 2 == 0:
         return table
@@ -142,7 +142,7 @@ def _with_mirror_image(table: np.ndarray) -> np.ndarray:
 
 
 def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
-    """The table of phases of the continuous orbit, one phase."""
+    """Segment table of the continuous orbit, one segment."""
     found = cells.structure_arrays
     orbit, n = found.orbit, found.participating.size
     st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
@@ -153,7 +153,7 @@ def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
 
 
 def _window(question: Question, cells: Cells, cell: Cell) -> FoundMotion:
-    """The last periods that the solver followed, of a motion that does not repeat."""
+    """Segment table of the last periods of a motion that does not repeat."""
     before = _TURN * max(0.0, question.solver.cycles - WINDOW - 2.0)
     moving = question.solver.start == "moving"
     table = window_table(
@@ -164,6 +164,7 @@ def _window(question: Question, cells: Cells, cell: Cell) -> FoundMotion:
 
 
 def _find(question: Question, cells: Cells) -> FoundMotion:
+    """Find the steady state, or raise NoSteadyState."""
     regime, stuck_at = _decided(cells, question), 0.0
     status = regimes.RESOLVED
     table = np.empty((0, 0))
@@ -190,7 +191,7 @@ def _find(question: Question, cells: Cells) -> FoundMotion:
 
 
 def _stuck_history(question: Question, cells: Cells, stuck_at: float) -> History:
-    """The contact held at `stuck_at` for good."""
+    """Time history with the contact held at `stuck_at` permanently."""
     found = cells.structure_arrays
     tau = _times(1, question.points)
     turn = np.exp(1j * tau)
@@ -205,18 +206,19 @@ def _stuck_history(question: Question, cells: Cells, stuck_at: float) -> History
 
 
 def _segment_starts(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Phases that begin, and z there."""
+    """Sense of the segments that start, and z there."""
     sign = table[:, segment_table.SIGN]
-    # a slide starts where the phase before it ended
+    # a segment starts where the previous one ended
     return sign * table[:, segment_table.SENSE], np.roll(sign * table[:, segment_table.Z_END], 1)
 
 
 def _align_times(
     found: FoundMotion, tau: np.ndarray, begin: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Where in time the table of phases lies, whose phases begin `begin` after the first one.
+    """Align the segment table, whose segments start at `begin` after the first one, with the load phase.
 
-    Returns the times of samples since its first phase; which phases begin among them, in order; and when.
+    Returns the times of the samples since the first segment; which segments start among them, in order; and
+    when.
     """
     table = found.table
     assert table is not None
@@ -254,7 +256,7 @@ def _displacements(
 
 
 def _moving_history(question: Question, cells: Cells, found: FoundMotion) -> History:
-    """A motion that slides, sampled along its phases."""
+    """Time history of a sliding motion, sampled from its segment table."""
     numbers, table = cells.structure_arrays, found.table
     assert table is not None
     if numbers.resonant.any():
@@ -284,7 +286,7 @@ def _moving_history(question: Question, cells: Cells, found: FoundMotion) -> His
 
 
 def _summary(history: History, found: FoundMotion) -> dict[str, float]:
-    """The cell's numbers; those of a motion that does not repeat are averages, and it has no period."""
+    """Scalars of the cell; those of a motion that does not repeat are averages, and it has no period."""
     averages = found.averages
     if averages is not None:
         return {
@@ -308,7 +310,7 @@ def _summary(history: History, found: FoundMotion) -> dict[str, float]:
 
 
 def _cycle(question: Question, cells: Cells, found: FoundMotion) -> dict[str, np.ndarray]:
-    """What the cell's response curves have; NaN of a motion that does not repeat."""
+    """Quantities of response curves of the cell; NaN for a motion that does not repeat."""
     if found.averages is None:
         if found.table is None:
             stuck_cell_quantities(cells.quantities)
@@ -317,7 +319,7 @@ def _cycle(question: Question, cells: Cells, found: FoundMotion) -> dict[str, np
         else:
             table_cell_quantities(cells.quantities, question.beta, found.recurrence)
     values = {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
-    if found.table is None:  # here the place where the contact rests is shown, too
+    if found.table is None:  # here the static offset of the stuck contact is included
         values["amplitude"] += np.abs(cells.structure_arrays.outputs.static_shape * found.stuck_at)
     values["phase_lag"] = values.pop("phase")
     return values
@@ -330,12 +332,12 @@ def _history(question: Question, cells: Cells, found: FoundMotion) -> History:
 
 
 def find_motion(question: Question) -> Motion:
-    """The steady state of a cell in time, and its numbers.
+    """Find the steady state of a cell in time, and its scalars.
 
     Raises
     ------
     NoSteadyState
-        There is none, or none was found.
+        None exists, or none was found.
     """
     system, solver = question.system, question.solver
     r, beta, mu = (np.array([value]) for value in (question.r, question.beta, question.mu))

@@ -15,22 +15,22 @@ from .cells import Cells
 from .maps import allocate
 from .quantity_data import quantity_request
 
-#: Points that are followed at a time: arrays are over all pairs of their frequencies and friction ratios.
+#: Points computed at a time: arrays extend over all pairs of their frequencies and friction ratios.
 _AT_ONCE = 512
 
 
 class States(NamedTuple):
-    """Steady states at k points; NaN and unresolved where there is none, or none was found."""
+    """Steady states at k points; NaN and unresolved where none exists or none was found."""
 
     phasors: np.ndarray  # (k, n) complex, X_k1 over P/k1 (Y); infinite at an undamped resonance
     regime: np.ndarray  # (k,) int8
 
 
 def steady_states(system: System, r: np.ndarray, beta: np.ndarray, mu: float) -> list[States]:
-    """What a structure may do at every point; points that repeat are found once.
+    """Find the possible steady states at every point; repeated points are computed once.
 
-    For mu = 1 that is one steady state (theory.md 6).  Beyond it there are three columns, which may be of
-    the same motion: the continuous one by its closed form, where beta <= beta_lim, and those that are reached
+    For mu = 1 there is one steady state (theory.md 6).  For mu > 1 three columns are returned, which may hold
+    the same motion: the continuous motion by its closed form, where beta <= beta_lim, and the motions reached
     from rest and from a large sliding motion.
 
     Parameters
@@ -53,7 +53,7 @@ class _Points(NamedTuple):
 
 
 def _unique_states(system: System, points: _Points) -> list[States]:
-    """The one steady state of mu = 1."""
+    """Find the unique steady states of mu = 1."""
     at, index = np.unique(points.r, return_inverse=True)
     curves = find_curves(system, at, np.ones(1))
     lim, stick = curves.beta_lim[0, index], curves.beta_stick[0, index]
@@ -69,7 +69,7 @@ def _unique_states(system: System, points: _Points) -> list[States]:
 
 
 def _multiple_states(system: System, points: _Points) -> list[States]:
-    """The steady states of mu > 1 that are looked for."""
+    """Find steady states of mu > 1."""
     at, index = np.unique(points.r, return_inverse=True)
     curves = find_curves(system, at, np.array([points.mu]))
     continuous = (points.beta == 0.0) | (points.beta <= curves.beta_lim[0, index])
@@ -91,9 +91,10 @@ def _put_continuous(
     system: System, r: np.ndarray, curves: Curves, index: np.ndarray, beta: np.ndarray, where: np.ndarray,
     states: States,
 ) -> None:  # fmt: skip
-    """X_k1 = V_k - F_1 A_k(1) with F_1 = (4 i beta/pi) e^{-i phi_z}, theory.md 9, at some of the points.
+    """Fill in X_k1 = V_k - F_1 A_k(1) with F_1 = (4 i beta/pi) e^{-i phi_z}, theory.md 9, at some of the
+    points.
 
-    place : (k,) which of the frequencies `r`, for which the curves are, a point has
+    index : (k,) index of the frequency `r` of each point, for which the curves are
     where : (k,) bool
     """
     modes = system.modes
@@ -113,7 +114,7 @@ def _put_continuous(
 
 
 def _follow(system: System, points: _Points, start: Start, chosen: np.ndarray, states: States) -> None:
-    """Put in the steady states that are reached from a start at the chosen points."""
+    """Fill in the steady states reached from an initial state at the chosen points."""
     solver = Solver(start=start, outputs=("regime", "status"))
     request = quantity_request(("first_harmonic_amplitude", "first_harmonic_phase"))
     for first in range(0, chosen.size, _AT_ONCE):

@@ -1,4 +1,4 @@
-"""Quantities of a cycle in the numbers that the kernels take, and the arrays that they are written into."""
+"""Quantities over a cycle: data for the kernels, and the arrays for the results."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ from ..model.modes import ModalModel, times
 from ..model.system import System
 from .kernel_data import StructureArrays
 
-#: Where every variable is found: kind of result, rows, and column.
+#: Location of every variable in the results: kind of result, rows, and column.
 _MASSES, _FORCE, _CONTACT, _CELL = "masses", "force", "contact", "cell"
 _LOCATIONS = {
     "amplitude": ("extremes", _MASSES, VALUE),
@@ -66,7 +66,7 @@ _LOCATIONS = {
 }
 
 
-#: The variables that a quantity is, in the order of the file.
+#: Variables of every quantity, in the order of the file.
 VARIABLES: dict[str, tuple[str, ...]] = {
     "amplitude": ("amplitude",),
     "phase": (
@@ -87,15 +87,15 @@ PARTS = np.array(COORDINATES["part"].texts)
 
 @dataclass(frozen=True)
 class QuantityRequest:
-    """What is asked for of every cell."""
+    """Results requested for every cell."""
 
-    kinds: frozenset[str]  # of the fields of `Results`
-    harmonics: int = 1  # the highest one that is kept
-    force: bool = False  # whether the transmitted force is looked at over time
+    kinds: frozenset[str]  # names of fields of `Results`
+    harmonics: int = 1  # highest harmonic kept
+    force: bool = False  # whether the extremes of the transmitted force are requested
 
 
 def quantity_request(names: Iterable[str], harmonics: int = 1) -> QuantityRequest:
-    """What these variables are read from."""
+    """Request the results from which these variables are read."""
     names = set(names)
     return QuantityRequest(
         frozenset(_LOCATIONS[name][0] for name in names), harmonics, "transmitted_force" in names
@@ -103,7 +103,7 @@ def quantity_request(names: Iterable[str], harmonics: int = 1) -> QuantityReques
 
 
 def read_result(name: str, found: Results) -> np.ndarray:
-    """A variable over (mu, r, beta[, dof][, harmonic, part])."""
+    """Read a variable over (mu, r, beta[, dof][, harmonic, part])."""
     kind, rows, column = _LOCATIONS[name]
     array = getattr(found, kind)
     if rows == _CELL:
@@ -117,7 +117,7 @@ def read_result(name: str, found: Results) -> np.ndarray:
 
 
 def results(cells: tuple[int, int, int], masses: int, request: QuantityRequest) -> Results:
-    """Arrays over (mu, r, beta) of what is asked for, NaN until they are filled."""
+    """Allocate the requested results over (mu, r, beta), NaN until they are filled."""
 
     def array(kind: str, *further: int, dtype: type = float) -> np.ndarray:
         shape = (*cells, *further) if kind in request.kinds else (0,) * (3 + len(further))
@@ -132,14 +132,15 @@ def results(cells: tuple[int, int, int], masses: int, request: QuantityRequest) 
 
 
 def _wall_mass(system: System) -> int:
-    """The mass whose displacement is that in the contact, counted from 0; -1 if there is none."""
+    """Mass whose displacement equals z, counted from 0; -1 if there is none."""
     return system.contact_rows[0] if system.contact == "fixed-wall" else -1
 
 
 def _with_force(outputs: OutputMatrices, found: StructureArrays, modes: ModalModel) -> OutputMatrices:
-    """The shapes, and as one more row the transmitted force, the loads less the inertia.
+    """Add the row of the transmitted force, the loads less the inertia forces, to the output matrices.
 
-    Inertia is replaced by what the equations of the modes make of it; friction, in a stop, by the load.
+    The inertia forces follow from the modal equations of motion; in a stop the friction force balances the
+    load.
     """
     participating, model = found.participating, found.model
     mass = modes.phi[:, participating].T @ modes.mass.sum(axis=0)
@@ -161,12 +162,12 @@ def _with_force(outputs: OutputMatrices, found: StructureArrays, modes: ModalMod
 
 
 def _column(rows: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Complex rows (n_r, n) times real weights (n,), each row as if it were alone; (n_r,)."""
+    """Complex rows (n_r, n) times real weights (n,), each row rounded independently of the others; (n_r,)."""
     return times(rows, weights[:, np.newaxis])[:, 0]
 
 
 def _scaled(values: np.ndarray, factors: np.ndarray) -> np.ndarray:
-    """Complex values times real factors, each as if it were alone, as `times`."""
+    """Complex values times real factors, each rounded independently of the others, as in `times`."""
     found = np.empty_like(values)
     found.real, found.imag = values.real * factors, values.imag * factors
     return found
@@ -175,7 +176,9 @@ def _scaled(values: np.ndarray, factors: np.ndarray) -> np.ndarray:
 def _uncoupled_response(
     found: StructureArrays, modes: ModalModel, r: np.ndarray, balance: Balance, force: bool
 ) -> UncoupledResponse:
-    """Phasors of what moves with the load alone, of the masses and, if it is asked for, of the force."""
+    """Response that the contact does not influence, of the masses and, if requested, of the transmitted
+    force.
+    """
     if not force:
         return UncoupledResponse(found.uncoupled, found.uncoupled)
     participating, model = found.participating, found.model
@@ -191,17 +194,17 @@ def _uncoupled_response(
 
 
 def _base_share(system: System) -> float:
-    """What the dampers have of the base's velocity beside that of the displacements that are followed.
+    """Coefficient of the base velocity in the dashpots, beside the velocities that the kernels follow.
 
-    These are relative to the base with a joined base-wall; the dampers' may be either.
+    The latter are relative to the base with a joined base-wall; dashpots may be connected to ground or base.
     """
     return float(system.base_motion) - float(system.damping_reference == "base")
 
 
 def _dampers(modes: ModalModel, found: StructureArrays, base: np.ndarray) -> Dampers:
-    """The dashpots of what the contact sees; `base` (n,) its share of the base's motion, by modes.
+    """Dashpots of the participating modes; `base` (n,) is the share of the base motion, by modes.
 
-    One a mode; where the damping couples them one along each principal direction of it.
+    One dashpot per mode; where the damping couples modes, one for each principal direction of it.
     """
     which = found.participating
     coupling, n = modes.participating_coupling(), which.size
@@ -214,6 +217,7 @@ def _dampers(modes: ModalModel, found: StructureArrays, base: np.ndarray) -> Dam
 
 
 def _balance(system: System, found: StructureArrays, r: np.ndarray) -> Balance:
+    """Data for forces and work."""
     modes = system.modes
     loads = modes.total_load(r)
     to_base = system.damping_reference == "base"
@@ -239,9 +243,10 @@ def _balance(system: System, found: StructureArrays, r: np.ndarray) -> Balance:
 
 
 def _growth(system: System, found: StructureArrays, r: np.ndarray) -> np.ndarray:
-    """Directions (n_r, n_dof + 2) of masses, transmitted force and contact that grow at a resonance.
+    """Directions (n_r, n_dof + 2) of masses, transmitted force and contact that grow at an undamped
+    resonance.
 
-    A quarter of a period behind the load on the mode; 0 elsewhere.
+    They lag the load on the mode by a quarter of a period; 0 elsewhere.
     """
     modes = system.modes
     resonant = (modes.dynamic_stiffness(r)[:, found.participating] == 0.0) & (r > 0.0)[:, np.newaxis]
@@ -260,7 +265,7 @@ def quantity_arrays(
     request: QuantityRequest,
     out: Results,
 ) -> Quantities:
-    """Everything that the quantities of a system's cells need at frequencies r."""
+    """Build the data for the quantities of a system's cells at frequencies r."""
     modes = system.modes
     balance = _balance(system, found, r)
     outputs = _with_force(found.outputs, found, modes) if request.force else found.outputs

@@ -1,4 +1,4 @@
-"""Features of the regimes and of the continuous response that need no map: limits, peaks, invariant points.
+"""Features of the regimes and of the continuous motion that need no map: limits, peaks, invariant points.
 
 Equation numbers are those of theory.md 7 and of the thesis (T).
 """
@@ -15,13 +15,13 @@ from .errors import InputError
 from .model.free_structure import FreeStructure
 from .model.modes import ModalModel
 from .model.system import System
-from .roots import Stretch, find_roots, shaped, union, with_poles, without
+from .roots import FrequencyRange, find_roots, shaped, union, with_poles, without
 
-#: Invariant points crowd towards r = 0, where hardly any motion is continuous: no more than so many are
-#: looked for, from the highest down.
+#: Largest number of invariant points sought, from the highest down: they accumulate towards r = 0, where
+#: hardly any motion is continuous.
 MOST_POINTS = 1000
 
-#: Phases of a load that differ by less than this are one: a few units of rounding of an exponential.
+#: Phase difference below which two loads are in phase: a few units of rounding of an exponential.
 _ONE_PHASE = 1e-14
 
 
@@ -35,8 +35,8 @@ class HighFrequency(NamedTuple):
 def peak_thresholds(system: System) -> np.ndarray:
     """Least beta for which the i-th resonant peak is finite, T(6.2), (6.26), (7.62); shape (n,).
 
-    (pi/4)|lambda_i/chi_i| without damping; with it T(7.62), which is approximate.  Infinite for a mode that
-    the contact does not see; NaN of one that C couples to others.
+    (pi/4)|lambda_i/chi_i| without damping; with damping T(7.62), which is approximate.  Infinite for a mode
+    that does not participate; NaN for a mode that C couples to others.
     """
     modes = system.modes
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -45,14 +45,14 @@ def peak_thresholds(system: System) -> np.ndarray:
     # (cosh x - 1)/(2 zeta sinh x) = tanh(x/2)/(2 zeta), which is pi/4 at zeta = 0
     factor = np.full(x.size, 0.25 * math.pi)
     np.divide(np.tanh(0.5 * x), 2.0 * modes.zeta, out=factor, where=modes.zeta > 0.0)
-    return np.where(modes.joined, np.nan, np.where(modes.chi == 0.0, np.inf, ratio * factor))
+    return np.where(modes.coupled_modes, np.nan, np.where(modes.chi == 0.0, np.inf, ratio * factor))
 
 
 def peak_amplitudes(system: System, beta: float) -> np.ndarray:
     """Amplitude of every mass at every resonance, T(7.60), approximate; shape (n, n): mass, mode.
 
-    It falls with beta on a straight line, to 0 at the mode's `peak_thresholds`; from there on NaN, as the
-    motion is not continuous.  Infinite without damping; NaN of a mode that C couples to others.
+    It decreases linearly with beta, to 0 at the `peak_thresholds` of the mode; at and above it the motion is
+    not continuous and the value is NaN.  Infinite without damping; NaN for a mode that C couples to others.
     """
     beta = checks.number(beta, "beta", least=0.0)
     modes = system.modes
@@ -61,21 +61,21 @@ def peak_amplitudes(system: System, beta: float) -> np.ndarray:
         # |phi chi|/w^2 sinh/(cosh - 1) is the frictionless peak over the threshold
         left = 1.0 - beta / peak_thresholds(system) if beta > 0.0 else np.ones(modes.w.size)
         peaks = np.where(part > 0.0, part / (2.0 * modes.zeta) * left, 0.0)
-    return np.where((left > 0.0) & ~modes.joined, peaks, np.nan)
+    return np.where((left > 0.0) & ~modes.coupled_modes, peaks, np.nan)
 
 
 def high_frequency_limits(system: System, mu: float = 1.0) -> HighFrequency:
     """beta_lim and beta_stick for r -> infinity, T(2.31), (6.8), (6.28), (6.29), with mu squared.
 
-    Zero if the load acts elsewhere than on a mass in contact; a joined base-wall's grow with r^2, those of
+    Zero if the load does not act on a mass in contact.  With a joined base-wall they grow with r^2, with
     dashpots to the base with r.
     """
     mu = checks.number(mu, "mu", least=1.0)
     modes = system.modes
     if system.base_motion or modes.contact_acceleration(modes.load_rate) != 0.0:
         return HighFrequency(math.inf, math.inf)
-    # where the parts that grow leave each other, what C makes of them in the next power of r is left:
-    # c^T M^-1 (load - C M^-1 load_rate)
+    # where the growing terms cancel, the effect of C in the next power of r remains: c^T M^-1 (load - C M^-1
+    # load_rate)
     left = modes.load - modes.damping @ np.linalg.solve(modes.mass, modes.load_rate)
     share = abs(modes.contact_acceleration(left)) / modes.inverse_mass
     return HighFrequency(float(share) * 2.0 / math.hypot(2.0 * mu, math.pi), float(share) / mu)
@@ -84,19 +84,19 @@ def high_frequency_limits(system: System, mu: float = 1.0) -> HighFrequency:
 def quasi_static_displacement(system: System, beta: float) -> np.ndarray:
     """Displacements for r -> 0 while the contact slides: K x0 = p - beta c, T(6.5); shape (n,).
 
-    They are those at tau = 0, where the load is the real part of its phasor, with the contact sliding
-    towards larger z; the contact sticks instead if beta is not below beta_stick at r = 0.
+    They are the displacements at tau = 0, where the load equals the real part of its phasor, with the contact
+    sliding towards larger z.  The contact sticks instead unless beta is below beta_stick at r = 0.
     """
     beta = checks.number(beta, "beta", least=0.0)
     modes = system.modes
     return np.linalg.solve(modes.stiffness, modes.load.real - beta * modes.contact)
 
 
-def _range(modes: ModalModel, low: object, high: object, most: object) -> Stretch:
-    """The checked range, cut at its lower end so that it has at most about `most` edges.
+def _range(modes: ModalModel, low: object, high: object, most: object) -> FrequencyRange:
+    """Check the range, and raise its lower end so that it has at most about `most` edges.
 
-    Edges are the natural frequencies and, of every participating mode or oscillator that vibrates, the
-    damped frequency over 1, 3, 5...: there u of T(7.11) has its poles, or without them changes its sign.
+    Edges are the natural frequencies and, for every participating mode or oscillator that vibrates, the
+    damped frequency over 1, 3, 5...: there u of T(7.11) has its poles, or changes sign without a pole.
     """
     low = checks.number(low, "low", above=0.0)
     high = checks.number(high, "high", above=low, most=checks.LARGEST_RATIO)
@@ -117,18 +117,18 @@ def _range(modes: ModalModel, low: object, high: object, most: object) -> Stretc
     if inside[0].size > most:
         low = float(inside[0][-most - 1])
         inside = [part[part > low] for part in inside]
-    return Stretch(low, high, *inside)
+    return FrequencyRange(low, high, *inside)
 
 
 def _damping_functions(free: FreeStructure, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """u and g of participating modes or oscillators, (n_r, p) both."""
+    """Damping functions u and g of participating modes or oscillators, (n_r, p) both."""
     u, g = np.empty((2, r.size, free.omega.size))
     fill_damping_functions(r, free.omega, free.zeta, u, g)
     return u, g
 
 
 def _first_damping(modes: ModalModel, r: np.ndarray) -> np.ndarray:
-    """u_i/w_i^2 chi_i, and 0 of modes that the contact does not see, whose u may be infinite; (n_r, n)."""
+    """u_i/w_i^2 chi_i, and 0 for modes that do not participate, whose u may be infinite; (n_r, n)."""
     participating = modes.chi != 0.0
     u, _ = _damping_functions(modes.free, r)
     terms = np.zeros((r.size, participating.size))
@@ -146,15 +146,17 @@ def _coupled_u(modes: ModalModel, r: np.ndarray) -> np.ndarray:
 
 
 def _sums(terms: np.ndarray, rows: np.ndarray, which: np.ndarray | None) -> np.ndarray:
-    """Sums over modes, terms (n_r, n), with weights (n_rows, n): (n_r, n_rows), or (n_r,) of one a term."""
+    """Sums over modes of terms (n_r, n) with weights (n_rows, n): (n_r, n_rows), or (n_r,) for one row per
+    term.
+    """
     return terms @ rows.T if which is None else np.einsum("ij,ij->i", terms, rows[which])
 
 
 def invariant_points(system: System, low: float, high: float, most: int = MOST_POINTS) -> np.ndarray:
-    """Frequency ratios in (low, high) where friction leaves z as it is: U = 0, T(6.9), increasing.
+    """Find frequency ratios in (low, high) where friction does not change z: U = 0, T(6.9), increasing.
 
-    Without damping amplitude and phase of z are there what they are without friction, and these are all
-    such points: between two of its poles U falls from +inf to -inf, once.  With damping it is the phase.
+    Without damping, amplitude and phase of z are there the same as without friction, and all such points are
+    found: between two of its poles U falls from +inf to -inf once.  With damping only the phase is unchanged.
     Of more than about `most` points the highest are returned.
     """
     modes = system.modes
@@ -165,14 +167,14 @@ def invariant_points(system: System, low: float, high: float, most: int = MOST_P
     return find_roots(lambda r, which=None: _sums(_first_damping(modes, r), row, which), where)[0]
 
 
-def _turned_load(modes: ModalModel) -> np.ndarray:
-    """The load with its largest entry made real and positive, which turns the whole motion with it."""
+def _real_load(modes: ModalModel) -> np.ndarray:
+    """The load with its largest entry rotated to a positive real number; the motion is rotated with it."""
     return modes.load * np.exp(-1j * np.angle(modes.load[np.argmax(np.abs(modes.load))]))
 
 
 def one_phase(system: System) -> bool:
-    """Whether all masses are loaded in phase, or in opposition: with two phases no amplitude is invariant."""
-    turned = _turned_load(system.modes)
+    """Whether all loads are in phase or in opposition; otherwise no amplitude is invariant."""
+    turned = _real_load(system.modes)
     return bool(np.all(np.abs(turned.imag) <= _ONE_PHASE * np.abs(turned)))
 
 
@@ -183,7 +185,7 @@ def _undamped(system: System) -> ModalModel:
             f"load must have one phase for invariant points of a mass; got {system.modes.load.tolist()}"
         )
     modes = system.modes
-    turned = _turned_load(modes)
+    turned = _real_load(modes)
     none = np.zeros(modes.w.size)
     return ModalModel(
         modes.w, modes.phi, none, modes.contact, turned.real.astype(complex), none.astype(complex),
@@ -192,34 +194,36 @@ def _undamped(system: System) -> ModalModel:
 
 
 def _responses(modes: ModalModel, r: np.ndarray) -> np.ndarray:
-    """lambda_i/(w_i^2 - r^2) without damping and with a real load, at no resonance; (n_r, n)."""
+    """lambda_i/(w_i^2 - r^2) without damping and with a real load, away from resonances; (n_r, n)."""
     return modes.participation(r).real / modes.dynamic_stiffness(r).real
 
 
 def _displacement_rows(modes: ModalModel, masses: np.ndarray) -> np.ndarray:
-    """phi_k of the masses (counted from 1), (n_masses, n), with exact zeros at nodes of a mode."""
+    """Rows phi_k of the masses (counted from 1), (n_masses, n), with exact zeros at the nodes of a mode."""
     rows = modes.phi[masses - 1]
     return np.where(np.abs(rows) <= 1e-13 * np.abs(modes.phi).max(axis=0), 0.0, rows)
 
 
 def _follows_contact(modes: ModalModel, rows: np.ndarray) -> np.ndarray:
-    """Whether a mass is the contact itself, one against a fixed wall; bool (n_masses,)."""
+    """Whether the displacement of a mass equals z, as for the mass at a fixed wall; bool (n_masses,)."""
     return (not modes.base_motion) & np.isclose(np.abs(rows), np.abs(modes.chi), 1e-12, 1e-13).all(axis=1)
 
 
-def _antiresonances(modes: ModalModel, where: Stretch) -> np.ndarray:
-    """Zeros of V, where V_k/V has its poles, unless V_k is zero there, too."""
+def _antiresonances(modes: ModalModel, where: FrequencyRange) -> np.ndarray:
+    """Zeros of V, where V_k/V has its poles unless V_k is zero there as well."""
     return find_roots(lambda r, which=None: shaped(modes.contact_response(r).real, which), where)[0]
 
 
 class _Motions(NamedTuple):
-    """Masses, and at last the contact, as weights of the modes; (n_rows, n) and (n_rows,)."""
+    """Masses, and last the contact, as weights of the modes; (n_rows, n) and (n_rows,)."""
 
     rows: np.ndarray
-    own: np.ndarray  # whether it is the motion in the contact
+    own: np.ndarray  # whether the displacement equals z
 
     def ratios(self, modes: ModalModel, r: np.ndarray, which: np.ndarray | None) -> np.ndarray:
-        """V_k/V without damping, (n_r, n_rows), or (n_r,) of one a frequency; 1 of the contact itself."""
+        """V_k/V without damping, (n_r, n_rows), or (n_r,) for one row per frequency; 1 for the contact
+        itself.
+        """
         v_k, v = _sums(_responses(modes, r), self.rows, which), shaped(modes.contact_response(r).real, which)
         own = self.own if which is None else self.own[which]
         safe = np.where(v == 0.0, 1.0, v)
@@ -235,7 +239,7 @@ def _motions(modes: ModalModel) -> _Motions:
 def all_mass_invariant_points(
     system: System, low: float, high: float, most: int = MOST_POINTS
 ) -> list[np.ndarray]:
-    """`mass_invariant_points` of every mass, at about the cost of one."""
+    """Find the `mass_invariant_points` of every mass, at about the cost of one mass."""
     modes = _undamped(system)
     where = _range(modes, low, high, most)
     where = with_poles(where, _antiresonances(modes, where))
@@ -250,7 +254,7 @@ def all_mass_invariant_points(
             u_k, u_z = u_k[:, :n], u_z[:, np.newaxis]
         ratios = motions.ratios(modes, r, None if which is None else row)
         ratios = ratios[:, :n] if which is None else ratios
-        # of the contact itself T(6.10) is never zero, but what it is multiplied with here is
+        # for the contact itself T(6.10) is never zero, but the factor it is multiplied by here is
         other = np.where(motions.own[row] | (u_k == 0.0), 0.0, u_k - 2.0 * ratios * u_z)
         return np.hstack((u_k, other)) if which is None else np.where(which < n, u_k, other)
 
@@ -261,38 +265,41 @@ def all_mass_invariant_points(
 def mass_invariant_points(
     system: System, mass: int, low: float, high: float, most: int = MOST_POINTS
 ) -> np.ndarray:
-    """The same for the displacement of one mass: U_k = 0, and 1 - 2 V_k U/(V U_k) = 0, T(6.10).
+    """Find the invariant points of the displacement of one mass: U_k = 0, and 1 - 2 V_k U/(V U_k) = 0,
+    T(6.10).
 
-    There friction turns from lowering the monoharmonic amplitude T(5.50) to raising it, or back; of the
-    exact amplitude these are the limits of `inversion_points` for beta -> 0.  Of a mass in contact with a
-    fixed wall they are those of `invariant_points`.  Damping is left out: with it they are approximate,
-    T 7.4.3.  The load must have one phase.
+    At these points friction changes from lowering the monoharmonic amplitude T(5.50) to raising it, or back;
+    they are the limits for beta -> 0 of the `inversion_points` of the exact amplitude.  For a mass in contact
+    with a fixed wall they are the `invariant_points`.  Damping is neglected: with damping the points are
+    approximate, T 7.4.3.  All loads must be in phase.
     """
     mass = system.dofs.number(mass, "mass")
     return all_mass_invariant_points(system, low, high, most)[system.dofs.row(mass)]
 
 
 class FirstHarmonicPoints(NamedTuple):
-    """Frequency ratios where no friction changes a first harmonic; increasing."""
+    """Frequency ratios where friction does not change a first harmonic; increasing."""
 
-    unchanged: np.ndarray  # amplitude and phase
-    inversions: np.ndarray  # the amplitude only: on either side friction changes it to the other
+    unchanged: np.ndarray  # where amplitude and phase are unchanged
+    inversions: (
+        np.ndarray
+    )  # where only the amplitude is unchanged; friction raises it on one side and lowers it on the other
 
     @property
     def all(self) -> np.ndarray:
-        """Both, increasing, each once."""
+        """Both kinds, increasing, each point once."""
         return union(*self)
 
 
 def first_harmonic_points(
     system: System, low: float, high: float, most: int = MOST_POINTS
 ) -> list[FirstHarmonicPoints]:
-    """Frequency ratios in (low, high) where no friction changes a first harmonic, theory.md 9 (7).
+    """Find frequency ratios in (low, high) where friction does not change a first harmonic, theory.md 9 (7).
 
-    Of every mass, and at last of the motion in the contact.  The first harmonic of friction acts through
-    A_k = sum phi_ki chi_i/(w_i^2 - r^2): where that is zero, amplitude and phase stay.  With it
-    abs(X_k1)^2 = V_k^2 + (8 beta^2/pi) A_k (V_k U/V + 2 A_k/pi), for all beta alike: where the bracket is
-    zero, the amplitude stays.  Damping is left out; the load must have one phase.
+    The list holds the points of every mass, and last those of z.  The first harmonic of friction acts through
+    A_k = sum phi_ki chi_i/(w_i^2 - r^2): where it is zero, amplitude and phase are unchanged.  Furthermore
+    abs(X_k1)^2 = V_k^2 + (8 beta^2/pi) A_k (V_k U/V + 2 A_k/pi) for every beta: where the bracket is zero,
+    the amplitude is unchanged.  Damping is neglected; all loads must be in phase.
     """
     modes = _undamped(system)
     where = _range(modes, low, high, most)
@@ -308,7 +315,7 @@ def first_harmonic_points(
 
     unchanged = find_roots(compliances, where)
     inversions = find_roots(brackets, with_poles(where, _antiresonances(modes, where)))
-    # where V_k, too, is zero, a root of A_k is one of the bracket
+    # where V_k is zero too, a root of A_k is also a root of the bracket
     return [
         FirstHarmonicPoints(both, without(amplitude, both))
         for both, amplitude in zip(unchanged, inversions, strict=True)
@@ -318,6 +325,6 @@ def first_harmonic_points(
 def first_harmonic_invariant_points(
     system: System, mass: int, low: float, high: float, most: int = MOST_POINTS
 ) -> np.ndarray:
-    """All `first_harmonic_points` of one mass.  In T 4.4 the inversion of frequency-based curves."""
+    """All `first_harmonic_points` of one mass, the inversion points of frequency-based curves of T 4.4."""
     mass = system.dofs.number(mass, "mass")
     return first_harmonic_points(system, low, high, most)[system.dofs.row(mass)].all

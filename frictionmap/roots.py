@@ -1,4 +1,4 @@
-"""Roots of functions with known poles: samples close to poles, looks into dips, and the Illinois method."""
+"""Roots of functions with known poles: samples close to poles, search of dips, and the Illinois method."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -7,28 +7,29 @@ import numpy as np
 
 _EPS = float(np.finfo(float).eps)
 
-#: Between two poles a change of sign is looked for at these shares of the way: ever closer to the poles,
-#: where a mode of little weight bends the sum only at its own.
+#: Positions of the samples between two poles, as shares of the distance: increasingly dense towards the
+#: poles, since a mode of little weight affects the sum only close to its own pole.
 _NEAR = 0.25 ** np.arange(1.0, 16.0)
 _SHARES = np.unique(np.concatenate((_NEAR, 1.0 - _NEAR, np.arange(1.0, 16.0) / 16.0)))
 
-#: A dip that may hold two roots is sampled at so many places, and again between the neighbours of the least,
-#: until its samples are alike but for this share of the least, and at most until it is as narrow as rounding
-#: lets a pair be, half of the digits.
+#: A dip that may hold two roots is sampled at `_DIP_SAMPLES` points, and again between the neighbours of the
+#: smallest sample, until the samples differ by less than `_DIP_ALIKE` of the smallest, for at most
+#: `_DIP_ROUNDS` rounds; the dip is then as narrow as a pair of roots that rounding can separate, half of the
+#: digits.
 _DIP_SAMPLES = 9
 _DIP_ALIKE = 0.25
 _DIP_ROUNDS = 12
 
-#: Roots of two functions that differ by less of their size are one: sums that cancel round off some digits.
+#: Relative distance below which roots of two functions coincide; cancellation in the sums costs some digits.
 _ONE_ROOT = 1e-11
 
-#: Steps to a root at most: every third is a halving, and no interval is halved more often than a double's
-#: bits allow.
+#: Largest number of steps to a root: every third is a bisection, and an interval can be halved only as often
+#: as a double has bits.
 _STEPS = 200
 
 
-class Stretch(NamedTuple):
-    """A stretch of frequencies, and where in it the sums over modes turn sharply."""
+class FrequencyRange(NamedTuple):
+    """A range of frequencies, and where in it sums over modes change sharply."""
 
     low: float
     high: float
@@ -36,8 +37,8 @@ class Stretch(NamedTuple):
     poles: np.ndarray  # of the edges, those where a sum may be infinite
 
 
-def with_poles(where: Stretch, poles: np.ndarray) -> Stretch:
-    """The same stretch with more poles in it."""
+def with_poles(where: FrequencyRange, poles: np.ndarray) -> FrequencyRange:
+    """Add poles to a range."""
     inside = poles[(poles > where.low) & (poles < where.high)]
     return where._replace(edges=np.union1d(where.edges, inside), poles=np.union1d(where.poles, inside))
 
@@ -50,10 +51,10 @@ def polish(
     at_low: np.ndarray,
     at_high: np.ndarray,
 ) -> np.ndarray:
-    """Roots of the functions `which` between low and high, all (n_roots,), to two units of rounding.
+    """Refine roots of the functions `which` between low and high, all (n_roots,), to two units of rounding.
 
-    The Illinois method: false position, where the value at an end that stays twice is halved; every third
-    step is a bisection, which bounds their number.
+    The Illinois method is false position in which the value at an end that is retained twice is halved; every
+    third step is a bisection, which bounds the number of steps.
     """
     root = high.copy()
     left = np.arange(low.size)
@@ -81,7 +82,7 @@ def polish(
 
 
 class _Brackets(NamedTuple):
-    """Intervals between which functions `which` change their sign; arrays of one size."""
+    """Intervals in which functions `which` change sign; arrays of equal size."""
 
     which: np.ndarray
     low: np.ndarray
@@ -91,9 +92,9 @@ class _Brackets(NamedTuple):
 
 
 def _dips(r: np.ndarray, values: np.ndarray, cut: np.ndarray) -> _Brackets:
-    """Samples that are nearer to zero than those beside them and of their sign: (r of) both these neighbours.
+    """Samples closer to zero than their neighbours of equal sign, with the frequencies of both neighbours.
 
-    cut : (n_r + 1,) bool, whether the sample before, or the end of all, is beyond a pole
+    cut : (n_r + 1,) bool, whether a pole, or an end of the range, precedes the sample
     """
     size, sign = np.abs(values), np.sign(values)
     start, end = cut[:-1, np.newaxis], cut[1:, np.newaxis]
@@ -106,7 +107,7 @@ def _dips(r: np.ndarray, values: np.ndarray, cut: np.ndarray) -> _Brackets:
 
 
 def _pairs(f: Callable[..., np.ndarray], dips: _Brackets) -> _Brackets:
-    """Changes of sign within dips, two a dip that has any."""
+    """Sign changes within dips, two for each dip that has any."""
     which, low, high, side = dips.which, dips.low, dips.high, np.sign(dips.at_low)
     share = np.linspace(0.0, 1.0, _DIP_SAMPLES + 2)
     found = []
@@ -134,15 +135,15 @@ def _joined(brackets: list[_Brackets]) -> _Brackets:
     return _Brackets(*(np.concatenate(part) for part in zip(*brackets, strict=True)))
 
 
-def find_roots(f: Callable[..., np.ndarray], where: Stretch) -> list[np.ndarray]:
-    """Roots of several functions, all that sampling and a look into every dip of it can find.
+def find_roots(f: Callable[..., np.ndarray], where: FrequencyRange) -> list[np.ndarray]:
+    """Find the roots of several functions that sampling, and examining each dip of the samples, can reveal.
 
-    f(r) returns the values of all functions, (n_r, n_functions); f(r, which) those of one a frequency,
-    (n_r,).
+    f(r) returns the values of all functions, (n_r, n_functions); f(r, which) those of one function per
+    frequency, (n_r,).
     """
     edges = np.concatenate(([where.low], where.edges, [where.high]))
     r = np.unique(edges[:-1, np.newaxis] + np.diff(edges)[:, np.newaxis] * _SHARES)
-    r = r[~np.isin(r, where.poles)]  # a narrow stretch has samples that round to its ends
+    r = r[~np.isin(r, where.poles)]  # samples of a narrow interval may round to its ends
     values = f(r)
     sign = np.sign(values)
     cut = np.searchsorted(where.poles, r[1:]) != np.searchsorted(where.poles, r[:-1])
@@ -150,7 +151,7 @@ def find_roots(f: Callable[..., np.ndarray], where: Stretch) -> list[np.ndarray]
     changes = _Brackets(which, r[k], r[k + 1], values[k, which], values[k + 1, which])
     brackets = _joined([changes, _pairs(f, _dips(r, values, np.concatenate(([True], cut, [True]))))])
     found = polish(f, *brackets)
-    exact = (sign == 0.0) & (values != 0.0).any(axis=0)  # not of a function that is zero everywhere
+    exact = (sign == 0.0) & (values != 0.0).any(axis=0)  # excludes functions that are zero everywhere
     return [
         np.unique(np.concatenate((found[brackets.which == j], r[exact[:, j]])))
         for j in range(values.shape[1])
@@ -158,17 +159,17 @@ def find_roots(f: Callable[..., np.ndarray], where: Stretch) -> list[np.ndarray]
 
 
 def union(*roots: np.ndarray) -> np.ndarray:
-    """Roots of several functions, increasing, each once."""
+    """Merge roots of several functions, increasing, each root once."""
     every = np.sort(np.concatenate(roots))
     return every[np.diff(every, prepend=-np.inf) > _ONE_ROOT * every]
 
 
 def without(roots: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Roots that are none of the others."""
+    """Roots that are not among the others."""
     apart = np.abs(roots[:, np.newaxis] - others) > _ONE_ROOT * roots[:, np.newaxis]
     return roots[apart.all(axis=1)]
 
 
 def shaped(values: np.ndarray, which: np.ndarray | None) -> np.ndarray:
-    """Values (n_r,) of all functions alike, as `find_roots` wants them."""
+    """Arrange values (n_r,) as `find_roots` requires for a single function."""
     return values[:, np.newaxis] if which is None else values

@@ -18,7 +18,7 @@ from frictionmap._kernels.one_mass.events import REVERSE, STOP_THEN_BACK, STOP_T
 from frictionmap._kernels.one_mass.scan_step import MAX_TERMS, step_constants
 from frictionmap._kernels.structure.events import after_slide, slide_on
 from frictionmap._kernels.structure.oscillators import make_scratch
-from frictionmap._kernels.structure.state import make_structure, place
+from frictionmap._kernels.structure.state import contact_displacement, make_structure
 from frictionmap.model.settings import Solver
 from frictionmap.steady.cells import Cells
 
@@ -194,7 +194,7 @@ def _march_structure(model, loads, r, beta, mu, steps, cycles, out, begins):
             inside = window <= tau < window + TWO_PI
             began = math.atan2(sign * s, sign * c)
             if inside:
-                peak = max(peak, abs(place(st, state, c, s)))
+                peak = max(peak, abs(contact_displacement(st, state, c, s)))
             code, c, s, force, wait, _, _ = after_slide(
                 st, beta[k], mu_beta, state, held, c, s, 1e6, scratch
             )  # fmt: skip

@@ -33,10 +33,10 @@ from matplotlib.axes import Axes
 
 import frictionmap as fm
 from frictionmap import regimes
-from frictionmap._kernels.engine.answers import Limits
 from frictionmap._kernels.engine.march import steady_state
 from frictionmap._kernels.engine.motion import at_frequency, contact_at, start
 from frictionmap._kernels.engine.one_mass import Frequencies, OneMassSystem
+from frictionmap._kernels.engine.records import Limits
 from frictionmap.model.settings import Solver
 from frictionmap.steady.maps import Arrays
 from frictionmap.theory.boundary_curves import one_mass_curves

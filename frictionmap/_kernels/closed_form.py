@@ -1,8 +1,8 @@
 """Closed forms of one vibrating mode: trigonometry of pi/(2R), d and q of T(B.8), u and g of T(7.11-12).
 
-A mode has natural frequency ``w`` and damping ratio ``zeta``; with ``R = r/w`` and ``a = 1/R`` the
-thesis's functions of ``tau`` are functions of ``theta = a tau``.  Over-damped modes are the analytic
-continuation (sin -> sinh); every form below stays accurate through ``zeta = 1``.
+A mode has natural frequency ``w`` and damping ratio ``zeta``; with ``R = r/w`` and ``a = 1/R`` the thesis's
+functions of ``tau`` are functions of ``theta = a tau``.  Over-damped modes are the analytic continuation (sin
+-> sinh); every form below stays accurate through ``zeta = 1``.
 """
 
 import math
@@ -15,9 +15,9 @@ _SPLIT = 134217729.0  # 2**27 + 1, Dekker's constant for splitting a double in t
 
 @kernel
 def residual(numerator, multiple, r):
-    """``numerator - multiple*r`` with one rounding (Dekker's product), ``multiple`` a whole number."""
+    """Compute ``numerator - multiple*r`` with one rounding (Dekker's product) for an integer ``multiple``."""
     product = multiple * r
-    if not abs(product) < 1e290:  # the splitting would overflow; the quotient is 0 or 1 there anyway
+    if not abs(product) < 1e290:  # Dekker's splitting would overflow; the quotient is 0 or 1 there
         return numerator - product
     t = _SPLIT * multiple
     m_high = t - (t - multiple)
@@ -31,14 +31,14 @@ def residual(numerator, multiple, r):
 
 @kernel
 def sincos_quarter(numerator, less, r):
-    """Sine and cosine of ``(pi/2) (numerator - less)/r``, exact to rounding next to every zero of both.
+    """Sine and cosine of ``(pi/2) (numerator - less)/r``, exact to rounding close to every zero of both.
 
-    ``less`` carries what ``numerator`` alone would round away.  The whole quarter turns are taken off
-    before the division, so that nothing is lost next to ``R = 1/(2n+1)`` and ``R = 1/(2n)``, where the
-    plain expression keeps no digit.
+    ``less`` carries the part that ``numerator`` alone would round away.  Whole quarter turns are subtracted
+    before the division, so that no accuracy is lost close to ``R = 1/(2n+1)`` and ``R = 1/(2n)``, where the
+    plain expression has no correct digit.
     """
     turns = (numerator - less) / r
-    if not turns < 4503599627370496.0:  # 2**52: no fraction left in a double
+    if not turns < 4503599627370496.0:  # 2**52: a double this large has no fractional part
         return math.nan, math.nan
     whole = math.floor(turns + 0.5)
     angle = HALF_PI * ((residual(numerator, whole, r) - less) / r)
@@ -84,8 +84,8 @@ def decay(zeta, theta):
 
 
 @kernel
-def _sinh_less_argument(x):
-    """``sinh(x) - x`` without cancellation."""
+def _sinh_minus_argument(x):
+    """Compute ``sinh(x) - x`` without cancellation."""
     if abs(x) > 1.0:
         return math.sinh(x) - x
     square = x * x
@@ -100,8 +100,8 @@ def _sinh_less_argument(x):
 
 
 @kernel
-def _argument_less_sin(x):
-    """``x - sin(x)`` without cancellation."""
+def _argument_minus_sin(x):
+    """Compute ``x - sin(x)`` without cancellation."""
     if abs(x) > 1.0:
         return x - math.sin(x)
     square = x * x
@@ -117,9 +117,9 @@ def _argument_less_sin(x):
 
 @kernel
 def _over_damped_rise(x, zeta):
-    """``sinh(x) - zeta/s sinh(s x/zeta)``, s^2 = zeta^2 - 1, for x <= 1, without cancellation.
+    """Compute ``sinh(x) - zeta/s sinh(s x/zeta)``, s^2 = zeta^2 - 1, for x <= 1, without cancellation.
 
-    Its series is that of sinh with 1 - (s/zeta)^(2k) beside each term.
+    Its series is that of sinh with the factor 1 - (s/zeta)^(2k) on each term.
     """
     less = 1.0 / (zeta * zeta)  # 1 - (s/zeta)^2
     square = x * x
@@ -152,10 +152,10 @@ def damping_functions(w, zeta, r):
     small = math.exp(-x)  # every hyperbolic function below is scaled by exp(-x)
     if zeta < 1.0:
         s = math.sqrt((1.0 - zeta) * (1.0 + zeta))
-        # where exp(-x) is nothing, the angle does not matter and may be out of range
+        # where exp(-x) underflows the angle has no effect, and may be out of range
         sine, cosine = 0.0, 0.0
         if small > 0.0:
-            less = w * zeta * zeta / (1.0 + s)  # w s = w - less; the form that rounds less
+            less = w * zeta * zeta / (1.0 + s)  # w s = w - less, with the smaller rounding error
             if zeta < 0.5:
                 sine, cosine = sincos_quarter(w, less, r)
             else:
@@ -165,7 +165,7 @@ def damping_functions(w, zeta, r):
         swing = 2.0 * sine * cosine * small / s
         angle = s * math.pi * a
         if angle < 1.0 and x < 1.0:
-            above = small * (_sinh_less_argument(x) + (zeta / s) * _argument_less_sin(angle))
+            above = small * (_sinh_minus_argument(x) + (zeta / s) * _argument_minus_sin(angle))
         else:
             above = 0.5 * gap * (1.0 + small) - zeta * swing
         return a * swing / below, above / below
@@ -173,7 +173,7 @@ def damping_functions(w, zeta, r):
         swing = small * math.pi * a
         below = 0.5 * (1.0 + small * small) + small
         if x < 1.0:
-            return a * swing / below, small * _sinh_less_argument(x) / below
+            return a * swing / below, small * _sinh_minus_argument(x) / below
         return a * swing / below, (0.5 * (1.0 - small * small) - swing) / below
     s = math.sqrt((zeta - 1.0) * (zeta + 1.0))
     angle = s * math.pi * a
@@ -183,7 +183,8 @@ def damping_functions(w, zeta, r):
     if x < 1.0:
         above = small * _over_damped_rise(x, zeta)
     else:
-        # 1/2 (1 - small^2) - zeta swing without the s swing that both have, 1/2 (slow - exp(-angle - x))
+        # 1/2 (1 - small^2) - zeta swing, after cancelling the common term s swing = 1/2 (slow - exp(-angle -
+        # x))
         lag = math.pi * a / (zeta + s)  # x - angle
         above = -0.5 * math.expm1(-lag) * (1.0 + small * math.exp(-angle)) - swing / (zeta + s)
     return a * swing / below, above / below

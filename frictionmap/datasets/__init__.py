@@ -1,1 +1,1 @@
-"""What a dataset holds: labels, legal values, and how it was made."""
+"""Datasets: labels of variables, schema and checks, SI units, provenance."""

@@ -1,6 +1,6 @@
-"""Names, types and legal values of what a dataset of estimates holds, whatever data they are from.
+"""Names, types and valid values of a dataset of estimates, for every kind of data.
 
-A kind of data adds variables of its own, over no dimension or over samples; they are numbers or texts.
+A kind of data adds variables of its own, scalars or over samples; they are numbers or texts.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ _PARAMETER, _SAMPLE = ("parameter",), ("sample",)
 _FLAG = Label(np.int8, "", _PARAMETER, least=0, most=1)
 _NUMBER = Label(np.float64, "number", ())
 
-#: Without these there are no estimates.
+#: Required variables of a dataset of estimates.
 OF_PARAMETERS = {
     "estimate": Label(np.float64, "estimate", _PARAMETER),
     "standard_error": Label(np.float64, "standard error", _PARAMETER, least=0.0),
@@ -49,5 +49,5 @@ ESTIMATES = {
     "sample": Label(np.int64, "sample fitted", _SAMPLE),
 }
 
-#: Global attributes that are text, beside those of every file.
+#: Global attributes that are text, in addition to those of every file.
 ESTIMATE_TEXTS = ("warnings", "data_file", "data_form")

@@ -1,6 +1,6 @@
-"""Names, units and meanings of everything that is put into a dataset (CF conventions).
+"""Names, units and descriptions of all variables of a dataset (CF conventions).
 
-Files have them: they may grow, not change.
+They are stored in files: new ones may be added, existing ones must not change.
 """
 
 import re
@@ -17,32 +17,32 @@ REFERENCES = (
 )
 
 
-#: In stores: marks of blocks of rows that are computed, 1 where they are.
+#: In stores: 1 for every block of rows that is computed.
 MARKS = "block_done"
 
-#: Dimensions of what is told of every cell, of what depends on frequency only, and of motions on a boundary.
+#: Dimensions of variables of every cell, of boundaries, and of motions on a boundary.
 CELL = ("mu", "r", "beta")
 CURVE = ("mu", "r")
 LIMIT = (*CURVE, "dof")
 
 
 class Label(NamedTuple):
-    """One variable: type, dimensions, description, and the values it may have."""
+    """One variable: type, dimensions, description, and valid values."""
 
     dtype: type
     long_name: str
-    dims: tuple[str, ...]  # in this order; those that a file lacks are the one value of a coordinate
+    dims: tuple[str, ...]  # in this order; a dimension that a file lacks is a scalar coordinate
     codes: tuple[regimes.Code, ...] = ()
     comment: str = ""
     flags: str = "flag_values"
     least: float = -np.inf
     most: float = np.inf
-    nan: bool = False  # whether NaN is legal
+    nan: bool = False  # whether NaN is valid
     inf: bool = False
-    unresolved: float = np.nan  # of a cell of a map, before it is decided
-    needs: str = ""  # beyond the steady state of a cell: "details", its "cycle", or "coexistence" with others
+    unresolved: float = np.nan  # value of a cell of a map before it is decided
+    needs: str = ""  # what it requires beyond the steady state of a cell: "details", "cycle" or "coexistence"
     units: str = "1"
-    texts: tuple[str, ...] = ()  # of an axis of texts: what its values are, in order
+    texts: tuple[str, ...] = ()  # valid values of an axis of texts, in order
 
 
 #: Axes; strictly increasing and finite.
@@ -70,7 +70,7 @@ _PER_CYCLE = "per excitation cycle, over P^2/k1"
 
 
 def _of_cell(long_name: str, comment: str = "", *further: str, least: float = -np.inf) -> Label:
-    """A number of every cell, or several, infinite at an undamped resonance."""
+    """Label of a number, or several, for every cell; infinite at an undamped resonance."""
     return Label(
         np.float64,
         long_name,
@@ -84,7 +84,7 @@ def _of_cell(long_name: str, comment: str = "", *further: str, least: float = -n
 
 
 def _phase(long_name: str, comment: str, *further: str, most: float = np.pi) -> Label:
-    """A phase of every cell, or several."""
+    """Label of a phase, or several, for every cell."""
     return Label(
         np.float64, long_name, (*CELL, *further), comment=comment, least=-np.pi, most=most, nan=True,
         needs="cycle", units="radian",
@@ -189,11 +189,11 @@ CELL_VARIABLES = {
     "sliding_distance": _of_cell(
         "distance that the contact slides", "per excitation cycle, over P/k1 (Y); 0 where stuck", least=0.0
     ),
-    "work_friction": _of_cell("work that friction takes", _PER_CYCLE, least=0.0),
+    "work_friction": _of_cell("work dissipated by friction", _PER_CYCLE, least=0.0),
     "work_input": _of_cell(
         "work of the load, or of what moves the base", f"{_PER_CYCLE}; a joined wall is moved with the base"
     ),
-    "work_damping": _of_cell("work that viscous damping takes", _PER_CYCLE, least=0.0),
+    "work_damping": _of_cell("work dissipated by viscous damping", _PER_CYCLE, least=0.0),
     "equivalent_damping": _of_cell(
         "equivalent viscous damping of the contact, c omega/k1",
         "work of friction over pi times the contact amplitude squared; NaN where stuck",
@@ -209,7 +209,7 @@ CELL_VARIABLES = {
 
 _PLATEAU = "the load's phase, counted from its maximum; NaN where the maximum is not held over a stop"
 
-#: What response curves have of every cell beside outputs of a map.
+#: Variables of every cell of response curves, in addition to outputs of a map.
 CYCLE_VARIABLES = {
     "phase": _phase(
         "lag of the maximum of the displacement of each mass behind that of the load",
@@ -385,30 +385,30 @@ CURVES = {
     ),
     "invariant_point": Label(
         np.float64,
-        "frequency ratios where friction leaves the motion in the contact as it is",
+        "frequency ratios where friction does not change the motion in the contact",
         ("invariant",),
         comment="zeros of U, thesis (6.9); with damping they are invariant for the phase only",
         least=0.0,
     ),
     "mass_invariant_point": Label(
         np.float64,
-        "frequency ratios where friction leaves the monoharmonic amplitude of a mass as it is",
+        "frequency ratios where friction does not change the monoharmonic amplitude of a mass",
         ("dof", "mass_invariant"),
-        comment="zeros of U_k and thesis (6.10), undamped; NaN fills up where a mass has fewer",
+        comment="zeros of U_k and thesis (6.10), undamped; padded with NaN where a mass has fewer",
         least=0.0,
         nan=True,
     ),
     "invariant_first_harmonic": Label(
         np.float64,
-        "frequency ratios where friction leaves the first harmonic's amplitude of a mass as it is",
+        "frequency ratios where friction does not change the first harmonic's amplitude of a mass",
         ("dof", "root"),
-        comment="undamped; NaN fills up where a mass has fewer",
+        comment="undamped; padded with NaN where a mass has fewer",
         least=0.0,
         nan=True,
     ),
     "contact_invariant_first_harmonic": Label(
         np.float64,
-        "frequency ratios where friction leaves the first harmonic's amplitude in the contact as it is",
+        "frequency ratios where friction does not change the first harmonic's amplitude in the contact",
         ("contact_root",),
         comment="undamped; those of the natural frequencies with the contact held leave its phase, too",
         least=0.0,
@@ -430,7 +430,7 @@ HISTORY_VARIABLES = {
     "v": Label(np.float64, "velocity of the masses, dx/dtau, over P/k1 (Y)", ("dof", "tau")),
     "z": Label(np.float64, "motion in the contact, over P/k1 (Y)", ("tau",)),
     "friction": Label(np.float64, "friction force against the motion in the contact, over P", ("tau",)),
-    "phase": Label(np.int8, "sense of the motion in the contact", ("tau",), _SENSES),
+    "phase": Label(np.int8, "direction of the motion in the contact", ("tau",), _SENSES),
     "event_tau": Label(
         np.float64, "excitation phase at which a phase of the motion begins", ("event",), least=0.0
     ),
@@ -438,12 +438,12 @@ HISTORY_VARIABLES = {
     "event_z": Label(np.float64, "motion in the contact at the event, over P/k1 (Y)", ("event",)),
 }
 
-#: In a response `phase` is the sense of the motion; the lag of a mass has another name there.
+#: In a response `phase` is the direction of the motion; the phase lag of a mass has another name there.
 LAG = {"phase_lag": CYCLE_VARIABLES["phase"]}
 
 
 def _quantiles(name: str) -> Label:
-    """Quantiles of a variable of a map over samples of a structure."""
+    """Label of the quantiles of a map's variable over the samples of a structure."""
     label = {**CELL_VARIABLES, **CURVES}[name]
     return Label(
         np.float64,
@@ -456,7 +456,7 @@ def _quantiles(name: str) -> Label:
     )
 
 
-#: Probabilities: of many samples of a structure.
+#: Probabilities, computed from many samples of a structure.
 SHARES = {
     "regime_share": Label(
         np.float64, "share of the samples with this regime", ("outcome", *CELL), least=0.0, most=1.0
@@ -466,7 +466,7 @@ SHARES = {
     "contact_amplitude_quantile": _quantiles("contact_amplitude"),
 }
 
-#: What has an SI unit where the dataset knows what a ratio of 1 is, by what the numbers are over.
+#: Variables with a counterpart in SI units where the reference values are known, by measure.
 MEASURES = {
     "length": (
         "contact_amplitude", "amplitude", "sliding_distance", "contact_first_harmonic_amplitude",
@@ -486,26 +486,26 @@ MEASURES = {
     "time": ("event_tau",),
 }  # fmt: skip
 
-#: The other way round.
+#: Measure of each of these variables.
 MEASURE_OF = {name: measure for measure, names in MEASURES.items() for name in names}
 
-#: SI units as CF has them, and how names of variables end that are in them.
+#: SI units as written in CF conventions, and the suffixes of variables in these units.
 SI = {
     "length": ("m", "m"), "force": ("N", "N"), "work": ("J", "J"), "frequency": ("Hz", "Hz"),
     "velocity": ("m s-1", "m_s"), "time": ("s", "s"),
 }  # fmt: skip
 
-#: Global attributes that say what 1 is of a ratio, by what they measure.
+#: Global attributes with the reference values that convert ratios, by measure.
 SCALES = {"frequency": "frequency_scale_Hz", "force": "force_scale_N", "length": "length_scale_m"}
 
 
 def in_si(name: str, measure: str) -> str:
-    """The name of a variable in its SI unit."""
+    """Name of a variable in its SI unit."""
     return f"{name}_{SI[measure][1]}"
 
 
 def _in_si(label: Label, measure: str) -> Label:
-    """The label of a variable in its SI unit."""
+    """Label of a variable in its SI unit."""
     name = re.sub(r", (over P.*|dx/dtau.*|in units of r)$", "", label.long_name)
     name = name.replace("frequency ratios", "frequencies").replace("excitation phase at", "time at")
     what = ", kinetic friction force" if measure == "force" and "over" not in label.long_name else ""
@@ -520,7 +520,7 @@ IN_SI = {
 }
 LABELS = {**_RATIOS, **IN_SI}
 
-#: Coordinates beside an axis: the same in its SI unit.
+#: Coordinates along an axis: the axis in its SI unit.
 BESIDE = {
     "frequency": Label(np.float64, "excitation frequency", ("r",), least=0.0, units="Hz"),
     "friction_force": Label(np.float64, "kinetic friction force", ("beta",), least=0.0, units="N"),
@@ -528,7 +528,7 @@ BESIDE = {
 }
 
 
-#: What no other axis or variable may be called.
+#: Names that no further axis may have.
 NAMES = frozenset(
     (
         *LABELS,
@@ -542,7 +542,7 @@ NAMES = frozenset(
 
 
 def labels_of(what: str) -> dict[str, Label]:
-    """The labels of a kind of dataset, see `schema.kind`."""
+    """Labels for a kind of dataset, see `schema.kind`."""
     if what != "curves":
         return LABELS
     held = {

@@ -1,4 +1,4 @@
-"""Datasets in hertz, newtons and metres beside their ratios, where they know what a ratio of 1 is."""
+"""Datasets in hertz, newtons and metres in addition to ratios, where the reference values are known."""
 
 import math
 from collections.abc import Mapping
@@ -13,14 +13,14 @@ from .labels import MEASURES, SCALES, attributes, in_si, labels_of
 from .schema import kind
 from .variables import coordinate
 
-#: The coordinate that tells an axis in its SI unit.
+#: Coordinate that holds an axis in its SI unit.
 BESIDE_OF = {"r": "frequency", "beta": "friction_force"}
 
 
 def with_units(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
-    """The dataset with `frequency(r)`, `friction_force(beta)`, and amplitudes, forces and works in SI units.
+    """Add `frequency(r)`, `friction_force(beta)`, and amplitudes, forces and work in SI units to a dataset.
 
-    They stand beside the ratios, which stay as they are; names of variables end in the unit.
+    The ratios are unchanged; the names of the added variables end in their unit.
     """
     ds = ds.assign_attrs(scale_attributes(scales))
     axes = {name: ds[name].values for name in KINDS if name in ds.coords}
@@ -29,13 +29,13 @@ def with_units(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
 
 
 def scale_attributes(scales: Scales) -> dict[str, float]:
-    """Global attributes that say what a ratio of 1 is."""
+    """Global attributes with the reference values that convert ratios."""
     found = {name: scales.of(measure) for measure, name in SCALES.items()}
     return {name: value for name, value in found.items() if value is not None}
 
 
 def physical_axes(axes: Mapping[str, np.ndarray], scales: Scales) -> dict[str, xr.Variable]:
-    """Coordinates in hertz and newtons beside the axes r and beta; as they would be typed."""
+    """Coordinates in hertz and newtons for the axes r and beta, with the digits of a typed value."""
     found = {}
     for name, kind_of_axis in KINDS.items():
         one = getattr(scales, kind_of_axis)
@@ -45,7 +45,7 @@ def physical_axes(axes: Mapping[str, np.ndarray], scales: Scales) -> dict[str, x
 
 
 def in_si_too(ds: xr.Dataset) -> xr.Dataset:
-    """The dataset with those of its variables in SI units that it lacks, by its attributes."""
+    """Add the missing variables in SI units to a dataset, from its attributes."""
     ones = ones_of(ds)
     labels = labels_of(kind(ds))
     added = {}
@@ -62,7 +62,9 @@ def in_si_too(ds: xr.Dataset) -> xr.Dataset:
 
 
 def ones_of(ds: xr.Dataset) -> dict[str, float]:
-    """What 1 is in SI units of every measure that a dataset tells; times and velocities of one r only."""
+    """SI values of a ratio of 1 for every measure that a dataset has; times and velocities at a single r
+    only.
+    """
     ones = {measure: float(ds.attrs[name]) for measure, name in SCALES.items() if name in ds.attrs}
     if "force" in ones and "length" in ones:
         ones["work"] = ones["force"] * ones["length"]
@@ -74,8 +76,8 @@ def ones_of(ds: xr.Dataset) -> dict[str, float]:
     return ones
 
 
-def in_words(ds: xr.Dataset) -> str:
-    """What ratios of 1 are, as the dataset tells; empty if it has no units."""
+def describe_scales(ds: xr.Dataset) -> str:
+    """Describe the reference values of a dataset; empty if it has no units."""
     said = {"frequency": "r = 1 is", "force": "beta = 1 is", "length": "an amplitude of 1 is"}
     parts = []
     for measure, name in SCALES.items():

@@ -1,4 +1,4 @@
-"""How a dataset came to be: its history, and the configuration that makes it again."""
+"""Provenance of a dataset: its history, and the configuration that reproduces it."""
 
 import json
 import math
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from ..model.system import System
     from ..units.scales import Units
 
-#: What is larger is not put into text, but named in a comment.
+#: Larger axes and matrices are not written as text, but named in a comment.
 _MOST_VALUES = 10_000
 _MOST_MASSES = 64
 
-#: Keys of [system] and the values that they have if they are left out.
+#: Keys of [system] and their default values.
 _SYSTEM = {
     "contact": None,
     "contact_masses": (1,),
@@ -40,7 +40,7 @@ _SYSTEM = {
 
 
 def now() -> str:
-    """The time, as a history has it."""
+    """Present time in the format of a history."""
     return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
@@ -54,8 +54,8 @@ def made_by(
     study: Mapping[str, object] | None = None,
     units: "Units | None" = None,
 ) -> dict[str, str]:
-    """Global attributes `history` and `config` of what a function computed; see `configuration`."""
-    call = ", ".join(f"{name} = {_in_words(np.atleast_1d(values))}" for name, values in axes.items())
+    """Global attributes `history` and `config` of a computed dataset; see `configuration`."""
+    call = ", ".join(f"{name} = {_format_axis(np.atleast_1d(values))}" for name, values in axes.items())
     return {
         "history": f"{now()} frictionmap.{function} of {system.contact}, {call}",
         "config": configuration(title, system, axes, solver, curves, study, units=units),
@@ -72,10 +72,10 @@ def configuration(
     matrices: str = "",
     units: "Units | None" = None,
 ) -> str:
-    """A configuration: read by `load_config` it gives the same system, axes and settings, to the bit.
+    """Write a configuration from which `load_config` builds the same system, axes and settings, to the bit.
 
-    matrices : a file that has those of the system; else what is too large for text is a comment, as is what
-        a function does not need
+    matrices : file with the matrices of the system; without it, data too large for text become comments, as
+    do settings that the function does not use
     """
     most = float("inf") if matrices else _MOST_VALUES
     lines = [f"title = {quoted(title)}", "", "[system]", *_system_lines(system, matrices), ""]
@@ -94,7 +94,8 @@ def configuration(
     return "\n".join(lines) + "\n"
 
 
-def _in_words(values: np.ndarray) -> str:
+def _format_axis(values: np.ndarray) -> str:
+    """Format the values of an axis: up to three of them, or the range."""
     if values.size <= 3:
         return ", ".join(f"{value:g}" for value in values)
     return f"{values[0]:g} to {values[-1]:g} ({values.size} values)"
@@ -110,15 +111,15 @@ def _axis_line(name: str, values: np.ndarray, most: float) -> str:
 
 
 def system_text(system: "System") -> str:
-    """The table [system] of a configuration that gives this system again."""
+    """Write the table [system] of a configuration for this system."""
     return "\n".join(["[system]", *_system_lines(system, "")]) + "\n"
 
 
 def _system_lines(system: "System", file: str) -> list[str]:
     matrices = system.matrices
     own = {key: getattr(system, key) for key in _SYSTEM}
-    own["load"] = own.pop("loads")  # of a reduced structure those on the masses that are left
-    if system.reduction is not None:  # of the whole structure, which the matrices below do not tell
+    own["load"] = own.pop("loads")  # for a reduced structure, on the remaining masses
+    if system.reduction is not None:  # r refers to the full structure, not to the matrices below
         own["frequency_scale"] = system.omega_1
     lines = [
         f"{key} = {value_text(value)}" for key, value in own.items() if value not in (None, _SYSTEM.get(key))
@@ -137,23 +138,23 @@ def _system_lines(system: "System", file: str) -> list[str]:
 
 
 def quoted(text: str) -> str:
-    """Text as a TOML basic string: JSON has the same escapes, but leaves the delete character."""
+    """Write text as a TOML basic string: JSON has the same escapes except for the delete character."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _key(name: str) -> str:
-    """A key, in quotes if TOML wants them."""
+    """Write a key, in quotes where TOML requires them."""
     return name if re.fullmatch("[A-Za-z0-9_-]+", name) else quoted(name)
 
 
 def value_text(item: object) -> str:
-    """A value as TOML; a complex number is [real part, imaginary part]."""
+    """Write a value as TOML; a complex number becomes [real part, imaginary part]."""
     if isinstance(item, bool):
         return "true" if item else "false"
     if isinstance(item, str):
         return quoted(item)
     if isinstance(item, complex):
-        real = item.imag == 0.0 and math.copysign(1.0, item.imag) > 0.0  # -1 - 0i has another angle
+        real = item.imag == 0.0 and math.copysign(1.0, item.imag) > 0.0  # -1 - 0i has a different angle
         return value_text(item.real if real else [item.real, item.imag])
     if isinstance(item, (list, tuple)):
         return "[" + ", ".join(value_text(element) for element in item) + "]"
@@ -163,7 +164,7 @@ def value_text(item: object) -> str:
 
 
 def to_toml(tree: Mapping[str, object]) -> str:
-    """A configuration tree as TOML text."""
+    """Write a configuration tree as TOML text."""
     lines = [f"{_key(key)} = {value_text(v)}" for key, v in tree.items() if not isinstance(v, Mapping)]
     for name, table in tree.items():
         if isinstance(table, Mapping):

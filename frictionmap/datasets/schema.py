@@ -1,4 +1,4 @@
-"""What a dataset of ours may hold: every variable is checked against its label, before anything uses it."""
+"""Schema of datasets: every variable is checked against its label before it is used."""
 
 from collections.abc import Iterable
 
@@ -23,20 +23,20 @@ from .labels import (
     labels_of,
 )
 
-#: Global attributes that are text, if they are there.
+#: Global attributes that are text, if present.
 TEXTS = (
     "title", "system", "source", "history", "references", "config", "reduction", "reduction_check",
     "decoupling",
 )  # fmt: skip
 
 
-def _known(what: str) -> dict[str, Label]:
-    """The labels of axes and variables in a kind of dataset."""
+def _labels_by_name(what: str) -> dict[str, Label]:
+    """Labels of axes and variables of a kind of dataset."""
     return ESTIMATES if what == "estimates" else {**COORDINATES, **BESIDE, **labels_of(what)}
 
 
 def _is_history(ds: xr.Dataset, name: object) -> bool:
-    """Whether a variable tells a motion in time; `phase` is an angle in curves."""
+    """Whether a variable belongs to a motion in time; `phase` is an angle in curves."""
     angle = name == "phase" and ds.variables["phase"].attrs.get("units") == "radian"
     return name in HISTORY_VARIABLES and not angle
 
@@ -46,7 +46,7 @@ def _on_limit(name: object) -> bool:
 
 
 def kind(ds: xr.Dataset) -> str:
-    """What a dataset, or a slice of one, holds.
+    """Kind of a dataset, or of a slice of one.
 
     "map", "curves", "response", "boundaries", "estimates" or "shares".
     """
@@ -63,25 +63,25 @@ def kind(ds: xr.Dataset) -> str:
 
 
 def in_brackets(dims: Iterable[object]) -> str:
-    """Dimensions in words."""
+    """Format dimensions in brackets."""
     return f"({', '.join(map(str, dims))})"
 
 
 def standard_dims(name: str, what: str) -> tuple[str, ...]:
-    """Dimensions of a variable in a dataset of a kind; a response is of one cell."""
+    """Dimensions of a variable in a kind of dataset; a response has no dimensions of cells."""
     dims = (BESIDE[name] if name in BESIDE else labels_of(what)[name]).dims
     return tuple(dim for dim in dims if dim not in CELL) if what == "response" else dims
 
 
 def check_structure(ds: xr.Dataset, in_parts: bool = False) -> None:
-    """Names, types, sizes, units and codes; no value but the axes' is read.
+    """Check names, types, sizes, units and codes; only values of axes are read.
 
-    in_parts : the values will be read part by part, so that they may be too many to be held at once
+    in_parts : the values will be read part by part, so that a variable may exceed the memory
 
     Raises
     ------
     InputError
-        Something is not what the labels say; one line that names it.
+        A variable does not match its label; the message is one line that names it.
     """
     what = kind(ds)
     for key in (*TEXTS, *ESTIMATE_TEXTS) if what == "estimates" else TEXTS:
@@ -91,21 +91,21 @@ def check_structure(ds: xr.Dataset, in_parts: bool = False) -> None:
     for key in SCALES.values():
         if key in ds.attrs:
             checks.number(ds.attrs[key], f"the attribute {key}", above=0.0)
-    known = _known(what)
+    known = _labels_by_name(what)
     if not any(name in LABELS or name == "estimate" for name in ds.variables):
         names = ", ".join(map(str, ds.variables)) or "none"
-        raise InputError(f"a variable of frictionmap must be there, such as regime or beta_lim; got {names}")
+        raise InputError(f"no frictionmap variable found (expected, e.g., regime or beta_lim); got {names}")
     for name, variable in ds.variables.items():
         if name in known:
             _check_type(str(name), variable, known[str(name)])
             if not in_parts:
                 _check_size(str(name), variable)
-            if what != "estimates":  # their units are those of the data
+            if what != "estimates":  # estimates have the units of the data
                 _check_attributes(str(name), variable, known[str(name)])
 
 
 def _check_type(name: str, variable: xr.Variable, label: Label) -> None:
-    # text, complex, true and false, times are no numbers
+    # text, complex numbers, booleans and times are not real numbers
     if label.dtype is not np.str_ and variable.dtype.kind not in "iuf":
         raise InputError(f"{name} must be numbers; got type {variable.dtype.name}")
     if len(set(variable.dims)) < len(variable.dims):
@@ -130,7 +130,7 @@ def _check_texts(name: str, variable: xr.Variable, label: Label) -> None:
 
 
 def _check_attributes(name: str, variable: xr.Variable, label: Label) -> None:
-    """Units and codes, where they are still there, must be those that the values are read by."""
+    """Check units and codes, where present, against those that the values are read with."""
     if not label.codes:
         units = variable.attrs.get("units", label.units)
         if not isinstance(units, str) or units != label.units:
@@ -147,11 +147,12 @@ def _check_attributes(name: str, variable: xr.Variable, label: Label) -> None:
 
 
 def checked_values(name: str, given: np.ndarray, what: str = "") -> np.ndarray:
-    """The values of a variable or an axis as its type, if all are legal; `what`: the kind of its dataset.
+    """Convert the values of a variable or an axis to its type, after checking that all are valid.
 
-    Whole numbers may come as floats: other programs make them so, to have a fill value.
+    Integers may be stored as floats, as other programs do for the sake of a fill value.
+    what : kind of the dataset
     """
-    label = _known(what)[name]
+    label = _labels_by_name(what)[name]
     if label.dtype is np.str_:
         return given.astype(label.dtype)
     with np.errstate(invalid="ignore", over="ignore"):
@@ -162,12 +163,12 @@ def checked_values(name: str, given: np.ndarray, what: str = "") -> np.ndarray:
     if wrong.any():
         index = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
         at = f" at [{', '.join(map(str, index))}]" if index else ""
-        raise InputError(f"{name} must be {_legal(label)}; got {given[index]}{at}")
+        raise InputError(f"{name} must be {_describe_allowed(label)}; got {given[index]}{at}")
     return values
 
 
 def placed(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
-    """The values of a variable over exactly these dimensions, in this order."""
+    """Values of a variable over exactly these dimensions, in this order."""
     variable = ds.variables[name]
     if not set(variable.dims) <= set(dims):
         legal = (
@@ -193,7 +194,7 @@ def _range(label: Label) -> tuple[float, float]:
 
 
 def _wrong(values: np.ndarray, label: Label) -> np.ndarray:
-    """Where values are not legal; codes are whole numbers without gaps."""
+    """Where values are invalid; codes are consecutive integers."""
     least, most = _range(label)
     wrong = (values < least) | (values > most)
     if values.dtype.kind == "f":
@@ -204,8 +205,8 @@ def _wrong(values: np.ndarray, label: Label) -> np.ndarray:
     return wrong
 
 
-def _legal(label: Label) -> str:
-    """The legal values in words."""
+def _describe_allowed(label: Label) -> str:
+    """Describe the valid values."""
     if label.codes:
         how = "a sum of" if label.flags == "flag_masks" else "one of"
         return f"{how} {', '.join(str(code.value) for code in label.codes)}"

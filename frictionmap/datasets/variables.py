@@ -1,4 +1,4 @@
-"""Numbers as labelled variables, and datasets with their global attributes."""
+"""Arrays as labelled variables, and datasets with their global attributes."""
 
 from collections.abc import Mapping
 
@@ -14,7 +14,7 @@ from .provenance import made_by
 
 
 def coordinate(name: str, values: np.ndarray | float) -> xr.Variable:
-    """A labelled axis, or a labelled scalar."""
+    """Build a labelled axis, or a labelled scalar."""
     label = COORDINATES[name] if name in COORDINATES else BESIDE[name]
     dims = label.dims if np.ndim(values) else ()
     units = {} if label.texts else {"units": label.units}
@@ -22,14 +22,15 @@ def coordinate(name: str, values: np.ndarray | float) -> xr.Variable:
 
 
 def coordinate_of_study(dim: str, meaning: str, values: np.ndarray) -> xr.Variable:
-    """An axis of a study, or what goes with one: numbers of a system, or points counted from 0."""
+    """Build an axis of a study, or a coordinate along it: values of a parameter, or points counted from 0."""
     return xr.Variable((dim,), values, {"long_name": meaning, "units": "1"})
 
 
 def label_variable(name: str, values: np.ndarray | float, what: str = "") -> xr.Variable:
-    """A labelled variable, of one cell without the cell's dimensions; the values are not copied.
+    """Build a labelled variable; for a single cell without the dimensions of cells.  The values are not
+    copied.
 
-    what : the kind of its dataset, see `labels_of`
+    what : kind of its dataset, see `labels_of`
     """
     label = labels_of(what)[name]
     return xr.Variable(label.dims[len(label.dims) - np.ndim(values) :], values, attributes(label))
@@ -46,7 +47,7 @@ def stamp(
     study: Mapping[str, object] | None = None,
     units: Units | None = None,
 ) -> xr.Dataset:
-    """Add the global attributes to what a function of the package computed on these axes."""
+    """Add the global attributes of a dataset that a function of the package computed on these axes."""
     ds.attrs = {
         "Conventions": "CF-1.11",
         "title": title,

@@ -8,7 +8,7 @@ import xarray as xr
 
 from .. import regimes
 from ..datasets.labels import CELL, IN_SI, LABELS
-from ..datasets.physical import in_words
+from ..datasets.physical import describe_scales
 from ..datasets.schema import TEXTS, kind
 from .estimates import describe_estimates, source_of_data
 from .reading import standard_form
@@ -142,7 +142,7 @@ def header_lines(ds: xr.Dataset, what: str) -> list[str]:
     for name in ("system", "reduction", "reduction_check", "decoupling", "source", "history"):
         if texts[name]:
             lines += _entry(name.replace("_", " "), texts[name])
-    units = in_words(ds)
+    units = describe_scales(ds)
     return [*lines, *(_entry("units", units) if units else [])]
 
 

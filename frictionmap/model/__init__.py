@@ -1,1 +1,1 @@
-"""What is simulated: systems, their matrices and modes, and how steady states are looked for."""
+"""Systems: structure, damping, load and contact; their matrices and modes; settings of the solver."""

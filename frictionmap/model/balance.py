@@ -1,11 +1,11 @@
-"""A structure under its harmonic load without friction, free or held at its contact, at many frequencies.
+"""Linear response of a structure, free or held at its contact, at many frequencies.
 
-The modes' answers are right to the rounding of the largest of them, and a mass far from the load may move by
-less.  What is left of the balance of its own forces tells; the modes' answer to that corrects it, and masses
-in balance to rounding are left alone.
+A sum over modes is accurate to the rounding error of its largest term, but a mass far from the load may move
+by less than that.  The residual of the force balance on each mass reveals this; the modal response to the
+residual corrects the motion, until every mass is in balance to rounding.
 
-Arrays are (masses or modes, frequencies) or (frequencies,).  All sums run over masses or modes one by one,
-in their order: what is answered at one frequency does not depend on which others are asked for.
+Arrays are (masses or modes, frequencies) or (frequencies,).  All sums run over masses or modes one by one in
+a fixed order, so that the result at one frequency does not depend on the other frequencies.
 """
 
 from collections.abc import Iterable
@@ -20,7 +20,7 @@ _EPS = float(np.finfo(np.float64).eps)
 #: Decimal digits of a double.
 _DIGITS = 16
 
-#: The forces on a mass add up to zero within so many eps of their sizes: it is in balance.
+#: A mass is in balance if the forces on it add up to zero within this many eps of the sum of their moduli.
 _BALANCE = 4.0
 
 
@@ -32,7 +32,7 @@ class Polynomial(NamedTuple):
     square: np.ndarray
 
     def at(self, r: np.ndarray) -> Phasors:
-        """Shape (n, n_r)."""
+        """Evaluate at frequencies r; shape (n, n_r)."""
         constant, rate, square = (part[:, np.newaxis] for part in self)
         return Phasors(
             constant.real - r * rate.imag + r * r * square.real,
@@ -41,46 +41,48 @@ class Polynomial(NamedTuple):
 
 
 class Body(NamedTuple):
-    """A structure in numbers, and its load."""
+    """A structure as arrays, and its load."""
 
     w: np.ndarray  # (n,)
     zeta: np.ndarray
-    phi: np.ndarray  # (n, n), one mode a column
+    phi: np.ndarray  # (n, n), modes in columns
     chi: np.ndarray  # (n,)
     contact: np.ndarray  # (n,)
     mass: np.ndarray  # (n, n)
     stiffness: np.ndarray
     springs: np.ndarray | None  # (n,) of a chain
-    shapes: np.ndarray  # (n, n) M phi
+    mass_phi: np.ndarray  # (n, n) M phi
     load: Polynomial
-    share: Polynomial  # participation of the load
-    rounding: float  # what cancels but for this share of its terms, for each of them, is zero
+    participation: Polynomial  # participation of the load
+    rounding: float  # a sum below this share of its terms, times their number, is zero
 
 
-class _Load(NamedTuple):
-    """Frequencies that are solved for."""
+class _LoadCase(NamedTuple):
+    """Frequencies to solve for, with dynamic stiffness and load there."""
 
     r: np.ndarray
-    stiffness: Phasors  # dynamic, of every mode
+    stiffness: Phasors  # dynamic stiffness of every mode
     load: Phasors
 
-    def at(self, which: np.ndarray) -> "_Load":
-        return _Load(self.r[which], self.stiffness[:, which], self.load[:, which])
+    def at(self, which: np.ndarray) -> "_LoadCase":
+        return _LoadCase(self.r[which], self.stiffness[:, which], self.load[:, which])
 
 
 class _Motion(NamedTuple):
-    """What is known of the motion there."""
+    """Present approximation of the motion at these frequencies."""
 
     x: Phasors
-    tail: Phasors  # of x, below its rounding: the stretch of a stiff spring may be
-    left: Phasors  # of the load, not in balance yet
+    tail: Phasors  # digits of x below its rounding, needed for the stretch of a stiff spring
+    residual: Phasors  # force that is not yet in balance
     z: Phasors
     force: Phasors
-    last: Phasors  # the answer before
+    previous: Phasors  # z or F of the previous approximation
 
     def at(self, which: np.ndarray) -> "_Motion":
-        x, tail, left, *numbers = self
-        return _Motion(x[:, which], tail[:, which], left[:, which], *(number[which] for number in numbers))
+        x, tail, residual, *numbers = self
+        return _Motion(
+            x[:, which], tail[:, which], residual[:, which], *(number[which] for number in numbers)
+        )
 
 
 def dynamic_stiffness(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> Phasors:
@@ -90,32 +92,36 @@ def dynamic_stiffness(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> Phasors
 
 
 def contact_responses(r: np.ndarray, body: Body) -> np.ndarray:
-    """V of theory.md 2, complex (n_r,); infinite at a loaded undamped resonance.
+    """Response function V of theory.md 2, complex (n_r,); infinite at a loaded undamped resonance.
 
-    Where the sum over modes cancels, the balance of forces has the digits that the sum has not.
+    Where the sum over modes cancels, the force balance is solved instead, which keeps the digits lost in the
+    sum.
     """
     with np.errstate(all="ignore"):
         stiffness = dynamic_stiffness(body.w, body.zeta, r)
         found, cancels = _modal_sum(body, r, stiffness)
         at = np.flatnonzero(cancels)
         if at.size:
-            found[at] = _balanced(body, _Load(r[at], stiffness[:, at], body.load.at(r[at])), False)[1]
+            found[at] = _balanced(body, _LoadCase(r[at], stiffness[:, at], body.load.at(r[at])), False)[1]
         return found.complex()
 
 
 def held_motions(r: np.ndarray, body: Body) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """With the contact held: displacements relative to the base, or modal coordinates, and the force F.
+    """Motion with the contact held: displacements relative to the base, or modal coordinates, and the force
+    F.
 
-    Complex (n_r, n), displacements if all modes participate, else the coordinates of those that do;
-    complex (n_r,) F; bool (n_r,), where neither is found.
+    Returns
+    -------
+    (motion, force, singular) : complex (n_r, n), displacements if all modes participate, else the coordinates
+        of the participating modes; complex (n_r,); bool (n_r,), where neither is found
     """
     with np.errstate(all="ignore"):
         stiffness = dynamic_stiffness(body.w, body.zeta, r)
         if body.chi.all():
-            found, _, force, singular = _balanced(body, _Load(r, stiffness, body.load.at(r)), True)
+            found, _, force, singular = _balanced(body, _LoadCase(r, stiffness, body.load.at(r)), True)
         else:
             nothing = Phasors.zeros(r.size)
-            found, force, singular = _solve_arrow(body, stiffness, body.share.at(r), nothing)
+            found, force, singular = _solve_arrow(body, stiffness, body.participation.at(r), nothing)
         return found.rows(), force.complex(), singular
 
 
@@ -127,41 +133,47 @@ def _total(terms: Iterable[Phasors], shape: tuple[int, ...]) -> Phasors:
 
 
 def _weighted(columns: np.ndarray, parts: Phasors) -> Phasors:
-    """columns @ parts, column by column."""
+    """Compute columns @ parts, column by column."""
     shape = (columns.shape[0], parts.re.shape[1])
     return _total((parts[i].times(column[:, np.newaxis]) for i, column in enumerate(columns.T)), shape)
 
 
 def _modal_sum(body: Body, r: np.ndarray, stiffness: Phasors) -> tuple[Phasors, np.ndarray]:
-    """V as the sum over modes, and whether that cancels by more than their frequencies leave uncertain."""
-    parts = body.share.at(r).times(body.chi[:, np.newaxis])
+    """V as the sum over modes, and whether the sum cancels by more than the accuracy of the frequencies
+    explains.
+    """
+    parts = body.participation.at(r).times(body.chi[:, np.newaxis])
     resonant = ~stiffness.nonzero
     infinite = (resonant & parts.nonzero).any(axis=0)
-    answers = (parts / stiffness).where(~resonant, Phasors.zeros(*resonant.shape))
+    responses = (parts / stiffness).where(~resonant, Phasors.zeros(*resonant.shape))
     near = np.where(resonant, np.inf, (body.w[:, np.newaxis] ** 2 + r * r) / stiffness.size).max(axis=0)
     total, size = Phasors.zeros(r.size), np.zeros(r.size)
-    for one in (answers[i] for i in range(body.w.size)):
+    for one in (responses[i] for i in range(body.w.size)):
         total, size = total + one, size + one.size
     total = total.where(~infinite, Phasors(np.full(r.size, np.inf), np.zeros(r.size)))
     return total, (size > near * total.size) & ~infinite
 
 
 def _solve_arrow(
-    body: Body, stiffness: Phasors, parts: Phasors, gap: Phasors
+    body: Body, stiffness: Phasors, parts: Phasors, displacement: Phasors
 ) -> tuple[Phasors, Phasors, np.ndarray]:
-    """Modes q and force F of stiffness_i q_i + chi_i F = parts_i, chi.q = gap: q, F and singular.
+    """Solve stiffness_i q_i + chi_i F = parts_i, chi.q = displacement for the modes q and the force F.
 
-    One mode, the softest as the contact feels it, is solved for together with F: it may resonate.  The others
-    are eliminated; those with chi = 0 stay out of it.  `singular`: whether rounding alone keeps the equations
-    from being so.
+    The mode that is softest at the contact is solved for together with F, because it may resonate.  The other
+    modes are eliminated; modes with chi = 0 are excluded.  Returns q, F, and whether the equations are
+    singular but for rounding.
     """
     seen = np.flatnonzero(body.chi)
-    columns = np.arange(gap.re.size)
+    columns = np.arange(displacement.re.size)
     chi, stiffness, parts = body.chi[seen][:, np.newaxis], stiffness[seen], parts[seen]
     last = np.argmin(stiffness.size / (chi * chi), axis=0)
     pulled = parts.times(chi)
     compliances, responses = Phasors(chi * chi, np.zeros_like(chi)) / stiffness, pulled / stiffness
-    compliance, response, size = Phasors.zeros(gap.re.size), gap.times(-1.0), np.zeros(gap.re.size)
+    compliance, response, size = (
+        Phasors.zeros(displacement.re.size),
+        displacement.times(-1.0),
+        np.zeros(displacement.re.size),
+    )
     for i in range(seen.size):
         other = last != i
         compliance = (compliance + compliances[i]).where(other, compliance)
@@ -173,17 +185,21 @@ def _solve_arrow(
     below.re += square
     singular = below.size <= body.rounding * seen.size * (square + soft.size * size)
     force = (part.times(weight) + soft * response) / below
-    q = Phasors.zeros(body.chi.size, gap.re.size)
+    q = Phasors.zeros(body.chi.size, displacement.re.size)
     found = (parts - force.times(chi)) / stiffness
     found[last, columns] = (part * compliance - response.times(weight)) / below
     q[seen] = found
-    return q.where(~singular, Phasors.zeros(*q.re.shape)), force.where(~singular, gap.times(0.0)), singular
+    return (
+        q.where(~singular, Phasors.zeros(*q.re.shape)),
+        force.where(~singular, displacement.times(0.0)),
+        singular,
+    )
 
 
 def _chain_forces(body: Body, r: np.ndarray, x: Phasors, tail: Phasors) -> tuple[Phasors, np.ndarray]:
-    """(K - r^2 M)(x + tail) on the masses of a chain, and the sizes of the single forces, added.
+    """Forces (K - r^2 M)(x + tail) on the masses of a chain, and the sum of the moduli of the single forces.
 
-    Springs pull by their stretch: a stiff one leaves the digits of the others alone.
+    Each spring force follows from its stretch, so that a stiff spring does not cost the digits of the others.
     """
     assert body.springs is not None
     stretch = (x[1:] - x[:-1]) + (tail[1:] - tail[:-1])
@@ -196,7 +212,7 @@ def _chain_forces(body: Body, r: np.ndarray, x: Phasors, tail: Phasors) -> tuple
 
 
 def _matrix_forces(body: Body, r: np.ndarray, x: Phasors) -> tuple[Phasors, np.ndarray]:
-    """The same of any structure."""
+    """Forces (K - r^2 M) x on the masses of any structure, and the sum of the moduli of the single forces."""
     square = r * r
     size, weight = np.zeros(x.re.shape), np.zeros(x.re.shape)
     for j in range(body.w.size):
@@ -206,28 +222,28 @@ def _matrix_forces(body: Body, r: np.ndarray, x: Phasors) -> tuple[Phasors, np.n
     return pull - inertia.times(square), size + square * weight
 
 
-def _left(body: Body, of: _Load, x: Phasors, tail: Phasors, force: Phasors) -> Phasors:
-    """What of the load the forces on the masses leave, rounding apart."""
+def _residual_force(body: Body, case: _LoadCase, x: Phasors, tail: Phasors, force: Phasors) -> Phasors:
+    """Residual of the force balance on the masses, zero where it is rounding error."""
     if body.springs is not None:
-        forces, size = _chain_forces(body, of.r, x, tail)
+        forces, size = _chain_forces(body, case.r, x, tail)
     else:
-        forces, size = _matrix_forces(body, of.r, x)
+        forces, size = _matrix_forces(body, case.r, x)
     if body.zeta.any():
-        # each mode's damping, by the masses' own motion
-        rates = _weighted(body.shapes.T, x)
-        rates = rates.times(2.0 * of.r * body.zeta[:, np.newaxis] * body.w[:, np.newaxis])
+        # damping force of each mode, from the motion of the masses
+        rates = _weighted(body.mass_phi.T, x)
+        rates = rates.times(2.0 * case.r * body.zeta[:, np.newaxis] * body.w[:, np.newaxis])
         for i in range(body.w.size):
-            shape = body.shapes[:, i, np.newaxis]
+            shape = body.mass_phi[:, i, np.newaxis]
             forces = forces + rates[i].turned().times(shape)
             size = size + np.abs(shape) * rates[i].size
     friction = force.times(body.contact[:, np.newaxis])
-    left = of.load - forces - friction
-    rounding = _BALANCE * _EPS * (size + of.load.size + friction.size)
-    return left.where(left.size > rounding, Phasors.zeros(*rounding.shape))
+    residual = case.load - forces - friction
+    rounding = _BALANCE * _EPS * (size + case.load.size + friction.size)
+    return residual.where(residual.size > rounding, Phasors.zeros(*rounding.shape))
 
 
-def _added(body: Body, motion: _Motion, q: Phasors) -> tuple[Phasors, Phasors, Phasors]:
-    """x and its tail with the motion of the modes q added; z = c.x."""
+def _superposed(body: Body, motion: _Motion, q: Phasors) -> tuple[Phasors, Phasors, Phasors]:
+    """Add the motion of the modes q to x and its tail; also return z = c.x."""
     part = motion.tail
     for i in range(body.w.size):
         part = part + q[i].times(body.phi[:, i, np.newaxis])
@@ -237,43 +253,49 @@ def _added(body: Body, motion: _Motion, q: Phasors) -> tuple[Phasors, Phasors, P
     return x, tail, _total(terms, (q.re.shape[1],))
 
 
-def _corrected(body: Body, of: _Load, motion: _Motion, held: bool) -> tuple[_Motion, np.ndarray, np.ndarray]:
-    """The motion with the modes' answer to what is left, where to go on, and where it cannot be had."""
-    parts = _weighted(np.ascontiguousarray(body.phi.T), motion.left)
+def _corrected(
+    body: Body, case: _LoadCase, motion: _Motion, held: bool
+) -> tuple[_Motion, np.ndarray, np.ndarray]:
+    """Add the modal response to the residual; return the motion, where to continue, and where there is no
+    solution.
+    """
+    parts = _weighted(np.ascontiguousarray(body.phi.T), motion.residual)
     if held:
-        q, more, singular = _solve_arrow(body, of.stiffness, parts, motion.z.times(-1.0))
+        q, more, singular = _solve_arrow(body, case.stiffness, parts, motion.z.times(-1.0))
         force = motion.force + more
     else:
-        q, force, singular = parts / of.stiffness, motion.force, np.zeros(of.r.size, dtype=bool)
-    x, tail, z = _added(body, motion, q)
+        q, force, singular = parts / case.stiffness, motion.force, np.zeros(case.r.size, dtype=bool)
+    x, tail, z = _superposed(body, motion, q)
     found = force if held else z
-    moved = (found - motion.last).size > _EPS * found.size
-    left = _left(body, of, x, tail, force)
-    unbalanced = left.nonzero.any(axis=0) | (held & z.nonzero)
-    return _Motion(x, tail, left, z, force, found), moved & unbalanced & ~singular, singular
+    moved = (found - motion.previous).size > _EPS * found.size
+    residual = _residual_force(body, case, x, tail, force)
+    unbalanced = residual.nonzero.any(axis=0) | (held & z.nonzero)
+    return _Motion(x, tail, residual, z, force, found), moved & unbalanced & ~singular, singular
 
 
-def _balanced(body: Body, of: _Load, held: bool) -> tuple[Phasors, Phasors, Phasors, np.ndarray]:
-    """x, z, F and singular, corrected until every mass is in balance.
+def _balanced(body: Body, case: _LoadCase, held: bool) -> tuple[Phasors, Phasors, Phasors, np.ndarray]:
+    """Motion x, z, F and singular, corrected until every mass is in balance.
 
-    With `held` the contact holds z = 0 by the force F; else F = 0.
+    With `held` the force F holds the contact at z = 0; otherwise F = 0.
     """
-    n, count = body.w.size, of.r.size
+    n, count = body.w.size, case.r.size
     x, z, force, singular = (
         Phasors.zeros(n, count),
         Phasors.zeros(count),
         Phasors.zeros(count),
         np.zeros(count, bool),
     )
-    no_answer = Phasors(np.full(count, np.inf), np.zeros(count))  # the first one may be zero, as no other
-    motion = _Motion(x, Phasors.zeros(n, count), of.load, z, force, no_answer)
+    no_response = Phasors(
+        np.full(count, np.inf), np.zeros(count)
+    )  # unlike any first approximation, also zero
+    motion = _Motion(x, Phasors.zeros(n, count), case.load, z, force, no_response)
     places = np.arange(count)
-    # one for every link that the load has to pass; beside a resonance each gains a digit at least
+    # one iteration per link between load and mass; near a resonance each gains at least one digit
     for _ in range(n + _DIGITS):
-        motion, going, singular[places] = _corrected(body, of, motion, held)
+        motion, going, singular[places] = _corrected(body, case, motion, held)
         x[:, places], z[places], force[places] = motion.x, motion.z, motion.force
         if not going.any():
             break
         which = np.flatnonzero(going)
-        places, of, motion = places[which], of.at(which), motion.at(which)
+        places, case, motion = places[which], case.at(which), motion.at(which)
     return x, z, force, singular

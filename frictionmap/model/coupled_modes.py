@@ -1,4 +1,4 @@
-"""A structure whose damping couples its undamped modes: those that the contact sees, and answers to loads."""
+"""A structure whose damping couples its undamped modes: participating modes, and responses to loads."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -7,50 +7,55 @@ from typing import Any
 import numpy as np
 
 from .free_structure import FreeStructure, coupled_structure, modal_structure
-from .modes import ZERO_PRODUCT, ModalModel, load_rate, solve_held, times, weighed
+from .modes import ZERO_PRODUCT, ModalModel, load_rate, solve_held, times, weighted_sum
 
-#: Answers beyond this many times the load over the stiffness are looked at for what rounding alone bounds.
+#: Responses above this many times the load over the stiffness are checked for an undamped resonance, where
+#: only rounding error keeps them finite.
 _SUSPECT = 1e8
 
-#: Share of a direction beside others that makes it one of its own: far above what rounding leaves of it.
+#: Least length of the part of a unit direction outside a span for it to count as independent: far above
+#: rounding error.
 _NEW = 1e-8
 
 
 def _groups(w: np.ndarray) -> list[np.ndarray]:
-    """Modes of one frequency, by frequency."""
+    """Group the modes of equal frequency, by frequency."""
     return np.split(np.arange(w.size), np.flatnonzero(np.diff(w)) + 1)
 
 
 def _unit(direction: np.ndarray, least: float) -> np.ndarray:
-    """A direction (k,) as a column of length 1, or no column if it is not above `least`."""
+    """Normalise a direction (k,) to a column of length 1; no column if its length is not above `least`."""
     size = np.linalg.norm(direction)
     return direction[:, np.newaxis] / size if size > least else np.zeros((direction.size, 0))
 
 
-def _reached(product: np.ndarray, group: np.ndarray, found: np.ndarray, least: float) -> np.ndarray:
-    """Orthonormal columns: what of a group the directions (n, l) reach by damping above `least`."""
+def _reached_directions(
+    product: np.ndarray, group: np.ndarray, found: np.ndarray, least: float
+) -> np.ndarray:
+    """Orthonormal columns: directions of a group that the directions (n, l) excite through the damping."""
     left, sizes, _ = np.linalg.svd(product[group] @ found, full_matrices=False)
     return left[:, sizes > least]
 
 
-def _new(part: np.ndarray, found: np.ndarray) -> np.ndarray:
-    """Orthonormal columns of what `part` has beside the span of `found`, orthonormal both."""
+def _new_directions(part: np.ndarray, found: np.ndarray) -> np.ndarray:
+    """Orthonormal columns of the part of `part` outside the span of `found`, both orthonormal."""
     left, sizes, _ = np.linalg.svd(part - found @ (found.T @ part), full_matrices=False)
     return left[:, sizes > _NEW]
 
 
-def sort_seen(
+def sort_participating(
     w: np.ndarray, phi: np.ndarray, damping: np.ndarray, contact: np.ndarray, rounding: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Modes turned among those of one frequency, and which of them the contact sees, itself or by damping.
+    """Rotate modes of equal frequency, and find those that friction excites, directly or through the damping.
 
-    What is seen is the least set of directions that has the contact's and that neither stiffness nor damping
-    leaves; each frequency's are turned to have it and the rest apart, and either to be damped apart.
+    The participating directions are the smallest set that contains the contact's direction and is invariant
+    under stiffness and damping.  At each frequency the modes are rotated so that they are either in this set
+    or orthogonal to it, and so that either part is diagonal in the damping.
 
     Returns
     -------
     phi : (n, n)
-    seen : (n,) bool; nothing couples the others to these
+    participating : (n,) bool; no coupling exists between these modes and the others
     """
     product, chi, groups = phi.T @ damping @ phi, contact @ phi, _groups(w)
     least = rounding * float(np.diag(product).max(initial=0.0))
@@ -65,18 +70,20 @@ def sort_seen(
             column += part.shape[1]
         for k, group in enumerate(groups):
             whole = found[k].shape[1] == group.size
-            part = _reached(product, group, reached[:, : 0 if whole else None], least)
-            new[k] = _new(part, found[k])
-    turned, seen = phi.copy(), np.zeros(w.size, dtype=bool)
+            part = _reached_directions(product, group, reached[:, : 0 if whole else None], least)
+            new[k] = _new_directions(part, found[k])
+    turned, coupled_to_contact = phi.copy(), np.zeros(w.size, dtype=bool)
     for group, part in zip(groups, found, strict=True):
-        seen[group[: part.shape[1]]] = True
+        coupled_to_contact[group[: part.shape[1]]] = True
         if group.size > 1:
             turned[:, group] = phi[:, group] @ _damped_apart(part, product[np.ix_(group, group)])
-    return turned, seen
+    return turned, coupled_to_contact
 
 
 def _damped_apart(part: np.ndarray, damping: np.ndarray) -> np.ndarray:
-    """An orthogonal matrix: columns in the span of `part`, then the others, each diagonal in the damping."""
+    """Orthogonal matrix of columns in the span of `part`, then of the others, each part diagonal in the
+    damping.
+    """
     whole = np.linalg.svd(part, full_matrices=True)[0] if part.shape[1] else np.eye(len(part))
     columns = [whole[:, : part.shape[1]], whole[:, part.shape[1] :]]
     return np.column_stack([c @ np.linalg.eigh(c.T @ damping @ c)[1] if c.shape[1] else c for c in columns])
@@ -88,33 +95,33 @@ class CoupledModel(ModalModel):
 
     Attributes
     ----------
-    zeta : (n,) what the damping is to each mode by itself, phi^T C1 phi = 2 zeta w on the diagonal
+    zeta : (n,) damping ratio of each single mode, phi^T C1 phi = 2 zeta w on the diagonal
     coupling : (n, n) phi^T C1 phi off the diagonal; exactly 0 between modes that are not coupled
-    seen : (n,) bool, the modes that move the contact, by themselves or through others
+    coupled_to_contact : (n,) bool, modes that friction excites, directly or through other modes
     """
 
     coupling: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
-    seen: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    coupled_to_contact: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
 
     @property
-    def joined(self) -> np.ndarray:
-        """As of `ModalModel`."""
+    def coupled_modes(self) -> np.ndarray:
+        """As in `ModalModel`."""
         return np.any(self.coupling != 0.0, axis=1)
 
     @property
     def participating(self) -> np.ndarray:
-        """Modes that the contact sees, bool (n,)."""
-        return self.seen
+        """Participating modes, which friction in the contact excites, bool (n,)."""
+        return self.coupled_to_contact
 
-    def seen_coupling(self) -> np.ndarray:
-        """What the damping has between the modes that the contact sees."""
+    def participating_coupling(self) -> np.ndarray:
+        """Coupling of the participating modes by the damping."""
         return self.coupling[np.ix_(self.participating, self.participating)]
 
     @cached_property
     def free(self) -> FreeStructure:
-        """The modes that the contact sees as oscillators."""
+        """The participating modes as oscillators."""
         which = self.participating
-        coupling = self.seen_coupling()
+        coupling = self.participating_coupling()
         if not coupling.any():
             return modal_structure(self.w[which], self.zeta[which], self.chi[which])
         return coupled_structure(self.w[which], self.zeta[which], coupling, self.chi[which])
@@ -123,8 +130,8 @@ class CoupledModel(ModalModel):
         """Dynamic stiffness between the modes at one frequency, complex (n, n)."""
         return np.diag(self.dynamic_stiffness(np.array([r]))[0]) + 1j * r * self.coupling
 
-    def answers(self, r: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """Coordinates of the modes under loads on them, complex (n_r, n); infinite as of `ModalModel`."""
+    def modal_responses(self, r: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """Modal coordinates under modal loads, complex (n_r, n); infinite as in `ModalModel`."""
         found = np.empty((r.size, self.w.size), dtype=complex)
         for k, at in enumerate(r):
             stiffness, load = self._dynamic(at), loads[k].copy()
@@ -135,32 +142,32 @@ class CoupledModel(ModalModel):
             found[k, resonant] = load[resonant]
         return found
 
-    def drag(self, q: np.ndarray) -> np.ndarray:
-        """As of `ModalModel`."""
+    def damping_form(self, q: np.ndarray) -> np.ndarray:
+        """As in `ModalModel`."""
         across = times(q, self.coupling)
-        return super().drag(q) + (q.real * across.real + q.imag * across.imag).sum(axis=1)
+        return super().damping_form(q) + (q.real * across.real + q.imag * across.imag).sum(axis=1)
 
     def response(self, r: np.ndarray, weights: np.ndarray) -> np.ndarray:
-        """As of `ModalModel`."""
+        """As in `ModalModel`."""
         r = np.asarray(r, dtype=float)
-        return weighed(self.answers(r, self.participation(r)), weights)
+        return weighted_sum(self.modal_responses(r, self.participation(r)), weights)
 
     def mass_responses(self, r: np.ndarray) -> np.ndarray:
-        """As of `ModalModel`."""
+        """As in `ModalModel`."""
         r = np.asarray(r, dtype=float)
-        q = self.answers(r, self.participation(r))
-        return np.column_stack([weighed(q, row) for row in self.phi])
+        q = self.modal_responses(r, self.participation(r))
+        return np.column_stack([weighted_sum(q, row) for row in self.phi])
 
     def contact_response(self, r: np.ndarray) -> np.ndarray:
-        """As of `ModalModel`."""
+        """As in `ModalModel`."""
         r = np.asarray(r, dtype=float)
-        return weighed(self.answers(r, self.relative_participation(r)), self.chi)
+        return weighted_sum(self.modal_responses(r, self.relative_participation(r)), self.chi)
 
     def held(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """As of `ModalModel`; modes that the contact does not see move as if free."""
+        """As in `ModalModel`; modes that do not participate respond as if free."""
         r = np.asarray(r, dtype=float)
         which, parts = self.participating, self.relative_participation(r)
-        q = self.answers(r, np.where(which, 0.0, parts))
+        q = self.modal_responses(r, np.where(which, 0.0, parts))
         force = np.empty(r.size, dtype=complex)
         for k in range(r.size):
             q[k, which], force[k] = self._held_at(float(r[k]), parts[k, which])
@@ -169,7 +176,7 @@ class CoupledModel(ModalModel):
         return motion, force
 
     def _held_at(self, r: float, load: np.ndarray) -> tuple[np.ndarray, complex]:
-        """Modes that the contact sees, and the force that holds it, at one frequency."""
+        """Participating modes, and the force that holds the contact, at one frequency."""
         which, n = self.participating, load.size
         bordered = np.zeros((n + 1, n + 1), dtype=complex)
         bordered[:n, :n] = self._dynamic(r)[np.ix_(which, which)]
@@ -180,10 +187,10 @@ class CoupledModel(ModalModel):
                 solution = np.linalg.solve(bordered, right)
             except np.linalg.LinAlgError:
                 solution = np.full(n + 1, np.inf)
-        # an undamped resonance of the held structure: rounding alone keeps it finite
+        # at an undamped resonance of the held structure only rounding error keeps the solution finite
         small = np.abs(bordered).max() * np.abs(solution).max() <= _SUSPECT * np.abs(right).max()
         if not small:
-            w, coupling = self.w[which], self.seen_coupling()
+            w, coupling = self.w[which], self.participating_coupling()
             damping = np.diag(2.0 * self.zeta[which] * w) + coupling
             solution = solve_held(
                 np.eye(n), np.diag(w**2), damping, self.chi[which], np.array([r]), load[np.newaxis]
@@ -194,13 +201,13 @@ class CoupledModel(ModalModel):
 def coupled_model(
     w: np.ndarray, phi: np.ndarray, damping: np.ndarray, to_base: bool, parts: dict[str, Any]
 ) -> CoupledModel:
-    """The model of a structure with any damping matrix C1, of its undamped modes; `parts` as they are."""
+    """Build the model of a structure with any damping matrix C1; `parts` are further fields of the model."""
     rounding = ZERO_PRODUCT * w.size * float(np.finfo(float).eps)
-    phi, seen = sort_seen(w, phi, damping, parts["contact"], rounding)
+    phi, coupled_to_contact = sort_participating(w, phi, damping, parts["contact"], rounding)
     product = phi.T @ damping @ phi
     rates = np.diag(product)
     small = np.abs(product) <= rounding * rates.max()
-    product[small | (seen[:, np.newaxis] != seen)] = 0.0
+    product[small | (coupled_to_contact[:, np.newaxis] != coupled_to_contact)] = 0.0
     return CoupledModel(
         w,
         phi,
@@ -208,6 +215,6 @@ def coupled_model(
         load_rate=load_rate(damping, to_base),
         damping=damping,
         coupling=product - np.diag(np.diag(product)),
-        seen=seen,
+        coupled_to_contact=coupled_to_contact,
         **parts,
     )

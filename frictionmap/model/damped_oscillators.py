@@ -1,8 +1,9 @@
 """A damped structure as a set of oscillators that do not depend on r.
 
-Damping need not leave the modes real, so the roots s of the structure are taken two by two, each pair one
-oscillator ``y'' + 2 zeta omega y' + omega^2 y = load`` (over-damped and double roots included).  Its motion
-is ``u = A y + B p``, where p is y' less the load's direct part.  In time t = tau/r nothing depends on r.
+The damped modes need not be real, so the characteristic roots s of the structure are taken in pairs; each
+pair is one oscillator ``y'' + 2 zeta omega y' + omega^2 y = load`` (over-damped and double roots included).
+Its motion is ``u = A y + B p``, where p is y' less the direct feedthrough of the load.  In time t = tau/r
+nothing depends on r.
 """
 
 from typing import NamedTuple
@@ -11,15 +12,16 @@ import numpy as np
 
 from ..errors import InputError
 
-#: Roots whose imaginary part is a smaller share of them than this are taken as a real subspace, which exists
-#: for a double root too; eigenvectors do not.
+#: Roots with a smaller relative imaginary part than this are represented by a real invariant subspace, which
+#: also exists for a double root; eigenvectors do not.
 _NEARLY_REAL = 1e-3
 
-#: A basis of held motions worse conditioned than this would cost half of the digits.
+#: Largest condition number of a basis of held motions; a larger one would cost half of the digits.
 _WORST_BASIS = 1e8
 
 
-#: A pair of roots that a force moves by less than this times m eps of the most it could is not moved by it.
+#: A force whose effect on a pair of roots is below this factor times m eps of its upper bound does not excite
+#: the pair.
 _UNMOVED = 64.0
 
 _EPS = float(np.finfo(float).eps)
@@ -29,12 +31,12 @@ _Pair = tuple[complex, complex]
 
 
 class DampedOscillators(NamedTuple):
-    """m oscillators of m coordinates u; see the module.
+    """The m oscillators of m coordinates u; see the module.
 
     omega, zeta : (m,) frequency and damping ratio of every oscillator
-    to_coordinates : (2m, 2m) (u, u') of (y, p)
+    to_coordinates : (2m, 2m) maps (y, p) to (u, u')
     to_oscillators : (2m, 2m) the inverse
-    push : (m,) what the given force is on each; it has no direct part.  Without one: zeros
+    push : (m,) load of the given force on each oscillator, without feedthrough; zeros if no force is given
     """
 
     omega: np.ndarray
@@ -61,14 +63,15 @@ def _from_subspace(matrix: np.ndarray, pair: tuple[complex, complex]) -> np.ndar
 
 
 def _from_vector(vector: np.ndarray, root: complex) -> np.ndarray:
-    """The same from a complex eigenvector: a + b root = vector."""
+    """Columns (a, b) of the motions a y + b y' from a complex eigenvector: a + b root = vector."""
     b = vector.imag / root.imag
     return np.column_stack((vector.real - b * root.real, b))
 
 
 def _pairings(roots: np.ndarray) -> list[list[tuple[complex, complex]]]:
-    """Ways to pair nearly real roots: complex ones with their conjugates; real ones each with its nearest,
-    which a double root needs, or slow with fast."""
+    """Ways to pair the roots: complex ones with their conjugates; real ones with the nearest, as a double
+    root requires, or slow with fast.
+    """
     pairs = [(root, root.conjugate()) for root in roots if root.imag > 0.0]
     real = np.sort(roots[roots.imag == 0.0].real)
     half = real.size // 2
@@ -83,21 +86,23 @@ def _pairings(roots: np.ndarray) -> list[list[tuple[complex, complex]]]:
 
 
 def _basis(matrix: np.ndarray, pairs: list[tuple[complex, complex]], vectors: np.ndarray) -> np.ndarray:
-    """All pairs' columns, (2m, 2m): those of y first, then those of p."""
+    """Columns of all pairs, (2m, 2m): those of y first, then those of p."""
     columns = [
         _from_vector(vectors[:, k], pair[0]) if vectors[:, k].any() else _from_subspace(matrix, pair)
         for k, pair in enumerate(pairs)
     ]
-    # unit columns, so that the condition number says what rounding does
+    # unit columns, so that the condition number measures the effect of rounding
     sizes = [np.max(np.abs(c * [1.0, abs(p[0])])) or 1.0 for c, p in zip(columns, pairs, strict=True)]
     return np.array([c[:, j] / s for j in range(2) for c, s in zip(columns, sizes, strict=True)]).T
 
 
-def _pushed(basis: np.ndarray, pairs: list[_Pair], force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The basis in which a force on the velocities acts on y'' alone, and its push on every oscillator.
+def _aligned_with_force(
+    basis: np.ndarray, pairs: list[_Pair], force: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Basis in which a force on the velocities acts on y'' only, and its load on every oscillator.
 
-    Of a pair the force is b, a vector of its plane; with the roots' polynomial s^2 + D s + K the motion
-    a y + b y', a = (A + D) b, has A a = -K b: the push is on y'' and nowhere else.
+    Within the plane of a pair the force is a vector b.  With the polynomial s^2 + D s + K of the roots and a
+    = (A + D) b, A a = -K b holds for the motion a y + b y': the force acts on y'' and on nothing else.
     """
     m = len(pairs)
     inverse = np.linalg.inv(basis) @ np.concatenate((np.zeros(m), force))
@@ -111,7 +116,7 @@ def _pushed(basis: np.ndarray, pairs: list[_Pair], force: np.ndarray) -> tuple[n
         moved = np.linalg.norm(across) > unmoved
         if moved:
             a, b = along, across
-        # of the size of its energy, so that a mode stays as it is
+        # scaled by its energy, so that an uncoupled mode is unchanged
         size = max(np.linalg.norm(a) / np.sqrt(abs(stiffness)), np.linalg.norm(b))
         found[:, k], found[:, m + k] = a / size, b / size
         push[k] = size if moved else 0.0
@@ -128,14 +133,16 @@ def _condition(basis: np.ndarray, pairs: list[_Pair]) -> float:
 def damped_oscillators(
     root: np.ndarray, damping: np.ndarray, what: str, force: np.ndarray | None = None
 ) -> DampedOscillators:
-    """The oscillators of u'' + damping u' + root^T root u = load, (m, m) both.
+    """Oscillators of u'' + damping u' + root^T root u = load, both matrices (m, m).
 
-    force : (m,) a load that shall have no direct part, so that y and y' are continuous where it jumps
-    Raises InputError where two modes are nearly one with nearly the same shape (critically damped twice
-    over): their motion cannot be told apart in double precision.  `what` says of what structure, and why.
+    force : (m,) a load that must have no direct feedthrough, so that y and y' are continuous where it jumps
+    what : which structure this is, for the message of an error
+
+    Raises InputError where two modes nearly coincide in frequency and shape (repeated critical damping):
+    their motions cannot be separated in double precision.
     """
     m = len(damping)
-    # in (R u, u') with R^T R the stiffness: nearly normal for little damping
+    # in (R u, u') with R^T R the stiffness: nearly normal for light damping
     zero = np.zeros((m, m))
     matrix = np.block([[zero, root], [-root.T, -damping]])
     values, vectors = np.linalg.eig(matrix)
@@ -151,13 +158,13 @@ def damped_oscillators(
     if force is not None:
         for k, pairs in enumerate(choices):
             if conditions[k] < 1.0 / _EPS:
-                bases[k], pushes[k] = _pushed(bases[k], pairs, force)
+                bases[k], pushes[k] = _aligned_with_force(bases[k], pairs, force)
                 conditions[k] = _condition(bases[k], pairs)
     k = int(np.argmin(conditions))
     if not conditions[k] < _WORST_BASIS:
         raise InputError(
-            f"the damping must not make two modes of the {what}, which leave a basis of condition number "
-            f"{conditions[k]:.1e}: change one of them a little"
+            f"cannot separate two nearly equal damped modes of the {what}, condition number "
+            f"{conditions[k]:.1e}: change the damping of one of them slightly"
         )
     pairs = choices[k]
     omega = np.sqrt(np.array([(a * b).real for a, b in pairs]))

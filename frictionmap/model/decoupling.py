@@ -1,8 +1,8 @@
-"""What it changes to take a damping matrix that couples the modes by its diagonal: linear responses tell.
+"""Error of replacing a damping matrix that couples the modes by its diagonal, measured by linear responses.
 
-Free and with the contact held the structure is linear, with either damping, and motions with friction go from
-one to the other.  Of three masses with a dashpot these differed by up to 2.5 times as much where linear
-responses differed by less than 2 %, and by up to 5 times as much beyond.
+With the contact free, or held, the structure is linear with either damping matrix, and motions with friction
+alternate between the two states.  For three masses with one dashpot the error of motions with friction was up
+to 2.5 times that of linear responses where the latter was below 2 %, and up to 5 times beyond.
 """
 
 from dataclasses import dataclass, field
@@ -13,25 +13,26 @@ from ..errors import InputError
 from ..structures.accuracy import Ranges, largest_error
 from .modes import ModalModel
 
-#: Frequencies, evenly spaced, beside the resonances, and as many of these at most.
+#: Number of evenly spaced frequencies, and largest number of resonances, at which responses are compared.
 _EVEN = 60
 
 
 @dataclass(frozen=True, eq=False)
 class Decoupling:
-    """A damping matrix whose diagonal in the modes is taken for it."""
+    """A damping matrix that is replaced by its diagonal in modal coordinates."""
 
-    damping: np.ndarray  # C1 (n, n), the whole of it
-    allowed: float  # relative change of linear responses
+    damping: np.ndarray  # (n, n) the full matrix C1
+    allowed: float  # largest relative change of linear responses
     _found: Ranges[float] = field(default_factory=Ranges)
 
     def error(self, modes: ModalModel, r: np.ndarray) -> float:
-        """Largest relative change of compliances of contact and load in a range of r, resonances included.
+        """Largest relative change of the compliances of contact and load in a range of r, resonances
+        included.
 
         Raises
         ------
         InputError
-            It is larger than allowed.
+            The change exceeds the allowed one.
         """
         ends = float(r[0]), float(r[-1])
         return self._found.told(*ends, lambda: self._checked(self._error(modes, *ends)))
@@ -39,8 +40,8 @@ class Decoupling:
     def _checked(self, error: float) -> float:
         if not error <= self.allowed:
             raise InputError(
-                f"decouple must be at least {error:.2g}, by which linear responses change in the range of r "
-                f"if C is taken by its diagonal; got {self.allowed:g}"
+                f"decouple must be at least {error:.2g}, the change of linear responses in the range of r "
+                f"when C is replaced by its diagonal; got {self.allowed:g}"
             )
         return error
 
@@ -54,13 +55,13 @@ class Decoupling:
             dynamic = modes.stiffness - at * at * modes.mass + 1j * at * damping
             return forces.T @ np.linalg.solve(dynamic, forces)
 
-        places = _places(modes, low, high)
-        pairs = ((compliances(at, modes.damping), compliances(at, self.damping)) for at in places)
+        frequencies = _frequencies(modes, low, high)
+        pairs = ((compliances(at, modes.damping), compliances(at, self.damping)) for at in frequencies)
         return largest_error(pairs, units, np.array([1.0, 0.0]))
 
 
-def _places(modes: ModalModel, low: float, high: float) -> np.ndarray:
-    """Where responses are compared."""
+def _frequencies(modes: ModalModel, low: float, high: float) -> np.ndarray:
+    """Frequencies at which responses are compared."""
     resonances = np.concatenate((modes.w, modes.held_frequencies()))
     inside = np.sort(resonances[(resonances >= low) & (resonances <= high)])
     some = inside[:: max(1, -(-inside.size // _EVEN))]

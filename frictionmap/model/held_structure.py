@@ -1,6 +1,6 @@
 """The structure with its contact held, as a set of oscillators that do not depend on r.
 
-With the contact held, chi.q = 0 in the free modes q.  Modal damping does not leave the held modes real: they
+With the contact held, chi.q = 0 for the free modes q.  Modal damping does not leave the held modes real: they
 are `damped_oscillators`.
 """
 
@@ -12,11 +12,11 @@ from .damped_oscillators import damped_oscillators
 
 
 class HeldStructure(NamedTuple):
-    """m = n - 1 oscillators for n free modes that the contact sees; see the module.
+    """The m = n - 1 held oscillators of n participating free modes; see the module.
 
     omega, zeta : (m,) frequency and damping ratio of every oscillator
-    to_free : (2n, 2m) free coordinates (u, u') of (y, p), relative to the static shape
-    to_held : (2m, 2n) the inverse on motions that leave the contact alone
+    to_free : (2n, 2m) maps (y, p) to free coordinates (u, u') relative to the static shape
+    to_held : (2m, 2n) the inverse on motions with the contact at rest
     static_shape : (n,) free coordinates of a unit static displacement of the contact
     stiffness : static stiffness at the contact
     """
@@ -32,12 +32,12 @@ class HeldStructure(NamedTuple):
 def held_structure(
     w: np.ndarray, zeta: np.ndarray, chi: np.ndarray, coupling: np.ndarray | None = None
 ) -> HeldStructure:
-    """The held structure of free modes w, zeta (n,) with participation chi (n,), none of them 0.
+    """Build the held structure of free modes w, zeta (n,) with participation factors chi (n,), all nonzero.
 
-    coupling : (n, n) what the damping has between the modes, 0 on the diagonal; then chi may have zeros
+    coupling : (n, n) coupling of the modes by the damping, 0 on the diagonal; with it chi may have zeros
 
-    Raises InputError where two held modes are nearly one with nearly the same shape (critically damped twice
-    over): their motion cannot be told apart in double precision.
+    Raises InputError where two held modes nearly coincide in frequency and shape (repeated critical damping):
+    their motions cannot be separated in double precision.
     """
     n = w.size
     m = n - 1
@@ -60,7 +60,7 @@ def held_structure(
         if coupling is not None:
             damping += allowed.T @ coupling @ allowed
         root = np.linalg.cholesky(stiffness).T
-        what = f"held structure one; got ratios {zeta.tolist()}"
+        what = f"held structure with damping ratios {zeta.tolist()}"
         omega, ratio, basis, inverse, _ = damped_oscillators(root, damping, what)
     zero = np.zeros_like(allowed)
     spread = np.block([[allowed, zero], [zero, allowed]])

@@ -1,4 +1,4 @@
-"""Mass, stiffness and damping matrices that a structure is computed with: few, dense, definite."""
+"""Mass, stiffness and damping matrices used in the computation: small, dense, definite."""
 
 from dataclasses import dataclass, replace
 
@@ -10,20 +10,22 @@ from ..structures.files import NAMES
 from ..structures.reduction import Reduction
 from ..structures.structure import LARGEST, TOLERANCE, Structure, in_range
 
-#: Beyond so many degrees of freedom all modes take minutes and gigabytes.
+#: Largest number of degrees of freedom without reduction; the modes of more would take minutes and gigabytes.
 _MOST_WHOLE = 2000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Matrices:
-    """Checked matrices (n, n), read-only, in consistent units; equal if their entries and numbers are."""
+    """Checked matrices (n, n), read-only, in consistent units; equal if entries and numbers of the rows are
+    equal.
+    """
 
     mass: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray | None
     source: str  # names of the files, or ""
-    dofs: Dofs  # what the rows are called
-    reduction: Reduction | None = None  # how a larger structure became these
+    dofs: Dofs  # numbers or labels of the rows
+    reduction: Reduction | None = None  # reduction of a larger structure to these matrices
 
     @property
     def n(self) -> int:
@@ -32,7 +34,7 @@ class Matrices:
 
     @property
     def arrays(self) -> dict[str, np.ndarray]:
-        """The matrices by their names, and the numbers of their rows where these are not 1 to n."""
+        """The matrices by name, and the numbers of their rows unless these are 1 to n."""
         named = dict(zip(NAMES, (self.mass, self.stiffness, self.damping), strict=True))
         found = {name: array for name, array in named.items() if array is not None}
         return found if self.dofs.all_there else {**found, "dofs": np.array(self.dofs.numbers)}
@@ -51,8 +53,8 @@ class Matrices:
         return f"<{self.n} by {self.n} matrices{' from ' * bool(self.source)}{self.source}>"
 
     def scaled(self, frequency: float, stiffness: float) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
-        """Dimensionless M, K and C1 (theory.md 1) for units of frequency and of stiffness."""
-        with np.errstate(over="ignore", invalid="ignore"):  # what is out of range is refused below
+        """Dimensionless M, K and C1 (theory.md 1) for given units of frequency and stiffness."""
+        with np.errstate(over="ignore", invalid="ignore"):  # values out of range are refused below
             scaled = (
                 self.mass * (frequency / stiffness * frequency),
                 self.stiffness / stiffness,
@@ -67,13 +69,13 @@ class Matrices:
         return scaled
 
 
-def whole(structure: Structure) -> Matrices:
-    """The matrices of a structure as they are.
+def full_matrices(structure: Structure) -> Matrices:
+    """Dense matrices of a structure, without reduction.
 
     Raises
     ------
     InputError
-        They are too many, or M or K is not positive definite, or C indefinite.
+        There are too many degrees of freedom, or M or K is not positive definite, or C is indefinite.
     """
     if structure.n > _MOST_WHOLE:
         raise InputError(
@@ -89,21 +91,23 @@ def whole(structure: Structure) -> Matrices:
         largest = np.linalg.eigvalsh(dense["M"])[-1]
         raise InputError(
             f"matrices: M must be positive definite; it is singular, with eigenvalues from 0 to "
-            f"{largest:.3g}: degree of freedom {structure.dofs.word(massless[0])} has no mass, which only "
-            f"reduce can take"
+            f"{largest:.3g}: degree of freedom {structure.dofs.word(massless[0])} has no mass; "
+            f"eliminate it with reduce"
         )
     return definite(dense, structure.dofs, structure.source)
 
 
-def of_reduction(reduction: Reduction) -> Matrices:
-    """The matrices of a reduced structure."""
+def reduced_matrices(reduction: Reduction) -> Matrices:
+    """Dense matrices of a reduced structure."""
     structure, reduced = reduction.structure, reduction.reduced
     small = definite(reduced.arrays, structure.dofs.at(reduced.rows), structure.source)
     return replace(small, reduction=reduction)
 
 
 def definite(arrays: dict[str, np.ndarray], dofs: Dofs, source: str) -> Matrices:
-    """Matrices (n, n) as they are computed with, if M and K are positive definite and C is not indefinite."""
+    """Matrices (n, n) of a structure, after checking that M and K are positive definite and C is not
+    indefinite.
+    """
     _definite(arrays["M"], "M")
     _definite(arrays["K"], "K")
     if "C" in arrays:
@@ -114,7 +118,7 @@ def definite(arrays: dict[str, np.ndarray], dofs: Dofs, source: str) -> Matrices
 
 
 def _definite(array: np.ndarray, name: str) -> None:
-    """Refuse a matrix that is not positive definite beyond the rounding of its eigenvalues."""
+    """Refuse a matrix that is not positive definite to within the rounding error of its eigenvalues."""
     eigenvalues = np.linalg.eigvalsh(array)
     rounding = len(array) * np.finfo(float).eps * np.abs(eigenvalues).max()
     if eigenvalues[0] <= rounding:
@@ -129,6 +133,6 @@ def _semidefinite(damping: np.ndarray) -> None:
     eigenvalues = np.linalg.eigvalsh(damping)
     if eigenvalues[0] < -TOLERANCE * np.abs(eigenvalues).max():
         raise InputError(
-            f"matrices: C must be positive semi-definite, or it would feed the motion; it is indefinite, "
-            f"with eigenvalues from {eigenvalues[0]:.3g} to {eigenvalues[-1]:.3g}"
+            f"matrices: C must be positive semi-definite; it is indefinite and would feed energy into the "
+            f"motion, with eigenvalues from {eigenvalues[0]:.3g} to {eigenvalues[-1]:.3g}"
         )

@@ -1,6 +1,6 @@
-"""Complex arrays as pairs of real ones, whose operations round alike at every place of an array.
+"""Complex arrays as pairs of real ones, whose operations round independently of the position in the array.
 
-numpy's own do not: a product of complex numbers is fused in the middle of an array, and not at its end.
+Complex products of numpy do not: they use fused operations in the middle of an array, but not at its end.
 """
 
 from dataclasses import dataclass
@@ -11,29 +11,29 @@ import numpy as np
 
 @dataclass(slots=True)
 class Phasors:
-    """Real and imaginary parts, of one shape."""
+    """Real and imaginary parts, of equal shape."""
 
     re: np.ndarray
     im: np.ndarray
 
     @classmethod
     def zeros(cls, *shape: int) -> "Phasors":
-        """All zero."""
+        """Phasors that are all zero."""
         return cls(np.zeros(shape), np.zeros(shape))
 
     @classmethod
     def of(cls, values: np.ndarray) -> "Phasors":
-        """From a complex array."""
+        """Phasors from a complex array."""
         return cls(values.real, values.imag)
 
     def complex(self) -> np.ndarray:
-        """As a complex array."""
+        """Convert to a complex array."""
         values = np.empty(self.re.shape, dtype=complex)
         values.real, values.imag = self.re, self.im
         return values
 
     def rows(self) -> np.ndarray:
-        """As a complex array, transposed; sums over its rows go in the order of memory."""
+        """Convert to a transposed complex array, contiguous along each row."""
         return np.ascontiguousarray(self.complex().T)
 
     def __getitem__(self, at: Any) -> "Phasors":
@@ -52,10 +52,10 @@ class Phasors:
         return Phasors(self.re * other.re - self.im * other.im, self.re * other.im + self.im * other.re)
 
     def __truediv__(self, other: "Phasors") -> "Phasors":
-        """By the larger part of the divisor, so that nothing overflows on the way (Smith)."""
+        """Divide by the larger part of the divisor first, so that no intermediate value overflows (Smith)."""
         wide = np.abs(other.im) > np.abs(other.re)
         large, small = np.where(wide, other.im, other.re), np.where(wide, other.re, other.im)
-        with np.errstate(all="ignore"):  # a divisor of zero leaves what is no number
+        with np.errstate(all="ignore"):  # division by zero gives NaN
             ratio = small / large
             below = large + small * ratio
             re = np.where(wide, self.re * ratio + self.im, self.re + self.im * ratio)
@@ -63,19 +63,19 @@ class Phasors:
             return Phasors(re / below, im / below)
 
     def times(self, factor: Any) -> "Phasors":
-        """Times real numbers."""
+        """Multiply by real numbers."""
         return Phasors(factor * self.re, factor * self.im)
 
     def over(self, divisor: Any) -> "Phasors":
-        """Over real numbers."""
+        """Divide by real numbers."""
         return Phasors(self.re / divisor, self.im / divisor)
 
     def turned(self) -> "Phasors":
-        """Times i."""
+        """Multiply by i."""
         return Phasors(-self.im, self.re)
 
     def where(self, kept: np.ndarray, other: "Phasors") -> "Phasors":
-        """These where `kept`, others elsewhere."""
+        """Select these where `kept`, others elsewhere."""
         return Phasors(np.where(kept, self.re, other.re), np.where(kept, self.im, other.im))
 
     @property
@@ -85,5 +85,5 @@ class Phasors:
 
     @property
     def nonzero(self) -> np.ndarray:
-        """Where they are not zero."""
+        """Whether each phasor is nonzero."""
         return (self.re != 0.0) | (self.im != 0.0)

@@ -7,7 +7,7 @@ from typing import Any, Literal, TypedDict, get_args
 from .. import checks
 from ..errors import InputError
 
-#: Outputs a map can hold, in the order of the file; what each is, `labels.CELL_VARIABLES` says.
+#: Outputs of a map, in the order of the file; described in `labels.CELL_VARIABLES`.
 Output = Literal[
     "regime",
     "stops_per_cycle",
@@ -32,16 +32,16 @@ Output = Literal[
 ]
 OUTPUTS: tuple[str, ...] = get_args(Output)
 
-#: What response curves can hold, in the order of the file.
+#: Quantities of response curves, in the order of the file.
 Quantity = Literal[
     "amplitude", "phase", "first_harmonic", "energy", "harmonics", "transmitted_force", "distortion"
 ]  # fmt: skip
 
-#: What they hold if nobody says, and the highest harmonic then; rounding grows with their number.
+#: Default quantities, and default highest harmonic; rounding error grows with the number of harmonics.
 QUANTITIES: tuple[Quantity, ...] = ("amplitude", "phase", "first_harmonic", "energy", "harmonics")
 HARMONICS = 7
 
-#: Least and most value of each setting that is a number.
+#: Valid range of each numerical setting.
 RANGES: dict[str, dict[str, Any]] = {
     "cycles": {"least": 1, "most": 10**9},
     "tolerance": {"least": 1e-15, "most": 1e-3},
@@ -56,23 +56,23 @@ Steady = Literal["solved", "marched"]
 
 @dataclass(frozen=True)
 class Solver:
-    """How steady states are found, and what is kept of them.
+    """Settings of the steady-state solver, and the outputs to keep.
 
     Parameters
     ----------
     start : {"rest", "moving"}
-        The starting state: z = z' = 0 at tau = 0, or a large sliding motion.
+        Initial state: z = z' = 0 at tau = 0, or a large sliding motion.
     cycles : int
-        Give up after so many excitation periods.
+        Maximum number of excitation periods.
     tolerance : float
-        On the state after one return, relative to the amplitude.
+        Largest change of the state over one recurrence, relative to the amplitude.
     steps : int
-        Scan steps per period of the fastest part of the motion, 2 to 1000; events are found and computed
-        exactly whatever it is, so it is a matter of speed only.
+        Scan steps per period of the fastest part of the motion, 2 to 1000.  Events are found and computed
+        exactly for every value; it affects the speed only.
     skip : {"exact", "none"}
-        Integrate only the cells that no proof decides, or every cell with friction.
+        Integrate only the cells that theory does not decide, or every cell with friction.
     steady : {"solved", "marched"}
-        Finish by solving for the periodic orbit, or wait until the motion returns by itself.
+        Solve for the periodic orbit, or follow the motion until it repeats.
     outputs : sequence of str
         Cell variables to compute and keep.
 
@@ -107,7 +107,7 @@ class Solver:
 
 
 class SolverSettings(TypedDict, total=False):
-    """The settings of `Solver`, one by one; what a type checker knows of the keywords of `sweep`."""
+    """The settings of `Solver` as keywords of `sweep`, for type checkers."""
 
     start: Start
     cycles: int
@@ -119,20 +119,20 @@ class SolverSettings(TypedDict, total=False):
 
 
 def merged(solver: Solver | None, settings: Mapping[str, object]) -> Solver:
-    """The solver given, or the default one, with the settings given beside it in place of its own."""
+    """Return the given solver, or the default one, with single settings replaced."""
     if solver is not None:
         checks.instance(solver, "solver", Solver)
     names = [field.name for field in fields(Solver)]
     for name in settings:
         if name not in names:
             hint = checks.nearest(name, names)
-            raise InputError(f"settings must be some of {', '.join(names)}; got {name}{hint}")
+            raise InputError(f"unknown setting {name!r}{hint}; valid: {', '.join(names)}")
     return replace(solver or Solver(), **settings)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)
 class CurveSettings:
-    """What is computed of response curves: these quantities, and harmonics 0 to `harmonics`; 0: none."""
+    """Quantities of response curves, and the highest harmonic; 0: no harmonics."""
 
     harmonics: int
     quantities: tuple[Quantity, ...]
@@ -141,20 +141,20 @@ class CurveSettings:
 def curve_settings(
     harmonics: int | None = None, quantities: Sequence[Quantity] | None = None
 ) -> CurveSettings:
-    """What is computed of response curves, checked.
+    """Check and complete the settings of response curves.
 
     Parameters
     ----------
     harmonics : int, optional
-        The highest harmonic that is kept, up to 1000; 0: none.  Default 7 where `quantities` names
-        "harmonics", else none.
+        Highest harmonic to keep, up to 1000; 0: none.  Default 7 where `quantities` contains "harmonics",
+        else none.
     quantities : sequence of str, optional
-        Default all but the last two.  A number of harmonics adds "harmonics", 0 takes them away.
+        Default: all but the last two.  A positive `harmonics` adds "harmonics", 0 removes it.
 
     Raises
     ------
     InputError
-        A quantity is unknown, or none is given, or the number is no whole number in range.
+        A quantity is unknown, or none is given, or the number is not an integer in range.
     """
     given = QUANTITIES if quantities is None else quantities
     legal: tuple[Quantity, ...] = get_args(Quantity)

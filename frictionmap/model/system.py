@@ -1,4 +1,4 @@
-"""What is simulated: a structure, its damping, its load and the one contact."""
+"""Definition of a system: a structure, its damping, its load and its one contact."""
 
 import math
 import os
@@ -18,11 +18,11 @@ from ..structures.reduction import Reduction, reduce_structure
 from ..structures.structure import Structure, read_structure
 from .coupled_modes import CoupledModel, coupled_model
 from .decoupling import Decoupling
-from .matrices import Matrices, of_reduction, whole
+from .matrices import Matrices, full_matrices, reduced_matrices
 from .modes import (
     ModalModel,
+    align_with_contact,
     damped_modes,
-    gather_contact,
     load_rate,
     modal_damping,
     solve_chain_modes,
@@ -33,15 +33,15 @@ CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 EXCITATIONS = ("force", "base")
 DAMPING_REFERENCES = ("ground", "base")
 
-#: Coupling of the modes by C, relative to their own damping: what the digits of a matrix in a file may make,
-#: and far below what damping is known to.
+#: Largest coupling of the modes by C, relative to their own damping, that is neglected: it can result from
+#: the digits of a matrix in a file, and is far below the accuracy of any measured damping.
 _MOST_COUPLING = 1e-9
 
 _EPS = float(np.finfo(float).eps)
 
 
 def _sequence(values: Any, name: str, what: str) -> Sequence:
-    """`values`, if it is a list, a tuple or an array."""
+    """Convert `values` to a list if it is a list, a tuple or an array."""
     if checks.is_array(values):
         given = checks.array(values, name)
         if given.ndim == 1:
@@ -80,14 +80,14 @@ def _damping(values: object, n: int) -> tuple[float, ...]:
         return (checks.number(values, "damping_ratios", **bounds),) * n
     values = _sequence(values, "damping_ratios", "numbers")
     if len(values) != n:
-        raise InputError(f"damping_ratios must be one number or one a mode ({n}); got {len(values)}")
+        raise InputError(f"damping_ratios must be one number, or one per mode ({n}); got {len(values)}")
     return tuple(
         checks.number(value, f"damping_ratios[{index}]", **bounds) for index, value in enumerate(values)
     )
 
 
 def _complex(value: object, name: str) -> complex:
-    """`value` as a complex number with finite parts."""
+    """Convert `value` to a complex number with finite parts."""
     if isinstance(value, (complex, np.complexfloating)):
         return complex(checks.number(value.real, name), checks.number(value.imag, name))
     return complex(checks.number(value, name))
@@ -96,20 +96,20 @@ def _complex(value: object, name: str) -> complex:
 def _load(values: object, n: int) -> tuple[complex, ...]:
     values = _sequence(values, "load", "numbers")
     if len(values) != n:
-        raise InputError(f"load must have one number a mass ({n}); got {len(values)}")
+        raise InputError(f"load must have one number per mass ({n}); got {len(values)}")
     load = tuple(_complex(value, f"load[{index}]") for index, value in enumerate(values))
     if not any(load):
         raise InputError("load must have a value that is not zero; got none")
     return load
 
 
-def _in_words(values: Sequence[complex]) -> str:
-    """Numbers with a comma between them; real ones without their imaginary part."""
+def _format_values(values: Sequence[complex]) -> str:
+    """Format numbers, separated by commas; real ones without their imaginary part."""
     return ", ".join(f"{value.real if value.imag == 0.0 else value:g}" for value in values)
 
 
 class _DampedModes(NamedTuple):
-    """Frequencies, modes, damping ratios; C1 where it couples modes, or what is left out of it."""
+    """Frequencies, modes, damping ratios; C1 where it couples modes, or the decoupling that replaces it."""
 
     w: np.ndarray
     phi: np.ndarray
@@ -120,72 +120,73 @@ class _DampedModes(NamedTuple):
 
 @dataclass(frozen=True)
 class System:
-    """A linear structure with one dry-friction contact, shaken at one frequency.
+    """A linear structure with one dry-friction contact, excited at one frequency.
 
-    The structure is a chain of masses and springs, given by ratios, or any other, given by matrices.  In a
-    chain spring 1 ties mass 1 to the ground (or to the base), spring i mass i to mass i - 1.
+    The structure is a chain of masses and springs, defined by ratios, or any linear structure, defined by M
+    and K.  In a chain spring 1 connects mass 1 to the ground (or to the base), spring i connects mass i to
+    mass i - 1.
 
     Parameters
     ----------
     contact : {"fixed-wall", "joined-base-wall", "between-masses"}
-        Where the friction acts: between a mass and the ground, between a mass and a wall that moves with
-        the shaken base, or between two masses.
+        Where friction acts: between a mass and the ground, between a mass and a wall that moves with the
+        base, or between two masses.
     contact_masses : sequence of int or str
-        The mass in contact, or the two, A < B; counted from 1.  Masses are degrees of freedom.  Of matrices
-        from a file with labels a label NODE.DOF, such as "112.1", may take the place of a number.
+        The mass in contact, or the two masses, A < B, counted from 1.  Masses are degrees of freedom.  For
+        matrices from a file with labels, a label NODE.DOF, such as "112.1", may replace a number.
     load_mass : int or str, optional
-        The mass the harmonic load acts on, counted from 1, or its label; default the first.  Always the first
-        with base excitation.
+        The mass on which the harmonic load acts, counted from 1, or its label; default: the first.  With base
+        excitation it is always the first.
     mass_ratios, stiffness_ratios : sequence of float, optional
-        gamma_i = m_i/m_1 and kappa_i = k_i/k_1 [-] of a chain, > 0, the first one 1; default one mass.
+        gamma_i = m_i/m_1 and kappa_i = k_i/k_1 [-] of a chain, > 0, the first one 1; default: one mass.
     damping_ratios : float or sequence of float, optional
-        Damping ratio zeta [-] of every mode, or one a mode in the order of the natural frequencies, 0 to
-        100; 1 and more is legal.  Default 0.
+        Damping ratio zeta [-] of all modes, or one value per mode in the order of the natural frequencies, 0
+        to 100; values >= 1 are allowed.  Default 0.
     matrices : path or mapping, optional
-        Instead of the ratios: M and K and optionally C, shape (n, n), in consistent units.  The path of a
-        file with all of them (.npz, .mat; .op4 and .pch of Nastran), or a mapping, of arrays, also sparse
-        ones, or of paths: Matrix Market or Abaqus (.mtx), Harwell-Boeing (.hb, .rb, .rsa, .rua).  An array
-        `dofs` (n,) beside M and K has numbers that degrees of freedom are called by instead of 1 to n.  Real
-        and symmetric; M and K positive definite.  C takes the place of damping_ratios: it is positive
-        semi-definite, and may couple the undamped modes, as single dashpots do.
+        Instead of the ratios: M and K and optionally C, shape (n, n), in consistent units.  Either the path
+        of a file with all of them (.npz, .mat; .op4 and .pch of Nastran), or a mapping of arrays, dense or
+        sparse, or of paths: Matrix Market or Abaqus (.mtx), Harwell-Boeing (.hb, .rb, .rsa, .rua).  An array
+        `dofs` (n,) next to M and K gives the numbers of the degrees of freedom, instead of 1 to n.  The
+        matrices are real and symmetric; M and K are positive definite.  C replaces damping_ratios: it is
+        positive semi-definite, and may couple the undamped modes, as single dashpots do.
     frequency_scale : float, optional
-        With matrices: r = omega/frequency_scale, in the units of sqrt(K/M); default the first natural
-        frequency, before any reduction.  A chain's is sqrt(k_1/m_1).
+        With matrices: r = omega/frequency_scale, in the units of sqrt(K/M); default: the first natural
+        frequency, before any reduction.  For a chain it is sqrt(k_1/m_1).
     stiffness_scale : float
-        With matrices: displacements are in P/stiffness_scale, in the units of K.  A chain's is k_1.
+        With matrices: displacements are in P/stiffness_scale, in the units of K.  For a chain it is k_1.
     excitation : {"force", "base"}, optional
-        Default: "base" with a joined base-wall, which can have no other, else "force".  "base": the structure
-        stands on a base that moves by Y cos(tau), and P = stiffness_scale Y (k_1 Y of a chain); of one given
-        by matrices all degrees of freedom are displacements along the base's.
+        "base": the structure stands on a base that moves by Y cos(tau), and P = stiffness_scale Y (k_1 Y for
+        a chain); all degrees of freedom of given matrices are then displacements in the direction of the base
+        motion.  Default: "base" with a joined base-wall, which allows no other value, else "force".
     damping_reference : {"ground", "base"}
-        Whether the damping acts on velocities in space or relative to the base, which must move for that.
+        Whether the damping acts on absolute velocities, or on velocities relative to the base; the latter
+        requires base excitation.
     load : sequence of complex, optional
         Instead of load_mass: the phasors p_k [P] of loads Re(p_k e^{i tau}) on all n masses.
     reduce : mapping, optional
-        With matrices: ``{"keep": [17, 112], "modes": 16}`` reduces them, after Craig and Bampton, to these
-        degrees of freedom, those in contact and under load, and so many modes with all these held.
-        Contact, load and results keep the numbers of the file.  In the range of r that is asked for,
-        natural frequencies and compliances must be within "allow", by default 0.001, of the whole
-        structure's: else there is an InputError, which says how many modes would do.  Boundaries of
-        continuous motion, which harmonics of friction above that range move, may need more.
+        With matrices: ``{"keep": [17, 112], "modes": 16}`` reduces them by the Craig-Bampton method to these
+        degrees of freedom, those in contact and under load, and this many modes with all these held.
+        Contact, load and results keep the numbers of the file.  Within the requested range of r the errors of
+        natural frequencies and compliances must not exceed "allow", by default 0.001; otherwise an InputError
+        states how many modes suffice.  Boundaries of continuous motion may need more modes, because higher
+        harmonics of friction excite modes above that range.
     rayleigh : sequence of float, optional
-        With matrices, instead of damping_ratios and of C: [a, b] of C = a M + b K, >= 0, in their units.
-
+        With matrices, instead of damping_ratios and C: [a, b] of C = a M + b K, >= 0, in their units.
     decouple : float, optional
-        With a C that couples the undamped modes: its diagonal in the modes takes its place, and what is
-        known of modes only is told, if that changes linear responses, free and with the contact held, by no
-        more than this in the range of r.
+        With a C that couples the undamped modes: replace C by its diagonal in modal coordinates, if this
+        changes linear responses, with the contact free or held, by no more than this relative error in the
+        range of r.
 
     Raises
     ------
     InputError
-        A value is out of range, or does not go together with another; a file cannot be read.
+        A value is out of range or incompatible with another; a file cannot be read.
 
     Notes
     -----
     Dimensionless equations of motion: theory.md 1; T(5.4), (5.8) for chains, T(2.12), (3.3) for one mass.
-    With base excitation the load is p = K ones, of a chain e_1; with damping relative to the base
-    i r C1 ones is added, so that p = 1 + 2 i zeta r for one mass.
+        With base excitation the load is p = K ones, which is e_1 for a chain; with damping relative to the
+        base i r C1 ones is added, so that p = 1 + 2 i zeta r for one mass.
     """
 
     contact: Literal["fixed-wall", "joined-base-wall", "between-masses"] = "fixed-wall"
@@ -196,12 +197,12 @@ class System:
     damping_ratios: float | Sequence[float] | None = None
     _: KW_ONLY
     matrices: str | os.PathLike | Mapping[str, Any] | Structure | Matrices | None = None
-    frequency_scale: float | None = field(default=None, compare=False)  # `_scale` says what it comes to
+    frequency_scale: float | None = field(default=None, compare=False)  # `_scale` holds the resulting value
     stiffness_scale: float = 1.0
     excitation: Literal["force", "base"] | None = None
     damping_reference: Literal["ground", "base"] = "ground"
     load: Sequence[complex] | None = None
-    # reduced matrices say all that this does
+    # not compared: the reduced matrices are
     reduce: Mapping[str, Any] | Reduce | None = field(default=None, compare=False)
     rayleigh: Sequence[float] | None = None
     decouple: float | None = None
@@ -217,15 +218,16 @@ class System:
         self._check_load()
         if isinstance(self.matrices, Structure):
             self._set(
-                "matrices", self._reduced(self.matrices, previous) if self.reduce else whole(self.matrices)
+                "matrices",
+                self._reduced(self.matrices, previous) if self.reduce else full_matrices(self.matrices),
             )
         scale = self.frequency_scale
-        if scale is None and self.reduction is not None:  # r means the same however much is left
+        if scale is None and self.reduction is not None:  # r does not depend on the reduction
             scale = self.reduction.first_frequency
         self._set("_scale", scale)
         self._check_damping()
         if self.n > 1 or self.matrices is not None:
-            _ = self.modes  # what only they can tell is told at the door, too
+            _ = self.modes  # errors that only the modes reveal are raised here
 
     def _set(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
@@ -277,7 +279,7 @@ class System:
         self._set("stiffness_scale", checks.number(self.stiffness_scale, "stiffness_scale", above=0.0))
 
     def _reduced(self, structure: Structure, previous: Reduction | None) -> Matrices:
-        """The matrices of the structure, reduced; as before if that is how they were."""
+        """Reduce the structure; a previous reduction that fits is used again."""
         assert isinstance(self.reduce, Reduce)
         base = self.excitation == "base"
         loaded: list[int] = []
@@ -288,8 +290,8 @@ class System:
         kept: set[int] = {*self.contact_masses, *self.reduce.keep, *loaded}  # type: ignore[arg-type]
         asked = self.reduce, tuple(sorted(kept)), self.contact_vector, base
         if previous is not None and previous.like(*asked):
-            return of_reduction(previous)
-        return of_reduction(reduce_structure(structure, *asked))
+            return reduced_matrices(previous)
+        return reduced_matrices(reduce_structure(structure, *asked))
 
     def _check_rayleigh(self) -> None:
         if self.rayleigh is None:
@@ -367,40 +369,40 @@ class System:
 
     @property
     def dofs(self) -> Dofs:
-        """What the masses are called: numbers from 1, with gaps where a file's are left out."""
+        """Numbers or labels of the masses: counted from 1, or as in the file, possibly with gaps."""
         if isinstance(self.matrices, (Structure, Matrices)):
             return self.matrices.dofs
         return Dofs.counted(len(self.mass_ratios))  # type: ignore[arg-type]
 
     @property
     def zeta(self) -> float:
-        """Damping ratio of the first mode, the only one of one mass."""
+        """Damping ratio of the first mode, the only mode of one mass."""
         return float(self.modes.zeta[0])
 
     @property
     def base_motion(self) -> int:
-        """s: 1 if the contact moves with the base, else 0."""
+        """s: 1 if the wall of the contact moves with the base, else 0."""
         return int(self.contact == "joined-base-wall")
 
     @property
     def reduction(self) -> Reduction | None:
-        """How a larger structure was reduced to this one."""
+        """Reduction of a larger structure to this one, if any."""
         return self.matrices.reduction if isinstance(self.matrices, Matrices) else None
 
     @property
     def loads(self) -> tuple[complex, ...] | None:
-        """`load` on the masses that there are: a reduced structure has fewer than its file."""
+        """`load` on the present masses: a reduced structure has fewer masses than its file."""
         if self.load is None or self.reduction is None:
             return self.load  # type: ignore[return-value]
         return tuple(self.load[row] for row in self.reduction.reduced.rows)
 
     def accuracy(self, r: np.ndarray) -> Accuracy | None:
-        """What the reduction of a structure costs in the range of r; None of one that is not reduced.
+        """Errors of the reduction in the range of r; None without reduction.
 
         Raises
         ------
         InputError
-            More than is allowed.
+            An error exceeds the allowed one.
         """
         if self.reduction is None:
             return None
@@ -408,23 +410,23 @@ class System:
         return self.reduction.checked(low, high)
 
     def decoupling(self, r: np.ndarray) -> float | None:
-        """What it costs in the range of r that C is taken by its diagonal; None if it is diagonal.
+        """Error of replacing C by its diagonal in the range of r; None if C is not replaced.
 
         Raises
         ------
         InputError
-            More than is allowed.
+            The error exceeds the allowed one.
         """
         left_out = self._damped_modes.left_out
         return None if left_out is None else left_out.error(self.modes, r)
 
     def costs(self, r: np.ndarray) -> dict[str, str]:
-        """In words, what the structure that is computed differs from the one given, in the range of r.
+        """Describe the errors of reduction and decoupling in the range of r.
 
         Raises
         ------
         InputError
-            More than is allowed.
+            An error exceeds the allowed one.
         """
         words = {}
         reduced, decoupled = self.accuracy(r), self.decoupling(r)
@@ -433,7 +435,7 @@ class System:
             words["reduction"] = f"{reduced.words()}{where}; {reduced.beyond()}"
         if decoupled is not None:
             words["decoupling"] = (
-                f"C, taken by its diagonal in the modes, changes linear responses by {decoupled:.1e}{where}"
+                f"C, replaced by its modal diagonal, changes linear responses by {decoupled:.1e}{where}"
             )
         return words
 
@@ -454,17 +456,17 @@ class System:
 
     @property
     def normalised(self) -> bool:
-        """Whether this is one mass of 1 on a spring of 1, the units of the formulas for one mass."""
+        """Whether the system is one unit mass on a unit spring, as the formulas for one mass assume."""
         return self.n == 1 and self.modes.mass[0, 0] == 1.0 == self.modes.stiffness[0, 0]
 
     @property
     def omega_1(self) -> float:
-        """omega/r: what r = 1 is, in the units of sqrt(K/M) of matrices; 1 of a chain, given by ratios."""
+        """Frequency omega at r = 1, in the units of sqrt(K/M) of the matrices; 1 for a chain."""
         return 1.0 if self.matrices is None else self._frequency_scale
 
     @cached_property
     def _frequency_scale(self) -> float:
-        """omega/r of a structure given by matrices."""
+        """Frequency omega at r = 1 of a structure given by matrices."""
         if self._scale is not None:
             return self._scale
         assert isinstance(self.matrices, Matrices)
@@ -472,7 +474,9 @@ class System:
         return float(w[0])
 
     def _solve(self, mass: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Frequencies and modes, if double precision holds the lowest beside the highest."""
+        """Solve for frequencies and modes; refuse if the lowest frequency is below the rounding error of the
+        highest.
+        """
         if self.matrices is None and self.n > 1:
             w, phi = solve_chain_modes(np.array(self.mass_ratios), np.array(self.stiffness_ratios))
         else:
@@ -480,8 +484,8 @@ class System:
         if not w[0] > math.sqrt(w.size * _EPS) * w[-1]:
             name = "mass_ratios and stiffness_ratios" if self.matrices is None else "matrices"
             raise InputError(
-                f"{name} must make natural frequencies that double precision can hold together; the highest, "
-                f"{w[-1]:.3g}, drowns the lowest"
+                f"cannot compute the natural frequencies: the highest, {w[-1]:.3g}, exceeds the lowest by "
+                f"more than double precision resolves; change {name}"
             )
         return w, phi
 
@@ -490,7 +494,7 @@ class System:
         if isinstance(self.matrices, Matrices):
             mass, stiffness, damping = self.matrices.scaled(self._frequency_scale, self.stiffness_scale)
             if self.n == 1 and self._scale is None:
-                mass = stiffness.copy()  # w = 1 by definition; scaling misses it by a rounding
+                mass = stiffness.copy()  # w = 1 by definition; scaling would give it with a rounding error
             return mass, stiffness, damping
         springs = np.array(self.stiffness_ratios)
         stiffness = np.diag(springs) + np.diag(np.append(springs[1:], 0.0))
@@ -498,12 +502,12 @@ class System:
         return np.diag(np.array(self.mass_ratios)), stiffness, None
 
     def _load_vector(self, stiffness: np.ndarray) -> np.ndarray:
-        """The part of p that does not depend on r, complex (n,)."""
+        """Part of p that does not depend on r, complex (n,)."""
         if self.load is not None:
             return np.array(self.loads)
         if self.excitation == "base" and self.matrices is not None:
             return stiffness.sum(axis=1).astype(complex)
-        load = np.zeros(self.n, dtype=complex)  # of a chain's springs the first only ends at the base
+        load = np.zeros(self.n, dtype=complex)  # only the first spring of a chain ends at the base
         load[self.dofs.row(self.load_mass)] = 1.0  # type: ignore[arg-type]
         return load
 
@@ -556,7 +560,7 @@ class System:
         to_base = self.damping_reference == "base"
         if coupled is not None:
             return coupled_model(w, phi, coupled, to_base, parts)
-        phi = gather_contact(w, zeta, phi, parts["contact"])
+        phi = align_with_contact(w, zeta, phi, parts["contact"])
         damping = modal_damping(mass, w, phi, zeta)
         springs = np.array(self.stiffness_ratios) if self.matrices is None else None
         rate = load_rate(damping, to_base)
@@ -566,8 +570,8 @@ class System:
         """Phasor F of the load in the contact when it is held, over P (complex, shape of r).
 
         One mass: p(r) for a fixed wall; p(r) - (w^2 - r^2 + 2 i zeta w r)/phi^2 for a joined base-wall, which
-        is r^2 - 2 i zeta r, T(3.24), (3.32) with damping, or r^2 if it acts relative to the base.  More
-        masses: theory.md 4.
+        is r^2 - 2 i zeta r, T(3.24), (3.32) with damping, or r^2 if the damping acts relative to the base.
+        More masses: theory.md 4.
         """
         r = np.asarray(r, dtype=float)
         flat = r.ravel()
@@ -575,15 +579,15 @@ class System:
         return found.reshape(r.shape)
 
     def describe(self) -> str:
-        """The system in words."""
+        """Describe the system in one line."""
         if self.n == 1 and self.matrices is None:
             return (
-                f"one mass; {self._contact_in_words()}, {self._load_in_words()}; {self._damping_in_words()}"
+                f"one mass; {self._describe_contact()}, {self._describe_load()}; {self._describe_damping()}"
             )
-        words = (self._contact_in_words(), self._load_in_words(), self._damping_in_words())
-        return "; ".join((self._structure_in_words(), *words))
+        words = (self._describe_contact(), self._describe_load(), self._describe_damping())
+        return "; ".join((self._describe_structure(), *words))
 
-    def _structure_in_words(self) -> str:
+    def _describe_structure(self) -> str:
         if isinstance(self.matrices, Matrices):
             plural = "s" if self.n > 1 else ""
             source = f" from {self.matrices.source}" if self.matrices.source else ""
@@ -596,11 +600,11 @@ class System:
                 f"structure of {self.n} degree{plural} of freedom{source}, r = omega/"
                 f"{self._frequency_scale:g}{first}, displacements in P/{self.stiffness_scale:g}"
             )
-        masses = _in_words(self.mass_ratios)  # type: ignore[arg-type]
-        springs = _in_words(self.stiffness_ratios)  # type: ignore[arg-type]
+        masses = _format_values(self.mass_ratios)  # type: ignore[arg-type]
+        springs = _format_values(self.stiffness_ratios)  # type: ignore[arg-type]
         return f"chain of {self.n} masses ({masses}), springs ({springs})"
 
-    def _contact_in_words(self) -> str:
+    def _describe_contact(self) -> str:
         masses = [self.dofs.word(number) for number in self.contact_masses]  # type: ignore[arg-type]
         a, b = masses[0], masses[-1]
         mass = "the mass" if self.n == 1 else f"mass {b}"
@@ -610,7 +614,7 @@ class System:
             "between-masses": f"friction between masses {a} and {b}",
         }[self.contact]
 
-    def _load_in_words(self) -> str:
+    def _describe_load(self) -> str:
         one = self.n == 1
         if self.excitation == "base":
             through = "the spring" if one else "the springs"
@@ -621,12 +625,12 @@ class System:
             return f"harmonic base motion through {through}"
         if self.load is not None:
             where = "the mass" if one else "the masses"
-            return f"harmonic load ({_in_words(self.load)}) on {where}"
+            return f"harmonic load ({_format_values(self.load)}) on {where}"
         return (
             "harmonic load on the mass" if one else f"harmonic load on mass {self.dofs.word(self.load_mass)}"  # type: ignore[arg-type]
         )
 
-    def _damping_in_words(self) -> str:
+    def _describe_damping(self) -> str:
         if not self.modes.zeta.any():
             return "no viscous damping"
         if self.n == 1:
@@ -640,4 +644,4 @@ class System:
         if self.damping_ratios is None:
             zeta = self.modes.zeta
             return f"modal damping ratios {zeta.min():g} to {zeta.max():g}, from C"
-        return f"modal damping ratios {_in_words(tuple(dict.fromkeys(self.damping_ratios)))}"  # type: ignore[arg-type]
+        return f"modal damping ratios {_format_values(tuple(dict.fromkeys(self.damping_ratios)))}"  # type: ignore[arg-type]

@@ -1,7 +1,7 @@
-"""Further axes of a study: numbers of a system that change, one by one or together.
+"""Further axes of a study: parameters of a system that vary, one by one or together.
 
-A number of a system is named as in a configuration: ``damping_ratios`` for all modes at once, or one of a
-list, counted from 1, such as ``stiffness_ratios[2]``; the dimension of that is ``stiffness_ratios_2``.
+A parameter is named as in a configuration: ``damping_ratios`` for all modes at once, or one entry of a list,
+counted from 1, such as ``stiffness_ratios[2]``; its dimension is then ``stiffness_ratios_2``.
 """
 
 import math
@@ -16,7 +16,7 @@ from .. import checks
 from ..errors import InputError
 from .system import System
 
-#: What may change as one number, and what as one of a list; with what a value means.
+#: Keys that vary as one number, and keys of which one list entry varies, with a description.
 NUMBERS = {
     "damping_ratios": "damping ratio of all modes",
     "load_mass": "mass that the load acts on",
@@ -36,28 +36,28 @@ _INDEXED = re.compile(r"([a-z_]+)\[([1-9][0-9]*)\]")
 
 @dataclass(frozen=True)
 class Number:
-    """One number of a system."""
+    """One numerical parameter of a system."""
 
     key: str
     place: int | None  # in a list, counted from 1
 
     @property
     def dimension(self) -> str:
-        """Its name as a dimension, or as a coordinate."""
+        """Name as a dimension or a coordinate."""
         return self.key if self.place is None else f"{self.key}_{self.place}"
 
     @property
     def text(self) -> str:
-        """Its name in a configuration."""
+        """Name in a configuration."""
         return self.key if self.place is None else f"{self.key}[{self.place}]"
 
     @property
     def meaning(self) -> str:
-        """What it is, in words."""
+        """Description of the parameter."""
         return NUMBERS[self.key] if self.place is None else LISTS[self.key].format(self.place)
 
     def put_into(self, before: Any, value: float) -> Any:
-        """The value of the key with this number in it."""
+        """Return the value of the key with this parameter set to `value`."""
         given = int(value) if self.key in _WHOLE and value == int(value) else float(value)
         if self.place is None:
             return given
@@ -70,9 +70,9 @@ class Number:
         return values
 
 
-@dataclass(frozen=True, eq=False)  # arrays have no one answer
+@dataclass(frozen=True, eq=False)  # comparing arrays gives no single truth value
 class Axis:
-    """A dimension along which one number changes, or several together."""
+    """A dimension along which one parameter varies, or several together."""
 
     name: str
     numbers: tuple[Number, ...]
@@ -80,18 +80,18 @@ class Axis:
 
     @property
     def size(self) -> int:
-        """Points along it."""
+        """Number of points along the axis."""
         return int(self.values[0].size)
 
     @property
     def zipped(self) -> bool:
-        """Whether it counts points of several numbers, or is the number itself."""
+        """Whether the axis counts points of several parameters; False if it is the parameter itself."""
         return self.name != self.numbers[0].dimension or len(self.numbers) > 1
 
 
 @dataclass(frozen=True)
 class Variations:
-    """A system and the axes along which it changes."""
+    """A system and the axes along which it varies."""
 
     system: System
     axes: tuple[Axis, ...]
@@ -103,12 +103,12 @@ class Variations:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Points along every axis."""
+        """Number of points along every axis."""
         return tuple(axis.size for axis in self.axes)
 
     @property
     def described(self) -> dict[str, Any]:
-        """As they were given: values by names, or a mapping of those that change together."""
+        """The axes as they were given: values by name, or a mapping for parameters that vary together."""
         described: dict[str, Any] = {}
         for axis in self.axes:
             columns = {
@@ -118,27 +118,27 @@ class Variations:
         return described
 
     def describe(self) -> str:
-        """The system in words, and which of its numbers change."""
+        """Describe the system and the parameters that vary."""
         keys = dict.fromkeys(number.key for axis in self.axes for number in axis.numbers)
         return self.system.describe() + (f"; varied: {', '.join(keys)}" if keys else "")
 
     def costs(self, r: np.ndarray) -> None:
-        """Refuse what costs too much somewhere in the range of r, see `System.costs`."""
+        """Refuse a reduction or decoupling error above the allowed one at any point, see `System.costs`."""
         if self.system.costs(r):
             for point in self.points():
                 self.at(point).costs(r)
 
     def points(self) -> Iterator[tuple[int, ...]]:
-        """Every point, the last axis first."""
+        """Iterate over all points, the last axis fastest."""
         return iter(np.ndindex(self.shape))
 
     def at(self, point: Sequence[int]) -> System:
-        """The system at a point.
+        """Build the system at a point.
 
         Raises
         ------
         InputError
-            There is no such system; the message names the point.
+            No such system exists; the message names the point.
         """
         changed: dict[str, Any] = {}
         where: list[str] = []
@@ -149,24 +149,24 @@ class Variations:
                     where.append(f"{number.dimension} = {value:g}")
                     before = changed.get(number.key, getattr(self.system, number.key))
                     changed[number.key] = number.put_into(before, value)
-            return replace(self.system, **changed)  # at once: one alone may make no sense
+            return replace(self.system, **changed)  # all at once: a single change may be invalid by itself
         except InputError as error:
             raise InputError(f"axes, at {', '.join(where)}: {error}") from None
 
     def chosen(self, places: Mapping[str, int]) -> "Variations":
-        """What is left if these axes have the values at these places."""
+        """Fix some axes at the given indices, and return the remaining variations."""
         gone = [axis for axis in self.axes if axis.name in places]
         system = Variations(self.system, tuple(gone)).at([places[axis.name] for axis in gone])
         return Variations(system, tuple(axis for axis in self.axes if axis.name not in places))
 
 
 def checked_variations(system: System, axes: "Mapping[str, Any] | Variations") -> Variations:
-    """`axes` of `sweep`, checked: every value of each is tried beside the first of the others.
+    """Check the `axes` of `sweep`: every value of each axis is tried with the first value of the others.
 
     Raises
     ------
     InputError
-        A name or a value is illegal, or no system has it.
+        A name or a value is invalid, or no system has it.
     """
     if isinstance(axes, Variations):
         return axes
@@ -193,12 +193,12 @@ def checked_variations(system: System, axes: "Mapping[str, Any] | Variations") -
 
 def _axis(name: object, values: object) -> Axis:
     if not isinstance(name, str) or not name:
-        raise InputError(f"axes must have texts as names; got {checks.one_line(name)}")
+        raise InputError(f"axes must have strings as names; got {checks.one_line(name)}")
     if isinstance(values, Mapping):
         if not re.fullmatch("[a-z][a-z0-9_]*", name) or re.sub("_[0-9]+$", "", name) in (*NUMBERS, *LISTS):
             raise InputError(
-                f"axes must give keys that change together a name of their own, of small letters, such as "
-                f"sample; got {name!r}"
+                f"axes must have a name of its own in lower-case letters, such as sample, for parameters "
+                f"that vary together; got {name!r}"
             )
         columns = {key: _column(f"axes.{name}.{key}", column) for key, column in values.items()}
         sizes = {key: column.size for key, column in columns.items()}
@@ -212,7 +212,7 @@ def _axis(name: object, values: object) -> Axis:
 
 
 def _column(name: str, values: object) -> np.ndarray:
-    """Numbers in any order."""
+    """Check a list of numbers in any order."""
     column = np.atleast_1d(checks.array(values, name))
     if column.ndim != 1 or column.size == 0 or column.dtype.kind not in "iuf":
         raise InputError(f"{name} must be a list of numbers; got {checks.one_line(values)}")

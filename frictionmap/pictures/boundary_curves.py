@@ -1,8 +1,8 @@
-"""Boundaries over a map as fine as its picture, whatever grid the map has.
+"""Boundaries over a map at the resolution of its picture, independent of the grid of the map.
 
-At low frequency they have a cusp at every whole part of a natural frequency, which the map's own grid meets
-by chance.  So they are computed anew for the system in the file; if there is none, those in the file are
-drawn.
+At low frequency the boundaries have a cusp at every integer fraction of a natural frequency, which the grid
+of the map contains only by chance.  They are therefore recomputed for the system in the file; without one,
+the boundaries in the file are drawn.
 """
 
 import numpy as np
@@ -15,20 +15,21 @@ from .grids import Grid
 
 BOUNDARIES = ("beta_lim", "beta_stick")
 
-#: Samples of a picture's width: some to a pixel.
+#: Samples over the width of a picture, a few per pixel.
 _SAMPLES = 4000
 
-#: Parts of natural frequencies, where cusps are, down to where they lie closer than samples.
+#: Integer fractions of the natural frequencies, where cusps are, down to the spacing of samples.
 _PARTS = np.arange(1.0, 100.0)
 
-#: Steps that the search of S may take for one picture, some tenths of a second: one a mode and
-#: period of the fastest mode.  Samples that would need more are left out, from the lowest up.
+#: Largest number of steps of the search for S in one picture, some tenths of a second: one step per mode and
+#: period of the fastest mode.  If more are needed, the lowest frequencies are omitted.
 _MOST_STEPS = 1e6
 
-#: Curves further apart than this share of the axis look different: about a line's width.
+#: Share of the axis, about a line's width, below which two curves look the same.
 _LINE = 0.004
 
-#: Infinite values are drawn so many axes high: where they rise to a pole, curves leave the picture.
+#: Height, in units of the axis, at which infinite values are drawn, so that curves leave the picture towards
+#: a pole.
 _HIGH = 1e3
 
 
@@ -41,7 +42,7 @@ def _affordable(r: np.ndarray, system: System) -> np.ndarray:
 
 
 def _frequencies(system: System, r: Grid) -> np.ndarray:
-    """The grid's own points, and those that a picture needs beside them: samples, cusps, poles."""
+    """Grid points, and the additional frequencies of the picture: samples, cusps, poles."""
     low, high = r.limits
     samples = r.at(np.linspace(0.0, 1.0, _SAMPLES))
     cusps = (system.modes.w[:, np.newaxis] / _PARTS).ravel()
@@ -57,7 +58,7 @@ def _agree(one: np.ndarray, other: np.ndarray, top: float) -> bool:
 
 
 def _computed(stored: dict[str, np.ndarray], panel: xr.Dataset, r: Grid, top: float) -> dict | None:
-    """The curves on more frequencies; None if the file does not tell the system that they are of."""
+    """Curves at more frequencies; None if the file does not contain their system."""
     system = stored_system(panel)
     if system is None or r.values.size >= _SAMPLES:
         return None
@@ -71,9 +72,9 @@ def _computed(stored: dict[str, np.ndarray], panel: xr.Dataset, r: Grid, top: fl
 
 
 def boundary_curves(panel: xr.Dataset, r: Grid, top: float) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Frequencies and finite values of the boundaries that the map of one mu holds, for an axis up to `top`.
+    """Frequencies and finite values of the boundaries in the map of one mu, for an axis up to `top`.
 
-    A single value reaches over its cell.
+    A single value extends over its cell.
     """
     stored = {name: panel[name].values for name in BOUNDARIES if name in panel}
     if r.values.size == 1:

@@ -1,4 +1,4 @@
-"""Pictures of the boundaries: which steady states are possible over frequency and friction."""
+"""Pictures of the boundaries: the possible steady states over frequency and friction."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple, overload
@@ -29,15 +29,15 @@ from .words import caption
 if TYPE_CHECKING:
     from .panels import AxesArray
 
-#: Room above the curves, and above beta_lim where beta_stick leaves the picture through a pole.
+#: Height of the axis over the largest value, and over the largest beta_lim where beta_stick has poles.
 _ABOVE, _ABOVE_LIM = 1.15, 2.0
 
 
 class Areas(NamedTuple):
-    """Bounds in beta of what is possible, over frequency; each area lies between the two of its arrays.
+    """Bounds in beta of the possible regimes over frequency; each area lies between its two arrays.
 
-    Below beta_lim the continuous motion exists, from beta_stick on sticking does.  With mu > 1 both may be
-    (the start decides), and stick-slip besides; with mu = 1 what is possible is certain.
+    Continuous motion is possible below beta_lim, sticking at or above beta_stick.  For mu = 1 the regions are
+    exact.  For mu > 1 both may be possible, depending on the initial state, and stick-slip can occur as well.
     """
 
     continuous: tuple[np.ndarray, np.ndarray]
@@ -54,9 +54,9 @@ def areas(lim: np.ndarray, stick: np.ndarray, top: float) -> Areas:
 
 
 def top_of(lim: np.ndarray, stick: np.ndarray) -> float:
-    """Upper end of the axis of beta, for all mu together.
+    """Upper end of the axis of beta, common to all mu.
 
-    beta_stick has poles where the held structure resonates: they leave the picture at the top.
+    beta_stick has poles at resonances of the held structure: they leave the picture at the top.
     """
     lim = lim[np.isfinite(lim)]
     finite = np.concatenate((lim, stick[np.isfinite(stick)]))
@@ -64,17 +64,17 @@ def top_of(lim: np.ndarray, stick: np.ndarray) -> float:
 
 
 def _over(r: Grid, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A curve over frequency; a single value reaches over its cell."""
+    """A curve over frequency; a single value extends over its cell."""
     return (r.values, values) if r.values.size > 1 else (r.edges, np.repeat(values, 2))
 
 
 def _differ(lim: np.ndarray, modal: np.ndarray, top: float) -> bool:
-    """Whether two curves lie apart by more than a line's width somewhere in the picture."""
+    """Whether two curves differ by more than a line's width anywhere in the picture."""
     return bool((np.abs(np.minimum(lim, top) - np.minimum(modal, top)) > 0.004 * top).any())
 
 
 def _draw(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
-    """Draw one mu; the entries for a legend that depend on what is there."""
+    """Draw one mu; return the entries for the legend that depend on its content."""
     x, lim = _over(r, panel["beta_lim"].values)
     _, stick = _over(r, panel["beta_stick"].values)
     found = areas(lim, stick, top)
@@ -88,12 +88,12 @@ def _draw(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
     low, high = found.both
     if (high > low).any():
         ax.fill_between(x, low, high, facecolor="white", edgecolor=HATCH_COLOUR, hatch=HATCH, linewidth=0.0)
-        handles.append(patch("continuous or stuck: the start decides", "white", HATCH))
+        handles.append(patch("continuous or stuck: the initial state decides", "white", HATCH))
     curves = [("beta_lim", LIM), ("beta_stick", STICK)]
     if "beta_lim_modal" in panel and _differ(panel["beta_lim"].values, panel["beta_lim_modal"].values, top):
         curves.append(("beta_lim_modal", MODAL))
     for name, style in curves:
-        rim = [] if style is MODAL else halo()  # it often lies on beta_lim, which is to be seen under it
+        rim = [] if style is MODAL else halo()  # it often coincides with beta_lim, which must stay visible
         handles += ax.plot(*_over(r, panel[name].values), path_effects=rim, **style)
     name_axes(ax, r, float(panel["mu"]))
     ax.set_ylim(0.0, top)
@@ -103,7 +103,7 @@ def _draw(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
 
 
 def _area_handles(mu: np.ndarray) -> list[Handle]:
-    """Legend's entries of the areas: what mu = 1 makes certain, larger mu only makes possible."""
+    """Legend entries of the areas: exact for mu = 1, otherwise possible regimes."""
     certain = bool((mu == 1.0).all())
     words = (
         (CONTINUOUS, "continuous", "continuous motion possible"),
@@ -114,12 +114,11 @@ def _area_handles(mu: np.ndarray) -> list[Handle]:
 
 
 def _reading(mu: np.ndarray) -> str:
-    """How to read what is possible."""
+    """Remark on how to read the regions."""
     if (mu == 1.0).all():
         return ""
-    return r"for mu > 1 stick-slip is possible in all areas" + (
-        ", for mu = 1 what is possible is certain" if (mu == 1.0).any() else ""
-    )
+    exact = "for μ = 1 the regions are exact; " if (mu == 1.0).any() else ""
+    return f"{exact}for μ > 1 stick-slip can also occur outside its region"
 
 
 @overload
@@ -137,27 +136,27 @@ def plot_boundaries(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray") -> "AxesAr
 def plot_boundaries(
     ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" = None
 ) -> "Axes | AxesArray":
-    """Picture of the boundaries over frequency, a panel for each mu, all with one axis of beta.
+    """Draw the boundaries over frequency, one panel for each mu, with a common axis of beta.
 
-    Below `beta_lim` the continuous motion exists, from `beta_stick` on permanent sticking does; where both
-    do, the area is hatched.
+    Continuous motion is possible below `beta_lim`, permanent sticking at or above `beta_stick`; where both
+    are possible, the area is hatched.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        As `boundaries` returns it, or a map: what holds `beta_lim` and `beta_stick`.
+        Result of `boundaries`, or a map: any dataset with `beta_lim` and `beta_stick`.
     ax : matplotlib axes, or an array of them, optional
-        Axes to draw into, one for each mu; the legend goes under the last of them (save the figure with
-        ``bbox_inches="tight"``).  Without it a figure is made.
+        Axes to draw into, one for each mu; the legend is placed below the last of them (save the figure with
+        ``bbox_inches="tight"``).  Without it a figure is created.
 
     Returns
     -------
-    The axes: what was given, or an array with one for each mu.
+    The axes: those given, or an array with one for each mu.
 
     Raises
     ------
     InputError
-        The dataset holds no boundaries, or there are more or fewer axes than mu.
+        The dataset has no boundaries, or the number of axes differs from the number of mu.
     """
     ds = to_draw(ds, "plot_boundaries", "boundaries", "map")
     check_holds(ds, ("beta_lim", "beta_stick"), "its boundaries")

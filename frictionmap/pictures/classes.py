@@ -1,4 +1,4 @@
-"""The class of every cell, how many cells a class has, and what a legend calls it."""
+"""The class of every cell, the number of cells per class, and labels for the legend."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -23,7 +23,7 @@ from .palette import (  # fmt: skip
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Cells that are looked at together: a map of any size takes little memory beyond its own.
+#: Cells processed together, so that a map of any size needs little additional memory.
 _AT_ONCE = 1 << 19
 
 
@@ -35,7 +35,7 @@ def blocks(shape: tuple[int, ...]) -> Iterator[slice]:
 
 
 def _of_stops(stops: np.ndarray) -> np.ndarray:
-    """The class of cells that stop; NaN is a motion without a number of stops, as at r = 0."""
+    """Class of stick-slip cells by number of stops; NaN for a motion without such a number, as at r = 0."""
     nearest = np.rint(np.nan_to_num(stops))
     found = np.clip(ONE - 1 + nearest, ONE, MORE).astype(np.uint8)
     found[stops != nearest] = BROKEN
@@ -44,7 +44,7 @@ def _of_stops(stops: np.ndarray) -> np.ndarray:
 
 
 def of_cells(regime: np.ndarray | None, stops: np.ndarray | None) -> np.ndarray:
-    """The class of every cell by its regime and its number of stops, one of which may be missing; uint8."""
+    """Class of every cell from its regime and its number of stops, one of which may be missing; uint8."""
     if regime is None:
         assert stops is not None
         found = np.where(stops == 0.0, CONTINUOUS, NO_STOPS).astype(np.uint8)
@@ -59,11 +59,11 @@ def of_cells(regime: np.ndarray | None, stops: np.ndarray | None) -> np.ndarray:
 
 
 def classes(ds: "xr.Dataset") -> np.ndarray:
-    """The class of every cell of one mu: an index into the palette, uint8, shape (r, beta).
+    """Class of every cell of one mu: an index into the palette, uint8, shape (r, beta).
 
-    The regime decides; among stick-slip motions, the number of stops.  A map without regimes tells
-    continuous (no stops) from stick-slip, but not stuck from unresolved.  A map without numbers of stops
-    has one class of stick-slip.
+    The regime decides; stick-slip motions are classified by their number of stops.  A map without regimes
+    distinguishes continuous motion (no stops) from stick-slip, but not stuck from unresolved cells.  A map
+    without numbers of stops has a single class of stick-slip.
     """
     regime, stops, status = (
         ds[name].values if name in ds else None for name in ("regime", "stops_per_cycle", "status")
@@ -79,7 +79,7 @@ def classes(ds: "xr.Dataset") -> np.ndarray:
 
 
 def count(found: np.ndarray) -> np.ndarray:
-    """How many cells every class has."""
+    """Number of cells of every class."""
     counts = np.zeros(COUNT, dtype=np.int64)
     for block in blocks(found.shape):
         counts += np.bincount(found[block].ravel(), minlength=COUNT)
@@ -87,7 +87,7 @@ def count(found: np.ndarray) -> np.ndarray:
 
 
 def stops_range(found: np.ndarray, stops: np.ndarray, index: int) -> tuple[float, float]:
-    """Least and most stops per cycle of a class; infinities where it has no cells."""
+    """Smallest and largest number of stops per cycle of a class; infinite values where it has no cells."""
     low, high = np.inf, -np.inf
     for block in blocks(found.shape):
         inside = stops[block][found[block] == index]
@@ -97,7 +97,9 @@ def stops_range(found: np.ndarray, stops: np.ndarray, index: int) -> tuple[float
 
 
 def legend_label(index: int, cells: int, low: float, high: float) -> str:
-    """Name of a class with what its colour does not tell: how many stops, how many cells."""
+    """Name of a class in the legend, with its range of stops where the colour does not show it, and its
+    number of cells.
+    """
     ends = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
     name = {MORE: f"{ends} stops", BROKEN: f"not whole, {ends} stops"}.get(index, CLASSES[index].label)
     return f"{name} ({cells:,})"

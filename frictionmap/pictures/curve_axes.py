@@ -1,4 +1,4 @@
-"""Axes of response curves: where they end, what is cut off, how panels lie."""
+"""Axes of response curves: their ends, cut-off peaks, arrangement of panels."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -11,13 +11,13 @@ from .invariants import infinite_resonances
 from .panels import Handle
 from .second_axes import frequency_on_top
 
-#: Where some amplitude is infinite the axis ends here, in units of P/k1; a logarithmic one further up.
+#: End of the axis where some amplitude is infinite, in units of P/k1; linear and logarithmic.
 CUT, CUT_LOG = 5.0, 100.0
 
-#: Peaks so many times higher than that would leave all else flat, and are cut off too.
+#: Peaks higher than this factor times that end are cut off too, because everything else would look flat.
 _FLAT = 4.0
 
-#: Room above the largest peak.
+#: Height of the axis over the largest peak.
 _ABOVE = 1.2
 
 #: Powers of ten on a logarithmic axis.
@@ -26,13 +26,13 @@ _DECADES = 4
 #: Panels side by side.
 _COLUMNS = 3
 
-#: Draws into axes; entries for a legend.
+#: Draws into axes and returns entries for the legend.
 Panel = Callable[[Axes], list[Handle]]
 Row = list[Panel | None]
 
 
 class Picture(NamedTuple):
-    """Panels in rows, and what the caption says of them."""
+    """Panels in rows, and remarks for the caption."""
 
     rows: list[Row]
     height: float  # of a row [inch]
@@ -46,7 +46,7 @@ class Scale(NamedTuple):
     logarithmic: bool
 
     def apply(self, ax: Axes, values: np.ndarray) -> None:
-        """Set the limits; a logarithmic axis begins at the least of the values, if that is not too far."""
+        """Set the limits; a logarithmic axis starts at the smallest value within `_DECADES` decades."""
         if not self.logarithmic:
             ax.set_ylim(0.0, self.top)
             return
@@ -56,7 +56,7 @@ class Scale(NamedTuple):
 
 
 def scale_of(family: Family, values: Sequence[np.ndarray], cut: float, log: bool) -> Scale:
-    """An axis up to the largest value, with room above it; up to `cut` where that is too high."""
+    """Axis up to the largest value with room above it, or up to `cut` where that is too high."""
     together = np.concatenate([np.ravel(part) for part in values])
     largest = float(together[np.isfinite(together)].max(initial=0.0))
     infinite = bool(np.isinf(together).any()) or bool(infinite_resonances(family))
@@ -66,21 +66,21 @@ def scale_of(family: Family, values: Sequence[np.ndarray], cut: float, log: bool
 
 
 def about_cut(scale: Scale, values: Sequence[np.ndarray]) -> list[str]:
-    """Where amplitudes are cut off, in words."""
+    """Remark on cut-off amplitudes."""
     return [f"cut off above {scale.top:g}"] if any((part > scale.top).any() for part in values) else []
 
 
 def about_peaks(family: Family) -> list[str]:
-    """Which peaks are infinite, and from which friction on they are not, in words."""
+    """Remarks on infinite peaks and the friction ratio at which they become finite."""
     return [
         f"infinite at r = {r:.4g}, "
-        + (f"finite from β = {beta:.4g} on" if np.isfinite(beta) else "whatever the friction")
+        + (f"finite at or above β = {beta:.4g}" if np.isfinite(beta) else "for any friction")
         for r, beta in infinite_resonances(family)
     ]
 
 
 def over_r(ax: Axes, family: Family, title: str, name: str) -> None:
-    """Names and limits of a panel over frequency."""
+    """Set labels and limits of a panel over frequency."""
     if family.r.logarithmic:
         ax.set_xscale("log")
     ax.set_xlim(*family.r.limits)
@@ -91,7 +91,9 @@ def over_r(ax: Axes, family: Family, title: str, name: str) -> None:
 
 
 def in_rows(panels: list[Panel], below: list[Panel]) -> list[Row]:
-    """Panels, each with another below it, in rows of two or three; one alone has the other beside it."""
+    """Arrange panels in rows of two or three, each with another below it; a single one has the other beside
+    it.
+    """
     if len(panels) == len(below) == 1:
         return [[panels[0], below[0]]]
     columns = 2 if len(panels) == 4 else min(len(panels), _COLUMNS)

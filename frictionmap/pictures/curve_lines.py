@@ -1,4 +1,4 @@
-"""Lines of response curves: pieces by regime, phases without jumps, bands where a stop has no one phase."""
+"""Lines of response curves: pieces by regime, phases without jumps, bands for maxima held during a stop."""
 
 from collections.abc import Iterator
 
@@ -11,16 +11,17 @@ from .. import regimes
 from .palette import REGIME_LINES
 from .panels import Handle
 
-#: Infinite values are drawn so high, in units of the axis: lines leave the picture there.
+#: Height, in units of the axis, at which infinite values are drawn, so that lines leave the picture.
 HIGH = 1e3
 
 _BAND = 0.3  # opacity
 
 
-def stretches(regime: np.ndarray) -> Iterator[tuple[int, slice]]:
-    """Runs of neighbouring points with their regime; between two regimes the line is the lower one's.
+def regime_runs(regime: np.ndarray) -> Iterator[tuple[int, slice]]:
+    """Runs of neighbouring points with their regime; a line between two regimes has the style of the lower
+    one.
 
-    So a continuous line joins continuous motions only.
+    A continuous line thus connects continuous motions only.
     """
     between = np.minimum(regime[1:], regime[:-1])
     first = np.flatnonzero(np.diff(between, prepend=between[0] - 1))
@@ -30,20 +31,20 @@ def stretches(regime: np.ndarray) -> Iterator[tuple[int, slice]]:
 
 
 def _jumps(degrees: np.ndarray) -> np.ndarray:
-    """Indices of values that lie more than half a turn from the one before."""
+    """Indices of values that differ by more than half a turn from the previous one."""
     return np.flatnonzero(np.abs(np.diff(degrees)) > 180.0) + 1
 
 
 def without_jumps(x: np.ndarray, degrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A phase over x, interrupted where it leaves one end of a turn for the other."""
+    """Interrupt a phase over x where it wraps around."""
     at = _jumps(degrees)
     return np.insert(x, at, np.nan), np.insert(degrees, at, np.nan)
 
 
 def by_regime(x: np.ndarray, y: np.ndarray, regime: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray]]:
-    """A curve cut up by regime, each part with gaps where the others are."""
+    """Divide a curve by regime, each part with gaps where the others are."""
     parts: dict[int, list[np.ndarray]] = {}
-    for code, where in stretches(regime):
+    for code, where in regime_runs(regime):
         parts.setdefault(code, []).append(np.array([[*x[where], np.nan], [*y[where], np.nan]]))
     found = {code: np.concatenate(pieces, axis=1) for code, pieces in parts.items()}
     return {code: (both[0], both[1]) for code, both in found.items()}
@@ -52,7 +53,7 @@ def by_regime(x: np.ndarray, y: np.ndarray, regime: np.ndarray) -> dict[int, tup
 def draw_curve(
     ax: Axes, x: np.ndarray, y: np.ndarray, regime: np.ndarray, colour: str, top: float | None
 ) -> None:
-    """One curve in the styles of its regimes: amplitudes up to about `top`, without it a phase [degrees]."""
+    """Draw one curve in the styles of its regimes: an amplitude up to about `top`, or a phase [degrees]."""
     for code, (part_x, part_y) in by_regime(x, y, regime).items():
         if code == regimes.UNRESOLVED:
             continue
@@ -61,7 +62,7 @@ def draw_curve(
 
 
 def draw_band(ax: Axes, x: np.ndarray, begin: np.ndarray, end: np.ndarray, colour: str) -> None:
-    """Degrees from the beginning to the end of a stop, over x; a stop may reach over 180 degrees."""
+    """Draw the range of phases [degrees] between start and end of a stop; it may exceed 180 degrees."""
     at = _jumps(begin)
     x, low, high = (
         np.insert(values, at, np.nan) for values in (x, begin, begin + np.mod(end - begin, 360.0))
@@ -71,7 +72,7 @@ def draw_band(ax: Axes, x: np.ndarray, begin: np.ndarray, end: np.ndarray, colou
 
 
 def regime_handles(regime: np.ndarray) -> list[Handle]:
-    """A legend's entries of the styles of regimes that are there."""
+    """Legend entries of the regimes that occur."""
     words = {
         regimes.CONTINUOUS: "continuous",
         regimes.STICK_SLIP: "stick-slip",
@@ -85,5 +86,5 @@ def regime_handles(regime: np.ndarray) -> list[Handle]:
 
 
 def band_handle() -> Handle:
-    """A legend's entry for a stop in which a displacement is largest."""
+    """Legend entry of a stop during which a displacement is largest."""
     return Patch(color="#606060", alpha=_BAND, linewidth=0.0, label="largest throughout a stop")

@@ -22,7 +22,7 @@ from .works import SCALARS, scalar_picture
 if TYPE_CHECKING:
     from .panels import AxesArray
 
-#: What may be drawn of response curves, and the variables of which one must be there.
+#: Quantities that can be drawn, and the variables of which at least one is required.
 CURVE_QUANTITIES: dict[str, tuple[str, ...]] = {
     "amplitude": ("amplitude",),
     "first_harmonic": (NAMES["first_harmonic"].mass[0],),
@@ -31,17 +31,17 @@ CURVE_QUANTITIES: dict[str, tuple[str, ...]] = {
     **{name: tuple(variables) for name, variables in SCALARS.items()},
 }
 
-#: All that curves are drawn of.
+#: All variables from which curves are drawn.
 CURVE_VARIABLES = frozenset(
     ("regime", *MOTION_VARIABLES, *(name for names in CURVE_QUANTITIES.values() for name in names))
 )
 
-#: Lines of one picture; more cannot be told apart.
+#: Largest number of lines in a picture that can be distinguished.
 _MOST_LINES = 12
 
 
 def _quantity(ds: xr.Dataset, asked: str | None) -> str:
-    """What to draw: what is asked for, if it is there; else the first that is."""
+    """Quantity to draw: the requested one if present, or the first one present."""
     there = [name for name, variables in CURVE_QUANTITIES.items() if set(variables) & set(ds)]
     if asked is None and there:
         return there[0]
@@ -86,24 +86,25 @@ def plot_curves(
     log: bool = False,
     ax: "Sequence[Axes] | AxesArray | None" = None,
 ) -> "AxesArray":
-    """Picture of response curves over frequency, one colour for each friction ratio.
+    """Draw response curves over frequency, one colour for each friction ratio.
 
-    Solid where the motion is continuous, dashed where it sticks and slips, dotted where it is stuck.  Black:
-    the continuous motion at beta_lim, and the structure with its contact held; circles where friction changes
-    nothing.  Of several mu the first is drawn, which the title says; with one beta, a line for each mu.
+    Lines are solid where the motion is continuous, dashed for stick-slip, dotted where the contact is stuck.
+    Black: the continuous motion at beta_lim, and the structure with its contact held.  Circles mark points
+    that friction does not change.  For several mu the first is drawn, and named in the title; for a single
+    beta there is a line for each mu.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        As `curves` returns it, or a part of it, or a map with amplitudes.
+        Result of `curves`, or a part of it, or a map with amplitudes.
     quantity : str, optional
-        "amplitude" (largest displacements, with the phase where the dataset has it), "first_harmonic" (the
-        same of it), "contact" (amplitude and phase of the motion in the contact), "harmonics" (in dB beside
-        the first), "energy", "transmitted_force".  Default: the first of these that the dataset holds.
+        "amplitude" (largest displacements, with the phase if present), "first_harmonic" (its amplitude and
+        phase), "contact" (amplitude and phase of the motion in the contact), "harmonics" (in dB relative to
+        the first), "energy", "transmitted_force".  Default: the first of these that the dataset contains.
     log : bool
-        Amplitudes on a logarithmic axis.  The axis of r is that of its grid.
+        Logarithmic axis of amplitudes.  The axis of r follows its grid.
     ax : array of matplotlib axes, optional
-        Axes to draw into, row by row; the legend goes under the last of them.
+        Axes to draw into, row by row; the legend is placed below the last of them.
 
     Returns
     -------
@@ -112,13 +113,13 @@ def plot_curves(
     Raises
     ------
     InputError
-        The dataset does not hold the quantity, or more lines than can be told apart, or there are more or
-        fewer axes than panels.
+        The dataset does not contain the quantity, or has too many lines, or the number of axes differs from
+        that of the panels.
     """
     ds = to_draw(ds, "plot_curves", "curves", "map")
     quantity = _quantity(ds, quantity)
     if log and quantity == "harmonics":
-        raise InputError("log is for amplitudes: harmonics are in decibels; leave it out")
+        raise InputError("cannot draw harmonics with log: they are in decibels; omit log")
     family = family_of(ds)
     _check_lines(family)
     picture = _picture(family, quantity, log)
@@ -140,7 +141,7 @@ def plot_curves(
 
 
 def _new_axes(picture: Picture, panels: int, title: str) -> "AxesArray":
-    """Axes of a new figure, as many as there are panels; places without one stay empty."""
+    """Create a figure with one axes per panel; positions without a panel stay empty."""
     if panels > MOST_PANELS:
         raise InputError(
             f"a picture must have at most {MOST_PANELS} panels; got {panels}: draw some masses or friction "

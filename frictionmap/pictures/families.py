@@ -1,4 +1,6 @@
-"""What the lines of a picture of response curves differ in: friction ratio, or mu where that is one."""
+"""The parameter in which the lines of a picture of response curves differ: friction ratio, or mu for a single
+beta.
+"""
 
 from typing import NamedTuple
 
@@ -18,21 +20,21 @@ class Family(NamedTuple):
 
     cells: xr.Dataset  # dims (beta or mu, r, ...)
     r: Grid
-    line: str  # the dimension that they differ in
+    line: str  # dimension in which the lines differ
     labels: list[str]
     colours: list[str]
     regime: np.ndarray  # (lines, r)
-    chosen: str  # what is the same for all
-    system: System | None  # as far as the file tells it
+    chosen: str  # the common value of the other dimension
+    system: System | None  # system stored in the file, if any
 
     def rows(self, name: str, **chosen: int) -> np.ndarray:
-        """Values of a variable that depends on frequency, (lines, r); one row if it is the same for all."""
+        """Values of a variable that depends on frequency, (lines, r); one row if common to all lines."""
         values = self.cells[name].isel(chosen)
         return np.atleast_2d(values.transpose(*({self.line} & set(values.dims)), "r").values)
 
     @property
     def beta(self) -> np.ndarray:
-        """The friction ratio of every line."""
+        """Friction ratio of every line."""
         return np.broadcast_to(self.cells["beta"].values, (len(self.labels),))
 
 
@@ -42,9 +44,9 @@ def _one_of(symbol: str, values: np.ndarray) -> str:
 
 
 def family_of(ds: xr.Dataset) -> Family:
-    """The curves of a dataset; of several mu the first, unless there is one beta.
+    """Curves of a dataset; for several mu the first one, unless there is a single beta.
 
-    A single frequency reaches over its cell.
+    A single frequency extends over its cell.
     """
     r = Grid(ds["r"].values)
     if r.values.size == 1:

@@ -1,4 +1,4 @@
-"""Features of a system on the frequency axis: where they lie, and how they are marked."""
+"""Features of a system on the frequency axis: their positions and their marks."""
 
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ from .grids import Grid
 _GAP = 0.015
 
 
-#: Parts of the natural frequency of one mass that are marked: those below lie too close.
+#: Largest integer fraction of the natural frequency of one mass that is marked; lower ones are too close.
 _MOST_PARTS = 9
 
 
@@ -27,7 +27,7 @@ class Feature(NamedTuple):
     places: np.ndarray
 
 
-#: Label and marker of what a dataset may know.
+#: Label and marker of each kind of frequency.
 _KINDS = {
     "natural_frequency": ("natural frequency", "v"),
     "held_frequency": ("natural frequency, contact held", "x"),
@@ -45,25 +45,26 @@ def _of_system(system: System | None) -> dict[str, np.ndarray]:
 
 
 def frequencies_of(system: System | None) -> list[Feature]:
-    """Natural frequencies of a system, and with the contact held; none of an unknown one."""
+    """Natural frequencies of a system, also with the contact held; empty for an unknown system."""
     return [Feature(*_KINDS[name], places) for name, places in _of_system(system).items()]
 
 
 def features_of(ds: xr.Dataset) -> list[Feature]:
-    """What a dataset knows of its system's frequencies, by its variables or by its configuration."""
+    """Characteristic frequencies of a dataset, from its variables or from its configuration."""
     known = {name: ds[name].values for name in _KINDS if name in ds}
     if "natural_frequency" not in known:
         known |= _of_system(stored_system(ds))
     found = [Feature(*_KINDS[name], known[name]) for name in _KINDS if name in known]
     natural = known.get("natural_frequency", np.empty(0))
-    # parts of the frequencies of more masses would fill the axis; of one, they are the invariant points
+    # fractions of the frequencies of several masses would fill the axis; for one mass they are the invariant
+    # points
     if natural.size == 1 and "invariant_point" not in known:
         found.append(Feature("natural frequency / n", "|", natural[0] / np.arange(_MOST_PARTS, 1, -1)))
     return found
 
 
 def apart(shares: np.ndarray) -> np.ndarray:
-    """Which of increasing places on an axis (shares) can be told apart, from the last one down."""
+    """Which of increasing positions on an axis are far enough apart to be drawn, from the last one down."""
     kept = np.zeros(shares.size, dtype=bool)
     last = np.inf
     for k in range(shares.size - 1, -1, -1):
@@ -73,7 +74,7 @@ def apart(shares: np.ndarray) -> np.ndarray:
 
 
 def mark_features(ax: Axes, features: list[Feature], r: Grid) -> list[Line2D]:
-    """Draw them on the upper edge; entries for a legend of those that lie within the axis."""
+    """Draw features on the upper edge; return entries for the legend of those within the axis."""
     handles = []
     for feature in features:
         places = feature.places[(feature.places >= r.limits[0]) & (feature.places <= r.limits[1])]

@@ -5,7 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-#: A grid is logarithmic if its steps have ratios that are this close to each other, and lengths that are not.
+#: A grid is logarithmic if the ratios of its points agree to this relative tolerance and their differences do
+#: not.
 _EVEN = 0.02
 
 
@@ -14,7 +15,7 @@ def _is_even(steps: np.ndarray) -> bool:
 
 
 def is_logarithmic(values: np.ndarray) -> bool:
-    """Whether grid points have a constant ratio rather than a constant distance."""
+    """Whether grid points have a constant ratio rather than a constant difference."""
     if values.size < 3 or values[0] <= 0.0:
         return False
     return _is_even(np.diff(np.log(values))) and not _is_even(np.diff(values))
@@ -28,7 +29,7 @@ class Grid:
 
     @cached_property
     def logarithmic(self) -> bool:
-        """Whether it is drawn on a logarithmic axis."""
+        """Whether the axis is logarithmic."""
         return is_logarithmic(self.values)
 
     def _warp(self, values: np.ndarray) -> np.ndarray:
@@ -39,7 +40,7 @@ class Grid:
 
     @cached_property
     def edges(self) -> np.ndarray:
-        """Edges of the cells, half-way between grid points as the axis is drawn; shape (n + 1,)."""
+        """Edges of the cells, half-way between grid points on the drawn axis; shape (n + 1,)."""
         if self.values.size == 1:
             half = 0.5 * abs(self.values[0]) or 0.5
             return np.array([self.values[0] - half, self.values[0] + half])
@@ -50,17 +51,17 @@ class Grid:
 
     @cached_property
     def limits(self) -> tuple[float, float]:
-        """Limits of the plotted axis: its ends, or the edges of its only cell."""
+        """Limits of the drawn axis: its end points, or the edges of a single cell."""
         first, last = (self.values if self.values.size > 1 else self.edges)[[0, -1]]
         return float(first), float(last)
 
     def share(self, values: np.ndarray) -> np.ndarray:
-        """Where on the plotted axis values lie: 0 at its beginning, 1 at its end."""
+        """Position of values on the drawn axis: 0 at its start, 1 at its end."""
         low, high = self._warp(np.array(self.limits))
         return (self._warp(np.asarray(values, dtype=float)) - low) / (high - low)
 
     def at(self, share: np.ndarray) -> np.ndarray:
-        """The values at shares of the plotted axis."""
+        """Values at positions on the drawn axis."""
         low, high = self._warp(np.array(self.limits))
         place = low + share * (high - low)
         return np.exp(place) if self.logarithmic else place

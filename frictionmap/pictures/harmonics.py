@@ -1,4 +1,4 @@
-"""Harmonics of steady states over frequency, in decibels beside the first."""
+"""Harmonics of steady states over frequency, in decibels relative to the first."""
 
 from typing import NamedTuple
 
@@ -14,10 +14,10 @@ from .panels import Handle
 
 HARMONIC_VARIABLES = ("displacement_harmonic", "contact_harmonic")
 
-#: Harmonics weaker than this [dB] are not shown; stronger ones set the upper end.
+#: Level [dB] below which harmonics are not shown.
 LOWEST = -120.0
 
-#: Harmonics of one picture.
+#: Largest number of harmonics in a picture.
 MOST_ORDERS = 12
 
 
@@ -30,14 +30,14 @@ class Spectrum(NamedTuple):
 
 
 def levels_of(values: np.ndarray) -> np.ndarray:
-    """Decibels beside the first of harmonics, (..., harmonic, part) -> (..., harmonic)."""
+    """Levels of harmonics in dB relative to the first, (..., harmonic, part) -> (..., harmonic)."""
     size = np.hypot(values[..., 0], values[..., 1])
     with np.errstate(divide="ignore", invalid="ignore"):
         return 20.0 * np.log10(size / size[..., 1:2])
 
 
 def _motion_levels(family: Family) -> list[tuple[str, np.ndarray]]:
-    """Names and levels, (lines, r, harmonic), of masses, and of the contact if no mass moves as it does."""
+    """Names and levels, (lines, r, harmonic), of the masses, and of the contact unless a mass equals it."""
     order = (family.line, "r", "harmonic", "part")
     found = []
     if "displacement_harmonic" in family.cells:
@@ -61,7 +61,7 @@ def spectra(family: Family) -> list[list[Spectrum]]:
 
 
 def orders_of(rows: list[list[Spectrum]]) -> list[int]:
-    """Harmonics beyond the first that are strong enough to be shown somewhere."""
+    """Harmonics above the first that are strong enough to be shown anywhere."""
     found: set[int] = set()
     for spectrum in (spectrum for row in rows for spectrum in row):
         strong = (spectrum.levels >= LOWEST).any(axis=1)
@@ -70,7 +70,7 @@ def orders_of(rows: list[list[Spectrum]]) -> list[int]:
 
 
 def _draw(ax: Axes, spectrum: Spectrum, family: Family, orders: list[int]) -> list[Handle]:
-    """One line for each harmonic; entries for a legend."""
+    """Draw one line for each harmonic; return entries for the legend."""
     x = family.cells["r"].values
     colours = sequence(len(orders))
     for n, colour in zip(orders, colours, strict=True):
@@ -81,7 +81,7 @@ def _draw(ax: Axes, spectrum: Spectrum, family: Family, orders: list[int]) -> li
 
 
 def spectrum_picture(family: Family) -> Picture:
-    """A row for each line of a family, a column for each motion; of one motion, panels in rows."""
+    """A row for each line of a family and a column for each motion; for a single motion, panels in rows."""
     rows = spectra(family)
     orders = orders_of(rows)
     strong = np.concatenate([spectrum.levels[orders].ravel() for row in rows for spectrum in row])
@@ -97,7 +97,7 @@ def spectrum_picture(family: Family) -> Picture:
         return draw
 
     panels: list[Row] = [[panel(spectrum) for spectrum in row] for row in rows]
-    remarks = [f"harmonics below {LOWEST:g} dB are left out"]
+    remarks = [f"harmonics below {LOWEST:g} dB are not shown"]
     if len(panels[0]) == 1:
         panels = in_rows([panel(row[0]) for row in rows], [])
     return Picture(panels, 2.6, remarks)

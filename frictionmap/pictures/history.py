@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 #: Height of the panels: load, motion in the contact, masses, friction.
 _HEIGHTS = {"load": 1.0, "z": 2.4, "masses": 3.0, "friction": 2.2}
 
-#: Labels beside lines: least distance as a share of a panel's height, and how many fit.
+#: Labels next to lines: least distance as a share of the panel's height, and largest number.
 _GAP, MOST_LABELS = 0.09, 11
 
-#: A motion smaller than this is none.
+#: Largest range of a motion that counts as constant.
 _ROUNDING = 1e-9
 
-#: Where stops begin; without one of these they are not marked.
+#: Variables of the events; without one of these the starts of stops are not marked.
 _EVENTS = ("event_tau", "event_phase", "event_z")
 
 _SHADE: Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.55, "linewidth": 0.0}
@@ -46,9 +46,9 @@ _REGIME_WORDS = {
 
 
 def _label_beside(ax: Axes, places: np.ndarray, texts: Sequence[str], colours: Sequence[str]) -> None:
-    """Write labels right of a panel, beside `places` on its vertical axis, so that they lie apart.
+    """Write labels at the right of a panel, next to `places` on its vertical axis, without overlap.
 
-    Where a second axis has its numbers, they go inside.
+    If there is a second axis, the labels are placed inside the panel.
     """
     aside = (
         {"xytext": (-4, 0), "ha": "right", "path_effects": halo()} if ax.child_axes else {"xytext": (4, 0)}
@@ -63,7 +63,9 @@ def _label_beside(ax: Axes, places: np.ndarray, texts: Sequence[str], colours: S
 
 
 def _in_sight(ax: Axes, values: np.ndarray) -> None:
-    """Limits of a vertical axis around values; a constant shows as a level line, not as its rounding."""
+    """Set the limits of a vertical axis around values; a constant appears as a level line, not as its
+    rounding error.
+    """
     low, high = float(values.min()), float(values.max())
     half = 0.56 * (high - low)
     if half <= _ROUNDING * max(1.0, abs(low), abs(high)):
@@ -94,7 +96,7 @@ def _draw_contact(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> list[Handle]:
 
 
 def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
-    """Every mass, its number beside its line's end; of many masses some are numbered."""
+    """Draw every mass, with its number at the end of its line; of many masses some are numbered."""
     x = ds["x"].values
     numbers = ds["dof"].values
     colours = [LINES[k % len(LINES)] for k in range(len(x))]
@@ -110,7 +112,7 @@ def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
 
 
 def _draw_friction(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
-    """The friction force between its kinetic and static levels."""
+    """Draw the friction force between its kinetic and static levels."""
     friction, beta, mu = ds["friction"].values, float(ds["beta"]), float(ds["mu"])
     ax.plot(turns, friction, color="black", linewidth=1.2)
     names = {beta: r"\beta", mu * beta: r"\mu\beta"} if mu > 1.0 else {beta: r"\beta"}
@@ -125,7 +127,7 @@ def _draw_friction(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
 
 
 def _mark_phases(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray) -> list[Handle]:
-    """Stops shaded, maxima of the load within the axis dotted, in all panels."""
+    """Shade stops, and mark maxima of the load with dotted lines, in all panels."""
     stopped = ds["phase"].values == 0
     for ax in axes:
         transform = ax.get_xaxis_transform()
@@ -135,7 +137,7 @@ def _mark_phases(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray) -> lis
     stuck = int(ds["regime"]) == regimes.PERMANENT_STICKING if "regime" in ds else bool(stopped.all())
     handles: list[Handle] = []
     if stopped.any():
-        handles.append(Patch(**_SHADE, label="stuck for good" if stuck else "stop"))
+        handles.append(Patch(**_SHADE, label="permanent sticking" if stuck else "stop"))
     load = "maximum of the load (of the base's motion)" if moves_base(ds) else "maximum of the load"
     handles.append(
         Line2D([], [], color=_LOAD_COLOUR, label=load, marker="v", markersize=5.0, linestyle=(0, (1, 2)))
@@ -144,7 +146,7 @@ def _mark_phases(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray) -> lis
 
 
 def title_of(ds: xr.Dataset) -> str:
-    """The cell and its answer."""
+    """Title with the cell and its result."""
     symbols = {"r": "r", "beta": "β", "mu": "μ"}
     cell = ", ".join(
         f"{symbol} = {float(ds[name]):.6g}{in_brackets(ds, name)}" for name, symbol in symbols.items()
@@ -155,18 +157,18 @@ def title_of(ds: xr.Dataset) -> str:
     stops = float(ds["stops_per_cycle"]) if "stops_per_cycle" in ds else 0.0
     counted = f", {stops:.4g} stops per cycle" if stops > 0 else ""
     if "status" in ds and int(ds["status"]) == regimes.NOT_PERIODIC:
-        return f"{cell}: {words}{counted}, not periodic: a part of it"
+        return f"{cell}: {words}{counted}, not periodic, excerpt"
     period = int(ds["period"]) if "period" in ds else 1
     return f"{cell}: {words}{counted}" + (f", period {period}" if period > 1 else "")
 
 
 def contact_is_a_mass(ds: xr.Dataset) -> bool:
-    """Whether a mass moves as the contact does."""
+    """Whether a mass moves with the contact."""
     return any(np.allclose(x, ds["z"].values, rtol=0.0, atol=1e-12) for x in ds["x"].values)
 
 
 def _panels(ds: xr.Dataset) -> list[str]:
-    """Which panels a steady state needs: one mass that moves as its contact does has none of its own."""
+    """Panels of a steady state; a single mass that moves with its contact has no panel of its own."""
     same = ds.sizes["dof"] == 1 and contact_is_a_mass(ds)
     loaded = load_of(ds) is not None
     return [
@@ -177,25 +179,25 @@ def _panels(ds: xr.Dataset) -> list[str]:
 
 
 def check_can_be_seen(ds: xr.Dataset, names: Iterable[str]) -> None:
-    """Refuse one moment alone, and variables whose range is beyond all doubles."""
+    """Refuse a single instant, and variables beyond the range of an axis."""
     if ds.sizes["tau"] < 2:
         raise InputError(f"a response must have two tau or more to be drawn; got {ds.sizes['tau']}")
     check_range(ds, names)
 
 
 def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":
-    """Picture of one steady state: load, motion in the contact, every mass, friction force over time.
+    """Draw one steady state in time: load, motion in the contact, every mass, friction force.
 
-    Stops are shaded and their beginnings marked; masses are numbered; the levels of kinetic and static
-    friction are named.
+    Stops are shaded and their starts marked; masses are numbered; the levels of kinetic and static friction
+    are labelled.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        As `response` returns it.
+        Result of `response`.
     ax : array of matplotlib axes, optional
         Axes to draw into, from top to bottom: load (unless loads are given mass by mass), motion in the
-        contact, masses (unless there is one that moves as the contact does), friction force.
+        contact, masses (unless a single mass moves with the contact), friction force.
 
     Returns
     -------
@@ -204,7 +206,8 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
     Raises
     ------
     InputError
-        The dataset is no response, or lacks a variable to draw, or there are more or fewer axes than panels.
+        The dataset is not a response or lacks a variable to draw, or the number of axes differs from that of
+        the panels.
     """
     ds = to_draw(ds, "plot_response", "response")
     check_holds(ds, ("z", "x", "friction", "phase"), "its motion")

@@ -1,4 +1,4 @@
-"""Points of response curves that friction leaves where they are, and resonances that it makes finite."""
+"""Points of response curves that friction does not change, and resonances that it makes finite."""
 
 from typing import NamedTuple
 
@@ -11,14 +11,14 @@ from .families import Family
 
 
 class Invariant(NamedTuple):
-    """Points of one motion, and what a legend calls them."""
+    """Points of one motion, and their label in the legend."""
 
     label: str
     places: np.ndarray  # frequencies and amplitudes, (n, 2)
 
 
 def _is_contact(system: System, dof: int) -> bool:
-    """Whether a mass moves as the contact does."""
+    """Whether a mass moves with the contact."""
     return system.contact == "fixed-wall" and tuple(system.contact_masses) == (dof,)
 
 
@@ -34,7 +34,7 @@ def _frequencies(system: System, quantity: str, dof: int | None, low: float, hig
 
 
 def _seen(system: System, r: np.ndarray, beta: np.ndarray) -> np.ndarray:
-    """Those of the frequencies where some motion with friction is continuous."""
+    """The frequencies at which some motion with friction is continuous."""
     rubs = beta[beta > 0.0]
     if not r.size or not rubs.size:
         return r[:0]
@@ -42,9 +42,10 @@ def _seen(system: System, r: np.ndarray, beta: np.ndarray) -> np.ndarray:
 
 
 def invariant_points(family: Family, quantity: str, dof: int | None) -> Invariant:
-    """The invariant points of one mass, or of the motion in the contact (None).
+    """Invariant points of one mass, or of the motion in the contact (None).
 
-    None where the file does not tell its system, with damping, or with loads of several phases.
+    There are none where the file does not contain its system, with damping, or with loads that are not in
+    phase.
     """
     system = family.system
     low, high = family.r.limits
@@ -62,7 +63,7 @@ def invariant_points(family: Family, quantity: str, dof: int | None) -> Invarian
 def infinite_resonances(family: Family) -> list[tuple[float, float]]:
     """Natural frequencies within the axis where some line is infinite, and the least beta of a finite one.
 
-    Only undamped ones are: below (pi/4)|lambda_i/chi_i|, T(6.2).
+    Only undamped resonances are infinite, below (pi/4)|lambda_i/chi_i|, T(6.2).
     """
     system = family.system
     if system is None:

@@ -1,18 +1,18 @@
-"""Where to write names, draw rings and put labels, so that they lie apart and cover nothing.
+"""Positions of names, rings and labels, such that they do not overlap and cover nothing.
 
-Positions are shares of an axis: 0 at its beginning, 1 at its end.
+Positions are shares of an axis: 0 at its start, 1 at its end.
 """
 
 import numpy as np
 
-#: Names of regions are placed on a raster of so many pixels each way.
+#: Pixels per axis of the raster on which names of regions are placed.
 COARSE = 120
 
-#: A letter and a line of text of names [inch].
+#: Width of a letter and height of a line of text [inch].
 _LETTER, _LINE = 0.075, 0.18
 
-#: Rings: as many side by side would fill a panel; a patch of rare cells that needs more than a few of them is
-#: seen without.
+#: Number of rings that would fill a panel in each direction.  A group of rare cells that needs more than
+#: `_FEW` rings is visible without them.
 RINGS = (44, 32)
 _FEW = 8
 
@@ -33,12 +33,12 @@ def trace(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def room_for(free: np.ndarray, text: str, size: tuple[float, float]) -> tuple[float, float] | None:
-    """Middle of the widest place for a text, as shares of the axes; None where there is none.
+    """Centre of the widest free place for a text, as shares of the axes; None if there is none.
 
     Parameters
     ----------
     free : array of bool, shape (COARSE, COARSE)
-        Where the text may lie.
+        Where the text may be placed.
     size : (width, height) of the axes [inch]
     """
     from scipy.ndimage import binary_erosion, distance_transform_edt
@@ -57,12 +57,12 @@ def room_for(free: np.ndarray, text: str, size: tuple[float, float]) -> tuple[fl
 
 
 def rare_classes(counts: np.ndarray) -> np.ndarray:
-    """Classes that have cells, but so few that a reader would look for them in vain."""
+    """Classes that have cells, but too few to be noticed."""
     return np.flatnonzero((counts > 0) & (counts < _RARE * counts.sum()))
 
 
 def rings(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Centres of rings around the small ones among patches of cells at `x`, `y` (shares); shape (n, 2)."""
+    """Centres of rings around small groups of cells at `x`, `y` (shares); shape (n, 2)."""
     from scipy.ndimage import label
 
     inside = (x >= 0.0) & (x <= 1.0) & (y >= 0.0) & (y <= 1.0)
@@ -79,9 +79,10 @@ def rings(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def spread(places: np.ndarray, gap: float) -> np.ndarray:
-    """Places of labels beside `places`, in the same order: at least `gap` apart, within 0 to 1 if they fit.
+    """Positions of labels next to `places`, in the same order: at least `gap` apart, within 0 to 1 if they
+    fit.
 
-    Labels that come too close are moved as one, to where they lie nearest their places.
+    Labels that are too close are moved as a group to the nearest possible positions.
     """
     order = np.argsort(places, kind="stable")
     groups: list[tuple[float, int]] = []  # centre and number of labels of each

@@ -1,4 +1,4 @@
-"""Amplitude and phase of masses and of the contact over frequency: columns of panels."""
+"""Amplitude and phase of masses and of the contact over frequency, in columns of panels."""
 
 from typing import NamedTuple
 
@@ -18,13 +18,15 @@ from .words import moves_base
 
 
 class Names(NamedTuple):
-    """Variables of amplitude and phase: of the masses, of the contact, and of the masses at beta_lim."""
+    """Names of the variables of amplitude and phase: of the masses, of the contact, and of the masses at
+    beta_lim.
+    """
 
     mass: tuple[str, str]
     contact: tuple[str, str]
     limit: tuple[str, str]
     axis: str
-    mass_stop: tuple[str, str] | None = None  # begin and end of stops in which the amplitude lasts
+    mass_stop: tuple[str, str] | None = None  # start and end of stops that hold the maximum
     contact_stop: tuple[str, str] | None = None
 
 
@@ -45,36 +47,36 @@ NAMES = {
     ),
 }
 
-#: All that motions are drawn of.
+#: All variables from which motions are drawn.
 MOTION_VARIABLES = (
     *("held_response", "held_phase"),
     *(name for names in NAMES.values() for pair in names if isinstance(pair, tuple) for name in pair),
 )
 
-#: Between numbers on an axis of phases [degrees].
+#: Spacing of ticks on an axis of phases [degrees].
 _TICK = 45.0
 
-#: A motion smaller than this has no phase.
+#: Amplitude at or below which a motion has no phase.
 _ROUNDING = 1e-12
 
 Curve = tuple[np.ndarray, np.ndarray | None]  # amplitudes and phases [degrees], (lines, r)
 Stop = tuple[np.ndarray, np.ndarray]  # begin and end [degrees], (lines, r)
 
 
-class Motion(NamedTuple):
-    """What a column of panels shows: a mass, or the contact."""
+class MotionColumn(NamedTuple):
+    """Content of a column of panels: a mass, or the contact."""
 
     title: str
     size: np.ndarray  # (lines, r)
     phase: np.ndarray | None  # degrees
-    stop: Stop | None  # those in which it is largest
-    limit: Curve | None  # at beta_lim; one row, or one a line
+    stop: Stop | None  # stops during which it is largest
+    limit: Curve | None  # at beta_lim; one row, or one per line
     held: Curve | None  # with the contact held
     invariant: Invariant
 
 
 def _pair(family: Family, names: tuple[str, str], **chosen: int) -> Curve | None:
-    """Amplitude and phase of these names, as far as they are there; nothing if no amplitude is."""
+    """Amplitude and phase with these names, as far as present; None without an amplitude."""
     size, phase = (family.rows(name, **chosen) if name in family.cells else None for name in names)
     if size is None or phase is None:
         return None if size is None else (size, None)
@@ -82,23 +84,23 @@ def _pair(family: Family, names: tuple[str, str], **chosen: int) -> Curve | None
 
 
 def _stop(family: Family, names: tuple[str, str] | None, **chosen: int) -> Stop | None:
-    """Begin and end of stops of these names, if they are there."""
+    """Start and end of stops with these names, if present."""
     if names is None or not set(names) <= set(family.cells):
         return None
     begin, end = (np.degrees(family.rows(name, **chosen)) for name in names)
     return begin, end
 
 
-def _of_mass(family: Family, quantity: str, index: int) -> Motion | None:
+def _of_mass(family: Family, quantity: str, index: int) -> MotionColumn | None:
     names = NAMES[quantity]
     own = _pair(family, names.mass, dof=index)
     if own is None:
         return None
     held = _pair(family, ("held_response", "held_phase"), dof=index)
-    if held is not None and not (held[0] > _ROUNDING).any():  # a mass that the wall holds
+    if held is not None and not (held[0] > _ROUNDING).any():  # a mass held by the wall
         held = None
     number = int(family.cells["dof"].values[index])
-    return Motion(
+    return MotionColumn(
         title=f"mass {number}",
         size=own[0],
         phase=own[1],
@@ -109,22 +111,22 @@ def _of_mass(family: Family, quantity: str, index: int) -> Motion | None:
     )
 
 
-def _of_contact(family: Family, quantity: str) -> Motion | None:
+def _of_contact(family: Family, quantity: str) -> MotionColumn | None:
     own = _pair(family, NAMES[quantity].contact)
     if own is None:
         return None
     stop = _stop(family, NAMES[quantity].contact_stop)
-    return Motion("contact", *own, stop, None, None, invariant_points(family, quantity, None))
+    return MotionColumn("contact", *own, stop, None, None, invariant_points(family, quantity, None))
 
 
 def _alike(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two amplitudes are the same wherever both are finite."""
+    """Whether two amplitudes are equal wherever both are finite."""
     both = np.isfinite(one) & np.isfinite(other)
     return bool(np.allclose(one[both], other[both], rtol=1e-9, atol=_ROUNDING))
 
 
-def _motions(family: Family, quantity: str) -> list[Motion]:
-    """Masses, and the contact if no mass moves as it does; or the contact alone."""
+def _motions(family: Family, quantity: str) -> list[MotionColumn]:
+    """The masses, and the contact unless a mass moves with it; or the contact alone."""
     if quantity == "contact":
         contact = _of_contact(family, "amplitude")
         return [contact] if contact is not None else []
@@ -137,15 +139,15 @@ def _motions(family: Family, quantity: str) -> list[Motion]:
 
 
 def _draw_reference(ax: Axes, x: np.ndarray, rows: np.ndarray, style: LineStyle, top: float | None) -> Line2D:
-    """A curve that is the same for all lines, or one for each; a phase in degrees if there is no top."""
+    """Draw a curve that is common to all lines, or one for each; a phase in degrees if `top` is None."""
     for row in rows:
         line = without_jumps(x, row) if top is None else (x, np.minimum(row, HIGH * top))
         (drawn,) = ax.plot(*line, **style, zorder=1.9)
     return drawn
 
 
-def _draw_amplitude(ax: Axes, motion: Motion, family: Family, top: float) -> list[Handle]:
-    """The upper panel of a column; entries for a legend."""
+def _draw_amplitude(ax: Axes, motion: MotionColumn, family: Family, top: float) -> list[Handle]:
+    """Draw the upper panel of a column; return entries for the legend."""
     x = family.cells["r"].values
     handles: list[Handle] = []
     for row, regime, colour in zip(motion.size, family.regime, family.colours, strict=True):
@@ -163,8 +165,8 @@ def _draw_amplitude(ax: Axes, motion: Motion, family: Family, top: float) -> lis
     return handles
 
 
-def _draw_phase(ax: Axes, motion: Motion, family: Family) -> list[Handle]:
-    """The lower panel of a column, in degrees; entries for a legend."""
+def _draw_phase(ax: Axes, motion: MotionColumn, family: Family) -> list[Handle]:
+    """Draw the lower panel of a column, in degrees; return entries for the legend."""
     x = family.cells["r"].values
     assert motion.phase is not None
     handles: list[Handle] = []
@@ -180,16 +182,16 @@ def _draw_phase(ax: Axes, motion: Motion, family: Family) -> list[Handle]:
     return handles
 
 
-def _phase_limits(shown: list[Motion]) -> tuple[float, float]:
-    """Limits for all phases, 180 degrees apart or more [degrees]."""
+def _phase_limits(shown: list[MotionColumn]) -> tuple[float, float]:
+    """Limits for all phases, at least 180 degrees apart [degrees]."""
     phases = [motion.phase for motion in shown if motion.phase is not None]
     phases += [motion.stop[0] for motion in shown if motion.stop is not None]
     together = np.concatenate([phase[np.isfinite(phase)] for phase in phases] or [np.empty(0)])
     return _TICK * float(np.floor(together.min(initial=0.0) / _TICK)), 180.0
 
 
-def _about_gaps(shown: list[Motion]) -> list[str]:
-    """Why some phases are missing, unless a band tells."""
+def _about_gaps(shown: list[MotionColumn]) -> list[str]:
+    """Reason for missing phases, unless a band explains it."""
     why = "no phase where the largest displacement lasts throughout a stop, or the period is not one"
     for motion in shown:
         moves = np.isfinite(motion.size) & (motion.size > _ROUNDING)
@@ -210,7 +212,7 @@ def motion_picture(family: Family, quantity: str, log: bool) -> Picture:
     marks = frequencies_of(family.system)
     unit = "$Y$" if moves_base(family.cells) else "$(P/k_1)$"
 
-    def amplitude(motion: Motion) -> Panel:
+    def amplitude(motion: MotionColumn) -> Panel:
         def draw(ax: Axes) -> list[Handle]:
             over_r(ax, family, motion.title, f"{NAMES[of].axis} / {unit}")
             handles = _draw_amplitude(ax, motion, family, scale.top)
@@ -220,7 +222,7 @@ def motion_picture(family: Family, quantity: str, log: bool) -> Picture:
 
         return draw
 
-    def phase(motion: Motion) -> Panel:
+    def phase(motion: MotionColumn) -> Panel:
         def draw(ax: Axes) -> list[Handle]:
             over_r(ax, family, motion.title, "phase lag [°]")
             ax.set_ylim(*ends)

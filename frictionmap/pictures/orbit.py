@@ -1,4 +1,4 @@
-"""Pictures of one steady state without time: phase portrait, friction over displacement, harmonics."""
+"""Pictures of one steady state without time axis: phase portrait, friction loop, harmonics."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -27,7 +27,7 @@ def _colours(ds: xr.Dataset) -> list[str]:
 
 
 def _draw_portrait(ax: Axes, ds: xr.Dataset) -> None:
-    """Velocity over displacement of every mass."""
+    """Draw velocity over displacement of every mass."""
     for x, v, colour in zip(ds["x"].values, ds["v"].values, _colours(ds), strict=True):
         ax.plot(x, v, color=colour, linewidth=1.2)
     ax.set_xlabel(r"displacement $x$ / $(P/k_1)$")
@@ -37,7 +37,7 @@ def _draw_portrait(ax: Axes, ds: xr.Dataset) -> None:
 
 
 def _draw_loop(ax: Axes, ds: xr.Dataset) -> None:
-    """Friction over the motion in the contact: what the loop encloses is the work of friction."""
+    """Draw friction over the motion in the contact; the loop encloses the work of friction."""
     ax.plot(ds["z"].values, ds["friction"].values, color=_CONTACT_COLOUR, linewidth=1.2)
     ax.set_xlabel(r"motion in the contact $z$ / $(P/k_1)$")
     ax.set_ylabel("friction / $P$")
@@ -47,7 +47,7 @@ def _draw_loop(ax: Axes, ds: xr.Dataset) -> None:
 
 
 def _draw_spectrum(ax: Axes, ds: xr.Dataset) -> None:
-    """Harmonics as stems, those of several motions side by side."""
+    """Draw harmonics as stems, those of several motions side by side."""
     motions = [*zip(levels_of(ds["displacement_harmonic"].values), _colours(ds), strict=True)]
     if "contact_harmonic" in ds and not contact_is_a_mass(ds):
         motions.append((levels_of(ds["contact_harmonic"].values), _CONTACT_COLOUR))
@@ -63,24 +63,24 @@ def _draw_spectrum(ax: Axes, ds: xr.Dataset) -> None:
 
 
 def _handles(ds: xr.Dataset) -> list[Handle]:
-    """A legend's entries of the masses, of many the first, and of the contact."""
+    """Legend entries of the masses, the first ones if there are many, and of the contact."""
     named = zip(ds["dof"].values[:MOST_LABELS], _colours(ds), strict=False)
     handles: list[Handle] = [Line2D([], [], color=colour, label=f"mass {k}") for k, colour in named]
     return [*handles, Line2D([], [], color=_CONTACT_COLOUR, label="contact")]
 
 
 def plot_orbit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":
-    """Picture of one steady state without time.
+    """Draw one steady state without time axis.
 
-    Velocity over displacement of every mass, friction over the motion in the contact and, where the dataset
-    has them, harmonics in dB beside the first.
+    The panels show velocity over displacement of every mass, friction over the motion in the contact and,
+    where the dataset has them, harmonics in dB relative to the first.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        As `response` returns it.
+        Result of `response`.
     ax : array of matplotlib axes, optional
-        Two axes to draw into, three where there are harmonics.
+        Two axes to draw into, three if there are harmonics.
 
     Returns
     -------
@@ -89,7 +89,8 @@ def plot_orbit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -
     Raises
     ------
     InputError
-        The dataset is no response, or lacks a variable to draw, or there are more or fewer axes than panels.
+        The dataset is not a response or lacks a variable to draw, or the number of axes differs from that of
+        the panels.
     """
     ds = to_draw(ds, "plot_orbit", "response")
     check_holds(ds, ("x", "v", "z", "friction"), "its orbit")

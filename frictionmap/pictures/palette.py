@@ -1,7 +1,7 @@
-"""One colour for each class of answers in all pictures, one style for each curve.
+"""One colour for each class of cells in all pictures, and one style for each curve.
 
-Any two classes differ in lightness, so that they survive grey printing; from continuous on, lightness falls
-with the number of stops.  They also stay apart for readers who do not see red or green.
+Any two classes differ in lightness, so that they are distinct in grey printing; from continuous motion on,
+lightness falls with the number of stops.  They are also distinct for readers who do not see red or green.
 """
 
 from typing import Literal, NamedTuple, TypedDict
@@ -12,14 +12,14 @@ from .. import regimes
 
 
 class Look(NamedTuple):
-    """Name and colour of a class."""
+    """Label and colour of a class."""
 
     label: str
     colour: str
 
 
 class LineStyle(TypedDict, total=False):
-    """What matplotlib draws a curve with."""
+    """Style of a curve for matplotlib."""
 
     color: str
     linewidth: float
@@ -28,7 +28,7 @@ class LineStyle(TypedDict, total=False):
 
 
 class Shade(TypedDict):
-    """What matplotlib fills a span with."""
+    """Style of a filled span for matplotlib."""
 
     color: str
     alpha: float
@@ -46,17 +46,17 @@ CLASSES = (
     Look("more stops", "#00162c"),
     Look("stops per cycle not whole", "#55285e"),
     Look("stick-slip, stops not counted", "#bd7f50"),
-    Look("stuck or unresolved", "#c4c4c4"),  # never beside permanent sticking: nothing tells them apart
+    Look("stuck or unresolved", "#c4c4c4"),  # never together with permanent sticking, hence the same colour
 )
 UNRESOLVED, STUCK, CONTINUOUS, ONE, MORE, BROKEN, UNCOUNTED, NO_STOPS = 0, 1, 2, 3, 7, 8, 9, 10
 
-#: Cells of blocks that a store has not yet: nothing is painted, and what lies behind is dotted.
+#: Cells of blocks that are not yet in a store: not painted; the background is dotted.
 NOT_YET = len(CLASSES)
 NOT_YET_LABEL, NOT_YET_HATCH = "not computed yet", "..."
-#: Classes and cells that have none yet.
+#: Number of classes, including cells not yet computed.
 COUNT = NOT_YET + 1
 
-#: Hatching says that two answers are possible, in all pictures.
+#: Hatching marks several possible regimes in all pictures.
 HATCH = "////"
 HATCH_COLOUR = "#404040"
 
@@ -74,10 +74,10 @@ MODAL: LineStyle = {
     "label": r"lower bound of $\beta_\mathrm{lim}$, sum of modal maxima",
 }
 
-#: Lines of masses, in turn; numbers beside the lines say which is which.
+#: Colours of the lines of masses, used in turn; the lines are numbered.
 LINES = ("#2b4fa6", "#bd7f50", "#00162c", "#48b2d1", "#cc1f03", "#2880b8")
 
-#: Lines of response curves, by the regime of the motion.
+#: Line styles of response curves, by regime.
 REGIME_LINES: dict[int, Literal["-"] | tuple[int, tuple[float, float]]] = {
     regimes.CONTINUOUS: "-",
     regimes.STICK_SLIP: (0, (3.5, 1.5)),
@@ -91,13 +91,13 @@ LIMIT: LineStyle = {
 }
 HELD: LineStyle = {"color": "black", "linewidth": 1.3, "linestyle": ":", "label": "contact held"}
 
-#: Part of a colour map of even steps that is neither white nor black on paper, from light to dark.
+#: Ends of the part of the colour map in use, which is neither white nor black on paper, light and dark.
 _LIGHT, _DARK = 0.88, 0.0
 
 
 def sequence(number: int) -> list[str]:
     """Colours of an ordered family of lines, from light to dark."""
-    from matplotlib import colormaps  # here: a page that explores maps has these colours without it
+    from matplotlib import colormaps  # imported here: the explorer uses the palette without matplotlib
     from matplotlib.colors import to_hex
 
     return [to_hex(colormaps["viridis"](share)) for share in np.linspace(_DARK, _LIGHT, number)[::-1]]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Handle = Line2D | Patch
 
-#: Panels of one figure; more cannot be read, and would not fit in memory.
+#: Largest number of panels of a figure; more would be unreadable and exceed the memory.
 MOST_PANELS = 60
 
 _LEGEND_SIZE = 8.0
@@ -30,12 +30,12 @@ _LETTER, _LINE = 0.0078 * _LEGEND_SIZE, 0.021 * _LEGEND_SIZE  # [inch]
 
 
 def halo(width: float = 2.6) -> list[AbstractPathEffect]:
-    """A white rim, which sets lines and letters off any colour."""
+    """A white outline, which makes lines and letters visible on any colour."""
     return [withStroke(linewidth=width, foreground="white")]
 
 
 def _shown_by_itself() -> bool:
-    """Whether figures made through pyplot appear: it is in use, or a notebook runs."""
+    """Whether figures made through pyplot are displayed: pyplot is in use, or a notebook runs."""
     if "matplotlib.pyplot" in sys.modules:
         return True
     shell = getattr(sys.modules.get("IPython"), "get_ipython", None)
@@ -43,7 +43,7 @@ def _shown_by_itself() -> bool:
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure, size in inches; where pyplot is in use, one that it shows."""
+    """Create an empty figure, size in inches; where pyplot is in use, one that it displays."""
     if _shown_by_itself():
         import matplotlib.pyplot as plt
 
@@ -52,13 +52,13 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def title_figure(figure: Figure, title: str) -> None:
-    """The figure's title, in lines that break well."""
+    """Set the title of a figure, wrapped into balanced lines."""
     wrapped = balanced(title, int(11 * figure.get_figwidth()))
-    figure.suptitle(wrapped, fontsize=11, parse_math=False)  # a dollar sign is a dollar sign
+    figure.suptitle(wrapped, fontsize=11, parse_math=False)  # dollar signs are literal
 
 
 def panel_grid(panels: int, title: str) -> "AxesArray":
-    """Panels of a new figure, one for each mu."""
+    """Create panels of a new figure, one for each mu."""
     if panels > MOST_PANELS:
         raise InputError(
             f"a file must hold at most {MOST_PANELS} mu to be drawn; got {panels}: "
@@ -73,7 +73,7 @@ def panel_grid(panels: int, title: str) -> "AxesArray":
 
 
 def table_of_panels(rows: int, columns: int, height: float, title: str) -> "AxesArray":
-    """Panels of a new figure in rows and columns, each `height` inches tall; shape (rows, columns)."""
+    """Create panels of a new figure in rows and columns, each `height` inches tall; shape (rows, columns)."""
     width = {1: 6.2, 2: 5.2}.get(columns, 4.4)
     figure = new_figure(width * columns + 0.4, height * rows + 0.4)  # a legend adds its own height
     title_figure(figure, title)
@@ -81,7 +81,7 @@ def table_of_panels(rows: int, columns: int, height: float, title: str) -> "Axes
 
 
 def given_axes(ax: "Axes | Sequence[Axes] | AxesArray", panels: int, what: str) -> "AxesArray":
-    """Axes that a caller gave, as many as there are panels."""
+    """Check axes given by the caller: one for each panel."""
     items = list(ax.ravel() if isinstance(ax, np.ndarray) else ax if isinstance(ax, Sequence) else [ax])
     for item in items:
         if not isinstance(item, Axes):
@@ -92,13 +92,13 @@ def given_axes(ax: "Axes | Sequence[Axes] | AxesArray", panels: int, what: str) 
 
 
 def size_of(ax: Axes) -> tuple[float, float]:
-    """About how wide and tall axes are [inch]."""
+    """Approximate width and height of axes [inch]."""
     box = ax.get_window_extent()
     return box.width / ax.figure.dpi, box.height / ax.figure.dpi
 
 
 def name_axes(ax: Axes, r: Grid, mu: float) -> None:
-    """Limits, scale and names of what both kinds of maps share."""
+    """Set limits, scale and labels common to both kinds of maps."""
     if r.logarithmic:
         ax.set_xscale("log")
     ax.set_xlim(*r.limits)
@@ -108,12 +108,12 @@ def name_axes(ax: Axes, r: Grid, mu: float) -> None:
 
 
 def patch(label: str, colour: str, hatch: str | None = None) -> Patch:
-    """A legend's entry for an area."""
+    """Legend entry for an area."""
     return Patch(facecolor=colour, edgecolor="black", linewidth=0.6, label=label, hatch=hatch)
 
 
 def distinct(handles: Sequence[Handle]) -> list[Handle]:
-    """One entry for each label, the first."""
+    """The first entry for each label."""
     found: dict[str, Handle] = {}
     for handle in handles:
         found.setdefault(str(handle.get_label()), handle)
@@ -126,7 +126,7 @@ def _columns(handles: Sequence[Handle], width: float) -> int:
 
 
 def legend_below(figure: Figure, handles: Sequence[Handle], caption: str) -> None:
-    """A legend under the panels, a caption over it; the figure grows by its height."""
+    """Add a legend under the panels with a caption above it; the figure grows by its height."""
     width = figure.get_figwidth() - 0.4
     columns = _columns(handles, width)
     heading = balanced(caption, int(width / _LETTER))
@@ -145,7 +145,7 @@ def legend_below(figure: Figure, handles: Sequence[Handle], caption: str) -> Non
 
 
 def legend_under(ax: Axes, handles: Sequence[Handle]) -> None:
-    """A legend under axes that a caller gave: within them it would cover answers."""
+    """Add a legend under axes given by the caller; inside them it would cover results."""
     width = size_of(ax)[0]
     ax.legend(
         handles=list(handles), fontsize=_LEGEND_SIZE, loc="upper center", bbox_to_anchor=(0.5, -0.16),

@@ -1,8 +1,8 @@
-"""Cells to pixels: the most frequent class of a pixel, and no thin feature lost.
+"""Cells to pixels: each pixel shows its most frequent class, and no thin feature is lost.
 
-A pixel of a large map has many cells, a cell of a small one many pixels.  Cells are gathered in slots: a
-slot is what one pixel shows.  A class that wins no slot nearby, such as a strip one cell wide, is given the
-slot it lies in, the rarest class last.
+A pixel of a large map contains many cells, a cell of a small map many pixels.  Cells are collected in slots;
+one slot is what one pixel shows.  A class that wins no slot nearby, such as a strip one cell wide, is
+assigned the slot it lies in, the rarest class last.
 """
 
 from typing import NamedTuple
@@ -13,16 +13,16 @@ from .classes import blocks
 
 
 class Cover(NamedTuple):
-    """Which cells of an axis share a slot, and which slot a pixel shows."""
+    """Assignment of the cells of an axis to slots, and of slots to pixels."""
 
-    slot: np.ndarray  # of each visible cell, from 0 on without gaps, increasing
-    visible: slice  # cells with a part in the picture
+    slot: np.ndarray  # slot of each visible cell, consecutive from 0, increasing
+    visible: slice  # cells that are at least partly in the picture
     pixel: np.ndarray  # the slot of each pixel; -1 outside the map
     slots: int
 
 
 def cover(edges: np.ndarray, pixels: int) -> Cover:
-    """Slots of an axis with cells between `edges`, in pixels from the picture's beginning, increasing."""
+    """Assign cells between `edges`, in pixels from the picture's start, increasing, to slots."""
     inside = np.clip(edges, 0.0, float(pixels))
     seen = np.flatnonzero(np.diff(inside) > 0.0)
     if not seen.size:
@@ -30,7 +30,7 @@ def cover(edges: np.ndarray, pixels: int) -> Cover:
     visible = slice(int(seen[0]), int(seen[-1]) + 1)
     middle = 0.5 * (inside[:-1] + inside[1:])[visible]
     home, slot = np.unique(np.minimum(middle.astype(np.intp), pixels - 1), return_inverse=True)
-    # a pixel without a cell of its own lies in a wide one: it shows that cell's slot
+    # a pixel that contains no cell centre lies within a wide cell and shows that cell's slot
     centres = np.arange(pixels) + 0.5
     cell = np.searchsorted(edges, centres, side="right") - 1
     outside = (cell < visible.start) | (cell >= visible.stop)
@@ -41,7 +41,7 @@ def cover(edges: np.ndarray, pixels: int) -> Cover:
 
 
 def _near(won: np.ndarray) -> np.ndarray:
-    """Slots that are true, or beside a true one."""
+    """Slots that are true, or adjacent to a true one."""
     wide = won.copy()
     wide[1:] |= won[:-1]
     wide[:-1] |= won[1:]
@@ -52,7 +52,9 @@ def _near(won: np.ndarray) -> np.ndarray:
 
 
 def _votes(found: np.ndarray, x: Cover, y: Cover, most: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(winner, present, totals): the commonest class of each slot, the classes in it, cells of all slots."""
+    """Return (winner, present, totals): most frequent class of each slot, classes in it, cells over all
+    slots.
+    """
     winner = np.empty((x.slots, y.slots), dtype=np.uint8)
     present = np.zeros((most, x.slots, y.slots), dtype=bool)
     totals = np.zeros(most, dtype=np.int64)
@@ -71,7 +73,7 @@ def _votes(found: np.ndarray, x: Cover, y: Cover, most: int) -> tuple[np.ndarray
 
 
 def _gather(found: np.ndarray, x: Cover, y: Cover, most: int) -> np.ndarray:
-    """The class that each slot shows."""
+    """Class that each slot shows."""
     winner, present, totals = _votes(found, x, y, most)
     shown = winner.copy()
     for index in np.argsort(-totals, kind="stable"):
@@ -84,14 +86,14 @@ def _gather(found: np.ndarray, x: Cover, y: Cover, most: int) -> np.ndarray:
 def rasterise(
     found: np.ndarray, x_edges: np.ndarray, y_edges: np.ndarray, pixels: tuple[int, int], most: int
 ) -> np.ndarray:
-    """The class that each pixel shows, shape (width, height); `most` where there is no cell.
+    """Class that each pixel shows, shape (width, height); `most` where there is no cell.
 
     Parameters
     ----------
     found : array of uint8, shape (n_x, n_y)
-        Classes of cells, below `most`.
+        Classes of the cells, below `most`.
     x_edges, y_edges : array, shape (n_x + 1,), (n_y + 1,)
-        Edges of the cells in pixels, increasing, 0 at the picture's lower left corner.
+        Edges of the cells in pixels, increasing, 0 at the lower left corner of the picture.
     pixels : (width, height)
     """
     x, y = cover(x_edges, pixels[0]), cover(y_edges, pixels[1])
@@ -106,18 +108,18 @@ def rasterise(
 
 
 def stripes(pixels: tuple[int, int], spacing: float, width: float) -> np.ndarray:
-    """How dark slanting stripes make each pixel, 0 to 1, shape (width, height); lengths in pixels."""
+    """Darkness of each pixel under diagonal stripes, 0 to 1, shape (width, height); lengths in pixels."""
     across = (np.arange(pixels[1]) - np.arange(pixels[0])[:, np.newaxis]) / np.sqrt(2.0)
     off_line = np.abs(np.mod(across, spacing) - 0.5 * spacing)
     return np.clip(0.5 * width + 0.5 - off_line, 0.0, 1.0)
 
 
 def paint(raster: np.ndarray, table: np.ndarray) -> np.ndarray:
-    """Colours of a raster as an image, first row at the bottom; `table` is `colour_table()`."""
+    """Convert a raster to an image of colours, first row at the bottom; `table` is `colour_table()`."""
     return np.ascontiguousarray(table[raster.T])
 
 
 def shade(image: np.ndarray, darkness: np.ndarray, colour: tuple[int, int, int]) -> None:
-    """Mix a colour into an image, by shares as of `stripes`."""
+    """Mix a colour into an image with the shares of `stripes`."""
     share = darkness.T[:, :, np.newaxis]
     image[..., :3] = np.rint((1.0 - share) * image[..., :3] + share * np.array(colour)).astype(np.uint8)

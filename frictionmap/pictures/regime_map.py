@@ -1,4 +1,4 @@
-"""Pictures of regime maps: classes of cells in colours, boundaries over them, what is small marked."""
+"""Pictures of regime maps: classes of cells in colours, boundaries over them, marks for small features."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -68,16 +68,16 @@ class Cells:
     r: Grid
     beta: Grid
     found: np.ndarray  # classes, (r, beta)
-    several: np.ndarray | None  # whether the start decides, (r, beta)
+    several: np.ndarray | None  # whether several regimes are possible, (r, beta)
 
     @cached_property
     def counts(self) -> np.ndarray:
-        """Cells of each class."""
+        """Number of cells of each class."""
         return count(self.found)
 
 
 def _several(panel: xr.Dataset) -> np.ndarray | None:
-    """Cells that have several answers, one of which the start chooses; None where there are none."""
+    """Cells with several possible regimes, depending on the initial state; None if there are none."""
     if "also_reachable" not in panel:
         return None
     flags = panel["also_reachable"].values
@@ -91,7 +91,7 @@ def cells_of(panel: xr.Dataset) -> Cells:
 
 
 class CellImage(Artist):
-    """Cells in colours, rasterised for the pixels of each drawing: none is lost, whatever the size."""
+    """Cells in colours, rasterised for the pixels of each drawing so that no feature is lost at any size."""
 
     def __init__(self, cells: Cells) -> None:
         super().__init__()
@@ -133,7 +133,7 @@ class CellImage(Artist):
 
 
 def _name_regions(ax: Axes, cells: Cells, curves: Iterable[tuple[np.ndarray, np.ndarray]]) -> None:
-    """Write the names of the large regions into them, off the curves."""
+    """Write the names of large regions into them, away from the curves."""
     x_edges, y_edges = (COARSE * grid.share(grid.edges) for grid in (cells.r, cells.beta))
     coarse = rasterise(cells.found, x_edges, y_edges, (COARSE, COARSE), COUNT)
     for x, y in curves:
@@ -148,7 +148,7 @@ def _name_regions(ax: Axes, cells: Cells, curves: Iterable[tuple[np.ndarray, np.
 
 
 def _ring(ax: Axes, cells: Cells) -> list[Handle]:
-    """Rings around cells of rare classes."""
+    """Draw rings around cells of rare classes."""
     centres = [np.empty((0, 2))]
     for index in rare_classes(cells.counts):
         i, j = np.nonzero(cells.found == index)
@@ -159,13 +159,13 @@ def _ring(ax: Axes, cells: Cells) -> list[Handle]:
     (drawn,) = ax.plot(
         *places.T, "o", markersize=9.0, markerfacecolor="none", markeredgecolor="black", markeredgewidth=0.9,
         transform=ax.transAxes, path_effects=halo(2.2), clip_on=False,
-        label="few cells of their kind: ringed",
+        label="few cells of their class: circled",
     )  # fmt: skip
     return [drawn]
 
 
 def draw_map(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
-    """Draw one mu without rings; the entries for a legend that are not classes."""
+    """Draw one mu without rings; return the entries for the legend that are not classes."""
     ax.add_artist(CellImage(cells))
     if cells.counts[NOT_YET]:
         ax.patch.set(hatch=NOT_YET_HATCH, edgecolor=HATCH_COLOUR)
@@ -183,7 +183,7 @@ def draw_map(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
         handles.append(
             Patch(
                 facecolor="none", edgecolor=HATCH_COLOUR, hatch=HATCH, linewidth=0.0,
-                label="several answers: the start decides",
+                label="several regimes: the initial state decides",
             )
         )  # fmt: skip
     handles += mark_features(ax, features_of(panel), cells.r)
@@ -192,7 +192,7 @@ def draw_map(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
 
 
 def _class_handles(panels: Sequence[xr.Dataset], cells: Sequence[Cells]) -> list[Handle]:
-    """Legend's entries of the classes that are there, with their numbers of cells."""
+    """Legend entries of the classes that occur, with their numbers of cells."""
     counts = np.sum([part.counts for part in cells], axis=0)
     handles: list[Handle] = []
     for index in np.flatnonzero(counts[:NOT_YET]):
@@ -223,28 +223,28 @@ def plot_regimes(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray") -> "AxesArray
 
 
 def plot_regimes(ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" = None) -> "Axes | AxesArray":
-    """Picture of a regime map: stops per cycle in discrete colours, boundaries over it.
+    """Draw a regime map: stops per cycle in discrete colours, with the boundaries over it.
 
-    The legend says how many cells each class has.  Cells of classes too rare to be seen are ringed.  Where
-    the map holds `also_reachable`, cells that other starts end differently in are hatched.  A pixel of a map
-    with more cells than pixels shows its most frequent class; strips and single cells keep a pixel.
+    The legend shows the number of cells of each class.  Circles mark cells of classes too rare to be seen.
+    If the map contains `also_reachable`, cells that can reach several regimes are hatched.  Where several
+    cells share a pixel, the most frequent class is drawn; strips and isolated cells are never dropped.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        As `sweep` returns it, or a part of it, with `regime` or `stops_per_cycle`; dimensions in any order.
+        Result of `sweep`, or a part of it, with `regime` or `stops_per_cycle`; dimensions in any order.
     ax : matplotlib axes, or an array of them, optional
-        Axes to draw into, one for each mu; the legend goes under the last of them (save the figure with
-        ``bbox_inches="tight"``).  Without it a figure with a panel for each mu is made.
+        Axes to draw into, one for each mu; the legend is placed below the last of them (save the figure with
+        ``bbox_inches="tight"``).  Without it a figure with a panel for each mu is created.
 
     Returns
     -------
-    The axes: what was given, or an array with one for each mu.
+    The axes: those given, or an array with one for each mu.
 
     Raises
     ------
     InputError
-        The dataset holds neither output or is no map, or there are more or fewer axes than mu.
+        The dataset has neither output or is not a map, or the number of axes differs from the number of mu.
     """
     ds = to_draw(ds, "plot_regimes", "map")
     if "regime" not in ds and "stops_per_cycle" not in ds:

@@ -1,4 +1,4 @@
-"""A second axis in hertz, newtons, millimetres or seconds, where the dataset tells what a ratio of 1 is."""
+"""A second axis in hertz, newtons, millimetres or seconds, where the reference values are known."""
 
 import numpy as np
 import xarray as xr
@@ -19,28 +19,28 @@ _NAMES = {
 
 
 def frequency_on_top(ax: Axes, ds: xr.Dataset) -> None:
-    """The frequency over a panel whose lower axis is r."""
+    """Add a frequency axis above a panel whose lower axis is r."""
     _beside(ax, ds, "x", "frequency", _NAMES["frequency"], float(np.max(ds["r"].values)))
 
 
 def time_on_top(ax: Axes, ds: xr.Dataset) -> None:
-    """The time over a panel whose lower axis is tau/pi."""
+    """Add a time axis above a panel whose lower axis is tau/pi."""
     _beside(ax, ds, "x", "time", _NAMES["time"], float(np.max(ds["tau"].values)), np.pi)
 
 
 def on_the_right(ax: Axes, ds: xr.Dataset, measure: str, name: str = "") -> None:
-    """Forces, lengths or works right of a panel, once its limits are known; `name`: what they are of."""
+    """Add an axis of forces, lengths or work right of a panel whose limits are set; `name` is its label."""
     largest = max(abs(limit) for limit in ax.get_ylim())
     _beside(ax, ds, "y", measure, name or _NAMES[measure], largest)
 
 
 def length_on_top(ax: Axes, ds: xr.Dataset, name: str) -> None:
-    """Displacements over a panel whose lower axis has them in units of P/k1."""
+    """Add an axis of displacements above a panel whose lower axis is in units of P/k1."""
     _beside(ax, ds, "x", "length", name, max(abs(limit) for limit in ax.get_xlim()))
 
 
 def in_brackets(ds: xr.Dataset, axis: str, index: int = 0) -> str:
-    """A value of r or beta in hertz or newtons, if the dataset tells, to be put behind it."""
+    """Value of r or beta in hertz or newtons, in brackets; empty if the dataset has no units."""
     name = BESIDE_OF.get(axis, "")
     if name not in ds.coords:
         return ""
@@ -51,7 +51,7 @@ def in_brackets(ds: xr.Dataset, axis: str, index: int = 0) -> str:
 def _beside(
     ax: Axes, ds: xr.Dataset, axis: str, measure: str, name: str, largest: float, step: float = 1.0
 ) -> None:
-    """A second axis, if the dataset tells what 1 is of what a panel shows in units of `step`."""
+    """Add a second axis, if the reference value of the panel's quantity in units of `step` is known."""
     one = ones_of(ds).get(measure)
     if one is None or not np.isfinite(largest):
         return

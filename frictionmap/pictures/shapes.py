@@ -1,4 +1,4 @@
-"""Datasets in the one form that pictures are made of."""
+"""Datasets in the standard form that pictures require."""
 
 from collections.abc import Iterable
 
@@ -8,7 +8,7 @@ import xarray as xr
 from ..errors import InputError
 from ..files.reading import kind, standard_form
 
-#: Axes are wider than what they show, and have to end at a double.
+#: Largest value that can be drawn: axes are wider than their data, and their ends must be finite.
 _LARGEST = 1e300
 
 _MAKERS = {
@@ -30,7 +30,7 @@ _DRAWN_BY = {
 
 
 def to_draw(ds: object, function: str, *legal: str) -> xr.Dataset:
-    """A dataset in its standard form, if it is of a kind that a function draws."""
+    """Convert a dataset to its standard form, if it is of a kind that a function draws."""
     wanted = f"{function} takes a dataset such as {_MAKERS[legal[0]]}"
     if not isinstance(ds, xr.Dataset):
         raise InputError(f"{wanted}; got {type(ds).__name__}")
@@ -41,14 +41,14 @@ def to_draw(ds: object, function: str, *legal: str) -> xr.Dataset:
 
 
 def check_holds(ds: xr.Dataset, names: Iterable[str], what: str) -> None:
-    """Refuse a dataset without a variable that a picture needs."""
+    """Refuse a dataset without a variable that a picture requires."""
     for name in names:
         if name not in ds:
             raise InputError(f"a dataset must hold {name} for {what} to be drawn; it does not")
 
 
 def check_range(ds: xr.Dataset, names: Iterable[str]) -> None:
-    """Refuse variables whose range is beyond all doubles."""
+    """Refuse variables beyond the range of an axis."""
     for name in names:
         largest = float(np.abs(ds[name].values).max(initial=0.0))
         if largest > _LARGEST:

@@ -1,4 +1,4 @@
-"""Pictures of probabilities: the share of the samples of an uncertain structure with each regime."""
+"""Pictures of probabilities: the share of the samples of an uncertain structure in each regime."""
 
 from typing import TYPE_CHECKING
 
@@ -17,10 +17,10 @@ from .words import system_words
 if TYPE_CHECKING:
     from .panels import AxesArray
 
-#: Regimes that have a panel if any sample has them, from left to right.
+#: Regimes with a panel if any sample is in them, from left to right.
 _OUTCOMES = ("continuous", "stick_slip", "permanent_sticking", "unresolved")
 
-#: Dark on light, even in grey, and the same for every regime: a share is a share.
+#: Colour map with increasing darkness, also in grey, common to all regimes.
 _COLOURS = "Blues"
 
 _BOUNDARIES = {"beta_lim": "-", "beta_stick": (0, (4, 2))}
@@ -28,21 +28,21 @@ _SYMBOLS = {"beta_lim": r"$\beta_\mathrm{lim}$", "beta_stick": r"$\beta_\mathrm{
 
 
 def plot_shares(ds: xr.Dataset) -> "AxesArray":
-    """Picture of `shares`: one panel for each mu and regime, quantiles of the boundaries over them.
+    """Draw the result of `shares`: one panel for each mu and regime, with quantiles of the boundaries.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        As `shares` returns it, or a slice of one.
+        Result of `shares`, or a slice of one.
 
     Returns
     -------
-    Axes, one for each mu and regime that some sample has.
+    Axes, one for each mu and each regime that occurs.
 
     Raises
     ------
     InputError
-        The dataset is none of `shares`.
+        The dataset is not a result of `shares`.
     """
     ds = to_draw(ds, "plot_shares", "shares")
     check_holds(ds, ["regime_share"], "shares")
@@ -78,7 +78,7 @@ def _fill(ax: Axes, values: np.ndarray, r: Grid, beta: Grid) -> QuadMesh:
 
 
 def _lines(ax: Axes, panel: xr.Dataset, r: Grid, beta: Grid) -> list[Handle]:
-    """The boundaries' quantiles: the middle one wide, the others thin."""
+    """Draw quantiles of the boundaries: the middle one wide, the others thin."""
     handles: list[Handle] = []
     middle = int(np.argmin(np.abs(panel["quantile"].values - 0.5)))
     for name, style in _BOUNDARIES.items():

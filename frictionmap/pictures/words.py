@@ -9,7 +9,7 @@ from ..files.stored import stored_start
 
 
 def balanced(text: str, width: int) -> str:
-    """Text in as few lines as fit into `width` characters, all about equally long."""
+    """Wrap text into as few lines of `width` characters as possible, all of about equal length."""
     lines = textwrap.wrap(text, width)
     narrow = max(1, -(-len(text) // max(1, len(lines))))
     while len(textwrap.wrap(text, narrow)) > len(lines):
@@ -18,7 +18,7 @@ def balanced(text: str, width: int) -> str:
 
 
 def system_words(ds: xr.Dataset) -> str:
-    """The system as the file describes it; a number that repeats is told once."""
+    """Description of the system from the file, with repeated numbers written once."""
     words = str(ds.attrs.get("system", ""))
     return re.sub(r"(?<=[( ])([^\s,()]+)(?:, \1(?=[,)])){2,}", _times, words)
 
@@ -28,18 +28,18 @@ def _times(repeated: re.Match) -> str:
 
 
 def moves_base(ds: xr.Dataset) -> bool:
-    """Whether the system is shaken at its base."""
+    """Whether the system has base excitation."""
     return "base motion" in system_words(ds)
 
 
 def load_of(ds: xr.Dataset) -> str | None:
-    """What cos(tau) is to the system; None where loads are given mass by mass, each with its own phase."""
+    """Label of cos(tau); None where loads are given mass by mass, each with its own phase."""
     if moves_base(ds):
         return "base / $Y$"
     return None if "harmonic load (" in system_words(ds) else "load / $P$"
 
 
-#: More grid points than a panel has pixels each way.
+#: Grid points per axis above which a panel has fewer pixels than the map has cells.
 _MANY = 640
 
 
@@ -47,11 +47,13 @@ _STARTS: dict[str | None, str] = {"rest": "start: at rest", "moving": "start: mo
 
 
 def caption(ds: xr.Dataset, *, cells_counted: bool = False) -> str:
-    """What a picture's legend is headed by: system, damping, and how to read the numbers."""
+    """Heading of a legend: system, damping, and how to read the numbers."""
     parts = [system_words(ds)]
     if cells_counted:
         parts.append(_STARTS.get(stored_start(ds), ""))
         parts.append("in brackets: numbers of cells")
         if max(ds.sizes["r"], ds.sizes["beta"]) > _MANY:
-            parts.append("a pixel shows the commonest of its cells; what is thin keeps a pixel")
+            parts.append(
+                "cells that share a pixel show the most frequent class; isolated cells are never dropped"
+            )
     return "; ".join(part for part in parts if part)

@@ -1,4 +1,4 @@
-"""Works, distances and forces of a cycle over frequency: a panel for each."""
+"""Work, distances and forces per cycle over frequency, one panel each."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,7 +10,7 @@ from .families import Family
 from .panels import Handle
 from .second_axes import on_the_right
 
-#: Variables, with what their axis is called.
+#: Variables and the labels of their axes.
 SCALARS = {
     "energy": {
         "work_input": "work of the load / $(P^2/k_1)$",
@@ -26,18 +26,18 @@ SCALARS = {
 }
 
 
-#: Where a peak is infinite, the axis ends this high above all but this share of the values.
+#: With infinite peaks, the axis ends at `_ABOVE` times the value that all but the share `_BEYOND` stay below.
 _ABOVE, _BEYOND = 1.5, 0.1
 
 
 def _cut(values: np.ndarray) -> float:
-    """The end of an axis of works for which peaks are too high."""
+    """Upper end of an axis of work whose peaks are cut off."""
     positive = values[np.isfinite(values) & (values > 0.0)]
     return _ABOVE * float(np.quantile(positive, 1.0 - _BEYOND)) if positive.size else 1.0
 
 
 def scalar_picture(family: Family, quantity: str, log: bool) -> Picture:
-    """The panels of a quantity; works of dampers only if there are any."""
+    """Panels of a quantity; the work of dampers only if it is not zero."""
     rows = {name: family.rows(name) for name in SCALARS[quantity] if name in family.cells}
     if "work_damping" in rows and not np.nansum(rows["work_damping"]) > 0.0:
         del rows["work_damping"]
@@ -55,7 +55,7 @@ def scalar_picture(family: Family, quantity: str, log: bool) -> Picture:
         return draw
 
     scales = {name: scale_of(family, [values], _cut(values), log) for name, values in rows.items()}
-    remarks = ["works and distances a cycle of the load"] if quantity == "energy" else []
+    remarks = ["work and distances per cycle of the load"] if quantity == "energy" else []
     if any(about_cut(scales[name], [values]) for name, values in rows.items()):
         remarks.append("peaks cut off")
     panels = [panel(name, values, scales[name]) for name, values in rows.items()]

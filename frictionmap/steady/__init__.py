@@ -1,1 +1,1 @@
-"""Steady states: of one cell in time, of the cells of a map, in parallel."""
+"""Steady states: of one cell in time, and of all cells of a map in parallel."""

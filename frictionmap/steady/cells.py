@@ -1,7 +1,7 @@
-"""What the cells of a map need, and the jobs that fill them.
+"""Data that the cells of a map need, and the jobs that fill them.
 
-One mass is the structure with one mode, but its cells know more: a stop forgets all but one number.  It is a
-kind of motion of its own (`_kernels.engine`), an order of magnitude faster.
+One mass is the structure with one mode, but a stop leaves only one number of its state.  It is a kind of
+motion of its own (`_kernels.engine`), ten times faster.
 """
 
 from collections.abc import Callable
@@ -10,19 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from .._kernels.engine.answers import Limits
-from .._kernels.engine.details import Details, Displacements, Nothing
-from .._kernels.engine.extremes import Alone
-from .._kernels.engine.fill import Axes, ClosedForm, OpenCells, Wanted, fill_closed, fill_open
+from .._kernels.engine.details import Details, Displacements, NotRequested
+from .._kernels.engine.extremes import UncoupledResponse
+from .._kernels.engine.fill import Axes, ClosedForm, OpenCells, Requested, fill_closed, fill_open
 from .._kernels.engine.many_masses import ManyMassSystem
 from .._kernels.engine.one_mass import OneMassSystem
 from .._kernels.engine.quantities import Quantities
+from .._kernels.engine.records import Limits
 from ..datasets.labels import CELL_VARIABLES
 from ..model.settings import Solver
 from ..model.system import System
 from ..theory.boundary_curves import OneMass, many_mode_curves, one_mass_curves
-from .kernel_data import Structures, structures
-from .quantity_data import Asked, quantity_numbers, results
+from .kernel_data import StructureArrays, structure_arrays
+from .quantity_data import QuantityRequest, quantity_arrays, results
 from .quantity_limits import put_resonance, put_static
 
 #: Periods of its fastest free motion for which a motion is followed, over the excitation periods `cycles`: at
@@ -33,27 +33,29 @@ Job = tuple[Callable[..., None], tuple]
 
 
 def limits(solver: Solver) -> Limits:
-    """When the kernels give up."""
+    """Convert the settings to the limits of the kernels."""
     steps = _FREE_PERIODS * solver.cycles * solver.steps
     return Limits(float(solver.cycles), solver.tolerance, solver.steady == "solved", steps)
 
 
 class Cells:
-    """The cells of a map of a system; r, beta and mu are checked axes."""
+    """Cells of a map of a system; r, beta and mu are checked axes."""
 
     def __init__(
         self, system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver,
-        asked: Asked | None = None,
+        request: QuantityRequest | None = None,
     ) -> None:  # fmt: skip
-        self._system, self._solver, self._asked = system, solver, asked
+        self._system, self._solver, self._request = system, solver, request
         self._axes = Axes(mu, r, beta)
-        #: what was asked for of a cycle, for the jobs to fill
-        self.results = results((mu.size, r.size, beta.size), system.n, asked or Asked(frozenset()))
+        #: requested results over a cycle, filled by the jobs
+        self.results = results(
+            (mu.size, r.size, beta.size), system.n, request or QuantityRequest(frozenset())
+        )
         self._one: OneMass | None = None
         if system.normalised:
             self._one = one_mass_curves(system, r, mu)
             self.curves = self._one.curves
-            #: (n_r,) where nothing loads the contact, so that nothing moves
+            #: (n_r,) whether the contact carries no load, so that nothing moves
             self.no_load = self._one.frequencies.load == 0.0
         else:
             self.curves = many_mode_curves(system, r, mu)
@@ -65,13 +67,15 @@ class Cells:
 
     @property
     def rest_sticks(self) -> bool:
-        """Whether from beta_stick on a start from rest never begins to move; what is not held may swing."""
+        """Whether a start from rest never begins to slide at or above beta_stick; masses that are not held
+        may move.
+        """
         return self._one is not None
 
     @cached_property
-    def structures(self) -> Structures:
-        """The system in the numbers of a structure."""
-        return structures(self._system, self._axes.r, self.curves)
+    def structure_arrays(self) -> StructureArrays:
+        """The system as the arrays of a structure."""
+        return structure_arrays(self._system, self._axes.r, self.curves)
 
     @cached_property
     def motion(self) -> OneMassSystem | ManyMassSystem:
@@ -83,7 +87,7 @@ class Cells:
                 self._one.frequencies, system.zeta, steps, self._one.lim, self.curves.beta_stick, 1,
                 float(system.modes.chi[0]),
             )  # fmt: skip
-        f = self.structures
+        f = self.structure_arrays
         return ManyMassSystem(
             self._axes.r, f.model, f.loads, f.orbit, f.marginal, f.rest, f.moving, steps,
             self.curves.beta_lim, f.participating.size,
@@ -94,8 +98,10 @@ class Cells:
         if self._one is not None:
             f = self._one.frequencies
             return ClosedForm(f.load, f.v_abs, f.u, f.g, f.marginal)
-        orbit = self.structures.orbit
-        return ClosedForm(np.ones(self._axes.r.size), orbit.v_abs, orbit.u, orbit.g, self.structures.marginal)
+        orbit = self.structure_arrays.orbit
+        return ClosedForm(
+            np.ones(self._axes.r.size), orbit.v_abs, orbit.u, orbit.g, self.structure_arrays.marginal
+        )
 
     @property
     def unit(self) -> float:
@@ -103,40 +109,41 @@ class Cells:
         return float(self._closed_form.load[0])
 
     @cached_property
-    def _details(self) -> Details | Nothing:
+    def _details(self) -> Details | NotRequested:
         if "details" not in self._needs:
-            return Nothing(0)
-        f = self.structures
-        parts = Displacements(f.shapes, Alone(f.alone, f.alone), f.held)
+            return NotRequested(0)
+        f = self.structure_arrays
+        parts = Displacements(f.outputs, UncoupledResponse(f.uncoupled, f.uncoupled), f.held)
         return Details(self._axes.r, f.model, f.loads, f.orbit, float(self._solver.steps), parts)
 
     @cached_property
-    def quantities(self) -> Quantities | Nothing:
-        """What a cycle is asked for, in numbers."""
-        if self._asked is None:
-            return Nothing(0)
-        return quantity_numbers(
-            self._system, self._axes.r, self.structures, float(self._solver.steps), self._asked, self.results
+    def quantities(self) -> Quantities | NotRequested:
+        """Data for the requested quantities of a cycle."""
+        if self._request is None:
+            return NotRequested(0)
+        return quantity_arrays(
+            self._system, self._axes.r, self.structure_arrays, float(self._solver.steps), self._request,
+            self.results,
         )  # fmt: skip
 
     @cached_property
-    def _wanted(self) -> Wanted:
-        return Wanted(self._details, self.quantities)
+    def _requested(self) -> Requested:
+        return Requested(self._details, self.quantities)
 
     def closed(self, first: int, last: int, cells: OpenCells, out: Any) -> Job:
-        """A job for the cells of rows first..last-1 that formulas decide."""
-        return fill_closed, (first, last, cells, self._axes, self._closed_form, out, self._wanted)
+        """Job for the cells of rows first..last-1 that closed forms decide."""
+        return fill_closed, (first, last, cells, self._axes, self._closed_form, out, self._requested)
 
     def opened(self, first: int, last: int, cells: OpenCells, out: Any, cancel: np.ndarray) -> Job:
-        """A job for cells first..last-1 of the list of open cells."""
+        """Job for cells first..last-1 of the list of open cells."""
         moving = self._solver.start == "moving"
         return fill_open, (
-            first, last, cells, self._axes, self.motion, limits(self._solver), moving, out, self._wanted,
+            first, last, cells, self._axes, self.motion, limits(self._solver), moving, out, self._requested,
             cancel,
         )  # fmt: skip
 
     def reachable(self, out: Any, cancel: np.ndarray) -> list[Job]:
-        """Jobs for what else a cell could end in, if that was asked for."""
+        """Jobs for the further regimes that cells can reach, if requested."""
         if "coexistence" not in self._needs:
             return []
         from .._kernels.engine.coexistence import fill_reachable
@@ -149,16 +156,16 @@ class Cells:
         return [(fill_reachable, (row, row + 1, *shared)) for row in range(axes.mu.size * axes.r.size)]
 
     def finish(self, out: Any) -> None:
-        """The limit r = 0 without friction; and modes that the contact does not see may resonate."""
+        """Fill the limit r = 0 without friction, and resonances of modes that do not participate."""
         axes = self._axes
         if out.amplitude.size:
             if axes.beta[0] == 0.0:
                 static = np.abs(self._system.modes.static_response())
                 out.amplitude[:, axes.r == 0.0, 0, :] = static
-            where = np.broadcast_to(self.structures.resonant[:, np.newaxis, :], out.amplitude.shape)
+            where = np.broadcast_to(self.structure_arrays.resonant[:, np.newaxis, :], out.amplitude.shape)
             out.amplitude[where & ~np.isnan(out.amplitude)] = np.inf
-        if self._asked is not None:
-            put_resonance(self._system, axes.r, self.structures.resonant, self.results)
+        if self._request is not None:
+            put_resonance(self._system, axes.r, self.structure_arrays.resonant, self.results)
             if axes.r[0] == 0.0:
                 static = put_static(self._system, axes.beta, out.status[:, 0], self.results)
                 if out.contact_amplitude.size:

@@ -1,4 +1,4 @@
-"""What maps and curves will cost: memory, compared with what the machine has, and time, from a small part."""
+"""Cost of maps and curves: memory compared with the available memory, and time extrapolated from a part."""
 
 import contextlib
 import math
@@ -17,75 +17,80 @@ from ..model.system import System
 from ..units.scales import Units
 
 if TYPE_CHECKING:
-    from .quantity_data import Asked
+    from .quantity_data import QuantityRequest
 
-#: Bytes that a process takes before it has any cells.
+#: Bytes that a process uses without any cells.
 _BASE = 400e6
 
-#: Bytes, beside the cells, for each value of beta, for each (mu, r), and for each (mu, r) and mass; measured.
+#: Bytes in addition to the cells for each value of beta, for each (mu, r), and for each (mu, r) and mass;
+#: measured.
 _PER_BETA, _PER_FREQUENCY, _PER_MASS = 40.0, 200.0, 300.0
 
-#: Where a container says what it may take and what it has taken, in both versions of control groups.
+#: Files with the limit and the present use of memory in a container, for both versions of control groups.
 _GROUP = Path("/sys/fs/cgroup")
 _LIMITS = (
     ("memory.max", "memory.current"),
     ("memory/memory.limit_in_bytes", "memory/memory.usage_in_bytes"),
 )
 
-#: What cells take while they are written, over what they take in memory; measured: 1.05.
+#: Memory of cells while they are written, over their memory before; measured: 1.05.
 _WRITING = 1.1
 
-#: A part of the map that takes so long (s) tells what the rest will take.
+#: Shortest time [s] of a part of the map from which the whole time is extrapolated.
 _SAMPLE = 0.5
 
-#: Values of an axis in that part, to begin with and at most.
+#: Smallest and largest number of values of an axis in that part.
 _FEWEST, _MOST = 8, 256
 
 
 def memory_of_map(
     counts: Mapping[str, int], masses: int, outputs: tuple[str, ...], units: Units | None = None
 ) -> float:
-    """Bytes that a map with so many values of mu, r and beta takes at its peak."""
+    """Estimate the peak memory in bytes of a map with these numbers of values of mu, r and beta."""
     from ..datasets.labels import CELL_VARIABLES
-    from .quantity_data import asked_for
+    from .quantity_data import quantity_request
 
     of_cycle = [name for name in outputs if CELL_VARIABLES[name].needs == "cycle"]
-    return _memory({**counts, "dof": masses}, _also_in_si({*outputs, "status"}, units), asked_for(of_cycle))
+    return _memory(
+        {**counts, "dof": masses}, _also_in_si({*outputs, "status"}, units), quantity_request(of_cycle)
+    )
 
 
 def memory_of_curves(
     counts: Mapping[str, int], masses: int, settings: CurveSettings, units: Units | None = None
 ) -> float:
-    """Bytes that response curves at so many values of mu, r and beta take at their peak."""
+    """Estimate the peak memory in bytes of response curves with these numbers of values of mu, r and beta."""
     from .curves import cycle_variables, plain_outputs
-    from .quantity_data import asked_for
+    from .quantity_data import quantity_request
 
     sizes = {**counts, "dof": masses, "harmonic": settings.harmonics + 1, "part": 2}
     names = cycle_variables(settings)
     variables = _also_in_si({*plain_outputs(settings), *names}, units)
-    return _memory(sizes, variables, asked_for(names, settings.harmonics), "curves")
+    return _memory(sizes, variables, quantity_request(names, settings.harmonics), "curves")
 
 
 def _also_in_si(names: Collection[str], units: Units | None) -> set[str]:
-    """The names of variables, and of the same in SI units, at most."""
+    """Names of variables, and of all their possible counterparts in SI units."""
     from ..datasets.labels import MEASURE_OF, in_si
 
     beside = [in_si(name, MEASURE_OF[name]) for name in names if name in MEASURE_OF]
     return {*names, *(beside if units is not None else ())}
 
 
-def _memory(counts: Mapping[str, int], names: Collection[str], asked: "Asked", what: str = "") -> float:
-    """Bytes of so many values of every dimension: variables of cells, and the results of cycles.
+def _memory(
+    counts: Mapping[str, int], names: Collection[str], request: "QuantityRequest", what: str = ""
+) -> float:
+    """Estimate the bytes of the variables of all cells, and of their results over a cycle.
 
-    what : the kind of the dataset, see `labels_of`
+    what : kind of the dataset, see `labels_of`
     """
     from ..datasets.labels import labels_of
     from .quantity_data import results
 
     masses, labels = counts["dof"], labels_of(what)
     points = counts.get("points", 1)  # along further axes
-    kept = sum(array.nbytes for array in results((1, 1, 1), masses, asked))
-    one = float(kept) * counts["mu"] * counts["r"] * counts["beta"]  # of a map; they are not kept
+    kept = sum(array.nbytes for array in results((1, 1, 1), masses, request))
+    one = float(kept) * counts["mu"] * counts["r"] * counts["beta"]  # for one map; they are not kept
     cells = 0.0
     for name in names:
         label = labels[name]
@@ -96,7 +101,7 @@ def _memory(counts: Mapping[str, int], names: Collection[str], asked: "Asked", w
 
 
 def available_memory() -> float:
-    """Bytes that this process may still take; infinite where the machine does not tell."""
+    """Bytes that this process may still allocate; infinite where the system does not report it."""
     found = [_of_machine()]
     for most, used in _LIMITS:
         with contextlib.suppress(OSError, ValueError):
@@ -117,12 +122,12 @@ def _of_machine() -> float:
 def refuse_map_without_memory(
     counts: Mapping[str, int], system: System, solver: Solver, _: CurveSettings, units: Units | None
 ) -> None:
-    """Refuse a map that this machine has no memory for, before any is taken.
+    """Refuse a map that exceeds the available memory, before any is allocated.
 
     Raises
     ------
     InputError
-        With what is needed and what there is.
+        States the memory needed and the memory available.
     """
     _refuse(counts, memory_of_map(counts, system.n, tuple(solver.outputs), units), "outputs")
 
@@ -130,26 +135,27 @@ def refuse_map_without_memory(
 def refuse_curves_without_memory(
     counts: Mapping[str, int], system: System, _: Solver, curves: CurveSettings, units: Units | None
 ) -> None:
-    """The same of response curves."""
+    """Refuse response curves that exceed the available memory; see `refuse_map_without_memory`."""
     _refuse(counts, memory_of_curves(counts, system.n, curves, units), "quantities or harmonics")
 
 
 def _refuse(counts: Mapping[str, int], needed: float, fewer: str) -> None:
-    """Refuse cells that need more memory than there is; `fewer`: of what else there might be fewer."""
+    """Refuse cells that need more memory than is available; `fewer` names what could be requested less."""
     there = available_memory()
     checks.cells(counts["mu"], counts["r"], counts["beta"], points=counts["points"])
     if needed > there:
         cells = counts["mu"] * counts["r"] * counts["beta"] * counts["points"]
         raise InputError(
-            f"grid must fit in memory: its {cells:,} cells need about {in_bytes(needed)}, available are "
-            f"{in_bytes(there)}; make it coarser, ask for fewer {fewer}, or insist with --yes"
+            f"cannot fit the grid in memory: its {cells:,} cells need about {in_bytes(needed)}, "
+            f"{in_bytes(there)} are available; use a coarser grid, request fewer {fewer}, or override "
+            f"with --yes"
         )
 
 
 def seconds_of_map(
     system: System, r: np.ndarray, beta: np.ndarray, mu: np.ndarray, solver: Solver, threads: int | None
 ) -> float:
-    """About how long a map takes, from one with fewer frequencies and friction ratios."""
+    """Estimate the time of a map in seconds from one with fewer frequencies and friction ratios."""
     from .sweep import sweep
 
     values = _FEWEST
@@ -164,7 +170,7 @@ def seconds_of_map(
 
 
 def in_bytes(size: float) -> str:
-    """As in 1.5 GB."""
+    """Format a size, such as 1.5 GB."""
     for unit in ("MB", "GB"):
         size /= 1000.0 if unit == "GB" else 1e6
         if size < 1000.0 or unit == "GB":
@@ -173,7 +179,7 @@ def in_bytes(size: float) -> str:
 
 
 def in_time(seconds: float) -> str:
-    """As in 40 s, 3 min, 2.5 h."""
+    """Format a time, such as 40 s, 3 min or 2.5 h."""
     if seconds < 100.0:
         return f"{max(seconds, 1.0):.0f} s"
     return f"{seconds / 60.0:.0f} min" if seconds < 6000.0 else f"{seconds / 3600.0:.1f} h"

@@ -18,26 +18,26 @@ from ..theory.boundary_curves import Curves
 from ..theory.limit_curves import limit_variables
 from ..units.scales import Units, scales_of
 from .maps import Progress, Watch, checked_axes, compute
-from .quantity_data import PARTS, VARIABLES, asked_for, read_result
+from .quantity_data import PARTS, VARIABLES, quantity_request, read_result
 from .refinement import reduction_check
 
-#: What every cell tells.
+#: Outputs of every cell.
 _ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "period", "status")
 
 
 def plain_outputs(asked: CurveSettings) -> list[Output]:
-    """What maps have, too, and is written as in them."""
+    """Outputs that curves share with maps."""
     amplitude: list[Output] = ["contact_amplitude"] if "amplitude" in asked.quantities else []
     return [*_ALWAYS, *amplitude]
 
 
 def cycle_variables(asked: CurveSettings) -> list[str]:
-    """What is read from the results of a cycle."""
+    """Variables that are read from the results over a cycle."""
     return [name for quantity in asked.quantities for name in VARIABLES[quantity]]
 
 
 def _over_frequency(system: System, axes: Mapping[str, np.ndarray], found: Curves) -> dict[str, xr.Variable]:
-    """What does not depend on beta: the contact held, and motions on the boundary."""
+    """Variables that do not depend on beta: responses with the contact held, and motions on the boundary."""
     held = held_variables(system, axes["r"])
     turned = {name: label_variable(name, value.values.T, "curves") for name, value in held.items()}
     return turned | limit_variables(system, axes["r"], axes["mu"], found)
@@ -47,10 +47,12 @@ def solve_curves(
     system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
     progress: Progress | None, watch: Watch | None = None,
 ) -> dict[str, xr.Variable]:  # fmt: skip
-    """What `curves` has over the axes mu, r and beta; `watch` may end it."""
+    """Compute the variables of `curves` over the axes mu, r and beta; `watch` may end the computation."""
     basic, names = plain_outputs(asked), cycle_variables(asked)
     settings = replace(solver, outputs=basic)
-    cells, out = compute(system, axes, settings, asked_for(names, asked.harmonics), threads, progress, watch)
+    cells, out = compute(
+        system, axes, settings, quantity_request(names, asked.harmonics), threads, progress, watch
+    )
     values: dict[str, np.ndarray] = {name: getattr(out, name) for name in basic}
     values |= {name: read_result(name, cells.results) for name in names}
     variables = {name: label_variable(name, value, "curves") for name, value in values.items()}
@@ -71,7 +73,7 @@ def curves(
     units: Units | None = None,
     **settings: Unpack[SolverSettings],
 ) -> xr.Dataset:
-    """Response curves of the steady states on a mu-r-beta grid, through all regimes.
+    """Compute response curves of the steady states on a mu-r-beta grid, through all regimes.
 
     Parameters
     ----------
@@ -79,47 +81,54 @@ def curves(
     r : array_like, shape (n_r,)
         Frequency ratios omega/omega_1 [-], >= 0, increasing.
     beta : array_like, shape (n_beta,)
-        Kinetic friction force over load amplitude F/P (F/(k1 Y)) [-], >= 0, increasing.
+        Ratios of kinetic friction force to load amplitude F/P (F/(k1 Y)) [-], >= 0, increasing.
     mu : array_like, shape (n_mu,)
-        Static over kinetic friction [-], >= 1, increasing.
+        Ratios of static to kinetic friction [-], >= 1, increasing.
     harmonics : int, optional
-        The highest harmonic of the displacements, of the motion in the contact and of the friction force, up
-        to 1000; 0: none.  Default 7 where `quantities` has "harmonics", else none.
+        Highest harmonic of the displacements, of the motion in the contact and of the friction force, up to
+        1000; 0: none.  Default 7 where `quantities` contains "harmonics", else none.
     quantities : sequence of str, optional
-        Of "amplitude", "phase", "first_harmonic", "energy", "harmonics", "transmitted_force" and
-        "distortion"; default all but the last two.  Nothing else is computed.
+        Any of "amplitude", "phase", "first_harmonic", "energy", "harmonics", "transmitted_force" and
+        "distortion"; default: all but the last two.  Only these are computed.
     solver : Solver, optional
-        Settings; or give them one by one as keywords.  Its `outputs` are not asked for.
+        Settings, or single settings as keywords.  Its `outputs` are not used.
     threads : int, optional
-        Threads to use; default: all processors of the process.  The result is the same to the bit.
+        Number of threads; default: all processors of the process.  The result is equal to the bit for any
+        number.
     progress : callable, optional
-        Called as progress(done, all) with numbers that tell the share of the work.
+        Called as progress(done, total); the quotient is the share of the work that is done.
     units : Units, optional
-        What r = 1 and beta = 1 are, as of `sweep`; one of eleven arguments, all but three for keywords.
+        Reference values that convert ratios to Hz and N, as in `sweep`.
 
     Returns
     -------
     xarray.Dataset
         On (mu, r, beta), some also on dof and on (harmonic, part): `regime`, `stops_per_cycle`, `period`,
-        `status` and what the quantities are: `amplitude` and `contact_amplitude`, largest moduli over
-        time; `phase` and `contact_phase`, lags of the maxima [rad], NaN where they are held over a stop (then
-        `phase_begin`, `phase_end`) or the period is not 1; `first_harmonic_amplitude` and
-        `first_harmonic_phase`, modulus and lag -arg X_1 of the first harmonic, and `contact_...`;
-        `sliding_distance`, `work_friction`, `work_input`, `work_damping` and `equivalent_damping` per cycle;
-        `displacement_harmonic`, `contact_harmonic` and `friction_harmonic`; `transmitted_force` and
-        `transmitted_first_harmonic`; `rms`, root mean square, and `distortion`, that of all but the mean and
-        the first harmonic over that of the first.  On (mu, r): `beta_lim`, `beta_lim_modal`, `beta_stick`;
-        on (mu, r, dof) `limit_amplitude`, `limit_phase`, `limit_first_harmonic_amplitude` and
-        `limit_first_harmonic_phase` of the continuous motion at beta_lim; on (r, dof) `held_response` and
-        `held_phase` with the contact held.
+        `status`, and the variables of the requested quantities.
 
-        Infinite at an undamped resonance, where phases are those that the growing motion goes to.  Where the
-        contact sticks, the motion about the place where it rests.
+        * `amplitude` and `contact_amplitude`: largest moduli over time.
+        * `phase` and `contact_phase`: lags of the maxima [rad].  NaN where the maximum is held during a stop
+          (then see `phase_begin` and `phase_end`), and where the period is not 1.
+        * `first_harmonic_amplitude` and `first_harmonic_phase`: modulus and lag -arg X_1 of the first
+          harmonic; also with the prefix `contact_`.
+        * `sliding_distance`, `work_friction`, `work_input`, `work_damping` and `equivalent_damping`, per
+          cycle.
+        * `displacement_harmonic`, `contact_harmonic` and `friction_harmonic`.
+        * `transmitted_force` and `transmitted_first_harmonic`.
+        * `rms`: root mean square.  `distortion`: root mean square without mean and first harmonic, over that
+          of the first harmonic.
+
+        On (mu, r): `beta_lim`, `beta_lim_modal`, `beta_stick`; on (mu, r, dof) `limit_amplitude`,
+        `limit_phase`, `limit_first_harmonic_amplitude` and `limit_first_harmonic_phase` of the continuous
+        motion at beta_lim; on (r, dof) `held_response` and `held_phase` with the contact held.
+
+        Amplitudes are infinite at an undamped resonance; phases are then those that the growing motion
+        approaches.  Where the contact sticks, the motion is measured from its static offset.
 
     Raises
     ------
     InputError
-        An argument or a setting is of the wrong kind or out of range.
+        An argument or a setting has the wrong type or is out of range.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A structure in the numbers that the kernels take: modes, held oscillators, loads and starts over r."""
+"""A structure as arrays for the kernels: modes, held oscillators, loads and initial states over r."""
 
 import math
 from dataclasses import dataclass
@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .._kernels.closed_form import damping_functions
-from .._kernels.engine.extremes import Shapes
+from .._kernels.engine.extremes import OutputMatrices
 from .._kernels.engine.many_masses import Starts
-from .._kernels.engine.policies import MOVING, MOVING_CAP
+from .._kernels.engine.policies import MOVING_START, MOVING_START_CAP
 from .._kernels.structure.sliding_orbit import Continuous
 from .._kernels.structure.state import MODE_ROWS, STATIC_SHAPE, Loads, Model
 from ..model.balance import dynamic_stiffness
@@ -19,45 +19,48 @@ from ..model.modes import ModalModel, angles, modulus, times
 from ..model.system import System
 from ..theory.boundary_curves import Curves
 
-#: A share of the load smaller than this times n eps of the most that it could be is rounding; as in `modes`.
+#: A share of the load below this factor times n eps of its upper bound is rounding error, as in `modes`.
 _ZERO_SHARE = 64.0
 
-#: cos and sin of something.
+#: cos and sin parts.
 Phase = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
-class Structures:
-    """A system at frequencies r: everything that its cells need; nothing of what moves is meant at r = 0."""
+class StructureArrays:
+    """A system at frequencies r, as arrays for its cells; values of the moving structure at r = 0 are
+    placeholders.
+    """
 
-    participating: np.ndarray  # the modes that move the contact, chi != 0
+    participating: np.ndarray  # indices of the participating modes
     model: Model
     loads: Loads
     orbit: Continuous
     marginal: np.ndarray  # (n_r,) bool
     rest: Starts
     moving: Starts
-    shapes: Shapes
-    alone: np.ndarray  # (n_r, n_dof) phasor of what moves with the load alone; 0 where infinite
+    outputs: OutputMatrices
+    uncoupled: np.ndarray  # (n_r, n_dof) phasor of what moves with the load alone; 0 where infinite
     resonant: np.ndarray  # (n_r, n_dof) bool, where that is infinite
     held: np.ndarray  # (n_r, n_dof) phasor of the displacements with the contact held
 
 
 def _contact_rows(modes: ModalModel, which: np.ndarray, mass: float) -> tuple[np.ndarray, np.ndarray]:
-    """What the load in the contact has of the modes that it sees, and of their velocities."""
+    """Coefficients of the participating modes and of their velocities in the load in the contact."""
     w, zeta, chi = modes.w[which], modes.zeta[which], modes.chi[which]
     load, load_rate = mass * chi * w**2, 2.0 * mass * chi * zeta * w
-    coupling = modes.seen_coupling()
+    coupling = modes.participating_coupling()
     return load, load_rate if coupling is None else load_rate + mass * (chi @ coupling)
 
 
 def _model(modes: ModalModel, which: np.ndarray, held: HeldStructure) -> Model:
+    """Build the numerical model of the system, independent of r."""
     free, w, chi = modes.free, modes.w[which], modes.chi[which]
     n = w.size
     mass = 1.0 / np.sum(chi**2)  # m_eff
     load, load_rate = _contact_rows(modes, which, mass)
     watch = np.concatenate((load, load_rate)) @ held.to_free
-    # a force in the contact has no direct part: its static answer is of coordinates alone
+    # a force in the contact has no feedthrough: its static response involves coordinates only
     shape = (free.to_oscillators @ np.append(held.static_shape, np.zeros(n)))[:n]
     nothing = np.zeros(n)
     rows = np.array((np.append(load, load_rate), np.append(chi, nothing), np.append(nothing, chi)))
@@ -74,10 +77,9 @@ def _model(modes: ModalModel, which: np.ndarray, held: HeldStructure) -> Model:
 
 
 def _shares(parts: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Real parts (n_r, n) @ rows.T, (n_r, m), exactly zero where it is zero but for rounding.
+    """Real parts (n_r, n) @ rows.T, (n_r, m), exactly zero where they are rounding error.
 
-    A held oscillator that the load does not drive must not be driven by 1e-17: undamped at its resonance that
-    would grow.
+    A held oscillator without load must not be driven by 1e-17: undamped at its resonance it would grow.
     """
     shares = times(parts, rows.T).real
     most = np.sqrt(times(parts * parts, np.ones((parts.shape[1], 1))).real) * np.linalg.norm(rows, axis=1)
@@ -85,18 +87,18 @@ def _shares(parts: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 
 class _Driven(NamedTuple):
-    """cos and sin part of the load on oscillators, and of that in their velocities."""
+    """cos and sin of the load on oscillators, and of its feedthrough into their velocities."""
 
     cos: np.ndarray
     sin: np.ndarray
-    direct_cos: np.ndarray
-    direct_sin: np.ndarray
+    feedthrough_cos: np.ndarray
+    feedthrough_sin: np.ndarray
 
 
 def _driven(rate: np.ndarray, r: np.ndarray, on_y: Phase, on_p: Phase) -> _Driven:
-    """Of the load's shares (cos, sin) of y and of p, where y'' + rate y' + ... = load.
+    """Convert loads (cos, sin) on y and on p to the load of y'' + rate y' + ... = load.
 
-    y' = p + direct: its derivative joins the load on y''.
+    y' = p + feedthrough, whose derivative adds to the load on y''.
     """
     turn = r[:, np.newaxis]
     cosine = on_p[0] + rate * on_y[0] + turn * on_y[1]
@@ -104,7 +106,7 @@ def _driven(rate: np.ndarray, r: np.ndarray, on_y: Phase, on_p: Phase) -> _Drive
 
 
 def _on_held(held: HeldStructure, r: np.ndarray, participation: np.ndarray) -> _Driven:
-    """On the held oscillators."""
+    """Load on the held oscillators."""
     m, n = held.omega.size, held.static_shape.size
     cosine, sine = participation.real, -participation.imag
     on_y, on_p = held.to_held[:m, n:], held.to_held[m:, n:]
@@ -115,7 +117,7 @@ def _on_held(held: HeldStructure, r: np.ndarray, participation: np.ndarray) -> _
 
 
 def _on_free(free: FreeStructure, r: np.ndarray, participation: np.ndarray) -> _Driven:
-    """On the free oscillators."""
+    """Load on the free oscillators."""
     n = free.omega.size
     loads = times(participation, free.to_oscillators[:, n:].T) if free.coupled else participation
     nothing = np.zeros_like(participation)
@@ -124,12 +126,13 @@ def _on_free(free: FreeStructure, r: np.ndarray, participation: np.ndarray) -> _
 
 
 def _loads(model: Model, free: _Driven, held: _Driven, in_contact: np.ndarray) -> Loads:
-    """cos and sin parts of the load on free and held oscillators, and in the contact, phasor (n_r,)."""
+    """Combine cos and sin of the load on free and held oscillators, and in the contact, phasor (n_r,)."""
     contact_cos, contact_sin = in_contact.real / model.inverse_mass, -in_contact.imag / model.inverse_mass
     return Loads(*(np.ascontiguousarray(a) for a in (*free, *held, contact_cos, contact_sin)))
 
 
 def _orbit(free: FreeStructure, r: np.ndarray, driven: _Driven, curves: Curves) -> Continuous:
+    """Response functions of the continuous orbit."""
     stiffness = dynamic_stiffness(free.omega, free.zeta, r).rows()
     resonant = stiffness == 0.0
     load = np.empty(stiffness.shape, dtype=complex)
@@ -148,19 +151,23 @@ def _orbit(free: FreeStructure, r: np.ndarray, driven: _Driven, curves: Curves) 
 def _start(
     free: FreeStructure, place: np.ndarray, velocity: np.ndarray, phase: Phase, driven: _Driven
 ) -> Starts:
-    """That of the oscillators from coordinates and velocities (n_r, n) of modes at the load's (cos, sin)."""
+    """Convert modal coordinates and velocities (n_r, n) at the load phase (cos, sin) to the oscillators."""
     cosine, sine = phase
     if free.coupled:
         n = free.omega.size
         state = times(np.concatenate((place, velocity), axis=1), free.to_oscillators.T).real
         # contiguous, both: another memory layout would be another type to the kernels
         place, velocity = np.ascontiguousarray(state[:, :n]), np.ascontiguousarray(state[:, n:])
-        velocity += driven.direct_cos * cosine[:, np.newaxis] + driven.direct_sin * sine[:, np.newaxis]
+        velocity += (
+            driven.feedthrough_cos * cosine[:, np.newaxis] + driven.feedthrough_sin * sine[:, np.newaxis]
+        )
     return Starts(place, velocity, cosine, sine)
 
 
 def _rest(modes: ModalModel, participating: np.ndarray, driven: _Driven) -> Starts:
-    """Every mass at rest at 0, one on a joined base-wall at the base's displacement; tau = 0."""
+    """Initial state with every mass at rest at 0, the mass at a joined base-wall at the base's displacement;
+    tau = 0.
+    """
     c = modes.contact
     x = modes.base_motion * (c / (c @ c) - 1.0)  # relative to the base
     n_r = len(driven.cos)
@@ -172,37 +179,39 @@ def _moving(
     modes: ModalModel, participating: np.ndarray, r: np.ndarray, participation: np.ndarray, force: np.ndarray,
     driven: _Driven,
 ) -> Starts:  # fmt: skip
-    """The contact at z = 0, every mode at its largest speed; the load in the held contact falls through 0.
+    """Initial state with z = 0 and every mode at its largest speed, while the load in the held contact falls
+    through 0.
 
-    Its amplitude is 1.5 times what the load alone sustains of it, that taken as 10 times its static answer at
-    most; `force` (n_r,) is the phasor of the held load.
+    The amplitude of each mode is 1.5 times its response without friction, that response limited to 10 times
+    the static one; `force` (n_r,) is the phasor of the load in the held contact.
     """
     w = modes.w[participating]
     stiffness = np.ascontiguousarray(modulus(modes.dynamic_stiffness(r)[:, participating]))
     with np.errstate(divide="ignore"):
-        gain = np.minimum(1.0 / stiffness, MOVING_CAP / w**2)
-    size = MOVING * modulus(participation) * gain * np.maximum(w, r[:, np.newaxis])
+        gain = np.minimum(1.0 / stiffness, MOVING_START_CAP / w**2)
+    size = MOVING_START * modulus(participation) * gain * np.maximum(w, r[:, np.newaxis])
     lead = np.where(np.isfinite(force), angles(force), 0.0)
     sine, cosine = (np.array([function(angle) for angle in lead]) for function in (math.sin, math.cos))
     velocity = size * np.sign(modes.chi[participating])
     return _start(modes.free, np.zeros_like(size), velocity, (sine, cosine), driven)
 
 
-def _alone(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Phasor (n_r, n_dof) of the base's motion and of the modes that do not participate; where infinite."""
+def _uncoupled_response(modes: ModalModel, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Phasor (n_r, n_dof) of base motion and modes that do not participate, and where it is infinite."""
     idle = ~modes.participating
-    parts = modes.answers(r, np.where(idle, modes.relative_participation(r), 0.0))[:, idle]
+    parts = modes.modal_responses(r, np.where(idle, modes.relative_participation(r), 0.0))[:, idle]
     resonant = np.isinf(parts)
-    alone = modes.base_motion + times(np.where(resonant, 0.0, parts), modes.phi[:, idle].T)
-    return alone, (resonant.astype(float) @ np.abs(modes.phi[:, idle].T)) > 0.0
+    uncoupled = modes.base_motion + times(np.where(resonant, 0.0, parts), modes.phi[:, idle].T)
+    return uncoupled, (resonant.astype(float) @ np.abs(modes.phi[:, idle].T)) > 0.0
 
 
 def _marginal(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> np.ndarray:
-    """Whether continuous motions at r form a continuum (n_r,): some free vibration leaves the turns alone.
+    """Whether the continuous motions at r form a continuum (n_r,): a free vibration exists that leaves the
+    turns unchanged.
 
-    An undamped mode that turns n times in half a period of the load does, r = w_k/(2 n), T(3.33).  Two do
-    together, their velocities cancelling in the contact, where that is so of the sum or the difference of
-    their frequencies: w_k -+ w_j = 2 n r, to the rounding of the two.
+    This holds for an undamped mode that turns n times in half a period of the load, r = w_k/(2 n), T(3.33).
+    It holds for two modes together, whose velocities cancel in the contact, where the sum or the difference
+    of their frequencies satisfies w_k -+ w_j = 2 n r, to the rounding of both.
     """
     free = w[zeta == 0.0]
     found = (free >= 2.0 * r[:, np.newaxis]) & (np.mod(0.5 * free / r[:, np.newaxis], 1.0) == 0.0)
@@ -215,37 +224,37 @@ def _marginal(w: np.ndarray, zeta: np.ndarray, r: np.ndarray) -> np.ndarray:
     return found
 
 
-def _shapes(model: Model, free: FreeStructure, phi: np.ndarray) -> Shapes:
-    """Displacements of the masses; `phi` (n_dof, n) of the participating modes."""
+def _displacement_outputs(model: Model, free: FreeStructure, phi: np.ndarray) -> OutputMatrices:
+    """Output matrices of the displacements of the masses; `phi` (n_dof, n) of the participating modes."""
     n = phi.shape[1]
     # contiguous, all of them: another memory layout would be another type to the kernels, compiled anew
     nothing = np.zeros(phi.shape[0])
     if free.coupled:
         rows = phi @ free.to_modes[:n]
-        return Shapes(rows, rows @ model.to_free, rows[:, :n] @ model.modes[STATIC_SHAPE], nothing)
-    return Shapes(
+        return OutputMatrices(rows, rows @ model.to_free, rows[:, :n] @ model.modes[STATIC_SHAPE], nothing)
+    return OutputMatrices(
         np.concatenate((phi, np.zeros_like(phi)), axis=1), np.ascontiguousarray(phi @ model.to_free[:n]),
         phi @ model.modes[STATIC_SHAPE], nothing,
     )  # fmt: skip
 
 
-def structures(system: System, r: np.ndarray, curves: Curves) -> Structures:
-    """Everything that the cells of a system need at frequencies r, for which `curves` are."""
+def structure_arrays(system: System, r: np.ndarray, curves: Curves) -> StructureArrays:
+    """Build the arrays of a system for its cells at frequencies r, with the `curves` there."""
     modes, free = system.modes, system.modes.free
     which = np.flatnonzero(modes.participating)
     chi = modes.chi[which]
-    fixed = held_structure(modes.w[which], modes.zeta[which], chi, modes.seen_coupling())
+    fixed = held_structure(modes.w[which], modes.zeta[which], chi, modes.participating_coupling())
     model = _model(modes, which, fixed)
-    alone, resonant = _alone(modes, r)
+    uncoupled, resonant = _uncoupled_response(modes, r)
     held, force = modes.held(r)
     held = held + modes.base_motion
-    r = np.where(r > 0.0, r, 1.0)  # no cell at r = 0 is followed: any other number does
+    r = np.where(r > 0.0, r, 1.0)  # placeholder: no cell at r = 0 is followed
     participation = np.ascontiguousarray(modes.relative_participation(r)[:, which])
     on_free, on_held = _on_free(free, r, participation), _on_held(fixed, r, participation)
-    return Structures(
+    return StructureArrays(
         which, model, _loads(model, on_free, on_held, times(participation, chi[:, np.newaxis])[:, 0]),
         _orbit(free, r, on_free, curves), _marginal(free.omega, free.zeta, r),
         _rest(modes, which, on_free), _moving(modes, which, r, participation, force, on_free),
-        _shapes(model, free, modes.phi[:, which]), np.ascontiguousarray(alone), resonant,
+        _displacement_outputs(model, free, modes.phi[:, which]), np.ascontiguousarray(uncoupled), resonant,
         np.ascontiguousarray(held),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The cells of a map: plan which of them need integration, run them in parallel."""
+"""The cells of a map: decide which of them need integration, and compute them in parallel."""
 
 import os
 from collections import namedtuple
@@ -22,40 +22,40 @@ from ..theory.boundary_curves import Curves
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales
 from .cells import Cells, Job
-from .quantity_data import Asked, asked_for, read_result
+from .quantity_data import QuantityRequest, quantity_request, read_result
 
-#: Cells a thread takes at a time: some milliseconds of work, so that the threads finish together, progress
-#: is seen and an interrupt is obeyed; and enough for the start of a tile not to count.
+#: Cells per job: some milliseconds of work, so that all threads finish together, progress is visible and an
+#: interrupt takes effect; long enough for the overhead of a job to be negligible.
 TILE = 1024
 
-#: Rows of the map a thread fills by closed form at a time.
+#: Cells per job that are filled by closed form.
 ROW_CELLS = 262144
 
-#: What a cell costs, about, in hundredths of one that is followed: decided by a formula; followed; looked at
-#: for what else it could end in, with mu = 1 and above.
-_DECIDED, _FOLLOWED, _LOOKED_AT_SMOOTH, _LOOKED_AT = 2, 100, 25, 800
+#: Approximate cost of a cell, in hundredths of one that is integrated: decided by a formula; integrated;
+#: searched for further regimes, with mu = 1 and with mu > 1.
+_DECIDED, _FOLLOWED, _SEARCHED_UNIQUE, _SEARCHED = 2, 100, 25, 800
 
-#: The arrays of a map, one for every output but those that are read from the results of a cycle.
+#: Outputs with an array in a map: all but those that are read from the results over a cycle.
 _NAMES = tuple(name for name, label in CELL_VARIABLES.items() if label.needs != "cycle")
 Arrays = namedtuple("Arrays", _NAMES)  # type: ignore[misc]
 
 Progress = Callable[[int, int], None]
 
-#: Called now and then while cells are worked on; what it raises ends the work.
+#: Called repeatedly while cells are computed; an exception raised by it ends the computation.
 Watch = Callable[[], None]
 
-#: Seconds between two calls of it.
+#: Seconds between two calls of `Watch`.
 _WATCHED = 0.02
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Which cells are open: in each row (mu, r), those from `low` to before `high` in beta."""
+    """Open cells of a map: in each row (mu, r), those with indices low to high - 1 in beta."""
 
-    low: np.ndarray  # (n_mu * n_r,)
+    low: np.ndarray  # (n_mu * n_r,) first open cell first open cell
     high: np.ndarray
     rows: np.ndarray  # the rows that have open cells
-    ends: np.ndarray  # number of open cells up to and with each of them
+    ends: np.ndarray  # cumulative number of open cells of these rows
 
     @property
     def cells(self) -> int:
@@ -63,9 +63,9 @@ class Plan:
         return int(self.ends[-1]) if self.ends.size else 0
 
     def tiles(self) -> Iterator[tuple[int, int]]:
-        """First cell and the one after the last of every tile of the list of open cells.
+        """Iterate over tiles of the list of open cells: the first cell, and the one after the last.
 
-        Cut at the ends of rows and where the search from neighbours starts anew, and nowhere else.
+        Tiles are cut only at the ends of rows and where the search from neighbours starts anew.
         """
         begin = first = 0
         for end in self.ends.tolist():
@@ -88,13 +88,14 @@ def _no_friction(beta_lim: np.ndarray, beta_stick: np.ndarray) -> np.ndarray:
 
 
 def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: Solver) -> Plan:
-    """Sort the cells into those that a formula decides and those that are open (theory.md 6).
+    """Separate the cells that closed forms decide from the open ones (theory.md 6).
 
-    - beta = 0 is linear; where nothing loads the contact (joined base-wall, r = 0), nothing moves.
-    - skip = "exact": friction lost in the rounding of the load, below beta_lim, counts as none.
-    - skip = "exact", mu = 1: continuous below beta_lim, stuck from beta_stick on, whatever the start.
-    - skip = "exact", start from rest: one mass with beta >= beta_stick never begins to move.
-    - r = 0 has no motion to integrate; a regime, but no number of stops, follows from the boundaries.
+    * beta = 0 is linear; without a load in the contact (joined base-wall, r = 0) nothing moves.
+    * skip = "exact": friction below the rounding error of the load, below beta_lim, is treated as zero.
+    * skip = "exact", mu = 1: continuous below beta_lim, stuck at or above beta_stick, for every initial
+      state.
+    * skip = "exact", start from rest: one mass with beta >= beta_stick never begins to move.
+    * r = 0 has no motion to integrate; the boundaries give a regime, but no number of stops.
     """
     beta_lim, beta_stick = cells.curves.beta_lim, cells.curves.beta_stick
     shape = beta_lim.shape
@@ -104,10 +105,10 @@ def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: 
     high = np.full(shape, beta.size)
     stuck_from = np.searchsorted(beta, beta_stick)
     if solver.skip == "exact":
-        smooth = (mu == 1.0)[:, np.newaxis]
-        proved = smooth | (solver.start == "rest" and cells.rest_sticks)
+        unique = (mu == 1.0)[:, np.newaxis]
+        proved = unique | (solver.start == "rest" and cells.rest_sticks)
         high = np.where(proved, stuck_from, high)
-        sliding = np.where(smooth, beta_lim, _no_friction(beta_lim, beta_stick))
+        sliding = np.where(unique, beta_lim, _no_friction(beta_lim, beta_stick))
         low = np.maximum(low, np.searchsorted(beta, sliding))
     high = np.where(no_motion, stuck_from, high)
     low = np.where(no_load, 0, np.minimum(low, high))
@@ -117,7 +118,7 @@ def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: 
 
 
 def allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> Any:
-    """Outputs asked for, and status, unresolved until they are filled; the others have no cells."""
+    """Allocate the requested outputs and status, unresolved until filled; other outputs have size 0."""
     sizes = dict(zip((*CELL, "dof"), (*shape, dofs), strict=True))
     arrays: list[np.ndarray] = []
     for name in _NAMES:
@@ -128,7 +129,7 @@ def allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> An
 
 
 def default_threads() -> int:
-    """Processors this process may use."""
+    """Number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -137,7 +138,7 @@ def default_threads() -> int:
 def _run(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None) -> None:
     """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
 
-    This thread only waits, so that an interrupt reaches it at once.
+    This thread only waits, so that it receives an interrupt at once.
     """
     pool = ThreadPoolExecutor(threads)
     running: dict[Future, int] = {}
@@ -150,7 +151,7 @@ def _run(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None)
                 return
             pause = None if watch is None else _WATCHED
             ended = wait(running, pause, return_when=FIRST_COMPLETED).done
-            for future in sorted(ended, key=running.__getitem__):  # as they began: progress tells of them
+            for future in sorted(ended, key=running.__getitem__):  # in the order of submission, for progress
                 future.result()
                 done(running.pop(future))
             if watch is not None:
@@ -160,10 +161,10 @@ def _run(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None)
 
 
 def _fill(
-    cells: Cells, work: Plan, shape: tuple[int, int, int], smooth: np.ndarray, out: Any, threads: int,
+    cells: Cells, work: Plan, shape: tuple[int, int, int], unique: np.ndarray, out: Any, threads: int,
     progress: Progress | None, watch: Watch | None,
 ) -> None:  # fmt: skip
-    """`smooth` (n_mu,): where mu = 1."""
+    """Fill all cells; `unique` (n_mu,) tells where mu = 1."""
     n_rows, columns = work.low.size, shape[2]
     rows_at_once = max(1, ROW_CELLS // columns)
     opened = OpenCells(work.rows, work.ends, work.low, work.high)
@@ -180,7 +181,7 @@ def _fill(
 
     others = cells.reachable(out, cancel)
     jobs += others
-    per_row = columns * np.repeat(np.where(smooth, _LOOKED_AT_SMOOTH, _LOOKED_AT), shape[1])
+    per_row = columns * np.repeat(np.where(unique, _SEARCHED_UNIQUE, _SEARCHED), shape[1])
     costs += per_row.tolist()[: len(others)]
 
     spent, total = 0, sum(costs)
@@ -194,7 +195,7 @@ def _fill(
     try:
         _run(jobs, threads, done, watch)
     except BaseException:
-        cancel[0] = 1  # the kernels look at it at every event
+        cancel[0] = 1  # the kernels check it at every event
         raise
     cells.finish(out)
 
@@ -202,7 +203,7 @@ def _fill(
 def checked_axes(
     r: ArrayLike, beta: ArrayLike, mu: ArrayLike, per_cell: int, scales: Scales
 ) -> dict[str, np.ndarray]:
-    """The axes mu, r and beta of a grid, of so many numbers a cell; r and beta may have units."""
+    """Check the axes mu, r and beta of a grid with `per_cell` numbers per cell; r and beta may have units."""
     r, beta = ratios(r, "r", KINDS["r"], scales), ratios(beta, "beta", KINDS["beta"], scales)
     r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
     beta = checks.axis(beta, "beta", least=0.0)
@@ -212,15 +213,15 @@ def checked_axes(
 
 
 def compute(
-    system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: Asked | None, threads: int | None,
-    progress: Progress | None, watch: Watch | None = None,
+    system: System, axes: Mapping[str, np.ndarray], solver: Solver, request: QuantityRequest | None,
+    threads: int | None, progress: Progress | None, watch: Watch | None = None,
 ) -> tuple[Cells, Any]:  # fmt: skip
-    """The cells of a grid and their arrays, filled; `asked`: what else, in the results of the cells."""
+    """Compute the cells of a grid; `request` names quantities to be stored in the results of the cells."""
     threads = default_threads() if threads is None else checks.whole(threads, "threads", least=1)
     if progress is not None and not callable(progress):
         raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]
-    cells = Cells(system, r, beta, mu, solver, asked)
+    cells = Cells(system, r, beta, mu, solver, request)
     out = allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
     work = plan(cells, r, mu, beta, solver)
     _fill(cells, work, (mu.size, r.size, beta.size), mu == 1.0, out, threads, progress, watch)
@@ -235,10 +236,10 @@ def solve_map(
     progress: Progress | None,
     watch: Watch | None = None,
 ) -> tuple[dict[str, np.ndarray], Curves]:
-    """Outputs and `status` of one system over the axes mu, r and beta as bare arrays, and its curves."""
+    """Compute outputs and `status` of one system over the axes mu, r and beta, as arrays, and its curves."""
     of_cycle = [name for name in solver.outputs if CELL_VARIABLES[name].needs == "cycle"]
-    asked = asked_for(of_cycle) if of_cycle else None
-    cells, out = compute(system, axes, solver, asked, threads, progress, watch)
+    request = quantity_request(of_cycle) if of_cycle else None
+    cells, out = compute(system, axes, solver, request, threads, progress, watch)
     names = dict.fromkeys((*solver.outputs, "status"))
     found: dict[str, np.ndarray] = {
         name: read_result(name, cells.results) if name in of_cycle else getattr(out, name) for name in names

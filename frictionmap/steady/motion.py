@@ -1,4 +1,4 @@
-"""One steady state in time, in numbers: motion of the masses and of the contact, friction force, events."""
+"""One steady state in time, as arrays: motion of masses and contact, friction force, events."""
 
 import math
 from dataclasses import dataclass
@@ -7,15 +7,15 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import regimes
-from .._kernels.engine import phase_table
-from .._kernels.engine.answers import Cell
+from .._kernels.engine import segment_table
 from .._kernels.engine.fill import one_cell
 from .._kernels.engine.quantities import (
     continuous_cell_quantities,
     stuck_cell_quantities,
     table_cell_quantities,
 )
-from .._kernels.engine.time_history import Samples, sample_phases
+from .._kernels.engine.records import Cell
+from .._kernels.engine.time_history import Samples, sample_segments
 from .._kernels.engine.window import window_table
 from .._kernels.one_mass.sliding_orbit import orbit_phase
 from .._kernels.structure.newton import make_workspace
@@ -26,27 +26,27 @@ from ..model.settings import HARMONICS, Solver
 from ..model.system import System
 from ..theory.boundary_curves import Curves
 from .cells import Cells, limits
-from .kernel_data import Structures
+from .kernel_data import StructureArrays
 from .maps import plan
-from .quantity_data import VARIABLES, asked_for, read_result
+from .quantity_data import VARIABLES, quantity_request, read_result
 
-#: Excitation periods shown of a motion that does not repeat: the longest steady state is as long.
+#: Excitation periods shown of a motion that does not repeat, equal to the longest steady period.
 WINDOW = 8
 
 _WINDOWED = (
-    f"the motion repeats in no 8 periods: x, v, z, friction and the events are those of {WINDOW} periods at "
-    "the end of the {} that were followed, the scalars averages over the last 100"
+    f"the motion does not repeat within 8 periods: x, v, z, friction and events cover the last {WINDOW} "
+    "of the {} periods followed; the scalars are averages over the last 100"
 )
 
 _TURN = 2.0 * math.pi
 
-#: What response curves have, all of it.
+#: All variables of the quantities of response curves.
 CYCLE = tuple(name for names in VARIABLES.values() for name in names)
 
 
 @dataclass(frozen=True)
 class Question:
-    """One steady state that is asked for."""
+    """One requested steady state."""
 
     system: System
     r: float
@@ -67,33 +67,33 @@ class History:
     z: np.ndarray  # (tau.size,)
     friction: np.ndarray
     phase: np.ndarray
-    events: tuple[np.ndarray, np.ndarray, np.ndarray]  # tau, phase that begins, z
-    durations: np.ndarray  # of the stops
+    events: tuple[np.ndarray, np.ndarray, np.ndarray]  # tau, sense of the segment that starts, z
+    durations: np.ndarray  # durations of the stops
     amplitude: float
-    stuck: bool  # for good
+    stuck: bool  # whether the contact sticks permanently
 
 
 @dataclass(frozen=True)
-class Found:
-    """The steady state of a cell, or a window of a motion that does not repeat.
+class FoundMotion:
+    """Steady state of a cell, or a window of a motion that does not repeat.
 
-    once : the phases until the motion returns, mirrored or not; none where the closed form tells them
+    recurrence : segments of one recurrence, mirrored or not; None where the closed form gives the motion
     """
 
-    table: np.ndarray | None  # phases of one period, or of the window; none where it sticks for good
+    table: np.ndarray | None  # segments of one period, or of the window; None where it sticks permanently
     status: int
-    rest: float = 0.0  # where it sticks
-    averages: Cell | None = None  # of the motion that does not repeat
-    once: np.ndarray | None = None
+    stuck_at: float = 0.0  # z where it sticks
+    averages: Cell | None = None  # averages of a motion that does not repeat
+    recurrence: np.ndarray | None = None
 
 
 class Motion(NamedTuple):
-    """A steady state in time and its numbers.
+    """A steady state in time, and its scalars.
 
-    summary : regime, stops per cycle, contact amplitude, share of time stuck, period, status
-    cycle : what response curves have of it; (n,) of masses, (..., 2) of harmonics
+    summary : regime, stops per cycle, contact amplitude, share stuck, period, status
+    cycle : its quantities of response curves; (n,) for masses, (..., 2) for harmonics
     curves : the boundaries there, (1, 1)
-    comment : what is to be said of a motion that does not repeat; else empty
+    comment : remark on a motion that does not repeat; else empty
     """
 
     history: History
@@ -108,9 +108,9 @@ def _times(period: int, points: int) -> np.ndarray:
 
 
 def _since(tau: np.ndarray, start: float, total: float) -> np.ndarray:
-    """Times from `start` on, within one steady period."""
+    """Times since `start`, within one steady period."""
     since = np.mod(tau - start, total)
-    since[since > total * (1.0 - 1e-15)] = 0.0  # rounding must not place a sample past the end
+    since[since > total * (1.0 - 1e-15)] = 0.0  # rounding must not move a sample past the end
     return since
 
 
@@ -122,7 +122,7 @@ _UNBOUNDED = "an undamped resonance; the motion grows without bound"
 
 
 def _decided(cells: Cells, question: Question) -> int:
-    """The regime that a formula gives; unresolved where the cell is open."""
+    """Regime given by a closed form; unresolved where the cell is open."""
     beta, mu = np.array([question.beta]), np.array([question.mu])
     work = plan(cells, np.array([question.r]), mu, beta, question.solver)
     if work.cells:
@@ -131,40 +131,41 @@ def _decided(cells: Cells, question: Question) -> int:
 
 
 def _with_mirror_image(table: np.ndarray) -> np.ndarray:
-    """The table of phases over one steady period: twice as long where the motion returns mirrored."""
-    length = float(table[:, phase_table.LENGTH].sum())
+    """Segment table over one steady period: twice as long where the motion recurs as its mirror image."""
+    length = float(table[:, segment_table.LENGTH].sum())
     if round(length / math.pi) % 2 == 0:
         return table
     mirrored = table.copy()
-    mirrored[:, phase_table.SIGN] *= -1.0
-    mirrored[:, phase_table.BEGIN] += length
+    mirrored[:, segment_table.SIGN] *= -1.0
+    mirrored[:, segment_table.BEGIN] += length
     return np.concatenate((table, mirrored))
 
 
 def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
-    """The table of phases of the continuous orbit, one phase."""
-    found = cells.structures
+    """Segment table of the continuous orbit, one segment."""
+    found = cells.structure_arrays
     orbit, n = found.orbit, found.participating.size
     st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
-    table = np.empty((1, phase_table.phase_columns(n)))
+    table = np.empty((1, segment_table.segment_columns(n)))
     phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], question.beta)
-    phase_table.continuous_phase(st, orbit, 0, question.beta, phase, table[0], make_workspace(n))
+    segment_table.continuous_segment(st, orbit, 0, question.beta, phase, table[0], make_workspace(n))
     return table
 
 
-def _window(question: Question, cells: Cells, cell: Cell) -> Found:
-    """The last periods that the solver followed, of a motion that does not repeat."""
+def _window(question: Question, cells: Cells, cell: Cell) -> FoundMotion:
+    """Segment table of the last periods of a motion that does not repeat."""
     before = _TURN * max(0.0, question.solver.cycles - WINDOW - 2.0)
     moving = question.solver.start == "moving"
     table = window_table(
         cells.motion, question.beta, question.mu, moving, before, _TURN * (WINDOW + 2.0)
     )  # fmt: skip
     averages = cell._replace(amplitude=cells.unit * cell.amplitude)
-    return Found(table, cell.status, averages=averages)
+    return FoundMotion(table, cell.status, averages=averages)
 
 
-def _find(question: Question, cells: Cells) -> Found:
-    regime, rest = _decided(cells, question), 0.0
+def _find(question: Question, cells: Cells) -> FoundMotion:
+    """Find the steady state, or raise NoSteadyState."""
+    regime, stuck_at = _decided(cells, question), 0.0
     status = regimes.RESOLVED
     table = np.empty((0, 0))
     if regime == regimes.UNRESOLVED:
@@ -176,52 +177,55 @@ def _find(question: Question, cells: Cells) -> Found:
             return _window(question, cells, cell)
         if cell.period == 0:
             raise _no_steady_state(question, regimes.status_meaning(status))
-        regime, rest = cell.regime, cells.unit * cell.sign * cell.at.z
+        regime, stuck_at = cell.regime, cells.unit * cell.sign * cell.contact_state.z
     if regime == regimes.PERMANENT_STICKING:
-        return Found(None, status, rest)
-    once = table if table.shape[0] else None
-    if once is None:
-        if math.isinf(cells.structures.orbit.v_abs[0]):
+        return FoundMotion(None, status, stuck_at)
+    recurrence = table if table.shape[0] else None
+    if recurrence is None:
+        if math.isinf(cells.structure_arrays.orbit.v_abs[0]):
             raise _no_steady_state(question, _UNBOUNDED)
         table = _continuous_table(question, cells)
-        marginal = bool(cells.structures.marginal[0]) and question.beta > 0.0
+        marginal = bool(cells.structure_arrays.marginal[0]) and question.beta > 0.0
         status = regimes.MARGINAL if marginal else status
-    return Found(_with_mirror_image(table), status, once=once)
+    return FoundMotion(_with_mirror_image(table), status, recurrence=recurrence)
 
 
-def _stuck_history(question: Question, cells: Cells, rest: float) -> History:
-    """The contact held at `rest` for good."""
-    found = cells.structures
+def _stuck_history(question: Question, cells: Cells, stuck_at: float) -> History:
+    """Time history with the contact held at `stuck_at` permanently."""
+    found = cells.structure_arrays
     tau = _times(1, question.points)
     turn = np.exp(1j * tau)
     held = found.held[0][:, np.newaxis] * turn
-    offset = found.shapes.static_shape[:, np.newaxis] * rest
+    offset = found.outputs.static_shape[:, np.newaxis] * stuck_at
     force = question.system.modes.held_load(np.array([question.r]))[0] * turn
     return History(
-        1, tau, held.real + offset, -held.imag, np.full(tau.size, rest),
-        force.real - found.model.stiffness * rest, np.zeros(tau.size, np.int8),
+        1, tau, held.real + offset, -held.imag, np.full(tau.size, stuck_at),
+        force.real - found.model.stiffness * stuck_at, np.zeros(tau.size, np.int8),
         (np.empty(0), np.empty(0), np.empty(0)), np.empty(0), 0.0, True,
     )  # fmt: skip
 
 
-def _phase_starts(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Phases that begin, and z there."""
-    sign = table[:, phase_table.SIGN]
-    # a slide starts where the phase before it ended
-    return sign * table[:, phase_table.SENSE], np.roll(sign * table[:, phase_table.Z_END], 1)
+def _segment_starts(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Sense of the segments that start, and z there."""
+    sign = table[:, segment_table.SIGN]
+    # a segment starts where the previous one ended
+    return sign * table[:, segment_table.SENSE], np.roll(sign * table[:, segment_table.Z_END], 1)
 
 
-def _place(found: Found, tau: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Where in time the table of phases lies, whose phases begin `begin` after the first one.
+def _align_times(
+    found: FoundMotion, tau: np.ndarray, begin: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Align the segment table, whose segments start at `begin` after the first one, with the load phase.
 
-    Returns the times of samples since its first phase; which phases begin among them, in order; and when.
+    Returns the times of the samples since the first segment; which segments start among them, in order; and
+    when.
     """
     table = found.table
     assert table is not None
-    sign = table[0, phase_table.SIGN]
-    start = math.atan2(sign * table[0, phase_table.SIN], sign * table[0, phase_table.COS])
+    sign = table[0, segment_table.SIGN]
+    start = math.atan2(sign * table[0, segment_table.SIN], sign * table[0, segment_table.COS])
     if found.averages is None:
-        total = float(table[:, phase_table.LENGTH].sum())
+        total = float(table[:, segment_table.LENGTH].sum())
         times = np.mod(begin + start, total)
         order = np.argsort(times, kind="stable")
         return _since(tau, start, total), order, times[order]
@@ -231,52 +235,58 @@ def _place(found: Found, tau: np.ndarray, begin: np.ndarray) -> tuple[np.ndarray
 
 
 def _displacements(
-    question: Question, numbers: Structures, coordinates: np.ndarray, velocities: np.ndarray, tau: np.ndarray
+    question: Question,
+    numbers: StructureArrays,
+    coordinates: np.ndarray,
+    velocities: np.ndarray,
+    tau: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """x and x' in tau (n_dof, tau.size), from coordinates and velocities of the oscillators (n, tau.size)."""
     modes, n = question.system.modes, len(coordinates)
     if not modes.free.coupled:
-        shapes = numbers.shapes.free[:, :n]
-        return shapes @ coordinates, shapes @ velocities
+        outputs = numbers.outputs.free[:, :n]
+        return outputs @ coordinates, outputs @ velocities
     r, loads = question.r, numbers.loads
-    direct = np.outer(loads.free_direct_cos[0], np.cos(tau)) + np.outer(loads.free_direct_sin[0], np.sin(tau))
-    motion = modes.free.to_modes @ np.concatenate((coordinates, r * velocities - direct))
+    feedthrough = np.outer(loads.free_feedthrough_cos[0], np.cos(tau)) + np.outer(
+        loads.free_feedthrough_sin[0], np.sin(tau)
+    )
+    motion = modes.free.to_modes @ np.concatenate((coordinates, r * velocities - feedthrough))
     phi = modes.phi[:, numbers.participating]
     return phi @ motion[:n], phi @ motion[n:] / r
 
 
-def _moving_history(question: Question, cells: Cells, found: Found) -> History:
-    """A motion that slides, sampled along its phases."""
-    numbers, table = cells.structures, found.table
+def _moving_history(question: Question, cells: Cells, found: FoundMotion) -> History:
+    """Time history of a sliding motion, sampled from its segment table."""
+    numbers, table = cells.structure_arrays, found.table
     assert table is not None
     if numbers.resonant.any():
         raise _no_steady_state(question, _UNBOUNDED)
     n = numbers.participating.size
-    lengths = table[:, phase_table.LENGTH]
+    lengths = table[:, segment_table.LENGTH]
     period = WINDOW if found.averages else max(1, round(float(lengths.sum()) / _TURN))
     tau = _times(period, question.points)
-    since, shown, times = _place(found, tau, table[:, phase_table.BEGIN])
+    since, shown, times = _align_times(found, tau, table[:, segment_table.BEGIN])
     order = np.argsort(since, kind="stable")
     st = make_structure(numbers.model, numbers.loads, 0, question.r, float(question.solver.steps))
     coordinates, velocities = np.empty((2, n, tau.size))
     z, friction = np.empty((2, tau.size))
     sense = np.empty(tau.size, dtype=np.int8)
     samples = Samples(coordinates, velocities, z, friction, sense)
-    sample_phases(st, question.beta, table, since[order], samples, make_workspace(n), make_scratch(n))
+    sample_segments(st, question.beta, table, since[order], samples, make_workspace(n), make_scratch(n))
     back = np.empty_like(order)
     back[order] = np.arange(order.size)
-    alone = numbers.alone[0][:, np.newaxis] * np.exp(1j * tau)
+    uncoupled = numbers.uncoupled[0][:, np.newaxis] * np.exp(1j * tau)
     x, v = _displacements(question, numbers, coordinates[:, back], velocities[:, back], tau)
-    begins, places = _phase_starts(table)
+    begins, places = _segment_starts(table)
     return History(
-        period, tau, x + alone.real, v - alone.imag, z[back], friction[back], sense[back],
-        (times, begins[shown], places[shown]), lengths[table[:, phase_table.SENSE] == 0.0],
-        float(np.abs(table[:, phase_table.Z_END]).max()), False,
+        period, tau, x + uncoupled.real, v - uncoupled.imag, z[back], friction[back], sense[back],
+        (times, begins[shown], places[shown]), lengths[table[:, segment_table.SENSE] == 0.0],
+        float(np.abs(table[:, segment_table.Z_END]).max()), False,
     )  # fmt: skip
 
 
-def _summary(history: History, found: Found) -> dict[str, float]:
-    """The cell's numbers; those of a motion that does not repeat are averages, and it has no period."""
+def _summary(history: History, found: FoundMotion) -> dict[str, float]:
+    """Scalars of the cell; those of a motion that does not repeat are averages, and it has no period."""
     averages = found.averages
     if averages is not None:
         return {
@@ -299,39 +309,39 @@ def _summary(history: History, found: Found) -> dict[str, float]:
     }
 
 
-def _cycle(question: Question, cells: Cells, found: Found) -> dict[str, np.ndarray]:
-    """What the cell's response curves have; NaN of a motion that does not repeat."""
+def _cycle(question: Question, cells: Cells, found: FoundMotion) -> dict[str, np.ndarray]:
+    """Quantities of response curves of the cell; NaN for a motion that does not repeat."""
     if found.averages is None:
         if found.table is None:
             stuck_cell_quantities(cells.quantities)
-        elif found.once is None:
+        elif found.recurrence is None:
             continuous_cell_quantities(cells.quantities, question.beta)
         else:
-            table_cell_quantities(cells.quantities, question.beta, found.once)
+            table_cell_quantities(cells.quantities, question.beta, found.recurrence)
     values = {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
-    if found.table is None:  # here the place where the contact rests is shown, too
-        values["amplitude"] += np.abs(cells.structures.shapes.static_shape * found.rest)
+    if found.table is None:  # here the static offset of the stuck contact is included
+        values["amplitude"] += np.abs(cells.structure_arrays.outputs.static_shape * found.stuck_at)
     values["phase_lag"] = values.pop("phase")
     return values
 
 
-def _history(question: Question, cells: Cells, found: Found) -> History:
+def _history(question: Question, cells: Cells, found: FoundMotion) -> History:
     if found.table is None:
-        return _stuck_history(question, cells, found.rest)
+        return _stuck_history(question, cells, found.stuck_at)
     return _moving_history(question, cells, found)
 
 
 def find_motion(question: Question) -> Motion:
-    """The steady state of a cell in time, and its numbers.
+    """Find the steady state of a cell in time, and its scalars.
 
     Raises
     ------
     NoSteadyState
-        There is none, or none was found.
+        None exists, or none was found.
     """
     system, solver = question.system, question.solver
     r, beta, mu = (np.array([value]) for value in (question.r, question.beta, question.mu))
-    cells = Cells(system, r, beta, mu, solver, asked_for(CYCLE, HARMONICS))
+    cells = Cells(system, r, beta, mu, solver, quantity_request(CYCLE, HARMONICS))
     found = _find(question, cells)
     history = _history(question, cells, found)
     comment = _WINDOWED.format(solver.cycles) if found.averages is not None else ""

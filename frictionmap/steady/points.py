@@ -10,27 +10,27 @@ from .._kernels.engine.quantities import LAG, MODULUS
 from ..model.settings import Solver, Start
 from ..model.system import System
 from ..theory.boundary_curves import Curves, find_curves
-from ..theory.half_waves import compliances, dynamic_shares
+from ..theory.half_waves import compliances, dynamic_amplification
 from .cells import Cells
 from .maps import allocate
-from .quantity_data import asked_for
+from .quantity_data import quantity_request
 
-#: Points that are followed at a time: arrays are over all pairs of their frequencies and friction ratios.
+#: Points computed at a time: arrays extend over all pairs of their frequencies and friction ratios.
 _AT_ONCE = 512
 
 
 class States(NamedTuple):
-    """Steady states at k points; NaN and unresolved where there is none, or none was found."""
+    """Steady states at k points; NaN and unresolved where none exists or none was found."""
 
     phasors: np.ndarray  # (k, n) complex, X_k1 over P/k1 (Y); infinite at an undamped resonance
     regime: np.ndarray  # (k,) int8
 
 
 def steady_states(system: System, r: np.ndarray, beta: np.ndarray, mu: float) -> list[States]:
-    """What a structure may do at every point; points that repeat are found once.
+    """Find the possible steady states at every point; repeated points are computed once.
 
-    For mu = 1 that is one steady state (theory.md 6).  Beyond it there are three columns, which may be of
-    the same motion: the continuous one by its closed form, where beta <= beta_lim, and those that are reached
+    For mu = 1 there is one steady state (theory.md 6).  For mu > 1 three columns are returned, which may hold
+    the same motion: the continuous motion by its closed form, where beta <= beta_lim, and the motions reached
     from rest and from a large sliding motion.
 
     Parameters
@@ -40,10 +40,10 @@ def steady_states(system: System, r: np.ndarray, beta: np.ndarray, mu: float) ->
     beta : (k,) >= 0
     mu : >= 1
     """
-    distinct, place = np.unique(r + 1j * beta, return_inverse=True)
+    distinct, index = np.unique(r + 1j * beta, return_inverse=True)
     points = _Points(distinct.real, distinct.imag, mu)
-    found = _smooth(system, points) if mu == 1.0 else _several(system, points)
-    return [States(states.phasors[place], states.regime[place]) for states in found]
+    found = _unique_states(system, points) if mu == 1.0 else _multiple_states(system, points)
+    return [States(states.phasors[index], states.regime[index]) for states in found]
 
 
 class _Points(NamedTuple):
@@ -52,75 +52,76 @@ class _Points(NamedTuple):
     mu: float
 
 
-def _smooth(system: System, points: _Points) -> list[States]:
-    """The one steady state of mu = 1."""
-    at, place = np.unique(points.r, return_inverse=True)
+def _unique_states(system: System, points: _Points) -> list[States]:
+    """Find the unique steady states of mu = 1."""
+    at, index = np.unique(points.r, return_inverse=True)
     curves = find_curves(system, at, np.ones(1))
-    lim, stick = curves.beta_lim[0, place], curves.beta_stick[0, place]
+    lim, stick = curves.beta_lim[0, index], curves.beta_stick[0, index]
     friction = points.beta > 0.0
     stuck = friction & (points.beta >= stick)
     continuous = ~friction | (points.beta <= lim) & ~stuck
-    states = _nowhere(points.r.size, system.n)
-    states.phasors[stuck] = system.modes.held_response(at)[place[stuck]]
+    states = _undefined_states(points.r.size, system.n)
+    states.phasors[stuck] = system.modes.held_response(at)[index[stuck]]
     states.regime[stuck] = regimes.PERMANENT_STICKING
-    _put_continuous(system, at, curves, place, points.beta, continuous, states)
+    _put_continuous(system, at, curves, index, points.beta, continuous, states)
     _follow(system, points, "rest", np.flatnonzero(~stuck & ~continuous), states)
     return [states]
 
 
-def _several(system: System, points: _Points) -> list[States]:
-    """The steady states of mu > 1 that are looked for."""
-    at, place = np.unique(points.r, return_inverse=True)
+def _multiple_states(system: System, points: _Points) -> list[States]:
+    """Find steady states of mu > 1."""
+    at, index = np.unique(points.r, return_inverse=True)
     curves = find_curves(system, at, np.array([points.mu]))
-    continuous = (points.beta == 0.0) | (points.beta <= curves.beta_lim[0, place])
-    states = [_nowhere(points.r.size, system.n) for _ in range(3)]
-    _put_continuous(system, at, curves, place, points.beta, continuous, states[0])
+    continuous = (points.beta == 0.0) | (points.beta <= curves.beta_lim[0, index])
+    states = [_undefined_states(points.r.size, system.n) for _ in range(3)]
+    _put_continuous(system, at, curves, index, points.beta, continuous, states[0])
     moving = np.flatnonzero(points.beta > 0.0)
     _follow(system, points, "rest", moving, states[1])
     _follow(system, points, "moving", moving, states[2])
     return states
 
 
-def _nowhere(count: int, masses: int) -> States:
+def _undefined_states(count: int, masses: int) -> States:
     return States(
         np.full((count, masses), complex(np.nan, np.nan)), np.full(count, regimes.UNRESOLVED, np.int8)
     )
 
 
 def _put_continuous(
-    system: System, r: np.ndarray, curves: Curves, place: np.ndarray, beta: np.ndarray, where: np.ndarray,
+    system: System, r: np.ndarray, curves: Curves, index: np.ndarray, beta: np.ndarray, where: np.ndarray,
     states: States,
 ) -> None:  # fmt: skip
-    """X_k1 = V_k - F_1 A_k(1) with F_1 = (4 i beta/pi) e^{-i phi_z}, theory.md 9, at some of the points.
+    """Fill in X_k1 = V_k - F_1 A_k(1) with F_1 = (4 i beta/pi) e^{-i phi_z}, theory.md 9, at some of the
+    points.
 
-    place : (k,) which of the frequencies `r`, for which the curves are, a point has
+    index : (k,) index of the frequency `r` of each point, for which the curves are
     where : (k,) bool
     """
     modes = system.modes
-    place, beta = place[where], beta[where]
-    v, u = curves.v[place], curves.u[place]
+    index, beta = index[where], beta[where]
+    v, u = curves.v[index], curves.u[index]
     swing = np.zeros_like(beta)
     np.multiply(beta, u, out=swing, where=beta > 0.0)  # without friction U may be infinite
     size = np.abs(v)
-    answers = dynamic_shares(modes, r) @ compliances(modes).T
+    responses = dynamic_amplification(modes, r) @ compliances(modes).T
     with np.errstate(invalid="ignore"):  # infinite at an undamped resonance
         root = np.sqrt(np.maximum(size - np.abs(swing), 0.0) * (size + np.abs(swing)))
         turn = (root + 1j * swing) / size * v / size  # e^{-i phi_z}, T(7.21)
-        shift = (4j / np.pi * beta * turn)[:, np.newaxis] * answers[place]
+        shift = (4j / np.pi * beta * turn)[:, np.newaxis] * responses[index]
         shift[beta == 0.0] = 0.0
-        states.phasors[where] = modes.mass_responses(r)[place] - shift
+        states.phasors[where] = modes.mass_responses(r)[index] - shift
     states.regime[where] = regimes.CONTINUOUS
 
 
 def _follow(system: System, points: _Points, start: Start, chosen: np.ndarray, states: States) -> None:
-    """Put in the steady states that are reached from a start at the chosen points."""
+    """Fill in the steady states reached from an initial state at the chosen points."""
     solver = Solver(start=start, outputs=("regime", "status"))
-    asked = asked_for(("first_harmonic_amplitude", "first_harmonic_phase"))
+    request = quantity_request(("first_harmonic_amplitude", "first_harmonic_phase"))
     for first in range(0, chosen.size, _AT_ONCE):
         some = chosen[first : first + _AT_ONCE]
         columns, column = np.unique(points.beta[some], return_inverse=True)
         rows = np.arange(some.size)
-        cells = Cells(system, points.r[some], columns, np.array([points.mu]), solver, asked)
+        cells = Cells(system, points.r[some], columns, np.array([points.mu]), solver, request)
         out = allocate((1, some.size, columns.size), system.n, solver.outputs)
         places = OpenCells(rows, rows + 1, column, column + 1)
         fill, arguments = cells.opened(0, some.size, places, out, np.zeros(1, dtype=np.uint8))

@@ -1,11 +1,20 @@
-"""Quantities of a cycle in the numbers that the kernels take, and the arrays that they are written into."""
+"""Quantities over a cycle: data for the kernels, and the arrays for the results."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from .._kernels.engine.extremes import FOUND, PHASE, PHASE_BEGIN, PHASE_END, VALUE, Alone, Shapes
+from .._kernels.engine.dissipation import Dampers
+from .._kernels.engine.extremes import (
+    FOUND,
+    PHASE,
+    PHASE_BEGIN,
+    PHASE_END,
+    VALUE,
+    OutputMatrices,
+    UncoupledResponse,
+)
 from .._kernels.engine.quantities import (
     BY_DAMPING,
     BY_FRICTION,
@@ -16,22 +25,21 @@ from .._kernels.engine.quantities import (
     LAG,
     MODULUS,
     RMS,
-    WORKS,
+    WORK_TERMS,
     Balance,
     Linear,
     Quantities,
     Results,
 )
-from .._kernels.engine.works import Dampers
 from .._kernels.structure.state import STATIC_SHAPE
 from ..datasets.labels import COORDINATES
 from ..model.modes import ModalModel, times
 from ..model.system import System
-from .kernel_data import Structures
+from .kernel_data import StructureArrays
 
-#: Where every variable is found: kind of result, rows, and column.
+#: Location of every variable in the results: kind of result, rows, and column.
 _MASSES, _FORCE, _CONTACT, _CELL = "masses", "force", "contact", "cell"
-_PLACES = {
+_LOCATIONS = {
     "amplitude": ("extremes", _MASSES, VALUE),
     "phase": ("extremes", _MASSES, PHASE),
     "phase_begin": ("extremes", _MASSES, PHASE_BEGIN),
@@ -48,17 +56,17 @@ _PLACES = {
     "displacement_harmonic": ("harmonics", _MASSES, None),
     "contact_harmonic": ("harmonics", _CONTACT, None),
     "friction_harmonic": ("harmonics", _FORCE, None),
-    "sliding_distance": ("works", _CELL, DISTANCE),
-    "work_friction": ("works", _CELL, BY_FRICTION),
-    "work_input": ("works", _CELL, BY_LOAD),
-    "work_damping": ("works", _CELL, BY_DAMPING),
-    "equivalent_damping": ("works", _CELL, EQUIVALENT),
-    "rms": ("rests", _MASSES, RMS),
-    "distortion": ("rests", _MASSES, DISTORTION),
+    "sliding_distance": ("work_terms", _CELL, DISTANCE),
+    "work_friction": ("work_terms", _CELL, BY_FRICTION),
+    "work_input": ("work_terms", _CELL, BY_LOAD),
+    "work_damping": ("work_terms", _CELL, BY_DAMPING),
+    "equivalent_damping": ("work_terms", _CELL, EQUIVALENT),
+    "rms": ("distortions", _MASSES, RMS),
+    "distortion": ("distortions", _MASSES, DISTORTION),
 }
 
 
-#: The variables that a quantity is, in the order of the file.
+#: Variables of every quantity, in the order of the file.
 VARIABLES: dict[str, tuple[str, ...]] = {
     "amplitude": ("amplitude",),
     "phase": (
@@ -78,27 +86,29 @@ PARTS = np.array(COORDINATES["part"].texts)
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What is asked for of every cell."""
+class QuantityRequest:
+    """Results requested for every cell."""
 
-    kinds: frozenset[str]  # of the fields of `Results`
-    harmonics: int = 1  # the highest one that is kept
-    force: bool = False  # whether the transmitted force is looked at over time
+    kinds: frozenset[str]  # names of fields of `Results`
+    harmonics: int = 1  # highest harmonic kept
+    force: bool = False  # whether the extremes of the transmitted force are requested
 
 
-def asked_for(names: Iterable[str], harmonics: int = 1) -> Asked:
-    """What these variables are read from."""
+def quantity_request(names: Iterable[str], harmonics: int = 1) -> QuantityRequest:
+    """Request the results from which these variables are read."""
     names = set(names)
-    return Asked(frozenset(_PLACES[name][0] for name in names), harmonics, "transmitted_force" in names)
+    return QuantityRequest(
+        frozenset(_LOCATIONS[name][0] for name in names), harmonics, "transmitted_force" in names
+    )
 
 
 def read_result(name: str, found: Results) -> np.ndarray:
-    """A variable over (mu, r, beta[, dof][, harmonic, part])."""
-    kind, rows, column = _PLACES[name]
+    """Read a variable over (mu, r, beta[, dof][, harmonic, part])."""
+    kind, rows, column = _LOCATIONS[name]
     array = getattr(found, kind)
     if rows == _CELL:
         return np.ascontiguousarray(array[..., column])
-    masses = array.shape[3] - (0 if kind == "rests" else 2)
+    masses = array.shape[3] - (0 if kind == "distortions" else 2)
     row = {_MASSES: slice(masses), _FORCE: masses, _CONTACT: masses + 1}[rows]
     chosen = np.ascontiguousarray(array[:, :, :, row])
     if column is None:
@@ -106,30 +116,31 @@ def read_result(name: str, found: Results) -> np.ndarray:
     return np.ascontiguousarray(chosen[..., column])
 
 
-def results(cells: tuple[int, int, int], masses: int, asked: Asked) -> Results:
-    """Arrays over (mu, r, beta) of what is asked for, NaN until they are filled."""
+def results(cells: tuple[int, int, int], masses: int, request: QuantityRequest) -> Results:
+    """Allocate the requested results over (mu, r, beta), NaN until they are filled."""
 
     def array(kind: str, *further: int, dtype: type = float) -> np.ndarray:
-        shape = (*cells, *further) if kind in asked.kinds else (0,) * (3 + len(further))
+        shape = (*cells, *further) if kind in request.kinds else (0,) * (3 + len(further))
         return np.full(shape, np.nan, dtype)
 
     rows = masses + 2
     return Results(
         array("extremes", rows, FOUND), array("firsts", rows, 2),
-        array("harmonics", rows, asked.harmonics + 1, dtype=complex), array("works", WORKS),
-        array("rests", masses, 2),
+        array("harmonics", rows, request.harmonics + 1, dtype=complex), array("work_terms", WORK_TERMS),
+        array("distortions", masses, 2),
     )  # fmt: skip
 
 
-def _at_wall(system: System) -> int:
-    """The mass whose displacement is that in the contact, counted from 0; -1 if there is none."""
+def _wall_mass(system: System) -> int:
+    """Mass whose displacement equals z, counted from 0; -1 if there is none."""
     return system.contact_rows[0] if system.contact == "fixed-wall" else -1
 
 
-def _with_force(shapes: Shapes, found: Structures, modes: ModalModel) -> Shapes:
-    """The shapes, and as one more row the transmitted force, the loads less the inertia.
+def _with_force(outputs: OutputMatrices, found: StructureArrays, modes: ModalModel) -> OutputMatrices:
+    """Add the row of the transmitted force, the loads less the inertia forces, to the output matrices.
 
-    Inertia is replaced by what the equations of the modes make of it; friction, in a stop, by the load.
+    The inertia forces follow from the modal equations of motion; in a stop the friction force balances the
+    load.
     """
     participating, model = found.participating, found.model
     mass = modes.phi[:, participating].T @ modes.mass.sum(axis=0)
@@ -137,60 +148,66 @@ def _with_force(shapes: Shapes, found: Structures, modes: ModalModel) -> Shapes:
         mass * modes.w[participating] ** 2,
         mass * 2.0 * modes.zeta[participating] * modes.w[participating],
     )
-    coupling = modes.seen_coupling()
+    coupling = modes.participating_coupling()
     if coupling is not None:
         rate += mass @ coupling
     row = np.concatenate((stiff, rate)) @ modes.free.to_modes
     friction = float(mass @ modes.chi[participating])
     held = row @ model.to_free - friction * model.watch
     static = float(row[: mass.size] @ model.modes[STATIC_SHAPE]) - friction * model.stiffness
-    return Shapes(
-        np.vstack((shapes.free, row)), np.vstack((shapes.held, held)),
-        np.append(shapes.static_shape, static), np.append(shapes.friction, friction),
+    return OutputMatrices(
+        np.vstack((outputs.free, row)), np.vstack((outputs.held, held)),
+        np.append(outputs.static_shape, static), np.append(outputs.friction, friction),
     )  # fmt: skip
 
 
 def _column(rows: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Complex rows (n_r, n) times real weights (n,), each row as if it were alone; (n_r,)."""
+    """Complex rows (n_r, n) times real weights (n,), each row rounded independently of the others; (n_r,)."""
     return times(rows, weights[:, np.newaxis])[:, 0]
 
 
 def _scaled(values: np.ndarray, factors: np.ndarray) -> np.ndarray:
-    """Complex values times real factors, each as if it were alone, as `times`."""
+    """Complex values times real factors, each rounded independently of the others, as in `times`."""
     found = np.empty_like(values)
     found.real, found.imag = values.real * factors, values.imag * factors
     return found
 
 
-def _alone(found: Structures, modes: ModalModel, r: np.ndarray, balance: Balance, force: bool) -> Alone:
-    """Phasors of what moves with the load alone, of the masses and, if it is asked for, of the force."""
+def _uncoupled_response(
+    found: StructureArrays, modes: ModalModel, r: np.ndarray, balance: Balance, force: bool
+) -> UncoupledResponse:
+    """Response that the contact does not influence, of the masses and, if requested, of the transmitted
+    force.
+    """
     if not force:
-        return Alone(found.alone, found.alone)
+        return UncoupledResponse(found.uncoupled, found.uncoupled)
     participating, model = found.participating, found.model
     mass = modes.phi[:, participating].T @ modes.mass.sum(axis=0)
     loads = np.ascontiguousarray(modes.relative_participation(r)[:, participating])
     sliding = balance.load - _column(loads, mass)
-    sliding += _scaled(_column(found.alone, modes.mass.sum(axis=0)), r * r)
+    sliding += _scaled(_column(found.uncoupled, modes.mass.sum(axis=0)), r * r)
     chi = modes.chi[participating]
     held = sliding + _column(loads, chi * (float(mass @ chi) / model.inverse_mass))
-    return Alone(np.column_stack((found.alone, sliding)), np.column_stack((found.alone, held)))
+    return UncoupledResponse(
+        np.column_stack((found.uncoupled, sliding)), np.column_stack((found.uncoupled, held))
+    )
 
 
 def _base_share(system: System) -> float:
-    """What the dampers have of the base's velocity beside that of the displacements that are followed.
+    """Coefficient of the base velocity in the dashpots, beside the velocities that the kernels follow.
 
-    These are relative to the base with a joined base-wall; the dampers' may be either.
+    The latter are relative to the base with a joined base-wall; dashpots may be connected to ground or base.
     """
     return float(system.base_motion) - float(system.damping_reference == "base")
 
 
-def _dampers(modes: ModalModel, found: Structures, base: np.ndarray) -> Dampers:
-    """The dashpots of what the contact sees; `base` (n,) its share of the base's motion, by modes.
+def _dampers(modes: ModalModel, found: StructureArrays, base: np.ndarray) -> Dampers:
+    """Dashpots of the participating modes; `base` (n,) is the share of the base motion, by modes.
 
-    One a mode; where the damping couples them one along each principal direction of it.
+    One dashpot per mode; where the damping couples modes, one for each principal direction of it.
     """
     which = found.participating
-    coupling, n = modes.seen_coupling(), which.size
+    coupling, n = modes.participating_coupling(), which.size
     weights, forms = 2.0 * modes.zeta[which] * modes.w[which], np.eye(n)
     if coupling is not None:
         rates, directions = np.linalg.eigh(np.diag(weights) + coupling)
@@ -199,35 +216,37 @@ def _dampers(modes: ModalModel, found: Structures, base: np.ndarray) -> Dampers:
     return Dampers(weights, place, speed, speed @ found.model.to_free, forms @ base)
 
 
-def _balance(system: System, found: Structures, r: np.ndarray) -> Balance:
+def _balance(system: System, found: StructureArrays, r: np.ndarray) -> Balance:
+    """Data for forces and work."""
     modes = system.modes
     loads = modes.total_load(r)
     to_base = system.damping_reference == "base"
     share, total_mass = _base_share(system), modes.mass.sum(axis=0)
     participating = np.isin(np.arange(modes.w.size), found.participating)
     mass = modes.phi.T @ total_mass
-    moving = modes.answers(r, np.where(participating, 0.0, modes.relative_participation(r)))
-    alone = np.where(participating, 0.0, np.where(np.isinf(moving), 0.0, moving) + share * mass)
+    moving = modes.modal_responses(r, np.where(participating, 0.0, modes.relative_participation(r)))
+    uncoupled = np.where(participating, 0.0, np.where(np.isinf(moving), 0.0, moving) + share * mass)
     held = np.where(np.isfinite(found.held), found.held, 0.0) - float(to_base)
-    drag = times(held, modes.damping)
-    held_rate = (held.real * drag.real + held.imag * drag.imag).sum(axis=1)
+    dashpot_force = times(held, modes.damping)
+    held_rate = (held.real * dashpot_force.real + held.imag * dashpot_force.imag).sum(axis=1)
     return Balance(
         load=loads.sum(axis=1),
         inertia=r[:, np.newaxis] ** 2 * total_mass,
         power=-(loads if to_base else loads.conj()),
-        power_alone=loads.sum(axis=1) if to_base else np.zeros(r.size, complex),
+        base_power=loads.sum(axis=1) if to_base else np.zeros(r.size, complex),
         base_motion=float(system.base_motion),
         dampers=_dampers(modes, found, share * mass[participating]),
         damped=bool(modes.zeta[found.participating].any()),
-        damping_alone=np.pi * r * modes.drag(alone),
+        damping_uncoupled=np.pi * r * modes.damping_form(uncoupled),
         damping_held=np.pi * r * held_rate,
     )  # fmt: skip
 
 
-def _growing(system: System, found: Structures, r: np.ndarray) -> np.ndarray:
-    """Directions (n_r, n_dof + 2) of masses, transmitted force and contact that grow at a resonance.
+def _growth(system: System, found: StructureArrays, r: np.ndarray) -> np.ndarray:
+    """Directions (n_r, n_dof + 2) of masses, transmitted force and contact that grow at an undamped
+    resonance.
 
-    A quarter of a period behind the load on the mode; 0 elsewhere.
+    They lag the load on the mode by a quarter of a period; 0 elsewhere.
     """
     modes = system.modes
     resonant = (modes.dynamic_stiffness(r)[:, found.participating] == 0.0) & (r > 0.0)[:, np.newaxis]
@@ -238,16 +257,21 @@ def _growing(system: System, found: Structures, r: np.ndarray) -> np.ndarray:
     return np.column_stack((masses, times(masses, modes.mass.sum(axis=0)[:, np.newaxis]), contact))
 
 
-def quantity_numbers(
-    system: System, r: np.ndarray, found: Structures, steps: float, asked: Asked, out: Results
+def quantity_arrays(
+    system: System,
+    r: np.ndarray,
+    found: StructureArrays,
+    steps: float,
+    request: QuantityRequest,
+    out: Results,
 ) -> Quantities:
-    """Everything that the quantities of a system's cells need at frequencies r."""
+    """Build the data for the quantities of a system's cells at frequencies r."""
     modes = system.modes
     balance = _balance(system, found, r)
-    shapes = _with_force(found.shapes, found, modes) if asked.force else found.shapes
-    linear = Linear(found.held, modes.held_load(r), _growing(system, found, r))
+    outputs = _with_force(found.outputs, found, modes) if request.force else found.outputs
+    linear = Linear(found.held, modes.held_load(r), _growth(system, found, r))
     return Quantities(
-        r, found.model, found.loads, found.orbit, steps, _at_wall(system), shapes,
-        _alone(found, modes, r, balance, asked.force), linear, balance, out,
-        asked.harmonics,
+        r, found.model, found.loads, found.orbit, steps, _wall_mass(system), outputs,
+        _uncoupled_response(found, modes, r, balance, request.force), linear, balance, out,
+        request.harmonics,
     )  # fmt: skip

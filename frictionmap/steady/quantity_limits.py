@@ -1,4 +1,4 @@
-"""Quantities where no kernel goes: at r = 0, and where modes that do not move the contact resonate."""
+"""Quantities that kernels do not compute: at r = 0, and at resonances of modes that do not participate."""
 
 import math
 
@@ -20,17 +20,18 @@ from ..model.system import System
 
 
 def _lags(phasors: np.ndarray) -> np.ndarray:
-    """Lags -arg in (-pi, pi]; NaN where nothing moves."""
+    """Phase lags -arg in (-pi, pi]; NaN for zero phasors."""
     lags = -np.angle(phasors) + 0.0  # not -0.0
     lags[lags == -math.pi] = math.pi
     return np.where(phasors == 0.0, np.nan, lags)
 
 
 def put_static(system: System, beta: np.ndarray, cell_status: np.ndarray, found: Results) -> np.ndarray:
-    """Fill the cells at r = 0, the first frequency, that slide; the amplitude in the contact (n_mu, n_beta).
+    """Fill the sliding cells at r = 0, the first frequency; return the amplitude in the contact (n_mu,
+    n_beta).
 
-    Without friction the motion is the static answer to the load.  With it what is told is where it ends,
-    K x = p - beta c, in or against the sense of the load, and no more.  NaN where the contact sticks.
+    Without friction the motion is the static response to the load.  With friction only the end of a slide is
+    known, K x = p - beta c, with the sign of the load.  NaN where the contact sticks.
 
     cell_status : (n_mu, n_beta) of these cells
     """
@@ -40,17 +41,17 @@ def put_static(system: System, beta: np.ndarray, cell_status: np.ndarray, found:
         phasors = _static_phasors(system)
         amplitude[:, 0] = abs(phasors[-1])
         _put_linear(phasors, found)
-    if not system.modes.load.imag.any():  # else it ends later, or sooner
+    if not system.modes.load.imag.any():  # with other phases a slide ends later or earlier
         for j in np.flatnonzero(quasi_static.any(axis=0)):
-            places = _ends(system, float(beta[j]))
-            amplitude[quasi_static[:, j], j] = abs(places[-1])
+            displacements = _ends(system, float(beta[j]))
+            amplitude[quasi_static[:, j], j] = abs(displacements[-1])
             if found.extremes.size:
-                _put_ends(places, quasi_static[:, j], int(j), found)
+                _put_ends(displacements, quasi_static[:, j], int(j), found)
     return amplitude
 
 
 def _static_phasors(system: System) -> np.ndarray:
-    """Of the masses, of the transmitted force and of the contact, without friction."""
+    """Static phasors of the masses, of the transmitted force and of the contact, without friction."""
     modes = system.modes
     x = modes.static_response()
     return np.concatenate((x, [modes.load.sum(), modes.contact @ x]))
@@ -64,34 +65,34 @@ def _put_linear(phasors: np.ndarray, found: Results) -> None:
     if found.harmonics.size:
         found.harmonics[:, 0, 0] = 0.0
         found.harmonics[:, 0, 0, :, 1] = np.where(np.arange(phasors.size) == masses, 0.0, phasors)
-    if found.works.size:
+    if found.work_terms.size:
         for column in (BY_FRICTION, BY_LOAD, BY_DAMPING, EQUIVALENT):
-            found.works[:, 0, 0, column] = 0.0
-        found.works[:, 0, 0, DISTANCE] = 4.0 * abs(phasors[-1])
+            found.work_terms[:, 0, 0, column] = 0.0
+        found.work_terms[:, 0, 0, DISTANCE] = 4.0 * abs(phasors[-1])
 
 
 def _ends(system: System, beta: float) -> np.ndarray:
-    """Displacements of the masses and in the contact at tau = 0, where a slide under a slow load ends."""
+    """Displacements of the masses and of the contact at tau = 0, where a slide under a slow load ends."""
     modes = system.modes
-    # the contact slides the way that the load without friction would take it
+    # the contact slides in the direction of its motion without friction
     sense = math.copysign(1.0, float(modes.contact @ modes.static_response().real))
     x = np.linalg.solve(modes.stiffness, modes.load.real - sense * beta * modes.contact)
     return np.append(x, modes.contact @ x)
 
 
-def _put_ends(places: np.ndarray, where: np.ndarray, j: int, found: Results) -> None:
-    masses = places.size - 1
+def _put_ends(displacements: np.ndarray, where: np.ndarray, j: int, found: Results) -> None:
+    masses = displacements.size - 1
     rows = np.append(np.arange(masses), masses + 1)
-    lags = np.where(places > 0.0, 0.0, math.pi)
+    lags = np.where(displacements > 0.0, 0.0, math.pi)
     for m in np.flatnonzero(where):
-        found.extremes[m, 0, j, rows, VALUE] = np.abs(places)
-        found.extremes[m, 0, j, rows, PHASE] = np.where(places == 0.0, np.nan, lags)
+        found.extremes[m, 0, j, rows, VALUE] = np.abs(displacements)
+        found.extremes[m, 0, j, rows, PHASE] = np.where(displacements == 0.0, np.nan, lags)
 
 
 def put_resonance(system: System, r: np.ndarray, resonant: np.ndarray, found: Results) -> None:
-    """Masses that a mode moves without bound which the contact does not see, whatever the cell's regime.
+    """Fill in infinite motion of masses at resonances of modes that do not participate, in every regime.
 
-    A quarter of a period behind the load on the mode.  resonant : (n_r, n_dof)
+    They lag the load on the mode by a quarter of a period.  resonant : (n_r, n_dof)
     """
     modes = system.modes
     for i in np.flatnonzero(resonant.any(axis=1)).tolist():
@@ -100,8 +101,10 @@ def put_resonance(system: System, r: np.ndarray, resonant: np.ndarray, found: Re
         push = modes.phi[:, mode] @ modes.participation(at)[0, mode]
         for k in np.flatnonzero(resonant[i]).tolist():
             _put_unbounded(-1j * push[k], i, k, found)
-        if found.works.size:
-            found.works[:, i, :, BY_LOAD] = np.where(np.isnan(found.works[:, i, :, BY_LOAD]), np.nan, np.inf)
+        if found.work_terms.size:
+            found.work_terms[:, i, :, BY_LOAD] = np.where(
+                np.isnan(found.work_terms[:, i, :, BY_LOAD]), np.nan, np.inf
+            )
 
 
 def _put_unbounded(direction: complex, i: int, k: int, found: Results) -> None:

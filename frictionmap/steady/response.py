@@ -1,4 +1,4 @@
-"""`response`: one steady state in time as a dataset."""
+"""`response`: one steady state in time, as a dataset."""
 
 from dataclasses import replace
 from typing import SupportsFloat, Unpack
@@ -27,7 +27,7 @@ _MOST_POINTS = 10**6
 
 
 def _further(question: Question, names: list[Output]) -> dict[str, xr.Variable]:
-    """Outputs of a map's cell that the motion in time does not show."""
+    """Compute outputs of the cell of a map that do not follow from the motion in time."""
     if not names:
         return {}
     solver = replace(question.solver, outputs=names)
@@ -37,7 +37,7 @@ def _further(question: Question, names: list[Output]) -> dict[str, xr.Variable]:
 
 
 def _ratio(given: object, name: str, scales: Scales) -> object:
-    """A ratio that may be given as a frequency or a force."""
+    """Convert a ratio that may be given as a frequency or a force."""
     found = ratios(given, name, KINDS[name], scales)
     return found[0] if isinstance(found, list) and len(found) == 1 and not isinstance(given, list) else found
 
@@ -62,42 +62,43 @@ def response(
     units: Units | None = None,
     **settings: Unpack[SolverSettings],
 ) -> xr.Dataset:
-    """One steady state in time.
+    """Compute one steady state in time.
 
     Parameters
     ----------
     system : System
     r, beta, mu : float
-        Frequency ratio (> 0), friction ratio (>= 0), static over kinetic friction (>= 1) [-].
+        Frequency ratio (> 0), friction ratio (>= 0), ratio of static to kinetic friction (>= 1) [-].
     solver : Solver, optional
-        Settings; or give them one by one as keywords, each in place of the solver's own.
+        Settings, or single settings as keywords, which override those of the solver.
     points : int
         Samples per excitation period, up to 10^6.
     units : Units, optional
-        What r = 1 and beta = 1 are, as of `sweep`; r and beta may then be a frequency and a force.
+        Reference values that convert ratios to Hz and N, as in `sweep`; r and beta may then be a frequency
+        and a force.
 
     Returns
     -------
     xarray.Dataset
-        Over `tau` (0 to 2 pi times the period): `x(dof, tau)`, `v(dof, tau)`, `z`, `friction` (over P)
-        and `phase` (-1, 0, 1).  Over `event`: `event_tau`, `event_phase` (the phase that begins) and
-        `event_z`.  Scalars: `regime`, `stops_per_cycle`, `contact_amplitude`, `stuck_fraction`, `period`,
-        `status`, the boundaries, what else `outputs` asks for, and those of `frictionmap.curves`, with
-        `phase_lag(dof)` for its `phase`; harmonics 0 to 7 over (`harmonic`, `part`).  tau = 0 is a maximum of
-        the load (of the base's displacement).
+        Over `tau` (0 to 2 pi times the period): `x(dof, tau)`, `v(dof, tau)`, `z`, `friction` (over P) and
+        `phase` (-1, 0, 1: sliding down, sticking, sliding up).  Over `event`: `event_tau`, `event_phase` (the
+        slide or stop that starts) and `event_z`.  Scalars: `regime`, `stops_per_cycle`, `contact_amplitude`,
+        `stuck_fraction`, `period`, `status`, the boundaries, further requested `outputs`, and those of
+        `frictionmap.curves`, whose `phase` is called `phase_lag(dof)` here; harmonics 0 to 7 over
+        (`harmonic`, `part`).  tau = 0 is a maximum of the load (of the base displacement).
 
-        Of stick-slip that does not repeat (`status` not_periodic, `period` 0) tau goes over 8 periods at the
-        end of those that were followed, and the scalars are those of the map: averages.
+        For stick-slip that does not repeat (`status` not_periodic, `period` 0) tau covers the last 8 of the
+        periods followed, and the scalars are the averages of the map.
 
-        With units `time` [s] goes with tau, and what is in m, N, J or m/s stands beside its ratio, such as
-        `x_m`, `friction_N` and `v_m_s`.
+        With units also `time` [s] along tau, and every quantity in m, N, J or m/s in addition to its ratio,
+        such as `x_m`, `friction_N` and `v_m_s`.
 
     Raises
     ------
     InputError
-        An argument is of the wrong kind or out of range.
+        An argument has the wrong type or is out of range.
     NoSteadyState
-        There is none, or none was found.
+        None exists, or none was found.
 
     Examples
     --------

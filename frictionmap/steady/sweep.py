@@ -1,4 +1,4 @@
-"""`sweep`: regime maps of one system, or of many along further axes."""
+"""`sweep`: regime maps of one system, or of many systems along further axes."""
 
 from collections.abc import Mapping
 from typing import Any, Unpack
@@ -34,7 +34,7 @@ def sweep(
     units: Units | None = None,
     **settings: Unpack[SolverSettings],
 ) -> xr.Dataset:
-    """Classify the steady state on a mu-r-beta grid and count its stops per cycle.
+    """Compute the regime of the steady state, and its stops per cycle, on a mu-r-beta grid.
 
     Parameters
     ----------
@@ -42,39 +42,41 @@ def sweep(
     r : array_like, shape (n_r,)
         Frequency ratios omega/omega_1 [-], >= 0, increasing.
     beta : array_like, shape (n_beta,)
-        Kinetic friction force over load amplitude F/P (F/(k1 Y)) [-], >= 0, increasing.
+        Ratios of kinetic friction force to load amplitude F/P (F/(k1 Y)) [-], >= 0, increasing.
     mu : array_like, shape (n_mu,)
-        Static over kinetic friction [-], >= 1, increasing.
+        Ratios of static to kinetic friction [-], >= 1, increasing.
     solver : Solver, optional
-        Settings; or give them one by one as keywords: start, cycles, tolerance, steps, skip, steady,
-        outputs (see `Solver`).  If both are given, a keyword takes the place of the solver's setting.
+        Settings.  Single settings may also be given as keywords: start, cycles, tolerance, steps, skip,
+        steady, outputs (see `Solver`); a keyword overrides the setting of `solver`.
     axes : mapping, optional
-        Further axes: numbers of the system and the values they take, such as
-        ``{"damping_ratios": [0, 0.01], "stiffness_ratios[2]": [0.5, 1, 2]}``, one of a list counted from 1;
-        every one is a dimension before mu (``stiffness_ratios_2``).  Numbers that change together are a
-        mapping under a name of their own: ``{"sample": {"mass_ratios[2]": [...], "stiffness_ratios[2]":
-        [...]}}``.
+        Further axes: parameters of the system and their values, such as ``{"damping_ratios": [0, 0.01],
+        "stiffness_ratios[2]": [0.5, 1, 2]}``; entries of a list are counted from 1.  Every axis is a
+        dimension before mu (``stiffness_ratios_2``).  Parameters that vary together are a mapping under a
+        name of their own: ``{"sample": {"mass_ratios[2]": [...], "stiffness_ratios[2]": [...]}}``.
     threads : int, optional
-        Threads to use; default: all processors of the process.  The result is the same to the bit.
+        Number of threads; default: all processors of the process.  The result is equal to the bit for any
+        number.
     progress : callable, optional
-        Called as progress(done, all) with numbers that tell the share of the work.
+        Called as progress(done, total); the quotient is the share of the work that is done.
     units : Units, optional
-        What r = 1 and beta = 1 are.  Then r may be frequencies and beta friction forces, texts such as
-        "4.2 Hz" or quantities of pint, astropy or unyt; numbers are ratios as ever.
+        Reference values that convert ratios to Hz and N.  Then r may be frequencies and beta friction forces:
+        texts such as "4.2 Hz", or quantities of pint, astropy or unyt; numbers remain ratios.
 
     Returns
     -------
     xarray.Dataset
-        On (mu, r, beta): the outputs asked for, and `status` if it has anything to say.  On (mu, r):
-        `beta_lim`, `beta_lim_modal`, `beta_stick`.  Unresolved cells have regime -1; `status` says why.
-        With units `frequency(r)` [Hz] and `friction_force(beta)` [N] beside the axes, and what is in m, N or
-        J beside its ratio, such as `contact_amplitude_m` and `beta_lim_N`.  For a reduced structure the
-        attribute `reduction` gives its errors, and `reduction_check` what twice as many modes change.
+        On (mu, r, beta): the requested outputs, and `status` if any cell is unresolved or averaged.  On (mu,
+        r): `beta_lim`, `beta_lim_modal`, `beta_stick`.  Unresolved cells have regime -1; `status` gives the
+        reason.
+
+        With units also `frequency(r)` [Hz], `friction_force(beta)` [N], and every quantity in m, N or J in
+        addition to its ratio, such as `contact_amplitude_m` and `beta_lim_N`.  For a reduced structure the
+        attribute `reduction` gives its errors, and `reduction_check` what changes with twice as many modes.
 
     Raises
     ------
     InputError
-        An argument or a setting is of the wrong kind or out of range.
+        An argument or a setting has the wrong type or is out of range.
 
     Examples
     --------
@@ -92,7 +94,7 @@ def swept(
     axes: Mapping[str, Any] | Variations | None, threads: int | None, progress: Progress | None,
     units: Units | None, watch: Watch | None = None,
 ) -> xr.Dataset:  # fmt: skip
-    """What `sweep` has over r, beta and mu; `watch` may end it."""
+    """Compute the dataset of `sweep` over r, beta and mu; `watch` may end the computation."""
     variations = None if axes is None else checked_variations(system, axes)
     scales = scales_of(units, system, variations)
     grid = checked_axes(*given, system.n if "amplitude" in solver.outputs else 1, scales)
@@ -103,7 +105,7 @@ def swept(
         checks.cells(grid["mu"].size, grid["r"].size, grid["beta"].size, points=variations.count)
         ds = _study(variations, grid, solver, threads, progress, watch)
     if "status" not in solver.outputs and not ds["status"].values.any():
-        ds = ds.drop_vars("status")  # else no cell is unresolved, or averaged, without a word
+        ds = ds.drop_vars("status")  # kept where any cell is unresolved or averaged
     title = "Motion regimes and stops per cycle"
     ds = stamp(
         ds,
@@ -128,7 +130,7 @@ def regime_map(
     progress: Progress | None,
     watch: Watch | None = None,
 ) -> xr.Dataset:
-    """Outputs, `status` and boundaries of one system over the axes mu, r and beta."""
+    """Compute outputs, `status` and boundaries of one system over the axes mu, r and beta."""
     found, curves = solve_map(system, axes, solver, threads, progress, watch)
     variables = {name: label_variable(name, values) for name, values in found.items()}
     sizes = {"dof": np.array(system.dofs.numbers)} if "amplitude" in solver.outputs else {}
@@ -140,41 +142,44 @@ def _study(
     variations: Variations, grid: Mapping[str, np.ndarray], solver: Solver, threads: int | None,
     progress: Progress | None, watch: Watch | None,
 ) -> xr.Dataset:  # fmt: skip
-    """The maps of all points along further axes, in one dataset."""
+    """Compute the maps of all points along further axes, in one dataset."""
     count = variations.count
     dims = [axis.name for axis in variations.axes]
-    whole: dict[str, xr.Variable] = {}
+    variables: dict[str, xr.Variable] = {}
     coords = study_coordinates(variations)
     for done, point in enumerate(variations.points()):
-        ds = regime_map(variations.at(point), grid, solver, threads, _share(progress, done, count), watch)
-        if not whole:
+        ds = regime_map(
+            variations.at(point), grid, solver, threads, _progress_of_one(progress, done, count), watch
+        )
+        if not variables:
             coords |= {str(name): ds[name].variable for name in ds.coords}
-            whole = {
-                str(name): _room(variable.variable, dims, variations.shape)
+            variables = {
+                str(name): _allocate(variable.variable, dims, variations.shape)
                 for name, variable in ds.data_vars.items()
             }
         for name, variable in ds.data_vars.items():
-            whole[str(name)].values[point] = variable.values
-    return xr.Dataset(whole, coords)
+            variables[str(name)].values[point] = variable.values
+    return xr.Dataset(variables, coords)
 
 
-def _room(one: xr.Variable, dims: list[str], shape: tuple[int, ...]) -> xr.Variable:
-    """A variable like that of one map, with room for those of many; not filled."""
+def _allocate(one: xr.Variable, dims: list[str], shape: tuple[int, ...]) -> xr.Variable:
+    """Allocate a variable like that of one map for many maps."""
     values = np.empty((*shape, *one.shape), one.dtype)
     return xr.Variable((*dims, *one.dims), values, one.attrs)
 
 
-def _share(progress: Progress | None, done: int, count: int) -> Progress | None:
-    """What tells the progress of one map of many."""
+def _progress_of_one(progress: Progress | None, done: int, count: int) -> Progress | None:
+    """Progress function for one map of many."""
     if progress is None or not callable(progress):
         return progress
     return lambda spent, total: progress(done * total + spent, count * total)
 
 
 def study_coordinates(variations: Variations) -> dict[str, xr.Variable]:
-    """The further axes: numbers that change alone are their own; others are counted, and stand beside.
+    """Coordinates of the further axes: a parameter that varies alone, or a counter with its parameters as
+    companions.
 
-    Refused is an axis that is called like what a map has already.
+    An axis with the name of a variable of the map is refused.
     """
     coords = {}
     for axis in variations.axes:

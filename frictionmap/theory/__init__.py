@@ -1,1 +1,1 @@
-"""Closed forms over frequency: boundaries, and the motion that never sticks."""
+"""Closed forms over frequency: boundaries of the regimes, and the continuous motion."""

@@ -1,4 +1,4 @@
-"""Boundaries of the motion regimes over frequency, with response functions and features, as datasets."""
+"""Boundaries of the regimes over frequency, with response functions and features, as datasets."""
 
 import numpy as np
 import xarray as xr
@@ -23,19 +23,20 @@ from ..units.scales import Units, scales_of
 from .boundary_curves import Curves, find_curves
 from .refinement import boundary_check
 
-#: About so many invariant points beyond one a mode are listed, from the highest down: below them hardly any
-#: motion is continuous.  Those of masses are listed up to so many masses: they cost the square of it.
+#: Number of invariant points listed in addition to one per mode, from the highest down; below them hardly any
+#: motion is continuous.  Points of masses are listed for up to `_LISTED_MASSES` masses, because their cost
+#: grows with the square of that number.
 _LISTED_POINTS = 40
 _LISTED_MASSES = 12
 
-#: A point may lie on an end of the axis, and is found beside it: the search reaches so much further, and
-#: keeps what is no further off than rounding.
+#: A point at an end of the axis may be found slightly outside it: the search range is extended by `_REACH`,
+#: and points within `_ON_END` of the axis are kept.
 _REACH = 1e-6
 _ON_END = 1e-13
 
 
 def boundary_variables(found: Curves) -> dict[str, xr.Variable]:
-    """beta_lim, beta_lim_modal and beta_stick, dims (mu, r)."""
+    """Label beta_lim, beta_lim_modal and beta_stick, dims (mu, r)."""
     return {
         name: label_variable(name, getattr(found, name))
         for name in ("beta_lim", "beta_lim_modal", "beta_stick")
@@ -43,7 +44,7 @@ def boundary_variables(found: Curves) -> dict[str, xr.Variable]:
 
 
 def _padded(rows: list[np.ndarray]) -> np.ndarray:
-    """Rows of different lengths in one array, filled up with NaN."""
+    """Combine rows of different lengths into one array, padded with NaN."""
     table = np.full((len(rows), max(row.size for row in rows)), np.nan)
     for row, values in zip(table, rows, strict=True):
         row[: values.size] = values
@@ -51,7 +52,7 @@ def _padded(rows: list[np.ndarray]) -> np.ndarray:
 
 
 def _invariants(system: System, r: np.ndarray) -> dict[str, np.ndarray]:
-    """Invariant points within the axis; a variable is left out if it would be empty, as NetCDF demands."""
+    """Find the invariant points within the axis; empty variables are omitted, as NetCDF requires."""
     positive = r[r > 0.0]
     if positive.size < 2:
         return {}
@@ -73,7 +74,7 @@ def _invariants(system: System, r: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def _feature_variables(system: System, r: np.ndarray, mu: np.ndarray) -> dict[str, xr.Variable]:
-    """Features of theory.md 7 that are curves or lists."""
+    """Compute the features of theory.md 7 that are curves or lists."""
     modes = system.modes
     limits = [high_frequency_limits(system, value) for value in mu]
     found = {
@@ -90,9 +91,9 @@ def _feature_variables(system: System, r: np.ndarray, mu: np.ndarray) -> dict[st
 
 
 def held_variables(system: System, r: np.ndarray) -> dict[str, xr.Variable]:
-    """Amplitude and phase of every mass with the contact held, dims (dof, r); `r` is a checked axis.
+    """Compute amplitude and phase of every mass with the contact held, dims (dof, r); `r` is a checked axis.
 
-    A mass at rest, or one that resonates, has no phase: NaN.
+    A mass at rest, or in resonance, has no phase: NaN.
     """
     modes = system.modes
     if system.n > 1:
@@ -112,36 +113,41 @@ def held_variables(system: System, r: np.ndarray) -> dict[str, xr.Variable]:
 def boundaries(
     system: System, r: ArrayLike, mu: ArrayLike = 1.0, *, units: Units | None = None
 ) -> xr.Dataset:
-    """Boundaries of the motion regimes over frequency.
+    """Compute the boundaries of the regimes over frequency.
 
     Parameters
     ----------
     system : System
     r : array_like, shape (n_r,)
-        Frequency ratios omega/omega_1 [-], >= 0, increasing; omega_1 = sqrt(k_1/m_1) of a chain, else the
+        Frequency ratios omega/omega_1 [-], >= 0, increasing; omega_1 = sqrt(k_1/m_1) for a chain, else the
         system's frequency_scale.
     mu : array_like, shape (n_mu,)
-        Static over kinetic friction [-], >= 1, increasing.
+        Ratios of static to kinetic friction [-], >= 1, increasing.
     units : Units, optional
-        What r = 1 and beta = 1 are, as of `sweep`; r may then be frequencies.
+        Reference values that convert ratios to Hz and N, as in `sweep`; r may then be frequencies.
 
     Returns
     -------
     xarray.Dataset
-        On (mu, r): `beta_lim` (continuous below it, theory.md 3), `beta_lim_modal` (T(5.65) with (5.55))
-        and `beta_stick` (permanent sticking is possible from it on, theory.md 4).  On r: the response
-        function of z, `V` (real part) and `V_imag`, and `U`, `G`, `H`, `S`.  Features (theory.md 7): by
-        mode `natural_frequency` and `peak_threshold`; `held_frequency`; by mu the limits for r -> infinity,
-        `beta_lim_high` and `beta_stick_high`; on (dof, r) `held_response` and `held_phase`, amplitude
-        and lag [radian] of each mass with the contact held, infinite and NaN where that resonates; within the
-        axis `invariant_point`, where friction leaves z as it is (the phase only, with damping), and on (dof,
-        mass_invariant), without damping only, `mass_invariant_point`, where it leaves the monoharmonic
-        amplitude of a mass as it is, NaN where there are fewer.  On (dof, root) in the same way
-        `invariant_first_harmonic`, where it leaves the amplitude of the first harmonic, and on (contact_root)
-        `contact_invariant_first_harmonic`, that of z, theory.md 9.  The highest 40 or so points and one a
-        mode are listed, those of masses for up to 12 masses; a variable without points is left out.
-        `frictionmap.features` has them all.  Where C couples modes `beta_lim_modal` and their
-        `peak_threshold`, which take modes one by one, are NaN.
+        On (mu, r): `beta_lim` (continuous motion below it, theory.md 3), `beta_lim_modal` (T(5.65) with
+        (5.55)) and `beta_stick` (at or above it the contact can stay stuck, theory.md 4).
+
+        On r: the response function of z, `V` (real part) and `V_imag`, and `U`, `G`, `H`, `S`.
+
+        Features (theory.md 7): for each mode `natural_frequency` and `peak_threshold`; `held_frequency`; for
+        each mu the limits for r -> infinity, `beta_lim_high` and `beta_stick_high`; on (dof, r)
+        `held_response` and `held_phase`, amplitude and phase lag [radian] of each mass with the contact held,
+        infinite and NaN at its resonances.
+
+        Within the axis: `invariant_point`, where friction does not change z (with damping: its phase);
+        without damping, on (dof, mass_invariant), `mass_invariant_point`, where it does not change the
+        monoharmonic amplitude of a mass; on (dof, root) `invariant_first_harmonic`, where it does not change
+        the amplitude of the first harmonic; on (contact_root) `contact_invariant_first_harmonic`, the same
+        for z, theory.md 9.  Rows with fewer points are padded with NaN.  About 40 points plus one per mode
+        are listed, from the highest down, and those of masses for up to 12 masses; a variable without points
+        is omitted.  `frictionmap.features` computes all points.
+
+        Where C couples modes, `beta_lim_modal` and `peak_threshold`, which treat modes separately, are NaN.
 
     Raises
     ------

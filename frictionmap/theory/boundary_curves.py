@@ -1,4 +1,4 @@
-"""Boundaries of the motion regimes over frequency, and the response functions they come from, in numbers."""
+"""Boundaries of the regimes over frequency, and the response functions they depend on, as arrays."""
 
 from dataclasses import dataclass
 
@@ -11,14 +11,14 @@ from ..errors import InputError
 from ..model.modes import angles, modulus
 from ..model.system import System
 
-#: Least r over the fastest rate of free motion: some 10^6 intervals are searched for S there, and a period of
-#: the load has some 10^7 scan steps.
+#: Least r over the fastest rate of free motion; the search for S takes about 10^6 intervals there, and a period
+#: of the load about 10^7 scan steps.
 _LEAST_RATIO = 1e-6
 
 
 @dataclass(frozen=True)
 class Curves:
-    """What depends on r, and on (mu, r), only; arrays of shape (n_r,) and (n_mu, n_r).
+    """Functions of r, and of (mu, r); arrays of shape (n_r,) and (n_mu, n_r).
 
     V, U, G, H and S are those of theory.md 2 and 3.
     """
@@ -35,7 +35,7 @@ class Curves:
 
 @dataclass(frozen=True)
 class OneMass:
-    """Curves of one mass, and what its cells need of them: `lim` is beta_lim over the load amplitude."""
+    """Curves of one mass, and the data of its cells; `lim` is beta_lim over the load amplitude."""
 
     curves: Curves
     frequencies: Frequencies
@@ -43,13 +43,15 @@ class OneMass:
 
 
 def over_square(number: float, r: np.ndarray) -> np.ndarray:
-    """number/r^2; 0 at r = 0, where S is infinite anyway."""
+    """Compute number/r^2; 0 at r = 0, where S is infinite."""
     return np.divide(number, r * r, out=np.zeros_like(r), where=r > 0.0)
 
 
 def sliding_bracket(h: np.ndarray, s: np.ndarray, inertia: np.ndarray, mu: np.ndarray) -> np.ndarray:
-    """max(S, H + mu/(m_eff r^2)), (n_mu, n_r), theory.md 3: (Z + beta G)/beta has to be no less."""
-    with np.errstate(invalid="ignore"):  # an infinite S or H may come as nan, and leaves no beta_lim
+    """Compute max(S, H + mu/(m_eff r^2)), (n_mu, n_r), theory.md 3, the least (Z + beta G)/beta of continuous
+    motion.
+    """
+    with np.errstate(invalid="ignore"):  # an infinite S or H may be stored as NaN; beta_lim is then 0
         return np.maximum(s, h + mu[:, np.newaxis] * inertia)
 
 
@@ -57,9 +59,9 @@ def find_beta_lim(
     v_abs: np.ndarray, u: np.ndarray, h: np.ndarray, s: np.ndarray, inertia: np.ndarray, mu: np.ndarray,
     at_resonance: np.ndarray,
 ) -> np.ndarray:  # fmt: skip
-    """The boundary of continuous motion, |V|/sqrt(U^2 + max(S, H + mu/(m_eff r^2))^2), theory.md 3.
+    """Boundary of continuous motion, |V|/sqrt(U^2 + max(S, H + mu/(m_eff r^2))^2), theory.md 3.
 
-    T(2.26), (3.21), (5.65) and (7.46) are cases of it.  0 where U or S alone is infinite, or U has no limit
+    T(2.26), (3.21), (5.65) and (7.46) are special cases.  0 where U or S alone is infinite, or U has no limit
     (r = 0).
 
     Parameters
@@ -67,7 +69,7 @@ def find_beta_lim(
     v_abs, u, h, s : (n_r,) |V|, U, H, S; V and U are infinite at an undamped resonance
     inertia : (n_r,) 1/(m_eff r^2), 0 at r = 0
     mu : (n_mu,)
-    at_resonance : (n_r,) or (), the limit there: |V|/|U| is finite, and both outgrow S
+    at_resonance : (n_r,) or (), the limit at an undamped resonance, where |V|/|U| is finite and both exceed S
 
     Returns
     -------
@@ -82,9 +84,10 @@ def find_beta_lim(
 
 
 def find_beta_stick(force: np.ndarray, mu: np.ndarray) -> np.ndarray:
-    """The boundary to permanent sticking, |F|/mu, (n_mu, n_r), theory.md 4; F (n_r,), complex, holds z.
+    """Boundary to permanent sticking, |F|/mu, (n_mu, n_r), theory.md 4; F (n_r,), complex, is the force that
+    holds z.
 
-    T(2.29), (3.24), (6.11), (6.27) and (6.33) are cases of it.
+    T(2.29), (3.24), (6.11), (6.27) and (6.33) are special cases.
     """
     return modulus(force) / mu[:, np.newaxis]
 
@@ -104,7 +107,7 @@ def _refuse_low(r: np.ndarray, omega: np.ndarray, zeta: np.ndarray) -> None:
 def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
     """All curves of a normalised system, whose one mode has w = 1; `r` and `mu` are checked axes.
 
-    One mass has its own search of S, with intervals in closed form, and one equation for both contacts.
+    One mass has its own search for S, with intervals in closed form, and one equation for both contacts.
 
     Raises
     ------
@@ -130,14 +133,14 @@ def one_mass_curves(system: System, r: np.ndarray, mu: np.ndarray) -> OneMass:
         h=h,
         s=s,
         beta_lim=lim * amplitude,
-        beta_lim_modal=lim * amplitude,  # of one mode the maximum of the sum is the sum of the maxima
+        beta_lim_modal=lim * amplitude,  # for one mode the maximum of the sum is the sum of the maxima
         beta_stick=find_beta_stick(load, mu),
     )
     return OneMass(found, frequencies, lim)
 
 
 def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
-    """All curves of a system of any number of masses; `r` and `mu` are checked axes."""
+    """All curves of a system with any number of masses; `r` and `mu` are checked axes."""
     modes, free = system.modes, system.modes.free
     _refuse_low(r, free.omega, free.zeta)
     v = modes.contact_response(r)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import InputError
-from ..model.matrices import of_reduction
+from ..model.matrices import reduced_matrices
 from ..model.system import System
 from .boundary_curves import find_curves
 
@@ -65,7 +65,7 @@ def with_more_modes(system: System) -> System | None:
     finer = None if system.reduction is None else system.reduction.refined
     if finer is None:
         return None
-    matrices, ratios = of_reduction(finer), system.damping_ratios
+    matrices, ratios = reduced_matrices(finer), system.damping_ratios
     if ratios is not None:
         ratios = [*ratios, *[ratios[-1]] * (matrices.n - system.n)]  # type: ignore[index, misc]
     return replace(

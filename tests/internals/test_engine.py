@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import frictionmap as fm
-from frictionmap._kernels.engine import phase_table
+from frictionmap._kernels.engine import segment_table
 from frictionmap._kernels.engine.fill import RESTART, one_cell
 from frictionmap.datasets.labels import CELL_VARIABLES
 from frictionmap.model.settings import OUTPUTS, Solver
@@ -109,13 +109,13 @@ def test_one_mass_and_its_structure_have_one_table_of_phases(contact, r, beta):
         assert other.shape[0] == 0
         return
     assert table.shape == other.shape
-    begins = np.concatenate(([0.0], np.cumsum(table[:, phase_table.LENGTH])))
-    np.testing.assert_allclose(table[:, phase_table.BEGIN], begins[:-1], atol=1e-12)
+    begins = np.concatenate(([0.0], np.cumsum(table[:, segment_table.LENGTH])))
+    np.testing.assert_allclose(table[:, segment_table.BEGIN], begins[:-1], atol=1e-12)
     halves = begins[-1] / math.pi
     assert halves == pytest.approx(round(halves), abs=1e-9)
     # the anchors of the two may differ: one is a rotation of the other
-    stops = table[:, phase_table.SENSE] == 0.0
-    same = other[:, phase_table.SENSE] == 0.0
-    for column in (phase_table.LENGTH, phase_table.Z_END):
+    stops = table[:, segment_table.SENSE] == 0.0
+    same = other[:, segment_table.SENSE] == 0.0
+    for column in (segment_table.LENGTH, segment_table.Z_END):
         mine = np.sort(np.abs(table[stops, column]))
         np.testing.assert_allclose(mine, np.sort(np.abs(other[same, column])), rtol=1e-8)

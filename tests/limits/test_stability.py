@@ -12,7 +12,7 @@ import frictionmap as fm
 from frictionmap._kernels.one_mass.events import REVERSE, EventSequence
 from frictionmap._kernels.structure import events as follow
 from frictionmap._kernels.structure import newton as returns
-from frictionmap._kernels.structure.events import MOVING
+from frictionmap._kernels.structure.events import UNDER_WAY
 from frictionmap._kernels.structure.newton import make_workspace
 from frictionmap._kernels.structure.oscillators import make_scratch
 from frictionmap._kernels.structure.state import make_structure
@@ -46,11 +46,11 @@ def test_closed_form_of_one_mass(r):
 def set_moving(system, r, beta, mu):
     """(n, structure, its moving start with cos and sin of the load's phase, workspace, scratch)."""
     cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver())
-    found = cells.structures
+    found = cells.structure_arrays
     n = found.participating.size
     st = make_structure(found.model, found.loads, 0, r, 24.0)
     moving = found.moving
-    state = np.array([moving.place[0], moving.velocity[0] / st.rate])
+    state = np.array([moving.coordinates[0], moving.velocity[0] / st.rate])
     return n, st, state, moving.cos[0], moving.sin[0], make_workspace(n), make_scratch(n)
 
 
@@ -69,7 +69,7 @@ def test_determinant_is_the_product_of_acceleration_ratios():
         beta = float(rng.uniform(0.02, 0.7)) * fm.boundaries(system, [r]).beta_stick.item()
         n, st, state, c, s, work, scratch = set_moving(system, r, beta, mu)
         ratio, events = 1.0, next_events(st, beta, mu * beta, state, c, s, 4, work, scratch)
-        moved, force, at, time = state.copy(), MOVING, (c, s), 0.0
+        moved, force, at, time = state.copy(), UNDER_WAY, (c, s), 0.0
         for k in range(4):
             steps, _, *at, _ = slide_on(st, beta, force, moved, *at, 1e6, scratch)
             code, *at, force, wait, load, _ = after_slide(
@@ -100,7 +100,7 @@ def test_derivative_of_the_return_map():
         beta = float(rng.uniform(0.1, 0.6)) * fm.boundaries(system, [r]).beta_stick.item()
         n, st, state, c, s, work, scratch = set_moving(system, r, beta, mu)
         # some slides on, to the middle of one
-        force, seen = MOVING, []
+        force, seen = UNDER_WAY, []
         for _ in range(6):
             _, _, c, s, _ = slide_on(st, beta, force, state, c, s, 1e6, scratch)
             code, c, s, force, *_ = after_slide(st, beta, mu * beta, state, work.held, c, s, 1e3, scratch)
@@ -148,7 +148,7 @@ def first_of(events, count):
 def next_events(st, beta, mu_beta, state, c, s, count, work, scratch):
     """The next events."""
     state = state.copy()
-    events, force = np.empty(count), MOVING
+    events, force = np.empty(count), UNDER_WAY
     for k in range(count):
         _, _, c, s, _ = slide_on(st, beta, force, state, c, s, 1e6, scratch)
         events[k], c, s, force, *_ = after_slide(st, beta, mu_beta, state, work.held, c, s, 1e3, scratch)

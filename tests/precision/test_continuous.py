@@ -18,7 +18,7 @@ from continuous_motions import (
 import frictionmap as fm
 from benchmarks.references.naive import naive_steady_state
 from frictionmap.theory.continuous_motion import inversion_points
-from frictionmap.theory.half_waves import free_answers
+from frictionmap.theory.half_waves import free_response
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]}-{len(case[2])}")
@@ -299,7 +299,7 @@ def test_pieces_of_the_answer():
     """1 - d, q and e of T(B.8), (B.9) at any damping and time, against 60 digits."""
     theta = np.concatenate((10.0 ** np.arange(-9.0, 2.5, 0.23), [0.1, 0.1499, 0.15, 0.29, 0.3, 0.31]))
     for zeta in (0.0, 1e-9, 1e-3, 0.3, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 1.2, 1.999, 2.0, 10.0, 100.0):
-        rise, q, e = free_answers(zeta, theta)
+        rise, q, e = free_response(zeta, theta)
         with mp.workdps(60):
             for k, value in enumerate(theta):
                 z, x = mp.mpf(zeta), mp.mpf(value)

@@ -396,8 +396,8 @@ def test_a_row_of_a_map_alone_is_the_same_to_the_bit():
 def test_no_kernel_is_compiled_for_it_alone():
     """A memory layout of its own would be one more type to the kernels."""
     structure, r = system("wall"), np.array([0.4, 0.7])
-    found = kernel_data.structures(structure, r, find_curves(structure, r, np.ones(1)))
-    for part in (found.rest, found.moving, found.loads, found.model, found.orbit, found.shapes):
+    found = kernel_data.structure_arrays(structure, r, find_curves(structure, r, np.ones(1)))
+    for part in (found.rest, found.moving, found.loads, found.model, found.orbit, found.outputs):
         assert all(array.flags.c_contiguous for array in part if isinstance(array, np.ndarray))
 
 

@@ -13,8 +13,8 @@ import frictionmap as fm
 from benchmarks.references.naive import Motion, Structure, naive_steady_state
 from frictionmap import regimes
 from frictionmap._kernels import closed_form
-from frictionmap._kernels.engine import phase_table
-from frictionmap._kernels.engine.time_history import Samples, sample_phases
+from frictionmap._kernels.engine import segment_table
+from frictionmap._kernels.engine.time_history import Samples, sample_segments
 from frictionmap._kernels.structure import oscillators
 from frictionmap._kernels.structure.newton import make_workspace
 from frictionmap._kernels.structure.oscillators import COLUMNS, WW, WZ, ZW, ZZ, D, K, make_scratch
@@ -270,9 +270,9 @@ def gauss_samples(system, r, beta, mu):
     cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
     question = Question(system, r, beta, mu, solver, 2)
     rows = _find(question, cells).table
-    found = cells.structures
+    found = cells.structure_arrays
     x, weight = np.polynomial.legendre.leggauss(12)
-    begins = np.concatenate(([0.0], np.cumsum(rows[:, phase_table.LENGTH])))
+    begins = np.concatenate(([0.0], np.cumsum(rows[:, segment_table.LENGTH])))
     panels = [np.linspace(left, right, 41) for left, right in pairwise(begins)]
     left = np.concatenate([edges[:-1] for edges in panels])[:, np.newaxis]
     width = np.concatenate([np.diff(edges) for edges in panels])[:, np.newaxis]
@@ -282,10 +282,10 @@ def gauss_samples(system, r, beta, mu):
     coordinates, velocities = np.empty((2, n, since.size))
     z, friction = np.empty((2, since.size))
     samples = Samples(coordinates, velocities, z, friction, np.empty(since.size, dtype=np.int8))
-    sample_phases(st, beta, rows, since, samples, make_workspace(n), make_scratch(n))
-    sign = rows[0, phase_table.SIGN]
-    tau = since + math.atan2(sign * rows[0, phase_table.SIN], sign * rows[0, phase_table.COS])
-    relative = found.shapes.free[:, : velocities.shape[0]] @ velocities  # to the base, if it moves
+    sample_segments(st, beta, rows, since, samples, make_workspace(n), make_scratch(n))
+    sign = rows[0, segment_table.SIGN]
+    tau = since + math.atan2(sign * rows[0, segment_table.SIN], sign * rows[0, segment_table.COS])
+    relative = found.outputs.free[:, : velocities.shape[0]] @ velocities  # to the base, if it moves
     return (0.5 * width * weight).ravel(), tau, relative, friction
 
 

@@ -13,7 +13,7 @@ from structures import chain_matrices, pendants
 import frictionmap as fm
 from frictionmap import regimes
 from frictionmap.files.config import load_config
-from frictionmap.steady.kernel_data import structures
+from frictionmap.steady.kernel_data import structure_arrays
 from frictionmap.theory.boundary_curves import find_curves
 
 
@@ -57,7 +57,7 @@ KINDS = {
 
 def _numbers(found, r):
     """All arrays of the tables that the kernels take, those over r with r first."""
-    for name in ("loads", "orbit", "rest", "moving", "marginal", "alone", "held"):
+    for name in ("loads", "orbit", "rest", "moving", "marginal", "uncoupled", "held"):
         part = getattr(found, name)
         for k, array in enumerate(part if isinstance(part, tuple) else (part,)):
             if isinstance(array, np.ndarray):
@@ -74,7 +74,7 @@ def test_what_depends_on_r_does_not_depend_on_the_other_frequencies(kind):
     r = np.unique(r)
     mu = np.array([1.0, 1.5])
     whole = find_curves(system, r, mu)
-    tables = dict(_numbers(structures(system, r, whole), r)) if system.n > 1 else {}
+    tables = dict(_numbers(structure_arrays(system, r, whole), r)) if system.n > 1 else {}
     pieces = [slice(k, k + 1) for k in range(r.size)]
     pieces += [slice(first, first + length) for first, length in ((0, 2), (1, 7), (3, 16), (6, 33))]
     for piece in pieces:
@@ -82,7 +82,7 @@ def test_what_depends_on_r_does_not_depend_on_the_other_frequencies(kind):
         for name, value in vars(whole).items():
             assert getattr(part, name).tobytes() == value[..., piece].tobytes(), (name, r[piece])
         if tables:
-            for name, value in _numbers(structures(system, r[piece].copy(), part), r[piece]):
+            for name, value in _numbers(structure_arrays(system, r[piece].copy(), part), r[piece]):
                 assert value.tobytes() == tables[name][piece].tobytes(), (name, r[piece])
 
 

@@ -1,1 +1,1 @@
-"""V, U, G, H, S and the boundaries of the regimes."""
+"""Response functions V, U, G, H, S and the boundaries of the regimes."""

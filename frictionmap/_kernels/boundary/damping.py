@@ -1,4 +1,4 @@
-"""Damping functions of several modes over many frequencies, for searches of zeros of their sums."""
+"""Damping functions of several modes over many frequencies, for searches of the zeros of their sums."""
 
 from ..closed_form import damping_functions
 from ..compiler import entry

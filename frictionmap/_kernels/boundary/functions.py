@@ -1,4 +1,4 @@
-"""Response functions over frequency of one mass: once per r, however many beta a map has."""
+"""Response functions of one mass over frequency: evaluated once per r, independent of beta."""
 
 import math
 

@@ -4,11 +4,11 @@ With ``y = h'`` the bracket is ``f = (u cos + y)/sin`` and ``f' = m/sin^2`` wher
 
     m = y' sin - y cos - u,       m' = (y'' + y) sin,        f = y sin + y' cos - m cot.
 
-``y'' + y`` is one damped oscillation whose zeros are equally spaced and known, so ``m`` is monotone from
-one to the next: at most one root each, found by a safeguarded Newton iteration.  The maxima are the
-roots in the intervals where ``y'' + y < 0``.  ``m`` is zero at both ends of (0, pi), so the first and
-the last interval hold none.  Both sides are searched towards the middle, and the search of a side ends
-when a bound on all that is left there cannot beat the best value: the maximum is global for certain.
+``y'' + y`` is a damped oscillation whose zeros are equally spaced and known, so ``m`` is monotone between two
+of them: it has at most one root there, found by a safeguarded Newton iteration.  The maxima are the roots in
+the intervals where ``y'' + y < 0``.  ``m`` is zero at both ends of (0, pi), so the first and the last
+interval hold none.  Both sides are searched towards the middle, and the search of a side ends when an upper
+bound on the remaining intervals is below the largest value found.  The maximum is therefore global.
 """
 
 import math
@@ -25,7 +25,9 @@ ANGLE_TOLERANCE = 1e-9
 
 @kernel
 def _evaluate(tau, a, zeta, u, forms):
-    """m, y'' + y and f + m cot at tau; `forms` holds y, y' and y'' + y over (q, e) of `decay`."""
+    """Compute m, y'' + y and f + m cot at tau; `forms` holds the coefficients of y, y' and y'' + y over (q,
+    e) of `decay`.
+    """
     y_q, y_e, p_q, p_e, k_q, k_e = forms
     q, e = decay(zeta, a * tau)
     sine = math.sin(tau)
@@ -38,7 +40,9 @@ def _evaluate(tau, a, zeta, u, forms):
 
 @kernel
 def narrow(low, high, tau, m, slope):
-    """A smaller bracket of the root of the falling m, and Newton's next point in it (or its middle)."""
+    """Narrow the bracket of the root of the falling function m; return it with Newton's next point, or its
+    middle.
+    """
     if m > 0.0:
         low = tau
     else:
@@ -51,7 +55,7 @@ def narrow(low, high, tau, m, slope):
 
 @kernel
 def _stationary_value(low, high, a, zeta, u, forms):
-    """f at the root of m in (low, high), where m falls; -inf if there is none or m rises."""
+    """Value of f at the root of m in (low, high), where m falls; -inf if there is none or m rises."""
     if _evaluate(0.5 * (low + high), a, zeta, u, forms)[1] >= 0.0:
         return -math.inf
     if _evaluate(low, a, zeta, u, forms)[0] <= 0.0:
@@ -74,13 +78,13 @@ def _stationary_value(low, high, a, zeta, u, forms):
 
 @kernel
 def largest_bracket(a, zeta, u, g, floor):
-    """max(floor, S) for one mode with chi^2/w^2 = 1.
+    """Compute max(floor, S) for one mode with chi^2/w^2 = 1.
 
     Parameters
     ----------
     a : 1/R of the mode, finite, > 0
     zeta, u, g : its damping ratio and damping functions, finite
-    floor : what S has to beat to matter: its end limit, or that with mu
+    floor : lower limit that S has to exceed: its end limit, or the limit that depends on mu
     """
     if zeta >= 1.0 or (zeta == 0.0 and a <= 2.0):
         # over-damped: y'' + y has one zero at most, so there is no interval between two of them;

@@ -1,18 +1,18 @@
-"""Response functions and boundaries of many modes; one evaluation per r, however many beta a map has.
+"""Response functions and boundaries of structures; evaluated once per r, independent of beta.
 
-S of many modes is the maximum of the sum over modes, theory.md 3.  With ``Y = sum c_i h_i'``,
-``c_i = chi_i^2/w_i^2``, the bracket is ``f = n/sin``, ``n = U cos + Y``, and ``f' = m/sin^2`` where
+S of many modes is the maximum of the sum over modes, theory.md 3.  With ``Y = sum c_i h_i'``, ``c_i =
+chi_i^2/w_i^2``, the bracket is ``f = n/sin``, ``n = U cos + Y``, and ``f' = m/sin^2`` where
 
     m = Y' sin - Y cos - U,        m' = W sin,        W = Y'' + Y.
 
-Intervals are halved until each is settled, by one of two proofs: no value in it can beat the best so far,
-since ``n - best sin`` is negative at both ends by more than its curvature allows; or W keeps its sign, since
-it is far enough from zero at both ends, so that m has one root at most.  Then the largest value is an end's
-or the root's, which Newton's method finds.
+Intervals are halved until each is settled by one of two proofs.  Either no value in it can exceed the largest
+found so far, since ``n - best sin`` is negative at both ends by more than its curvature allows.  Or W keeps
+its sign, since it is far enough from zero at both ends, so that m has at most one root; the largest value is
+then at an end or at this root, which Newton's method finds.
 
-Beside its resonance u of a mode is of order 1/(w - r), while its share of n, m and W stays finite: u cos and
-the -u e of h' are nearly opposite.  There they are made one before they meet u, in products of u with w - r
-and zeta that have a limit at the pole.
+Close to its resonance u of a mode is of order 1/(w - r), while its contributions to n, m and W stay finite: u
+cos and the term -u e of h' nearly cancel.  There they are combined before they are multiplied by u, in
+products of u with w - r and zeta that have a limit at the pole.
 """
 
 import math
@@ -23,10 +23,10 @@ from ..closed_form import damping_functions, decay, fastest_rate
 from ..compiler import entry, kernel
 from .one_mass import ANGLE_TOLERANCE, MAX_ITERATIONS, largest_bracket, narrow
 
-#: First intervals per period of the fastest mode; fewer make more halvings, more are wasted.
+#: Initial intervals per period of the fastest mode.
 _INTERVALS = 4.0
 
-#: Halvings of an interval: beyond 40 it holds nothing that a double could tell from its ends.
+#: Largest number of halvings of an interval: at this depth its values equal those at its ends to rounding.
 _DEEPEST = 40
 
 #: Rows of the table of modes that `mode_sums` fills, one column a mode: c, a = 1/R, zeta, and y_i = h_i',
@@ -39,13 +39,25 @@ ROWS = 14
 
 @kernel
 def _beside_resonance(a, zeta):
-    """Whether w - r is without rounding and the mode oscillates; others have no pole of u at a = 1 near."""
+    """Whether w - r is free of rounding error and the mode oscillates; other modes have no pole of u close to
+    a = 1.
+    """
     return 0.5 <= a <= 2.0 and zeta < 1.0
 
 
 @kernel
 def _fill_column(table, n, c, w, r, zeta, u, g, slope):
-    """Column n of the table; `slope` is g a^2 + 2 zeta a u."""
+    """Fill column n of the table.
+
+    Parameters
+    ----------
+    table : (ROWS, modes) table to fill; n : its column
+    c : chi^2/w^2 of the mode
+    w, zeta : natural frequency and damping ratio
+    r : frequency ratio
+    u, g : damping functions
+    slope : g a^2 + 2 zeta a u
+    """
     a = w / r
     table[C, n] = c
     table[A, n] = a
@@ -75,7 +87,15 @@ def _fill_column(table, n, c, w, r, zeta, u, g, slope):
 
 @kernel
 def _fill_coupled(table, n, c, d, a, zeta, u, g):
-    """The same of an oscillator that the damping couples to others: c h' + d h'', which are over (q, e)."""
+    """Fill column n of the table for an oscillator of coupled modes, whose response is c h' + d h''.
+
+    Parameters
+    ----------
+    table : (ROWS, modes) table to fill; n : its column
+    c, d : coefficients of h' and h''
+    a, zeta : 1/R and damping ratio
+    u, g : damping functions
+    """
     rate, pull = (1.0 + g) * a, -u
     bend, push = -a * pull, a * rate - 2.0 * zeta * a * pull
     y_q, y_e = c * rate + d * bend, c * pull + d * push
@@ -88,11 +108,20 @@ def _fill_coupled(table, n, c, d, a, zeta, u, g):
 
 @kernel
 def mode_sums(r, w, zeta, static, rates, table):
-    """U, G, H of theory.md 2 at r > 0, and the bound of (5.55); fills `table` for `largest_sum`.
+    """Compute U, G, H of theory.md 2 at r > 0 and the bound of T(5.55); fill `table` for `largest_sum`.
 
-    static, rates : (n,) the answer of z to friction is sum of static h_i + rates r h_i', rates = 0 of modes
-    Returns (U, G, H, S by modes, modes in the table).  S by modes is infinite where S is: at a pole of u
-    other than the resonance r = w.  It is nan where the damping couples modes.
+    Parameters
+    ----------
+    r : frequency ratio
+    w, zeta : (n,) natural frequencies and damping ratios
+    static, rates : (n,) the response of z to friction is the sum of static h_i + rates r h_i'; rates = 0 for
+        modes
+    table : (ROWS, n) filled with the modes
+
+    Returns
+    -------
+    (U, G, H, S by modes, modes in the table) : S by modes is infinite where S is, at a pole of u other than
+        the resonance r = w; it is NaN where the damping couples modes
     """
     total_u = 0.0
     total_g = 0.0
@@ -130,7 +159,7 @@ def mode_sums(r, w, zeta, static, rates, table):
 
 @kernel
 def _amplitude(zeta, q, e):
-    """Bound over theta >= 0 of abs(q Q + e E) with (Q, E) of `decay`."""
+    """Upper bound over theta >= 0 on |q Q + e E| with (Q, E) of `decay`."""
     if zeta < 1.0:
         # exp(-zeta theta) [e cos(s theta) + (q - zeta e) sin(s theta)/s], and |sin(s t)/s| <= t
         s = math.sqrt((1.0 - zeta) * (1.0 + zeta))
@@ -143,7 +172,7 @@ def _amplitude(zeta, q, e):
 
 @kernel
 def _combined(tau, sine, cosine, mode):
-    """n, m, m cot + n/sin and W of a mode beside its resonance, over c; `mode` is its column."""
+    """Compute n, m, m cot + n/sin and W, each over c, of a mode close to resonance; `mode` is its column."""
     a = mode[A]
     zeta = mode[ZETA]
     s = math.sqrt((1.0 - zeta) * (1.0 + zeta))
@@ -169,7 +198,7 @@ def _combined(tau, sine, cosine, mode):
 
 @kernel
 def _values(tau, table, n_modes):
-    """n, m, m cot + n/sin, which does not cancel where m = 0, and W at tau."""
+    """Compute n, m, m cot + n/sin, which does not cancel where m = 0, and W at tau."""
     sine = math.sin(tau)
     cosine = math.cos(tau)
     n = 0.0
@@ -198,7 +227,7 @@ def _values(tau, table, n_modes):
 
 @kernel
 def _at_crossing(low, high, fastest, table, n):
-    """f at the root of m in (low, high), where m falls and W < 0."""
+    """Value of f at the root of m in (low, high), where m falls and W < 0."""
     tau = 0.5 * (low + high)
     value = -math.inf
     for _ in range(MAX_ITERATIONS):
@@ -216,7 +245,7 @@ def _at_crossing(low, high, fastest, table, n):
 
 @kernel
 def _bends(table, n):
-    """Bounds of |n''| and |W''|, and the fastest rate."""
+    """Upper bounds on |n''| and |W''|, and the fastest rate."""
     fastest = 1.0
     u = 0.0
     bend_n = 0.0
@@ -245,7 +274,7 @@ def _bends(table, n):
 
 @kernel
 def largest_sum(floor, table, n, stack):
-    """max(floor, S) for the modes in `table`; `stack` is scratch of shape (2 * _DEEPEST, 8)."""
+    """Compute max(floor, S) for the modes in `table`; `stack` is scratch of shape (2 * _DEEPEST, 8)."""
     if n == 0:
         return floor
     bend_n, bend_w, fastest = _bends(table, n)
@@ -303,12 +332,17 @@ def largest_sum(floor, table, n, stack):
 
 @entry
 def many_mode_functions(r, w, zeta, static, rates, inverse_mass, u, g, h, s, by_modes):
-    """Fill U, G, H, S of theory.md 2 and 3 and the bound of T(5.55) over frequencies r, shape (n_r,).
+    """Fill U, G, H, S of theory.md 2 and 3 and the bound of T(5.55) over frequencies.
 
-    w, zeta, static, rates : (n,) oscillators that the contact sees, as of `mode_sums`; with what is filled
-    they make eleven arguments
+    At r = 0 (limits): S is infinite; U has no limit (NaN) if a participating mode is undamped, else it is 0.
 
-    At r = 0 (limits): S is infinite; U has no limit if a participating mode is undamped (nan), else it is 0.
+    Parameters
+    ----------
+    r : (n_r,) frequency ratios >= 0
+    w, zeta : (n,) natural frequencies and damping ratios of the participating oscillators
+    static, rates : (n,) response to friction, see `mode_sums`
+    inverse_mass : 1/m_eff
+    u, g, h, s, by_modes : (n_r,) filled with U, G, H, S and the bound
     """
     table = np.empty((ROWS, w.size))
     stack = np.empty((2 * _DEEPEST, 8))

@@ -1,20 +1,21 @@
-"""One driver for one mass and for structures: follow a motion, recognise its return, solve, measure.
+"""Solver of single cells, shared by one mass and by structures.
 
 | module | what is in it |
 |---|---|
-| `answers` | what the driver takes and gives: contact, moment, limits, cell |
-| `motion` | the interface: what a kind of motion has to offer |
-| `one_mass`, `many_masses` | the two that there are |
-| `memory` | anchors remembered |
-| `returns` | the recogniser of returns |
-| `statistics` | what a motion that does not repeat does on average; when to try Newton's method |
-| `march` | the driver |
-| `measure` | stops, amplitude and share stuck of a periodic orbit, and its table of phases |
-| `phase_table` | the table of phases of a steady state |
-| `extremes`, `transforms`, `harmonics`, `works`, `rests`, `floquet`, `time_history` | what is read from it |
-| `details`, `quantities` | those of them that a map was asked for |
-| `coexistence` | what else a cell could end in |
-| `window` | a part of a motion that does not repeat |
-| `fill` | the cells of a map |
-| `policies` | starts and thresholds that both kinds of motion share |
+| `records` | records passed to and returned by the solver: contact, contact state, limits, orbit, cell |
+| `motion` | interface that each kind of motion implements |
+| `one_mass`, `many_masses` | the two kinds of motion |
+| `memory` | ring buffer of past anchors |
+| `recurrence` | recurrence detection |
+| `statistics` | averages of motions that do not repeat; schedule of Newton's method |
+| `march` | solver: follow the motion from event to event, then solve for the periodic orbit |
+| `measure` | stops, amplitude, share stuck and segment table of a periodic orbit |
+| `segment_table` | table of the slides and stops of a steady state |
+| `extremes`, `transforms`, `harmonics`, `dissipation`, `distortion`, `floquet`, `time_history` | results that
+are read from the segment table |
+| `details`, `quantities` | the results that a map or a set of response curves requests |
+| `coexistence` | further regimes that a cell can reach from other initial states |
+| `window` | segment table of the last periods of a motion that does not repeat |
+| `fill` | cells of a map |
+| `policies` | initial states and thresholds shared by both kinds of motion |
 """

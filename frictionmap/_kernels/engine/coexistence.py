@@ -1,11 +1,13 @@
-"""Which regimes a cell can end in, and how far in beta a sliding motion reaches.
+"""Regimes that a cell can reach from different initial states, and the largest beta at which sliding
+persists.
 
-What is proved is listed without looking (theory.md 6): below beta_lim the continuous motion, from beta_stick
-on sticking; beyond mu beta_stick nothing else lasts.  What is left is looked for by motions from a fixed set
-of starts: rest; a large sliding motion; and the steady states on two ladders of nodes in beta, followed
-upwards and downwards as in a slow sweep of the friction, one around beta_lim and one from beta_stick up.  The
-ladders belong to (mu, r): no cell depends on which others a map has.  A regime counts where a motion from
-such a start settles in it: what is found is stable.
+Proven regimes are listed without a computation (theory.md 6): continuous motion below beta_lim, permanent
+sticking at or above beta_stick; no other regime persists above mu beta_stick.  The others are searched for
+from a fixed set of initial states: rest, a large sliding motion, and the steady states on two ladders of
+nodes in beta, which are followed upwards and downwards like a slow sweep of the friction, one ladder around
+beta_lim and one from beta_stick upwards.  The ladders belong to (mu, r): no cell depends on the other cells
+of the map.  A regime counts where a motion from one of these states settles in it, so every regime found is
+stable.
 """
 
 import math
@@ -15,25 +17,26 @@ import numpy as np
 
 from ...regimes import CONTINUOUS, NOT_REACHED, PERMANENT_STICKING, STICK_SLIP
 from ..compiler import entry, kernel
-from .answers import Limits, Moment, unresolved
 from .march import steady_state
 from .motion import at_frequency, bring_back, contact_at, forget_neighbour, keep_state, on_continuous, start
 from .policies import ABOVE, AROUND, EIGHTHS, NO_FRICTION, RUNGS
+from .records import ContactState, Limits, unresolved
 
-#: Halvings of the step of the ladder in which a sliding motion ends.
+#: Halvings of the ladder step within which sliding ends.
 _HALVINGS = 22
 
-#: Scan steps of all motions along the ladders of a row, with the search for the end of sliding, and of all
-#: motions of a cell, over those of one motion: at low frequency each of so many may take all of its own.
+#: Largest number of scan steps, relative to that of one motion, of all motions along the ladders of a row (with
+#: the search for the end of sliding), and of all motions of a cell: at low frequency each may take all of its
+#: own.
 _ROW_SHARE, _CELL_SHARE = 4.0, 2.0
 
-#: Beyond mu beta_stick by more than this, relative to it: the rounding of either.
+#: Relative rounding error of beta and of mu beta_stick.
 _ROUNDING = 1e-12
 
 #: Flags of regimes.
 _STICKS, _STICK_SLIP, _SLIDES = 1, 2, 4
 
-#: Ways along a ladder.
+#: Directions along a ladder.
 _UP, _DOWN = 0, 1
 
 
@@ -49,12 +52,12 @@ class Row(NamedTuple):
 
 
 class Ladder(NamedTuple):
-    """Nodes in beta, and the sliding steady states found there either way, (2, k, ...)."""
+    """Nodes in beta, and the sliding steady states found there in either direction, (2, k, ...)."""
 
     beta: np.ndarray  # (k,)
-    slides: np.ndarray  # (2, k) bool, whether there is one
-    moves: np.ndarray  # (k,) bool, whether anything slides there, also what does not repeat
-    at: np.ndarray  # (2, k, 5) its moment; its state is kept in the slots from `slot` on
+    slides: np.ndarray  # (2, k) bool, whether a periodic sliding motion was found
+    moves: np.ndarray  # (k,) bool, whether any motion slides there, periodic or not
+    at: np.ndarray  # (2, k, 5) its contact state; the modal state is saved in the slots from `slot` on
     slot: int
 
 
@@ -68,7 +71,7 @@ def _make_ladder(count, slot):
 
 @kernel
 def _bit(regime):
-    """Flag of a regime; 0 where unresolved."""
+    """Flag of a regime; 0 for an unresolved one."""
     if regime == PERMANENT_STICKING:
         return _STICKS
     if regime == STICK_SLIP:
@@ -78,7 +81,7 @@ def _bit(regime):
 
 @kernel
 def _proved(row, beta):
-    """Flags of the regimes that need no motion to be found."""
+    """Flags of the regimes that are proven without following a motion."""
     if beta == 0.0:
         return _SLIDES
     flags = _SLIDES if beta < row.lim else 0
@@ -92,7 +95,17 @@ def _contact(system, row, beta):
 
 @kernel
 def _settle(motion, row, contact, at, moves, limits, cancel):
-    """Where a motion ends, whatever was solved for before; unresolved where no scan steps are left."""
+    """Find the steady state that a motion reaches, independent of orbits solved for before.
+
+    The cell is unresolved if the row has no scan steps left.
+
+    Parameters
+    ----------
+    motion, row, limits, cancel : see `_from_start`
+    contact : Contact
+    at : ContactState
+    moves : whether the motion starts with a slide
+    """
     allowed = min(limits.steps, row.left[0])
     if not allowed > 0.0:
         return unresolved(NOT_REACHED, 0.0)
@@ -105,6 +118,18 @@ def _settle(motion, row, contact, at, moves, limits, cancel):
 
 @kernel
 def _from_start(motion, system, row, beta, moving, limits, cancel):
+    """Find the steady state reached at beta from rest or from the moving start.
+
+    Parameters
+    ----------
+    motion : a kind of motion
+    system : the system over the map
+    row : Row
+    beta : friction ratio
+    moving : whether to use the moving start
+    limits : Limits
+    cancel : (1,) set by another thread to end the computation
+    """
     contact = _contact(system, row, beta)
     at = start(motion, system, row.i, contact, moving)
     return _settle(motion, row, contact, at, moving, limits, cancel)
@@ -112,21 +137,38 @@ def _from_start(motion, system, row, beta, moving, limits, cancel):
 
 @kernel
 def _from_node(motion, system, row, ladder, way, k, beta, limits, cancel):
-    """Where the motion at beta ends that starts from the state at a node."""
+    """Find the steady state reached at beta from the state at a node.
+
+    Parameters
+    ----------
+    motion, system, row, limits, cancel : see `_from_start`
+    ladder : Ladder
+    way : direction, _UP or _DOWN
+    k : index of the node
+    beta : friction ratio
+    """
     bring_back(motion, ladder.slot + way * ladder.beta.size + k)
     at = ladder.at[way, k]
-    moment = Moment(at[0], at[1], at[2], at[3], at[4])
+    moment = ContactState(at[0], at[1], at[2], at[3], at[4])
     return _settle(motion, row, _contact(system, row, beta), moment, False, limits, cancel)
 
 
 @kernel
 def _keep(motion, system, row, ladder, way, k, beta, found):
-    """Keep a steady state at a node, if it slides; but not the continuous one that is there anyway."""
+    """Save a sliding steady state at a node, unless it is the continuous one that exists there anyway.
+
+    Parameters
+    ----------
+    motion, system, row : see `_from_start`
+    ladder, way, k : see `_from_node`
+    beta : friction ratio
+    found : Cell
+    """
     continuous = found.regime == CONTINUOUS
     if not (continuous or found.regime == STICK_SLIP):
         return
     ladder.moves[k] = True
-    at = found.at
+    at = found.contact_state
     if found.slides == 0:
         if not continuous or math.isinf(motion.v_abs) or (beta < row.lim and beta < row.stick):
             return
@@ -139,7 +181,7 @@ def _keep(motion, system, row, ladder, way, k, beta, found):
 
 @kernel
 def _take_over(motion, ladder, way, k):
-    """The state at a node as it was found the other way."""
+    """Copy the state at a node from the other direction."""
     count = ladder.beta.size
     bring_back(motion, ladder.slot + (1 - way) * count + k)
     keep_state(motion, ladder.slot + way * count + k)
@@ -150,13 +192,20 @@ def _take_over(motion, ladder, way, k):
 
 @kernel
 def _climb(motion, system, row, ladder, way, limits, cancel):
-    """Follow what slides from node to node; upwards, where nothing does, a large motion tries."""
+    """Follow sliding motions from node to node; upwards, a node with no motion to follow uses the moving
+    start.
+
+    Parameters
+    ----------
+    motion, system, row, limits, cancel : see `_from_start`
+    ladder, way : see `_from_node`
+    """
     count = ladder.beta.size
     before = -1
     for step in range(count):
         k = step if way == _UP else count - 1 - step
         beta = ladder.beta[k]
-        # beyond, nothing slides for good
+        # above mu beta_stick no sliding persists
         if 0.0 < beta <= row.mu * row.stick and cancel[0] == 0:
             if before >= 0 and ladder.slides[way, before]:
                 found = _from_node(motion, system, row, ladder, way, before, beta, limits, cancel)
@@ -171,14 +220,20 @@ def _climb(motion, system, row, ladder, way, limits, cancel):
 
 @kernel
 def _fill_ladders(motion, system, row, around, above, limits, cancel):
-    """Follow the sliding motions around beta_lim and from beta_stick up."""
+    """Follow the sliding motions around beta_lim and from beta_stick upwards.
+
+    Parameters
+    ----------
+    motion, system, row, limits, cancel : see `_from_start`
+    around, above : Ladder around beta_lim, and from beta_stick upwards
+    """
     for ladder in (around, above):
         ladder.slides[:] = False
         ladder.moves[:] = False
     for k in range(around.beta.size):
         around.beta[k] = row.lim * ((k + 1) / 8.0)
     for k in range(above.beta.size):
-        # where the held structure resonates nothing sticks, and there is nothing to look for
+        # at a resonance of the held structure the contact never sticks, and there is nothing to search for
         step = (row.mu - 1.0) * k / above.beta.size
         above.beta[k] = 0.0 if math.isinf(row.stick) else row.stick * (1.0 + step)
     for way in range(2):
@@ -188,7 +243,7 @@ def _fill_ladders(motion, system, row, around, above, limits, cancel):
 
 @kernel
 def _beside(ladder, way, beta):
-    """The node next below beta, upwards, or next above it, if a motion slides there; else -1."""
+    """Index of the next node below (upwards) or above beta (downwards) if a motion slides there; else -1."""
     count = ladder.beta.size
     for step in range(count):
         k = count - 1 - step if way == _UP else step
@@ -199,7 +254,15 @@ def _beside(ladder, way, beta):
 
 @kernel
 def _from_ladders(motion, system, row, beta, around, above, flags, limits, cancel):
-    """`flags` with those of the motions from the nodes beside a cell, as far as they can add any."""
+    """Add to `flags` the regimes reached from the nodes beside a cell, where they can add any.
+
+    Parameters
+    ----------
+    motion, system, row, limits, cancel : see `_from_start`
+    beta : friction ratio
+    around, above : see `_fill_ladders`
+    flags : flags of the regimes found so far
+    """
     for way in range(2):
         k = _beside(around, way, beta)
         if k >= 0 and (beta < row.lim or flags == 0) and not flags & _STICK_SLIP:
@@ -230,11 +293,18 @@ def _any_open(row, beta):
 
 @kernel
 def _reachable(motion, system, row, beta, around, above, limits, cancel):
-    """Flags of the regimes that a cell can end in."""
+    """Flags of the regimes that a cell can reach.
+
+    Parameters
+    ----------
+    motion, system, row, limits, cancel : see `_from_start`
+    beta : friction ratio
+    around, above : see `_fill_ladders`
+    """
     flags = _proved(row, beta)
     if _decided(row, beta):
         return flags
-    if row.mu == 1.0:  # one answer
+    if row.mu == 1.0:  # the steady state is unique
         if flags == 0:
             flags = _bit(_from_start(motion, system, row, beta, False, limits, cancel).regime)
         return flags
@@ -245,14 +315,14 @@ def _reachable(motion, system, row, beta, around, above, limits, cancel):
 
 @kernel
 def _sliding_limit(motion, system, row, above, limits, cancel):
-    """The largest beta at which a motion slides for good, followed on from the highest node with one."""
+    """Largest beta at which sliding persists, followed upwards from the highest node with sliding motion."""
     if row.mu == 1.0 or math.isinf(row.stick):
         return row.stick
     last = -1
     for k in range(above.beta.size):
         if above.moves[k]:
             last = k
-    least = max(row.stick, row.lim)  # up to there one is sure to
+    least = max(row.stick, row.lim)  # up to there sliding is proven
     if last < 0:
         return least
     low = above.beta[last]
@@ -273,7 +343,7 @@ def _sliding_limit(motion, system, row, above, limits, cancel):
 
 @kernel
 def _fill_still(row, no_load, beta, reachable, sliding_limit):
-    """The row r = 0, where there is no motion to follow."""
+    """Fill the row r = 0, at which no motion can be followed."""
     m, i = row.m, row.i
     for j in range(beta.size if reachable.size else 0):
         flags = _STICKS if no_load else _proved(row, beta[j])
@@ -284,9 +354,18 @@ def _fill_still(row, no_load, beta, reachable, sliding_limit):
 
 @entry
 def fill_reachable(first, last, axes, lim, stick, no_load, system, limits, out, cancel):
-    """Rows first..last-1 of (mu, r): `out.also_reachable` and `out.sliding_limit`.
+    """Fill `out.also_reachable` and `out.sliding_limit` for rows first..last-1 of the (mu, r) grid.
 
-    One that was not asked for has no values.  no_load : (n_r,) bool, where nothing loads the contact.
+    Parameters
+    ----------
+    first, last : range of rows
+    axes : Axes
+    lim, stick : (n_mu, n_r) beta_lim and beta_stick
+    no_load : (n_r,) bool, where the contact carries no load
+    system : a system over the map, see `motion`
+    limits : Limits
+    out : named tuple of output arrays; those that are not requested have size 0
+    cancel : (1,) set by another thread to end the computation
     """
     reachable, sliding_limit = out.also_reachable, out.sliding_limit
     beta, n_r = axes.beta, axes.r.size

@@ -1,7 +1,8 @@
-"""When masses are farthest out, and the force to the ground largest, in a steady state.
+"""Largest displacement of each mass, and largest force to the ground, in a steady state.
 
-What is looked at is linear in the state, so in a scan step it is a polynomial.  Times are those of a maximum:
-what is largest at a minimum has its maximum half a period later, in its mirror image if it is symmetric.
+Every such quantity is linear in the state, hence a polynomial within a scan step.  Phases are those of a
+maximum: a quantity that is largest at a minimum has its maximum half a period later, in the mirror image, if
+the motion is symmetric.
 """
 
 import math
@@ -11,34 +12,36 @@ import numpy as np
 
 from ..compiler import kernel
 from ..structure.oscillators import COLUMNS, OW, OZ, bounds, derivatives, expand, step_on, watch, watch_load
-from ..structure.state import DIRECT_COS, DIRECT_SIN
-from .phase_table import COS, LENGTH, PLACE, SENSE, SIN, Z_END, take_start
+from ..structure.state import FEEDTHROUGH_COS, FEEDTHROUGH_SIN
+from .segment_table import COS, LENGTH, SENSE, SIN, STOP_Z, Z_END, take_start
 
-#: Columns of what is found: the largest modulus, the load's phase at it, and where it is held over a stop the
-#: load's phases at which that begins and ends.
+#: Columns of the result: the largest modulus and its load phase; for a modulus held during a stop, the load
+#: phases at which the stop begins and ends.
 VALUE, PHASE, PHASE_BEGIN, PHASE_END = 0, 1, 2, 3
 FOUND = 4
 
-#: Part of a scan step that is not cut further, what a polynomial could hide in it being of the third order;
-#: and by which steps overlap.
+#: Shortest interval, as a share of a scan step, that is still divided, and the overlap of scan steps: the
+#: error of stopping there is of third order in it.
 _SHORTEST = 1e-6
 
 
-#: A step of Newton's method after which the next one would be rounding.
+#: Newton step after which the next one would be rounding error.
 _NEXT = 1e-9
 
 
-class Shapes(NamedTuple):
-    """What each of the things looked at, the masses first, has of the state; velocities in t = tau/r."""
+class OutputMatrices(NamedTuple):
+    """Rows that map the state to displacements (the masses first) and to the transmitted force; velocities in
+    t = tau/r.
+    """
 
-    free: np.ndarray  # (rows, 2n) of the free oscillators (q, p)
-    held: np.ndarray  # (rows, 2m) of the held oscillators (y, p)
-    static_shape: np.ndarray  # (rows,) of a unit displacement of the contact while it is held
-    friction: np.ndarray  # (rows,) of the friction force while the contact slides
+    free: np.ndarray  # (rows, 2n) coefficients of the free oscillators (q, p)
+    held: np.ndarray  # (rows, 2m) coefficients of the held oscillators (y, p)
+    static_shape: np.ndarray  # (rows,) response to a unit displacement of the held contact
+    friction: np.ndarray  # (rows,) coefficient of the friction force while the contact slides
 
 
-class Alone(NamedTuple):
-    """Phasors (n_r, rows) of what moves with the load alone: modes that do not participate, the base."""
+class UncoupledResponse(NamedTuple):
+    """Response of the modes that the contact does not excite, and of the base; phasors (n_r, rows)."""
 
     sliding: np.ndarray
     held: np.ndarray
@@ -46,7 +49,7 @@ class Alone(NamedTuple):
 
 @kernel
 def turned_half(angle, value):
-    """The phase of a maximum, in (-pi, pi], of what is `value` at an angle of the load."""
+    """Load phase in (-pi, pi] of the maximum of a quantity that has this value at a load phase."""
     if value < 0.0:
         angle += math.pi
     angle -= 2.0 * math.pi * math.ceil((angle - math.pi) / (2.0 * math.pi))
@@ -55,7 +58,13 @@ def turned_half(angle, value):
 
 @kernel
 def largest_in_contact(table, out):
-    """The same of z, `out` (FOUND,): it turns only where slides end, and stops hold it there."""
+    """Find the largest modulus of z, and when; z turns only at the ends of slides, and stops hold it there.
+
+    Parameters
+    ----------
+    table : (segments, columns) segment table
+    out : (FOUND,) filled with modulus and load phases
+    """
     out[VALUE] = -1.0
     for k in range(table.shape[0]):
         row = table[k]
@@ -68,11 +77,23 @@ def largest_in_contact(table, out):
 
 
 @kernel
-def set_watch(st, shapes, k, beta, phasor, row, slides, n, table):
-    """Fill a table of the n oscillators of a phase, in which the k-th row of `shapes` is watched.
+def set_watch(st, outputs, k, beta, phasor, row, slides, n, table):
+    """Fill a table of the n oscillators of a segment, whose watched sum is the k-th row of `outputs`.
 
-    phasor : of what moves with the load alone
-    Returns (friction force, what the row has beside what is watched).
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    outputs : OutputMatrices; k : its row
+    beta : kinetic friction force
+    phasor : complex response of the row that the contact does not influence
+    row : (columns,) row of the segment table
+    slides : whether the segment is a slide
+    n : number of oscillators
+    table : (n + 1, COLUMNS) table of `oscillators` to fill
+
+    Returns
+    -------
+    (friction, offset) : friction force on the oscillators, and the constant part of the row
     """
     source = st.free if slides else st.held
     yc, ys = phasor.real, -phasor.imag
@@ -81,26 +102,39 @@ def set_watch(st, shapes, k, beta, phasor, row, slides, n, table):
             table[i, column] = source[i, column]
     for i in range(n):
         if slides:
-            place, rate = shapes.free[k, i], shapes.free[k, n + i]
-            yc -= rate * st.modes[DIRECT_COS, i]
-            ys -= rate * st.modes[DIRECT_SIN, i]
+            of_q, of_p = outputs.free[k, i], outputs.free[k, n + i]
+            yc -= of_p * st.modes[FEEDTHROUGH_COS, i]
+            ys -= of_p * st.modes[FEEDTHROUGH_SIN, i]
         else:
-            place, rate = shapes.held[k, i], shapes.held[k, n + i]
-            yc -= rate * st.direct[0, i]
-            ys -= rate * st.direct[1, i]
-        table[i, OZ], table[i, OW] = place, rate * st.rate
+            of_q, of_p = outputs.held[k, i], outputs.held[k, n + i]
+            yc -= of_p * st.held_feedthrough[0, i]
+            ys -= of_p * st.held_feedthrough[1, i]
+        table[i, OZ], table[i, OW] = of_q, of_p * st.rate
     watch_load(table, yc, ys)
     if slides:
-        return beta, shapes.friction[k] * beta
-    return 0.0, shapes.static_shape[k] * row[PLACE]
+        return beta, outputs.friction[k] * beta
+    return 0.0, outputs.static_shape[k] * row[STOP_Z]
 
 
 @kernel
 def _search(st, table, n, friction, offset, row, state, scratch, out):
-    """Enter the largest modulus over a phase of what a table watches, from its state at the start.
+    """Update the largest modulus of the watched sum of a table over one segment.
 
-    Scan steps are expanded in which it may turn beyond what was found before, and the first and the last.
-    They overlap a little, so that no turn falls between them by rounding.
+    Scan steps in which the sum may exceed the largest value so far at a turning point are expanded, and so
+    are the first and the last.  The steps overlap slightly, so that rounding hides no turning point between
+    them.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    table : (n + 1, COLUMNS) table of `oscillators`
+    n : number of oscillators
+    friction : friction force on the oscillators
+    offset : constant part of the sum
+    row : (columns,) row of the segment table
+    state : (2, n) state at the start of the segment; advanced to its end
+    scratch : Scratch
+    out : (FOUND,) largest modulus and its load phase, updated
     """
     angle = math.atan2(row[SIN], row[COS])
     c, s = row[COS], row[SIN]
@@ -120,7 +154,7 @@ def _search(st, table, n, friction, offset, row, state, scratch, out):
             watch(table, c, s, scratch.series, scratch.watched)
             scratch.watched[0] += offset
             begin, end = 0.0 if first else -_SHORTEST, length - done if last else 1.0 + _SHORTEST
-            most, x = _largest(scratch.watched, st.terms, begin, end, first, last, out[VALUE])
+            most, x = _largest_modulus(scratch.watched, st.terms, begin, end, first, last, out[VALUE])
             if abs(most) > out[VALUE]:
                 out[VALUE], out[PHASE] = abs(most), turned_half(angle + (done + x) * st.h, most)
         value, slope, c, s = value1, slope1, c1, s1
@@ -128,13 +162,21 @@ def _search(st, table, n, friction, offset, row, state, scratch, out):
 
 
 @kernel
-def largest_moduli(st, beta, shapes, alone, i, skipped, table, out, work, scratch):
-    """The largest modulus, and when, of every row of `shapes` over the table's phases; `out` (rows, FOUND).
+def largest_moduli(st, beta, outputs, uncoupled, i, skipped, table, out, work, scratch):
+    """Find the largest modulus, and its load phase, of the rows of `outputs` over a segment table.
 
-    alone : Alone, at the i-th frequency
-    skipped : a row to leave out, or -1
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta : kinetic friction force
+    outputs : OutputMatrices
+    uncoupled : UncoupledResponse; i : index of the frequency
+    skipped : row to leave out, or -1
+    table : (segments, columns) segment table
+    out : (rows, FOUND) filled with moduli and load phases
+    work, scratch : Workspace, Scratch
     """
-    for k in range(shapes.static_shape.size):
+    for k in range(outputs.static_shape.size):
         if k == skipped:
             continue
         for column in range(FOUND):
@@ -144,14 +186,14 @@ def largest_moduli(st, beta, shapes, alone, i, skipped, table, out, work, scratc
             row = table[j]
             slides, n, state = take_start(st, row, work)
             watched = work.table[: n + 1]
-            phasor = alone.sliding[i, k] if slides else alone.held[i, k]
-            force, offset = set_watch(st, shapes, k, beta, phasor, row, slides, n, watched)
+            phasor = uncoupled.sliding[i, k] if slides else uncoupled.held[i, k]
+            force, offset = set_watch(st, outputs, k, beta, phasor, row, slides, n, watched)
             _search(st, watched, n, force, offset, row, state, scratch, out[k])
 
 
 @kernel
-def _at(p, terms, x):
-    """A polynomial, its slope and its bend at x."""
+def _polynomial(p, terms, x):
+    """Evaluate a polynomial and its first two derivatives at x."""
     value = slope = bend = 0.0
     for k in range(terms - 1, -1, -1):
         bend = bend * x + 2.0 * slope
@@ -161,8 +203,8 @@ def _at(p, terms, x):
 
 
 @kernel
-def _bounds(p, terms):
-    """Bounds over [0, 1] on the moduli of the second and the third derivative of a polynomial."""
+def _derivative_bounds(p, terms):
+    """Bounds over [0, 1] on the moduli of the second and third derivative of a polynomial."""
     second = third = 0.0
     for k in range(2, terms):
         size = k * (k - 1.0) * abs(p[k])
@@ -172,11 +214,13 @@ def _bounds(p, terms):
 
 
 @kernel
-def _turn(p, terms, low, high, slope_low):
-    """(value, x) where a polynomial turns in [low, high], the only place: Newton's method, kept inside."""
+def _turning_point(p, terms, low, high, slope_low):
+    """Return (value, x) at the only turning point of a polynomial in [low, high], by safeguarded Newton
+    iteration.
+    """
     x = 0.5 * (low + high)
     while True:
-        value, slope, bend = _at(p, terms, x)
+        value, slope, bend = _polynomial(p, terms, x)
         if slope * slope_low > 0.0:
             low = x
         else:
@@ -188,24 +232,34 @@ def _turn(p, terms, low, high, slope_low):
 
 
 @kernel
-def _largest(p, terms, begin, end, opens, closes, most):
-    """(value, x) of the largest modulus over [begin, end] of a polynomial beyond `most`; value 0 if none is.
+def _largest_modulus(p, terms, begin, end, opens, closes, most):
+    """Return (value, x) of the largest modulus of a polynomial over [begin, end] above `most`; value 0 if
+    there is none.
 
-    opens, closes : whether the phase begins or ends here.  Its ends count where the modulus falls from or
-    rises to them.  Other nodes do not: beside a turn they are as large to rounding, at another time.
+    Ends of the segment count where the modulus falls from them or rises to them.  Other nodes do not count:
+    next to a turning point their modulus is the same to rounding, at a different time.
 
-    An interval of length l holds nothing beyond its larger end by l^2/8 max |p''|; and no turn where the
-    slopes differ by less than they would if it had one, or one where the bend keeps its sign.
+    An interval of length l exceeds its larger end by at most l^2/8 max |p''|.  It holds no turning point
+    where the slopes at its ends differ by less than a turning point requires, and at most one where the
+    second derivative keeps its sign.
+
+    Parameters
+    ----------
+    p : (terms,) coefficients
+    terms : number of coefficients
+    begin, end : interval, within [0, 1] except for the overlap
+    opens, closes : whether the segment begins or ends in this interval
+    most : modulus to exceed
     """
-    second, third = _bounds(p, terms)
-    best, at = 0.0, begin
+    second, third = _derivative_bounds(p, terms)
+    best, x_best = 0.0, begin
     a, length = begin, end - begin
-    value_a, slope_a, bend_a = _at(p, terms, begin)
+    value_a, slope_a, bend_a = _polynomial(p, terms, begin)
     if opens and value_a * slope_a <= 0.0 and abs(value_a) > most:
         best, most = value_a, abs(value_a)
     while a < end:
         b = min(a + length, end)
-        value, slope, bend = _at(p, terms, b)
+        value, slope, bend = _polynomial(p, terms, b)
         size = b - a
         low = max(abs(value_a), abs(value)) + 0.125 * size * size * second <= most
         straight = slope_a * slope > 0.0 and abs(slope_a) + abs(slope) >= size * second
@@ -215,11 +269,11 @@ def _largest(p, terms, begin, end, opens, closes, most):
                 length = 0.5 * size
                 continue
             if slope_a * slope <= 0.0:
-                turn, x = _turn(p, terms, a, b, slope_a)
+                turn, x = _turning_point(p, terms, a, b, slope_a)
                 if abs(turn) > most:
-                    best, at, most = turn, x, abs(turn)
+                    best, x_best, most = turn, x, abs(turn)
         a, value_a, slope_a, bend_a = b, value, slope, bend
         length = end - a
     if closes and value_a * slope_a >= 0.0 and abs(value_a) > most:
-        best, at = value_a, end
-    return best, at
+        best, x_best = value_a, end
+    return best, x_best

@@ -1,4 +1,4 @@
-"""The cells of a map: whole runs of them by closed form, the open ones one by one."""
+"""Cells of a map: whole runs of cells by closed form, the open cells one by one."""
 
 import math
 from typing import NamedTuple
@@ -8,21 +8,34 @@ import numpy as np
 from ...regimes import CLOSED_FORM, CONTINUOUS, PERMANENT_STICKING, RESOLVED
 from ..compiler import entry, kernel
 from ..one_mass.sliding_orbit import continuous_amplitude
-from .answers import continuous_cell, known_orbit, quasi_static_cell, stuck_cell
-from .details import Details, Nothing, details_at, note_continuous, note_orbit, note_stuck
+from .details import (
+    Details,
+    NotRequested,
+    details_at,
+    write_continuous_details,
+    write_orbit_details,
+    write_stuck_details,
+)
 from .march import steady_state
 from .measure import measure
 from .motion import at_frequency, contact_at, forget_neighbour, start
-from .phase_table import phase_columns
-from .quantities import Quantities, quantities_at, take_continuous, take_orbit, take_stuck
+from .quantities import (
+    Quantities,
+    quantities_at,
+    write_continuous_quantities,
+    write_orbit_quantities,
+    write_stuck_quantities,
+)
+from .records import continuous_cell, known_orbit, quasi_static_cell, stuck_cell
+from .segment_table import segment_columns
 
-#: Open cells of a row after which the search from the neighbour's orbit starts anew.  Work is cut only there
-#: and at the ends of rows, so that no answer depends on how it is cut.
+#: Number of open cells of a row after which the search from the neighbour's orbit starts anew.  Jobs begin
+#: only there and at the start of rows, so that no result depends on how the map is divided into jobs.
 RESTART = 256
 
 
 class Axes(NamedTuple):
-    """The axes of a map."""
+    """Axes of a map."""
 
     mu: np.ndarray
     r: np.ndarray
@@ -30,34 +43,34 @@ class Axes(NamedTuple):
 
 
 class OpenCells(NamedTuple):
-    """The cells that no formula decides."""
+    """Cells that no closed form decides."""
 
-    rows: np.ndarray  # (k,) the (mu, r) rows that have any
-    ends: np.ndarray  # (k,) number of open cells up to and with each of them
-    low: np.ndarray  # (n_mu n_r,) first open cell in beta, by row
-    high: np.ndarray  # (n_mu n_r,) and the one after the last
+    rows: np.ndarray  # (k,) the (mu, r) rows with open cells
+    ends: np.ndarray  # (k,) cumulative number of open cells of these rows
+    low: np.ndarray  # (n_mu n_r,) index in beta of the first open cell of each row
+    high: np.ndarray  # (n_mu n_r,) index after the last one
 
 
 class ClosedForm(NamedTuple):
-    """What the closed forms need at every r."""
+    """Quantities that the closed forms need at every r; arrays of shape (n_r,)."""
 
-    load: np.ndarray  # unit of force and displacement
+    load: np.ndarray  # unit of force and displacement, the load amplitude
     v_abs: np.ndarray
     u: np.ndarray
     g: np.ndarray
     marginal: np.ndarray  # bool
 
 
-class Wanted(NamedTuple):
-    """What is asked for beyond the outputs that every cell has."""
+class Requested(NamedTuple):
+    """Results requested beyond the outputs of every cell."""
 
-    details: Details | Nothing
-    quantities: Quantities | Nothing
+    details: Details | NotRequested
+    quantities: Quantities | NotRequested
 
 
 @kernel
 def store(out, m, i, j, cell, load):
-    """Write what was asked for of a cell; outputs that were not asked for have no size."""
+    """Write the requested outputs of a cell; outputs that are not requested have size 0."""
     if out.regime.size:
         out.regime[m, i, j] = cell.regime
     if out.stops_per_cycle.size:
@@ -77,60 +90,91 @@ def store(out, m, i, j, cell, load):
 
 
 @entry
-def fill_closed(first, last, cells, axes, closed, out, wanted):
-    """Rows first..last-1 of (mu, r): below the open cells all is continuous, above them it sticks.
+def fill_closed(first, last, cells, axes, closed, out, requested):
+    """Fill the cells that closed forms decide: continuous motion below the open cells, permanent sticking
+    above them.
 
     At r = 0, where no motion can be followed, the open cells are filled too.
+
+    Parameters
+    ----------
+    first, last : rows first..last-1 of the (mu, r) grid
+    cells : OpenCells
+    axes : Axes
+    closed : ClosedForm
+    out : named tuple of arrays (n_mu, n_r, n_beta, ...), one for every output
+    requested : Requested
     """
     n_r = axes.r.size
     for row in range(first, last):
         m = row // n_r
         i = row % n_r
         load = closed.load[i]
-        details, quantities = details_at(wanted.details, i), quantities_at(wanted.quantities, i)
+        details, quantities = details_at(requested.details, i), quantities_at(requested.quantities, i)
         for j in range(cells.low[row]):
             b = axes.beta[j] / load
             amplitude = continuous_amplitude(closed.v_abs[i], closed.u[i], closed.g[i], b)
             marginal = closed.marginal[i] and b > 0.0
             store(out, m, i, j, continuous_cell(amplitude, marginal, CLOSED_FORM, 0.0), load)
             if axes.r[i] > 0.0:
-                note_continuous(details, out, m, i, j, axes.beta[j], axes.mu[m] * axes.beta[j])
-                take_continuous(quantities, m, j, axes.beta[j])
+                write_continuous_details(details, out, m, i, j, axes.beta[j], axes.mu[m] * axes.beta[j])
+                write_continuous_quantities(quantities, m, j, axes.beta[j])
         if axes.r[i] == 0.0:
             for j in range(cells.low[row], cells.high[row]):
                 store(out, m, i, j, quasi_static_cell(), load)
         for j in range(cells.high[row], axes.beta.size):
             store(out, m, i, j, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
-            note_stuck(details, out, m, i, j, 0.0)
-            take_stuck(quantities, m, j)
+            write_stuck_details(details, out, m, i, j, 0.0)
+            write_stuck_quantities(quantities, m, j)
 
 
 @kernel
-def _take(quantities, motion, contact, found, m, j, beta):
-    """Write the quantities that were asked for of an open cell."""
+def _write_quantities(quantities, motion, contact, found, m, j, beta):
+    """Write the requested quantities of an open cell.
+
+    Parameters
+    ----------
+    quantities : QuantitiesAtFrequency or NotRequested
+    motion : a kind of motion, at the anchor of the steady state
+    contact : Contact
+    found : Cell
+    m, j : indices of mu and beta
+    beta : friction ratio
+    """
     if found.regime == PERMANENT_STICKING:
-        take_stuck(quantities, m, j)
+        write_stuck_quantities(quantities, m, j)
     elif found.slides > 0:
-        take_orbit(quantities, motion, contact, found, m, j, beta)
+        write_orbit_quantities(quantities, motion, contact, found, m, j, beta)
     elif found.regime == CONTINUOUS:
-        take_continuous(quantities, m, j, beta)
+        write_continuous_quantities(quantities, m, j, beta)
 
 
 @kernel
-def _note(details, motion, contact, found, out, m, i, j, beta, mu_beta):
-    """Write the details that were asked for of an open cell."""
+def _write_details(details, motion, contact, found, out, m, i, j, beta, mu_beta):
+    """Write the requested details of an open cell.
+
+    Parameters
+    ----------
+    details : DetailsAtFrequency or NotRequested
+    motion : a kind of motion, at the anchor of the steady state
+    contact : Contact
+    found : Cell
+    out : named tuple of output arrays
+    m, i, j : indices of mu, r and beta
+    beta, mu_beta : kinetic and static friction force
+    """
     if found.regime == PERMANENT_STICKING:
-        note_stuck(details, out, m, i, j, motion.load * found.at.z)
+        write_stuck_details(details, out, m, i, j, motion.load * found.contact_state.z)
     elif found.slides > 0:
         amplitude = motion.load * found.amplitude
-        note_orbit(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude)
+        write_orbit_details(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude)
     elif found.regime == CONTINUOUS:
-        note_continuous(details, out, m, i, j, beta, mu_beta)
+        write_continuous_details(details, out, m, i, j, beta, mu_beta)
 
 
 @kernel
 def _row_of(cells, cell):
-    """The place in the list of rows of an open cell, by bisection."""
+    """Find the row of an open cell in the list of rows, by bisection."""
     low, high = 0, cells.ends.size
     while low < high:
         middle = (low + high) // 2
@@ -142,19 +186,19 @@ def _row_of(cells, cell):
 
 
 @entry
-def fill_open(first, last, cells, axes, system, limits, moving, out, wanted, cancel):
-    """Cells first..last-1 of the list of open cells; ends soon after cancel[0] is set.
+def fill_open(first, last, cells, axes, system, limits, moving, out, requested, cancel):
+    """Fill cells first..last-1 of the list of open cells; stop soon after cancel[0] is set.
 
     Parameters
     ----------
-    first : a cell at which the search from neighbours starts anew: see RESTART
+    first, last : range of open cells; the search from neighbours starts anew at `first`, see RESTART
     cells, axes : OpenCells, Axes
     system : a system over the map, see `motion`
     limits : Limits
-    moving : which start
-    out : named tuple of arrays, one for every output
-    wanted : Wanted, see `details` and `quantities`
-    cancel : (1,) set by another thread to end the work
+    moving : whether the initial state is the moving start; else the contact starts at rest
+    out : named tuple of arrays (n_mu, n_r, n_beta, ...), one for every output
+    requested : Requested, see `details` and `quantities`
+    cancel : (1,) set by another thread to end the computation
     """
     n_r = axes.r.size
     k = _row_of(cells, first)
@@ -165,40 +209,40 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, wanted, can
         i = row % n_r
         begin = cells.ends[k - 1] if k > 0 else 0
         motion = at_frequency(system, i)
-        details, quantities = details_at(wanted.details, i), quantities_at(wanted.quantities, i)
-        for place in range(cell - begin, min(last, cells.ends[k]) - begin):
+        details, quantities = details_at(requested.details, i), quantities_at(requested.quantities, i)
+        for position in range(cell - begin, min(last, cells.ends[k]) - begin):
             if cancel[0] != 0:
                 return
-            if place % RESTART == 0:
+            if position % RESTART == 0:
                 forget_neighbour(motion)
-            j = cells.low[row] + place
+            j = cells.low[row] + position
             beta, mu = axes.beta[j], axes.mu[m]
             contact = contact_at(system, m, i, beta, mu)
-            at = start(motion, system, i, contact, moving)
-            found = steady_state(motion, contact, at, moving, limits, cancel)
+            contact_state = start(motion, system, i, contact, moving)
+            found = steady_state(motion, contact, contact_state, moving, limits, cancel)
             store(out, m, i, j, found, motion.load)
-            motion.scratch.left[0] = math.inf  # an orbit that was found ends
-            _note(details, motion, contact, found, out, m, i, j, beta, mu * beta)
-            _take(quantities, motion, contact, found, m, j, beta)
+            motion.scratch.left[0] = math.inf  # the orbit is known, so following it ends
+            _write_details(details, motion, contact, found, out, m, i, j, beta, mu * beta)
+            _write_quantities(quantities, motion, contact, found, m, j, beta)
         cell = cells.ends[k]
         k += 1
 
 
 @entry
 def one_cell(system, beta, mu, limits, moving):
-    """The steady state of one open cell of a system at one frequency, and its table of phases.
+    """Find the steady state of one open cell of a system at one frequency, and its segment table.
 
-    Returns (cell, table); the table has no rows where the contact sticks or a closed form tells the motion.
+    Returns (cell, table); the table has no rows where the contact sticks or a closed form gives the motion.
     """
     motion = at_frequency(system, 0)
     forget_neighbour(motion)
     contact = contact_at(system, 0, 0, beta, mu)
-    at = start(motion, system, 0, contact, moving)
-    found = steady_state(motion, contact, at, moving, limits, np.zeros(1, dtype=np.uint8))
-    table = np.empty((2 * found.slides, phase_columns(system.modes)))
-    phases = 0
+    contact_state = start(motion, system, 0, contact, moving)
+    found = steady_state(motion, contact, contact_state, moving, limits, np.zeros(1, dtype=np.uint8))
+    table = np.empty((2 * found.slides, segment_columns(system.modes)))
+    segments = 0
     if found.slides > 0:
-        motion.scratch.left[0] = math.inf  # an orbit that was found ends
-        orbit = known_orbit(found.at, found.event, found.sign, found.slides)
-        phases = measure(motion, contact, orbit, table).phases
-    return found, table[:phases]
+        motion.scratch.left[0] = math.inf  # the orbit is known, so following it ends
+        orbit = known_orbit(found.contact_state, found.event, found.sign, found.slides)
+        segments = measure(motion, contact, orbit, table).segments
+    return found, table[:segments]

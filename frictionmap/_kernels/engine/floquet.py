@@ -1,4 +1,4 @@
-"""Stability and symmetry of a steady state: its Floquet multipliers, and how far from antiperiodic it is."""
+"""Stability and symmetry of a steady state: Floquet multipliers, and deviation from antiperiodicity."""
 
 import math
 
@@ -11,16 +11,30 @@ from ..one_mass.sliding_orbit import orbit_phase
 from ..structure.events import slide_on
 from ..structure.newton import copy_state, return_map, spectral_radius
 from ..structure.sliding_orbit import orbit_state
-from .phase_table import CONTACT_FORCE, COS, EVENT, LENGTH, SENSE, SIN, take_start
-from .time_history import Samples, sample_phases
+from .segment_table import CONTACT_FORCE, COS, EVENT, LENGTH, SENSE, SIN, take_start
+from .time_history import Samples, sample_segments
 
-#: Samples of z in half a period of the excitation for its asymmetry.
+#: Samples of z per half period of the excitation.
 _SAMPLES = 256
 
 
 @kernel
-def _around(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
-    """Largest modulus over the steady period from work.middle in a slide; nan if it does not fit."""
+def _multiplier(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
+    """Largest modulus of the multipliers over the steady period, from work.middle in a slide.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta, mu_beta : kinetic and static friction force
+    c, s : cosine and sine of the load phase of work.middle
+    sequence : EventSequence of one recurrence
+    halves : half periods of one recurrence
+    work, scratch : Workspace, Scratch; work.middle is the (2, n) state on the orbit
+
+    Returns
+    -------
+    float : NaN if the events do not fit the sequence
+    """
     if not return_map(st, beta, mu_beta, work.middle, c, s, sequence, halves, True, work, scratch):
         return math.nan
     radius = spectral_radius(work.flow, 2 * st.n, work.square)
@@ -29,7 +43,7 @@ def _around(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
 
 @entry
 def orbit_multiplier(st, beta, mu_beta, table, work, scratch):
-    """Largest modulus of the multipliers of the periodic orbit of a table of phases."""
+    """Largest modulus of the Floquet multipliers of the periodic orbit of a segment table."""
     events = np.empty(table.shape[0])
     slides = 0
     time = 0.0
@@ -45,12 +59,20 @@ def orbit_multiplier(st, beta, mu_beta, table, work, scratch):
     half = 0.5 * table[0, LENGTH] / st.h
     sequence = EventSequence(events, np.int64(0), slides)
     _, _, c, s, _ = slide_on(st, beta, table[0, CONTACT_FORCE], work.middle, c, s, half, scratch)
-    return _around(st, beta, mu_beta, c, s, sequence, half_periods(time), work, scratch)
+    return _multiplier(st, beta, mu_beta, c, s, sequence, half_periods(time), work, scratch)
 
 
 @kernel
 def continuous_multiplier(st, orbit, i, beta, mu_beta, work, scratch):
-    """The same of the continuous orbit, which turns once in half a period."""
+    """Largest modulus of the Floquet multipliers of the continuous orbit, which turns once per half period.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    orbit : Continuous; i : index of the frequency
+    beta, mu_beta : kinetic and static friction force
+    work, scratch : Workspace, Scratch
+    """
     v_abs = orbit.v_abs[i]
     if math.isinf(v_abs):
         return math.nan
@@ -61,14 +83,14 @@ def continuous_multiplier(st, orbit, i, beta, mu_beta, work, scratch):
     work.events[0] = REVERSE
     once = np.int64(1)  # not a literal, which would be compiled for itself
     sequence = EventSequence(work.events, np.int64(0), once)
-    return _around(st, beta, mu_beta, c, s, sequence, once, work, scratch)
+    return _multiplier(st, beta, mu_beta, c, s, sequence, once, work, scratch)
 
 
 @kernel
 def _least_difference(z, halves):
-    """Least over odd m of the largest |z(tau + m pi) + z(tau)|; `z` has _SAMPLES in each of `halves` pi."""
+    """Least over odd m of the largest |z(tau + m pi) + z(tau)|; `z` has _SAMPLES values per half period."""
     least = math.inf
-    # m and halves - m make the same pairs
+    # m and halves - m give the same pairs
     for m in range(1, halves // 2 + 1, 2):
         most = 0.0
         for j in range(z.size):
@@ -79,10 +101,10 @@ def _least_difference(z, halves):
 
 @entry
 def asymmetry(st, beta, table, amplitude, work, scratch):
-    """How far the motion in a table of phases is from a mirror image of itself, over the amplitude.
+    """Deviation of the motion of a segment table from its mirror image, relative to the amplitude.
 
-    The least over odd m of the largest |z(tau + m pi) + z(tau)|; 0 if it returns mirrored, that is after an
-    odd number of half periods.
+    It is the least over odd m of the largest |z(tau + m pi) + z(tau)|, and 0 for a motion that recurs after
+    an odd number of half periods.
     """
     total = 0.0
     for k in range(table.shape[0]):
@@ -98,5 +120,5 @@ def asymmetry(st, beta, table, amplitude, work, scratch):
     samples = Samples(
         np.empty((st.n, size)), np.empty((st.n, size)), z, np.empty(size), np.empty(size, dtype=np.int8)
     )  # fmt: skip
-    sample_phases(st, beta, table, tau, samples, work, scratch)
+    sample_segments(st, beta, table, tau, samples, work, scratch)
     return _least_difference(z, halves) / amplitude

@@ -1,8 +1,9 @@
-"""Harmonics of a steady state, exact: those of the friction force from its phases, the others from them.
+"""Exact harmonics of a steady state: those of friction from its segments, the others from the equations of
+motion.
 
-x_k = X_k0 + Re sum X_kn e^{i n tau}.  What friction drives is linear: the harmonics Q_n of the modes are
-(delta_n1 lambda - chi F_n)/(w^2 - n^2 r^2 + 2 i zeta w n r).  Where that is 0/0, an undamped mode in step
-with the n-th harmonic, or near to it, the mode itself is integrated.
+x_k = X_k0 + Re sum X_kn e^{i n tau}.  The response to friction is linear: the harmonics Q_n of the modes are
+(delta_n1 lambda - chi F_n)/(w^2 - n^2 r^2 + 2 i zeta w n r).  Where this is 0/0, or close to it, because an
+undamped mode resonates with the n-th harmonic, the mode itself is integrated.
 """
 
 import cmath
@@ -15,25 +16,25 @@ from ..compiler import entry, kernel
 from ..one_mass.newton import half_periods
 from ..structure.oscillators import F1, FC, FS, OW, OZ, YC, YS, D, K
 from ..structure.state import DAMPING, PUSH, STATIC_SHAPE, W
-from .phase_table import COS, LENGTH, PLACE, SENSE, SIGN, SIN, STATE
+from .segment_table import COS, LENGTH, SENSE, SIGN, SIN, STATE, STOP_Z
 from .transforms import Driven, end_of, near_harmonic, transform
 
 
 class Spectrum(NamedTuple):
-    """Harmonics 0..N of a cell, and what they are made with."""
+    """Harmonics 0..N of a cell, and work arrays for them."""
 
     friction: np.ndarray  # (N + 1,) complex
     modes: np.ndarray  # (N + 1, n) complex
-    near: np.ndarray  # (N + 1, n) bool, where a mode itself is integrated
-    waves: np.ndarray  # (N + 2,) complex, int e^{-i n theta} over a phase
+    near: np.ndarray  # (N + 1, n) bool, whether a mode is close to resonance and is integrated itself
+    waves: np.ndarray  # (N + 2,) complex, integrals of e^{-i n theta} over a segment
     turns: np.ndarray  # (N + 2,) complex, e^{-i n theta} at its end
-    parts: np.ndarray  # (2, n) complex, the same integrals of the held oscillators y and p
-    ends: np.ndarray  # (2, n) of the oscillators at its end, velocities in tau
+    parts: np.ndarray  # (2, n) complex, Fourier integrals of the held oscillators y and p
+    ends: np.ndarray  # (2, n) state of the oscillators at its end, velocities in tau
 
 
 @entry
 def make_spectrum(st, harmonics):
-    """The arrays for so many harmonics, at least 1, of a structure at one frequency."""
+    """Allocate the arrays for a number of harmonics, at least 1, of a structure at one frequency."""
     near = np.zeros((harmonics + 1, st.n), dtype=np.bool_)
     square = 1.0 / (st.h * st.h)
     for n in range(harmonics + 1):
@@ -48,7 +49,7 @@ def make_spectrum(st, harmonics):
 
 @kernel
 def _driven(st, table, i, n, friction, row):
-    """The i-th of the n oscillators that move in a phase."""
+    """Build the i-th of the n oscillators that move in a segment."""
     square = 1.0 / (st.h * st.h)
     phase = complex(row[COS], row[SIN])
     return Driven(
@@ -59,20 +60,20 @@ def _driven(st, table, i, n, friction, row):
 
 @kernel
 def _wave(spectrum, m):
-    """int e^{-i m theta} over the phase; m may be -1."""
+    """Integral of e^{-i m theta} over the segment; m may be -1."""
     return spectrum.waves[m] if m >= 0 else spectrum.waves[-m].conjugate()
 
 
 @kernel
 def _under_load(spectrum, force, constant, n):
-    """int (Re(force e^{i theta}) + constant) e^{-i n theta} over the phase."""
+    """Integral of (Re(force e^{i theta}) + constant) e^{-i n theta} over the segment."""
     swing = force * _wave(spectrum, n - 1) + force.conjugate() * _wave(spectrum, n + 1)
     return 0.5 * swing + constant * spectrum.waves[n]
 
 
 @kernel
 def _one_transform(o, spectrum, i, n, length):
-    """(int y e^{-i n theta}, that of y') of the i-th oscillator of a phase."""
+    """Integrals of y e^{-i n theta} and of y' e^{-i n theta} over the segment for the i-th oscillator."""
     turn = spectrum.turns[n]
     change = spectrum.ends[0, i] * turn - o.y
     push = spectrum.ends[1, i] * turn - o.v
@@ -82,8 +83,8 @@ def _one_transform(o, spectrum, i, n, length):
 
 
 @kernel
-def _set_out(st, row, oscillators, n, friction, spectrum):
-    """Fill what all harmonics of a phase share; n oscillators are needed of it."""
+def _prepare_segment(st, row, oscillators, n, friction, spectrum):
+    """Fill the arrays that all harmonics of a segment share, for its first n oscillators."""
     length = row[LENGTH]
     step = cmath.exp(complex(0.0, -length))
     spectrum.turns[0], spectrum.waves[0] = 1.0, length
@@ -98,8 +99,8 @@ def _set_out(st, row, oscillators, n, friction, spectrum):
 
 @kernel
 def _add_slide(st, row, beta, near, spectrum):
-    """Add a slide; `near`: whether any mode is integrated."""
-    _set_out(st, row, st.free, st.n if near else 0, beta, spectrum)
+    """Add a slide to the harmonics; `near` tells whether any mode is integrated."""
+    _prepare_segment(st, row, st.free, st.n if near else 0, beta, spectrum)
     sign, turn = row[SIGN], row[SIGN] * complex(row[COS], -row[SIN])
     factor = complex(sign, 0.0)
     for n in range(spectrum.friction.size):
@@ -117,21 +118,21 @@ def _add_slide(st, row, beta, near, spectrum):
 def _held_parts(st, row, phase, n, spectrum):
     """Fill the integrals of the held oscillators, and return that of the load in the contact."""
     shared = complex(st.held[st.m, YC], -st.held[st.m, YS]) * phase
-    load = _under_load(spectrum, shared, st.stiffness * row[PLACE], n)
+    load = _under_load(spectrum, shared, st.stiffness * row[STOP_Z], n)
     for k in range(st.m):
         o = _driven(st, st.held, k, st.m, 0.0, row)
         moved, rate = _one_transform(o, spectrum, k, n, row[LENGTH])
-        direct = complex(st.direct[0, k], -st.direct[1, k]) * phase
+        feedthrough = complex(st.held_feedthrough[0, k], -st.held_feedthrough[1, k]) * phase
         spectrum.parts[0, k] = moved
-        spectrum.parts[1, k] = st.r * rate - _under_load(spectrum, direct, 0.0, n)
+        spectrum.parts[1, k] = st.r * rate - _under_load(spectrum, feedthrough, 0.0, n)
         load += st.held[k, OZ] * moved + st.held[k, OW] * st.h * rate
     return load
 
 
 @kernel
 def _add_stop(st, row, near, spectrum):
-    """Add a stop, in which friction carries the load."""
-    _set_out(st, row, st.held, st.m, 0.0, spectrum)
+    """Add a stop to the harmonics; in a stop the friction force balances the load in the contact."""
+    _prepare_segment(st, row, st.held, st.m, 0.0, spectrum)
     phase = complex(row[COS], row[SIN])
     sign, turn = row[SIGN], row[SIGN] * phase.conjugate()
     factor = complex(sign, 0.0)
@@ -140,7 +141,7 @@ def _add_stop(st, row, near, spectrum):
         if near:
             for i in range(st.n):
                 if spectrum.near[n, i]:
-                    moved = st.modes[STATIC_SHAPE, i] * row[PLACE] * spectrum.waves[n]
+                    moved = st.modes[STATIC_SHAPE, i] * row[STOP_Z] * spectrum.waves[n]
                     for k in range(st.m):
                         moved += st.to_free[i, k] * spectrum.parts[0, k]
                         moved += st.to_free[i, st.m + k] * spectrum.parts[1, k]
@@ -149,7 +150,8 @@ def _add_stop(st, row, near, spectrum):
 
 
 @kernel
-def _any_near(spectrum):
+def _any_near_harmonic(spectrum):
+    """Whether any mode is close to resonance with one of the harmonics."""
     found = False
     for n in range(spectrum.near.shape[0]):
         for i in range(spectrum.near.shape[1]):
@@ -158,10 +160,10 @@ def _any_near(spectrum):
 
 
 @kernel
-def _answer_of(st, i, n, friction):
-    """Harmonic of a mode under load and friction; 0 where nothing drives it, in step with it or not.
+def _modal_response(st, i, n, friction):
+    """n-th harmonic of a mode under load and friction; 0 where the mode is not excited, even at resonance.
 
-    Where an undamped mode is driven in step with it that has no bound; who asks knows.
+    An undamped mode excited at resonance has no bounded harmonic; callers treat that case themselves.
     """
     w, zeta = st.modes[W, i], st.modes[DAMPING, i]
     square = st.r * st.r / (st.h * st.h)
@@ -175,9 +177,9 @@ def _answer_of(st, i, n, friction):
 
 
 @kernel
-def harmonics_of_phases(st, beta, table, spectrum):
-    """Fill the harmonics of the steady state of a table of phases; the half periods that it lasts."""
-    near = _any_near(spectrum)
+def harmonics_of_segments(st, beta, table, spectrum):
+    """Fill the harmonics of the steady state of a segment table; return its duration in half periods."""
+    near = _any_near_harmonic(spectrum)
     for n in range(spectrum.friction.size):
         spectrum.friction[n] = 0j
         for i in range(st.n):
@@ -193,24 +195,26 @@ def harmonics_of_phases(st, beta, table, spectrum):
     for n in range(spectrum.friction.size):
         scale = (1.0 if n == 0 else 2.0) / (math.pi * halves)
         if halves % 2 == 1 and n % 2 == 0:
-            scale = 0.0  # the motion is its own mirror image
+            scale = 0.0  # the motion is antiperiodic: even harmonics vanish
         spectrum.friction[n] *= scale
         for i in range(st.n):
             if spectrum.near[n, i]:
                 spectrum.modes[n, i] *= scale
             else:
-                spectrum.modes[n, i] = _answer_of(st, i, n, spectrum.friction[n])
+                spectrum.modes[n, i] = _modal_response(st, i, n, spectrum.friction[n])
     return halves
 
 
 @kernel
 def harmonics_of_continuous(st, beta, phase, spectrum):
-    """Fill those of the continuous orbit: friction is a square wave, `phase` the load's at a maximum of z."""
+    """Fill the harmonics of the continuous orbit, whose friction is a square wave; `phase` is the load phase
+    at a maximum of z.
+    """
     turn = cmath.exp(complex(0.0, -phase))
     factor = complex(1.0, 0.0)
     for n in range(spectrum.friction.size):
         odd = n % 2 == 1
         spectrum.friction[n] = factor * complex(0.0, 4.0 * beta / (math.pi * n)) if odd else 0j
         for i in range(st.n):
-            spectrum.modes[n, i] = _answer_of(st, i, n, spectrum.friction[n])
+            spectrum.modes[n, i] = _modal_response(st, i, n, spectrum.friction[n])
         factor *= turn

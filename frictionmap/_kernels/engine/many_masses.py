@@ -1,7 +1,7 @@
-"""A structure as a kind of motion: all its modes, free and held.
+"""A structure as a kind of motion: all its modes, with the contact sliding and held.
 
-Where one mass forgets all but its displacement in a stop, the rest of a structure remembers, so anchors are
-compared, and solved for, with the whole state (`structure.newton`).
+At a stop of one mass only the displacement is left of the state; the other modes of a structure keep moving.
+Anchors are therefore compared, and solved for, with the whole state (`structure.newton`).
 """
 
 import math
@@ -12,7 +12,7 @@ import numpy as np
 from ..compiler import entry, inner_kernel, kernel
 from ..one_mass.events import NO_END, STOP_THEN_BACK, EventSequence
 from ..one_mass.sliding_orbit import continuous_amplitude, orbit_phase
-from ..structure.events import MOVING, after_slide, slide_on
+from ..structure.events import UNDER_WAY, after_slide, slide_on
 from ..structure.newton import (
     BETA,
     EARLIER_BETA,
@@ -35,55 +35,58 @@ from ..structure.sliding_orbit import Continuous, orbit_state, stop_free_radius
 from ..structure.state import (
     Loads,
     Model,
-    Structure,
+    StructureAtFrequency,
     W,
+    contact_displacement,
     energy,
     hold,
     make_structure,
-    place,
     release_steady,
     vibrates_in_step,
 )
-from .answers import TURN, Contact, Moment, known_orbit, no_orbit, nowhere, turns_at
-from .memory import STATE, Memory, Near, make_memory, turned
-from .phase_table import put_state
+from .memory import STATE, Memory, Recurrence, make_memory, turned
 from .policies import FINE_STEPS, SLOTS
+from .records import TURN, Contact, ContactState, known_orbit, no_orbit, turns_at, undefined_state
+from .segment_table import put_state
 
-#: The load's phase at a return has to be this close even where any state will do to start from.
+#: Largest distance of the load phases of a recurrence, also where any state may be used as first guess.
 _NEAR_PHASE = 0.3
 
-#: An orbit with a slide longer than this (in tau) is not solved for, but waited for.
+#: An orbit with a slide longer than this (in tau) is not solved for; the motion is followed to it instead.
 _LONGEST_SLIDE = 8.0 * math.pi
 
-#: Orders of events that are tried on the way from a neighbour's orbit.
+#: Largest number of event sequences tried from a neighbour's orbit.
 _MOST_ORDERS = 8
 
-#: A return this close (relative to the motion) is worth a Newton iteration: one that is 0.1 off says too
-#: little of where a structure is heading.
-_NEAR_RETURN = 0.01
+#: Recurrence distance, relative to the motion, below which Newton's method is tried; at 0.1 it would not yet
+#: show which orbit a structure approaches.
+_RECURRENCE_THRESHOLD = 0.01
 
-#: With several steady states the one solved for must be where the motion is heading: no further off than
-#: this many times what the last return and the contraction there make one expect.
+#: Where several steady states exist the orbit found must be the one that the motion approaches: its distance
+#: may exceed the one expected from the last recurrence and the contraction by at most this factor.
 _HEADING = 4.0
 
-#: An orbit is expected on the line through its neighbours up to this many times their distance.
+#: Largest extrapolation along the line through the last two orbits, in units of their distance in beta.
 _FURTHEST = 2.0
 
-#: Anchors this close are one: ten times the one mass's, for the rounding of sums over many modes.
+#: Two anchors closer than this are the same; ten times the value for one mass, because sums over many modes
+#: round more.
 _SAME = 1e-8
 
 
 class Starts(NamedTuple):
-    """Starting states at every r: of the free modes, velocities in t = tau/r, and the load's phase."""
+    """Initial states at every r: coordinates and velocities in t = tau/r of the free oscillators, and the
+    load phase.
+    """
 
-    place: np.ndarray  # (n_r, n)
+    coordinates: np.ndarray  # (n_r, n)
     velocity: np.ndarray  # (n_r, n)
     cos: np.ndarray  # (n_r,)
     sin: np.ndarray
 
 
 class ManyMassSystem(NamedTuple):
-    """A structure over a map."""
+    """A structure over a whole map."""
 
     r: np.ndarray
     model: Model
@@ -102,16 +105,16 @@ class ManyMasses(NamedTuple):
 
     h: float  # scan step in tau
     r: float
-    load: float  # unit of force and displacement: 1, that of the system
+    load: float  # unit of force and displacement, 1
     v_abs: float
-    marginal: bool  # where continuous motions are a continuum
-    near_return: float
-    i: int  # the frequency's place
-    st: Structure
-    fine: Structure  # with steps at least as short, for bounds over a whole orbit
+    marginal: bool  # whether the continuous motions form a continuum
+    recurrence_threshold: float
+    i: int  # index of the frequency
+    st: StructureAtFrequency
+    fine: StructureAtFrequency  # with scan steps at least as short, for bounds over a whole orbit
     orbit: Continuous
-    state: np.ndarray  # (2, n) where the motion is, with its `Moment`
-    kept: np.ndarray  # (SLOTS, 2, n) states to come back to
+    state: np.ndarray  # (2, n) present state of the free oscillators
+    kept: np.ndarray  # (SLOTS, 2, n) saved states
     memory: Memory
     work: Workspace
     scratch: Scratch
@@ -120,54 +123,58 @@ class ManyMasses(NamedTuple):
 
 @entry
 def at_frequency(system, i):
-    """The structure at the i-th frequency, r > 0."""
+    """Build the motion of the structure at the i-th frequency, r > 0."""
     r = system.r[i]
     st = make_structure(system.model, system.loads, i, r, system.steps)
     fine = make_structure(system.model, system.loads, i, r, max(system.steps, FINE_STEPS))
     n = st.n
     return ManyMasses(
-        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _NEAR_RETURN, i, st, fine, system.orbit,
-        np.empty((2, n)), np.empty((SLOTS, 2, n)), make_memory(st.h, 2 * n), make_workspace(n),
+        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _RECURRENCE_THRESHOLD, i, st, fine,
+        system.orbit, np.empty((2, n)), np.empty((SLOTS, 2, n)), make_memory(st.h, 2 * n), make_workspace(n),
         make_scratch(n), np.empty((0, 0)),
     )  # fmt: skip
 
 
 @kernel
 def contact_at(system, m, i, beta, mu):
-    """The contact of a cell."""
+    """Build the contact of a cell."""
     return Contact(beta, mu * beta, system.lim[m, i], mu == 1.0)
 
 
 @kernel
 def start(motion, system, i, contact, moving):
-    """Where the motion starts; see `steady/kernel_data`."""
+    """Set the initial state, see `steady/kernel_data`."""
     st, state = motion.st, motion.state
     starts = system.moving if moving else system.rest
     for j in range(st.n):
-        state[0, j] = starts.place[i, j]
+        state[0, j] = starts.coordinates[i, j]
         state[1, j] = starts.velocity[i, j] / st.rate
-    return Moment(place(st, state, starts.cos[i], starts.sin[i]), 0.0, starts.cos[i], starts.sin[i], MOVING)
+    return ContactState(
+        contact_displacement(st, state, starts.cos[i], starts.sin[i]), 0.0, starts.cos[i], starts.sin[i],
+        UNDER_WAY,
+    )  # fmt: skip
 
 
 @inner_kernel
-def slide_to_turn(motion, contact, at, allowed):
+def slide_to_turn(motion, contact, contact_state, allowed):
     """See `motion.slide_to_turn`."""
     steps, end, c, s, _ = slide_on(
-        motion.st, contact.b, at.contact_force, motion.state, at.cos, at.sin, allowed, motion.scratch
-    )
+        motion.st, contact.b, contact_state.contact_force, motion.state, contact_state.cos, contact_state.sin,
+        allowed, motion.scratch,
+    )  # fmt: skip
     done = steps if end == FELL else float(NO_END)
-    return done, Moment(place(motion.st, motion.state, c, s), 0.0, c, s, 0.0)
+    return done, ContactState(contact_displacement(motion.st, motion.state, c, s), 0.0, c, s, 0.0)
 
 
 @inner_kernel
-def after_turn(motion, contact, at, allowed):
+def after_turn(motion, contact, contact_state, allowed):
     """See `motion.after_turn`."""
     event, c, s, contact_force, wait, _, _ = after_slide(
-        motion.st, contact.b, contact.mu_b, motion.state, motion.work.held, at.cos, at.sin, allowed,
-        motion.scratch,
+        motion.st, contact.b, contact.mu_b, motion.state, motion.work.held, contact_state.cos,
+        contact_state.sin, allowed, motion.scratch,
     )  # fmt: skip
-    z = -at.z if turns_at(event) else at.z
-    return event, Moment(z, 0.0, c, s, contact_force), wait
+    z = -contact_state.z if turns_at(event) else contact_state.z
+    return event, ContactState(z, 0.0, c, s, contact_force), wait
 
 
 @kernel
@@ -190,10 +197,10 @@ def stop_free(motion, contact):
 
 
 @kernel
-def off_continuous(motion, contact, amplitude, phase, at):
-    """See `motion.off_continuous`."""
+def distance_from_continuous(motion, contact, amplitude, phase, contact_state):
+    """See `motion.distance_from_continuous`."""
     st, state, moved = motion.st, motion.state, motion.work.moved
-    orbit_state(st, motion.orbit, motion.i, contact.b, phase, at.cos, at.sin, moved)
+    orbit_state(st, motion.orbit, motion.i, contact.b, phase, contact_state.cos, contact_state.sin, moved)
     for j in range(st.n):
         moved[0, j] -= state[0, j]
         moved[1, j] -= state[1, j]
@@ -201,8 +208,8 @@ def off_continuous(motion, contact, amplitude, phase, at):
 
 
 @kernel
-def note_state(motion, at, column):
-    """See `motion.note_state`."""
+def record_state(motion, contact_state, column):
+    """See `motion.record_state`."""
     n = motion.st.n
     row = motion.memory.anchors[column]
     for i in range(n):
@@ -211,14 +218,14 @@ def note_state(motion, at, column):
 
 
 @kernel
-def size_now(motion, at):
-    """See `motion.size_now`."""
+def motion_size(motion, contact_state):
+    """See `motion.motion_size`."""
     return energy(motion.st, motion.state)
 
 
 @kernel
-def return_distance(motion, now, then, size):
-    """See `motion.return_distance`."""
+def recurrence_distance(motion, now, then, size):
+    """See `motion.recurrence_distance`."""
     turn = turned(motion.memory, now, then)
     if turn > _NEAR_PHASE:
         return math.inf
@@ -234,13 +241,28 @@ def return_distance(motion, now, then, size):
 
 @kernel
 def creeps(motion, contact, events):
-    """See `motion.creeps`: `wait_for_release` sees it itself."""
+    """See `motion.creeps`: `wait_for_release` detects creeping itself."""
     return False, 0.0
 
 
 @kernel
 def _keep_orbit(work, n, b, anchored, halves, sign, slides):
-    """Keep the orbit of work.middle, and the one before it if that is anchored alike: see `_nearest`."""
+    """Save the orbit in work.middle as the first guess of the next cell, and the previous one for
+    extrapolation.
+
+    The previous orbit is kept only if it is anchored at the same load phase, sign, number of slides and of
+    half periods; see `_nearest`.
+
+    Parameters
+    ----------
+    work : Workspace
+    n : number of free oscillators
+    b : kinetic friction force of the orbit
+    anchored : ContactState whose load phase the orbit is anchored at
+    halves : half periods per recurrence
+    sign : -1.0 where the slide is mirrored, else 1.0
+    slides : slides per recurrence
+    """
     kept = work.anchored
     alike = kept[HALVES] == halves and kept[SIDE] == sign and kept[SLIDES] == slides
     alike = alike and kept[PHASE_COS] == anchored.cos and kept[PHASE_SIN] == anchored.sin
@@ -253,7 +275,7 @@ def _keep_orbit(work, n, b, anchored, halves, sign, slides):
 
 @kernel
 def _expect(work, n, b):
-    """The state in work.middle at friction b: on the line through the last two orbits, or else the last."""
+    """Extrapolate the state in work.middle to friction b from the last two orbits, or copy the last one."""
     kept = work.anchored
     copy_state(work.solved, work.middle, n)
     share = (b - kept[BETA]) / (kept[BETA] - kept[EARLIER_BETA])
@@ -264,90 +286,118 @@ def _expect(work, n, b):
 
 
 @kernel
-def _converge(motion, contact, anchored, sign, sequence, near, limits):
-    """A periodic orbit by Newton's method, with its anchor.
+def _converge(motion, contact, anchored, sign, sequence, recurrence, limits):
+    """Solve for a periodic orbit by Newton's method, and follow it to its next anchor.
 
-    The unknown, work.middle, is the state in a slide at the load's phase of the moment `anchored`; `sign`
-    says of that slide whether it is a mirror image.  The orbit returns after near.halves half periods and
-    the slides of `sequence`.  The state becomes the orbit's at the anchor that follows.
+    The unknown, work.middle, is the state within a slide at the load phase of `anchored`.
+
+    Parameters
+    ----------
+    motion : ManyMasses; its state becomes that of the orbit at the anchor that follows
+    contact : Contact
+    anchored : ContactState of the unknown
+    sign : -1.0 where that slide is mirrored, else 1.0
+    sequence : EventSequence of one recurrence
+    recurrence : Recurrence; its `halves` are the half periods of one recurrence
+    limits : Limits
+
+    Returns
+    -------
+    Orbit
     """
     st, work = motion.st, motion.work
-    b, mu_b, halves = contact.b, contact.mu_b, near.halves
+    b, mu_b, halves = contact.b, contact.mu_b, recurrence.halves
     copy_state(work.middle, work.start, st.n)
     if not solve_return(
         st, b, mu_b, anchored.cos, anchored.sin, sequence, halves, limits.tolerance, work,
         motion.scratch,
     ):  # fmt: skip
         return no_orbit()
-    if not contact.unique and not _attracts(motion, contact, anchored, sequence, near):
+    if not contact.unique and not _attracts(motion, contact, anchored, sequence, recurrence):
         return no_orbit()
     copy_state(work.middle, motion.state, st.n)
-    steps, at = slide_to_turn(motion, contact, anchored, _LONGEST_SLIDE / st.h)
+    steps, contact_state = slide_to_turn(motion, contact, anchored, _LONGEST_SLIDE / st.h)
     if steps == NO_END:
         return no_orbit()
-    event, at, _ = after_turn(motion, contact, at, TURN * limits.cycles)
+    event, contact_state, _ = after_turn(motion, contact, contact_state, TURN * limits.cycles)
     _keep_orbit(work, st.n, b, anchored, halves, sign, sequence.count)
-    return known_orbit(at, event, -sign if turns_at(event) else sign, sequence.count)
+    return known_orbit(contact_state, event, -sign if turns_at(event) else sign, sequence.count)
 
 
 @kernel
-def _attracts(motion, contact, anchored, sequence, near):
-    """Whether the orbit in work.middle attracts, and is where the motion is heading from work.start.
+def _attracts(motion, contact, anchored, sequence, recurrence):
+    """Whether the orbit in work.middle is stable, and close enough for the motion to be approaching it from
+    work.start.
 
-    Unlike one mass, an undamped structure comes nearer to its orbit in no simple way: returns tell nothing.
+    The approach of an undamped structure to its orbit is not monotonic, so recurrences alone cannot decide
+    this.
     """
     st, work, n = motion.st, motion.work, motion.st.n
     copy_state(work.middle, work.moved, n)
     if not return_map(
-        st, contact.b, contact.mu_b, work.moved, anchored.cos, anchored.sin, sequence, near.halves, True,
-        work, motion.scratch,
+        st, contact.b, contact.mu_b, work.moved, anchored.cos, anchored.sin, sequence, recurrence.halves,
+        True, work, motion.scratch,
     ):  # fmt: skip
         return False
     contraction = spectral_radius(work.flow, 2 * n, work.square)
     for i in range(n):
         work.moved[0, i] = work.middle[0, i] - work.start[0, i]
         work.moved[1, i] = work.middle[1, i] - work.start[1, i]
-    expected = near.distance * energy(st, work.middle) / (1.0 - contraction)
+    expected = recurrence.distance * energy(st, work.middle) / (1.0 - contraction)
     return contraction < 1.0 and energy(st, work.moved) <= _HEADING * expected
 
 
 @kernel
-def _from_anchor(motion, contact, at, sign, sequence, near, limits):
-    """`_converge` from the middle of the slide that starts at an anchor, the state there."""
+def _from_anchor(motion, contact, contact_state, sign, sequence, recurrence, limits):
+    """Apply `_converge` from the middle of the slide that starts at an anchor.
+
+    Parameters
+    ----------
+    motion : ManyMasses, at the anchor
+    contact : Contact
+    contact_state : ContactState at the anchor
+    sign, sequence, recurrence, limits : see `_converge`
+    """
     st, work, b = motion.st, motion.work, contact.b
     copy_state(motion.state, work.middle, st.n)
     most = _LONGEST_SLIDE / st.h
     steps, end, _, _, _ = slide_on(
-        st, b, at.contact_force, motion.state, at.cos, at.sin, most, motion.scratch
-    )
+        st, b, contact_state.contact_force, motion.state, contact_state.cos, contact_state.sin, most,
+        motion.scratch,
+    )  # fmt: skip
     if end != FELL:
         return no_orbit()
     _, _, c, s, _ = slide_on(
-        st, b, at.contact_force, work.middle, at.cos, at.sin, 0.5 * steps, motion.scratch
-    )
-    middle = Moment(0.0, 0.0, c, s, MOVING)
-    return _converge(motion, contact, middle, sign, sequence, near, limits)
+        st, b, contact_state.contact_force, work.middle, contact_state.cos, contact_state.sin, 0.5 * steps,
+        motion.scratch,
+    )  # fmt: skip
+    middle = ContactState(0.0, 0.0, c, s, UNDER_WAY)
+    return _converge(motion, contact, middle, sign, sequence, recurrence, limits)
 
 
 @kernel
-def seek(motion, contact, at, event, sign, events, near, tries, limits):
+def seek(motion, contact, contact_state, event, sign, events, recurrence, failures, limits):
     """See `motion.seek`.
 
-    Just below beta_stick the motion creeps for thousands of periods to where it slides, by little, from its
-    held motion; where the steady state is unique that is tried too.
+    Just below beta_stick the motion creeps for thousands of periods towards an orbit that slides very little
+    out of the held motion; where the steady state is unique, that orbit is tried as well.
+
+    Parameters
+    ----------
+    motion, contact, contact_state, event, sign, events, recurrence, failures, limits : see `motion.seek`
     """
     st, work = motion.st, motion.work
     copy_state(motion.state, work.anchor, st.n)
-    sequence = EventSequence(motion.memory.events, np.int64(events - near.lag), near.lag)
-    if near.lag == 0 or (contact.unique and tries % 3 == 2):
+    sequence = EventSequence(motion.memory.events, np.int64(events - recurrence.lag), recurrence.lag)
+    if recurrence.lag == 0 or (contact.unique and failures % 3 == 2):
         starts, c, s = release_steady(st, contact.mu_b, work.held, motion.state)
-        at = Moment(0.0, 0.0, c, s, contact.mu_b - contact.b)
+        contact_state = ContactState(0.0, 0.0, c, s, contact.mu_b - contact.b)
         work.events[0] = STOP_THEN_BACK
         sequence = EventSequence(work.events, np.int64(0), 1 if starts else 0)
-        near, sign = Near(0, near.distance, 1), 1.0
+        recurrence, sign = Recurrence(0, recurrence.distance, 1), 1.0
     orbit = no_orbit()
     if sequence.count > 0:
-        orbit = _from_anchor(motion, contact, at, sign, sequence, near, limits)
+        orbit = _from_anchor(motion, contact, contact_state, sign, sequence, recurrence, limits)
     if not orbit.found:
         copy_state(work.anchor, motion.state, st.n)
     return orbit
@@ -361,48 +411,55 @@ def forget_neighbour(motion):
 
 @kernel
 def _nearest(motion, contact):
-    """(found, moment, sign, half periods): the orbit to start from, its state into work.middle.
+    """Set work.middle to the first guess of the orbit, and return (found, contact_state, sign, half periods).
 
-    What the last cells make one expect, if they were solved for, or the motion without stops whose velocity
-    touches zero where the strip of the open cells begins.
+    The guess is extrapolated from the last cells, if they were solved for; otherwise it is the continuous
+    orbit at the boundary where its velocity first touches zero.
     """
     work, orbit, i, b = motion.work, motion.orbit, motion.i, contact.b
     halves = int(work.anchored[HALVES])
     if halves > 0:
         _expect(work, motion.st.n, b)
-        at = Moment(0.0, 0.0, work.anchored[PHASE_COS], work.anchored[PHASE_SIN], MOVING)
-        return True, at, work.anchored[SIDE], halves
+        contact_state = ContactState(0.0, 0.0, work.anchored[PHASE_COS], work.anchored[PHASE_SIN], UNDER_WAY)
+        return True, contact_state, work.anchored[SIDE], halves
     if math.isinf(motion.v_abs) or not b * abs(orbit.u[i]) < motion.v_abs:
-        return False, nowhere(), 1.0, 0
+        return False, undefined_state(), 1.0, 0
     phase = orbit_phase(motion.v_abs, orbit.v_arg[i], orbit.u[i], b)
     # in the middle of the rising half
-    at = Moment(0.0, 0.0, math.sin(phase), -math.cos(phase), MOVING)
-    orbit_state(motion.st, orbit, i, b, phase, at.cos, at.sin, work.middle)
-    return True, at, 1.0, 1
+    contact_state = ContactState(0.0, 0.0, math.sin(phase), -math.cos(phase), UNDER_WAY)
+    orbit_state(motion.st, orbit, i, b, phase, contact_state.cos, contact_state.sin, work.middle)
+    return True, contact_state, 1.0, 1
 
 
 @kernel
 def seek_nearby(motion, contact, limits):
-    """See `motion.seek_nearby`: `_converge` with the events that follow, as they change on the way."""
+    """See `motion.seek_nearby`: Newton's method with the event sequence that follows each guess, which may
+    change on the way.
+    """
     st, work, scratch = motion.st, motion.work, motion.scratch
     b, mu_b = contact.b, contact.mu_b
-    found, at, sign, halves = _nearest(motion, contact)
+    found, contact_state, sign, halves = _nearest(motion, contact)
     if not found:
         return no_orbit()
     copy_state(motion.state, work.anchor, st.n)
     for _ in range(_MOST_ORDERS):
         copy_state(work.middle, work.moved, st.n)
-        slides = follow_events(st, b, mu_b, work.moved, at.cos, at.sin, halves, work, scratch)
+        slides = follow_events(
+            st, b, mu_b, work.moved, contact_state.cos, contact_state.sin, halves, work, scratch
+        )
         if slides == 0:
             break
         sequence = EventSequence(work.events, np.int64(0), slides)
-        copy_state(work.middle, work.near, st.n)
-        orbit = _converge(motion, contact, at, sign, sequence, Near(0, 0.0, halves), limits)
+        copy_state(work.middle, work.trial, st.n)
+        orbit = _converge(motion, contact, contact_state, sign, sequence, Recurrence(0, 0.0, halves), limits)
         if orbit.found:
             return orbit
-        # the order changes on the way: a step with this one, then on with what follows there
-        copy_state(work.near, work.middle, st.n)
-        move, _ = newton_step(st, b, mu_b, at.cos, at.sin, sequence, halves, work, scratch)
+        # the event sequence changes on the way: take one Newton step with this one, then follow the motion
+        # again
+        copy_state(work.trial, work.middle, st.n)
+        move, _ = newton_step(
+            st, b, mu_b, contact_state.cos, contact_state.sin, sequence, halves, work, scratch
+        )
         if not move < math.inf:
             break
         for j in range(st.n):
@@ -426,19 +483,23 @@ def bring_back(motion, slot):
 
 
 @kernel
-def distance_from(motion, slot, then, at, stopped):
+def distance_from(motion, slot, saved, contact_state, stopped):
     """See `motion.distance_from`."""
     st, state, moved, kept = motion.st, motion.state, motion.work.moved, motion.kept[slot]
     for i in range(st.n):
         moved[0, i] = state[0, i] - kept[0, i]
         moved[1, i] = state[1, i] - kept[1, i]
-    return abs(at.cos - then.cos) + abs(at.sin - then.sin) + energy(st, moved) / energy(st, kept)
+    return (
+        abs(contact_state.cos - saved.cos)
+        + abs(contact_state.sin - saved.sin)
+        + energy(st, moved) / energy(st, kept)
+    )
 
 
 @kernel
-def back_at(motion, slot, then, at):
-    """See `motion.back_at`."""
-    return distance_from(motion, slot, then, at, False) <= _SAME
+def has_returned(motion, slot, saved, contact_state):
+    """See `motion.has_returned`."""
+    return distance_from(motion, slot, saved, contact_state, False) <= _SAME
 
 
 @kernel
@@ -448,18 +509,18 @@ def on_continuous(motion, contact):
     phase = orbit_phase(motion.v_abs, orbit.v_arg[i], orbit.u[i], contact.b)
     c, s = -math.cos(phase), -math.sin(phase)
     orbit_state(motion.st, orbit, i, contact.b, phase, c, s, motion.state)
-    return Moment(place(motion.st, motion.state, c, s), 0.0, c, s, MOVING)
+    return ContactState(contact_displacement(motion.st, motion.state, c, s), 0.0, c, s, UNDER_WAY)
 
 
 @kernel
-def put_slide(motion, at, row):
+def put_slide(motion, contact_state, row):
     """See `motion.put_slide`."""
-    put_state(motion.state, motion.st.n, motion.st.rate, at.cos, at.sin, row)
+    put_state(motion.state, motion.st.n, motion.st.rate, contact_state.cos, contact_state.sin, row)
 
 
 @kernel
-def put_stop(motion, at, row):
+def put_stop(motion, contact_state, row):
     """See `motion.put_stop`."""
     st, held = motion.st, motion.work.held
-    hold(st, motion.state, at.z, at.cos, at.sin, held)
-    put_state(held, st.m, st.rate, at.cos, at.sin, row)
+    hold(st, motion.state, contact_state.z, contact_state.cos, contact_state.sin, held)
+    put_state(held, st.m, st.rate, contact_state.cos, contact_state.sin, row)

@@ -1,9 +1,9 @@
-"""The steady state of one cell: followed event by event, then solved as a periodic orbit.
+"""Steady state of one cell: follow the motion from event to event, then solve for the periodic orbit.
 
-Once the order of events repeats, Newton's method on the return map finishes in a few returns (`motion.seek`).
-A motion that no longer stops approaches the continuous orbit of theory.md 2.  Two motions that both never
-stick approach each other in the energy norm whatever mu is, so the approach is certain as soon as the
-distance is less than that at which a stop is possible at all (`motion.stop_free`).
+Once the sequence of events repeats, Newton's method on the return map converges in a few iterations
+(`motion.seek`).  A motion that no longer stops approaches the continuous orbit of theory.md 2.  Two motions
+that never stick approach each other in the energy norm for every mu; the approach is therefore certain once
+the distance is below the radius within which no motion can stop (`motion.stop_free`).
 """
 
 import math
@@ -21,7 +21,24 @@ from ...regimes import (
 from ..compiler import inner_kernel, kernel
 from ..one_mass.events import GRAZING, NO_END, STUCK
 from ..structure.events import NO_RELEASE
-from .answers import (
+from .measure import measure, proven_stops
+from .memory import Recurrence, record_anchor, settled
+from .motion import (
+    after_turn,
+    bring_back,
+    creeps,
+    distance_from,
+    distance_from_continuous,
+    keep_state,
+    lasting_vibration,
+    record_state,
+    seek,
+    seek_nearby,
+    slide_to_turn,
+    stop_free,
+)
+from .policies import GOAL, NOW
+from .records import (
     TURN,
     averaged_cell,
     continuous_cell,
@@ -33,171 +50,195 @@ from .answers import (
     turns_at,
     unresolved,
 )
-from .measure import certain_stops, measure
-from .memory import Near, note_anchor, settled
-from .motion import (
-    after_turn,
-    bring_back,
-    creeps,
-    distance_from,
-    keep_state,
-    lasting_vibration,
-    note_state,
-    off_continuous,
-    seek,
-    seek_nearby,
-    slide_to_turn,
-    stop_free,
-)
-from .policies import GOAL, NOW
-from .returns import near_return
-from .statistics import Windows, count_event, first_try, open_windows, put_off
+from .recurrence import find_recurrence
+from .statistics import Windows, count_event, first_schedule, open_windows, postpone
 
-#: Events per excitation period (over four scan steps, if that is less than 1) of a motion that only chatters.
+#: Events per excitation period (times one quarter over the scan step, if that exceeds 1) beyond which a
+#: motion counts as chattering without end.
 _EVENTS_PER_CYCLE = 4096.0
 
-#: Half periods of ever larger motion after which an undamped resonance counts as unbounded.
+#: Successive slides of growing amplitude after which an undamped resonance counts as unbounded.
 _GROWING = 64
 
-#: Slides without a stop after which one that is not about the continuous orbit may be periodic.
-_SLIDES_ON = 8
+#: Slides without a stop after which a motion away from the continuous orbit is also searched for recurrences.
+_SLIDES_WITHOUT_STOP = 8
 
-#: A motion this near to an orbit is there.
+#: Relative distance from an orbit that is rounding error.
 _ROUNDING = 1e-12
 
-#: Slides at most to the next look at how far the continuous orbit is, and the share of those foretold.
-_UNSEEN = 8.0
-_FORETOLD = 0.75
+#: Largest number of slides between two comparisons with the continuous orbit, and the share of the predicted
+#: number of slides after which the next comparison is made.
+_MOST_SLIDES_UNCHECKED = 8.0
+_PREDICTED_SHARE = 0.75
 
 
-class Trail(NamedTuple):
-    """How a motion went so far."""
+class MotionHistory(NamedTuple):
+    """Course of the motion up to the present anchor."""
 
     time: float
     events: int
-    sign: float  # -1.0 where the next slide is a mirror image
+    sign: float  # -1.0 where the next slide is mirrored
     slides: int  # since the last stop
-    growing: int  # of these, the last ones each larger than the one before
-    size: float  # of the last one
+    growing: int  # successive slides, each larger than the one before
+    size: float  # displacement at the end of the last slide
     windows: Windows
 
 
-class Around(NamedTuple):
-    """The continuous orbit that a motion may approach."""
+class ContinuousOrbit(NamedTuple):
+    """Continuous orbit that the motion may approach."""
 
     exists: bool
     amplitude: float
     phase: float
-    radius: float  # no motion this near can stop
+    radius: float  # no motion within this distance can stop
 
 
-class Look(NamedTuple):
-    """A look at how far from it a motion is."""
+class OrbitCheck(NamedTuple):
+    """Result of comparing the motion with the continuous orbit."""
 
     arrived: bool
     distance: float
-    events: int  # when that was
-    due: int  # when the next look is
+    events: int  # number of events at this comparison
+    due: int  # number of events at which the next one is made
 
 
 @inner_kernel
-def _next_anchor(motion, contact, at, trail, moves, end, most_steps):
-    """(event, z, moment, trail): a slide and what follows it; NO_END where that is not found."""
-    time = trail.time
-    if moves or trail.events > 0:
-        steps, at = slide_to_turn(motion, contact, at, most_steps)
+def _next_anchor(motion, contact, contact_state, history, moves, end, most_steps):
+    """Follow one slide and what comes after it.
+
+    Parameters
+    ----------
+    motion : a kind of motion
+    contact : Contact
+    contact_state : ContactState at the present anchor
+    history : MotionHistory
+    moves : whether the motion starts with a velocity
+    end : time in tau at which to give up
+    most_steps : largest number of scan steps
+
+    Returns
+    -------
+    (event, z, contact_state, history) : event code, or NO_END if it is not found; displacement at the end of
+        the slide; the next anchor; the history up to it
+    """
+    time = history.time
+    if moves or history.events > 0:
+        steps, contact_state = slide_to_turn(motion, contact, contact_state, most_steps)
         if steps == NO_END:
-            return NO_END, at.z, at, trail
+            return NO_END, contact_state.z, contact_state, history
         time += steps * motion.h
-    z = at.z
+    z = contact_state.z
     size = abs(z)
-    event, at, wait = after_turn(motion, contact, at, end - time)
-    sign = -trail.sign if turns_at(event) else trail.sign
+    event, contact_state, wait = after_turn(motion, contact, contact_state, end - time)
+    sign = -history.sign if turns_at(event) else history.sign
     stopped = stops_at(event)
-    windows = count_event(trail.windows, time, size, stopped, wait)
-    column = trail.events % motion.memory.events.size
+    windows = count_event(history.windows, time, size, stopped, wait)
+    column = history.events % motion.memory.events.size
     if stopped:
-        trail = Trail(time + wait, trail.events + 1, sign, 0, 0, size, windows)
+        history = MotionHistory(time + wait, history.events + 1, sign, 0, 0, size, windows)
     else:
-        growing = trail.growing + 1 if size > trail.size else 0
-        trail = Trail(time, trail.events + 1, sign, trail.slides + 1, growing, size, windows)
-    note_anchor(motion.memory, column, event, at, trail.time, sign)
-    note_state(motion, at, column)
-    return event, z, at, trail
+        growing = history.growing + 1 if size > history.size else 0
+        history = MotionHistory(time, history.events + 1, sign, history.slides + 1, growing, size, windows)
+    record_anchor(motion.memory, column, event, contact_state, history.time, sign)
+    record_state(motion, contact_state, column)
+    return event, z, contact_state, history
 
 
 @kernel
-def _around(motion, contact):
-    """The continuous orbit of a cell, if there is one."""
+def _continuous_orbit(motion, contact):
+    """Find the continuous orbit of a cell, if it exists."""
     if not contact.b < contact.b_lim or math.isinf(motion.v_abs):
-        return Around(False, 0.0, 0.0, 0.0)
+        return ContinuousOrbit(False, 0.0, 0.0, 0.0)
     amplitude, phase, radius = stop_free(motion, contact)
-    motion.scratch.left[0] -= TURN / motion.h  # about what that takes
-    return Around(True, amplitude, phase, radius)
+    motion.scratch.left[0] -= TURN / motion.h  # roughly the cost of `stop_free`
+    return ContinuousOrbit(True, amplitude, phase, radius)
 
 
 @kernel
-def _look(motion, contact, around, at, trail, last, tolerance):
-    """How far the continuous orbit is now, and when to look again: at the rate of approach, soon before."""
-    distance, size = off_continuous(motion, contact, around.amplitude, around.phase, at)
-    enough = max(around.radius, tolerance * size)
-    if distance < around.radius or distance <= tolerance * size:
-        return Look(True, distance, trail.events, 0)
-    slides = trail.events - last.events
+def _check_approach(motion, contact, continuous, contact_state, history, last, tolerance):
+    """Compare the motion with the continuous orbit, and schedule the next comparison from the rate of
+    approach.
+
+    Parameters
+    ----------
+    motion : a kind of motion
+    contact : Contact
+    continuous : ContinuousOrbit
+    contact_state : ContactState at the present anchor
+    history : MotionHistory
+    last : OrbitCheck before this one
+    tolerance : distance, relative to the motion, at which the orbit counts as reached
+
+    Returns
+    -------
+    OrbitCheck
+    """
+    distance, size = distance_from_continuous(
+        motion, contact, continuous.amplitude, continuous.phase, contact_state
+    )
+    enough = max(continuous.radius, tolerance * size)
+    if distance < continuous.radius or distance <= tolerance * size:
+        return OrbitCheck(True, distance, history.events, 0)
+    slides = history.events - last.events
     soon = 1.0
-    if slides < trail.slides and distance < last.distance:
-        soon = _FORETOLD * slides * math.log(enough / distance) / math.log(distance / last.distance)
-    soon = min(max(soon, 1.0), _UNSEEN)
-    return Look(False, distance, trail.events, trail.events + int(soon))
+    if slides < history.slides and distance < last.distance:
+        soon = _PREDICTED_SHARE * slides * math.log(enough / distance) / math.log(distance / last.distance)
+    soon = min(max(soon, 1.0), _MOST_SLIDES_UNCHECKED)
+    return OrbitCheck(False, distance, history.events, history.events + int(soon))
 
 
 @kernel
-def _may_return(event, trail, around, unbounded):
-    """Whether an anchor is one to look for returns at: a stop, or a turn where it no longer stops."""
+def _may_recur(event, history, continuous, unbounded):
+    """Whether to look for recurrences at an anchor: at a stop, or at a turn if the motion no longer stops."""
     if event == GRAZING:
         return False
-    return trail.slides == 0 or not (around.exists or unbounded or trail.slides < _SLIDES_ON)
-
-
-@kernel
-def _near(motion, contact, at, trail, tries, newton):
-    """The nearest return; where a short one leads nowhere the closest is tried."""
-    shortest = newton and tries.made % 2 == 0  # it is the better conditioned one
-    near = near_return(motion, at, trail.events, contact.unique and newton, shortest)
-    if trail.slides > 0 and trail.slides < 2 * near.lag:
-        return Near(0, math.inf, 0)
-    return near
-
-
-@kernel
-def _time_to_look(trail, look):
-    """Whether to look now; the slide after a stop says nothing."""
-    return (trail.slides > 1 or trail.events == trail.slides == 1) and (
-        trail.slides == 2 or trail.events >= look.due
+    return history.slides == 0 or not (
+        continuous.exists or unbounded or history.slides < _SLIDES_WITHOUT_STOP
     )
 
 
 @kernel
-def _has_settled(near, last, tolerance):
-    """Whether marching may end: two returns of one order of events, the rest of which is nothing."""
-    if near.lag == 0 or near.lag != last.lag or near.distance > tolerance:
+def _nearest_recurrence(motion, contact, contact_state, history, schedule, newton):
+    """Find the nearest recurrence; if the shortest one led to no orbit, the closest one is tried."""
+    shortest = newton and schedule.made % 2 == 0  # the shortest is better conditioned
+    recurrence = find_recurrence(motion, contact_state, history.events, contact.unique and newton, shortest)
+    if history.slides > 0 and history.slides < 2 * recurrence.lag:
+        return Recurrence(0, math.inf, 0)
+    return recurrence
+
+
+@kernel
+def _check_is_due(history, check):
+    """Whether to compare with the continuous orbit now; the first slide after a stop is not informative."""
+    return (history.slides > 1 or history.events == history.slides == 1) and (
+        history.slides == 2 or history.events >= check.due
+    )
+
+
+@kernel
+def _has_settled(recurrence, last, tolerance):
+    """Whether marching may end: two recurrences with the same event sequence whose extrapolated remainder is
+    below tolerance.
+    """
+    if recurrence.lag == 0 or recurrence.lag != last.lag or recurrence.distance > tolerance:
         return False
-    return settled(near.distance, last.distance, tolerance)
+    return settled(recurrence.distance, last.distance, tolerance)
 
 
 @kernel
 def _orbit_cell(motion, contact, orbit, origin, time):
-    """The steady state that returns to the orbit's anchor after its number of slides, or sooner."""
+    """Build the cell of an orbit that returns to its anchor after at most its number of slides."""
     measured = measure(motion, contact, orbit, motion.no_table)
-    return periodic_cell(measured, certain_stops(measured, contact), orbit, origin, time)
+    return periodic_cell(measured, proven_stops(measured, contact), orbit, origin, time)
 
 
 @kernel
-def _goes_there(motion, contact, at, orbit, allowed):
-    """Whether the motion, its state kept in NOW, goes to an orbit, whose state is kept in GOAL.
+def _approaches(motion, contact, contact_state, orbit, allowed):
+    """Whether the motion, its state saved in NOW, approaches an orbit, whose state is saved in GOAL.
 
-    A motion that passes by, or repeats in some multiple of the orbit's period, may be near it too.  What is
-    heading there comes nearer with two returns in a row, each time about as fast as the orbit attracts.
+    A motion that merely passes by, or whose period is a multiple of the orbit's, may also be close to it.  A
+    motion that approaches the orbit comes closer with two successive recurrences, each time at about the rate
+    at which the orbit attracts.
     """
     bring_back(motion, NOW)
     stopped = stops_at(orbit.event)
@@ -207,14 +248,14 @@ def _goes_there(motion, contact, at, orbit, allowed):
     for last in range(0, 2 * orbit.slides + 1, orbit.slides):
         event = orbit.event
         while slide < last:
-            steps, at = slide_to_turn(motion, contact, at, allowed / motion.h)
+            steps, contact_state = slide_to_turn(motion, contact, contact_state, allowed / motion.h)
             if steps == NO_END:
                 return False
-            event, at, _ = after_turn(motion, contact, at, allowed)
+            event, contact_state, _ = after_turn(motion, contact, contact_state, allowed)
             slide += 1
         if event != orbit.event:
             return False
-        distance = distance_from(motion, GOAL, orbit.at, at, stopped)
+        distance = distance_from(motion, GOAL, orbit.contact_state, contact_state, stopped)
         if not distance <= closer * before + _ROUNDING:
             return False
         before = distance
@@ -222,14 +263,33 @@ def _goes_there(motion, contact, at, orbit, allowed):
 
 
 @kernel
-def _seek(motion, contact, at, event, trail, near, tries, limits):
-    """The periodic orbit that a motion goes to; if there is none, the motion stays where it is."""
+def _seek(motion, contact, contact_state, event, history, recurrence, schedule, limits):
+    """Find the periodic orbit that the motion approaches; without one, the state of the motion is left
+    unchanged.
+
+    Parameters
+    ----------
+    motion : a kind of motion
+    contact : Contact
+    contact_state : ContactState at the present anchor
+    event : event that ended the slide before it
+    history : MotionHistory
+    recurrence : Recurrence of the present anchor
+    schedule : NewtonSchedule
+    limits : Limits
+
+    Returns
+    -------
+    Orbit
+    """
     keep_state(motion, NOW)
-    orbit = seek(motion, contact, at, event, trail.sign, trail.events, near, tries.made, limits)
+    orbit = seek(
+        motion, contact, contact_state, event, history.sign, history.events, recurrence, schedule.made, limits
+    )
     if orbit.certain:
         return orbit
     keep_state(motion, GOAL)
-    if _goes_there(motion, contact, at, orbit, TURN * limits.cycles):
+    if _approaches(motion, contact, contact_state, orbit, TURN * limits.cycles):
         bring_back(motion, GOAL)
         return orbit
     bring_back(motion, NOW)
@@ -237,74 +297,79 @@ def _seek(motion, contact, at, event, trail, near, tries, limits):
 
 
 @kernel
-def _follow(motion, contact, at, moves, limits, cancel):
-    """The steady state reached from a moment, by following the motion."""
+def _follow(motion, contact, contact_state, moves, limits, cancel):
+    """Follow the motion from a contact state to the steady state."""
     end = TURN * limits.cycles
     most_steps = end / motion.h + 1.0
     most_events = _EVENTS_PER_CYCLE * limits.cycles * max(1.0, 0.25 / motion.h)
-    wanders = lasting_vibration(motion)
+    vibrates = lasting_vibration(motion)
     unbounded = math.isinf(motion.v_abs) and contact.b < contact.b_lim
-    around = _around(motion, contact)
-    look = Look(False, math.inf, 0, 0)
-    trail = Trail(0.0, 0, 1.0, 0, 0, 0.0, open_windows(limits.cycles))
-    tries = first_try()
+    continuous = _continuous_orbit(motion, contact)
+    check = OrbitCheck(False, math.inf, 0, 0)
+    history = MotionHistory(0.0, 0, 1.0, 0, 0, 0.0, open_windows(limits.cycles))
+    schedule = first_schedule()
     half = 0
-    last = Near(0, math.inf, 0)
-    while trail.time < end:
+    last = Recurrence(0, math.inf, 0)
+    while history.time < end:
         if cancel[0] != 0:
-            return unresolved(NOT_COMPUTED, trail.time)
-        event, z, at, trail = _next_anchor(motion, contact, at, trail, moves, end, most_steps)
+            return unresolved(NOT_COMPUTED, history.time)
+        event, z, contact_state, history = _next_anchor(
+            motion, contact, contact_state, history, moves, end, most_steps
+        )
         if event == STUCK:
-            status = MARGINAL if wanders else RESOLVED
-            return stuck_cell(INTEGRATED, status, trail.time, z, trail.sign)
+            status = MARGINAL if vibrates else RESOLVED
+            return stuck_cell(INTEGRATED, status, history.time, z, history.sign)
         if event == NO_END or event == NO_RELEASE:
             break
-        if trail.events > most_events:
-            return unresolved(TOO_MANY_EVENTS, trail.time)
+        if history.events > most_events:
+            return unresolved(TOO_MANY_EVENTS, history.time)
         if contact.unique:
-            creeping, z = creeps(motion, contact, trail.events)
+            creeping, z = creeps(motion, contact, history.events)
             if creeping:
-                return stuck_cell(INTEGRATED, RESOLVED, trail.time, z, trail.sign)
-        if unbounded and trail.growing >= _GROWING:
-            return continuous_cell(math.inf, False, INTEGRATED, trail.time)
-        if around.exists and _time_to_look(trail, look):
-            look = _look(motion, contact, around, at, trail, look, limits.tolerance)
-            if look.arrived:
-                return continuous_cell(around.amplitude, motion.marginal, INTEGRATED, trail.time)
-        now = int(trail.time / math.pi)
-        if now == half or not _may_return(event, trail, around, unbounded):
-            continue  # once a half period is enough
+                return stuck_cell(INTEGRATED, RESOLVED, history.time, z, history.sign)
+        if unbounded and history.growing >= _GROWING:
+            return continuous_cell(math.inf, False, INTEGRATED, history.time)
+        if continuous.exists and _check_is_due(history, check):
+            check = _check_approach(
+                motion, contact, continuous, contact_state, history, check, limits.tolerance
+            )
+            if check.arrived:
+                return continuous_cell(continuous.amplitude, motion.marginal, INTEGRATED, history.time)
+        now = int(history.time / math.pi)
+        if now == half or not _may_recur(event, history, continuous, unbounded):
+            continue  # one search per half period is enough
         half = now
-        if limits.newton and half < tries.due:
+        if limits.newton and half < schedule.due:
             continue
-        near = _near(motion, contact, at, trail, tries, limits.newton)
-        if limits.newton and (near.lag > 0 or contact.unique):
-            orbit = _seek(motion, contact, at, event, trail, near, tries, limits)
+        recurrence = _nearest_recurrence(motion, contact, contact_state, history, schedule, limits.newton)
+        if limits.newton and (recurrence.lag > 0 or contact.unique):
+            orbit = _seek(motion, contact, contact_state, event, history, recurrence, schedule, limits)
             if orbit.found:
-                return _orbit_cell(motion, contact, orbit, PERIODIC_ORBIT, trail.time)
-            tries = put_off(tries, half)
+                return _orbit_cell(motion, contact, orbit, PERIODIC_ORBIT, history.time)
+            schedule = postpone(schedule, half)
         if not limits.newton:
-            if _has_settled(near, last, limits.tolerance):
-                orbit = known_orbit(at, event, trail.sign, near.lag)
-                return _orbit_cell(motion, contact, orbit, INTEGRATED, trail.time)
-            last = near
-    if wanders or (motion.marginal and contact.b < contact.b_lim):
-        return unresolved(MARGINAL, trail.time)
-    return averaged_cell(trail.windows, trail.time, end)
+            if _has_settled(recurrence, last, limits.tolerance):
+                orbit = known_orbit(contact_state, event, history.sign, recurrence.lag)
+                return _orbit_cell(motion, contact, orbit, INTEGRATED, history.time)
+            last = recurrence
+    if vibrates or (motion.marginal and contact.b < contact.b_lim):
+        return unresolved(MARGINAL, history.time)
+    return averaged_cell(history.windows, history.time, end)
 
 
 @kernel
-def steady_state(motion, contact, at, moves, limits, cancel):
-    """The steady state of a cell, found within so many scan steps; else it is unresolved.
+def steady_state(motion, contact, contact_state, moves, limits, cancel):
+    """Find the steady state of a cell; it is unresolved if `limits` are exceeded first.
 
     Parameters
     ----------
-    motion : a kind of motion, see `motion`; it becomes that of the anchor, where there is one
+    motion : a kind of motion, see `motion`; afterwards it is at the anchor of the steady state, if there is
+        one
     contact : Contact; b > 0
-    at : where it starts
-    moves : whether it starts with a velocity; else with a turn
+    contact_state : ContactState of the initial state
+    moves : whether the initial state has a velocity; otherwise it is an anchor
     limits : Limits
-    cancel : (1,) set by another thread to end the work
+    cancel : (1,) set by another thread to end the computation
 
     Returns
     -------
@@ -317,4 +382,4 @@ def steady_state(motion, contact, at, moves, limits, cancel):
             cell = _orbit_cell(motion, contact, orbit, PERIODIC_ORBIT, 0.0)
             if cell.regime != UNRESOLVED:
                 return cell
-    return _follow(motion, contact, at, moves, limits, cancel)
+    return _follow(motion, contact, contact_state, moves, limits, cancel)

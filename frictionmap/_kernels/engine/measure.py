@@ -1,25 +1,26 @@
-"""A periodic orbit once round: what it does, and its table of phases."""
+"""Follow a periodic orbit once: its stops, amplitude and share stuck, and its segment table."""
 
 from typing import NamedTuple
 
 from ..compiler import kernel
 from ..one_mass.events import NO_END
 from ..one_mass.newton import half_periods
-from .answers import SHORTEST_STOP, TURN, stops_at, turns_at
-from .motion import after_turn, back_at, bring_back, keep_state, put_slide, put_stop, slide_to_turn
-from .phase_table import CONTACT_FORCE, EVENT, put_phase
+from .motion import after_turn, bring_back, has_returned, keep_state, put_slide, put_stop, slide_to_turn
 from .policies import ANCHOR
+from .records import SHORTEST_STOP, TURN, stops_at, turns_at
+from .segment_table import CONTACT_FORCE, EVENT, put_segment
 
-#: Longest slide of an orbit, in periods of its slower part: one that was followed once has none so long.
+#: Longest slide of an orbit, in periods of the slower of oscillator and load; no resolved orbit has a longer
+#: one.
 _LONGEST_SLIDE = 100.0
 
 
 class Measured(NamedTuple):
-    """A periodic orbit from an anchor to its return, mirrored or not."""
+    """One recurrence of a periodic orbit, mirrored or not."""
 
     slides: int
-    phases: int  # of the table
-    halves: int  # half periods of the excitation; 0 where it does not return
+    segments: int  # rows of the segment table
+    halves: int  # half periods of the excitation; 0 where the motion does not recur
     stops: int
     amplitude: float
     stuck: float  # share of the time
@@ -27,57 +28,67 @@ class Measured(NamedTuple):
 
 @kernel
 def measure(motion, contact, orbit, table):
-    """The orbit that returns to its anchor after its number of slides, or sooner.
+    """Follow the orbit until it returns to its anchor, for at most `orbit.slides` slides.
 
-    table : becomes the phases, two rows for every slide, see `phase_table`; or (0, 0) where it is not wanted.
-    The state is that of the anchor, before and after.
+    The motion is at the anchor before and after the call.
+
+    Parameters
+    ----------
+    motion : a kind of motion, see `motion`
+    contact : Contact
+    orbit : Orbit
+    table : (2 orbit.slides, columns) filled with the segments, see `segment_table`; (0, 0) to skip this
+
+    Returns
+    -------
+    Measured
     """
     writes = table.shape[0] > 0
     keep_state(motion, ANCHOR)
-    at, sign = orbit.at, orbit.sign
+    contact_state, sign = orbit.contact_state, orbit.sign
     time = stuck = amplitude = 0.0
-    stops = phases = count = 0
+    stops = segments = count = 0
     longest = _LONGEST_SLIDE * TURN * max(1.0, motion.r) / motion.h
     for _ in range(orbit.slides):
         if writes:
-            put_slide(motion, at, table[phases])
-            table[phases, CONTACT_FORCE] = motion.load * at.contact_force
-        steps, at = slide_to_turn(motion, contact, at, longest)
+            put_slide(motion, contact_state, table[segments])
+            table[segments, CONTACT_FORCE] = motion.load * contact_state.contact_force
+        steps, contact_state = slide_to_turn(motion, contact, contact_state, longest)
         if steps == NO_END:
             time = 0.0
             break
-        end = at.z
+        end = contact_state.z
         amplitude = max(amplitude, abs(end))
         if writes:
-            put_phase(table[phases], time, steps * motion.h, 1.0, sign, motion.load * end)
-            put_stop(motion, at, table[phases + 1])
+            put_segment(table[segments], time, steps * motion.h, 1.0, sign, motion.load * end)
+            put_stop(motion, contact_state, table[segments + 1])
         time += steps * motion.h
-        happened, at, wait = after_turn(motion, contact, at, longest * motion.h)
+        happened, contact_state, wait = after_turn(motion, contact, contact_state, longest * motion.h)
         if writes:
-            table[phases, EVENT] = happened
-        phases += 1
+            table[segments, EVENT] = happened
+        segments += 1
         if stops_at(happened) and wait > SHORTEST_STOP:
             if writes:
-                put_phase(table[phases], time, wait, 0.0, sign, motion.load * end)
-            phases += 1
+                put_segment(table[segments], time, wait, 0.0, sign, motion.load * end)
+            segments += 1
             stops += 1
             stuck += wait
             time += wait
         sign = -sign if turns_at(happened) else sign
         count += 1
-        if happened == orbit.event and back_at(motion, ANCHOR, orbit.at, at):
+        if happened == orbit.event and has_returned(motion, ANCHOR, orbit.contact_state, contact_state):
             break
     bring_back(motion, ANCHOR)
     share = stuck / time if time > 0.0 else 0.0
-    return Measured(count, phases, half_periods(time), stops, amplitude, share)
+    return Measured(count, segments, half_periods(time), stops, amplitude, share)
 
 
 @kernel
-def certain_stops(measured, contact):
-    """The stops: one in each half period where none was seen but one there must be.
+def proven_stops(measured, contact):
+    """Number of stops; one per half period where none was resolved but theory requires one.
 
-    From b_lim on, and with mu = 1, no motion with two turns a period is without stops.  Next to b_lim they
-    last shorter than rounding can tell.
+    For b >= b_lim and mu = 1 every motion with two turns per period stops.  Close to b_lim these stops are
+    too short to be resolved in floating point.
     """
     proved = contact.unique and contact.b >= contact.b_lim
     if measured.stops == 0 and measured.slides <= measured.halves and proved:

@@ -1,4 +1,4 @@
-"""Anchors remembered, and how far two of them lie apart."""
+"""Ring buffer of past anchors, and the phase distance between two of them."""
 
 import math
 from typing import NamedTuple
@@ -8,77 +8,85 @@ import numpy as np
 from ..compiler import entry, inner_kernel, kernel
 from ..one_mass.newton import full_period, half_periods
 
-#: Anchors remembered, at least and at most: a steady period with more is not recognised.
+#: Least and largest number of anchors kept; a steady period with more anchors is not recognised.
 _SHORTEST = 2048
 _LONGEST = 2**18
 
-#: Columns of the memory of anchors; the state follows.
+#: Columns of `Memory.anchors`; the numbers of the state follow.
 COS, SIN, TIME, SIGN, STATE = 0, 1, 2, 3, 4
 
-#: Excitation periods after which a steady motion repeats; one that takes more counts as not periodic.
+#: Longest steady period [excitation periods]; a motion with a longer one counts as not periodic.
 LONGEST_PERIOD = 8
 
 
 class Memory(NamedTuple):
-    """The last anchors, in rings."""
+    """The most recent anchors, in ring buffers."""
 
-    events: np.ndarray  # (length,) that ended the slides before them
+    events: np.ndarray  # (length,) events that ended the preceding slides
     anchors: np.ndarray  # (length, STATE + numbers of a state)
 
 
-class Near(NamedTuple):
-    """A moment when the motion was nearly where it is now."""
+class Recurrence(NamedTuple):
+    """An earlier anchor that nearly equals the present one."""
 
-    lag: int  # slides since then; 0 if there was none
-    distance: float  # how far from there it is now, relative to the motion
-    halves: int  # half periods of the excitation since then
+    lag: int  # slides since that anchor; 0 if no recurrence was found
+    distance: float  # distance between the two anchors, relative to the size of the motion
+    halves: int  # half periods of the excitation between them
 
 
 @entry
 def make_memory(h, size):
-    """Memory for scan steps of length h: the anchors of four periods of the load, and many more.
+    """Allocate a memory that holds at least the anchors of four excitation periods.
 
-    It is as long as that and no longer: how far a return is looked for must not depend on another frequency.
+    Its length depends on the scan step h only, so that the search for recurrences never depends on another
+    frequency of the map.
+
+    Parameters
+    ----------
+    h : scan step in tau
+    size : numbers that describe the state at an anchor
     """
     length = int(min(max(_SHORTEST, math.ceil(2.0 / h)), _LONGEST))
     return Memory(np.empty(length), np.empty((length, STATE + size)))
 
 
 @inner_kernel
-def note_anchor(memory, column, event, at, time, sign):
-    """Note an anchor, all but its state."""
+def record_anchor(memory, column, event, contact_state, time, sign):
+    """Record an anchor except for its state."""
     memory.events[column] = event
-    memory.anchors[column, COS] = at.cos
-    memory.anchors[column, SIN] = at.sin
+    memory.anchors[column, COS] = contact_state.cos
+    memory.anchors[column, SIN] = contact_state.sin
     memory.anchors[column, TIME] = time
     memory.anchors[column, SIGN] = sign
 
 
 @inner_kernel
 def turned(memory, now, then):
-    """How far apart the load's phases of two anchors are."""
+    """Distance between the load phases of two recorded anchors, |delta cos| + |delta sin|."""
     anchors = memory.anchors
     return abs(anchors[now, COS] - anchors[then, COS]) + abs(anchors[now, SIN] - anchors[then, SIN])
 
 
 @inner_kernel
 def halves_between(memory, now, then):
-    """Half periods between two anchors; 0 if one cannot be the return of the other."""
+    """Half periods between two anchors; 0 if one cannot be the recurrence of the other."""
     anchors = memory.anchors
     halves = half_periods(anchors[now, TIME] - anchors[then, TIME])
-    # after an odd number of them it is its mirror image
+    # after an odd number of half periods the motion recurs as its mirror image
     mirrored = anchors[now, SIGN] != anchors[then, SIGN]
     return halves if (halves % 2 == 1) == mirrored else 0
 
 
 @kernel
-def could_return(halves):
-    """Whether a steady motion may take so many half periods to return."""
+def could_recur(halves):
+    """Whether a steady motion may take this many half periods to recur."""
     return halves >= 1 and full_period(halves) <= LONGEST_PERIOD
 
 
 @kernel
 def settled(distance, old_distance, tolerance):
-    """Whether returns that were `old_distance` and are `distance` off leave less than the tolerance to go."""
+    """Whether marching has converged: the geometric extrapolation of two recurrence distances is below
+    tolerance.
+    """
     rate = min(distance / old_distance, 0.999999) if old_distance > 0.0 else 0.0
     return distance * rate <= 10.0 * tolerance * (1.0 - rate)

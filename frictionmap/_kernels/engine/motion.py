@@ -1,14 +1,14 @@
-"""The interface of a kind of motion: what the driver asks of it.
+"""Interface of a kind of motion: the operations that the solver calls.
 
-A kind of motion is two named tuples, of a system over a map and of the system at one frequency, and a body
-for each of the functions here (`by_class`).  Every slide is followed as an upward one: a motion that goes back
-is mirrored.  Where a motion is, a `Moment` says, together with arrays of the kind's own that these functions
-move along with it.
+A kind of motion consists of two named tuples, one for a system over a whole map and one for the system at one
+frequency, and of one implementation of each function below (`by_class`).  Every slide is followed upwards: a
+motion that reverses is mirrored.  The state of a motion is a `ContactState` and arrays that belong to the
+kind of motion; the functions below update these arrays.
 
-The fields of a kind of motion that the driver reads: `h`, the scan step in tau; `r`; `v_abs`, the response
-function of the contact; `marginal`, whether continuous motions are a continuum; `memory`; `load`, the unit of
-its forces and displacements; `near_return`, how close a return is worth looking for an orbit; `scratch`,
-whose `left` are the scan steps that may still be taken; and `no_table`, no table of phases.
+The solver reads these fields: `h`, the scan step in tau; `r`; `v_abs`, the response function of the contact;
+`marginal`, whether the continuous motions form a continuum; `memory`; `load`, the unit of forces and
+displacements; `recurrence_threshold`, the recurrence distance below which an orbit is sought; `scratch`, whose
+`left` holds the number of scan steps that may still be taken; and `no_table`, an empty segment table.
 """
 
 from ..compiler import by_class
@@ -27,120 +27,152 @@ def _of_systems(name: str) -> tuple:
 
 @by_class(*_of_systems("at_frequency"))
 def at_frequency(system, i):
-    """The motion of a system at its i-th frequency, r > 0."""
+    """Build the motion of a system at its i-th frequency, r > 0."""
 
 
 @by_class(*_of_systems("contact_at"))
 def contact_at(system, m, i, beta, mu):
-    """The `Contact` of a cell: the m-th mu, the i-th frequency, and beta."""
+    """Build the `Contact` of a cell: m-th mu, i-th frequency, friction ratio beta."""
 
 
 @by_class(*_both("start"))
 def start(motion, system, i, contact, moving):
-    """The moment from which a motion starts, at rest or moving."""
+    """Set the motion to its initial state, at rest or moving, and return the contact state there."""
 
 
 @by_class(*_both("slide_to_turn"))
-def slide_to_turn(motion, contact, at, allowed):
-    """(steps, moment): a slide to where it ends; NO_END where not within `allowed` scan steps."""
+def slide_to_turn(motion, contact, contact_state, allowed):
+    """Follow a slide to its end.
+
+    Returns
+    -------
+    (steps, contact_state) : scan steps taken, NO_END where the slide takes more than `allowed` steps
+    """
 
 
 @by_class(*_both("after_turn"))
-def after_turn(motion, contact, at, allowed):
-    """(event, moment, wait): what follows a slide, see `events`, the next anchor, and the time in between.
+def after_turn(motion, contact, contact_state, allowed):
+    """Determine what follows a slide.
 
-    NO_RELEASE: a stop that is not known to end within `allowed` tau.  Where it sticks, the moment stays.
+    Returns
+    -------
+    (event, contact_state, wait) : code of `one_mass.events`, or NO_RELEASE for a stop that may end after more
+        than `allowed` tau; the next anchor, unchanged where the contact sticks; the time until then
     """
 
 
 @by_class(*_both("lasting_vibration"))
 def lasting_vibration(motion):
-    """Whether something vibrates in a stop for good: then the steady state depends on the start for good."""
+    """Whether an undamped vibration persists in a stop, so that the steady state depends on the initial
+    state.
+    """
 
 
 @by_class(*_both("stop_free"))
 def stop_free(motion, contact):
-    """(amplitude, phase, radius) of the continuous orbit; within the radius no motion can stop."""
+    """Return (amplitude, phase, radius) of the continuous orbit; no motion within the radius can stop."""
 
 
-@by_class(*_both("off_continuous"))
-def off_continuous(motion, contact, amplitude, phase, at):
-    """(distance, size): energy norms, of an anchor's distance from the continuous orbit and of the motion."""
+@by_class(*_both("distance_from_continuous"))
+def distance_from_continuous(motion, contact, amplitude, phase, contact_state):
+    """Return (distance, size): energy norms of the distance from the continuous orbit at an anchor, and of
+    the motion.
+    """
 
 
-@by_class(*_both("note_state"))
-def note_state(motion, at, column):
-    """Write the state at an anchor into the memory."""
+@by_class(*_both("record_state"))
+def record_state(motion, contact_state, column):
+    """Record the state at an anchor in a column of the memory."""
 
 
-@by_class(*_both("size_now"))
-def size_now(motion, at):
-    """The size of the motion at an anchor."""
+@by_class(*_both("motion_size"))
+def motion_size(motion, contact_state):
+    """Size of the motion at an anchor, the unit of its recurrence distances."""
 
 
-@by_class(*_both("return_distance"))
-def return_distance(motion, now, then, size):
-    """How far apart two remembered anchors are, relative to the motion; infinite if too far for a return."""
+@by_class(*_both("recurrence_distance"))
+def recurrence_distance(motion, now, then, size):
+    """Distance between two recorded anchors relative to the motion; infinite if it is no recurrence."""
 
 
 @by_class(*_both("creeps"))
 def creeps(motion, contact, events):
-    """(whether, z): whether the motion creeps to where it sticks for good but never gets there, and where."""
+    """Whether the motion creeps towards a position of permanent sticking that it never reaches, and that
+    position z.
+    """
 
 
 @by_class(*_both("seek"))
-def seek(motion, contact, at, event, sign, events, near, tries, limits):
-    """The periodic `Orbit` that a motion approaches, by Newton's method; then the motion is at its anchor.
+def seek(motion, contact, contact_state, event, sign, events, recurrence, failures, limits):
+    """Find the periodic `Orbit` that a motion approaches, by Newton's method; on success the motion is at its
+    anchor.
 
-    at, event, sign : the last of the `events` anchors
-    near : its nearest return, lag 0 if there was none
-    tries : how many failed before
+    Parameters
+    ----------
+    motion : a kind of motion; its memory holds the last anchors
+    contact : Contact
+    contact_state : ContactState at the last anchor
+    event : event that ended the slide before it
+    sign : -1.0 where the anchor is mirrored, else 1.0
+    events : number of anchors so far
+    recurrence : Recurrence of the last anchor; lag 0 if there is none
+    failures : number of failed attempts so far
+    limits : Limits
+
+    Returns
+    -------
+    Orbit
     """
 
 
 @by_class(*_both("forget_neighbour"))
 def forget_neighbour(motion):
-    """The next cell is no neighbour of the last one."""
+    """Discard the orbit of the previous cell: the next cell is not its neighbour."""
 
 
 @by_class(*_both("seek_nearby"))
 def seek_nearby(motion, contact, limits):
-    """The periodic `Orbit`, the only one, from the one found last, or from where motions begin to stop."""
+    """Find the unique periodic `Orbit`, starting from the orbit found last or from the onset of stopping."""
 
 
 @by_class(*_both("keep_state"))
 def keep_state(motion, slot):
-    """Keep the state in one of SLOTS places, to come back to; its moment is the caller's to keep."""
+    """Save the state in a slot; the caller keeps the contact state."""
 
 
 @by_class(*_both("bring_back"))
 def bring_back(motion, slot):
-    """Set the state to the one that was kept."""
+    """Restore the state from a slot."""
 
 
 @by_class(*_both("distance_from"))
-def distance_from(motion, slot, then, at, stopped):
-    """How far the motion, at a moment, is from where it was when its state was kept, at the moment `then`.
+def distance_from(motion, slot, saved, contact_state, stopped):
+    """Distance between the present state and a saved one, relative to the motion.
 
-    Relative to the motion; `stopped` : both are the ends of stops.
+    Parameters
+    ----------
+    motion : a kind of motion
+    slot : slot of the saved state
+    saved, contact_state : ContactState of the saved and of the present state
+    stopped : whether both are ends of stops
     """
 
 
-@by_class(*_both("back_at"))
-def back_at(motion, slot, then, at):
-    """Whether the motion, at a moment, is where it was when its state was kept, at the moment `then`."""
+@by_class(*_both("has_returned"))
+def has_returned(motion, slot, saved, contact_state):
+    """Whether the present state equals a saved one within rounding; arguments as in `distance_from`."""
 
 
 @by_class(*_both("on_continuous"))
 def on_continuous(motion, contact):
-    """Put the motion on the continuous orbit, where it turns upwards; the moment there."""
+    """Set the motion to the start of the rising half of the continuous orbit; return its contact state."""
 
 
 @by_class(*_both("put_slide"))
-def put_slide(motion, at, row):
-    """Write the start of a slide into a row of the table of phases."""
+def put_slide(motion, contact_state, row):
+    """Write the state at the start of a slide into a row of the segment table."""
 
 
 @by_class(*_both("put_stop"))
-def put_stop(motion, at, row):
-    """Write the start of a stop, at the end of a slide."""
+def put_stop(motion, contact_state, row):
+    """Write the state at the start of a stop, the end of a slide, into a row of the segment table."""

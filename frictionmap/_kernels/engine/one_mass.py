@@ -1,7 +1,8 @@
 """One mass as a kind of motion: the normalised oscillator of `one_mass.scan_step`.
 
-A stop forgets all but its displacement, so the return map of a motion with stops has one unknown
-(`one_mass.newton`).  Forces are in units of the load in the contact, whose phase is counted from its maximum.
+At a stop only the displacement is left of the state, so the return map of a motion with stops has one unknown
+(`one_mass.newton`).  Forces are divided by the amplitude of the load in the contact, and the load phase is
+counted from the maximum of that load.
 """
 
 import math
@@ -29,40 +30,41 @@ from ..one_mass.sliding_orbit import (
     orbit_phase,
     stop_free_radius,
 )
-from .answers import Contact, Moment, Orbit, known_orbit, no_orbit, stops_at
 from .memory import STATE, Memory, make_memory, turned
-from .phase_table import put_mass
-from .policies import FINE_STEPS, MOVING, MOVING_CAP
+from .policies import FINE_STEPS, MOVING_START, MOVING_START_CAP
+from .records import Contact, ContactState, Orbit, known_orbit, no_orbit, stops_at
+from .segment_table import put_mass
 
-#: The orbit solved for last, from which the next cell's may be found: slides until it returns (0: there is
-#: none), displacement and sign at the end of a stop, and from there on the events, at most MOST_EVENTS.
-COUNT, PLACE, SIDE, FIRST = 0, 1, 2, 3
+#: Columns of the orbit solved for last, the first guess of the next cell: slides per recurrence (0: no
+#: orbit), displacement and sign at the end of a stop, and the events that follow it, at most MOST_EVENTS.
+COUNT, DISPLACEMENT, SIDE, FIRST = 0, 1, 2, 3
 MOST_EVENTS = 32
 NEIGHBOUR = FIRST + MOST_EVENTS
 
-#: Anchors this close are one: Newton's method may have gone round a short orbit more than once.
+#: Two anchors closer than this are the same: Newton's method may have converged to a repeated short orbit.
 _SAME = 1e-9
 
-#: A return this close (relative to the motion) is worth a Newton iteration; whether the motion goes to the
-#: orbit found is seen from two returns (`march`).
-_NEAR_RETURN = 0.1
+#: Recurrence distance, relative to the motion, below which Newton's method is tried; `march` then checks with
+#: two recurrences whether the motion approaches the orbit found.
+_RECURRENCE_THRESHOLD = 0.1
 
-#: Distance to an end of the places of rest, over r^2, below which a slide takes less than a tenth of it.
+#: Distance to an end of the range of sticking positions, over r^2, below which one slide reduces it by less
+#: than a tenth.
 _CREEPING = 0.02
 
-#: A radius without stops beyond this share of the amplitude is not looked for with fine steps: what the
-#: scan's own steps leave out of it is a sixth of that.
+#: A stop-free radius above this share of the amplitude is not refined with fine steps: the scan's own steps
+#: underestimate it by about a sixth of that share.
 _WIDE = 0.1
 
 _BELOW_ONE = 0.9999999999999999  # the double before 1
 
 
 class Frequencies(NamedTuple):
-    """What depends on r only; arrays of shape (n_r,)."""
+    """Quantities that depend on r only; arrays of shape (n_r,)."""
 
     r: np.ndarray
     load: np.ndarray  # amplitude A of the load in the contact
-    phase: np.ndarray  # its phase ahead of cos(tau)
+    phase: np.ndarray  # phase lead of that load over cos(tau)
     v_abs: np.ndarray
     v_arg: np.ndarray
     u: np.ndarray
@@ -71,7 +73,7 @@ class Frequencies(NamedTuple):
 
 
 class OneMassSystem(NamedTuple):
-    """A system of one mass over a map."""
+    """A system of one mass over a whole map."""
 
     frequencies: Frequencies
     zeta: float
@@ -79,7 +81,7 @@ class OneMassSystem(NamedTuple):
     lim: np.ndarray  # (n_mu, n_r) boundary of b to continuous motion
     stick: np.ndarray  # (n_mu, n_r) boundary of beta to permanent sticking
     modes: int  # 1
-    chi: float  # displacement in the contact of its mode, 1 or -1
+    chi: float  # participation factor of the mode in the contact, 1 or -1
 
 
 class OneMass(NamedTuple):
@@ -88,11 +90,11 @@ class OneMass(NamedTuple):
     h: float  # scan step in tau
     r: float
     load: float  # amplitude of the load in the contact
-    lead: float  # its phase ahead of cos(tau)
+    lead: float  # phase lead of that load over cos(tau)
     chi: float
     v_abs: float
-    marginal: bool  # where continuous motions are a continuum
-    near_return: float
+    marginal: bool  # whether the continuous motions form a continuum
+    recurrence_threshold: float
     oscillator: Oscillator
     step: Step
     fine: Step  # a step at least as short, for bounds over a whole orbit
@@ -104,13 +106,13 @@ class OneMass(NamedTuple):
 
 @entry
 def at_frequency(system, i):
-    """The mass at the i-th frequency, r > 0."""
+    """Build the motion of the mass at the i-th frequency, r > 0."""
     f = system.frequencies
     r = f.r[i]
     oscillator = Oscillator(r, system.zeta, f.v_abs[i], f.v_arg[i], f.u[i], f.g[i], f.marginal[i])
     step = step_constants(r, system.zeta, system.steps)
     return OneMass(
-        step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _NEAR_RETURN,
+        step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _RECURRENCE_THRESHOLD,
         oscillator, step, step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
         make_memory(step.h, 1), make_scratch(), np.zeros(NEIGHBOUR), np.empty((0, 0)),
     )  # fmt: skip
@@ -118,10 +120,10 @@ def at_frequency(system, i):
 
 @kernel
 def contact_at(system, m, i, beta, mu):
-    """The contact of a cell.
+    """Build the contact of a cell.
 
-    The division by the load rounds, so where beta ties with beta_stick it could decide against the comparison
-    that the closed form makes; the comparison is made once, on beta, and holds here too.
+    The division by the load amplitude rounds.  Where beta equals beta_stick it could contradict the
+    comparison made by the closed form; that comparison, made on beta, decides here too.
     """
     b = beta / system.frequencies.load[i]
     mu_b = mu * b
@@ -134,42 +136,44 @@ def contact_at(system, m, i, beta, mu):
 
 @kernel
 def start(motion, system, i, contact, moving):
-    """Where the motion starts.
+    """Return the initial state.
 
-    At rest: z = z' = 0 at tau = 0.  Moving: z = 0 at 1.5 times the speed that gives the amplitude (in energy)
-    of the motion without friction, that amplitude taken as 10 at most, while the load falls through zero.
+    At rest: z = z' = 0 at tau = 0.  Moving: z = 0 with 1.5 times the speed that has the energy amplitude of
+    the response without friction, that amplitude limited to 10, while the load falls through zero.
     """
     if not moving:
         c, s = math.cos(motion.lead), math.sin(motion.lead)
-        return Moment(0.0, 0.0, c, s, c - contact.b)
+        return ContactState(0.0, 0.0, c, s, c - contact.b)
     oscillator = motion.oscillator
-    size = MOVING * min(oscillator.v_abs, MOVING_CAP) * max(1.0, oscillator.r)
+    size = MOVING_START * min(oscillator.v_abs, MOVING_START_CAP) * max(1.0, oscillator.r)
     speed = size / oscillator.r
     contact_force = -contact.b - 2.0 * oscillator.zeta * oscillator.r * speed
-    return Moment(0.0, speed * motion.h, 0.0, 1.0, contact_force)
+    return ContactState(0.0, speed * motion.h, 0.0, 1.0, contact_force)
 
 
 @inner_kernel
-def slide_to_turn(motion, contact, at, allowed):
+def slide_to_turn(motion, contact, contact_state, allowed):
     """See `motion.slide_to_turn`."""
     step = motion.step
     steps, z, c, s = slide_within(
-        step, contact.b, at.z, at.w, step.stiffness * at.contact_force, at.cos, at.sin, allowed,
-        motion.scratch,
+        step, contact.b, contact_state.z, contact_state.w, step.stiffness * contact_state.contact_force,
+        contact_state.cos, contact_state.sin, allowed, motion.scratch,
     )  # fmt: skip
-    return steps, Moment(z, 0.0, c, s, 0.0)
+    return steps, ContactState(z, 0.0, c, s, 0.0)
 
 
 @inner_kernel
-def after_turn(motion, contact, at, allowed):
+def after_turn(motion, contact, contact_state, allowed):
     """See `motion.after_turn`."""
-    event, z, c, s, contact_force, wait = after_slide(contact.b, contact.mu_b, at.z, at.cos, at.sin)
-    return event, Moment(z, 0.0, c, s, contact_force), wait
+    event, z, c, s, contact_force, wait = after_slide(
+        contact.b, contact.mu_b, contact_state.z, contact_state.cos, contact_state.sin
+    )
+    return event, ContactState(z, 0.0, c, s, contact_force), wait
 
 
 @kernel
 def lasting_vibration(motion):
-    """See `motion.lasting_vibration`: a stop forgets all."""
+    """See `motion.lasting_vibration`: a stop leaves no velocity."""
     return False
 
 
@@ -186,27 +190,29 @@ def stop_free(motion, contact):
 
 
 @kernel
-def off_continuous(motion, contact, amplitude, phase, at):
-    """See `motion.off_continuous`."""
-    distance = distance_to_orbit(motion.oscillator, contact.b, amplitude, phase, at.z, at.cos, at.sin)
+def distance_from_continuous(motion, contact, amplitude, phase, contact_state):
+    """See `motion.distance_from_continuous`."""
+    distance = distance_to_orbit(
+        motion.oscillator, contact.b, amplitude, phase, contact_state.z, contact_state.cos, contact_state.sin
+    )
     return distance, amplitude
 
 
 @inner_kernel
-def note_state(motion, at, column):
-    """See `motion.note_state`."""
-    motion.memory.anchors[column, STATE] = at.z
+def record_state(motion, contact_state, column):
+    """See `motion.record_state`."""
+    motion.memory.anchors[column, STATE] = contact_state.z
 
 
 @kernel
-def size_now(motion, at):
-    """See `motion.size_now`."""
-    return abs(at.z)
+def motion_size(motion, contact_state):
+    """See `motion.motion_size`."""
+    return abs(contact_state.z)
 
 
 @kernel
-def return_distance(motion, now, then, size):
-    """See `motion.return_distance`; at a stop the load's phase is a function of the place."""
+def recurrence_distance(motion, now, then, size):
+    """See `motion.recurrence_distance`; at a stop the load phase is a function of the displacement."""
     memory = motion.memory
     distance = abs(memory.anchors[now, STATE] - memory.anchors[then, STATE])
     turn = turned(memory, now, then) if memory.events[now] == REVERSE else 0.0
@@ -215,10 +221,11 @@ def return_distance(motion, now, then, size):
 
 @kernel
 def creeps(motion, contact, events):
-    """See `motion.creeps`: stops may creep to an end of |z| <= mu b - 1, where the contact sticks for good.
+    """See `motion.creeps`: stops may creep to an end of |z| <= mu b - 1, where the contact sticks
+    permanently.
 
-    At a small distance y from it a slide takes some 4.5 y^2/r^2 off y: the end is never passed, and never
-    reached in a finite time.
+    At a small distance y from that end a slide reduces y by about 4.5 y^2/r^2: the end is never passed, and
+    never reached in finite time.
     """
     memory = motion.memory
     length = memory.events.size
@@ -237,7 +244,7 @@ def creeps(motion, contact, events):
 
 @kernel
 def _middle(memory, events):
-    """Displacement between the last stop and the one before; nan if there is none before."""
+    """Mean displacement of the last two stops; NaN if there is no earlier stop."""
     length = memory.events.size
     now = events - 1
     for lag in range(1, min(events, length)):
@@ -248,45 +255,51 @@ def _middle(memory, events):
 
 
 @kernel
-def seek(motion, contact, at, event, sign, events, near, tries, limits):
+def seek(motion, contact, contact_state, event, sign, events, recurrence, failures, limits):
     """See `motion.seek`.
 
-    First the order of events of the last return is tried, from where the motion is now.  Next to a multiplier
-    of -1 a motion stays asymmetric for thousands of periods, with an order of events that the symmetric orbit
-    between its two halves does not have.  So, where the steady state is unique and an orbit found is the one
-    however it was found, the symmetric orbits with one or two stops a half period are tried too.
+    The event sequence of the last recurrence is tried first, from the present state.  Close to a multiplier
+    of -1 a motion stays asymmetric for thousands of periods, with an event sequence that the symmetric orbit
+    between its two halves does not have.  Where the steady state is unique, any orbit found is the right one;
+    the symmetric orbits with one or two stops per half period are then tried too.
+
+    Parameters
+    ----------
+    motion, contact, contact_state, event, sign, events, recurrence, failures, limits : see `motion.seek`
     """
-    if near.lag == 0:
+    if recurrence.lag == 0:
         return no_orbit()
     stopped = stops_at(event)
     guesses = 3 if contact.unique and event == STOP_THEN_BACK else 1
-    start = at.z
+    start = contact_state.z
     for guess in range(guesses):
-        slides = near.lag
+        slides = recurrence.lag
         if guess > 0:
             start = _middle(motion.memory, events)
             slides = guess
         found, z, c, s, contraction = solve_orbit(
-            motion.step, motion.oscillator, contact.b, contact.mu_b, start, at.cos, at.sin, stopped,
-            EventSequence(motion.memory.events, events - slides, slides), limits.tolerance, motion.scratch,
+            motion.step, motion.oscillator, contact.b, contact.mu_b, start, contact_state.cos,
+            contact_state.sin, stopped, EventSequence(motion.memory.events, events - slides, slides),
+            limits.tolerance, motion.scratch,
         )  # fmt: skip
         if found:
             if stopped:
                 _keep(motion, z, sign, events, slides)
             contact_force = first_contact_force(contact.b, contact.mu_b, z, c)
             return Orbit(
-                True, Moment(z, 0.0, c, s, contact_force), event, sign, slides, contact.unique, contraction
-            )
+                True, ContactState(z, 0.0, c, s, contact_force), event, sign, slides, contact.unique,
+                contraction,
+            )  # fmt: skip
     return no_orbit()
 
 
 @kernel
 def _keep(motion, z, sign, events, slides):
-    """Keep an orbit that starts at the end of a stop for the next cell."""
+    """Save an orbit that starts at the end of a stop, as the first guess of the next cell."""
     neighbour, ring = motion.neighbour, motion.memory.events
     if slides > MOST_EVENTS:
         return
-    neighbour[COUNT], neighbour[PLACE], neighbour[SIDE] = slides, z, sign
+    neighbour[COUNT], neighbour[DISPLACEMENT], neighbour[SIDE] = slides, z, sign
     for m in range(slides):
         neighbour[FIRST + m] = ring[(events - slides + m) % ring.size]
 
@@ -299,7 +312,9 @@ def forget_neighbour(motion):
 
 @kernel
 def seek_nearby(motion, contact, limits):
-    """See `motion.seek_nearby`; the motion without stops begins to stop where it turns."""
+    """See `motion.seek_nearby`; the first guess is the orbit at the onset of stopping, which stops where it
+    turns.
+    """
     neighbour = motion.neighbour
     slides = int(neighbour[COUNT])
     if slides == 0:
@@ -307,26 +322,26 @@ def seek_nearby(motion, contact, limits):
         if math.isinf(f.v_abs) or not contact.b_lim > 0.0:
             return no_orbit()
         slides = 1
-        neighbour[PLACE] = -continuous_amplitude(f.v_abs, f.u, f.g, contact.b_lim)
+        neighbour[DISPLACEMENT] = -continuous_amplitude(f.v_abs, f.u, f.g, contact.b_lim)
         neighbour[SIDE] = 1.0
         neighbour[FIRST] = STOP_THEN_BACK
     neighbour[COUNT] = 0.0
     found, z, c, s, _ = solve_orbit(
-        motion.step, motion.oscillator, contact.b, contact.mu_b, neighbour[PLACE], 1.0, 0.0, True,
+        motion.step, motion.oscillator, contact.b, contact.mu_b, neighbour[DISPLACEMENT], 1.0, 0.0, True,
         EventSequence(neighbour[FIRST:], np.int64(0), slides), limits.tolerance, motion.scratch,
     )  # fmt: skip
     if not found:
         return no_orbit()
     neighbour[COUNT] = slides
-    neighbour[PLACE] = z
+    neighbour[DISPLACEMENT] = z
     contact_force = first_contact_force(contact.b, contact.mu_b, z, c)
     event = int(neighbour[FIRST + slides - 1])
-    return known_orbit(Moment(z, 0.0, c, s, contact_force), event, neighbour[SIDE], slides)
+    return known_orbit(ContactState(z, 0.0, c, s, contact_force), event, neighbour[SIDE], slides)
 
 
 @kernel
 def keep_state(motion, slot):
-    """See `motion.keep_state`: the moment tells all."""
+    """See `motion.keep_state`; the contact state is the whole state."""
 
 
 @kernel
@@ -335,16 +350,16 @@ def bring_back(motion, slot):
 
 
 @kernel
-def distance_from(motion, slot, then, at, stopped):
-    """See `motion.distance_from`; after a stop the load's phase is a function of the place."""
-    turn = 0.0 if stopped else abs(at.cos - then.cos) + abs(at.sin - then.sin)
-    return turn + abs(at.z - then.z) / abs(then.z)
+def distance_from(motion, slot, saved, contact_state, stopped):
+    """See `motion.distance_from`; after a stop the load phase is a function of the displacement."""
+    turn = 0.0 if stopped else abs(contact_state.cos - saved.cos) + abs(contact_state.sin - saved.sin)
+    return turn + abs(contact_state.z - saved.z) / abs(saved.z)
 
 
 @kernel
-def back_at(motion, slot, then, at):
-    """See `motion.back_at`."""
-    return distance_from(motion, slot, then, at, False) <= _SAME
+def has_returned(motion, slot, saved, contact_state):
+    """See `motion.has_returned`."""
+    return distance_from(motion, slot, saved, contact_state, False) <= _SAME
 
 
 @kernel
@@ -354,17 +369,20 @@ def on_continuous(motion, contact):
     z = -continuous_amplitude(f.v_abs, f.u, f.g, contact.b)
     phase = orbit_phase(f.v_abs, f.v_arg, f.u, contact.b)
     c, s = -math.cos(phase), -math.sin(phase)
-    return Moment(z, 0.0, c, s, c - z - contact.b)
+    return ContactState(z, 0.0, c, s, c - z - contact.b)
 
 
 @kernel
-def put_slide(motion, at, row):
+def put_slide(motion, contact_state, row):
     """See `motion.put_slide`."""
     c, s = math.cos(motion.lead), math.sin(motion.lead)
-    put_mass(motion.chi * motion.load * at.z, at.cos * c + at.sin * s, at.sin * c - at.cos * s, row)
+    put_mass(
+        motion.chi * motion.load * contact_state.z, contact_state.cos * c + contact_state.sin * s,
+        contact_state.sin * c - contact_state.cos * s, row,
+    )  # fmt: skip
 
 
 @kernel
-def put_stop(motion, at, row):
-    """See `motion.put_stop`: nothing else moves."""
-    put_slide(motion, at, row)
+def put_stop(motion, contact_state, row):
+    """See `motion.put_stop`; one mass has the same state in a stop as in a slide."""
+    put_slide(motion, contact_state, row)

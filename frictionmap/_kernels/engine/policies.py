@@ -1,23 +1,27 @@
-"""Starts and thresholds that both kinds of motion share."""
+"""Initial states and thresholds shared by both kinds of motion."""
 
-#: The moving start, in units of the motion that the load alone sustains: energy amplitude, and the cap on
-#: that motion near resonance.  Of 25 starts tried on 4,000 cells where sliding and sticking coexist this one
-#: slid on in the largest share, 95 %.
-MOVING = 1.5
-MOVING_CAP = 10.0
+#: Energy amplitude of the moving start, relative to the response without friction, and the upper limit on
+#: that response near resonance.  In 4,000 cells where sliding and sticking coexist, 25 initial states were
+#: compared: with this one the largest share of the cells, 95 %, kept sliding.
+MOVING_START = 1.5
+MOVING_START_CAP = 10.0
 
-#: Static friction below this share of the load in the contact counts as none: half a unit of rounding of it.
+#: Friction ratio, relative to the load in the contact, below which friction is treated as zero: half a unit of
+#: rounding of the load.
 NO_FRICTION = 2.0**-53
 
-#: Scan steps per fastest period for bounds over a whole orbit: their slack is of second order in the step.
+#: Scan steps per fastest period for bounds over a whole orbit; the bounds tighten with the square of the
+#: step.
 FINE_STEPS = 64.0
 
-#: Nodes of the ladders of `coexistence`: around beta_lim, in eighths of it, and from beta_stick up.
+#: Nodes of the two ladders in beta of `coexistence`: multiples of beta_lim/8, and nodes from beta_stick
+#: upwards.
 EIGHTHS = 9
 RUNGS = 24
 
-#: Places for states to come back to: the anchor of the orbit measured; where the motion is while it is
-#: seen whether it goes to an orbit, and that orbit; and the nodes of both ladders, either way.
+#: Slots for saved states: the anchor of the orbit being measured; the current state, and the orbit it is
+#: compared with, while the solver checks whether the motion approaches that orbit; the nodes of both ladders
+#: in both directions.
 ANCHOR, NOW, GOAL, AROUND = 0, 1, 2, 3
 ABOVE = AROUND + 2 * EIGHTHS
 SLOTS = ABOVE + 2 * RUNGS

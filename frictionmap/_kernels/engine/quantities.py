@@ -1,7 +1,8 @@
-"""What a steady state does in a cycle: extremes and their phases, harmonics, works.
+"""Quantities of a steady state over one excitation cycle: extremes and their phases, harmonics, work,
+distortion.
 
-Asked for apart from `details`, and as they are, by the class of `wanted`: who asks for nothing of it compiles
-nothing of it.  Results are in rows: the masses, one more force, the contact.
+They are requested separately from `details`, and in the same way by the class of `requested`: nothing is
+compiled for quantities that are not requested.  Rows of results are the masses, one force, and the contact.
 """
 
 import math
@@ -16,133 +17,137 @@ from ..structure.newton import Workspace, make_workspace
 from ..structure.oscillators import Scratch, make_scratch
 from ..structure.sliding_orbit import Continuous
 from ..structure.state import (
-    DIRECT_COS,
-    DIRECT_SIN,
+    FEEDTHROUGH_COS,
+    FEEDTHROUGH_SIN,
     Z_RATE,
     Loads,
     Model,
-    Structure,
+    StructureAtFrequency,
     Z,
     make_structure,
 )
-from .answers import known_orbit
-from .details import Nothing
+from .details import NotRequested
+from .dissipation import Dampers, sliding_distance, viscous_work
+from .distortion import distortion_square
 from .extremes import (
     FOUND,
     PHASE,
     PHASE_BEGIN,
     PHASE_END,
     VALUE,
-    Alone,
-    Shapes,
+    OutputMatrices,
+    UncoupledResponse,
     largest_in_contact,
     largest_moduli,
     turned_half,
 )
-from .harmonics import Spectrum, harmonics_of_continuous, harmonics_of_phases, make_spectrum
+from .harmonics import Spectrum, harmonics_of_continuous, harmonics_of_segments, make_spectrum
 from .measure import measure
-from .phase_table import continuous_phase, phase_columns
-from .rests import rest_square
-from .works import Dampers, sliding_distance, viscous_work
+from .records import known_orbit
+from .segment_table import continuous_segment, segment_columns
 
-#: Columns of `Results.works`, per excitation cycle.
+#: Columns of `Results.work_terms`, per excitation cycle.
 DISTANCE, BY_FRICTION, BY_LOAD, BY_DAMPING, EQUIVALENT = 0, 1, 2, 3, 4
-WORKS = 5
+WORK_TERMS = 5
 
 #: Columns of `Results.firsts`.
 MODULUS, LAG = 0, 1
 
-#: Columns of `Results.rests`.
+#: Columns of `Results.distortions`.
 RMS, DISTORTION = 0, 1
 
 
 class Results(NamedTuple):
-    """What is asked for, over (mu, r, beta); what is not has no size.
+    """Requested results over (mu, r, beta); arrays that are not requested have size 0.
 
-    Rows are the masses, then a force, then the contact.  The force is the one transmitted to the ground, in
-    `harmonics` the friction force.
+    Rows are the masses, then a force, then the contact.  The force is the one transmitted to the ground; in
+    `harmonics` it is the friction force.
     """
 
     extremes: np.ndarray  # (..., rows, FOUND)
-    firsts: np.ndarray  # (..., rows, 2) modulus and lag of the first harmonics
+    firsts: np.ndarray  # (..., rows, 2) modulus and phase lag of the first harmonics
     harmonics: np.ndarray  # (..., rows, N + 1) complex
-    works: np.ndarray  # (..., WORKS)
-    rests: np.ndarray  # (..., masses, 2) root mean square and distortion
+    work_terms: np.ndarray  # (..., WORK_TERMS)
+    distortions: np.ndarray  # (..., masses, 2) root mean square and distortion
 
 
 class Linear(NamedTuple):
-    """Phasors of motions with the contact held, or without friction; arrays (n_r, ...)."""
+    """Phasors of the linear responses: with the contact held, and without friction; arrays (n_r, ...)."""
 
-    held: np.ndarray  # (n_r, n_dof) complex, of the masses with the contact held
-    force: np.ndarray  # (n_r,) complex, of the force that holds it
-    growing: np.ndarray  # (n_r, rows) complex, directions of what grows without bound at a resonance
+    held: np.ndarray  # (n_r, n_dof) complex displacements of the masses with the contact held
+    force: np.ndarray  # (n_r,) complex force that holds the contact
+    growth: np.ndarray  # (n_r, rows) complex directions of the growing motion at an undamped resonance
 
 
 class Balance(NamedTuple):
-    """Forces and works as functions of first harmonics X and F; arrays (n_r, ...)."""
+    """Forces and work as functions of the first harmonics X of the masses and F of friction; arrays (n_r,
+    ...).
+    """
 
     load: np.ndarray  # (n_r,) complex, sum of the loads
     inertia: np.ndarray  # (n_r, n_dof) r^2 times the mass
-    power: np.ndarray  # (n_r, n_dof) complex; the work of the load is pi Im(power.X + power_alone - s F)
-    power_alone: np.ndarray  # (n_r,) complex
+    power: np.ndarray  # (n_r, n_dof) complex; the work of the load is pi Im(power.X + base_power - s F)
+    base_power: np.ndarray  # (n_r,) complex
     base_motion: float  # s
-    dampers: Dampers  # of what the contact sees
-    damped: bool  # whether they take any work
-    damping_alone: np.ndarray  # (n_r,) work of the dampers of the modes that it does not see
-    damping_held: np.ndarray  # (n_r,) work of all of them with the contact held
+    dampers: Dampers  # of the participating modes
+    damped: bool  # whether any of them dissipates energy
+    damping_uncoupled: np.ndarray  # (n_r,) work of the dampers of the modes that do not participate
+    damping_held: np.ndarray  # (n_r,) work of all dampers with the contact held
 
 
 class Quantities(NamedTuple):
-    """Quantities over a map."""
+    """Data for the quantities over a whole map."""
 
     r: np.ndarray
     model: Model
     loads: Loads
     orbit: Continuous
     steps: float
-    at_wall: int  # the mass whose displacement is that in the contact, or -1
-    shapes: Shapes  # of the masses and, if it is asked for, of the transmitted force
-    alone: Alone
+    wall_mass: int  # mass whose displacement equals the contact displacement, or -1
+    outputs: OutputMatrices  # of the masses and, if requested, of the transmitted force
+    uncoupled: UncoupledResponse
     linear: Linear
     balance: Balance
     out: Results
     harmonics: int
 
 
-class QuantitiesHere(NamedTuple):
-    """Quantities at one frequency; at r = 0 nothing moves, and the structure is that of another."""
+class QuantitiesAtFrequency(NamedTuple):
+    """Data for the quantities at one frequency; at r = 0 a placeholder (r = 1) that is never read."""
 
     i: int
-    st: Structure
-    of: Quantities
+    st: StructureAtFrequency
+    request: Quantities
     spectrum: Spectrum
-    rows: np.ndarray  # (rows, N + 1) complex, harmonics of a cell; the force is that of friction
-    extremes: np.ndarray  # (rows, FOUND) of a cell
-    table: np.ndarray  # (1, columns) that of a continuous orbit
+    rows: np.ndarray  # (rows, N + 1) complex harmonics of one cell; the force is the friction force
+    extremes: np.ndarray  # (rows, FOUND) extremes of one cell
+    table: np.ndarray  # (1, columns) segment table of a continuous orbit
     work: Workspace
     scratch: Scratch
 
 
 @kernel
-def _nothing_at(wanted, i):
-    return wanted
+def _not_requested(requested, i):
+    """Return the placeholder itself."""
+    return requested
 
 
 @entry
-def _quantities_at(wanted, i):
-    r = wanted.r[i] if wanted.r[i] > 0.0 else 1.0
-    st = make_structure(wanted.model, wanted.loads, i, r, wanted.steps)
-    rows = wanted.linear.growing.shape[1]
-    return QuantitiesHere(
-        i, st, wanted, make_spectrum(st, max(1, wanted.harmonics)),
-        np.zeros((rows, max(1, wanted.harmonics) + 1), dtype=np.complex128), np.full((rows, FOUND), math.nan),
-        np.empty((1, phase_columns(st.n))), make_workspace(st.n), make_scratch(st.n),
+def _quantities_at(requested, i):
+    """Build the data for the i-th frequency."""
+    r = requested.r[i] if requested.r[i] > 0.0 else 1.0
+    st = make_structure(requested.model, requested.loads, i, r, requested.steps)
+    rows, harmonics = requested.linear.growth.shape[1], max(1, requested.harmonics)
+    return QuantitiesAtFrequency(
+        i, st, requested, make_spectrum(st, harmonics),
+        np.zeros((rows, harmonics + 1), dtype=np.complex128), np.full((rows, FOUND), math.nan),
+        np.empty((1, segment_columns(st.n))), make_workspace(st.n), make_scratch(st.n),
     )  # fmt: skip
 
 
 @kernel
 def _copy(rows, target):
-    """Copy as many columns as the target has."""
+    """Copy the leading columns of the rows into an array with at most as many columns."""
     for k in range(target.shape[0]):
         for n in range(target.shape[1]):
             target[k, n] = rows[k, n]
@@ -150,7 +155,7 @@ def _copy(rows, target):
 
 @kernel
 def _lag(x):
-    """-arg x in (-pi, pi]; of nothing there is none."""
+    """Phase lag -arg x in (-pi, pi]; NaN for x = 0."""
     if x == 0.0:
         return math.nan
     angle = math.atan2(-x.imag, x.real)
@@ -158,202 +163,208 @@ def _lag(x):
 
 
 @kernel
-def _transmitted(here):
-    """First harmonic of the transmitted force, the loads less the inertia."""
-    balance, i = here.of.balance, here.i
+def _transmitted(quantities):
+    """First harmonic of the transmitted force: the loads less the inertia forces."""
+    balance, i = quantities.request.balance, quantities.i
     total = balance.load[i]
     for k in range(balance.inertia.shape[1]):
-        total += balance.inertia[i, k] * here.rows[k, 1]
+        total += balance.inertia[i, k] * quantities.rows[k, 1]
     return total
 
 
 @kernel
 def _rate(st, spectrum, n, i):
-    """Harmonic of p of a free oscillator."""
+    """n-th harmonic of the reduced velocity p of the i-th free oscillator."""
     rate = complex(0.0, n * st.r) * spectrum.modes[n, i]
-    return rate - complex(st.modes[DIRECT_COS, i], -st.modes[DIRECT_SIN, i]) if n == 1 else rate
+    return rate - complex(st.modes[FEEDTHROUGH_COS, i], -st.modes[FEEDTHROUGH_SIN, i]) if n == 1 else rate
 
 
 @kernel
-def _put_harmonics(here):
-    """Harmonics of all rows from those of friction and modes."""
-    st, spectrum, of = here.st, here.spectrum, here.of
-    force = of.balance.inertia.shape[1]
+def _put_harmonics(quantities):
+    """Compute the harmonics of all rows from those of friction and modes."""
+    st, spectrum, request = quantities.st, quantities.spectrum, quantities.request
+    force = request.balance.inertia.shape[1]
     for n in range(spectrum.friction.size):
         for k in range(force):
-            total = of.alone.sliding[here.i, k] if n == 1 else 0j
+            total = request.uncoupled.sliding[quantities.i, k] if n == 1 else 0j
             for i in range(st.n):
-                total += of.shapes.free[k, i] * spectrum.modes[n, i]
-                total += of.shapes.free[k, st.n + i] * _rate(st, spectrum, n, i)
-            here.rows[k, n] = total
-        here.rows[force, n] = spectrum.friction[n]
+                total += request.outputs.free[k, i] * spectrum.modes[n, i]
+                total += request.outputs.free[k, st.n + i] * _rate(st, spectrum, n, i)
+            quantities.rows[k, n] = total
+        quantities.rows[force, n] = spectrum.friction[n]
         total = 0j
         for i in range(st.n):
             total += st.modes[Z, i] * spectrum.modes[n, i]
             total += st.modes[Z_RATE, i] * _rate(st, spectrum, n, i)
-        here.rows[force + 1, n] = total
+        quantities.rows[force + 1, n] = total
 
 
 @kernel
-def _put_held(here):
-    """Harmonics of all rows with the contact held: of the oscillation, wherever the contact rests."""
-    linear, i = here.of.linear, here.i
+def _put_held(quantities):
+    """Compute the harmonics of all rows with the contact held, without the position of the contact."""
+    linear, i = quantities.request.linear, quantities.i
     force = linear.held.shape[1]
-    for k in range(here.rows.shape[0]):
-        for n in range(here.rows.shape[1]):
-            here.rows[k, n] = 0j
+    for k in range(quantities.rows.shape[0]):
+        for n in range(quantities.rows.shape[1]):
+            quantities.rows[k, n] = 0j
     for k in range(force):
-        here.rows[k, 1] = linear.held[i, k]
-    here.rows[force, 1] = linear.force[i]
+        quantities.rows[k, 1] = linear.held[i, k]
+    quantities.rows[force, 1] = linear.force[i]
 
 
 @kernel
-def _extremes_of_one_harmonic(here):
-    """Extremes of a motion that is its first harmonic."""
-    force = here.of.balance.inertia.shape[1]
-    for k in range(here.extremes.shape[0]):
-        phasor = here.rows[k, 1] if k != force else _transmitted(here)
-        here.extremes[k, VALUE], here.extremes[k, PHASE] = abs(phasor), _lag(phasor)
-        here.extremes[k, PHASE_BEGIN], here.extremes[k, PHASE_END] = math.nan, math.nan
+def _extremes_of_one_harmonic(quantities):
+    """Compute the extremes of a motion that equals its first harmonic."""
+    force = quantities.request.balance.inertia.shape[1]
+    for k in range(quantities.extremes.shape[0]):
+        phasor = quantities.rows[k, 1] if k != force else _transmitted(quantities)
+        quantities.extremes[k, VALUE], quantities.extremes[k, PHASE] = abs(phasor), _lag(phasor)
+        quantities.extremes[k, PHASE_BEGIN], quantities.extremes[k, PHASE_END] = math.nan, math.nan
 
 
 @kernel
-def _store(here, m, j, beta, distance, damping):
-    """Write what was asked for of a cell, from its rows; distance, damping : sliding distance and work."""
-    of, out, i = here.of, here.of.out, here.i
-    force = of.balance.inertia.shape[1]
+def _store(quantities, m, j, beta, distance, damping):
+    """Write the requested results of a cell, given its sliding distance and the work of its dampers."""
+    request, out, i = quantities.request, quantities.request.out, quantities.i
+    force = request.balance.inertia.shape[1]
     if out.extremes.size:
-        _copy(here.extremes, out.extremes[m, i, j])
+        _copy(quantities.extremes, out.extremes[m, i, j])
     if out.harmonics.size:
-        _copy(here.rows, out.harmonics[m, i, j])
+        _copy(quantities.rows, out.harmonics[m, i, j])
     if out.firsts.size:
-        for k in range(here.rows.shape[0]):
-            phasor = here.rows[k, 1] if k != force else _transmitted(here)
+        for k in range(quantities.rows.shape[0]):
+            phasor = quantities.rows[k, 1] if k != force else _transmitted(quantities)
             out.firsts[m, i, j, k, MODULUS], out.firsts[m, i, j, k, LAG] = abs(phasor), _lag(phasor)
-    if out.works.size:
-        balance, amplitude = of.balance, here.extremes[force + 1, VALUE]
-        fed = balance.power_alone[i] - balance.base_motion * here.rows[force, 1]
+    if out.work_terms.size:
+        balance, amplitude = request.balance, quantities.extremes[force + 1, VALUE]
+        fed = balance.base_power[i] - balance.base_motion * quantities.rows[force, 1]
         for k in range(force):
-            fed += balance.power[i, k] * here.rows[k, 1]
-        works = out.works[m, i, j]
-        works[DISTANCE], works[BY_FRICTION] = distance, beta * distance
-        works[BY_LOAD], works[BY_DAMPING] = math.pi * fed.imag, damping
+            fed += balance.power[i, k] * quantities.rows[k, 1]
+        work_terms = out.work_terms[m, i, j]
+        work_terms[DISTANCE], work_terms[BY_FRICTION] = distance, beta * distance
+        work_terms[BY_LOAD], work_terms[BY_DAMPING] = math.pi * fed.imag, damping
         square = math.pi * amplitude * amplitude
-        works[EQUIVALENT] = beta * distance / square if square > 0.0 else math.nan
+        work_terms[EQUIVALENT] = beta * distance / square if square > 0.0 else math.nan
 
 
 @kernel
-def _store_rest(here, m, j, k, rest):
-    """Write root mean square and distortion of a mass, `rest` the root mean square but for X_0 and X_1."""
-    first = abs(here.rows[k, 1])
-    out = here.of.out.rests[m, here.i, j, k]
-    out[RMS] = math.hypot(math.hypot(here.rows[k, 0].real, first / math.sqrt(2.0)), rest)
-    out[DISTORTION] = math.sqrt(2.0) * rest / first if first > 0.0 else math.nan
+def _store_distortion(quantities, m, j, k, remainder):
+    """Write rms value and distortion of a mass; `remainder` is the rms value without X_0 and X_1."""
+    first = abs(quantities.rows[k, 1])
+    out = quantities.request.out.distortions[m, quantities.i, j, k]
+    out[RMS] = math.hypot(math.hypot(quantities.rows[k, 0].real, first / math.sqrt(2.0)), remainder)
+    out[DISTORTION] = math.sqrt(2.0) * remainder / first if first > 0.0 else math.nan
 
 
 @kernel
-def _no_rests(here, m, j):
-    """Of a motion that is its first harmonic."""
-    for k in range(here.of.out.rests.shape[3] if here.of.out.rests.size else 0):
-        _store_rest(here, m, j, k, 0.0)
+def _no_distortion(quantities, m, j):
+    """Write rms values and zero distortion for a motion that equals its first harmonic."""
+    for k in range(
+        quantities.request.out.distortions.shape[3] if quantities.request.out.distortions.size else 0
+    ):
+        _store_distortion(quantities, m, j, k, 0.0)
 
 
 @kernel
-def _rests(here, m, j, beta, table, halves):
-    """Of a motion over its table of phases, so many half periods long."""
-    of = here.of
-    for k in range(of.out.rests.shape[3] if of.out.rests.size else 0):
-        square = rest_square(
-            here.st, beta, of.shapes, of.alone, here.i, k, here.rows[k, 0].real, here.rows[k, 1], table,
-            here.work, here.scratch,
+def _write_distortions(quantities, m, j, beta, table, halves):
+    """Write rms values and distortions from a segment table that covers this many half periods."""
+    request = quantities.request
+    for k in range(request.out.distortions.shape[3] if request.out.distortions.size else 0):
+        square = distortion_square(
+            quantities.st, beta, request.outputs, request.uncoupled, quantities.i, k,
+            quantities.rows[k, 0].real, quantities.rows[k, 1], table, quantities.work, quantities.scratch,
         )  # fmt: skip
-        _store_rest(here, m, j, k, math.sqrt(square / (math.pi * halves)))
+        _store_distortion(quantities, m, j, k, math.sqrt(square / (math.pi * halves)))
 
 
 @kernel
-def _no_stuck(here, m, j):
+def _no_stuck(quantities, m, j):
+    """Write nothing."""
     pass
 
 
 @kernel
-def _stuck(here, m, j):
-    """Where the contact sticks; what it is held at is no part of the oscillation."""
-    _put_held(here)
-    _extremes_of_one_harmonic(here)
-    _store(here, m, j, 0.0, 0.0, here.of.balance.damping_held[here.i])
-    _no_rests(here, m, j)
+def _stuck(quantities, m, j):
+    """Write the quantities of a cell whose contact sticks; its static offset is not part of the vibration."""
+    _put_held(quantities)
+    _extremes_of_one_harmonic(quantities)
+    _store(quantities, m, j, 0.0, 0.0, quantities.request.balance.damping_held[quantities.i])
+    _no_distortion(quantities, m, j)
 
 
 @kernel
-def _look(here, beta, table):
-    """The extremes of the rows but the contact's, if they were asked for."""
-    of = here.of
-    if of.out.extremes.size and not (of.shapes.static_shape.size == 1 and of.at_wall == 0):
+def _find_extremes(quantities, beta, table):
+    """Find the extremes of all requested rows but the contact's."""
+    request = quantities.request
+    if request.out.extremes.size and not (request.outputs.static_shape.size == 1 and request.wall_mass == 0):
         largest_moduli(
-            here.st, beta, of.shapes, of.alone, here.i, of.at_wall, table, here.extremes, here.work,
-            here.scratch,
+            quantities.st, beta, request.outputs, request.uncoupled, quantities.i, request.wall_mass, table,
+            quantities.extremes, quantities.work, quantities.scratch,
         )  # fmt: skip
-    if of.at_wall >= 0:
+    if request.wall_mass >= 0:
         for column in range(FOUND):
-            here.extremes[of.at_wall, column] = here.extremes[here.extremes.shape[0] - 1, column]
+            quantities.extremes[request.wall_mass, column] = quantities.extremes[
+                quantities.extremes.shape[0] - 1, column
+            ]
 
 
 @kernel
-def _dampers(here, beta, table, halves):
-    """The work of the dampers per cycle, if it was asked for, of a motion that slides."""
-    balance = here.of.balance
-    if not here.of.out.works.size:
+def _viscous_work(quantities, beta, table, halves):
+    """Work of the dampers per excitation cycle."""
+    balance = quantities.request.balance
+    if not quantities.request.out.work_terms.size:
         return 0.0
-    total = balance.damping_alone[here.i]
+    total = balance.damping_uncoupled[quantities.i]
     if balance.damped:
-        spent = viscous_work(here.st, beta, balance.dampers, table, here.work, here.scratch)
+        spent = viscous_work(quantities.st, beta, balance.dampers, table, quantities.work, quantities.scratch)
         total += 2.0 / halves * spent
     return total
 
 
 @kernel
-def _no_continuous(here, m, j, beta):
+def _no_continuous(quantities, m, j, beta):
+    """Write nothing."""
     pass
 
 
 @kernel
-def _continuous(here, m, j, beta):
-    """On the continuous orbit."""
-    orbit, i = here.of.orbit, here.i
-    contact = here.extremes[here.extremes.shape[0] - 1]
+def _continuous(quantities, m, j, beta):
+    """Write the quantities of the continuous orbit."""
+    orbit, i = quantities.request.orbit, quantities.i
+    contact = quantities.extremes[quantities.extremes.shape[0] - 1]
     if not orbit.v_abs[i] < math.inf:
-        _growing(here, m, j, beta)
+        _write_growing(quantities, m, j, beta)
         return
     if beta == 0.0:  # linear; u may be infinite
-        harmonics_of_continuous(here.st, 0.0, 0.0, here.spectrum)
-        _put_harmonics(here)
-        _extremes_of_one_harmonic(here)
-        damping = here.of.balance.damping_alone[i] + _linear_damping(here)
-        _store(here, m, j, 0.0, 4.0 * contact[VALUE], damping)
-        _no_rests(here, m, j)
+        harmonics_of_continuous(quantities.st, 0.0, 0.0, quantities.spectrum)
+        _put_harmonics(quantities)
+        _extremes_of_one_harmonic(quantities)
+        damping = quantities.request.balance.damping_uncoupled[i] + _linear_damping(quantities)
+        _store(quantities, m, j, 0.0, 4.0 * contact[VALUE], damping)
+        _no_distortion(quantities, m, j)
         return
     phase = orbit_phase(orbit.v_abs[i], orbit.v_arg[i], orbit.u[i], beta)
-    harmonics_of_continuous(here.st, beta, phase, here.spectrum)
-    _put_harmonics(here)
+    harmonics_of_continuous(quantities.st, beta, phase, quantities.spectrum)
+    _put_harmonics(quantities)
     contact[VALUE] = continuous_amplitude(orbit.v_abs[i], orbit.u[i], orbit.g[i], beta)
     contact[PHASE] = turned_half(phase, 1.0)
     contact[PHASE_BEGIN], contact[PHASE_END] = math.nan, math.nan
-    continuous_phase(here.st, orbit, i, beta, phase, here.table[0], here.work)
-    _look(here, beta, here.table)
-    _store(here, m, j, beta, 4.0 * contact[VALUE], _dampers(here, beta, here.table, 1))
-    _rests(here, m, j, beta, here.table, 1)
+    continuous_segment(quantities.st, orbit, i, beta, phase, quantities.table[0], quantities.work)
+    _find_extremes(quantities, beta, quantities.table)
+    _store(quantities, m, j, beta, 4.0 * contact[VALUE], _viscous_work(quantities, beta, quantities.table, 1))
+    _write_distortions(quantities, m, j, beta, quantities.table, 1)
 
 
 @kernel
-def _linear_damping(here):
-    """The work of the dampers without friction."""
-    st, dampers = here.st, here.of.balance.dampers
+def _linear_damping(quantities):
+    """Work of the dampers per excitation cycle without friction."""
+    st, dampers = quantities.st, quantities.request.balance.dampers
     total = 0.0
     for k in range(dampers.weights.size):
         moved = complex(dampers.base[k], 0.0)
         for i in range(st.n):
-            moved += dampers.place[k, i] * here.spectrum.modes[1, i]
-            moved += dampers.place[k, st.n + i] * _rate(st, here.spectrum, 1, i)
+            moved += dampers.displacement[k, i] * quantities.spectrum.modes[1, i]
+            moved += dampers.displacement[k, st.n + i] * _rate(st, quantities.spectrum, 1, i)
         size = abs(moved)
         total += dampers.weights[k] * st.r * math.pi * size * size
     return total
@@ -361,106 +372,129 @@ def _linear_damping(here):
 
 @kernel
 def _unbounded(direction):
-    """Infinite along a direction; parts that it does not have stay 0."""
+    """Infinity in the direction of a phasor; real or imaginary parts that are zero stay zero."""
     re = math.copysign(math.inf, direction.real) if direction.real != 0.0 else 0.0
     im = math.copysign(math.inf, direction.imag) if direction.imag != 0.0 else 0.0
     return complex(re, im)
 
 
 @kernel
-def _growing(here, m, j, beta):
-    """At an undamped resonance: the phases to which a motion goes that grows without bound."""
-    of, out, i = here.of, here.of.out, here.i
-    directions = of.linear.growing[i]
+def _write_growing(quantities, m, j, beta):
+    """Write the quantities at an undamped resonance: infinite amplitudes, with the phases that the growing
+    motion approaches.
+    """
+    request, out, i = quantities.request, quantities.request.out, quantities.i
+    directions = request.linear.growth[i]
     contact = directions.size - 1
-    harmonics_of_continuous(here.st, beta, _lag(directions[contact]), here.spectrum)
-    _put_harmonics(here)
+    harmonics_of_continuous(quantities.st, beta, _lag(directions[contact]), quantities.spectrum)
+    _put_harmonics(quantities)
     for k in range(directions.size):
         if k != contact - 1:
-            here.rows[k, 1] = _unbounded(directions[k])
+            quantities.rows[k, 1] = _unbounded(directions[k])
         if out.extremes.size:
             out.extremes[m, i, j, k, VALUE], out.extremes[m, i, j, k, PHASE] = math.inf, _lag(directions[k])
         if out.firsts.size:
             out.firsts[m, i, j, k, MODULUS], out.firsts[m, i, j, k, LAG] = math.inf, _lag(directions[k])
     if out.harmonics.size:
-        _copy(here.rows, out.harmonics[m, i, j])
-    if out.works.size:
-        works = out.works[m, i, j]
-        works[DISTANCE], works[BY_LOAD] = math.inf, math.inf
-        works[BY_FRICTION] = math.inf if beta > 0.0 else 0.0
-        works[BY_DAMPING] = math.nan if of.balance.damped else of.balance.damping_alone[i]
-        works[EQUIVALENT] = 0.0
-    if out.rests.size:
-        for k in range(out.rests.shape[3]):
-            out.rests[m, i, j, k, RMS], out.rests[m, i, j, k, DISTORTION] = math.inf, 0.0
+        _copy(quantities.rows, out.harmonics[m, i, j])
+    if out.work_terms.size:
+        work_terms = out.work_terms[m, i, j]
+        work_terms[DISTANCE], work_terms[BY_LOAD] = math.inf, math.inf
+        work_terms[BY_FRICTION] = math.inf if beta > 0.0 else 0.0
+        work_terms[BY_DAMPING] = math.nan if request.balance.damped else request.balance.damping_uncoupled[i]
+        work_terms[EQUIVALENT] = 0.0
+    if out.distortions.size:
+        for k in range(out.distortions.shape[3]):
+            out.distortions[m, i, j, k, RMS], out.distortions[m, i, j, k, DISTORTION] = math.inf, 0.0
 
 
 @kernel
-def _no_orbit(here, motion, contact, found, m, j, beta):
+def _no_orbit(quantities, motion, contact, found, m, j, beta):
+    """Write nothing.
+
+    Parameters
+    ----------
+    quantities, motion, contact, found, m, j, beta : see `write_orbit_quantities`
+    """
     pass
 
 
 @entry
-def _orbit(here, motion, contact, found, m, j, beta):
-    """On a periodic orbit, whose table of phases is written first."""
-    table = np.empty((2 * found.slides, phase_columns(here.st.n)))
-    orbit = known_orbit(found.at, found.event, found.sign, found.slides)
-    table = table[: measure(motion, contact, orbit, table).phases]
-    _phases(here, m, j, beta, table)
+def _orbit(quantities, motion, contact, found, m, j, beta):
+    """Write the quantities of a periodic orbit from its segment table.
+
+    Parameters
+    ----------
+    quantities, motion, contact, found, m, j, beta : see `write_orbit_quantities`
+    """
+    table = np.empty((2 * found.slides, segment_columns(quantities.st.n)))
+    orbit = known_orbit(found.contact_state, found.event, found.sign, found.slides)
+    table = table[: measure(motion, contact, orbit, table).segments]
+    _write_periodic(quantities, m, j, beta, table)
 
 
 @kernel
-def _phases(here, m, j, beta, table):
-    """Of the steady state of a table of phases."""
-    halves = harmonics_of_phases(here.st, beta, table, here.spectrum)
-    _put_harmonics(here)
-    largest_in_contact(table, here.extremes[here.extremes.shape[0] - 1])
-    _look(here, beta, table)
+def _write_periodic(quantities, m, j, beta, table):
+    """Write the quantities of the steady state of a segment table."""
+    halves = harmonics_of_segments(quantities.st, beta, table, quantities.spectrum)
+    _put_harmonics(quantities)
+    largest_in_contact(table, quantities.extremes[quantities.extremes.shape[0] - 1])
+    _find_extremes(quantities, beta, table)
     if full_period(halves) != 1:
-        for k in range(here.extremes.shape[0]):
+        for k in range(quantities.extremes.shape[0]):
             for column in range(PHASE, FOUND):
-                here.extremes[k, column] = math.nan
-    distance = 2.0 / halves * sliding_distance(here.st, table, here.work)
-    _store(here, m, j, beta, distance, _dampers(here, beta, table, halves))
-    _rests(here, m, j, beta, table, halves)
+                quantities.extremes[k, column] = math.nan
+    distance = 2.0 / halves * sliding_distance(quantities.st, table, quantities.work)
+    _store(quantities, m, j, beta, distance, _viscous_work(quantities, beta, table, halves))
+    _write_distortions(quantities, m, j, beta, table, halves)
 
 
-# For the only cell of a map: an entry a branch, so that who has one cell compiles one branch.
-
-
-@entry
-def stuck_cell_quantities(wanted):
-    """Write those of the only cell of a map, whose contact sticks."""
-    _stuck(_quantities_at(wanted, 0), 0, 0)
+# For the only cell of a map: one entry per branch, so that only the branch in use is compiled.
 
 
 @entry
-def continuous_cell_quantities(wanted, beta):
-    """Write those of the only cell of a map, on the continuous orbit of the closed form."""
-    _continuous(_quantities_at(wanted, 0), 0, 0, beta)
+def stuck_cell_quantities(requested):
+    """Write the quantities of the only cell of a map, whose contact sticks."""
+    _stuck(_quantities_at(requested, 0), 0, 0)
 
 
 @entry
-def table_cell_quantities(wanted, beta, table):
-    """Write those of the only cell of a map, of the steady state of a table of phases."""
-    _phases(_quantities_at(wanted, 0), 0, 0, beta, table)
+def continuous_cell_quantities(requested, beta):
+    """Write the quantities of the only cell of a map, on the continuous orbit of the closed form."""
+    _continuous(_quantities_at(requested, 0), 0, 0, beta)
 
 
-@by_class((Nothing, _nothing_at), (Quantities, _quantities_at))
-def quantities_at(wanted, i):
-    """The quantities at the i-th frequency."""
+@entry
+def table_cell_quantities(requested, beta, table):
+    """Write the quantities of the only cell of a map, from its segment table."""
+    _write_periodic(_quantities_at(requested, 0), 0, 0, beta, table)
 
 
-@by_class((Nothing, _no_stuck), (QuantitiesHere, _stuck))
-def take_stuck(here, m, j):
-    """Write those of a cell whose contact sticks."""
+@by_class((NotRequested, _not_requested), (Quantities, _quantities_at))
+def quantities_at(requested, i):
+    """Build the data for the quantities at the i-th frequency."""
 
 
-@by_class((Nothing, _no_continuous), (QuantitiesHere, _continuous))
-def take_continuous(here, m, j, beta):
-    """Write those of a cell on the continuous orbit."""
+@by_class((NotRequested, _no_stuck), (QuantitiesAtFrequency, _stuck))
+def write_stuck_quantities(quantities, m, j):
+    """Write the quantities of a cell whose contact sticks."""
 
 
-@by_class((Nothing, _no_orbit), (QuantitiesHere, _orbit))
-def take_orbit(here, motion, contact, found, m, j, beta):
-    """Write those of a cell on the periodic orbit that was found."""
+@by_class((NotRequested, _no_continuous), (QuantitiesAtFrequency, _continuous))
+def write_continuous_quantities(quantities, m, j, beta):
+    """Write the quantities of a cell on the continuous orbit."""
+
+
+@by_class((NotRequested, _no_orbit), (QuantitiesAtFrequency, _orbit))
+def write_orbit_quantities(quantities, motion, contact, found, m, j, beta):
+    """Write the quantities of a cell on a periodic orbit.
+
+    Parameters
+    ----------
+    quantities : QuantitiesAtFrequency or NotRequested
+    motion : a kind of motion, at the anchor of the orbit
+    contact : Contact, in the units of the motion
+    found : Cell
+    m, j : indices of mu and beta
+    beta : kinetic friction force, in the units of the map
+    """

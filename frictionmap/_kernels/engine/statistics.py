@@ -1,25 +1,25 @@
-"""What a motion that does not repeat does on average, and when to try Newton's method on one that may."""
+"""Averages of a motion that does not repeat, and the schedule of Newton's method."""
 
 from typing import NamedTuple
 
 from ..compiler import inner_kernel, kernel
-from .answers import SHORTEST_STOP, TURN
+from .records import SHORTEST_STOP, TURN
 
-#: Excitation periods over which a motion that does not repeat is averaged.
+#: Excitation periods in one averaging window.
 AVERAGED = 100.0
 
 
 class Window(NamedTuple):
-    """What a motion did since `opened`."""
+    """Events of a motion since the time `opened`."""
 
     opened: float
     stops: int
-    stuck: float  # time
-    largest: float  # displacement
+    stuck: float  # time stuck
+    largest: float  # largest displacement
 
 
 class Windows(NamedTuple):
-    """The last whole window, and the one under way."""
+    """The last full averaging window and the present one."""
 
     length: float
     end: float
@@ -29,14 +29,14 @@ class Windows(NamedTuple):
 
 @kernel
 def open_windows(cycles):
-    """Windows of a motion that is followed for so many excitation periods."""
+    """Open the averaging windows of a motion that is followed for this many excitation periods."""
     length = TURN * min(AVERAGED, 0.5 * cycles)
     return Windows(length, length, Window(0.0, 0, 0.0, 0.0), Window(0.0, 0, 0.0, 0.0))
 
 
 @inner_kernel
 def count_event(windows, time, size, stopped, wait):
-    """The windows after a slide that ended at `time` and displacement `size`, and after the stop then."""
+    """Add a slide that ended at `time` with displacement `size`, and the stop after it, to the windows."""
     last, now, end = windows.last, windows.now, windows.end
     if time >= end:
         last, now, end = now, Window(time, 0, 0.0, 0.0), end + windows.length
@@ -45,22 +45,22 @@ def count_event(windows, time, size, stopped, wait):
     return Windows(windows.length, end, last, Window(now.opened, stops, stuck, max(now.largest, size)))
 
 
-class Tries(NamedTuple):
-    """The schedule of Newton's method, in half periods of the excitation."""
+class NewtonSchedule(NamedTuple):
+    """Times at which Newton's method is tried, in half periods of the excitation."""
 
     made: int
-    delay: int  # from the last try to the next; longer after each failure
-    due: int  # when the next is
+    delay: int  # between the last attempt and the next; grows after each failure
+    due: int  # time of the next attempt
 
 
 @kernel
-def first_try():
-    """The schedule of a motion that starts."""
-    return Tries(0, 1, 2)
+def first_schedule():
+    """Return the schedule at the start of a motion."""
+    return NewtonSchedule(0, 1, 2)
 
 
 @kernel
-def put_off(tries, half):
-    """The schedule after a try that failed."""
-    delay = tries.delay + 1 + tries.delay // 4
-    return Tries(tries.made + 1, delay, half + delay)
+def postpone(schedule, half):
+    """Return the schedule after a failed attempt."""
+    delay = schedule.delay + 1 + schedule.delay // 4
+    return NewtonSchedule(schedule.made + 1, delay, half + delay)

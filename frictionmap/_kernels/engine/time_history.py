@@ -1,4 +1,4 @@
-"""A steady state in time: samples of its table of phases."""
+"""Time history of a steady state, sampled from its segment table."""
 
 import math
 from typing import NamedTuple
@@ -8,23 +8,33 @@ import numpy as np
 from ..compiler import entry
 from ..structure.newton import copy_state
 from ..structure.oscillators import advance, expand
-from ..structure.state import held_load, place, release
-from .phase_table import BEGIN, COS, LENGTH, PLACE, SENSE, SIGN, SIN, take_start
+from ..structure.state import contact_displacement, held_load, release
+from .segment_table import BEGIN, COS, LENGTH, SENSE, SIGN, SIN, STOP_Z, take_start
 
 
 class Samples(NamedTuple):
     """A motion at k times."""
 
-    coordinates: np.ndarray  # (n, k) of the free oscillators
-    velocities: np.ndarray  # (n, k) in tau
+    coordinates: np.ndarray  # (n, k) coordinates of the free oscillators
+    velocities: np.ndarray  # (n, k) their derivatives in tau
     z: np.ndarray  # (k,)
     friction: np.ndarray  # (k,)
     sense: np.ndarray  # (k,) int8
 
 
 @entry
-def sample_phases(st, beta, table, tau, samples, work, scratch):
-    """Fill `samples` with the motion at times `tau` >= 0, increasing, since the table's first phase began."""
+def sample_segments(st, beta, table, tau, samples, work, scratch):
+    """Fill `samples` with the motion at given times.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta : kinetic friction force
+    table : (segments, columns) segment table
+    tau : (k,) increasing times >= 0 since the first segment began
+    samples : Samples
+    work, scratch : Workspace, Scratch
+    """
     z, friction = samples.z, samples.friction
     j = 0
     for k in range(table.shape[0]):
@@ -50,12 +60,12 @@ def sample_phases(st, beta, table, tau, samples, work, scratch):
             c, s = math.cos(angle + tau[j] - begin), math.sin(angle + tau[j] - begin)
             if slides:
                 copy_state(scratch.next, work.start, n)
-                z[j] = row[SIGN] * place(st, work.start, c, s)
+                z[j] = row[SIGN] * contact_displacement(st, work.start, c, s)
                 friction[j] = row[SIGN] * beta
             else:
-                release(st, scratch.next, row[PLACE], c, s, work.start)
-                z[j] = row[SIGN] * row[PLACE]
-                friction[j] = -row[SIGN] * held_load(st, scratch.next, row[PLACE], c, s)
+                release(st, scratch.next, row[STOP_Z], c, s, work.start)
+                z[j] = row[SIGN] * row[STOP_Z]
+                friction[j] = -row[SIGN] * held_load(st, scratch.next, row[STOP_Z], c, s)
             samples.sense[j] = int(row[SIGN] * row[SENSE])
             for i in range(st.n):
                 samples.coordinates[i, j] = row[SIGN] * work.start[0, i]

@@ -1,4 +1,4 @@
-"""A motion that does not repeat: the table of phases of its last periods."""
+"""Segment table of a motion that does not repeat."""
 
 import math
 
@@ -7,55 +7,59 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..one_mass.events import NO_END, STUCK
 from ..structure.events import NO_RELEASE
-from .answers import known_orbit, stops_at, turns_at
 from .measure import measure
 from .motion import after_turn, at_frequency, bring_back, contact_at, keep_state, slide_to_turn, start
-from .phase_table import phase_columns
 from .policies import NOW
+from .records import known_orbit, stops_at, turns_at
+from .segment_table import segment_columns
 
-#: In place of the event at which an orbit returns: it does not.
+#: Event code of an orbit that never recurs.
 _NEVER = -1
 
 
 @kernel
-def _follow(motion, contact, at, moves, duration):
-    """(events, moment, sign): followed for `duration` in tau, to the end of what follows the slide then.
+def _follow(motion, contact, contact_state, moves, duration):
+    """Follow the motion for at least `duration` in tau, to the end of the last event.
 
-    `sign` : -1.0 where the slide that follows is a mirror image.  No events where it sticks for good.
+    Returns
+    -------
+    (events, contact_state, sign) : number of events, 0 where the contact sticks permanently or no event is
+        found; the state after them; -1.0 where the next slide is mirrored
     """
     time = 0.0
     sign = 1.0
     events = 0
     while time < duration:
         if moves or events > 0:
-            steps, at = slide_to_turn(motion, contact, at, duration / motion.h + 1.0)
+            steps, contact_state = slide_to_turn(motion, contact, contact_state, duration / motion.h + 1.0)
             if steps == NO_END:
-                return 0, at, sign
+                return 0, contact_state, sign
             time += steps * motion.h
-        event, at, wait = after_turn(motion, contact, at, math.inf)
+        event, contact_state, wait = after_turn(motion, contact, contact_state, math.inf)
         if event == STUCK or event == NO_RELEASE:
-            return 0, at, sign
+            return 0, contact_state, sign
         if stops_at(event):
             time += wait
         if turns_at(event):
             sign = -sign
         events += 1
-    return events, at, sign
+    return events, contact_state, sign
 
 
 @entry
 def window_table(system, beta, mu, moving, before, duration):
-    """The table of phases from some time `before` on, for `duration` or little longer, both in tau.
+    """Segment table of a motion from the time `before` on, over at least `duration`, both in tau.
 
-    Of the motion of a system at one frequency, as `march` follows it; no rows where it sticks for good.
+    The motion is that of a system at one frequency, followed from the same initial state as in `march`.  The
+    table has no rows where the contact sticks permanently.
     """
     motion = at_frequency(system, 0)
     contact = contact_at(system, 0, 0, beta, mu)
-    at = start(motion, system, 0, contact, moving)
-    _, at, sign = _follow(motion, contact, at, moving, before)
+    contact_state = start(motion, system, 0, contact, moving)
+    _, contact_state, sign = _follow(motion, contact, contact_state, moving, before)
     keep_state(motion, NOW)
-    slides, _, _ = _follow(motion, contact, at, True, duration)
+    slides, _, _ = _follow(motion, contact, contact_state, True, duration)
     bring_back(motion, NOW)
-    table = np.empty((2 * slides, phase_columns(system.modes)))
-    measured = measure(motion, contact, known_orbit(at, _NEVER, sign, slides), table)
-    return table[: measured.phases]
+    table = np.empty((2 * slides, segment_columns(system.modes)))
+    measured = measure(motion, contact, known_orbit(contact_state, _NEVER, sign, slides), table)
+    return table[: measured.segments]

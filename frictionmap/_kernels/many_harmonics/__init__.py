@@ -1,1 +1,1 @@
-"""One mass under a load of several harmonics: slides and stops, one cycle, the steady state."""
+"""Kernels for one mass under a load of several harmonics: slides and stops, one cycle, steady state."""

@@ -1,4 +1,4 @@
-"""One excitation period of the motion, and how a neighbour's motion differs after it.
+"""One excitation period of the motion, with the derivative of the final state by the initial one.
 
 Derivatives are those of the state at a fixed phase: free motion in a slide, and at each event the shift of
 its phase (saltation).
@@ -13,12 +13,12 @@ from .slides import load_and_rate, settle, slide, wait
 
 PERIOD = 2.0 * math.pi
 
-#: More events in a cycle than so many for every period of the fastest part: slides without length.
+#: Largest number of events per period of the fastest part; more events are slides of zero length.
 _MOST_EVENTS = 40.0
 
 
 class Tangent(NamedTuple):
-    """Derivatives of (q, v) by (q, v) at the beginning of the cycle."""
+    """Derivatives of (q, v) by (q, v) at the start of the cycle."""
 
     q_q: float
     q_v: float
@@ -27,21 +27,21 @@ class Tangent(NamedTuple):
 
 
 class Cycle(NamedTuple):
-    """The state after one period, and what happened in it."""
+    """State after one period, and the events in it."""
 
-    whole: bool  # False: it hangs in slides without length
+    complete: bool  # False: the cycle consists of ever shorter slides
     q: float
     v: float
     tangent: Tangent
     events: int
-    stops: int  # that begin
-    stuck: float  # share of the period
-    turn_load: float  # the least load at a turn without a stop; infinite if there is none
+    stops: int  # number of stops that begin
+    stuck: float  # share of the period that the mass is stuck
+    turn_load: float  # least load at a turn without a stop; infinite if there is none
 
 
 @kernel
 def _after_slide(mass, tangent, time):
-    """Neighbours after free motion."""
+    """Propagate the derivatives through a slide."""
     q, e = decay(mass.zeta, time / mass.r)
     d = e + 2.0 * mass.zeta * q
     rate = q / mass.r
@@ -54,12 +54,13 @@ def _after_slide(mass, tangent, time):
 
 @kernel
 def _scaled_speed(tangent, factor):
+    """Multiply the derivatives of the velocity by a factor."""
     return Tangent(tangent.q_q, tangent.q_v, factor * tangent.v_q, factor * tangent.v_v)
 
 
 @kernel
 def _after_stop(mass, tangent, sense, force, rate):
-    """Neighbours after a stop: a later start is a velocity that lags."""
+    """Propagate the derivatives through the end of a stop: a later start appears as a lower velocity."""
     if force == 0.0:
         return tangent  # without velocity
     lag = -sense * force / (mass.r * mass.r * rate)
@@ -68,7 +69,7 @@ def _after_stop(mass, tangent, sense, force, rate):
 
 @kernel
 def follow(mass, q, v, work, samples):
-    """The `Cycle` from the state (q, v) at tau = 0."""
+    """Follow one `Cycle` from the state (q, v) at tau = 0."""
     tangent = Tangent(1.0, 0.0, 0.0, 1.0)
     sense, force = math.copysign(1.0, v), 0.0
     if v == 0.0:
@@ -86,7 +87,7 @@ def follow(mass, q, v, work, samples):
             stuck += (tau - begin) / PERIOD
             if tau >= PERIOD:
                 return Cycle(True, q, 0.0, tangent, event, stops, stuck, turn_load)
-            force = mass.held - mass.friction
+            force = mass.static_friction - mass.friction
             tangent = _after_stop(mass, tangent, sense, force, load_and_rate(mass.load, tau)[1])
             v = 0.0
         else:

@@ -2,10 +2,10 @@
 
     r^2 q'' + 2 zeta r q' + q + b s = g(tau),   g = Re sum_n G_n e^{i n tau},   s = sgn(q')
 
-b is the kinetic friction, in the length of q.  A slide is followed in steps so short that the Taylor series
-of the motion, whose recurrence is the equation of motion, is exact to rounding: no case is needed for a
-harmonic that resonates, nor for zeta = 1.  Inside a step q is counted along the slide, y = s q, so that every
-slide is an upward one.
+b is the kinetic friction over the stiffness, a length.  A slide is followed in steps so short that the Taylor
+series of the motion, whose recurrence is the equation of motion, is exact to rounding: no special case is
+needed for a resonant harmonic, nor for zeta = 1.  Inside a step the displacement is counted along the slide,
+y = s q, so that every slide is an upward one.
 """
 
 import math
@@ -17,56 +17,56 @@ from ..closed_form import fastest_rate
 from ..compiler import entry, kernel
 from ..one_mass.events import first_root
 
-#: The fastest part turns by no more than this in one step [rad] ...
+#: Largest angle of the fastest part per step [rad] ...
 _TURN = 0.5
 
-#: ... so that in this many terms the series ends below rounding: 0.5^19/19! = 2e-23.
+#: ... for which a series of this many terms is exact to rounding: 0.5^19/19! = 2e-23.
 _TERMS = 20
 
 
-class Oscillator(NamedTuple):
-    """The mass, its load and its friction."""
+class FrictionMass(NamedTuple):
+    """A mass with its load and its friction."""
 
     r: float
     zeta: float
     friction: float  # b
-    held: float  # mu b, what holds in a stop
+    static_friction: float  # mu b
     load: np.ndarray  # complex G_n, n = 0, 1, ...
     step: float  # the longest step in tau
 
 
 class Scratch(NamedTuple):
-    """Series of one step."""
+    """Taylor series of one step."""
 
     load: np.ndarray  # coefficients of g
-    speed: np.ndarray  # of dy/dx, x in [0, 1] along the step
-    gap: np.ndarray  # of what is left before a stop ends
+    speed: np.ndarray  # coefficients of dy/dx, x in [0, 1] along the step
+    gap: np.ndarray  # coefficients of static friction less load
 
 
 class Samples(NamedTuple):
-    """Where the motion is wanted."""
+    """Phases at which the displacement is requested."""
 
     phases: np.ndarray  # increasing, in [0, 2 pi)
-    places: np.ndarray  # filled
-    next: np.ndarray  # shape (1,), int: the first one that is not filled
+    displacements: np.ndarray  # displacements there, filled along the way
+    next: np.ndarray  # shape (1,), int: index of the first one not yet filled
 
 
 @entry
-def oscillator(r, zeta, friction, mu, load):
-    """The mass with the step that suits it."""
+def friction_mass(r, zeta, friction, mu, load):
+    """Build the mass with the step length that its motion requires."""
     rate = max(float(load.size), fastest_rate(1.0 / r, zeta))
-    return Oscillator(r, zeta, friction, mu * friction, load, _TURN / rate)
+    return FrictionMass(r, zeta, friction, mu * friction, load, _TURN / rate)
 
 
 @entry
 def scratch():
-    """Memory for the series of one step."""
+    """Allocate the series of one step."""
     return Scratch(np.empty(_TERMS), np.empty(_TERMS), np.empty(_TERMS))
 
 
 @kernel
 def load_series(load, tau, length, out):
-    """Taylor coefficients of g(tau + length x) in x."""
+    """Compute the Taylor coefficients of g(tau + length x) in x."""
     for k in range(out.size):
         out[k] = 0.0
     for n in range(load.size):
@@ -80,7 +80,7 @@ def load_series(load, tau, length, out):
 
 @kernel
 def load_and_rate(load, tau):
-    """g and g' at tau."""
+    """Evaluate g and g' at tau."""
     value = 0.0
     rate = 0.0
     for n in range(load.size):
@@ -92,19 +92,29 @@ def load_and_rate(load, tau):
 
 @kernel
 def settle(mass, q, g):
-    """What follows at rest: (sense, force) of the slide that begins; (0.0, 0.0) for a stop (a tie sticks).
+    """Return (sense, force) of the slide that starts from rest; (0.0, 0.0) for a stop (equality sticks).
 
-    force = r^2 times the acceleration along the slide, friction taken off.
+    The force is r^2 times the acceleration along the slide.
     """
     pull = g - q
-    if abs(pull) <= mass.held:
+    if abs(pull) <= mass.static_friction:
         return 0.0, 0.0
     return math.copysign(1.0, pull), abs(pull) - mass.friction
 
 
 @kernel
 def _slide_series(mass, length, sense, q, v, pull, work):
-    """Series of one step of a slide that starts with the force `pull` along it, friction taken off."""
+    """Compute the series of one step of a slide.
+
+    Parameters
+    ----------
+    mass : FrictionMass
+    length : length of the step in tau
+    sense : 1.0 for an upward slide, -1.0 for a downward one
+    q, v : state at the start of the step
+    pull : force along the slide at its start, less the friction
+    work : Scratch; work.speed is filled
+    """
     a = length / mass.r
     stiffness = a * a
     damping = 2.0 * mass.zeta * a
@@ -120,8 +130,8 @@ def _slide_series(mass, length, sense, q, v, pull, work):
 
 
 @kernel
-def _place(work, sense, q, x):
-    """q at x in a step that began at q."""
+def _displacement(work, sense, q, x):
+    """Displacement q at x in a step that starts at q."""
     rise = 0.0
     for k in range(_TERMS - 1, -1, -1):
         rise = rise * x + work.speed[k] / (k + 1.0)
@@ -129,7 +139,8 @@ def _place(work, sense, q, x):
 
 
 @kernel
-def _speed(work, x):
+def _velocity(work, x):
+    """Velocity dy/dx at x in a step."""
     value = 0.0
     for k in range(_TERMS - 1, -1, -1):
         value = value * x + work.speed[k]
@@ -138,9 +149,22 @@ def _speed(work, x):
 
 @kernel
 def slide(mass, tau, sense, q, v, force, end, work, samples):
-    """Follow a slide to its first turn, or to `end`: (tau, q, v, whether it has turned).
+    """Follow a slide to its first turn, or to `end`.
 
-    `force` is that of `settle` where the slide begins at rest, used as given: 0 after a stop if mu = 1.
+    Parameters
+    ----------
+    mass : FrictionMass
+    tau : time
+    sense : 1.0 for an upward slide, -1.0 for a downward one
+    q, v : state
+    force : force of `settle` where the slide starts from rest, used as given: 0 after a stop with mu = 1
+    end : time in tau to stop at
+    work : Scratch
+    samples : Samples, filled along the way
+
+    Returns
+    -------
+    (tau, q, v, turned) : time and state at the end, and whether the slide has turned
     """
     at_rest = v == 0.0
     while tau < end:
@@ -150,17 +174,17 @@ def slide(mass, tau, sense, q, v, force, end, work, samples):
         _slide_series(mass, length, sense, q, v, pull, work)
         first = 0
         if at_rest:
-            first = 1 if force > 0.0 else 2  # the start is not the root looked for
+            first = 1 if force > 0.0 else 2  # skip the root at the start
         x = first_root(work.speed, first, _TERMS)
         stop = tau + min(x, 1.0) * length
         while samples.next[0] < samples.phases.size and samples.phases[samples.next[0]] < stop:
             k = samples.next[0]
-            samples.places[k] = _place(work, sense, q, (samples.phases[k] - tau) / length)
+            samples.displacements[k] = _displacement(work, sense, q, (samples.phases[k] - tau) / length)
             samples.next[0] = k + 1
         if x <= 1.0:
-            return stop, _place(work, sense, q, x), 0.0, True
-        q = _place(work, sense, q, 1.0)
-        v = sense * _speed(work, 1.0) / length
+            return stop, _displacement(work, sense, q, x), 0.0, True
+        q = _displacement(work, sense, q, 1.0)
+        v = sense * _velocity(work, 1.0) / length
         tau = stop if length == mass.step else end
         at_rest = False
     return end, q, v, False
@@ -168,8 +192,10 @@ def slide(mass, tau, sense, q, v, force, end, work, samples):
 
 @kernel
 def _breaks_free(mass, q, sense, work):
-    """Where in a step the load first overcomes what holds, in that sense; 2.0 if it does not."""
-    work.gap[0] = mass.held - sense * (work.load[0] - q)
+    """Position x in a step at which the load first exceeds the static friction in a direction; 2.0 if it does
+    not.
+    """
+    work.gap[0] = mass.static_friction - sense * (work.load[0] - q)
     for k in range(1, _TERMS):
         work.gap[k] = -sense * work.load[k]
     return first_root(work.gap, 0, _TERMS)
@@ -177,7 +203,7 @@ def _breaks_free(mass, q, sense, work):
 
 @kernel
 def wait(mass, tau, q, end, work, samples):
-    """Follow a stop: (tau, sense of the slide that begins), or (end, 0.0)."""
+    """Follow a stop; return (tau, sense of the slide that starts), or (end, 0.0)."""
     sense = 0.0
     while tau < end and sense == 0.0:
         length = min(mass.step, end - tau)
@@ -191,6 +217,6 @@ def wait(mass, tau, q, end, work, samples):
         else:
             tau = tau + length if length == mass.step else end
     while samples.next[0] < samples.phases.size and samples.phases[samples.next[0]] < tau:
-        samples.places[samples.next[0]] = q
+        samples.displacements[samples.next[0]] = q
         samples.next[0] += 1
     return tau, sense

@@ -1,7 +1,7 @@
-"""The steady state of one mass under a load of several harmonics: cycles until the state repeats.
+"""Steady state of one mass under a load of several harmonics: cycles are followed until the state repeats.
 
-Once the number of events repeats, Newton's method on the state after one period leads to it; what it finds
-counts only if it is stable.
+Once the number of events repeats, Newton's method on the state after one period is used; its result is
+accepted only if it is stable.
 """
 
 import math
@@ -11,30 +11,31 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from .cycle import follow
-from .slides import Samples, oscillator, scratch
+from .slides import Samples, friction_mass, scratch
 
 REPEATS = 0
-NO_REPEAT = 1  # not within the cycles allowed, or not after one period
-HANGS = 2  # slides without length follow each other
+NO_REPEAT = 1  # no repetition within the cycles allowed, or not after one period
+HANGS = 2  # ever shorter slides follow each other
 
-#: On a Newton step, and on what one period changes, relative to the motion.
+#: Largest Newton step, and largest change over one period, of a converged state, relative to the motion.
 _TOLERANCE = 1e-12
 _NO_CHANGE = 1e-14
 
-#: A multiplier above 1 by rounding alone is not above 1.
+#: Largest multiplier of a stable motion; the excess over 1 is rounding error.
 _STABLE = 1.0 + 1e-9
 
-#: A determinant of terms of size 1 below this is rounding: an undamped resonance has no steady state.
+#: A determinant of terms of size 1 below this is rounding error: an undamped resonance has no steady state.
 _SINGULAR = 1e-13
 
-#: A Newton step is taken if it is shorter than this share of the last one, and not long; else cycles follow.
+#: A Newton step is taken if it is shorter than this share of the last one and than _FARTHEST of the motion;
+#: otherwise _PAUSE cycles are followed first.
 _SHORTER = 0.5
-_FARTHEST = 0.3  # of the motion: beyond, the map is not linear
+_FARTHEST = 0.3  # larger steps leave the range in which the map is linear
 _PAUSE = 8
 
 
 class Steady(NamedTuple):
-    """The steady state at tau = 0, and what happens in its period."""
+    """Steady state at tau = 0, and the events of its period."""
 
     status: int
     q: float
@@ -47,7 +48,7 @@ class Steady(NamedTuple):
 
 @kernel
 def _newton(cycle, q, v):
-    """The step to the fixed point of the map that is linear about (q, v); infinite if there is none."""
+    """Newton step to the fixed point of the map linearised about (q, v); infinite if there is none."""
     t = cycle.tangent
     rest_q = cycle.q - q
     rest_v = cycle.v - v
@@ -62,7 +63,7 @@ def _newton(cycle, q, v):
 
 @kernel
 def _largest_multiplier(t):
-    """Spectral radius of the derivatives."""
+    """Largest modulus of the multipliers."""
     half = 0.5 * (t.q_q + t.v_v)
     determinant = t.q_q * t.v_v - t.q_v * t.v_q
     square = half * half - determinant
@@ -72,16 +73,16 @@ def _largest_multiplier(t):
 
 
 @kernel
-def _find(mass, q, v, most, work, nowhere):
-    """(status, q, v, cycles) of the state that repeats."""
+def _find(mass, q, v, most, work, no_samples):
+    """Return (status, q, v, cycles) of the state that repeats."""
     events = -1
     last = math.inf
     ready = 1  # the first cycle from which a Newton step may be taken
     scale = 0.0
     linear = mass.friction == 0.0
     for n in range(most):
-        cycle = follow(mass, q, v, work, nowhere)
-        if not cycle.whole:
+        cycle = follow(mass, q, v, work, no_samples)
+        if not cycle.complete:
             return HANGS, q, v, n
         scale = max(scale, abs(cycle.q), mass.r * abs(cycle.v))
         move = max(abs(cycle.q - q), mass.r * abs(cycle.v - v))
@@ -92,7 +93,7 @@ def _find(mass, q, v, most, work, nowhere):
         near = cycle.events == events and n >= ready and size < min(_SHORTER * last, _FARTHEST * scale)
         if near or (linear and math.isfinite(size)):
             if _largest_multiplier(cycle.tangent) > _STABLE:
-                ready = most  # what lies there is not where the motion goes
+                ready = most  # an unstable motion is not approached
             elif size <= _TOLERANCE * scale:
                 return REPEATS, q + step_q, v + step_v, n
             else:
@@ -111,20 +112,25 @@ def _find(mass, q, v, most, work, nowhere):
 
 
 @entry
-def steady_motion(r, zeta, friction, mu, load, q, v, phases, places, most):
-    """The `Steady` state that the motion from (q, v) at tau = 0 leads to.
+def steady_motion(r, zeta, friction, mu, load, q, v, phases, displacements, most):
+    """Find the steady state that the motion from (q, v) at tau = 0 reaches.
 
     Parameters
     ----------
     r, zeta : frequency ratio > 0, damping ratio >= 0
     friction, mu : kinetic friction over stiffness >= 0, static over kinetic friction >= 1
-    load : complex harmonics 0, 1, ... of the load over stiffness, in the length of q
-    phases, places : increasing phases in [0, 2 pi); filled with q there
+    load : (N + 1,) complex harmonics 0, 1, ... of the load over stiffness, a length as q
+    q, v : initial state
+    phases, displacements : (k,) increasing phases in [0, 2 pi); filled with q there
     most : cycles allowed
+
+    Returns
+    -------
+    Steady
     """
-    mass = oscillator(r, zeta, friction, mu, load)
+    mass = friction_mass(r, zeta, friction, mu, load)
     work = scratch()
-    nowhere = Samples(phases[:0], places[:0], np.zeros(1, np.int64))
-    status, q, v, cycles = _find(mass, q, v, most, work, nowhere)
-    cycle = follow(mass, q, v, work, Samples(phases, places, np.zeros(1, np.int64)))
+    no_samples = Samples(phases[:0], displacements[:0], np.zeros(1, np.int64))
+    status, q, v, cycles = _find(mass, q, v, most, work, no_samples)
+    cycle = follow(mass, q, v, work, Samples(phases, displacements, np.zeros(1, np.int64)))
     return Steady(status, q, v, cycle.stops, cycle.stuck, cycle.turn_load, cycles)

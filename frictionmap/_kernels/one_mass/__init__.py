@@ -1,1 +1,1 @@
-"""One mass: scan step, events, return map, sliding orbit."""
+"""Kernels for one mass: scan step, events, return map, sliding orbit."""

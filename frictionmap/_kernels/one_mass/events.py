@@ -1,7 +1,7 @@
-"""Events of the normalised oscillator: where a slide ends, and what follows.
+"""Events of the normalised oscillator: the end of a slide, and what follows it.
 
-The equation keeps its form when (z, z', cos, sin) all change sign.  Every slide is therefore followed
-as an upward one: a state that is about to move down is *mirrored* first.
+The equation of motion keeps its form when (z, z', cos, sin) all change sign.  Every slide is therefore
+followed upwards: a state that is about to move down is *mirrored* first.
 """
 
 import math
@@ -12,19 +12,19 @@ import numpy as np
 from ..compiler import entry, inner_kernel, kernel
 from .scan_step import MAX_TERMS, expand
 
-#: What follows the end of a slide.
-REVERSE = 0  # slides back at once
-STOP_THEN_BACK = 1  # stops, then moves the other way
-STOP_THEN_ON = 2  # stops, then moves on the same way
-GRAZING = 3  # velocity touches zero and the slide goes on: the load pushes on beyond mu b
-STUCK = 4  # stops and never moves again
+#: Event codes: what follows the end of a slide.
+REVERSE = 0  # turns without a stop
+STOP_THEN_BACK = 1  # stops, then slides in the opposite direction
+STOP_THEN_ON = 2  # stops, then slides on in the same direction
+GRAZING = 3  # the velocity touches zero and the slide continues: the load exceeds mu b in its direction
+STUCK = 4  # sticks permanently
 
 
 class EventSequence(NamedTuple):
-    """What ends the slides of a motion until it returns, in order."""
+    """Events that end the slides of one recurrence, in order."""
 
-    events: np.ndarray  # a ring
-    first: int  # place in it
+    events: np.ndarray  # ring buffer of event codes
+    first: int  # index of the first event in it
     count: int
 
 
@@ -32,41 +32,43 @@ class Scratch(NamedTuple):
     """Arrays that kernels write into."""
 
     series: np.ndarray  # (MAX_TERMS,)
-    left: np.ndarray  # (1,) scan steps that may still be taken
+    left: np.ndarray  # (1,) number of scan steps that may still be taken
 
 
 @entry
 def make_scratch():
-    """Scratch for one mass, with no bound on the scan steps."""
+    """Allocate scratch arrays for one mass, without a limit on scan steps."""
     return Scratch(np.empty(MAX_TERMS), np.full(1, np.inf))
 
 
-#: A slide's end was not found within the scan steps allowed.
+#: Code for a slide whose end was not found within the scan steps allowed.
 NO_END = -1
 
 #: 1/(k+1): from the series of the velocity to that of the displacement.
 _INVERSE = np.array([1.0 / (k + 1.0) for k in range(MAX_TERMS)])
 
-#: A guess of an event further off than this, in scan steps, lies where the velocity only touches zero.
+#: If the first guess of an event has a larger error than this, in scan steps, the velocity only touches zero
+#: there.
 NEARLY = 0.25
 
-#: A Newton step of fourth order shorter than this, in scan steps, ends at rounding.
+#: A Newton step of fourth order shorter than this, in scan steps, converges to rounding.
 ONE_STEP = 2e-4
 
 MAX_POLISH = 8
 
-#: Certified steps to a root converge quadratically; past a grazing dip they crawl, at a rate that is the
-#: square root of the dip's curvature over the bound, thousands of them for a dip of rounding depth.
+#: Limit on the steps to a root.  They converge quadratically, but pass a grazing minimum slowly, at a rate
+#: that is the square root of its curvature over the bound: a minimum of rounding depth takes thousands of
+#: steps.
 _MAX_APPROACH = 20000
 
 
 @kernel
 def first_root(p, first, terms):
-    """The first root in (0, 1] of p[first] + p[first+1] x + ...; 2.0 if there is none.
+    """Find the first root in (0, 1] of p[first] + p[first+1] x + ...; 2.0 if there is none.
 
-    The value at 0 must be >= 0.  From x the polynomial stays above the parabola
-    p(x) + p'(x) d - B d^2/2, where B bounds |p''|; the step d to the parabola's root passes no root
-    of p, and where p has a simple root the steps are Newton's from one side.  Nothing can be missed.
+    The value at 0 must be >= 0.  From x the polynomial stays above the parabola p(x) + p'(x) d - B d^2/2,
+    where B bounds |p''|; the step d to the root of the parabola passes no root of p, and at a simple root of
+    p the steps become Newton's from one side.  No root can be missed.
     """
     bound = 0.0
     for k in range(first + 2, terms):
@@ -79,13 +81,13 @@ def first_root(p, first, terms):
             slope = slope * x + value
             value = value * x + p[k]
         if value <= 0.0 and (x > 0.0 or slope <= 0.0):
-            return x  # at the start a value of zero with a rising slope is not the root looked for
+            return x  # a zero at the start with a rising slope is not an exit
         value = max(value, 0.0)
         root = math.sqrt(slope * slope + 2.0 * bound * value)
         # the parabola's root, in the form that does not cancel
         if slope > 0.0:
             if bound == 0.0:
-                return 2.0  # rises for good
+                return 2.0  # rises from here on
             new = x + (slope + root) / bound
         elif root > slope:
             new = x + 2.0 * value / (root - slope)
@@ -101,7 +103,9 @@ def first_root(p, first, terms):
 
 @kernel
 def cubic_root(w, slope, w1, slope1):
-    """Root in [0, 1] of the cubic with these values and slopes at 0 and 1, falling from w > 0 to w1 <= 0."""
+    """Find the root in [0, 1] of the cubic with these values and slopes at 0 and 1, falling from w > 0 to w1
+    <= 0.
+    """
     third = 2.0 * (w - w1) + slope + slope1
     second = 3.0 * (w1 - w) - 2.0 * slope - slope1
     x = w / (w - w1)
@@ -113,7 +117,7 @@ def cubic_root(w, slope, w1, slope1):
 
 @kernel
 def _sum_at(p, terms, x):
-    """The polynomial p at x and its integral from 0; even and odd powers apart, side by side."""
+    """Evaluate the polynomial p at x, and its integral from 0; even and odd powers are summed in parallel."""
     square = x * x
     even = odd = even_rise = odd_rise = 0.0
     top = terms - 1 - (terms - 1) % 2  # the highest even power
@@ -132,7 +136,7 @@ def _sum_at(p, terms, x):
 
 @kernel
 def reversion(value, slope, bend, third):
-    """The root m of value + slope m + bend m^2/2 + third m^3/6, up to the fourth power of value/slope."""
+    """Find the root m of value + slope m + bend m^2/2 + third m^3/6, to fourth order in value/slope."""
     inverse = 1.0 / slope
     first = -value * inverse
     second = 0.5 * bend * inverse
@@ -141,31 +145,43 @@ def reversion(value, slope, bend, third):
 
 @kernel
 def _at_root(step, b, z, c, s, x, work):
-    """(x, z, cos, sin) at the zero of the velocity next to x, from the series in `work`.
+    """Refine the zero of the velocity next to x, by Newton steps of fourth order.
 
-    Newton steps of fourth order, with the derivatives from the equation of motion: one takes a guess that
-    is off by 1e-4 to rounding.
+    The derivatives follow from the equation of motion; one step reduces an error of 1e-4 to rounding.
+
+    Parameters
+    ----------
+    step : Step
+    b : kinetic friction over load amplitude
+    z : displacement at the start of the step
+    c, s : cosine and sine of the load phase there
+    x : first guess inside the step
+    work : (terms,) Taylor coefficients of the velocity
+
+    Returns
+    -------
+    (x, z, cos, sin) : position in the step, displacement and load phase at the zero
     """
     for _ in range(MAX_POLISH):
         velocity, rise = _sum_at(work, step.terms, x)
-        place = z + rise
+        displacement = z + rise
         angle = step.h * x
         cosine = math.cos(angle)
         sine = math.sin(angle)
         c1 = cosine * c - sine * s
         s1 = cosine * s + sine * c
-        acceleration = step.stiffness * (c1 - b - place) - step.damping * velocity
+        acceleration = step.stiffness * (c1 - b - displacement) - step.damping * velocity
         jerk = -step.stiffness * (s1 * step.h + velocity) - step.damping * acceleration
         if (
             not abs(velocity) < NEARLY * abs(acceleration)
             or not abs(velocity * jerk) < NEARLY * acceleration * acceleration
         ):
-            break  # the velocity only touches zero; the reversion diverges, and x is as good as can be
+            break  # the velocity only touches zero; the reversion diverges, and x cannot be improved
         snap = -step.stiffness * (c1 * step.h * step.h + acceleration) - step.damping * jerk
         move = reversion(velocity, acceleration, jerk, snap)
         x += move
         if abs(move) < ONE_STEP:
-            place += move * (
+            displacement += move * (
                 velocity
                 + move * (0.5 * acceleration + move * (jerk * (1.0 / 6.0) + move * snap * (1.0 / 24.0)))
             )
@@ -177,7 +193,7 @@ def _at_root(step, b, z, c, s, x, work):
             c1 = c2
             break
     norm = 1.5 - 0.5 * (c1 * c1 + s1 * s1)  # back to the unit circle
-    return x, place, norm * c1, norm * s1
+    return x, displacement, norm * c1, norm * s1
 
 
 @kernel
@@ -188,27 +204,28 @@ def slide(step, b, z, w, acceleration, c, s, max_steps, work):
     ----------
     step : Step
     b : kinetic friction over load amplitude
-    z, w, acceleration, c, s : state; `acceleration` = h^2 z'' exactly, > 0 or 0 with a rising load
-        where w = 0
+    z, w, acceleration : state; `acceleration` = h^2 z'' exactly, > 0, or 0 with a rising load where w = 0
+    c, s : cosine and sine of the load phase
     max_steps : scan steps allowed
-    work : scratch, MAX_TERMS long
+    work : (MAX_TERMS,) scratch
 
     Returns
     -------
-    (steps, z, c, s) with `steps` the scan steps taken, a fraction included; NO_END if not found.
+    (steps, z, c, s) : `steps` is the number of scan steps taken, including a fraction; NO_END if no zero was
+        found
 
     Notes
     -----
-    A step is passed without a closer look when the cubic through the velocities and accelerations at
-    its ends has Bernstein coefficients above the cubic's largest error, max|w''''|/384, which follows
-    from the energy of the motion of z'': no dip of the velocity can hide.
+    A step is passed without a closer look when the cubic through the velocities and accelerations at its ends
+        has Bernstein coefficients above the cubic's largest error, max|w''''|/384, which follows from the
+        energy of the motion of z'': no dip of the velocity can be missed.
     """
     stiffness = step.stiffness
     damping = step.damping
     h = step.h
     omega = math.sqrt(stiffness)
     square = h * h
-    # |z3| + omega |z2| can grow by the load only: by stiffness h^2 a step.  (zk: k-th x-derivative)
+    # |z3| + omega |z2| can grow by the load only: by stiffness h^2 per step.  (zk: k-th x-derivative)
     jerk = -stiffness * (s * h + w) - damping * acceleration
     energy = omega * abs(acceleration) + abs(jerk)
     growth = stiffness * square
@@ -222,8 +239,8 @@ def slide(step, b, z, w, acceleration, c, s, max_steps, work):
     w_pull = step.w_one * b
     n = 0.0
     sure = w == 0.0 and acceleration >= 0.0 and acceleration + jerk - 0.5 * fourth > 0.0
-    while n < max_steps and w >= 0.0:  # a velocity that is not a number ends it too
-        # in this order the load's part does not wait for the state
+    while n < max_steps and w >= 0.0:  # NaN ends the loop too
+        # in this order the load's part does not depend on the state, and the processor can overlap the sums
         z1 = (step.z_cos * c + step.z_sin * s - z_pull) + (step.zz * z + step.zw * w)
         w1 = (step.w_cos * c + step.w_sin * s - w_pull) + (step.wz * z + step.ww * w)
         c1 = step.cos * c - step.sin * s
@@ -243,7 +260,7 @@ def slide(step, b, z, w, acceleration, c, s, max_steps, work):
             else:
                 first = 0
                 if n == 0.0 and w == 0.0:
-                    first = 1 if acceleration != 0.0 else 2  # the start is not the root looked for
+                    first = 1 if acceleration != 0.0 else 2  # skip the root at the start
                 x = first_root(work, first, step.terms)
             if x <= 1.0:
                 x, z, c, s = _at_root(step, b, z, c, s, x, work)
@@ -271,35 +288,36 @@ def slide_within(step, b, z, w, acceleration, c, s, max_steps, scratch):
 
 @kernel
 def after_slide(b, mu_b, z, c, s):
-    """What follows an upward slide that ended at displacement z and load phase (c, s).
+    """Determine what follows an upward slide that ended at displacement z and load phase (c, s).
 
-    Returns (code, z, c, s, contact_force, wait): the state from which the next upward slide starts, mirrored
-    if the motion turns back; contact_force = r^2 z'' at its start, friction taken off; wait = duration of the
-    stop in tau.
+    The contact sticks if |load| <= mu b (equality sticks); a stop ends when |load| exceeds mu b.
 
-    Sticks if |load| <= mu b (a tie sticks); a stop ends when |load| exceeds mu b.
+    Returns
+    -------
+    (code, z, c, s, contact_force, wait) : event code; the state from which the next upward slide starts,
+        mirrored if the motion reverses; contact_force = r^2 z'' at its start; duration of the stop in tau
     """
     load = z - c
     if load > mu_b:
         return REVERSE, -z, -c, -s, load - b, 0.0
     if load < -mu_b:
         return GRAZING, z, c, s, -load - b, 0.0
-    c_back = z - mu_b  # the load leaves upwards where cos falls through this ...
-    c_on = z + mu_b  # ... and downwards where cos rises through that
+    c_back = z - mu_b  # the load exceeds mu b upwards where cos falls through this value ...
+    c_on = z + mu_b  # ... and downwards where cos rises through this one
     falls = c_back > -1.0
     rises = c_on < 1.0
     if not (falls or rises):
         return STUCK, z, c, s, 0.0, math.inf
     falling = s > 0.0 or (s == 0.0 and c > 0.0)
     back = falls and (falling or not rises)
-    at_once = falling if back else not falling  # leaves on the half turn that it is on
+    at_once = falling if back else not falling  # released within the present half turn of the load
     c_end = c_back if back else c_on
     s_end = math.sqrt(max(0.0, (1.0 - c_end) * (1.0 + c_end)))
     if not back:
         s_end = -s_end
     wait = math.atan2(s_end * c - c_end * s, c_end * c + s_end * s)
     if at_once:
-        wait = max(wait, 0.0)  # rounding: the load can be past its end by a bit already
+        wait = max(wait, 0.0)  # by rounding the load may already be slightly past the release
     elif wait <= 0.0:
         wait += 2.0 * math.pi
     contact_force = mu_b - b

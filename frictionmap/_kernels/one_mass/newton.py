@@ -1,11 +1,11 @@
 """Periodic orbits as fixed points of the return map, by Newton's method with the exact derivative.
 
-An orbit is followed from one anchor, the start of an upward slide, until it returns there.  Where the
-anchor ends a stop, its displacement z is the one unknown: the load phase at which the stop ends follows
-from z.  Where it is a turn without a stop, z and the load phase theta are two.
+An orbit is followed from an anchor, the start of an upward slide, until it returns there.  If the anchor ends
+a stop, its displacement z is the only unknown: the load phase at which the stop ends follows from z.  If it
+is a turn without a stop, z and the load phase theta are the unknowns.
 
-Derivatives are those of the state at a fixed phase: free motion between events, and at each event the
-shift of its phase (saltation).
+Derivatives are those of the state at a fixed phase: free motion between events, and at each event the shift
+of its phase (saltation).
 """
 
 import math
@@ -16,56 +16,71 @@ from .events import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, 
 
 _MAX_NEWTON = 16
 
-#: Newton steps below this share of the displacement have to shrink fast.
+#: Newton steps below this share of the displacement must shrink quadratically.
 _NEAR_END = 1e-6
 
-#: Longest slide of an orbit, in periods of its slower part: one that was followed once has none so long.
+#: Longest slide of an orbit, in periods of the slower of oscillator and load; no resolved orbit has a longer
+#: one.
 _LONGEST_SLIDE = 100.0
 
 
 @kernel
 def half_periods(time):
-    """Half periods of the excitation nearest to a time in tau."""
+    """Number of half periods of the excitation nearest to a time in tau."""
     return int(math.floor(time / math.pi + 0.5))
 
 
 @kernel
 def full_period(halves):
-    """Excitation periods of a motion that returns after `halves` half periods, as its mirror image if odd."""
+    """Excitation periods of a motion that recurs after `halves` half periods, as its mirror image if odd."""
     return halves if halves % 2 == 1 else halves // 2
 
 
 @kernel
 def stop_ends(mu_b, z):
-    """Load phase (cos, sin) at which a stop at z ends, the motion that follows being upwards."""
+    """Load phase (cos, sin) at which a stop at z ends and an upward slide begins."""
     c = z + mu_b
     return c, -math.sqrt(max(0.0, (1.0 - c) * (1.0 + c)))
 
 
 @kernel
 def first_contact_force(b, mu_b, z, c):
-    """r^2 z'' at an anchor; exact where a stop ends there, which `stop_ends` makes c tell."""
+    """Compute r^2 z'' at an anchor; exact where a stop ends there, which is recognised by c = z + mu b."""
     return mu_b - b if c == z + mu_b else c - z - b
 
 
 @kernel
 def longest_slide(step, r):
-    """The longest slide of an orbit, in scan steps."""
+    """Longest slide of an orbit, in scan steps."""
     return _LONGEST_SLIDE * 2.0 * math.pi * max(1.0, r) / step.h
 
 
 @kernel
 def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, scratch):
-    """One return through a sequence of events.
+    """Follow one recurrence through a sequence of events, with derivatives.
 
-    Returns (fits, z, c, s, z_z, z_t, t_z, t_t): the state, and the derivatives of its displacement z and
-    phase t with respect to those at the anchor; after a stop, z_z is the only one.
+    Parameters
+    ----------
+    step : Step
+    oscillator : Oscillator
+    b, mu_b : kinetic and static friction over load amplitude
+    z : displacement at the anchor
+    c, s : cosine and sine of the load phase there
+    after_stop : whether the anchor ends a stop
+    sequence : EventSequence
+    work : (MAX_TERMS,) scratch
+
+    Returns
+    -------
+    (fits, z, c, s, z_z, z_t, t_z, t_t) : whether the events fit the sequence; the state at the end;
+        derivatives of its displacement z and phase t with respect to those at the anchor, of which only z_z
+        applies after a stop
     """
     a = 1.0 / oscillator.r
     events = sequence.events
     max_steps = longest_slide(step, oscillator.r)
     contact_force = mu_b - b if after_stop else c - z - b
-    # what a neighbour started with another z (first) or another phase (second) differs by
+    # deviation of a neighbouring motion that starts with another z (first) or another phase (second)
     z_z, t_z = 1.0, -1.0 / s if after_stop else 0.0
     z_t, t_t = 0.0, 0.0 if after_stop else 1.0
     for m in range(sequence.count):
@@ -76,7 +91,7 @@ def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, scratc
             return False, z, c, s, 0.0, 0.0, 0.0, 0.0
         q, e = decay(oscillator.zeta, a * n * step.h)
         d = e + 2.0 * oscillator.zeta * q
-        # a later start is a velocity that lags at a fixed phase
+        # a later start appears as a lower velocity at a fixed phase
         lag_z = -contact_force * a * a * t_z
         lag_t = -contact_force * a * a * t_t
         v_z = e * lag_z - a * q * z_z
@@ -103,10 +118,24 @@ def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, scratc
 
 @kernel
 def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolerance, scratch):
-    """Newton's method on the return map: (found, z, c, s, contraction).
+    """Solve the return map for its fixed point by Newton's method.
 
-    `found` also says that the orbit is stable; `contraction` is the largest modulus of the multipliers
-    of one return.  Eleven arguments: the oscillator is of a frequency, friction of a cell, the rest of a try.
+    Parameters
+    ----------
+    step : Step
+    oscillator : Oscillator
+    b, mu_b : kinetic and static friction over load amplitude
+    z : first guess of the displacement at the anchor
+    c, s : cosine and sine of the load phase there; not used after a stop
+    after_stop : whether the anchor ends a stop
+    sequence : EventSequence of one recurrence
+    tolerance : largest Newton step, relative to z
+    work : (MAX_TERMS,) scratch
+
+    Returns
+    -------
+    (found, z, c, s, contraction) : `found` is True only for a stable orbit; `contraction` is the largest
+        modulus of the multipliers of one recurrence
     """
     last = math.inf
     for _ in range(_MAX_NEWTON):
@@ -144,7 +173,7 @@ def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolera
         if not size < math.inf:
             break
         if size <= tolerance * abs(z) and size >= 0.5 * last:
-            return True, z, c, s, contraction  # as good as rounding allows
+            return True, z, c, s, contraction  # converged to rounding
         if size > 0.25 * last and tolerance * abs(z) < size < _NEAR_END * abs(z):
             break  # not quadratic: the map only touches the identity there (marginal continua, R = 1/(2n))
         z += move

@@ -1,13 +1,13 @@
 """Motion between events of the oscillator ``r^2 z'' + 2 zeta r z' + z + b sgn(z') = cos(theta)``.
 
-Every SDOF system is this one: divide theory's ``z`` and ``beta`` by the amplitude A of the load in the
-contact (1 for a fixed wall, |r^2 - 2 i zeta r| for a joined base-wall), and count theta from a maximum
-of that load.  The state is (z, z', cos theta, sin theta): no time accumulates.
+Every SDOF system has this form: divide ``z`` and ``beta`` of the theory by the amplitude A of the load in the
+contact (1 for a fixed wall, |r^2 - 2 i zeta r| for a joined base-wall), and count theta from a maximum of
+that load.  The state is (z, z', cos theta, sin theta); no time accumulates.
 
-All motion is counted in scan steps of length h: ``w = h z'``, and x in [0, 1] inside a step.  One step is
-a fixed affine map (`step_constants`), so that the scan calls no function; inside a step the solution is
-its Taylor series in x (`expand`), which needs no case for resonance, for zeta = 1 or for r -> inf and
-is exact to rounding because h is a small part of the fastest period.
+Motion is counted in scan steps of length h: ``w = h z'``, and x in [0, 1] inside a step.  One step is a fixed
+affine map (`step_constants`), so that the scan calls no function.  Inside a step the solution is its Taylor
+series in x (`expand`), which needs no special case for resonance, for zeta = 1 or for r -> inf, and is exact
+to rounding because h is a small part of the fastest period.
 """
 
 import math
@@ -18,15 +18,15 @@ import numpy as np
 from ..closed_form import fastest_rate
 from ..compiler import entry, kernel
 
-#: Terms of the Taylor series that any legal number of scan steps per period may need.
+#: Largest number of Taylor terms, for the lowest allowed number of scan steps per period.
 MAX_TERMS = 44
 
-#: Terms below this size relative to the first are rounding.
+#: Taylor terms below this size relative to the first are rounding error.
 _NEGLIGIBLE = 1e-18
 
 
 class Step(NamedTuple):
-    """What one scan step of length h does; everything here depends on (r, zeta, steps) only."""
+    """Constants of one scan step of length h; all fields depend on (r, zeta, steps) only."""
 
     h: float  # length in tau
     stiffness: float  # (h/r)^2
@@ -37,7 +37,7 @@ class Step(NamedTuple):
     zw: float
     wz: float
     ww: float
-    z_cos: float  # answer from rest to cos(theta), sin(theta) and 1
+    z_cos: float  # response from rest to cos(theta), sin(theta) and 1
     w_cos: float
     z_sin: float
     w_sin: float
@@ -49,9 +49,18 @@ class Step(NamedTuple):
 
 @kernel
 def _unit_series(h, stiffness, damping, terms, z, w, c, s, constant, out):
-    """Taylor coefficients in x of w from (z, w) under c cos(h x) - s sin(h x) + constant.
+    """Compute the Taylor coefficients in x of w under the load c cos(h x) - s sin(h x) + constant.
 
     The recurrence is the equation of motion; the coefficients of z follow as z_k = out[k-1]/k.
+
+    Parameters
+    ----------
+    h : length of the step in tau
+    stiffness, damping : (h/r)^2 and 2 zeta h/r
+    terms : number of coefficients
+    z, w : initial state
+    c, s, constant : load
+    out : (terms,) filled with the coefficients
     """
     z_k = z
     next_z = w
@@ -72,7 +81,7 @@ def _unit_series(h, stiffness, damping, terms, z, w, c, s, constant, out):
 
 @kernel
 def _sum_series(series, z):
-    """(z, w) at the end of the step."""
+    """State (z, w) at the end of the step."""
     velocity = 0.0
     rise = 0.0
     for k in range(series.size - 1, -1, -1):
@@ -83,9 +92,16 @@ def _sum_series(series, z):
 
 @kernel
 def expand(step, b, z, w, acceleration, c, s, out):
-    """Taylor coefficients in x of the upward velocity w from a state.
+    """Compute the Taylor coefficients in x of the upward velocity w.
 
-    `acceleration` is h^2 z'' at x = 0; it is known exactly where a stop ends, and used as given.
+    Parameters
+    ----------
+    step : Step
+    b : kinetic friction over load amplitude
+    z, w : state at x = 0
+    acceleration : h^2 z'' there, used as given because it is known exactly at the end of a stop
+    c, s : cosine and sine of the load phase there
+    out : (terms,) filled with the coefficients
     """
     series = step.series
     for k in range(step.terms):
@@ -98,10 +114,10 @@ def expand(step, b, z, w, acceleration, c, s, out):
 
 @kernel
 def series_terms(steps):
-    """(turn, terms): what the fastest part turns in one step, and the terms of the Taylor series in it.
+    """Return (turn, terms): angle of the fastest part per step, and number of Taylor terms for that angle.
 
-    The steps of a period are made odd in number, so that a slide of half a period (every one of a
-    continuous motion) ends inside a step, not next to a node.
+    The number of steps per period is made odd, so that a slide of half a period (every slide of a continuous
+    motion) ends inside a step and not next to a node.
     """
     turn = 2.0 * math.pi / (2.0 * math.floor(0.5 * steps) + 1.0)
     terms = 4
@@ -114,7 +130,7 @@ def series_terms(steps):
 
 @entry
 def step_constants(r, zeta, steps):
-    """The `Step` of frequency ratio r > 0 for `steps` scan steps per period of the fastest part."""
+    """Build the `Step` of frequency ratio r > 0 for `steps` scan steps per period of the fastest part."""
     a = 1.0 / r
     turn, terms = series_terms(steps)
     h = turn / max(1.0, fastest_rate(a, zeta))

@@ -1,4 +1,6 @@
-"""The continuous orbit of theory 2 for the normalised oscillator, and how near to it nothing can stop."""
+"""Continuous orbit of the normalised oscillator (theory.md 2), and the distance within which no motion can
+stop.
+"""
 
 import math
 from typing import NamedTuple
@@ -8,7 +10,7 @@ from ..compiler import entry, kernel
 
 
 class Oscillator(NamedTuple):
-    """The normalised oscillator at one r; everything here depends on (r, zeta) only."""
+    """Normalised oscillator at one r; all fields depend on (r, zeta) only."""
 
     r: float
     zeta: float
@@ -16,12 +18,12 @@ class Oscillator(NamedTuple):
     v_arg: float
     u: float
     g: float
-    marginal: bool  # undamped at r = 1/(2n), where the continuous motions are a continuum
+    marginal: bool  # undamped at r = 1/(2n), where the continuous motions form a continuum
 
 
 @kernel
 def continuous_amplitude(v_abs, u, g, b):
-    """Z of T(2.34), (7.20) for chi^2/w^2 = 1; infinite at an undamped resonance."""
+    """Amplitude Z of T(2.34), (7.20) for chi^2/w^2 = 1; infinite at an undamped resonance."""
     if math.isinf(v_abs):
         return math.inf
     if b == 0.0:
@@ -39,7 +41,7 @@ def orbit_phase(v_abs, v_arg, u, b):
 
 @kernel
 def since_maximum(c, s, phase):
-    """(tau, sign): time since the orbit's last maximum, or minimum; there the orbit is the mirror image."""
+    """Return (tau, sign): the time since the orbit's last maximum, or since its last minimum with sign -1."""
     tau = math.atan2(s, c) - phase
     tau -= 2.0 * math.pi * math.floor(tau / (2.0 * math.pi))
     if tau > math.pi:
@@ -49,7 +51,16 @@ def since_maximum(c, s, phase):
 
 @kernel
 def distance_to_orbit(oscillator, b, amplitude, phase, z, c, s):
-    """Energy norm sqrt(z^2 + r^2 z'^2) of the distance from the continuous orbit of a state at rest."""
+    """Energy norm sqrt(z^2 + r^2 z'^2) of the distance of a state at rest from the continuous orbit.
+
+    Parameters
+    ----------
+    oscillator : Oscillator
+    b : kinetic friction over load amplitude
+    amplitude, phase : amplitude of the orbit, and load phase at its maximum
+    z : displacement of the state
+    c, s : cosine and sine of its load phase
+    """
     a = 1.0 / oscillator.r
     tau, sign = since_maximum(c, s, phase)
     q, e = decay(oscillator.zeta, a * tau)
@@ -66,10 +77,10 @@ def distance_to_orbit(oscillator, b, amplitude, phase, z, c, s):
 
 @kernel
 def stop_free_radius(step, oscillator, b, mu_b, amplitude, phase):
-    """A distance (energy norm) from the continuous orbit within which no motion can stop.
+    """Distance (energy norm) from the continuous orbit within which no motion can stop.
 
-    A stop at distance eps needs r |z'| <= eps and |load| <= mu b + eps of the orbit; the least
-    max(r |z'|, |load| - mu b) over half a period is bounded below from scan steps and their curvature.
+    A stop at distance eps requires r |z'| <= eps and |load| <= mu b + eps on the orbit; the least max(r |z'|,
+    |load| - mu b) over half a period is bounded below from scan steps and their curvature.
     """
     c = -math.cos(phase)
     s = -math.sin(phase)
@@ -93,7 +104,7 @@ def stop_free_radius(step, oscillator, b, mu_b, amplitude, phase):
         c = c1
         load1 = z1 - c
         fast = to_velocity * (min(w, w1) - 0.125 * energy)
-        # a load that changes its sign inside the step passes zero there
+        # a load that changes sign within the step is zero there
         least = min(abs(load), abs(load1)) if load * load1 > 0.0 else 0.0
         loaded = least - 0.125 * (energy / omega + square) - mu_b
         radius = min(radius, max(fast, loaded))

@@ -1,1 +1,1 @@
-"""Any structure: scan step, events, return map, sliding orbit."""
+"""Kernels for any structure: scan step, events, return map, sliding orbit."""

@@ -1,29 +1,32 @@
-"""A structure followed from one slide to the next; every slide is an upward one, downward ones are
-mirrored."""
+"""Events of a structure: the end of a slide, and what follows it.
+
+Every slide is followed upwards; downward slides are mirrored.
+"""
 
 import math
 
 from ..compiler import kernel
 from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
-from .oscillators import AT_LIMIT, ELSEWHERE, FAILED, ROSE, scan
+from .oscillators import AT_LIMIT, FAILED, ROSE, STARTS_INSIDE, scan
 from .state import (
+    contact_displacement,
     contact_load,
     held_period,
     hold,
     largest_load_to_come,
     mirror,
-    place,
     release,
     vibrates_in_step,
 )
 
-#: What follows a slide, beside the codes of `one_mass.events`: a stop that is not known to end, or to last.
+#: Code in addition to those of `one_mass.events`: it was not determined whether the stop ends.
 NO_RELEASE = 5
 
-#: In place of a force at the start of a slide: it is under way already.
-MOVING = -1.0
+#: Value of `contact_force` for a slide that is already under way.
+UNDER_WAY = -1.0
 
-#: Excess of the load over mu beta, relative to it, below which slides take off no more than rounding.
+#: Relative excess of the load over mu beta below which a slide changes the displacement by rounding error
+#: only.
 _CREEPING = 1e-9
 
 _TURN = 2.0 * math.pi
@@ -31,32 +34,57 @@ _TURN = 2.0 * math.pi
 
 @kernel
 def slide_on(st, beta, contact_force, state, c, s, limit, scratch):
-    """An upward slide to the zero of the velocity, or for `limit` steps; see `oscillators.scan`.
+    """Follow an upward slide to the zero of the velocity, or for `limit` scan steps.
 
-    It starts with no velocity under `contact_force` >= 0, friction taken off; or contact_force = MOVING.
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta : kinetic friction force
+    contact_force : contact force less the friction, >= 0, of a slide that starts from rest; or UNDER_WAY
+    state : (2, n) free state; replaced by the state at the end
+    c, s : cosine and sine of the load phase
+    limit : scan steps allowed, including a fraction
+    scratch : Scratch
+
+    Returns
+    -------
+    (steps, end, cos, sin, slope) : see `oscillators.scan`
     """
-    slope = contact_force * st.inverse_mass / (st.rate * st.rate) if contact_force >= 0.0 else ELSEWHERE
+    slope = contact_force * st.inverse_mass / (st.rate * st.rate) if contact_force >= 0.0 else STARTS_INSIDE
     return scan(st.free, beta, 0.0, math.inf, slope, state, c, s, limit, scratch)
 
 
 @kernel
 def wait_for_release(st, mu_beta, z, held, c, s, allowed, scratch):
-    """A stop at z, to where the load exceeds mu beta: (end, cos, sin, duration in tau, dload/dx).
+    """Follow a stop at z until the load exceeds mu beta.
 
-    `end` is FELL or ROSE (the load left through -mu beta or mu beta), AT_LIMIT (never) or FAILED (not in
-    `allowed` tau).
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    mu_beta : static friction force
+    z : contact displacement
+    held : (2, m) held state; replaced by the state at the end
+    c, s : cosine and sine of the load phase
+    allowed : time in tau after which to give up
+    scratch : Scratch
+
+    Returns
+    -------
+    (end, cos, sin, duration, slope) : FELL or ROSE where the load leaves through -mu beta or mu beta,
+        AT_LIMIT where it never does, FAILED where it does not within `allowed`; the load phase; duration in
+        tau; dload/dx
     """
     level = st.stiffness * z
     wait = 0.0
     period = _TURN / st.h
     repeat = 0.0
-    # in step with the load the motion creeps to where the load never exceeds mu beta, by ever shorter slides
+    # resonant with the load, the motion creeps by ever shorter slides to where the load never exceeds mu beta
     most = mu_beta * (1.0 + _CREEPING) if vibrates_in_step(st) else mu_beta
     while True:
         if largest_load_to_come(st, held, z, c, s) <= most:
             return AT_LIMIT, c, s, wait, 0.0
         n, end, c, s, slope = scan(
-            st.held, 0.0, -mu_beta - level, mu_beta - level, ELSEWHERE, held, c, s, period, scratch
+            st.held, 0.0, -mu_beta - level, mu_beta - level, STARTS_INSIDE, held, c, s, period, scratch
         )
         wait += n * st.h
         if end != AT_LIMIT:
@@ -71,11 +99,24 @@ def wait_for_release(st, mu_beta, z, held, c, s, allowed, scratch):
 
 @kernel
 def after_slide(st, beta, mu_beta, state, held, c, s, allowed, scratch):
-    """What follows an upward slide that ended in this free state.
+    """Determine what follows an upward slide.
 
-    Returns (code, cos, sin, contact_force, wait, load, slope): as `events.after_slide`, `contact_force` at
-    the start of the next slide; `load` at the end of this one, and its slope dload/dx at the end of the stop.
-    The state becomes the one from which the next upward slide starts; a stop that lasts leaves it.
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta, mu_beta : kinetic and static friction force
+    state : (2, n) free state at the end of the slide; replaced by the state at the start of the next upward
+        slide, but left unchanged by a stop that lasts
+    held : (2, m) work array, the held state
+    c, s : cosine and sine of the load phase
+    allowed : time in tau after which to give up waiting
+    scratch : Scratch
+
+    Returns
+    -------
+    (code, cos, sin, contact_force, wait, load, slope) : code of `one_mass.events` or NO_RELEASE; the load
+        phase and the contact force less the friction at the start of the next slide; duration of the stop in
+        tau; load at the end of this slide; dload/dx at the end of the stop
     """
     load = contact_load(st, state, c, s)
     if load > mu_beta:
@@ -83,7 +124,7 @@ def after_slide(st, beta, mu_beta, state, held, c, s, allowed, scratch):
         return REVERSE, -c, -s, load - beta, 0.0, load, 0.0
     if load < -mu_beta:
         return GRAZING, c, s, -load - beta, 0.0, load, 0.0
-    z = place(st, state, c, s)
+    z = contact_displacement(st, state, c, s)
     hold(st, state, z, c, s, held)
     end, c, s, wait, slope = wait_for_release(st, mu_beta, z, held, c, s, allowed, scratch)
     if end == AT_LIMIT:

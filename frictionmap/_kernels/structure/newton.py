@@ -1,9 +1,9 @@
 """Periodic orbits of a structure: Newton's method on its return map, with the exact derivative.
 
-The map takes the state in the middle of an upward slide to the state at the same phase of the load some half
-periods later (mirrored after an odd number).  Its derivative is linear flow between events, and at each
-event a jump (saltation): a stop takes the contact's share out of the velocities, a turn or the end of a stop
-adds the jump of the friction force times the shift of the event.
+The map takes the state in the middle of an upward slide to the state at the same load phase some half periods
+later (mirrored after an odd number).  Its derivative is linear flow between events and a jump (saltation) at
+each event: a stop removes the contact's share of the velocities; a turn, or the end of a stop, adds the jump
+of the friction force times the time shift of the event.
 """
 
 import math
@@ -14,53 +14,53 @@ import numpy as np
 from ..closed_form import decay
 from ..compiler import entry, kernel
 from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
-from .events import MOVING, NO_RELEASE, after_slide, slide_on
+from .events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
 from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA
 from .state import PUSH, SPEED, SPEED_RATE, STATIC_SHAPE, Z_RATE, Z, energy
 
 _MAX_NEWTON = 16
 
-#: Events at most of a sequence found by `follow_events`.
+#: Largest number of events recorded by `follow_events`.
 LONGEST_SEQUENCE = 64
 
-#: Columns of `Workspace.anchored`: half periods to the orbit's return (0: there is none), load's phase, sign
-#: of the slide, number of slides, beta, and beta of the orbit before, NaN if that is anchored otherwise.
+#: Columns of `Workspace.anchored`: half periods per recurrence (0: no orbit), load phase, sign of the slide,
+#: number of slides, beta, and beta of the previous orbit, NaN if that is anchored at another phase.
 HALVES, PHASE_COS, PHASE_SIN, SIDE, SLIDES, BETA, EARLIER_BETA = 0, 1, 2, 3, 4, 5, 6
 ANCHORED = 7
 
-#: Newton steps below this share of the motion have to shrink fast.
+#: Newton steps below this share of the motion must shrink quadratically.
 _NEAR_END = 1e-6
 
-#: Squarings of the derivative for its spectral radius: the root of so high a power is right to rounding.
+#: Squarings of the derivative for its spectral radius: the root of this power is exact to rounding.
 _SQUARINGS = 40
 
 _TURN = 2.0 * math.pi
 
 
 class Workspace(NamedTuple):
-    """Arrays that kernels write into; n free modes, m held oscillators."""
+    """Work arrays of the kernels, for n free modes and m held oscillators."""
 
     held: np.ndarray  # (2, m) state in a stop
     middle: np.ndarray  # (2, n) unknown of Newton's method
-    moved: np.ndarray  # (2, n) where the map takes it
+    moved: np.ndarray  # (2, n) its image under the return map
     flow: np.ndarray  # (2n, 2n) derivative of the state with respect to the unknown
-    stopped: np.ndarray  # (2m + 1, 2n) the same in a stop; last row: of z
+    stopped: np.ndarray  # (2m + 1, 2n) derivative of the held state in a stop; last row: of z
     square: np.ndarray  # (2n, 2n)
     step: np.ndarray  # (2n,)
     row: np.ndarray  # (2n,)
-    start: np.ndarray  # (2, n) where Newton's method started
+    start: np.ndarray  # (2, n) first guess of Newton's method
     anchor: np.ndarray  # (2, n)
     table: np.ndarray  # (n + 1, COLUMNS)
-    events: np.ndarray  # (LONGEST_SEQUENCE,) of an event sequence
-    near: np.ndarray  # (2, n)
+    events: np.ndarray  # (LONGEST_SEQUENCE,) event codes of a sequence
+    trial: np.ndarray  # (2, n)
     solved: np.ndarray  # (2, n) middle of a slide of the orbit solved for last
-    earlier: np.ndarray  # (2, n) of the one before
+    earlier: np.ndarray  # (2, n) middle of a slide of the orbit before that
     anchored: np.ndarray  # (ANCHORED,)
 
 
 @entry
 def make_workspace(n):
-    """Workspace for n free modes."""
+    """Allocate a workspace for n free modes."""
     m = n - 1
     return Workspace(
         np.zeros((2, m)), np.zeros((2, n)), np.zeros((2, n)), np.zeros((2 * n, 2 * n)),
@@ -79,8 +79,11 @@ def copy_state(source, target, n):
 
 
 @kernel
-def _carry(table, n, time, rows, columns):
-    """Free motion of n oscillators over `time` in t = tau/r: row i a coordinate, n + i its velocity in t."""
+def _free_motion(table, n, time, rows, columns):
+    """Propagate derivatives by the free motion of n oscillators over `time` in t = tau/r.
+
+    Row i holds a coordinate, row n + i its velocity in t.
+    """
     for i in range(n):
         omega = table[i, OMEGA]
         q, e = decay(table[i, ZETA], omega * time)
@@ -95,12 +98,14 @@ def _carry(table, n, time, rows, columns):
 
 
 @kernel
-def _contact_row(st, place, rate, rows, columns, out):
-    """What the contact has of coordinates and their velocities by two rows of `st.modes`, Z or SPEED."""
+def _contact_row(st, coordinate_row, rate, rows, columns, out):
+    """Project rows of coordinates and velocities onto the contact by two rows of `st.modes`, Z or SPEED and
+    its rate.
+    """
     for j in range(columns):
         out[j] = 0.0
     for i in range(st.n):
-        for row, part in ((i, st.modes[place, i]), (st.n + i, st.modes[rate, i])):
+        for row, part in ((i, st.modes[coordinate_row, i]), (st.n + i, st.modes[rate, i])):
             if part != 0.0:
                 for j in range(columns):
                     out[j] += part * rows[row, j]
@@ -108,11 +113,24 @@ def _contact_row(st, place, rate, rows, columns, out):
 
 @kernel
 def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, row):
-    """The derivative after an event that ended an upward slide; see `follow.after_slide`."""
+    """Propagate the derivative through an event that ended an upward slide; see `events.after_slide`.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta, mu_beta : kinetic and static friction force
+    code : event code
+    load : load in the contact at the end of the slide
+    wait : duration of the stop in tau
+    slope : dload/dx at the end of the stop
+    flow : (2n, 2n) derivative of the state, updated
+    stopped : (2m + 1, 2n) work array, the derivative during the stop
+    row : (2n,) work array
+    """
     n, m = st.n, st.m
     size = 2 * n
     _contact_row(st, SPEED, SPEED_RATE, flow, size, row)
-    # a stop takes all of the contact's velocity, a turn 2 beta/(load + beta) of it
+    # a stop removes the contact's velocity, a turn 2 beta/(load + beta) of it
     share = (2.0 * beta / (load + beta) if code == REVERSE else 1.0) / st.inverse_mass
     for i in range(n):
         part = st.modes[PUSH, i] * share
@@ -129,7 +147,7 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
                 shift = a * st.modes[STATIC_SHAPE, i]
                 for j in range(size):
                     stopped[k, j] += a * flow[i, j] + b * flow[n + i, j] - shift * stopped[2 * m, j]
-        _carry(st.held, m, wait / st.r, stopped, size)
+        _free_motion(st.held, m, wait / st.r, stopped, size)
         for j in range(size):
             row[j] = st.stiffness * stopped[2 * m, j]
         for k in range(m):
@@ -143,7 +161,7 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
                 a = st.to_free[i, k]
                 for j in range(size):
                     flow[i, j] += a * stopped[k, j]
-        # the stop ends where the load reaches mu beta: sooner by the load's excess over its rate
+        # the stop ends where the load reaches mu beta: earlier by the excess of the load over its rate
         jump = (mu_beta - beta) / (slope * st.rate)
         if code == STOP_THEN_BACK:
             jump = -jump
@@ -159,10 +177,22 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
 
 @kernel
 def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, scratch):
-    """The state `halves` half periods on, through a sequence of events; in place.
+    """Follow the state for `halves` half periods through a sequence of events, in place.
 
-    Returns whether the events fit; `work.flow` becomes the derivative if `derive`.  Eleven arguments: the
-    state, its phase and what becomes of it change from call to call, friction from cell to cell.
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta, mu_beta : kinetic and static friction force
+    state : (2, n) state within a slide; replaced by the state after `halves` half periods
+    c, s : cosine and sine of its load phase
+    sequence : EventSequence
+    halves : half periods of the excitation
+    derive : whether to fill work.flow with the derivative
+    work, scratch : Workspace, Scratch
+
+    Returns
+    -------
+    bool : whether the events fit the sequence
     """
     size = 2 * st.n
     if derive:
@@ -175,7 +205,7 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
     odd = halves % 2 == 1
     mirrored = False
     time = 0.0
-    contact_force = MOVING
+    contact_force = UNDER_WAY
     events = sequence.events
     for m in range(sequence.count):
         n, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, limit, scratch)
@@ -183,7 +213,7 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
             return False
         time += n * st.h
         if derive:
-            _carry(st.free, st.n, n * st.h / st.r, work.flow, size)
+            _free_motion(st.free, st.n, n * st.h / st.r, work.flow, size)
         code, c, s, contact_force, wait, load, slope = after_slide(
             st, beta, mu_beta, state, work.held, c, s, whole, scratch
         )
@@ -198,29 +228,41 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
             _through_event(st, beta, mu_beta, code, load, wait, slope, work.flow, work.stopped, work.row)
     if mirrored != odd:
         return False
-    # what is left, as exactly as the load's phase says it
-    rest = math.atan2(s0 * c - c0 * s, c0 * c + s0 * s)
-    rest += _TURN * math.floor((whole - time - rest) / _TURN + 0.5)
-    if not rest > 0.0:
+    # the remaining time, as exactly as the load phase gives it
+    remaining = math.atan2(s0 * c - c0 * s, c0 * c + s0 * s)
+    remaining += _TURN * math.floor((whole - time - remaining) / _TURN + 0.5)
+    if not remaining > 0.0:
         return False
-    n, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, rest / st.h, scratch)
+    n, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, remaining / st.h, scratch)
     if end != AT_LIMIT:
         return False
     if derive:
-        _carry(st.free, st.n, rest / st.r, work.flow, size)
+        _free_motion(st.free, st.n, remaining / st.r, work.flow, size)
     return True
 
 
 @kernel
 def follow_events(st, beta, mu_beta, state, c, s, halves, work, scratch):
-    """Number of events in `halves` half periods from a state in a slide, and what they are, in work.events.
+    """Follow the motion for `halves` half periods and record its events in work.events.
 
-    0 if they are too many, or do not lead back into a slide in the same direction, mirrored if odd.
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta, mu_beta : kinetic and static friction force
+    state : (2, n) state within a slide; replaced by the final state
+    c, s : cosine and sine of its load phase
+    halves : half periods of the excitation
+    work, scratch : Workspace, Scratch
+
+    Returns
+    -------
+    int : number of events; 0 if there are too many, or if they do not lead back into a slide in the same
+        direction (mirrored after an odd number of half periods)
     """
     whole = math.pi * halves
     mirrored = False
     time = 0.0
-    contact_force = MOVING
+    contact_force = UNDER_WAY
     count = 0
     while True:
         n, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, (whole - time) / st.h, scratch)
@@ -243,7 +285,7 @@ def follow_events(st, beta, mu_beta, state, c, s, halves, work, scratch):
 
 @kernel
 def solve_linear(matrix, right, n):
-    """Solve matrix x = right in place, x in `right`; False if it is singular."""
+    """Solve matrix x = right in place, x in `right`; False if the matrix is singular."""
     for k in range(n):
         pivot = k
         for i in range(k + 1, n):
@@ -270,6 +312,7 @@ def solve_linear(matrix, right, n):
 
 @kernel
 def _largest_entry(matrix, n):
+    """Largest modulus of the entries of a matrix."""
     norm = 0.0
     for i in range(n):
         for j in range(n):
@@ -279,7 +322,9 @@ def _largest_entry(matrix, n):
 
 @kernel
 def spectral_radius(matrix, n, a):
-    """Largest modulus of the eigenvalues, from the root of a high power; `matrix` is lost, `a` is scratch."""
+    """Largest modulus of the eigenvalues, from the root of a high power; `matrix` is overwritten, `a` is
+    scratch.
+    """
     log = 0.0
     for _ in range(_SQUARINGS):
         norm = _largest_entry(matrix, n)
@@ -303,9 +348,21 @@ def spectral_radius(matrix, n, a):
 
 @kernel
 def newton_step(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
-    """A step of Newton's method from work.middle, into work.moved.
+    """Compute a Newton step from work.middle, into work.moved.
 
-    Returns its size, infinite if there is none, and by how much the orbit misses its return.
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta, mu_beta : kinetic and static friction force
+    c, s : cosine and sine of the load phase of work.middle
+    sequence : EventSequence of one recurrence
+    halves : half periods of one recurrence
+    work, scratch : Workspace, Scratch; work.middle is the (2, n) state
+
+    Returns
+    -------
+    (size, miss) : energy norms of the step, infinite if there is none, and of the difference after one
+        recurrence
     """
     n = st.n
     size = 2 * n
@@ -330,10 +387,11 @@ def newton_step(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
 
 
 @kernel
-def _nothing_to_come(move, last, miss, scale, tolerance):
-    """Whether the step after one of size `move` would be rounding: quadratically it gets this much smaller.
+def _next_step_negligible(move, last, miss, scale, tolerance):
+    """Whether the next Newton step would be rounding error, quadratic convergence being expected.
 
-    Where steps make much of what an orbit misses by, they do so of rounding, and nothing is to be expected.
+    Where the step is much larger than the difference that it removes, it amplifies rounding error, and
+    convergence cannot be predicted.
     """
     expected = move * (move / last) ** 2 if last < math.inf else move
     return expected <= 1e-16 * scale and 1e-16 * move <= tolerance * miss
@@ -341,7 +399,22 @@ def _nothing_to_come(move, last, miss, scale, tolerance):
 
 @kernel
 def solve_return(st, beta, mu_beta, c, s, sequence, halves, tolerance, work, scratch):
-    """Newton's method on the return map from work.middle, which becomes the solution; whether it is one."""
+    """Solve the return map for its fixed point by Newton's method.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta, mu_beta : kinetic and static friction force
+    c, s : cosine and sine of the load phase of work.middle
+    sequence : EventSequence of one recurrence
+    halves : half periods of one recurrence
+    tolerance : largest Newton step, relative to the motion
+    work, scratch : Workspace, Scratch; work.middle is the first guess and becomes the solution, (2, n)
+
+    Returns
+    -------
+    bool : whether a solution was found
+    """
     n = st.n
     last = math.inf
     for _ in range(_MAX_NEWTON):
@@ -350,13 +423,13 @@ def solve_return(st, beta, mu_beta, c, s, sequence, halves, tolerance, work, scr
             return False
         scale = energy(st, work.middle)
         if move <= tolerance * scale and move >= 0.5 * last:
-            return True  # as good as rounding allows
+            return True  # converged to rounding
         if move > 0.25 * last and tolerance * scale < move < _NEAR_END * scale:
             return False  # not quadratic: the map only touches the identity there
         for i in range(n):
             work.middle[0, i] += work.moved[0, i]
             work.middle[1, i] += work.moved[1, i]
-        if move <= 1e-15 * scale or _nothing_to_come(move, last, miss, scale, tolerance):
+        if move <= 1e-15 * scale or _next_step_negligible(move, last, miss, scale, tolerance):
             return True
         last = move
     return False

@@ -1,13 +1,13 @@
-"""Oscillators side by side under one load, and the first time that a sum of them leaves a range.
+"""Oscillators under one load, and the first time at which a weighted sum of them leaves a range.
 
-Sliding structures are sets of free modes and sticking ones sets of held modes (`state`): in units of one
-scan step, x in [0, 1] inside it, with ``w = dz/dx``,
+A sliding structure is a set of free modes and a sticking one a set of held modes (`state`).  In units of one
+scan step, with x in [0, 1] inside it and ``w = dz/dx``,
 
     z_i'' + D_i z_i' + K_i z_i = FC_i cos(tau) + FS_i sin(tau) + F1_i friction .
 
-A scan step is a fixed affine map of each oscillator, so that the scan calls no function.  What is watched
-is one number, ``y = sum OZ_i z_i + OW_i w_i + YC cos(tau) + YS sin(tau)``: the velocity in the contact, or
-what changes of the load in it.  Cost is linear in the number of oscillators.
+A scan step is a fixed affine map of each oscillator, so that the scan calls no function.  One sum is watched,
+``y = sum OZ_i z_i + OW_i w_i + YC cos(tau) + YS sin(tau)``: the contact velocity, or the variable part of the
+load in the contact.  The cost is linear in the number of oscillators.
 """
 
 import math
@@ -19,38 +19,38 @@ from ..compiler import entry, inner_kernel, kernel
 from ..one_mass.events import MAX_POLISH, NEARLY, ONE_STEP, cubic_root, first_root, reversion
 from ..one_mass.scan_step import MAX_TERMS
 
-# Columns of a table of oscillators, one a row: the equation, the sum that is watched, ...
+# Columns of a table of oscillators, one oscillator per row: the equation, the watched sum, ...
 K, D, FC, FS, F1, OZ, OW = 0, 1, 2, 3, 4, 5, 6
 # ... frequency and damping ratio in time t = tau/r, sqrt(K), amplitude of the load's second derivative, ...
 OMEGA, ZETA, ROOT, GROWTH = 7, 8, 9, 10
 # ... and the map of one step: z <- ZZ z + ZW w + ZC cos + ZS sin + Z1 friction, and so w.
 ZZ, ZW, WZ, WW, ZC, WC, ZS, WS, Z1, W1 = 11, 12, 13, 14, 15, 16, 17, 18, 19, 20
 COLUMNS = 21
-# One more row, the last, has what all share: length of a step in tau, its cos and sin, terms of the Taylor
-# series in it, the load's part of y, and the amplitude of the second derivative of that.
+# The last row holds common values: length of a step in tau, its cos and sin, number of Taylor terms, the
+# load's part of y, and the amplitude of its second derivative.
 H, TURN_COS, TURN_SIN, TERMS, YC, YS, SWING = 0, 1, 2, 3, 4, 5, 6
 
-#: Ends of a scan: the time allowed is over, y fell through the lower end of its range, rose through the
-#: upper one, or is not a number.
+#: Outcomes of a scan: the allowed time is over, y fell through the lower end of its range, y rose through the
+#: upper end, or y is not a number.
 AT_LIMIT, FELL, ROSE, FAILED = 0, 1, 2, 3
 
-#: In place of a slope at the start: y starts inside its range.
-ELSEWHERE = -1.0
+#: Value of `rise` for a scan whose y starts inside its range.
+STARTS_INSIDE = -1.0
 
 
 class Scratch(NamedTuple):
-    """Arrays that kernels write into."""
+    """Work arrays of the kernels."""
 
     series: np.ndarray  # (MAX_TERMS + 1, n) Taylor coefficients of every z
-    watched: np.ndarray  # (MAX_TERMS + 1,) of y
-    below: np.ndarray  # (MAX_TERMS,) of the distance to an end of the range
+    watched: np.ndarray  # (MAX_TERMS + 1,) Taylor coefficients of y
+    below: np.ndarray  # (MAX_TERMS,) Taylor coefficients of the distance to an end of the range
     next: np.ndarray  # (2, n) state at the other end of a step
     left: np.ndarray  # (1,) scan steps that may still be taken
 
 
 @entry
 def make_scratch(n):
-    """Scratch for up to n oscillators, with no bound on the scan steps."""
+    """Allocate scratch arrays for up to n oscillators, without a limit on scan steps."""
     return Scratch(
         np.zeros((MAX_TERMS + 1, n)), np.zeros(MAX_TERMS + 1), np.zeros(MAX_TERMS), np.zeros((2, n)),
         np.full(1, np.inf),
@@ -58,8 +58,17 @@ def make_scratch(n):
 
 
 @kernel
-def _answer(k, d, h, terms, z, w, cosine, sine, constant):
-    """(z, w) after one step from (z, w) under cosine cos(h x) + sine sin(h x) + constant."""
+def _step_response(k, d, h, terms, z, w, cosine, sine, constant):
+    """State (z, w) of an oscillator after one step.
+
+    Parameters
+    ----------
+    k, d : stiffness and damping
+    h : length of the step in tau
+    terms : terms of the Taylor series
+    z, w : initial state
+    cosine, sine, constant : load cosine cos(h x) + sine sin(h x) + constant
+    """
     z_k = z
     z_next = w
     f_k = cosine
@@ -83,18 +92,20 @@ def _answer(k, d, h, terms, z, w, cosine, sine, constant):
 
 @kernel
 def fill_steps(table, h, terms):
-    """Fill the columns of the step's map from those of the equation, and the last row but for y."""
+    """Fill the columns of the step's map from those of the equation, and the last row except for y."""
     n = table.shape[0] - 1
     for i in range(n):
         k = table[i, K]
         d = table[i, D]
         table[i, ROOT] = math.sqrt(k)
         table[i, GROWTH] = h * h * math.hypot(table[i, FC], table[i, FS])
-        table[i, ZZ], table[i, WZ] = _answer(k, d, h, terms, 1.0, 0.0, 0.0, 0.0, 0.0)
-        table[i, ZW], table[i, WW] = _answer(k, d, h, terms, 0.0, 1.0, 0.0, 0.0, 0.0)
-        table[i, ZC], table[i, WC] = _answer(k, d, h, terms, 0.0, 0.0, table[i, FC], table[i, FS], 0.0)
-        table[i, ZS], table[i, WS] = _answer(k, d, h, terms, 0.0, 0.0, table[i, FS], -table[i, FC], 0.0)
-        table[i, Z1], table[i, W1] = _answer(k, d, h, terms, 0.0, 0.0, 0.0, 0.0, table[i, F1])
+        table[i, ZZ], table[i, WZ] = _step_response(k, d, h, terms, 1.0, 0.0, 0.0, 0.0, 0.0)
+        table[i, ZW], table[i, WW] = _step_response(k, d, h, terms, 0.0, 1.0, 0.0, 0.0, 0.0)
+        table[i, ZC], table[i, WC] = _step_response(k, d, h, terms, 0.0, 0.0, table[i, FC], table[i, FS], 0.0)
+        table[i, ZS], table[i, WS] = _step_response(
+            k, d, h, terms, 0.0, 0.0, table[i, FS], -table[i, FC], 0.0
+        )
+        table[i, Z1], table[i, W1] = _step_response(k, d, h, terms, 0.0, 0.0, 0.0, 0.0, table[i, F1])
     table[n, H] = h
     table[n, TURN_COS], table[n, TURN_SIN] = math.cos(h), math.sin(h)
     table[n, TERMS] = terms
@@ -102,7 +113,7 @@ def fill_steps(table, h, terms):
 
 @kernel
 def watch_load(table, yc, ys):
-    """Let y have yc cos(tau) + ys sin(tau)."""
+    """Set the load's part of y to yc cos(tau) + ys sin(tau)."""
     n = table.shape[0] - 1
     h = table[n, H]
     table[n, YC], table[n, YS] = yc, ys
@@ -111,7 +122,18 @@ def watch_load(table, yc, ys):
 
 @kernel
 def expand(table, n, friction, state, c, s, h, terms, series):
-    """Taylor coefficients in x of every z, from a state; `terms` + 1 of them."""
+    """Compute the Taylor coefficients in x of every z.
+
+    Parameters
+    ----------
+    table : (n + 1, COLUMNS) table of oscillators; n : their number
+    friction : friction force on the oscillators
+    state : (2, n) state at x = 0
+    c, s : cosine and sine of the load phase there
+    h : length of the step in tau
+    terms : order of the series
+    series : (terms + 1, n) filled with the coefficients
+    """
     for i in range(n):
         series[0, i] = state[0, i]
         series[1, i] = state[1, i]
@@ -132,7 +154,7 @@ def expand(table, n, friction, state, c, s, h, terms, series):
 
 @kernel
 def advance(series, n, terms, x, state):
-    """The state at x inside the step whose series this is."""
+    """Evaluate the state at x inside the step from its Taylor series."""
     for i in range(n):
         state[0, i] = series[terms, i]
         state[1, i] = terms * series[terms, i]
@@ -146,7 +168,7 @@ def advance(series, n, terms, x, state):
 
 @kernel
 def watch(table, c, s, series, watched):
-    """Taylor coefficients of y from those of every z."""
+    """Compute the Taylor coefficients of y from those of every z."""
     n = table.shape[0] - 1
     h = table[n, H]
     c_k, s_k = c, s
@@ -163,9 +185,17 @@ def watch(table, c, s, series, watched):
 
 @inner_kernel
 def step_on(table, n, friction, state, before, c, s):
-    """The state one scan step on, in place, and what the oscillators have of y there; the old one: `before`.
+    """Advance the state by one scan step in place, and return the oscillators' part of y there.
 
-    One pass over rows in one piece: with few oscillators, passes over columns cost more than the work.
+    One pass over contiguous rows: with few oscillators, passes over columns cost more than the arithmetic.
+
+    Parameters
+    ----------
+    table : (n + 1, COLUMNS) table of oscillators; n : their number
+    friction : friction force on the oscillators
+    state : (2, n) state, advanced
+    before : (2, n) filled with the previous state
+    c, s : cosine and sine of the load phase before the step
     """
     y = 0.0
     for i in range(n):
@@ -185,7 +215,7 @@ def step_on(table, n, friction, state, before, c, s):
 
 @kernel
 def value(table, state, c, s):
-    """y of a state."""
+    """Value of y for a state."""
     n = table.shape[0] - 1
     total = 0.0
     for i in range(n):
@@ -195,7 +225,7 @@ def value(table, state, c, s):
 
 @kernel
 def derivatives(table, friction, state, c, s):
-    """y of a state and its first three derivatives in x."""
+    """Value of y for a state, and its first three derivatives in x."""
     n = table.shape[0] - 1
     h = table[n, H]
     y = table[n, YC] * c + table[n, YS] * s
@@ -218,9 +248,10 @@ def derivatives(table, friction, state, c, s):
 
 @kernel
 def bounds(table, friction, state, c, s):
-    """Bounds over the next step on the derivatives 2 to 4 of y, and by how much each grows with every step.
+    """Bounds over the next step on the derivatives 2 to 4 of y, and the growth of each bound per step.
 
-    The energy sqrt(K) |z''| + |z'''| of the motion of z'' can grow by the load only, by |F''| a step.
+    The energy sqrt(K) |z''| + |z'''| of the motion of z'' can grow by the load only, by at most |F''| per
+    step.
     """
     n = table.shape[0] - 1
     h = table[n, H]
@@ -252,7 +283,14 @@ def bounds(table, friction, state, c, s):
 
 @kernel
 def _inside(y0, dy0, y1, dy1, low, high, error):
-    """Whether the cubic through these values and slopes keeps `error` away from both ends of the range."""
+    """Whether the cubic through two values and slopes stays at least `error` inside a range.
+
+    Parameters
+    ----------
+    y0, dy0, y1, dy1 : values and slopes at x = 0 and x = 1
+    low, high : ends of the range
+    error : largest distance of the function from the cubic
+    """
     left = y0 + dy0 * (1.0 / 3.0)
     right = y1 - dy1 * (1.0 / 3.0)
     least = min(min(y0, y1), min(left, right))
@@ -262,7 +300,7 @@ def _inside(y0, dy0, y1, dy1, low, high, error):
 
 @kernel
 def _turned(c, s, angle):
-    """The load's phase (cos, sin) turned by an angle, on the unit circle."""
+    """Rotate the load phase (cos, sin) by an angle, keeping it on the unit circle."""
     turn_c, turn_s = math.cos(angle), math.sin(angle)
     c1 = turn_c * c - turn_s * s
     s1 = turn_c * s + turn_s * c
@@ -271,8 +309,19 @@ def _turned(c, s, angle):
 
 
 @kernel
-def _move(table, friction, before, c, s, x, powers, state):
-    """The state at x inside the step that starts from `before`, by the derivatives of every z there."""
+def _state_inside(table, friction, before, c, s, x, powers, state):
+    """Compute the state at x inside a step, from the derivatives of every z at its start.
+
+    Parameters
+    ----------
+    table : (n + 1, COLUMNS) table of oscillators
+    friction : friction force on the oscillators
+    before : (2, n) state at the start of the step
+    c, s : cosine and sine of the load phase there
+    x : position inside the step
+    powers : (terms + 1,) work array, x^j/j!
+    state : (2, n) filled with the state at x
+    """
     n = table.shape[0] - 1
     h = table[n, H]
     terms = int(table[n, TERMS])
@@ -299,8 +348,8 @@ def _move(table, friction, before, c, s, x, powers, state):
 
 
 @kernel
-def _nudge(table, friction, state, c, s, x):
-    """Move the state on by a small part x of a step."""
+def _advance_slightly(table, friction, state, c, s, x):
+    """Advance the state by a small part x of a step, with a third-order expansion."""
     n = table.shape[0] - 1
     h = table[n, H]
     for i in range(n):
@@ -315,14 +364,26 @@ def _nudge(table, friction, state, c, s, x):
 
 @kernel
 def _at_crossing(table, friction, level, x, done, start, now, state, scratch):
-    """Where y passes `level` next to x, in the step from scratch.next, after `done`: (found, x, slope).
+    """Refine the crossing of `level` by y next to x, by Newton steps of fourth order.
 
-    start, now : the load's phase (cos, sin) when the scan and this step began.  Newton steps of fourth order
-    on the state itself, which becomes that at the crossing.  Not found: y only touches the level.
+    Parameters
+    ----------
+    table : (n + 1, COLUMNS) table of oscillators
+    friction : friction force on the oscillators
+    level : value of y to cross
+    x : first guess inside the step
+    done : scan steps before this one
+    start, now : load phase (cos, sin) at the start of the scan and of this step
+    state : (2, n) filled with the state at the crossing
+    scratch : Scratch; scratch.next is the state at the start of the step
+
+    Returns
+    -------
+    (found, x, slope) : not found where y only touches the level
     """
     h = table[table.shape[0] - 1, H]
     for _ in range(MAX_POLISH):
-        _move(table, friction, scratch.next, now[0], now[1], x, scratch.watched, state)
+        _state_inside(table, friction, scratch.next, now[0], now[1], x, scratch.watched, state)
         c, s = _turned(start[0], start[1], (done + x) * h)
         y, slope, bend, third = derivatives(table, friction, state, c, s)
         y -= level
@@ -331,18 +392,33 @@ def _at_crossing(table, friction, level, x, done, start, now, state, scratch):
         move = reversion(y, slope, bend, third)
         x += move
         if abs(move) < ONE_STEP:
-            _nudge(table, friction, state, c, s, move)
+            _advance_slightly(table, friction, state, c, s, move)
             return True, x, slope + move * (bend + 0.5 * move * third)
     return False, x, 0.0
 
 
 @kernel
-def _exit(table, friction, low, high, rise, ends, errors, done, start, now, state, scratch):
-    """Where y leaves [low, high] from scratch.next to `state`: (x, end, dy/dx); x = 2 if it does not.
+def _exit_range(table, friction, low, high, rise, ends, errors, done, start, now, state, scratch):
+    """Find where y leaves [low, high] between scratch.next and `state`.
 
-    So many arguments: this is the seldom part of `scan`, whose arguments they are.  rise : as there, of
-    the first step; ends : y at both ends; errors : bounds on its derivatives 2 to 4; now : the load's phase
-    at the start of this step.  If y leaves, `state` becomes that at x.
+    This is the rarely executed part of `scan`, and takes its arguments.
+
+    Parameters
+    ----------
+    table : (n + 1, COLUMNS) table of oscillators
+    friction : friction force on the oscillators
+    low, high : range of y
+    rise : as of `scan` in its first step; else STARTS_INSIDE
+    ends : y at both ends of the step
+    errors : bounds on the derivatives 2 to 4 of y
+    done : scan steps before this one
+    start, now : load phase (cos, sin) at the start of the scan and of this step
+    state : (2, n) state at the end of the step; replaced by the state at the exit
+    scratch : Scratch; scratch.next is the state at the start of the step
+
+    Returns
+    -------
+    (x, end, slope) : x = 2 if y does not leave the range; FELL, ROSE or AT_LIMIT; dy/dx
     """
     n = table.shape[0] - 1
     c, s = now
@@ -358,7 +434,7 @@ def _exit(table, friction, low, high, rise, ends, errors, done, start, now, stat
         _, dy1, _, _ = derivatives(table, friction, state, turn_c * c - turn_s * s, turn_c * s + turn_s * c)
         if _inside(y, dy, y1, dy1, low, high, fourth * (1.0 / 384.0)):
             return 2.0, AT_LIMIT, 0.0
-        # a slope that differs from the straight line by so little keeps its sign: there is one root
+        # the slope deviates too little from the straight line to change sign: there is one root
         falls = y > low and y1 <= low and max(dy, dy1) + 0.125 * third < 0.0
         rises = y < high and y1 >= high and min(dy, dy1) - 0.125 * third > 0.0
         if falls or rises:
@@ -367,11 +443,11 @@ def _exit(table, friction, low, high, rise, ends, errors, done, start, now, stat
             found, x, slope = _at_crossing(table, friction, level, x, done, start, now, state, scratch)
             if found:
                 return x, FELL if falls else ROSE, slope
-            _move(table, friction, scratch.next, c, s, 1.0, scratch.watched, state)
+            _state_inside(table, friction, scratch.next, c, s, 1.0, scratch.watched, state)
     terms = int(table[n, TERMS])
     expand(table, n, friction, scratch.next, c, s, table[n, H], terms, scratch.series)
     watch(table, c, s, scratch.series, scratch.watched)
-    x, end = _leaves(scratch.watched, scratch.below, terms, low, high, rise)
+    x, end = _first_exit(scratch.watched, scratch.below, terms, low, high, rise)
     if end == AT_LIMIT:
         return 2.0, end, 0.0
     advance(scratch.series, n, terms, x, state)
@@ -385,23 +461,24 @@ def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
 
     Parameters
     ----------
-    table, friction : the oscillators and the friction force on them
-    low, high : range of y; one may be infinite
-    rise : if >= 0, y starts at `low` exactly with this slope, and that root is not looked for; else ELSEWHERE
+    table, friction : the oscillators, (n + 1, COLUMNS), and the friction force on them
+    low, high : range of y; one end may be infinite
+    rise : if >= 0, y starts at `low` exactly with this slope, and that root is skipped; else STARTS_INSIDE
     state : (2, n) z and w; replaced by the state at the end
     c, s : cos(tau), sin(tau)
-    limit : steps allowed, a fraction included
+    limit : steps allowed, including a fraction
+    scratch : Scratch
 
     Returns
     -------
-    (steps, end, cos, sin, slope) : steps taken, one of AT_LIMIT, FELL, ROSE, FAILED, the load's phase, and
-        dy/dx where y leaves its range.  FAILED, too, where scratch.left has no more steps; those taken, and
-        one for the call, are taken off it.
+    (steps, end, cos, sin, slope) : steps taken; AT_LIMIT, FELL, ROSE or FAILED; the load phase; dy/dx where y
+        leaves its range.  FAILED also if scratch.left is used up; the steps taken, and one for the call, are
+        subtracted from it.
 
     Notes
     -----
-    A step is passed where y cannot come to an end of the range inside it: by the bound on y'', or by the
-    cubic through its ends and the bound on y''''.  Any other step is looked into (`_exit`).
+    A step is passed where y cannot reach an end of the range inside it: by the bound on y'', or by the cubic
+        through its ends and the bound on y''''.  Any other step is examined by `_exit_range`.
     """
     n = table.shape[0] - 1
     turn_c, turn_s, yc, ys = table[n, TURN_COS], table[n, TURN_SIN], table[n, YC], table[n, YS]
@@ -420,15 +497,15 @@ def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
         if not (sure and whole):
             x, end, slope = 2.0, AT_LIMIT, 0.0
             if not sure:
-                x, end, slope = _exit(
-                    table, friction, low, high, rise if done == 0.0 else ELSEWHERE, (y, y1),
+                x, end, slope = _exit_range(
+                    table, friction, low, high, rise if done == 0.0 else STARTS_INSIDE, (y, y1),
                     (second, third, fourth), done, start, (c, s), state, scratch,
                 )  # fmt: skip
-            rest = 1.0 if whole else limit - done
-            if x > rest and not whole:
-                x, end = rest, AT_LIMIT
-                _move(table, friction, scratch.next, c, s, x, scratch.watched, state)
-            if x <= rest:
+            remaining = 1.0 if whole else limit - done
+            if x > remaining and not whole:
+                x, end = remaining, AT_LIMIT
+                _state_inside(table, friction, scratch.next, c, s, x, scratch.watched, state)
+            if x <= remaining:
                 c, s = _turned(start[0], start[1], (done + x) * table[n, H])
                 scratch.left[0] = left - done - 1.0
                 return done + x, end, c, s, slope
@@ -442,8 +519,10 @@ def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
 
 
 @kernel
-def _leaves(watched, below, terms, low, high, rise):
-    """(x, end): where y first leaves [low, high] in the step whose series this is; x = 2 if it does not."""
+def _first_exit(watched, below, terms, low, high, rise):
+    """Return (x, end) where y first leaves [low, high] in the step of this Taylor series; x = 2 if it does
+    not.
+    """
     x = 2.0
     end = AT_LIMIT
     if low > -math.inf:

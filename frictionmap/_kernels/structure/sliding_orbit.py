@@ -1,4 +1,4 @@
-"""The continuous orbit of theory 2 for a structure, and how near to it nothing can stop."""
+"""Continuous orbit of a structure (theory.md 2), and the distance from it within which no motion can stop."""
 
 import math
 from typing import NamedTuple
@@ -13,7 +13,7 @@ from .state import DAMPING, LOAD, LOAD_RATE, PUSH, W, contact_load
 
 
 class Continuous(NamedTuple):
-    """Response functions at every r; arrays (n_r, n) of free oscillators, and (n_r,) of the contact."""
+    """Response functions at every r; arrays (n_r, n) of the free oscillators, and (n_r,) of the contact."""
 
     re: np.ndarray  # response to the load; of modes lambda_i/(w_i^2 - r^2 + 2 i zeta_i w_i r)
     im: np.ndarray
@@ -27,7 +27,17 @@ class Continuous(NamedTuple):
 
 @kernel
 def orbit_state(st, orbit, i, beta, phase, c, s, out):
-    """State (2, n) of the continuous orbit at the load's phase (c, s); `phase` is that of its maximum."""
+    """Compute the state of the continuous orbit at a load phase.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    orbit : Continuous; i : index of the frequency
+    beta : kinetic friction force
+    phase : load phase at the maximum of z
+    c, s : cosine and sine of the load phase
+    out : (2, n) filled with the state
+    """
     tau, sign = since_maximum(c, s, phase)
     cosine = math.cos(tau + phase)
     sine = math.sin(tau + phase)
@@ -47,10 +57,20 @@ def orbit_state(st, orbit, i, beta, phase, c, s, out):
 
 @kernel
 def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, before):
-    """A distance (energy norm) from the continuous orbit within which no motion can stop.
+    """Distance (energy norm) from the continuous orbit within which no motion can stop.
 
-    A stop at distance eps needs |z'| <= a eps and |load| <= mu beta + b eps of the orbit, by Cauchy and
-    Schwarz; the least max of both over half a period is bounded below from scan steps and curvature.
+    A stop at distance eps requires |z'| <= a eps and |load| <= mu beta + b eps on the orbit, by the
+    Cauchy-Schwarz inequality; the least maximum of both over half a period is bounded below from scan steps
+    and curvature.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    orbit : Continuous; i : index of the frequency
+    beta, mu_beta : kinetic and static friction force
+    phase : load phase at the maximum of z
+    loaded : (n + 1, COLUMNS) work array, table of `oscillators` whose watched sum is the contact load
+    state, before : (2, n) work arrays
     """
     c = -math.cos(phase)
     s = -math.sin(phase)
@@ -75,7 +95,7 @@ def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, before):
         speed1 += st.free[st.n, YC] * c + st.free[st.n, YS] * s
         load1 = contact_load(st, state, c, s)
         fast = fast_per * (min(speed, speed1) - 0.125 * curve)
-        # a load that changes its sign inside the step passes zero there
+        # a load that changes sign within the step is zero there
         least = min(abs(load), abs(load1)) if load * load1 > 0.0 else 0.0
         radius = min(radius, max(fast, (least - 0.125 * bend - mu_beta) / st.reach))
         curve += curve_growth

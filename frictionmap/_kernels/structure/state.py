@@ -1,13 +1,13 @@
-"""One structure at one frequency, ready to be followed: free and held oscillators, and the way between them.
+"""One structure at one frequency: free and held oscillators, and the conversion between their coordinates.
 
-While it slides, its state is that of the free oscillators, which are the modes unless the damping couples
-them; a stop leaves the contact where it is, and the rest moves as the held oscillators do, about the static
-shape that the contact's place gives it.  Both are in units of one scan step: row 0 the coordinates, row 1
-their change per step.  What depends on them is told by the coordinates and by p, their velocities in t =
-tau/r less the load's direct part.
+A sliding structure is described by the free oscillators, which are the modes unless the damping couples them.
+In a stop the contact keeps its displacement, and the rest moves as the held oscillators about the static
+shape that belongs to this displacement.  Both states are in units of one scan step: row 0 holds the
+coordinates, row 1 their change per step.  Outputs are linear in the coordinates and in the reduced velocities
+p: the velocities in t = tau/r less their direct feedthrough from the load.
 
-With a joined base-wall all displacements are taken relative to the base: then its contact is that with a
-fixed wall, under another load (`modes.relative_load`), and no kernel knows of a moving base.
+With a joined base-wall all displacements are relative to the base; its contact is then that with a fixed wall
+under another load (`modes.relative_load`), and no kernel handles a moving base.
 """
 
 import math
@@ -36,49 +36,49 @@ from .oscillators import (
     watch_load,
 )
 
-# Rows of the table of free oscillators: frequency, damping ratio, push of a force in the contact, static
-# shape; what the contact's load, its displacement z, and dz/dt have of the coordinate and of p; cos and sin
-# part of the load in the velocity.
+# Rows of the table of free oscillators: frequency, damping ratio, response to a contact force, static shape;
+# coefficients of the coordinate and of p in the contact load, in z, and in dz/dt; cos and sin of the
+# feedthrough of the load into the velocity.
 W, DAMPING, PUSH, STATIC_SHAPE, LOAD, LOAD_RATE, Z, Z_RATE, SPEED, SPEED_RATE = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
-DIRECT_COS, DIRECT_SIN = 10, 11
+FEEDTHROUGH_COS, FEEDTHROUGH_SIN = 10, 11
 MODE_ROWS = 12
 
-#: Load periods beyond which `held_period` does not look for a repetition.
+#: Largest number of load periods that `held_period` examines.
 _LONGEST_REPEAT = 256
 
 
-class Structure(NamedTuple):
-    """Everything here depends on (system, r, steps) only."""
+class StructureAtFrequency(NamedTuple):
+    """Structure at one frequency; all fields depend on (system, r, steps) only."""
 
-    n: int  # free oscillators that the contact sees
+    n: int  # participating free oscillators
     m: int  # held oscillators, n - 1
     r: float
     h: float  # scan step in tau
-    rate: float  # r/h: velocities in t per change in a step
+    rate: float  # r/h: velocity in t per change in one step
     terms: int
     inverse_mass: float  # 1/m_eff
     stiffness: float  # static stiffness at the contact
-    reach: float  # most of the load in the contact that a motion of unit energy has
-    norm: float  # energy over that of the free oscillators, at most; 1 of modes
-    free_cos: float  # the load in the contact while it slides, less the oscillators' part
+    reach: float  # largest load in the contact of a motion of unit energy
+    norm: float  # upper bound on the energy norm over that of the free oscillators; 1 for modes
+    free_cos: float  # load in the contact while it slides, without the oscillators' part
     free_sin: float
-    place_cos: float  # the same of z
-    place_sin: float
+    displacement_cos: float  # z without the oscillators' part
+    displacement_sin: float
     modes: np.ndarray  # (MODE_ROWS, n)
     free: np.ndarray  # (n + 1, COLUMNS) tables of `oscillators`
     held: np.ndarray  # (m + 1, COLUMNS)
-    direct: np.ndarray  # (2, m) cos and sin part of the load in y' of the held oscillators
+    held_feedthrough: np.ndarray  # (2, m) cos and sin of the feedthrough of the load into y'
     to_free: np.ndarray  # (2n, 2m), see `held.HeldStructure`
     to_held: np.ndarray  # (2m, 2n)
 
 
 class Model(NamedTuple):
-    """A system in numbers; nothing here depends on r."""
+    """Numerical model of a system; no field depends on r."""
 
-    modes: np.ndarray  # those of `Structure`, but for the load's part
+    modes: np.ndarray  # as of `StructureAtFrequency`, with the feedthrough rows empty
     omega: np.ndarray  # (m,) held oscillators
     ratio: np.ndarray
-    watch: np.ndarray  # (2m,) the load in the contact of (y, p)
+    watch: np.ndarray  # (2m,) coefficients of (y, p) in the load in the contact
     to_free: np.ndarray
     to_held: np.ndarray
     inverse_mass: float
@@ -88,23 +88,23 @@ class Model(NamedTuple):
 
 
 class Loads(NamedTuple):
-    """The load at every r; arrays (n_r, n), (n_r, m) and (n_r,)."""
+    """Load at every r; arrays (n_r, n), (n_r, m) and (n_r,)."""
 
     free_cos: np.ndarray  # (n_r, n) load on the free oscillators
     free_sin: np.ndarray
-    free_direct_cos: np.ndarray  # (n_r, n)
-    free_direct_sin: np.ndarray
+    free_feedthrough_cos: np.ndarray  # (n_r, n)
+    free_feedthrough_sin: np.ndarray
     held_cos: np.ndarray  # (n_r, m) load on the held oscillators
     held_sin: np.ndarray
-    direct_cos: np.ndarray  # (n_r, m)
-    direct_sin: np.ndarray
-    contact_cos: np.ndarray  # (n_r,) load on the contact's mass alone
+    held_feedthrough_cos: np.ndarray  # (n_r, m)
+    held_feedthrough_sin: np.ndarray
+    contact_cos: np.ndarray  # (n_r,) load acting directly on the contact
     contact_sin: np.ndarray
 
 
 @kernel
 def _fill_free(loads, i, scale, modes, free):
-    """The free oscillators, and the load's part of their velocities."""
+    """Fill the table of the free oscillators, and the feedthrough of the load into their velocities."""
     square = scale * scale
     for j in range(modes.shape[1]):
         w = modes[W, j]
@@ -118,13 +118,15 @@ def _fill_free(loads, i, scale, modes, free):
         free[j, OW] = modes[SPEED_RATE, j]
         free[j, OMEGA] = w
         free[j, ZETA] = zeta
-        modes[DIRECT_COS, j] = loads.free_direct_cos[i, j]
-        modes[DIRECT_SIN, j] = loads.free_direct_sin[i, j]
+        modes[FEEDTHROUGH_COS, j] = loads.free_feedthrough_cos[i, j]
+        modes[FEEDTHROUGH_SIN, j] = loads.free_feedthrough_sin[i, j]
 
 
 @kernel
-def _fill_held(model, loads, i, scale, held, direct):
-    """The held oscillators; returns cos and sin part of the load in the contact, less theirs."""
+def _fill_held(model, loads, i, scale, held, feedthrough):
+    """Fill the table of the held oscillators; return cos and sin of the load in the contact without their
+    part.
+    """
     m = model.omega.size
     square = scale * scale
     contact_cos = -loads.contact_cos[i]
@@ -139,26 +141,28 @@ def _fill_held(model, loads, i, scale, held, direct):
         held[j, OW] = model.watch[m + j] / scale
         held[j, OMEGA] = omega
         held[j, ZETA] = model.ratio[j]
-        direct[0, j] = loads.direct_cos[i, j]
-        direct[1, j] = loads.direct_sin[i, j]
-        contact_cos -= model.watch[m + j] * direct[0, j]
-        contact_sin -= model.watch[m + j] * direct[1, j]
+        feedthrough[0, j] = loads.held_feedthrough_cos[i, j]
+        feedthrough[1, j] = loads.held_feedthrough_sin[i, j]
+        contact_cos -= model.watch[m + j] * feedthrough[0, j]
+        contact_sin -= model.watch[m + j] * feedthrough[1, j]
     return contact_cos, contact_sin
 
 
 @kernel
-def _less_direct(modes, row):
-    """cos and sin part of what a row of p has less than of the velocities."""
+def _feedthrough(modes, row):
+    """Direct-feedthrough terms, cos and sin, of a velocity row."""
     cosine, sine = 0.0, 0.0
     for j in range(modes.shape[1]):
-        cosine -= modes[row, j] * modes[DIRECT_COS, j]
-        sine -= modes[row, j] * modes[DIRECT_SIN, j]
+        cosine -= modes[row, j] * modes[FEEDTHROUGH_COS, j]
+        sine -= modes[row, j] * modes[FEEDTHROUGH_SIN, j]
     return cosine, sine
 
 
 @entry
 def make_structure(model, loads, i, r, steps):
-    """The `Structure` at the i-th frequency, r > 0, for `steps` scan steps per period of the fastest part."""
+    """Build the structure at the i-th frequency, r > 0, for `steps` scan steps per period of the fastest
+    part.
+    """
     n = model.modes.shape[1]
     m = model.omega.size
     fastest = 0.0
@@ -173,26 +177,26 @@ def make_structure(model, loads, i, r, steps):
     modes = model.modes.copy()
     _fill_free(loads, i, scale, modes, free)
     fill_steps(free, h, terms)
-    speed_cos, speed_sin = _less_direct(modes, SPEED_RATE)
+    speed_cos, speed_sin = _feedthrough(modes, SPEED_RATE)
     watch_load(free, speed_cos * scale, speed_sin * scale)
     held = np.zeros((m + 1, COLUMNS))
-    direct = np.empty((2, m))
-    held_cos, held_sin = _fill_held(model, loads, i, scale, held, direct)
+    feedthrough = np.empty((2, m))
+    held_cos, held_sin = _fill_held(model, loads, i, scale, held, feedthrough)
     fill_steps(held, h, terms)
     watch_load(held, held_cos, held_sin)
-    load_cos, load_sin = _less_direct(modes, LOAD_RATE)
-    place_cos, place_sin = _less_direct(modes, Z_RATE)
-    return Structure(
+    load_cos, load_sin = _feedthrough(modes, LOAD_RATE)
+    displacement_cos, displacement_sin = _feedthrough(modes, Z_RATE)
+    return StructureAtFrequency(
         n, m, r, h, r / h, terms, model.inverse_mass, model.stiffness, model.reach, model.norm,
-        load_cos - loads.contact_cos[i], load_sin - loads.contact_sin[i], place_cos, place_sin, modes, free,
-        held, direct, model.to_free, model.to_held,
+        load_cos - loads.contact_cos[i], load_sin - loads.contact_sin[i], displacement_cos, displacement_sin,
+        modes, free, held, feedthrough, model.to_free, model.to_held,
     )  # fmt: skip
 
 
 @kernel
-def place(st, state, c, s):
-    """z of a free state."""
-    total = st.place_cos * c + st.place_sin * s
+def contact_displacement(st, state, c, s):
+    """Contact displacement z of a free state."""
+    total = st.displacement_cos * c + st.displacement_sin * s
     rate = 0.0
     for i in range(st.n):
         total += st.modes[Z, i] * state[0, i]
@@ -202,7 +206,7 @@ def place(st, state, c, s):
 
 @kernel
 def contact_load(st, state, c, s):
-    """The load in the contact while it slides, theory.md 5."""
+    """Load in the contact while it slides, theory.md 5."""
     total = st.free_cos * c + st.free_sin * s
     for i in range(st.n):
         total += st.modes[LOAD, i] * state[0, i] + st.modes[LOAD_RATE, i] * (st.rate * state[1, i])
@@ -211,42 +215,44 @@ def contact_load(st, state, c, s):
 
 @kernel
 def held_load(st, held, z, c, s):
-    """The load in the contact while it is held at z."""
+    """Load in the contact while it is held at z."""
     return value(st.held, held, c, s) + st.stiffness * z
 
 
 @kernel
 def hold(st, state, z, c, s, held):
-    """The held state that a free state with z' = 0 is."""
+    """Convert free-mode coordinates to held-mode coordinates (requires z' = 0)."""
     n, m, modes = st.n, st.m, st.modes
     for k in range(m):
         held[0, k] = 0.0
         held[1, k] = 0.0
     for i in range(n):
         u = state[0, i] - modes[STATIC_SHAPE, i] * z
-        v = st.rate * state[1, i] - (modes[DIRECT_COS, i] * c + modes[DIRECT_SIN, i] * s)
+        v = st.rate * state[1, i] - (modes[FEEDTHROUGH_COS, i] * c + modes[FEEDTHROUGH_SIN, i] * s)
         for k in range(m):
             held[0, k] += st.to_held[k, i] * u + st.to_held[k, n + i] * v
             held[1, k] += st.to_held[m + k, i] * u + st.to_held[m + k, n + i] * v
     for k in range(m):
-        held[1, k] = (held[1, k] + st.direct[0, k] * c + st.direct[1, k] * s) / st.rate
+        held[1, k] = (held[1, k] + st.held_feedthrough[0, k] * c + st.held_feedthrough[1, k] * s) / st.rate
 
 
 @kernel
 def release(st, held, z, c, s, state):
-    """The free state that a held state is."""
+    """Convert held-mode coordinates to free-mode coordinates."""
     n, m, modes = st.n, st.m, st.modes
     for i in range(n):
         state[0, i] = modes[STATIC_SHAPE, i] * z
         state[1, i] = 0.0
     for k in range(m):
         y = held[0, k]
-        p = st.rate * held[1, k] - st.direct[0, k] * c - st.direct[1, k] * s
+        p = st.rate * held[1, k] - st.held_feedthrough[0, k] * c - st.held_feedthrough[1, k] * s
         for i in range(n):
             state[0, i] += st.to_free[i, k] * y + st.to_free[i, m + k] * p
             state[1, i] += st.to_free[n + i, k] * y + st.to_free[n + i, m + k] * p
     for i in range(n):
-        state[1, i] = (state[1, i] + (modes[DIRECT_COS, i] * c + modes[DIRECT_SIN, i] * s)) / st.rate
+        state[1, i] = (
+            state[1, i] + (modes[FEEDTHROUGH_COS, i] * c + modes[FEEDTHROUGH_SIN, i] * s)
+        ) / st.rate
 
 
 @kernel
@@ -259,10 +265,10 @@ def mirror(st, state):
 
 @kernel
 def energy(st, state):
-    """The energy norm of theory.md 6 of a free state, or of a difference of two, or what is above it.
+    """Energy norm of theory.md 6 of a free state or of a difference of two, or an upper bound on it.
 
-    sqrt(sum w_i^2 q_i^2 + q_i'^2) of modes, the derivative in t.  Where the damping couples them that is
-    taken so many times that it is no less than the energy, which does not grow.
+    It is sqrt(sum w_i^2 q_i^2 + q_i'^2) over the modes, with derivatives in t.  Where the damping couples the
+    modes it is multiplied by a factor that makes it an upper bound on the energy norm, which never grows.
     """
     total = 0.0
     for i in range(st.n):
@@ -272,15 +278,19 @@ def energy(st, state):
 
 @kernel
 def _in_step(table, k, h):
-    """Whether an undamped oscillator that the load does not drive vibrates in step with the load for good."""
+    """Whether an undamped oscillator without load vibrates at the excitation frequency, and thus never
+    decays.
+    """
     still = table[k, D] == 0.0 and table[k, FC] == 0.0 and table[k, FS] == 0.0
-    # its frequency differs from r by no more than the rounding of either
+    # its frequency equals r to rounding
     return still and abs(table[k, K] - h * h) <= 1e-15 * h * h
 
 
 @kernel
 def vibrates_in_step(st):
-    """Whether a held oscillator does: then the load in a stop depends on the start for good."""
+    """Whether a held oscillator vibrates at the excitation frequency undamped: the load in a stop then
+    depends on the initial state.
+    """
     found = False
     for k in range(st.m):
         found = found or _in_step(st.held, k, st.h)
@@ -289,10 +299,10 @@ def vibrates_in_step(st):
 
 @kernel
 def held_period(st):
-    """Load periods after which the load and all the held oscillators repeat; infinite if they do not.
+    """Load periods after which the load and all held oscillators repeat; infinite if they do not.
 
-    Then a load that has not let go of the contact within them never will, though `largest_load_to_come`,
-    which adds up the oscillators as if they met sooner or later, cannot tell.
+    A load that has not released the contact within this time never will.  `largest_load_to_come` cannot show
+    this, because it adds the amplitudes of the oscillators as if their maxima coincided.
     """
     for k in range(st.m):
         if st.held[k, D] != 0.0 or math.isinf(_steady(st.held, k, st.h)[0]):
@@ -301,7 +311,7 @@ def held_period(st):
         repeats = True
         for k in range(st.m):
             turns = periods * math.sqrt(st.held[k, K]) / st.h
-            # what it differs from a whole number by no more than the rounding of either frequency
+            # an integer, to the rounding of both frequencies
             repeats = repeats and abs(turns - math.floor(turns + 0.5)) <= 1e-15 * turns
         if repeats:
             return float(periods)
@@ -310,7 +320,7 @@ def held_period(st):
 
 @kernel
 def _steady(table, k, h):
-    """Phasor a of the steady answer Re(a e^{i tau}) of an oscillator; infinite at an undamped resonance."""
+    """Phasor a of the steady response Re(a e^{i tau}) of an oscillator; infinite at an undamped resonance."""
     f_re, f_im = table[k, FC], -table[k, FS]
     if f_re == 0.0 and f_im == 0.0:
         return 0.0, 0.0
@@ -324,13 +334,13 @@ def _steady(table, k, h):
 
 @kernel
 def largest_load_to_come(st, held, z, c, s):
-    """A bound on the load in the contact for as long as it stays held; infinite at an undamped resonance."""
+    """Upper bound on the load in the contact as long as it is held; infinite at an undamped resonance."""
     y_re, y_im = st.held[st.m, YC], -st.held[st.m, YS]
     free = 0.0
     h = st.h
     table = st.held
     for k in range(st.m):
-        # the steady answer of the oscillator, and what of the motion is not it
+        # the steady response of the oscillator, and the remaining free motion
         a_re, a_im = _steady(table, k, h)
         if math.isinf(a_re):
             return math.inf
@@ -349,9 +359,9 @@ def largest_load_to_come(st, held, z, c, s):
 
 @kernel
 def release_steady(st, mu_beta, held, state):
-    """Where the contact, held at z = 0 in the steady motion of the rest, is let go upwards.
+    """Find the upward release of the contact from the steady response of the structure held at z = 0.
 
-    Returns (whether it is, cos, sin of the load's phase); `state` becomes the free state there.
+    Returns (whether it is released, cos, sin of the load phase); `state` becomes the free state there.
     """
     h = st.h
     table = st.held

@@ -1,4 +1,4 @@
-"""Sliding distance and the work of the dampers in a steady state, from its table of phases."""
+"""Sliding distance, and work of the dampers, of a steady state."""
 
 import math
 from typing import NamedTuple
@@ -7,42 +7,52 @@ import numpy as np
 
 from ..compiler import kernel
 from ..structure.oscillators import advance, expand
-from ..structure.state import DIRECT_COS, DIRECT_SIN, place
-from .phase_table import COS, LENGTH, SENSE, SIN, Z_END, take_start
+from ..structure.state import FEEDTHROUGH_COS, FEEDTHROUGH_SIN, contact_displacement
+from .segment_table import COS, LENGTH, SENSE, SIN, Z_END, take_start
 
 
 @kernel
 def sliding_distance(st, table, work):
-    """The way that the contact slides in a table of phases."""
+    """Distance that the contact slides in the segments of a table."""
     total = 0.0
     for k in range(table.shape[0]):
         if table[k, SENSE] > 0.0:
             _, _, state = take_start(st, table[k], work)
-            total += abs(table[k, Z_END] - place(st, state, table[k, COS], table[k, SIN]))
+            total += abs(table[k, Z_END] - contact_displacement(st, state, table[k, COS], table[k, SIN]))
     return total
 
 
 class Dampers(NamedTuple):
-    """Damping as k dashpots that the motion of what the contact sees works on; velocities in t = tau/r."""
+    """Damping of the participating modes as k dashpots; velocities in t = tau/r."""
 
-    weights: np.ndarray  # (k,) work rate over the square of the velocity
-    place: np.ndarray  # (k, 2n) displacements of the free oscillators (q, p)
-    free: np.ndarray  # (k, 2n) their velocities
-    held: np.ndarray  # (k, 2m) those of the held oscillators
-    base: np.ndarray  # (k,) share of the base's motion in what they see
+    weights: np.ndarray  # (k,) power over velocity squared
+    displacement: np.ndarray  # (k, 2n) rows map the free oscillators (q, p) to dashpot displacements
+    free: np.ndarray  # (k, 2n) rows map them to dashpot velocities
+    held: np.ndarray  # (k, 2m) rows map the held oscillators to dashpot velocities
+    base: np.ndarray  # (k,) share of the base motion in each dashpot's displacement
 
 
 @kernel
 def _speed(st, dampers, slides, i, c, s, series, out):
-    """Coefficients over a scan step of the i-th dashpot's velocity in tau."""
+    """Compute the Taylor coefficients of the i-th dashpot's velocity in tau over a scan step.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    dampers : Dampers; i : index of the dashpot
+    slides : whether the segment is a slide
+    c, s : cosine and sine of the load phase at the start of the step
+    series : (terms + 1, n) Taylor coefficients of the oscillators
+    out : (terms,) filled with the coefficients
+    """
     n, m = st.n, st.m
     rows = dampers.free if slides else dampers.held
     count = n if slides else m
     yc, ys = 0.0, -dampers.base[i]
     for k in range(count):
         rate = rows[i, count + k]
-        yc -= rate * (st.modes[DIRECT_COS, k] if slides else st.direct[0, k]) / st.r
-        ys -= rate * (st.modes[DIRECT_SIN, k] if slides else st.direct[1, k]) / st.r
+        yc -= rate * (st.modes[FEEDTHROUGH_COS, k] if slides else st.held_feedthrough[0, k]) / st.r
+        ys -= rate * (st.modes[FEEDTHROUGH_SIN, k] if slides else st.held_feedthrough[1, k]) / st.r
     c_j, s_j = c, s
     c_next, s_next = -s * st.h, c * st.h
     for j in range(st.terms):
@@ -51,16 +61,16 @@ def _speed(st, dampers, slides, i, c, s, series, out):
         c_j, c_next = c_next, fall * c_j
         s_j, s_next = s_next, fall * s_j
     for k in range(count):
-        place, rate = rows[i, k], rows[i, count + k]
-        if place != 0.0 or rate != 0.0:
+        share, rate = rows[i, k], rows[i, count + k]
+        if share != 0.0 or rate != 0.0:
             for j in range(st.terms):
-                out[j] += place * series[j, k] / st.r
+                out[j] += share * series[j, k] / st.r
                 out[j] += rate * ((j + 1.0) * series[j + 1, k] / st.h)
 
 
 @kernel
 def integral_of_square(p, terms, last):
-    """int p^2 over [0, last] of a polynomial."""
+    """Integral of the square of a polynomial over [0, last]."""
     total, power = 0.0, last
     for j in range(2 * terms - 1):
         pairs = 0.0
@@ -73,9 +83,9 @@ def integral_of_square(p, terms, last):
 
 @kernel
 def viscous_work(st, beta, dampers, table, work, scratch):
-    """The work of the dampers of what the contact sees, sum of weight r int speed^2 over the table.
+    """Work of the dampers of the participating modes: the sum of weight r int velocity^2 dtau over the table.
 
-    Integrated along the motion, so that the balance of works is a test of it.
+    It is integrated along the motion, independently of the energy balance, which can therefore check it.
     """
     total = 0.0
     for k in range(table.shape[0]):

@@ -1,0 +1,55 @@
+"""Recurrence detection."""
+
+import math
+
+from ..compiler import kernel
+from .memory import TIME, Recurrence, could_recur, halves_between
+from .motion import motion_size, recurrence_distance
+
+#: Largest number of candidates compared: symmetric motions need one or a few, subharmonic ones more.
+_MOST_RECURRENCES = 64
+
+#: Longest recurrence [half periods of the excitation].
+_LONGEST_RECURRENCE = 16
+
+
+@kernel
+def find_recurrence(motion, contact_state, events, any_will_do, shortest):
+    """Find the earlier anchor that the present one nearly equals, as a `Recurrence`.
+
+    The shortest recurrence wins unless a longer one is at least four times closer: a subharmonic motion may
+    be nearly symmetric.
+
+    Parameters
+    ----------
+    motion : a kind of motion, see `motion`
+    contact_state : ContactState at the present anchor
+    events : number of anchors so far
+    any_will_do : True accepts any distance, because the steady state is unique
+    shortest : True stops the search at the first recurrence
+    """
+    memory = motion.memory
+    length = memory.events.size
+    now = (events - 1) % length
+    size = motion_size(motion, contact_state)
+    best = Recurrence(0, math.inf, 0)
+    threshold = math.inf if any_will_do else motion.recurrence_threshold
+    returns = 0
+    for lag in range(1, min(events, length)):
+        then = (events - 1 - lag) % length
+        if memory.anchors[now, TIME] - memory.anchors[then, TIME] > (_LONGEST_RECURRENCE + 0.5) * math.pi:
+            break
+        if memory.events[then] != memory.events[now]:
+            continue
+        halves = halves_between(memory, now, then)
+        if not could_recur(halves):
+            continue
+        distance = recurrence_distance(motion, now, then, size)
+        if distance < math.inf:
+            returns += 1
+            if distance <= threshold:
+                best = Recurrence(lag, distance, halves)
+                threshold = 0.25 * distance
+        if (shortest and best.lag > 0) or returns == _MOST_RECURRENCES:
+            break
+    return best

@@ -4,7 +4,16 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from .turning_points import TurningPoints, grows, noise_level, resolution, turning_points, undersampled
+from .turning_points import (
+    TurningPoints,
+    grows,
+    noise_level,
+    regular_run,
+    resolution,
+    turning_points,
+    undersampled,
+    without_spikes,
+)
 
 #: Samples in a row at an extreme value are clipped if the next one is far from it: by so many steps of the
 #: resolution, of which a smooth turning point makes few.
@@ -14,6 +23,9 @@ _CLIPPED_STEPS = 4.0
 #: Residuals so many times as large as the noise between samples, and beyond this share of the motion, are not
 #: those of a free decay.  Higher harmonics, and friction that is not constant, leave far less of a real one.
 _MISFIT, _MISFIT_SHARE = 10.0, 0.1
+
+#: Spikes make turning points that are not half a period apart; noise and a mass that is held make few.
+_REGULAR = 0.5
 
 #: A gap is longer than so many usual steps.
 _GAP = 3.0
@@ -84,7 +96,7 @@ def checked_turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
         raise InputError(f"x must move; there is no motion above its own resolution ({resolution(x):g})")
     if wrong := undersampled(x):
         raise InputError(f"time must have more samples: {wrong}")
-    points = turning_points(time, x)
+    points = _turning_points(time, x)
     if points.time.size < 2:  # the last extremum is where it rests, or where the record ends
         gap = largest_gap(time)
         outside = f" outside a gap of {gap:.4g} s" if gap else ""
@@ -98,6 +110,21 @@ def checked_turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
             f"{abs(points.place[1] - points.place[0]):.4g} to {abs(points.place[-1] - points.place[-2]):.4g})"
         )
     return points
+
+
+def _turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
+    """Turning points; if many are spikes, those of the record without spikes."""
+    points = turning_points(time, x)
+    if points.time.size < 2 or _share_regular(points) > _REGULAR:
+        return points
+    calm = turning_points(time, without_spikes(x))
+    return calm if calm.time.size > 1 and _share_regular(calm) > _share_regular(points) else points
+
+
+def _share_regular(points: TurningPoints) -> float:
+    """The share of turning points in the longest run of those half a period apart."""
+    run = regular_run(points)
+    return (run.stop - run.start) / points.time.size
 
 
 def check_misfit(x: np.ndarray, rms: float) -> None:

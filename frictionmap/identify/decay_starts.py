@@ -10,7 +10,7 @@ import numpy as np
 
 from .decay_motion import PARAMETERS, Decay, in_record, is_possible
 from .decay_problem import X_F, Record, model, problem
-from .turning_points import TurningPoints, hides_turning_points
+from .turning_points import TurningPoints, hides_turning_points, regular_run
 
 #: Damping ratios from which the search starts.
 _DAMPINGS = (0.0, 0.01, 0.03, 0.1, 0.2, 0.35, 0.6)
@@ -82,12 +82,12 @@ def _alike(one: Start, other: Start, half: float) -> bool:
 
 
 def _half_period(points: TurningPoints) -> float:
-    """Half a period [s], by a line through the times of all turning points."""
-    steps = np.diff(points.time) / np.diff(points.number)
-    usual = float(np.median(steps))
-    if steps.min() < 0.5 * usual:  # noise, not a turning point
-        return usual
-    return float(np.polyfit(points.number, points.time, 1)[0])
+    """Half a period [s], by a line through the times of turning points that follow each other regularly."""
+    run = regular_run(points)
+    number, time = points.number[run], points.time[run]
+    if number.size < 2:
+        return float(np.median(np.diff(points.time) / np.diff(points.number)))
+    return float(np.polyfit(number, time, 1)[0])
 
 
 def _releases(time: np.ndarray, points: TurningPoints, half: float) -> list[_Release]:

@@ -62,22 +62,23 @@ def turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
     swing = max(noise, _SHARE * float(np.ptp(x)))
     found = np.array(turns(x, swing), dtype=int)
     if found.size < 2:
-        return _located(time, x, found, np.zeros(found.size, dtype=bool), np.inf)
+        return _located(time, x, found, np.zeros(found.size, dtype=bool), np.zeros(0, dtype=bool), np.inf)
     upper = x[found] > x[np.roll(found, 1)]  # maxima and minima follow in turn
     upper[0] = not upper[1]
     half = _usual_half(time, found)
     gaps = gaps_after(time, _BRIDGED * half)
     # beside a long gap an extreme sample is where the record breaks off, not where the motion turns back
     kept = ~_spanned(found - _BESIDE, found + _BESIDE, gaps)
-    return _located(time, x, found[kept], upper[kept], half)
+    found, upper = found[kept], upper[kept]
+    return _located(time, x, found, upper, _spanned(found[:-1], found[1:], gaps), half)
 
 
 def _located(
-    time: np.ndarray, x: np.ndarray, found: np.ndarray, upper: np.ndarray, half: float
+    time: np.ndarray, x: np.ndarray, found: np.ndarray, upper: np.ndarray, gaps: np.ndarray, half: float
 ) -> TurningPoints:
-    """Turning points at some samples, refined and numbered."""
+    """Turning points at some samples, refined and numbered; `gaps`: whether there is one before the next."""
     refined = np.array([_vertex(time, x, index) for index in found]).reshape(-1, 2)
-    return TurningPoints(refined[:, 0], refined[:, 1], upper, _numbered(refined[:, 0], upper, half))
+    return TurningPoints(refined[:, 0], refined[:, 1], upper, _numbered(refined[:, 0], upper, gaps, half))
 
 
 def gaps_after(time: np.ndarray, least: float = 0.0) -> np.ndarray:
@@ -103,11 +104,21 @@ def _usual_half(time: np.ndarray, found: np.ndarray) -> float:
     return float(np.median(steps if spanned.all() else steps[~spanned]))
 
 
-def _numbered(times: np.ndarray, upper: np.ndarray, half: float) -> np.ndarray:
-    """Half cycles since the first turning point: odd from a maximum to a minimum, even between two alike."""
+def _numbered(times: np.ndarray, upper: np.ndarray, gaps: np.ndarray, half: float) -> np.ndarray:
+    """Half cycles since the first turning point: across a gap odd from a maximum to a minimum, else even."""
     odd = (upper[1:] != upper[:-1]).astype(int)
     steps = 2 * np.rint((np.diff(times) / half - odd) / 2.0).astype(int) + odd
-    return np.concatenate(([0], np.cumsum(np.maximum(steps, 2 - odd))))[: times.size]
+    return np.concatenate(([0], np.cumsum(np.where(gaps, np.maximum(steps, 2 - odd), 1))))[: times.size]
+
+
+def regular_run(points: TurningPoints) -> slice:
+    """The longest run of turning points half a period apart: none of them is noise, or a spike."""
+    steps = np.diff(points.time) / np.diff(points.number)
+    usual = float(np.median(steps))
+    edges = np.flatnonzero(np.abs(steps - usual) >= 0.5 * usual)
+    begins, ends = np.concatenate(([0], edges + 1)), np.concatenate((edges, [steps.size]))
+    longest = int(np.argmax(ends - begins))
+    return slice(int(begins[longest]), int(ends[longest]) + 1)
 
 
 def samples_a_cycle(x: np.ndarray) -> float:

@@ -12,19 +12,19 @@ from ..errors import InputError
 from ..model.system import System
 from ..units.table import checked_unit, conversion
 from .decay_checks import checked_record, largest_gap, unclipped, within
-from .estimates import estimates, number, verdict
+from .estimates import estimates, number, usable_errors, verdict
 from .least_squares import Errors
-from .phasors import Phasors, amplitude_and_lag, changes, phasors_of, ratio_error
+from .phasors import Phasors, amplitude_and_lag, changes, harmonics_of, ratio_error
+from .plateaus import unclipped_mass
 from .record_errors import DERIVED, derived_values, record_errors
-from .record_fit import Fit, fit_record, places_at
+from .record_fit import FITTED, IDLE, ONE, Fit, fit_record, places_at, samples_of
 from .record_motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
+from .record_verdict import CORRELATED, record_verdict
+from .robust import LOSSES
 from .turning_points import resolution
 
 #: Estimates so many standard errors above zero are found, and drifts so many are no chance.
 _FOUND = 3.0
-
-#: Beyond this two estimates cannot well be told apart.
-_CORRELATED = 0.95
 
 #: Harmonics of the base beyond this share of the first one are much.
 _DISTORTED = 0.05
@@ -41,11 +41,9 @@ _LEAD = 1.0
 #: A first harmonic of the mass below so many standard errors is no motion.
 _MOVES = 5.0
 
-_VERDICTS = {
-    "no_friction_found": "no friction found",
-    "continuous": "friction found, and the mass never sticks: mu cannot be told beyond its interval",
-    "stick_slip": "friction found, and the mass sticks and slips",
-}
+_MODEL_ERROR = (
+    "what the fit leaves at the harmonics of the base, over the noise beside them; 1 if chance makes it"
+)
 
 _MEANINGS = {
     "f_n": "natural frequency without friction and damping",
@@ -71,6 +69,7 @@ def record(
     known: Mapping[str, float] | None = None,
     stiffness: float | None = None,
     window: object = None,
+    loss: str = "linear",
 ) -> xr.Dataset:
     """Fit the exact steady motion of one mass with friction, under the measured base, to all samples.
 
@@ -117,6 +116,7 @@ def record(
     checked_unit(unit, "length", "unit")
     checks.choice(contact, "contact", CONTACTS)
     checks.choice(damping_reference, "damping_reference", DAMPING_REFERENCES)
+    checks.choice(loss, "loss", LOSSES)
     held = checked_known(known or {})
     times, places = checked_record(time, x)
     shakes = checked_record(times, base, "base")[1]
@@ -124,16 +124,18 @@ def record(
     times, channels = times[inside], np.column_stack((shakes, places))[inside]
     whole = unclipped(channels[:, 0])
     t, data = times[whole], channels[whole]
-    good = unclipped(data[:, 1])
-    phasors = _checked_phasors(t, data)
-    used = np.column_stack((t, data[:, 1]))[good]
-    fit = fit_record(contact, damping_reference, phasors, used, held)
+    good = unclipped_mass(t, data[:, 1])
+    robust = loss == "soft_l1"
+    phasors, tamed = _checked_phasors(t, data, robust)
+    samples = samples_of(phasors, t, data[:, 1], tamed[:, 1], good, robust)
+    fit = fit_record(contact, damping_reference, phasors, samples, held)
     if not good.all():
-        data = np.column_stack((data[:, 0], np.where(good, data[:, 1], places_at(fit, phasors, t))))
-        phasors = phasors_of(t, data)
+        whole_motion = places_at(fit, phasors, t) + fit.slow_at(samples.everywhere)
+        data = np.column_stack((data[:, 0], np.where(good, data[:, 1], whole_motion)))
+        phasors = harmonics_of(t, data, robust)[0]
     found = record_errors(fit, phasors, t, good)
-    ds = _dataset(fit, phasors, found, used[:, 1], unit)
-    ds["time"] = xr.Variable("sample", used[:, 0], {"long_name": "time", "units": "s"})
+    ds = _dataset(fit, phasors, found, unit)
+    ds["time"] = xr.Variable("sample", samples.time, {"long_name": "time", "units": "s"})
     ds["base"] = xr.Variable("sample", data[good, 0], {"long_name": "base, measured", "units": unit})
     ds = ds.assign(_of_record(t, data, phasors, unit)).assign(_of_motion(fit, found, unit, stiffness))
     ds.attrs["title"] = "Record of steady motion"
@@ -166,15 +168,15 @@ def checked_known(known: Mapping[str, float]) -> dict[str, float]:
     return result
 
 
-def _checked_phasors(time: np.ndarray, channels: np.ndarray) -> Phasors:
-    """Harmonics of a base and of a mass that move."""
+def _checked_phasors(time: np.ndarray, channels: np.ndarray, robust: bool) -> tuple[Phasors, np.ndarray]:
+    """Harmonics of a base and of a mass that move, and the channels without outliers."""
     for name, places in zip(("base", "x"), channels.T, strict=True):
         if float(np.ptp(places)) <= 2.0 * resolution(places):
             raise InputError(
                 f"{name} must move; there is no motion above its own resolution ({resolution(places):g})"
             )
-    phasors = phasors_of(time, channels)
-    ideal = phasors.inflation[0] * phasors.rms[0] * np.sqrt(2.0 / time.size)
+    phasors, tamed = harmonics_of(time, channels, robust)
+    ideal = phasors.inflation[0, 1] * phasors.rms[0] * np.sqrt(2.0 / time.size)
     if phasors.errors[0, 1] > _WORSE * ideal:
         raise InputError(
             "time must reach all phases of the cycle: harmonics of the base cannot be told where there are "
@@ -189,7 +191,7 @@ def _checked_phasors(time: np.ndarray, channels: np.ndarray) -> Phasors:
                 "nothing of its motion)"
             )
     _check_lag(phasors)
-    return phasors
+    return phasors, tamed
 
 
 def _check_lag(phasors: Phasors) -> None:
@@ -202,25 +204,25 @@ def _check_lag(phasors: Phasors) -> None:
         )
 
 
-def _dataset(fit: Fit, phasors: Phasors, found: Errors, x: np.ndarray, unit: str) -> xr.Dataset:
+def _dataset(fit: Fit, phasors: Phasors, found: Errors, unit: str) -> xr.Dataset:
     """The estimates, residuals as they are measured."""
-    at_bound = fit.solution.at_bound.copy()
-    at_bound[MU] |= not fit.mu_told
+    size = len(PARAMETERS)
+    at_bound = fit.solution.at_bound[:size]
     further = np.array([at_bound[X_F], False, False, False])
     solution = fit.solution._replace(
         values=np.concatenate((fit.values, derived_values(fit, phasors))),
-        residual=fit.motion.places - x,
+        residual=fit.residual,
         at_bound=np.concatenate((at_bound, further)),
     )
-    free = fit.problem.free.copy()
-    free[MU] |= not fit.mu_told
     units = ("Hz", "1", unit, "1", unit, "1", "deg", "1", "1")
-    every = np.concatenate((free, np.ones(len(DERIVED), dtype=bool)))
-    ds = estimates(_MEANINGS, units, solution, found, every, x, unit)
-    for name, one_unit in zip(DERIVED, units[len(PARAMETERS) :], strict=True):
+    every = np.concatenate((fit.free, np.ones(len(DERIVED), dtype=bool)))
+    shown = found._replace(standard_error=usable_errors(found, MU, 1.0, bool(every[MU])))
+    ds = estimates(_MEANINGS, units, solution, shown, every, fit.samples.x, unit)
+    for name, one_unit in zip(DERIVED, units[size:], strict=True):
         ds[name] = number(float(ds["estimate"].sel(parameter=name)), _MEANINGS[name], one_unit)
-    friction = float(fit.values[X_F]) > _FOUND * float(found.standard_error[X_F])
-    ds["verdict"] = verdict(int(friction) * (1 + int(fit.motion.stops > 0)), _VERDICTS)
+    ds["model_error"] = number(fit.model_error, _MODEL_ERROR)
+    code, meanings = record_verdict(fit, found)
+    ds["verdict"] = verdict(code, meanings)
     return ds
 
 
@@ -302,20 +304,32 @@ def _of_fit(fit: Fit, found: Errors) -> list[str]:
     words = []
     if not fit.motion.repeats:
         words.append("the fitted motion does not repeat after one cycle of the base")
-    if not fit.mu_told:
+    if fit.static == IDLE:
         words.append(
             f"mu cannot be told, as the fit never sticks: all from 1 to {found.upper[MU]:.4g} move alike"
         )
-    if found.inflation > 1.0:
+    if fit.static == ONE:
         words.append(
-            f"residuals are not white (lag-1 correlation {found.lag_correlation:.2f}): "
-            f"errors are taken {found.inflation:.2f} times as large"
+            "mu = 1 explains the data as well as any larger mu: the other estimates are those for mu = 1, and "
+            "their intervals allow for the whole interval of mu"
+        )
+    if fit.static == FITTED and found.lower[MU] <= 1.0:
+        words.append("the interval of mu begins at 1: its standard error is not usable, the interval is")
+    if fit.model_error > 1.0:
+        words.append(
+            f"the model does not explain the record down to its noise: at the harmonics of the base it leaves "
+            f"{fit.model_error:.3g} times the noise, and standard errors are {found.inflation:.3g} times as large"
+        )
+    elif found.inflation > 1.0:
+        words.append(
+            f"the noise is not white: near the harmonics of the base it is larger, and standard errors are "
+            f"{found.inflation:.3g} times as large"
         )
     for one, other in ((ZETA, X_F), (ZETA, MU), (X_F, MU)):
         correlation = float(found.correlation[one, other])
-        if abs(correlation) > _CORRELATED:
+        if abs(correlation) > CORRELATED:
             words.append(f"{PARAMETERS[one]} and {PARAMETERS[other]} trade: correlation {correlation:.2f}")
-    names = [PARAMETERS[index] for index in np.flatnonzero(fit.solution.at_bound)]
+    names = [PARAMETERS[index] for index in np.flatnonzero(fit.solution.at_bound[: len(PARAMETERS)])]
     if names:
         words.append(f"{' and '.join(names)} on the bound: the interval is one-sided")
     return words

@@ -101,7 +101,8 @@ def errors(
 
     The variance of a sample is that of the residuals, if it is not known.  Residuals that are correlated
     count as fewer: errors grow by the root of the integrated autocorrelation time, (1 + c)/(1 - c) for the
-    lag-1 correlation c, or as `noise` says.  On a bound the interval is one-sided, from the profile of the sum.
+    lag-1 correlation c, or as `noise` says.  On a bound the interval is one-sided, from the profile of the
+    sum.
     """
     free = problem.free
     freedom = best.residual.size - int(free.sum())

@@ -11,17 +11,16 @@ from ..datasets.provenance import system_text
 from ..errors import InputError
 from ..model.system import System
 from ..units.table import checked_unit, conversion
-from .decay_checks import checked_record, largest_gap, unclipped, within
+from .decay_checks import largest_gap
 from .estimates import estimates, number, usable_errors, verdict
 from .least_squares import Errors
-from .phasors import Phasors, amplitude_and_lag, changes, harmonics_of, ratio_error
-from .plateaus import unclipped_mass
+from .phasors import Phasors, changes
+from .record_data import MeasuredRecord, measured_record, whole_record
 from .record_errors import DERIVED, derived_values, record_errors
-from .record_fit import FITTED, IDLE, ONE, Fit, fit_record, places_at, samples_of
+from .record_fit import FITTED, IDLE, ONE, Fit, fit_record
 from .record_motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
 from .record_verdict import CORRELATED, record_verdict
 from .robust import LOSSES
-from .turning_points import resolution
 
 #: Estimates so many standard errors above zero are found, and drifts so many are no chance.
 _FOUND = 3.0
@@ -31,15 +30,6 @@ _DISTORTED = 0.05
 
 #: Squared change of a phasor over its variance that chance makes in one of a thousand: -2 ln 0.001.
 _CHANGED = 13.8
-
-#: Errors of the base's first harmonic so many times those of samples at all phases.
-_WORSE = 4.0
-
-#: A lead of so many degrees may come from higher harmonics of the base.
-_LEAD = 1.0
-
-#: A first harmonic of the mass below so many standard errors is no motion.
-_MOVES = 5.0
 
 _MODEL_ERROR = (
     "what the fit leaves at the harmonics of the base, over the noise beside them; 1 if chance makes it"
@@ -118,30 +108,20 @@ def record(
     checks.choice(damping_reference, "damping_reference", DAMPING_REFERENCES)
     checks.choice(loss, "loss", LOSSES)
     held = checked_known(known or {})
-    times, places = checked_record(time, x)
-    shakes = checked_record(times, base, "base")[1]
-    inside = within(window, times)
-    times, channels = times[inside], np.column_stack((shakes, places))[inside]
-    whole = unclipped(channels[:, 0])
-    t, data = times[whole], channels[whole]
-    good = unclipped_mass(t, data[:, 1])
     robust = loss == "soft_l1"
-    phasors, tamed = _checked_phasors(t, data, robust)
-    samples = samples_of(phasors, t, data[:, 1], tamed[:, 1], good, robust)
-    fit = fit_record(contact, damping_reference, phasors, samples, held)
-    if not good.all():
-        whole_motion = places_at(fit, phasors, t) + fit.slow_at(samples.everywhere)
-        data = np.column_stack((data[:, 0], np.where(good, data[:, 1], whole_motion)))
-        phasors = harmonics_of(t, data, robust)[0]
-    found = record_errors(fit, phasors, t, good)
+    given = measured_record(time, base, x, window, robust)
+    fit = fit_record(contact, damping_reference, given.phasors, given.samples, held)
+    given = whole_record(given, fit, robust)
+    phasors = given.phasors
+    found = record_errors(fit, phasors, given.time, given.good)
     ds = _dataset(fit, phasors, found, unit)
-    ds["time"] = xr.Variable("sample", samples.time, {"long_name": "time", "units": "s"})
-    ds["base"] = xr.Variable("sample", data[good, 0], {"long_name": "base, measured", "units": unit})
-    ds = ds.assign(_of_record(t, data, phasors, unit)).assign(_of_motion(fit, found, unit, stiffness))
+    base_used = given.channels[given.good, 0]
+    ds["time"] = xr.Variable("sample", given.samples.time, {"long_name": "time", "units": "s"})
+    ds["base"] = xr.Variable("sample", base_used, {"long_name": "base, measured", "units": unit})
+    ds = ds.assign(_of_record(given, unit)).assign(_of_motion(fit, found, unit, stiffness))
     ds.attrs["title"] = "Record of steady motion"
     ds.attrs["config"] = system_text(_structure(contact, damping_reference))
-    left_out = 1.0 - good.sum() / times.size
-    ds.attrs["warnings"] = "; ".join(_of_data(times, left_out, phasors, ds) + _of_fit(fit, found))
+    ds.attrs["warnings"] = "; ".join(_of_data(given, ds) + _of_fit(fit, found))
     return ds
 
 
@@ -168,42 +148,6 @@ def checked_known(known: Mapping[str, float]) -> dict[str, float]:
     return result
 
 
-def _checked_phasors(time: np.ndarray, channels: np.ndarray, robust: bool) -> tuple[Phasors, np.ndarray]:
-    """Harmonics of a base and of a mass that move, and the channels without outliers."""
-    for name, places in zip(("base", "x"), channels.T, strict=True):
-        if float(np.ptp(places)) <= 2.0 * resolution(places):
-            raise InputError(
-                f"{name} must move; there is no motion above its own resolution ({resolution(places):g})"
-            )
-    phasors, tamed = harmonics_of(time, channels, robust)
-    ideal = phasors.inflation[0, 1] * phasors.rms[0] * np.sqrt(2.0 / time.size)
-    if phasors.errors[0, 1] > _WORSE * ideal:
-        raise InputError(
-            "time must reach all phases of the cycle: harmonics of the base cannot be told where there are "
-            "no samples, as in a long gap or where the base is clipped"
-        )
-    for k, name in enumerate(("base", "x")):
-        first, error = abs(phasors.values[k, 1]), float(phasors.errors[k, 1])
-        if first <= _MOVES * error:
-            raise InputError(
-                f"{name} must move with the base, at {phasors.frequency:.4g} Hz; its first harmonic there is "
-                f"{first:.3g}, of the size of its error, {error:.2g} (a mass that sticks for good tells "
-                "nothing of its motion)"
-            )
-    _check_lag(phasors)
-    return phasors, tamed
-
-
-def _check_lag(phasors: Phasors) -> None:
-    """Energy flows from the base to the mass: its first harmonic lags by 0 to 180 degrees."""
-    lag = np.degrees(amplitude_and_lag(phasors)[1])
-    if lag < -(_LEAD + _FOUND * np.degrees(ratio_error(phasors))):
-        raise InputError(
-            "x must lag behind the base by 0 to 180 degrees, as energy comes from it; "
-            f"it leads by {-lag:.4g} (are the columns exchanged, or is one of opposite sign?)"
-        )
-
-
 def _dataset(fit: Fit, phasors: Phasors, found: Errors, unit: str) -> xr.Dataset:
     """The estimates, residuals as they are measured."""
     size = len(PARAMETERS)
@@ -226,8 +170,9 @@ def _dataset(fit: Fit, phasors: Phasors, found: Errors, unit: str) -> xr.Dataset
     return ds
 
 
-def _of_record(time: np.ndarray, channels: np.ndarray, phasors: Phasors, unit: str) -> dict[str, xr.Variable]:
+def _of_record(given: MeasuredRecord, unit: str) -> dict[str, xr.Variable]:
     """What the record is, without any model."""
+    time, phasors = given.time, given.phasors
     first = np.abs(phasors.values[:, 1])
     parts = np.stack((phasors.values.real, phasors.values.imag), axis=-1)
     dims = ("channel", "harmonic", "part")
@@ -259,7 +204,7 @@ def _of_record(time: np.ndarray, channels: np.ndarray, phasors: Phasors, unit: s
         "channel": xr.Variable("channel", ["base", "x"], {"long_name": "channel"}),
         "part": xr.Variable("part", ["real", "imaginary"], {"long_name": "part of a phasor"}),
     }
-    moved = changes(time, channels, phasors)
+    moved = changes(time, given.channels, phasors)
     if moved.size:
         result["change"] = number(
             moved.max(),
@@ -281,9 +226,11 @@ def _of_motion(fit: Fit, found: Errors, unit: str, stiffness: float | None) -> d
     return result
 
 
-def _of_data(time: np.ndarray, clipped: float, phasors: Phasors, ds: xr.Dataset) -> list[str]:
+def _of_data(given: MeasuredRecord, ds: xr.Dataset) -> list[str]:
     """What to mind of the data, in words."""
     words = []
+    phasors, time = given.phasors, given.every_time
+    clipped = 1.0 - given.good.sum() / time.size
     if clipped > 0.0:
         words.append(f"clipped: {clipped:.1%} of the samples are at the extremes and were left out")
     if gap := largest_gap(time):
@@ -310,15 +257,16 @@ def _of_fit(fit: Fit, found: Errors) -> list[str]:
         )
     if fit.static == ONE:
         words.append(
-            "mu = 1 explains the data as well as any larger mu: the other estimates are those for mu = 1, and "
-            "their intervals allow for the whole interval of mu"
+            "mu = 1 explains the data as well as a larger mu does: the other estimates are those for mu = 1, "
+            "and their intervals allow for the whole interval of mu"
         )
     if fit.static == FITTED and found.lower[MU] <= 1.0:
         words.append("the interval of mu begins at 1: its standard error is not usable, the interval is")
     if fit.model_error > 1.0:
         words.append(
-            f"the model does not explain the record down to its noise: at the harmonics of the base it leaves "
-            f"{fit.model_error:.3g} times the noise, and standard errors are {found.inflation:.3g} times as large"
+            f"the model does not explain the record down to its noise: at the harmonics of the base it "
+            f"leaves {fit.model_error:.3g} times the noise, and standard errors are {found.inflation:.3g} "
+            f"times as large"
         )
     elif found.inflation > 1.0:
         words.append(

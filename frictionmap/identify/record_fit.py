@@ -116,7 +116,7 @@ def samples_of(
 ) -> Samples:
     """The samples that are used.
 
-    time, x, tamed, used : shape (samples,), all that the phasors are of, x without outliers, and which are used
+    time, x, tamed, used : shape (samples,), all that the phasors are of; x without outliers; which are used
     """
     line = time - phasors.middle
     slow = np.column_stack((line, phasors.waves))
@@ -147,19 +147,20 @@ def fit_record(
     )  # fmt: skip
     if "mu" in known:
         return fit
-    farther = _nearest(coarse, samples.near[few], phasors, known)
-    return _with_static(fit, phasors, farther if farther.sum < near.sum else near)
+    begin = [solution.values]
+    if fit.model_error > 1.0:  # else nothing far away can be much nearer
+        begin.append(_begin(_nearest(coarse, samples.near[few], phasors, known), samples))
+    return _with_static(fit, phasors, begin)
 
 
-def _with_static(fit: Fit, phasors: Phasors, near: Solution) -> Fit:
+def _with_static(fit: Fit, phasors: Phasors, begin: list[np.ndarray]) -> Fit:
     """The fit with mu free, if the data ask for it; else that with mu = 1."""
     task = fit.with_mu
-    begun = [minimise(task, start) for start in (_begin(near, fit.samples), fit.solution.values)]
-    solution = min(begun, key=lambda found: found.sum)
+    solution = min((minimise(task, start) for start in begin), key=lambda found: found.sum)
     found = motion(fit.mass, outer(solution.values[: len(PARAMETERS)]))
     noise, model_error = _noise(fit.mass, phasors, fit.samples, task, solution)
-    enough = _CHANCE * noise.variance * float(growth(task, solution, noise)[MU]) ** 2
-    if found.stops > 0 and fit.solution.sum - solution.sum > enough:
+    gain = fit.solution.sum - solution.sum
+    if found.stops > 0 and gain > _CHANCE * noise.variance * float(growth(task, solution, noise)[MU]) ** 2:
         return fit._replace(
             problem=task, solution=solution, noise=noise, model_error=model_error, motion=found,
             static=FITTED,

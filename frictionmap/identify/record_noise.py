@@ -1,7 +1,7 @@
 """Noise of a record near its harmonics: slow wander of the zero, and levels by which errors grow.
 
-A steady motion repeats, so that all it tells stands at multiples of the base's frequency.  What counts for the
-errors is the noise near these lines, not its correlation from one sample to the next.
+A steady motion repeats, so that all it tells stands at multiples of the base's frequency.  What counts for
+the errors is the noise near these lines, not its correlation from one sample to the next.
 """
 
 from typing import NamedTuple
@@ -13,6 +13,9 @@ from .least_squares import Noise, two_sided
 
 #: Noise that white noise exceeds this rarely is coloured.
 _CHANCE = 1e-3
+
+#: What a right model leaves at the harmonics exceeds the noise beside them this rarely.
+_CHANCE_OF_MODEL = 1e-5
 
 #: Slow waves that a wandering zero is made of, at most; half a period of the first is the record's length.
 _MOST_WAVES = 40
@@ -32,16 +35,17 @@ class Levels(NamedTuple):
 
 
 def slow_waves(time: np.ndarray, frequency: float) -> np.ndarray:
-    """Cosines below half the base's frequency, orthonormal, without mean and drift; shape (samples, waves).
+    """Orthonormal waves below half the base's frequency without mean and drift, shape (samples, waves).
 
-    They have nearly no part in a motion that repeats with the base.
+    They have nearly no part in a motion that repeats with the base: a parabola, a cubic, and cosines of whole
+    half periods, which then leave little of a smooth wander that does not end where it began.
     """
     length = float(time[-1] - time[0])
     count = min(int(np.ceil(length * frequency)) - 1, _MOST_WAVES)
     angle = np.pi * (time - time[0]) / length
     waves = np.cos(np.multiply.outer(angle, np.arange(1, count + 1)))
-    line = np.column_stack((np.ones(time.size), angle))
-    return np.linalg.qr(np.hstack((line, waves)))[0][:, 2:]
+    powers = (2.0 * angle[:, None] / np.pi - 1.0) ** np.arange(min(4, 2 + count))
+    return np.linalg.qr(np.hstack((powers, waves)))[0][:, 2:]
 
 
 def wanders(residual: np.ndarray, waves: np.ndarray) -> bool:
@@ -76,10 +80,15 @@ def noise_levels(
     cycles, power = cycles[counts], power[counts] / white
     if power.size and chdtrc(2 * power.size, 2.0 * float(power.sum())) < _CHANCE:
         around = [power[np.abs(cycles - n) < 1.0] for n in range(1, harmonics + 1)]
-        level[1:] = [np.sqrt(max(float(one.mean()), 1.0)) if one.size else level[0] for one in around]
+        level[1:] = [np.sqrt(max(_typical(one), 1.0)) if one.size else level[0] for one in around]
         freedom = 2 * min(one.size for one in around if one.size)
         level[0] = max(level[0], level[1])
     return Levels(level, freedom)
+
+
+def _typical(power: np.ndarray) -> float:
+    """Mean of a spectrum that may be steep: the geometric one, in which chance is low by Euler's constant."""
+    return float(np.exp(np.mean(np.log(power)) + np.euler_gamma))
 
 
 def noise_of_fit(
@@ -107,7 +116,7 @@ def noise_of_fit(
     left = np.sum(parts[1:].reshape(harmonics, 2) ** 2, axis=1) / levels.of_harmonic[1:] ** 2
     freedom = 2 * harmonics - unknowns
     square = float(left.sum()) / variance if variance > 0.0 else 0.0
-    wrong = freedom > 0 and bool(chdtrc(freedom, square) < _CHANCE)
+    wrong = freedom > 0 and bool(chdtrc(freedom, square) < _CHANCE_OF_MODEL)
     model_error = float(np.sqrt(square / freedom)) if wrong else 1.0
     growth = levels.of_harmonic * model_error
     few = [count for count in (levels.freedom, freedom if wrong else 0) if count]

@@ -17,8 +17,8 @@ CORRELATED = 0.95
 #: ... if the friction that is told has an interval wider than this share of it, to either side.
 _VAGUE = 0.1
 
-#: The same where the model itself is wrong by more than the noise: half of the variance of either is the other's,
-#: and the model's error goes where it costs least, along both.
+#: The same where the model itself is wrong by more than the noise: half of the variance of either is the
+#: other's, and the model's error goes where it costs least, along both.
 _CORRELATED_BY_MODEL = float(np.sqrt(0.5))
 
 #: What a motion depends on in a way of its own; the offset only moves it.

@@ -250,12 +250,7 @@ def _refine(
 def _with_errors(t: np.ndarray, f: float, fit: _Linear, harmonics: int, waves: np.ndarray) -> Phasors:
     scatter, rows = _scatter(fit), slice(2, 2 + 2 * harmonics)
     parts = fit.coefficients[rows.stop :]
-    grown = np.array(
-        [
-            noise_levels(t, residual, f, harmonics, part).of_harmonic
-            for residual, part in zip(fit.residual.T, parts.T, strict=True)
-        ]
-    )
+    grown = np.array([noise_levels(t, residual, f, harmonics).of_harmonic for residual in fit.residual.T])
     information = np.sum((fit.curve / (scatter * grown[:, 1])) ** 2)
     own = np.linalg.norm(fit.inverse, axis=1)[:, None] * scatter
     of_parts = own[rows].reshape(harmonics, 2, -1)

@@ -11,25 +11,20 @@ from ..datasets.provenance import system_text
 from ..errors import InputError
 from ..model.system import System
 from ..units.table import checked_unit, conversion
-from .decay_checks import largest_gap
 from .estimates import estimates, number, usable_errors, verdict
 from .least_squares import Errors
-from .phasors import Phasors, changes
-from .record_data import MeasuredRecord, measured_record, whole_record
+from .phasors import Phasors
+from .record_data import measured_record, whole_record
 from .record_errors import DERIVED, derived_values, record_errors
-from .record_fit import FITTED, IDLE, ONE, Fit, fit_record
+from .record_fit import Fit, fit_record
+from .record_labels import of_data, of_record
 from .record_motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
 from .record_verdict import CORRELATED, record_verdict
 from .robust import LOSSES
+from .static_friction import FITTED, IDLE, ONE
 
 #: Estimates so many standard errors above zero are found, and drifts so many are no chance.
 _FOUND = 3.0
-
-#: Harmonics of the base beyond this share of the first one are much.
-_DISTORTED = 0.05
-
-#: Squared change of a phasor over its variance that chance makes in one of a thousand: -2 ln 0.001.
-_CHANGED = 13.8
 
 _MODEL_ERROR = (
     "what the fit leaves at the harmonics of the base, over the noise beside them; 1 if chance makes it"
@@ -40,7 +35,7 @@ _MEANINGS = {
     "zeta": "viscous damping ratio",
     "x_F": "kinetic friction force over stiffness",
     "mu": "static over kinetic friction force",
-    "offset_x": "place of the unloaded mass where the base is at its zero",
+    "offset_x": "place of the unloaded mass where the base is at its zero, the mean over the record",
     "beta": "friction ratio, x_F over the first harmonic of the base",
     "lag_deg": "lag of the first harmonic of the mass behind that of the base, as measured",
     "amplitude_ratio": "first harmonic of the mass over that of the base, as measured",
@@ -118,10 +113,10 @@ def record(
     base_used = given.channels[given.good, 0]
     ds["time"] = xr.Variable("sample", given.samples.time, {"long_name": "time", "units": "s"})
     ds["base"] = xr.Variable("sample", base_used, {"long_name": "base, measured", "units": unit})
-    ds = ds.assign(_of_record(given, unit)).assign(_of_motion(fit, found, unit, stiffness))
+    ds = ds.assign(of_record(given, unit)).assign(_of_motion(fit, found, unit, stiffness))
     ds.attrs["title"] = "Record of steady motion"
     ds.attrs["config"] = system_text(_structure(contact, damping_reference))
-    ds.attrs["warnings"] = "; ".join(_of_data(given, ds) + _of_fit(fit, found))
+    ds.attrs["warnings"] = "; ".join(of_data(given, ds) + _of_fit(fit, found))
     return ds
 
 
@@ -170,50 +165,6 @@ def _dataset(fit: Fit, phasors: Phasors, found: Errors, unit: str) -> xr.Dataset
     return ds
 
 
-def _of_record(given: MeasuredRecord, unit: str) -> dict[str, xr.Variable]:
-    """What the record is, without any model."""
-    time, phasors = given.time, given.phasors
-    first = np.abs(phasors.values[:, 1])
-    parts = np.stack((phasors.values.real, phasors.values.imag), axis=-1)
-    dims = ("channel", "harmonic", "part")
-    cycles = (time[-1] - time[0]) * phasors.frequency
-    result = {
-        "base_frequency": number(phasors.frequency, "frequency of the base", "Hz"),
-        "base_frequency_standard_error": number(
-            phasors.frequency_error, "standard error of the frequency of the base", "Hz"
-        ),
-        "cycles": number(cycles, "cycles of the base in the record"),
-        "base_amplitude": number(first[0], "first harmonic of the base", unit),
-        "base_distortion": number(
-            np.linalg.norm(phasors.values[0, 2:]) / first[0],
-            "higher harmonics of the base over the first one",
-        ),
-        "base_residual_rms": number(phasors.rms[0], "root mean square of the base less its harmonics", unit),
-        "base_drift": number(phasors.drift[0], "drift of the base", f"{unit} s-1"),
-        "x_drift": number(phasors.drift[1], "drift of the mass", f"{unit} s-1"),
-        "phasor": xr.Variable(
-            dims,
-            parts,
-            {"long_name": "harmonics of base and mass at the middle of the record", "units": unit},
-        ),
-        "phasor_standard_error": xr.Variable(
-            dims[:2],
-            phasors.errors,
-            {"long_name": "standard error of either part of a phasor", "units": unit},
-        ),
-        "channel": xr.Variable("channel", ["base", "x"], {"long_name": "channel"}),
-        "part": xr.Variable("part", ["real", "imaginary"], {"long_name": "part of a phasor"}),
-    }
-    moved = changes(time, given.channels, phasors)
-    if moved.size:
-        result["change"] = number(
-            moved.max(),
-            "squared change of a first harmonic from the first to the last third of the record, over its "
-            "variance; 2 on average where nothing changes",
-        )
-    return result
-
-
 def _of_motion(fit: Fit, found: Errors, unit: str, stiffness: float | None) -> dict[str, xr.Variable]:
     """What else the fitted motion is."""
     result = {"stuck_fraction": number(fit.motion.stuck, "share of the cycle in which the fit sticks")}
@@ -224,26 +175,6 @@ def _of_motion(fit: Fit, found: Errors, unit: str, stiffness: float | None) -> d
         result["friction_force"] = number(newtons * float(fit.values[X_F]), words, "N")
         result["friction_force_standard_error"] = number(error, f"standard error of the {words}", "N")
     return result
-
-
-def _of_data(given: MeasuredRecord, ds: xr.Dataset) -> list[str]:
-    """What to mind of the data, in words."""
-    words = []
-    phasors, time = given.phasors, given.every_time
-    clipped = 1.0 - given.good.sum() / time.size
-    if clipped > 0.0:
-        words.append(f"clipped: {clipped:.1%} of the samples are at the extremes and were left out")
-    if gap := largest_gap(time):
-        words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
-    distortion = float(ds["base_distortion"])
-    if distortion > _DISTORTED:
-        words.append(f"the base is distorted: its higher harmonics are {distortion:.1%} of the first one")
-    if "change" in ds and float(ds["change"]) > _CHANGED:
-        words.append("not steady: first and last third of the record differ beyond their errors")
-    for name, drift, error in zip(("base", "x"), phasors.drift, phasors.drift_errors, strict=True):
-        if abs(drift) > _FOUND * error:
-            words.append(f"{name} drifts by {drift:.3g} {ds['base_amplitude'].attrs['units']} a second")
-    return words
 
 
 def _of_fit(fit: Fit, found: Errors) -> list[str]:

@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .least_squares import Errors, errors, growth, one_sided, profile_end, two_sided, unscaled_covariance
+from .least_squares import Errors, errors, growth, two_sided
 from .phasors import Phasors, first_harmonics
-from .record_fit import FITTED, IDLE, ONE, Fit, base_errors
+from .record_fit import Fit, base_errors
 from .record_motion import F_N, MU, OFFSET, PARAMETERS, X_F, ZETA
+from .static_friction import FITTED, IDLE, ONE, highest, interval, per_square
 
 #: What follows from the parameters and the phasors.
 DERIVED = ("beta", "lag_deg", "amplitude_ratio", "stops_per_cycle")
@@ -51,10 +52,8 @@ def record_errors(fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray
     on_bound = fit.solution.at_bound & fit.problem.free
     found = errors(fit.problem, fit.solution._replace(at_bound=on_bound), noise=fit.noise)
     linear = _in_what_is_fitted(fit, phasors, time, used, found)
-    square = float(found.standard_error[MU])
-    # (mu - 1)^2 is told; where it is below its error, mu - 1 is known no better than to the root of that
-    spread = max(2.0 * (float(fit.values[MU]) - 1.0), float(np.sqrt(square)))
-    linear.transfer[MU] *= 1.0 / spread if spread > 0.0 else 0.0
+    of_square = float(found.standard_error[MU])
+    linear.transfer[MU] *= per_square(float(fit.values[MU]), of_square)
     covariance = linear.of_estimates
     deviation = np.sqrt(np.diag(covariance))
     scale = np.where(deviation > 0.0, deviation, 1.0)
@@ -65,37 +64,19 @@ def record_errors(fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray
     for index in np.flatnonzero(on_bound[:size]):  # one-sided, from the profile of the sum
         lower[index], upper[index] = 0.0, found.upper[index]
     if fit.static == ONE:
-        upper[MU], moved = _highest_mu(fit)
-        moves = np.concatenate((moved, np.zeros(len(DERIVED))))
+        upper[MU], moved = highest(fit.with_mu, fit.solution, fit.noise, MU)
+        moves = np.concatenate((moved[:size], np.zeros(len(DERIVED))))
         moves[size] = moved[X_F] / abs(phasors.values[0, 1])  # beta
         lower, upper = lower + np.minimum(moves, 0.0), upper + np.maximum(moves, 0.0)
     elif fit.static == IDLE:
         upper[MU] = _mu_of_first_stop(fit)
     elif fit.static == FITTED:
-        lower[MU], upper[MU] = (
-            1.0 + np.sqrt(max((float(fit.values[MU]) - 1.0) ** 2 + side * reach * square, 0.0))
-            for side in (-1.0, 1.0)
-        )
+        lower[MU], upper[MU] = interval(float(fit.solution.values[MU]), reach * of_square)
     lower[_POSITIVE] = np.maximum(lower[_POSITIVE], 0.0)
     return found._replace(
         standard_error=deviation, lower=lower, upper=upper, correlation=correlation,
         inflation=float(growth(fit.problem, fit.solution, fit.noise)[:OFFSET].max()),
     )  # fmt: skip
-
-
-def _highest_mu(fit: Fit) -> tuple[float, np.ndarray]:
-    """The upper end of the interval of mu where the fit has mu = 1, and how the others move up to there."""
-    best = fit.solution._replace(slopes=fit.with_mu.residuals(fit.solution.values)[1])
-    if not best.slopes[:, MU].any():
-        return np.inf, np.zeros(len(PARAMETERS))
-    grown = float(growth(fit.with_mu, best, fit.noise)[MU])
-    variance = fit.noise.variance * grown**2
-    scale = float(np.sqrt(unscaled_covariance(fit.with_mu, best)[MU, MU] * variance))
-    allowed = one_sided(fit.noise.freedom) ** 2 * variance
-    square, end = profile_end(fit.with_mu, best, MU, allowed, scale)
-    moved = (end.values - best.values)[: len(PARAMETERS)]
-    moved[MU] = 0.0
-    return 1.0 + float(np.sqrt(square)), moved
 
 
 def _mu_of_first_stop(fit: Fit) -> float:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .least_squares import Noise, Problem, Solution, growth, minimise
+from .least_squares import Noise, Problem, Solution, minimise
 from .phasors import Phasors, scatter_of
 from .record_motion import (
     F_N,
@@ -31,6 +31,7 @@ from .record_motion import (
 from .record_noise import noise_of_fit
 from .record_starts import starts
 from .robust import effective_variance, softened
+from .static_friction import FITTED, IDLE, KNOWN, ONE, is_asked_for
 
 #: Starts that are followed, on so many samples; the best one goes on with all.
 _FOLLOWED = 4
@@ -42,12 +43,6 @@ _RANGE = 1.5
 #: Where straight lines go on below the floors, and where motions end: f_n apart.
 _BELOW = np.array([0.0, -0.5, -np.inf, -1.0, -np.inf])
 _HIGHEST = np.array([0.0, 10.0, np.inf, 16.0, np.inf])
-
-#: Growth of the sum, over the variance of a sample, that one more unknown makes up for in 95 of 100 cases.
-_CHANCE = 3.84
-
-#: What is said of mu: it is known, it is 1 as nothing asks for more, it was fitted, or the mass never sticks.
-KNOWN, ONE, FITTED, IDLE = range(4)
 
 
 class Whitening(NamedTuple):
@@ -141,10 +136,8 @@ def fit_record(
     problem = with_mu._replace(free=_free(held, samples))
     solution = minimise(problem, _begin(near, samples))
     found = motion(mass, outer(solution.values[: len(PARAMETERS)]))
-    fit = Fit(
-        mass, samples, problem, with_mu, solution, *_noise(mass, phasors, samples, problem, solution),
-        whitening, by_base, found, KNOWN,
-    )  # fmt: skip
+    noise = noise_of_record(mass, phasors, samples, problem, solution)
+    fit = Fit(mass, samples, problem, with_mu, solution, *noise, whitening, by_base, found, KNOWN)
     if "mu" in known:
         return fit
     begin = [solution.values]
@@ -158,9 +151,9 @@ def _with_static(fit: Fit, phasors: Phasors, begin: list[np.ndarray]) -> Fit:
     task = fit.with_mu
     solution = min((minimise(task, start) for start in begin), key=lambda found: found.sum)
     found = motion(fit.mass, outer(solution.values[: len(PARAMETERS)]))
-    noise, model_error = _noise(fit.mass, phasors, fit.samples, task, solution)
+    noise, model_error = noise_of_record(fit.mass, phasors, fit.samples, task, solution)
     gain = fit.solution.sum - solution.sum
-    if found.stops > 0 and gain > _CHANCE * noise.variance * float(growth(task, solution, noise)[MU]) ** 2:
+    if found.stops > 0 and is_asked_for(gain, task, solution, noise, MU):
         return fit._replace(
             problem=task, solution=solution, noise=noise, model_error=model_error, motion=found,
             static=FITTED,
@@ -173,14 +166,19 @@ def _with_static(fit: Fit, phasors: Phasors, begin: list[np.ndarray]) -> Fit:
     )  # fmt: skip
 
 
-def _noise(
+def problem_of(fit: Fit, known: Mapping[str, float]) -> Problem:
+    """The problem that was solved, with other parameters held."""
+    return _problem(fit.mass, fit.samples, _free(known, fit.samples), fit.solution.values, fit.whitening)
+
+
+def noise_of_record(
     mass: Shaken, phasors: Phasors, samples: Samples, problem: Problem, solution: Solution
 ) -> tuple[Noise, float]:
     """The noise, and the error of the model in it."""
-    size, free = len(PARAMETERS), problem.free & ~solution.at_bound
+    free = problem.free & ~solution.at_bound
     noise, model_error = noise_of_fit(
         samples.time, solution.residual, phasors.frequency, phasors.values.shape[1] - 1,
-        int(free[:OFFSET].sum()), solution.values[size + 1 :],
+        int(free[:OFFSET].sum()), samples.slow.shape[1] - 1,
     )  # fmt: skip
     if samples.scale is None:
         return noise, model_error

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import chdtrc
 
-from .least_squares import Noise, two_sided
+from .least_squares import Noise
 
 #: Noise that white noise exceeds this rarely is coloured.
 _CHANCE = 1e-3
@@ -19,9 +19,6 @@ _CHANCE_OF_MODEL = 1e-5
 
 #: Slow waves that a wandering zero is made of, at most; half a period of the first is the record's length.
 _MOST_WAVES = 40
-
-#: The zero wanders as the first so many of them do, as far as its mean is concerned.
-_SLOWEST = 6
 
 #: Lines nearer to a harmonic than this share of 1/length were taken out with it.
 _TAKEN_OUT = 0.9
@@ -57,22 +54,13 @@ def wanders(residual: np.ndarray, waves: np.ndarray) -> bool:
     return rest > 0.0 and bool(chdtrc(parts.size, float(parts @ parts) / rest) < _CHANCE)
 
 
-def noise_levels(
-    time: np.ndarray, residual: np.ndarray, frequency: float, harmonics: int, wander: np.ndarray
-) -> Levels:
-    """Levels of what is left when harmonics, drift and wander have been taken out.
-
-    wander : shape (waves,), the parts of slow waves that were taken out; empty if there is no wander
-    """
+def noise_levels(time: np.ndarray, residual: np.ndarray, frequency: float, harmonics: int) -> Levels:
+    """Levels of what is left when harmonics, drift and wander have been taken out."""
     level = np.ones(harmonics + 1)
     white = float(residual @ residual) / residual.size
     if white == 0.0:
         return Levels(level, 0)
     freedom = 0
-    if wander.size:
-        slowest = wander[:_SLOWEST]
-        few = two_sided(slowest.size) / two_sided(residual.size)  # known by so few
-        level[0] = few * np.sqrt(max(float(slowest @ slowest) / (slowest.size * white), 1.0))
     lines, power = _spectrum(time, residual)
     cycles = lines / frequency
     nearest = np.abs(cycles - np.round(cycles)) * frequency * float(time[-1] - time[0])
@@ -80,9 +68,9 @@ def noise_levels(
     cycles, power = cycles[counts], power[counts] / white
     if power.size and chdtrc(2 * power.size, 2.0 * float(power.sum())) < _CHANCE:
         around = [power[np.abs(cycles - n) < 1.0] for n in range(1, harmonics + 1)]
-        level[1:] = [np.sqrt(max(_typical(one), 1.0)) if one.size else level[0] for one in around]
+        level[1:] = [np.sqrt(max(_typical(one), 1.0)) if one.size else 1.0 for one in around]
         freedom = 2 * min(one.size for one in around if one.size)
-        level[0] = max(level[0], level[1])
+        level[0] = level[1]
     return Levels(level, freedom)
 
 
@@ -97,7 +85,7 @@ def noise_of_fit(
     frequency: float,
     harmonics: int,
     unknowns: int,
-    wander: np.ndarray,
+    waves: int,
 ) -> tuple[Noise, float]:
     """The noise by which a steady motion was fitted, larger near some harmonics, and the model's error in it.
 
@@ -106,13 +94,13 @@ def noise_of_fit(
 
     residual : shape (samples,), of the fit, drift and wander taken out
     unknowns : parameters fitted but for a constant, drift and wander
-    wander : shape (waves,), the parts of slow waves that were fitted
+    waves : how many slow waves were fitted beside the drift
     """
     columns = harmonic_columns(time, frequency, harmonics)
     parts = columns.T @ residual
     rest = residual - columns @ parts
-    variance = float(rest @ rest) / (rest.size - columns.shape[1] - wander.size - 1)
-    levels = noise_levels(time, rest, frequency, harmonics, wander)
+    variance = float(rest @ rest) / (rest.size - columns.shape[1] - waves - 1)
+    levels = noise_levels(time, rest, frequency, harmonics)
     left = np.sum(parts[1:].reshape(harmonics, 2) ** 2, axis=1) / levels.of_harmonic[1:] ** 2
     freedom = 2 * harmonics - unknowns
     square = float(left.sum()) / variance if variance > 0.0 else 0.0
@@ -121,7 +109,7 @@ def noise_of_fit(
     growth = levels.of_harmonic * model_error
     few = [count for count in (levels.freedom, freedom if wrong else 0) if count]
     if (growth == 1.0).all():  # white: all samples tell its variance
-        freedom = residual.size - unknowns - 2 - wander.size
+        freedom = residual.size - unknowns - 2 - waves
         return Noise(float(residual @ residual) / freedom, columns[:, :0], freedom), 1.0
     excess = np.sqrt(growth**2 - 1.0)
     by_column = np.concatenate((excess[:1], np.repeat(excess[1:], 2)))

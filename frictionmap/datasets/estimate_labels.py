@@ -15,7 +15,7 @@ _NUMBER = Label(np.float64, "number", ())
 #: Required variables of a dataset of estimates.
 OF_PARAMETERS = {
     "estimate": Label(np.float64, "estimate", _PARAMETER),
-    "standard_error": Label(np.float64, "standard error", _PARAMETER, least=0.0),
+    "standard_error": Label(np.float64, "standard error", _PARAMETER, least=0.0, nan=True),
     "lower": Label(np.float64, "lower end of the 95 % interval", _PARAMETER, inf=True),
     "upper": Label(np.float64, "upper end of the 95 % interval", _PARAMETER, inf=True),
     "unit": Label(np.str_, "unit", _PARAMETER),

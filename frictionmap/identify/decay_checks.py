@@ -63,13 +63,21 @@ def within(window: object, time: np.ndarray) -> np.ndarray:
 def unclipped(x: np.ndarray) -> np.ndarray:
     """Samples that are not cut off at the ends of a measuring range."""
     good = np.ones(x.size, dtype=bool)
+    for begin, end in clipped_runs(x):
+        good[begin:end] = False
+    return good
+
+
+def clipped_runs(x: np.ndarray) -> list[tuple[int, int]]:
+    """Begin and end of every run of samples that lie at an extreme value, the samples beside far from it."""
     step = resolution(x)
+    found = []
     for extreme in (x.min(), x.max()):
         for begin, end in _runs(x == extreme):
             beside = [abs(x[k] - extreme) for k in (begin - 1, end) if 0 <= k < x.size]
             if end - begin >= _CLIPPED_ROW and beside and max(beside) > _CLIPPED_STEPS * step:
-                good[begin:end] = False
-    return good
+                found.append((begin, end))
+    return found
 
 
 def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:

@@ -27,6 +27,18 @@ def verdict(code: int, meanings: Mapping[str, str]) -> xr.Variable:
     return xr.Variable((), np.int8(code), flags)
 
 
+def usable_errors(found: Errors, index: int, bound: float, fitted: bool) -> np.ndarray:
+    """Standard errors, NaN of a parameter whose interval begins on its bound.
+
+    Near such a bound the data see the square of the distance from it: its likelihood is no normal curve, and
+    only the interval says what is known.
+    """
+    result = found.standard_error.copy()
+    if fitted and found.lower[index] <= bound:
+        result[index] = np.nan
+    return result
+
+
 def _of_parameters(values: np.ndarray, words: str) -> xr.Variable:
     return xr.Variable("parameter", values, {"long_name": words, "comment": "each in its own unit"})
 
@@ -39,7 +51,10 @@ def _parameter_variables(
     of_errors = {"long_name": "correlation of errors", "units": "1"}
     return {
         "estimate": _of_parameters(solution.values, "estimate"),
-        "standard_error": _of_parameters(errors.standard_error, "standard error; 0 of what was held"),
+        "standard_error": _of_parameters(
+            errors.standard_error,
+            "standard error; 0 of what was held, NaN where only the interval can be used",
+        ),
         "lower": _of_parameters(errors.lower, "lower end of the 95 % interval"),
         "upper": _of_parameters(errors.upper, "upper end of the 95 % interval"),
         "unit": xr.Variable("parameter", np.array(units), {"long_name": "unit"}),

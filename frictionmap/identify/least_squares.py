@@ -50,6 +50,14 @@ class Solution(NamedTuple):
         return float(self.residual @ self.residual)
 
 
+class Noise(NamedTuple):
+    """What is known of the noise: its covariance is variance * (I + G G^T)."""
+
+    variance: float
+    excess: np.ndarray  # G, shape (samples, any number)
+    freedom: int  # degrees of freedom by which it is known
+
+
 class Errors(NamedTuple):
     """Errors of estimates; held parameters have none."""
 
@@ -86,32 +94,61 @@ def _below(problem: Problem, fit: Solution) -> np.ndarray:
     return problem.free & (fit.values < problem.floor)
 
 
-def errors(problem: Problem, best: Solution, known_variance: float | None = None) -> Errors:
+def errors(
+    problem: Problem, best: Solution, known_variance: float | None = None, noise: Noise | None = None
+) -> Errors:
     """Standard errors, 95 % intervals and correlations from the slopes at the least sum.
 
     The variance of a sample is that of the residuals, if it is not known.  Residuals that are correlated
     count as fewer: errors grow by the root of the integrated autocorrelation time, (1 + c)/(1 - c) for the
-    lag-1 correlation c.  On a bound the interval is one-sided, from the profile of the sum.
+    lag-1 correlation c, or as `noise` says.  On a bound the interval is one-sided, from the profile of the
+    sum.
     """
     free = problem.free
     freedom = best.residual.size - int(free.sum())
     reduced = best.sum / freedom
     variance = reduced if known_variance is None else known_variance
-    lag, grown = inflation(best.residual)
-    inverse = np.zeros((free.size, free.size))
-    inverse[np.ix_(free, free)] = _inverse(best.slopes[:, free])
+    lag, by_lag = inflation(best.residual)
+    grown = np.full(free.size, by_lag)
+    inverse = unscaled_covariance(problem, best)
     deviation = np.sqrt(np.diag(inverse))
+    if noise is not None:
+        variance, freedom = noise.variance, noise.freedom
+        inverse, grown = _with_excess(inverse, best.slopes, noise.excess)
     standard_error = deviation * np.sqrt(variance) * grown
-    scale = np.where(free, deviation, 1.0)
+    scale = np.where(free, deviation * (grown if noise is not None else 1.0), 1.0)
     correlation = np.where(np.eye(free.size, dtype=bool), 1.0, inverse / np.outer(scale, scale))
     reach = two_sided(freedom) * standard_error
     lower, upper = best.values - reach, best.values + reach
     lower = np.where(free, np.maximum(lower, problem.floor), lower)
-    allowed = one_sided(freedom) ** 2 * variance * grown**2
     for index in np.flatnonzero(best.at_bound):
         lower[index] = problem.floor[index]
-        upper[index] = _profile_end(problem, best, int(index), allowed, float(standard_error[index]))
-    return Errors(standard_error, lower, upper, correlation, reduced, lag, grown)
+        allowed = one_sided(freedom) ** 2 * variance * float(grown[index]) ** 2
+        upper[index], _ = profile_end(problem, best, int(index), allowed, float(standard_error[index]))
+    return Errors(standard_error, lower, upper, correlation, reduced, lag, float(grown.max()))
+
+
+def growth(problem: Problem, best: Solution, noise: Noise) -> np.ndarray:
+    """By what errors are larger than in white noise, shape (parameters,); 1 of what is held."""
+    return _with_excess(unscaled_covariance(problem, best), best.slopes, noise.excess)[1]
+
+
+def unscaled_covariance(problem: Problem, best: Solution) -> np.ndarray:
+    """(J^T J)^-1 of what is free, 0 of what is held, shape (parameters, parameters)."""
+    free = problem.free
+    inverse = np.zeros((free.size, free.size))
+    inverse[np.ix_(free, free)] = _inverse(best.slopes[:, free])
+    return inverse
+
+
+def _with_excess(
+    inverse: np.ndarray, slopes: np.ndarray, excess: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(J^T J)^-1 J^T (I + G G^T) J (J^T J)^-1, and by what its deviations are larger than without G."""
+    moved = inverse @ (slopes.T @ excess)
+    grown = inverse + moved @ moved.T
+    plain = np.diag(inverse)
+    return grown, np.sqrt(np.divide(np.diag(grown), plain, out=np.ones(plain.size), where=plain > 0.0))
 
 
 def two_sided(freedom: int) -> float:
@@ -225,21 +262,26 @@ def inflation(residual: np.ndarray) -> tuple[float, float]:
     return lag, float(np.sqrt((1.0 + lag) / (1.0 - lag))) if coloured else 1.0
 
 
-def _profile_end(problem: Problem, best: Solution, index: int, allowed: float, scale: float) -> float:
-    """How far a parameter can go up from its bound before the least sum has grown by what is allowed."""
-    floor = float(problem.floor[index])
+def profile_end(
+    problem: Problem, best: Solution, index: int, allowed: float, scale: float
+) -> tuple[float, Solution]:
+    """How far a parameter can go up before the least sum has grown by what is allowed, and the fit there.
+
+    scale : its standard error, in which steps are counted
+    """
+    begin = float(best.values[index])
     if scale == 0.0:  # data without any noise
-        return floor
+        return begin, best
 
     highest = float(problem.highest[index])
-    inside, low, reach = best, floor, scale
+    inside, low, reach = best, begin, scale
     while True:
-        high = min(floor + reach, highest)
+        high = min(begin + reach, highest)
         found = _at(problem, inside, index, high)
         if found.sum - best.sum > allowed:
             break
         if high == highest:  # where the model ends
-            return highest
+            return highest, found
         inside, low, reach = found, high, 2.0 * reach
     while high - low > _PROFILE * scale:  # halved, as there may be no model next to what is allowed
         middle = 0.5 * (low + high)
@@ -248,4 +290,4 @@ def _profile_end(problem: Problem, best: Solution, index: int, allowed: float, s
             high = middle
         else:
             inside, low = found, middle
-    return high
+    return high, inside

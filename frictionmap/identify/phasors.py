@@ -2,6 +2,8 @@
 
     channel k:   a_k + b_k (t - t_m) + Re sum_n X_kn e^{i n omega (t - t_m)},   n = 1 .. H
 
+Where the zero of a channel wanders, slow waves below omega/2 are fitted with them.
+
 The frequency is the one unknown that is not linear, and all channels share it.  No window is needed, nor
 whole cycles.  t_m is the middle of the record.
 """
@@ -11,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import InputError
-from .least_squares import inflation
+from .record_noise import noise_levels, slow_waves, wanders
 
 #: Harmonics, fewer where there are not this many samples a cycle of the highest one.
 _HARMONICS = 9
@@ -30,6 +32,12 @@ _REFINED = 17
 _SAMPLES = 4000
 _SAMPLES_A_CYCLE = 16
 
+#: Samples so many deviations off are outliers; fits in which they are drawn in.
+_OUTLIER, _TAMED = 3.0, 5
+
+#: A normal deviate is below so many deviations in half of all cases.
+_MEDIAN = 0.6744897501960817
+
 #: The frequency is found where it moves by less than this share of 1/length.
 _SETTLED = 1e-10
 _MAX_STEPS = 50
@@ -46,8 +54,10 @@ class Phasors(NamedTuple):
     drift: np.ndarray  # shape (channels,), a second
     drift_errors: np.ndarray
     slopes: np.ndarray  # shape (channels, H + 1), derivatives of the values by the frequency
-    residual: np.ndarray  # shape (samples, channels): data less harmonics
-    inflation: np.ndarray  # shape (channels,), of the errors, as residuals are correlated
+    residual: np.ndarray  # shape (samples, channels): data less harmonics, drift and wander
+    inflation: np.ndarray  # shape (channels, H + 1), of the errors, as the noise is not white
+    waves: np.ndarray  # shape (samples, waves), by which zeros wander; none where they do not
+    wander: np.ndarray  # shape (samples, channels), what they make
 
     @property
     def rms(self) -> np.ndarray:
@@ -68,6 +78,8 @@ class _Linear(NamedTuple):
 def phasors_of(time: np.ndarray, channels: np.ndarray) -> Phasors:
     """Fit harmonics of one frequency to all channels, the first of which tells where to look for it.
 
+    Zeros that wander are fitted with slow waves, if there is more in the residuals than white noise has.
+
     time : shape (samples,), s, increasing
     channels : shape (samples, channels)
 
@@ -82,7 +94,37 @@ def phasors_of(time: np.ndarray, channels: np.ndarray) -> Phasors:
     harmonics = _checked_harmonics(t, start)
     few = slice(None, None, _stride(t, start))
     near = _refine(t[few], channels[few], start, 1)[0] if few.step > 1 else start
-    return _with_errors(*_refine(t, channels, near, harmonics))._replace(middle=float(middle))
+    f, fit = _refine(t, channels, near, harmonics)
+    waves = slow_waves(t, f)
+    if any(wanders(residual, waves) for residual in fit.residual.T):
+        f, fit = _refine(t, channels, f, harmonics, waves)
+    else:
+        waves = waves[:, :0]
+    return _with_errors(t, f, fit, harmonics, waves)._replace(middle=float(middle))
+
+
+def robust_phasors(time: np.ndarray, channels: np.ndarray) -> tuple[Phasors, np.ndarray]:
+    """The same for channels with outliers, and the channels with their outliers drawn in.
+
+    A sample farther from the harmonics than some deviations of the others counts as one at that distance.
+    """
+    tamed = channels
+    for _ in range(_TAMED):
+        found = phasors_of(time, tamed)
+        beside = channels - (tamed - found.residual)
+        reach = _OUTLIER * scatter_of(beside)
+        tamed = tamed - found.residual + np.clip(beside, -reach, reach)
+    return phasors_of(time, tamed), tamed
+
+
+def harmonics_of(time: np.ndarray, channels: np.ndarray, robust: bool) -> tuple[Phasors, np.ndarray]:
+    """Harmonics of channels that may have outliers, and the channels without."""
+    return robust_phasors(time, channels) if robust else (phasors_of(time, channels), channels)
+
+
+def scatter_of(residual: np.ndarray) -> np.ndarray:
+    """Standard deviations but for outliers, shape (channels,): by the medians of distances."""
+    return np.median(np.abs(residual), axis=0) / _MEDIAN
 
 
 def harmonics_at(values: np.ndarray, angle: np.ndarray) -> np.ndarray:
@@ -119,21 +161,19 @@ def changes(time: np.ndarray, channels: np.ndarray, whole: Phasors) -> np.ndarra
     parts = (time <= time[0] + third, time >= time[-1] - third)
     if min(int(part.sum()) for part in parts) <= 2 * whole.values.shape[1] + 1:
         return np.zeros(0)  # a gap has taken one of them
-    fits = [
-        _linear(time[part] - whole.middle, channels[part], whole.frequency, whole.values.shape[1] - 1)
-        for part in parts
-    ]
-    squares = np.abs(_complex(fits[0].coefficients)[:, 1] - _complex(fits[1].coefficients)[:, 1]) ** 2
-    variance = sum(
-        (_first_error(fit) * np.array([inflation(one)[1] for one in fit.residual.T])) ** 2 for fit in fits
-    )
-    return squares / variance
+    harmonics = whole.values.shape[1] - 1
+    settled = channels - whole.wander
+    fits = [_linear(time[part] - whole.middle, settled[part], whole.frequency, harmonics) for part in parts]
+    first = [_complex(fit.coefficients, harmonics)[:, 1] for fit in fits]
+    variance = sum((_first_error(fit) * whole.inflation[:, 1]) ** 2 for fit in fits)
+    return np.abs(first[0] - first[1]) ** 2 / variance
 
 
 def first_harmonics(time: np.ndarray, channels: np.ndarray, whole: Phasors) -> np.ndarray:
     """X_1 of other channels at the same frequency, shape (channels,)."""
-    fit = _linear(time - whole.middle, channels, whole.frequency, whole.values.shape[1] - 1)
-    return _complex(fit.coefficients)[:, 1]
+    harmonics = whole.values.shape[1] - 1
+    fit = _linear(time - whole.middle, channels, whole.frequency, harmonics)
+    return _complex(fit.coefficients, harmonics)[:, 1]
 
 
 def _first_error(fit: _Linear) -> np.ndarray:
@@ -189,33 +229,37 @@ def _stride(t: np.ndarray, frequency: float) -> int:
     return max(1, min(t.size // _SAMPLES, int(a_cycle / _SAMPLES_A_CYCLE)))
 
 
-def _refine(t: np.ndarray, channels: np.ndarray, start: float, harmonics: int) -> tuple[float, _Linear]:
+def _refine(
+    t: np.ndarray, channels: np.ndarray, start: float, harmonics: int, waves: np.ndarray | None = None
+) -> tuple[float, _Linear]:
     """Gauss-Newton for the frequency, channels weighted by their own residuals."""
     length = float(t[-1] - t[0])
     f = start
-    fit = _linear(t, channels, f, harmonics)
+    fit = _linear(t, channels, f, harmonics, waves)
     for _ in range(_MAX_STEPS):
         scatter = _scatter(fit)
         weighted, curve = fit.residual / scatter, fit.curve / scatter
         step = -float(np.sum(curve * weighted)) / float(np.sum(curve**2))
         f += step
-        fit = _linear(t, channels, f, harmonics)
+        fit = _linear(t, channels, f, harmonics, waves)
         if abs(step) * length < _SETTLED:
             break
     return f, fit
 
 
-def _with_errors(f: float, fit: _Linear) -> Phasors:
-    scatter = _scatter(fit)
-    grown = np.array([inflation(one)[1] for one in fit.residual.T])
-    information = np.sum((fit.curve / (scatter * grown)) ** 2)
-    own = np.linalg.norm(fit.inverse, axis=1)[:, None] * (scatter * grown)
-    errors = np.column_stack((own[0], np.sqrt(0.5 * (own[2::2] ** 2 + own[3::2] ** 2)).T))
+def _with_errors(t: np.ndarray, f: float, fit: _Linear, harmonics: int, waves: np.ndarray) -> Phasors:
+    scatter, rows = _scatter(fit), slice(2, 2 + 2 * harmonics)
+    parts = fit.coefficients[rows.stop :]
+    grown = np.array([noise_levels(t, residual, f, harmonics).of_harmonic for residual in fit.residual.T])
+    information = np.sum((fit.curve / (scatter * grown[:, 1])) ** 2)
+    own = np.linalg.norm(fit.inverse, axis=1)[:, None] * scatter
+    of_parts = own[rows].reshape(harmonics, 2, -1)
+    errors = np.vstack((own[:1], np.sqrt(0.5 * np.sum(of_parts**2, axis=1)))).T * grown
     frequency_error = float(1.0 / np.sqrt(information))
-    drift_errors = np.hypot(own[1], fit.turned[1] * frequency_error)
+    drift_errors = np.hypot(own[1] * grown[:, 0], fit.turned[1] * frequency_error)
     return Phasors(
-        float(f), frequency_error, 0.0, _complex(fit.coefficients), errors, fit.coefficients[1], drift_errors,
-        _complex(fit.turned), fit.residual, grown,
+        float(f), frequency_error, 0.0, _complex(fit.coefficients, harmonics), errors, fit.coefficients[1],
+        drift_errors, _complex(fit.turned, harmonics), fit.residual, grown, waves, waves @ parts,
     )  # fmt: skip
 
 
@@ -226,21 +270,27 @@ def _scatter(fit: _Linear) -> np.ndarray:
     return np.maximum(found, np.finfo(float).eps * np.abs(fit.coefficients).max(axis=0))
 
 
-def _complex(coefficients: np.ndarray) -> np.ndarray:
+def _complex(coefficients: np.ndarray, harmonics: int) -> np.ndarray:
     """Rows a, b, Re X_1, -Im X_1, ... as complex harmonics 0 .. H, shape (channels, H + 1)."""
-    return np.vstack((coefficients[:1], coefficients[2::2] - 1j * coefficients[3::2])).T
+    end = 2 + 2 * harmonics
+    return np.vstack((coefficients[:1], coefficients[2:end:2] - 1j * coefficients[3:end:2])).T
 
 
-def _linear(t: np.ndarray, channels: np.ndarray, f: float, harmonics: int) -> _Linear:
+def _linear(
+    t: np.ndarray, channels: np.ndarray, f: float, harmonics: int, waves: np.ndarray | None = None
+) -> _Linear:
     """Least squares at a frequency, and how it changes with the frequency."""
     order = np.arange(1, harmonics + 1)
     angle = 2.0 * np.pi * f * t[:, None] * order
     rate = 2.0 * np.pi * t[:, None] * order
-    columns = np.empty((t.size, 2 + 2 * harmonics))
+    end = 2 + 2 * harmonics
+    columns = np.empty((t.size, end + (0 if waves is None else waves.shape[1])))
     slopes = np.zeros_like(columns)
     columns[:, 0], columns[:, 1] = 1.0, t
-    columns[:, 2::2], columns[:, 3::2] = np.cos(angle), np.sin(angle)
-    slopes[:, 2::2], slopes[:, 3::2] = -rate * columns[:, 3::2], rate * columns[:, 2::2]
+    columns[:, 2:end:2], columns[:, 3:end:2] = np.cos(angle), np.sin(angle)
+    slopes[:, 2:end:2], slopes[:, 3:end:2] = -rate * columns[:, 3:end:2], rate * columns[:, 2:end:2]
+    if waves is not None:
+        columns[:, end:] = waves
     orthogonal, inverse = _orthonormal(columns)
     along = orthogonal.T @ channels
     coefficients = inverse @ along

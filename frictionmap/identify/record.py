@@ -11,48 +11,31 @@ from ..datasets.provenance import system_text
 from ..errors import InputError
 from ..model.system import System
 from ..units.table import checked_unit, conversion
-from .decay_checks import checked_record, largest_gap, unclipped, within
-from .estimates import estimates, number, verdict
+from .estimates import estimates, number, usable_errors, verdict
 from .least_squares import Errors
-from .phasors import Phasors, amplitude_and_lag, changes, phasors_of, ratio_error
+from .phasors import Phasors
+from .record_data import measured_record, whole_record
 from .record_errors import DERIVED, derived_values, record_errors
-from .record_fit import Fit, fit_record, places_at
+from .record_fit import Fit, fit_record
+from .record_labels import of_data, of_record
 from .record_motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
-from .turning_points import resolution
+from .record_verdict import CORRELATED, record_verdict
+from .robust import LOSSES
+from .static_friction import FITTED, IDLE, ONE
 
 #: Estimates so many standard errors above zero are found, and drifts so many are no chance.
 _FOUND = 3.0
 
-#: Beyond this two estimates cannot well be told apart.
-_CORRELATED = 0.95
-
-#: Harmonics of the base beyond this share of the first one are much.
-_DISTORTED = 0.05
-
-#: Squared change of a phasor over its variance that chance makes in one of a thousand: -2 ln 0.001.
-_CHANGED = 13.8
-
-#: Errors of the base's first harmonic so many times those of samples at all phases.
-_WORSE = 4.0
-
-#: A lead of so many degrees may come from higher harmonics of the base.
-_LEAD = 1.0
-
-#: A first harmonic of the mass below so many standard errors is no motion.
-_MOVES = 5.0
-
-_VERDICTS = {
-    "no_friction_found": "no friction found",
-    "continuous": "friction found, and the mass never sticks: mu cannot be told beyond its interval",
-    "stick_slip": "friction found, and the mass sticks and slips",
-}
+_MODEL_ERROR = (
+    "what the fit leaves at the harmonics of the base, over the noise beside them; 1 if chance makes it"
+)
 
 _MEANINGS = {
     "f_n": "natural frequency without friction and damping",
     "zeta": "viscous damping ratio",
     "x_F": "kinetic friction force over stiffness",
     "mu": "static over kinetic friction force",
-    "offset_x": "place of the unloaded mass where the base is at its zero",
+    "offset_x": "place of the unloaded mass where the base is at its zero, the mean over the record",
     "beta": "friction ratio, x_F over the first harmonic of the base",
     "lag_deg": "lag of the first harmonic of the mass behind that of the base, as measured",
     "amplitude_ratio": "first harmonic of the mass over that of the base, as measured",
@@ -71,6 +54,7 @@ def record(
     known: Mapping[str, float] | None = None,
     stiffness: float | None = None,
     window: object = None,
+    loss: str = "linear",
 ) -> xr.Dataset:
     """Fit the exact steady motion of one mass with friction, under the measured base, to all samples.
 
@@ -117,29 +101,22 @@ def record(
     checked_unit(unit, "length", "unit")
     checks.choice(contact, "contact", CONTACTS)
     checks.choice(damping_reference, "damping_reference", DAMPING_REFERENCES)
+    checks.choice(loss, "loss", LOSSES)
     held = checked_known(known or {})
-    times, places = checked_record(time, x)
-    shakes = checked_record(times, base, "base")[1]
-    inside = within(window, times)
-    times, channels = times[inside], np.column_stack((shakes, places))[inside]
-    whole = unclipped(channels[:, 0])
-    t, data = times[whole], channels[whole]
-    good = unclipped(data[:, 1])
-    phasors = _checked_phasors(t, data)
-    used = np.column_stack((t, data[:, 1]))[good]
-    fit = fit_record(contact, damping_reference, phasors, used, held)
-    if not good.all():
-        data = np.column_stack((data[:, 0], np.where(good, data[:, 1], places_at(fit, phasors, t))))
-        phasors = phasors_of(t, data)
-    found = record_errors(fit, phasors, t, good)
-    ds = _dataset(fit, phasors, found, used[:, 1], unit)
-    ds["time"] = xr.Variable("sample", used[:, 0], {"long_name": "time", "units": "s"})
-    ds["base"] = xr.Variable("sample", data[good, 0], {"long_name": "base, measured", "units": unit})
-    ds = ds.assign(_of_record(t, data, phasors, unit)).assign(_of_motion(fit, found, unit, stiffness))
+    robust = loss == "soft_l1"
+    given = measured_record(time, base, x, window, robust)
+    fit = fit_record(contact, damping_reference, given.phasors, given.samples, held)
+    given = whole_record(given, fit, robust)
+    phasors = given.phasors
+    found = record_errors(fit, phasors, given.time, given.good)
+    ds = _dataset(fit, phasors, found, unit)
+    base_used = given.channels[given.good, 0]
+    ds["time"] = xr.Variable("sample", given.samples.time, {"long_name": "time", "units": "s"})
+    ds["base"] = xr.Variable("sample", base_used, {"long_name": "base, measured", "units": unit})
+    ds = ds.assign(of_record(given, unit)).assign(_of_motion(fit, found, unit, stiffness))
     ds.attrs["title"] = "Record of steady motion"
     ds.attrs["config"] = system_text(_structure(contact, damping_reference))
-    left_out = 1.0 - good.sum() / times.size
-    ds.attrs["warnings"] = "; ".join(_of_data(times, left_out, phasors, ds) + _of_fit(fit, found))
+    ds.attrs["warnings"] = "; ".join(of_data(given, ds) + _of_fit(fit, found))
     return ds
 
 
@@ -166,105 +143,26 @@ def checked_known(known: Mapping[str, float]) -> dict[str, float]:
     return result
 
 
-def _checked_phasors(time: np.ndarray, channels: np.ndarray) -> Phasors:
-    """Harmonics of a base and of a mass that move."""
-    for name, places in zip(("base", "x"), channels.T, strict=True):
-        if float(np.ptp(places)) <= 2.0 * resolution(places):
-            raise InputError(
-                f"{name} must move; there is no motion above its own resolution ({resolution(places):g})"
-            )
-    phasors = phasors_of(time, channels)
-    ideal = phasors.inflation[0] * phasors.rms[0] * np.sqrt(2.0 / time.size)
-    if phasors.errors[0, 1] > _WORSE * ideal:
-        raise InputError(
-            "time must reach all phases of the cycle: harmonics of the base cannot be told where there are "
-            "no samples, as in a long gap or where the base is clipped"
-        )
-    for k, name in enumerate(("base", "x")):
-        first, error = abs(phasors.values[k, 1]), float(phasors.errors[k, 1])
-        if first <= _MOVES * error:
-            raise InputError(
-                f"{name} must move with the base, at {phasors.frequency:.4g} Hz; its first harmonic there is "
-                f"{first:.3g}, of the size of its error, {error:.2g} (a mass that sticks for good tells "
-                "nothing of its motion)"
-            )
-    _check_lag(phasors)
-    return phasors
-
-
-def _check_lag(phasors: Phasors) -> None:
-    """Energy flows from the base to the mass: its first harmonic lags by 0 to 180 degrees."""
-    lag = np.degrees(amplitude_and_lag(phasors)[1])
-    if lag < -(_LEAD + _FOUND * np.degrees(ratio_error(phasors))):
-        raise InputError(
-            "x must lag behind the base by 0 to 180 degrees, as energy comes from it; "
-            f"it leads by {-lag:.4g} (are the columns exchanged, or is one of opposite sign?)"
-        )
-
-
-def _dataset(fit: Fit, phasors: Phasors, found: Errors, x: np.ndarray, unit: str) -> xr.Dataset:
+def _dataset(fit: Fit, phasors: Phasors, found: Errors, unit: str) -> xr.Dataset:
     """The estimates, residuals as they are measured."""
-    at_bound = fit.solution.at_bound.copy()
-    at_bound[MU] |= not fit.mu_told
+    size = len(PARAMETERS)
+    at_bound = fit.solution.at_bound[:size]
     further = np.array([at_bound[X_F], False, False, False])
     solution = fit.solution._replace(
         values=np.concatenate((fit.values, derived_values(fit, phasors))),
-        residual=fit.motion.places - x,
+        residual=fit.residual,
         at_bound=np.concatenate((at_bound, further)),
     )
-    free = fit.problem.free.copy()
-    free[MU] |= not fit.mu_told
     units = ("Hz", "1", unit, "1", unit, "1", "deg", "1", "1")
-    every = np.concatenate((free, np.ones(len(DERIVED), dtype=bool)))
-    ds = estimates(_MEANINGS, units, solution, found, every, x, unit)
-    for name, one_unit in zip(DERIVED, units[len(PARAMETERS) :], strict=True):
+    every = np.concatenate((fit.free, np.ones(len(DERIVED), dtype=bool)))
+    shown = found._replace(standard_error=usable_errors(found, MU, 1.0, bool(every[MU])))
+    ds = estimates(_MEANINGS, units, solution, shown, every, fit.samples.x, unit)
+    for name, one_unit in zip(DERIVED, units[size:], strict=True):
         ds[name] = number(float(ds["estimate"].sel(parameter=name)), _MEANINGS[name], one_unit)
-    friction = float(fit.values[X_F]) > _FOUND * float(found.standard_error[X_F])
-    ds["verdict"] = verdict(int(friction) * (1 + int(fit.motion.stops > 0)), _VERDICTS)
+    ds["model_error"] = number(fit.model_error, _MODEL_ERROR)
+    code, meanings = record_verdict(fit, found)
+    ds["verdict"] = verdict(code, meanings)
     return ds
-
-
-def _of_record(time: np.ndarray, channels: np.ndarray, phasors: Phasors, unit: str) -> dict[str, xr.Variable]:
-    """What the record is, without any model."""
-    first = np.abs(phasors.values[:, 1])
-    parts = np.stack((phasors.values.real, phasors.values.imag), axis=-1)
-    dims = ("channel", "harmonic", "part")
-    cycles = (time[-1] - time[0]) * phasors.frequency
-    result = {
-        "base_frequency": number(phasors.frequency, "frequency of the base", "Hz"),
-        "base_frequency_standard_error": number(
-            phasors.frequency_error, "standard error of the frequency of the base", "Hz"
-        ),
-        "cycles": number(cycles, "cycles of the base in the record"),
-        "base_amplitude": number(first[0], "first harmonic of the base", unit),
-        "base_distortion": number(
-            np.linalg.norm(phasors.values[0, 2:]) / first[0],
-            "higher harmonics of the base over the first one",
-        ),
-        "base_residual_rms": number(phasors.rms[0], "root mean square of the base less its harmonics", unit),
-        "base_drift": number(phasors.drift[0], "drift of the base", f"{unit} s-1"),
-        "x_drift": number(phasors.drift[1], "drift of the mass", f"{unit} s-1"),
-        "phasor": xr.Variable(
-            dims,
-            parts,
-            {"long_name": "harmonics of base and mass at the middle of the record", "units": unit},
-        ),
-        "phasor_standard_error": xr.Variable(
-            dims[:2],
-            phasors.errors,
-            {"long_name": "standard error of either part of a phasor", "units": unit},
-        ),
-        "channel": xr.Variable("channel", ["base", "x"], {"long_name": "channel"}),
-        "part": xr.Variable("part", ["real", "imaginary"], {"long_name": "part of a phasor"}),
-    }
-    moved = changes(time, channels, phasors)
-    if moved.size:
-        result["change"] = number(
-            moved.max(),
-            "squared change of a first harmonic from the first to the last third of the record, over its "
-            "variance; 2 on average where nothing changes",
-        )
-    return result
 
 
 def _of_motion(fit: Fit, found: Errors, unit: str, stiffness: float | None) -> dict[str, xr.Variable]:
@@ -279,43 +177,38 @@ def _of_motion(fit: Fit, found: Errors, unit: str, stiffness: float | None) -> d
     return result
 
 
-def _of_data(time: np.ndarray, clipped: float, phasors: Phasors, ds: xr.Dataset) -> list[str]:
-    """What to mind of the data, in words."""
-    words = []
-    if clipped > 0.0:
-        words.append(f"clipped: {clipped:.1%} of the samples are at the extremes and were left out")
-    if gap := largest_gap(time):
-        words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
-    distortion = float(ds["base_distortion"])
-    if distortion > _DISTORTED:
-        words.append(f"the base is distorted: its higher harmonics are {distortion:.1%} of the first one")
-    if "change" in ds and float(ds["change"]) > _CHANGED:
-        words.append("not steady: first and last third of the record differ beyond their errors")
-    for name, drift, error in zip(("base", "x"), phasors.drift, phasors.drift_errors, strict=True):
-        if abs(drift) > _FOUND * error:
-            words.append(f"{name} drifts by {drift:.3g} {ds['base_amplitude'].attrs['units']} a second")
-    return words
-
-
 def _of_fit(fit: Fit, found: Errors) -> list[str]:
     """What to mind of the estimates, in words."""
     words = []
     if not fit.motion.repeats:
         words.append("the fitted motion does not repeat after one cycle of the base")
-    if not fit.mu_told:
+    if fit.static == IDLE:
         words.append(
             f"mu cannot be told, as the fit never sticks: all from 1 to {found.upper[MU]:.4g} move alike"
         )
-    if found.inflation > 1.0:
+    if fit.static == ONE:
         words.append(
-            f"residuals are not white (lag-1 correlation {found.lag_correlation:.2f}): "
-            f"errors are taken {found.inflation:.2f} times as large"
+            "mu = 1 explains the data as well as a larger mu does: the other estimates are those for mu = 1, "
+            "and their intervals allow for the whole interval of mu"
+        )
+    if fit.static == FITTED and found.lower[MU] <= 1.0:
+        words.append("the interval of mu begins at 1: its standard error is not usable, the interval is")
+    if fit.model_error > 1.0:
+        words.append(
+            f"the model does not explain the record down to its noise: at the harmonics of the base it "
+            f"leaves {fit.model_error:.3g} times the noise, and standard errors are {found.inflation:.3g} "
+            f"times as large"
+        )
+    elif found.inflation > 1.0:
+        words.append(
+            f"the noise is not white: near the harmonics of the base it is larger, and standard errors are "
+            f"{found.inflation:.3g} times as large"
         )
     for one, other in ((ZETA, X_F), (ZETA, MU), (X_F, MU)):
         correlation = float(found.correlation[one, other])
-        if abs(correlation) > _CORRELATED:
+        if abs(correlation) > CORRELATED:
             words.append(f"{PARAMETERS[one]} and {PARAMETERS[other]} trade: correlation {correlation:.2f}")
-    names = [PARAMETERS[index] for index in np.flatnonzero(fit.solution.at_bound)]
+    names = [PARAMETERS[index] for index in np.flatnonzero(fit.solution.at_bound[: len(PARAMETERS)])]
     if names:
         words.append(f"{' and '.join(names)} on the bound: the interval is one-sided")
     return words

@@ -2,22 +2,23 @@
 
 What is fitted, p, has the covariance s^2 (J^T V^-1 J)^-1, with V as in `record_fit`.  Errors b of the base's
 harmonics move it by -(J^T V^-1 J)^-1 J^T V^-1 J_b b, and the noise of the mass moves p and X_1 together.
+
+Where the data do not ask for mu > 1, estimates are those with mu = 1; their intervals reach as far as they
+would move if mu were at the upper end of its own.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import stdtrit
 
-from .least_squares import Errors, errors
+from .least_squares import Errors, errors, growth, two_sided
 from .phasors import Phasors, first_harmonics
 from .record_fit import Fit, base_errors
-from .record_motion import F_N, MU, PARAMETERS, X_F, ZETA
+from .record_motion import F_N, MU, OFFSET, PARAMETERS, X_F, ZETA
+from .static_friction import FITTED, IDLE, ONE, highest, interval, per_square
 
 #: What follows from the parameters and the phasors.
 DERIVED = ("beta", "lag_deg", "amplitude_ratio", "stops_per_cycle")
-
-_TWO_SIDED = 0.975
 
 #: Of the parameters and of `DERIVED`, those that cannot be negative.
 _POSITIVE = [F_N, ZETA, X_F, len(PARAMETERS)]
@@ -47,40 +48,41 @@ def record_errors(fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray
 
     used : shape (samples,), bool: whether a sample is part of the fit, which takes the place of the others
     """
-    found = errors(fit.problem, fit.solution)
+    size = len(PARAMETERS)
+    on_bound = fit.solution.at_bound & fit.problem.free
+    found = errors(fit.problem, fit.solution._replace(at_bound=on_bound), noise=fit.noise)
     linear = _in_what_is_fitted(fit, phasors, time, used, found)
-    of_fitted = found.standard_error
-    # (mu - 1)^2 is told; where it is below its error, mu - 1 is known no better than to the root of that
-    spread = max(2.0 * (float(fit.values[MU]) - 1.0), float(np.sqrt(of_fitted[MU])))
-    linear.transfer[MU] *= 1.0 / spread if spread > 0.0 else 0.0
+    of_square = float(found.standard_error[MU])
+    linear.transfer[MU] *= per_square(float(fit.values[MU]), of_square)
     covariance = linear.of_estimates
     deviation = np.sqrt(np.diag(covariance))
     scale = np.where(deviation > 0.0, deviation, 1.0)
     correlation = np.where(np.eye(deviation.size, dtype=bool), 1.0, covariance / np.outer(scale, scale))
-    reach = float(stdtrit(int(used.sum()) - int(fit.problem.free.sum()), _TWO_SIDED))
+    reach = two_sided(fit.noise.freedom)
     values = np.concatenate((fit.values, derived_values(fit, phasors)))
     lower, upper = values - reach * deviation, values + reach * deviation
-    lower[_POSITIVE] = np.maximum(lower[_POSITIVE], 0.0)
-    _end_at_bounds(fit, found, lower, upper)
-    lower[MU], upper[MU] = _interval_of_mu(fit, reach * of_fitted[MU], upper[MU])
-    return found._replace(standard_error=deviation, lower=lower, upper=upper, correlation=correlation)
-
-
-def _end_at_bounds(fit: Fit, found: Errors, lower: np.ndarray, upper: np.ndarray) -> None:
-    """One-sided intervals, from the profile of the sum."""
-    for index in np.flatnonzero(fit.solution.at_bound):
+    for index in np.flatnonzero(on_bound[:size]):  # one-sided, from the profile of the sum
         lower[index], upper[index] = 0.0, found.upper[index]
+    if fit.static == ONE:
+        upper[MU], moved = highest(fit.with_mu, fit.solution, fit.noise, MU)
+        moves = np.concatenate((moved[:size], np.zeros(len(DERIVED))))
+        moves[size] = moved[X_F] / abs(phasors.values[0, 1])  # beta
+        lower, upper = lower + np.minimum(moves, 0.0), upper + np.maximum(moves, 0.0)
+    elif fit.static == IDLE:
+        upper[MU] = _mu_of_first_stop(fit)
+    elif fit.static == FITTED:
+        lower[MU], upper[MU] = interval(float(fit.solution.values[MU]), reach * of_square)
+    lower[_POSITIVE] = np.maximum(lower[_POSITIVE], 0.0)
+    return found._replace(
+        standard_error=deviation, lower=lower, upper=upper, correlation=correlation,
+        inflation=float(growth(fit.problem, fit.solution, fit.noise)[:OFFSET].max()),
+    )  # fmt: skip
 
 
-def _interval_of_mu(fit: Fit, reach: float, at_bound: float) -> tuple[float, float]:
-    """Of mu, from that of (mu - 1)^2; where the mass never sticks, up to where it would."""
-    if not fit.mu_told:
-        friction = float(fit.values[X_F])
-        return 1.0, max(fit.motion.turn_load / friction, 1.0) if friction > 0.0 else np.inf
-    if fit.solution.at_bound[MU]:
-        return 1.0, 1.0 + float(np.sqrt(at_bound))
-    square = float(fit.values[MU] - 1.0) ** 2
-    return 1.0 + float(np.sqrt(max(square - reach, 0.0))), 1.0 + float(np.sqrt(square + reach))
+def _mu_of_first_stop(fit: Fit) -> float:
+    """Up to where the mass would not stick, and nothing changes with mu."""
+    friction = float(fit.values[X_F])
+    return max(fit.motion.turn_load / friction, 1.0) if friction > 0.0 else np.inf
 
 
 def _in_what_is_fitted(
@@ -88,17 +90,18 @@ def _in_what_is_fitted(
 ) -> _Linear:
     """What is fitted and `DERIVED`."""
     size, own = len(PARAMETERS), found.standard_error
-    of_fit = found.correlation * np.outer(own, own)
+    of_all = found.correlation * np.outer(own, own)  # the parts of slow waves among them
+    of_fit = of_all[:size]
     slopes = fit.whitening(fit.solution.slopes)
-    at_all = np.zeros((time.size, size))
+    at_all = np.zeros((time.size, slopes.shape[1]))
     at_all[used] = slopes
     first = first_harmonics(time, at_all, phasors)
     of_base = base_errors(fit.mass, phasors) ** 2
-    variance = found.variance * found.inflation**2
+    variance = fit.noise.variance * found.inflation**2
     by_base = -of_fit @ (slopes.T @ fit.by_base) * (of_base / variance if variance > 0.0 else 0.0)
     others = np.concatenate((np.full(2, phasors.errors[1, 1] ** 2), of_base))
     in_common = np.column_stack((of_fit @ first.real, of_fit @ first.imag, by_base))
-    covariance = np.block([[of_fit, in_common], [in_common.T, np.diag(others)]])
+    covariance = np.block([[of_fit[:, :size], in_common], [in_common.T, np.diag(others)]])
     transfer = np.zeros((size + len(DERIVED), covariance.shape[0]))
     transfer[:size, :size] = np.eye(size)
     _add_derived(transfer, fit, phasors)

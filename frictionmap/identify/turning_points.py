@@ -1,5 +1,6 @@
 """Turning points of a measured decay, and what they tell without any model."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -33,12 +34,12 @@ class TurningPoints(NamedTuple):
     number: np.ndarray  # half cycles since the first one, whole; those that a gap hides are counted
 
 
-def noise_level(x: np.ndarray) -> float:
+def noise_level(x: np.ndarray, order: int = 4) -> float:
     """Standard deviation of the noise: the median of fourth differences, in which smooth motion cancels."""
-    if x.size < 5:
+    if x.size <= order:
         return 0.0
     # a normal deviate is below 0.6745 deviations in half of all cases; the squares 1, 4, 6, 4, 1 add to 70
-    return float(np.median(np.abs(np.diff(x, 4))) / (0.6745 * np.sqrt(70.0)))
+    return float(np.median(np.abs(np.diff(x, order))) / (0.6745 * np.sqrt(math.comb(2 * order, order))))
 
 
 def without_spikes(x: np.ndarray) -> np.ndarray:

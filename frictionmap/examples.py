@@ -59,14 +59,17 @@ def rig_files(seed: int = 1) -> dict[str, str]:
 
 
 def starting_rig(kind: str) -> tuple[str, str]:
-    """A configuration of a rig with every key and its meaning, and the table that it reads, `KIND.csv`."""
+    """A configuration of a rig with every key and its meaning, and the table that it reads, `KIND.csv`.
+
+    It has no title: what it draws is called after the file of data.
+    """
     said = parse(_configuration(kind))
     parts = [_HEAD]
     tables = rig_keys(kind)
     if kind == "sweep":  # of as many masses as it has
         tables["known"] = tuple(key for key in tables["known"] if key.name in chain_names(2))
     for section, keys in tables.items():
-        table = {"title": said["title"]} if section == "" else said.get(section, {})
+        table = said.get(section, {}) if section else {}  # a title would outlive the synthetic data
         texts = {key: value_text(value) for key, value in table.items()}
         parts.append(section_text(section, keys, texts, TABLES.get(section, "")))
     return "".join(parts), rig_table(kind)

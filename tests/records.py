@@ -150,3 +150,38 @@ def synthetic(truth, motion, seed):
     rng = np.random.default_rng(seed)
     base = base_at(truth, time) + rng.normal(0.0, truth.noise_y, time.size)
     return time, base, places(truth, motion, time) + rng.normal(0.0, truth.noise_x, time.size)
+
+
+#: Step of the differences that give velocities [s]: their error is some 1e-6 of a slide's acceleration.
+_STEP = 1e-5
+
+#: Slower than this [mm/s] over the wall the mass is stuck.
+_STUCK = 1e-4
+
+
+def rates(truth, motion, time):
+    """Velocities and accelerations of the mass in the steady state, by the equation of motion."""
+    t = np.mod(time, 1.0 / truth.f)
+    v, a = np.empty(t.size), np.empty(t.size)
+    for begin, end, place in motion.parts:
+        inside = (t >= begin) & (t <= end)
+        low, high = np.maximum(t[inside] - _STEP, begin), np.minimum(t[inside] + _STEP, end)
+        v[inside] = (place(high) - place(low)) / (high - low)
+        over = v[inside] - _wall(truth, t[inside], 1)
+        x, w = place(t[inside]), 2.0 * np.pi * truth.f_n
+        sliding = _acceleration(truth, t[inside], x, v[inside]) - w**2 * truth.x_F * np.sign(over)
+        a[inside] = np.where(np.abs(over) > _STUCK, sliding, _wall(truth, t[inside], 2))
+    return v, a
+
+
+def filtered(truth, values_at, time, highest=0.4):
+    """A periodic signal with a jump, behind a filter against aliasing: harmonics up to a share of the rate.
+
+    values_at : the signal at times within one period, which is sampled a thousand times as often
+    """
+    count = int(highest * truth.rate / truth.f)
+    fine = np.arange(1000 * count) / (1000 * count * truth.f)
+    harmonics = np.fft.rfft(values_at(fine))[: count + 1] / fine.size
+    harmonics[1:] *= 2.0
+    turn = np.exp(2j * np.pi * truth.f * np.multiply.outer(time, np.arange(count + 1)))
+    return (turn @ harmonics).real

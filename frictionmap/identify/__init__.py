@@ -7,6 +7,7 @@ units            units that names of columns end in
 lab_tables       files of measuring programs, through the extra `lab`
 tables           files of measured data: CSV, MAT, NPZ, and those
 columns          columns by what they are, checked value by value
+integration      displacements from velocities and accelerations, harmonic by harmonic
 turning_points   extremes of a record, its noise, the linear decrement
 decay_checks     which samples can be a free decay
 decay_motion     the exact decay and its derivatives
@@ -33,6 +34,7 @@ forced_model     amplitudes and lags of forced responses, and their derivatives
 forced_data      tables of forced responses, checked
 forced_start     where the fit of forced responses begins
 forced_fit       the steady states nearest to forced responses
+lag_extremes     extremes of sampled functions on the way to zero
 phase_inversion  `friction_ratio`: friction ratios from single lags
 forced_lags      what the lags of a table tell one by one
 forced_told      what to mind of such a fit, in words
@@ -56,9 +58,10 @@ rig_keys         their keys in words and as JSON Schema
 
 from .forced import forced
 from .free_decay import free_decay
+from .integration import displacements
 from .likelihood import log_likelihood
 from .phase_inversion import friction_ratio
 from .record import record
 from .sweep import sweep
 
-__all__ = ["forced", "free_decay", "friction_ratio", "log_likelihood", "record", "sweep"]
+__all__ = ["displacements", "forced", "free_decay", "friction_ratio", "log_likelihood", "record", "sweep"]

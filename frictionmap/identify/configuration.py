@@ -54,7 +54,7 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
         given = f"got {checks.one_line(file)}" if "file" in data else "there is none"
         raise InputError(f"data.file must be the path of a file of measured data; {given}")
     missing = checks.choice(data.get("missing", MISSING[0]), "data.missing", MISSING)
-    title = tree.get("title", path.stem)
+    title = tree.get("title", Path(file).stem)
     if not isinstance(title, str):
         raise InputError(f"title must be text; got {checks.one_line(title)}")
     values = {key: _known_number(value, key) for key, value in known.items()}

@@ -9,11 +9,11 @@ from .. import checks
 from ..errors import InputError
 from ..files.config import read_system
 from ..model.system import System
-from ..units.table import conversion, derivative_order
-from .columns import Columns, check_positive, columns_like, pick_columns
+from ..units.table import COLUMN_NAMES, conversion
+from .columns import Column, Columns, check_positive, columns_like, pick_columns
 from .forced import forced
 from .forced_data import check_lag
-from .integration import amplitude_factors
+from .integration import amplitude_factors, derivative_order
 from .rig import Kind, Rig, check_columns, with_remarks
 from .tables import Table
 
@@ -160,8 +160,13 @@ def _load(picked: Columns, frequency: np.ndarray) -> tuple[np.ndarray | None, st
     if "base" not in picked.columns:
         return None, "mm"
     base = picked.columns["base"]
-    unit = "mm" if derivative_order(base.unit) else base.unit
-    return base.values * amplitude_factors(base.unit, unit, frequency), unit
+    unit = "mm" if derivative_order(COLUMN_NAMES[base.unit]) else base.unit
+    return _displaced(base, unit, frequency), unit
+
+
+def _displaced(column: Column, unit: str, frequency: np.ndarray) -> np.ndarray:
+    """Amplitudes of a displacement, velocity or acceleration as displacements in a unit."""
+    return column.values * amplitude_factors(COLUMN_NAMES[column.unit], unit, frequency)
 
 
 def _ratios(
@@ -172,7 +177,7 @@ def _ratios(
     for mass in range(1, system.n + 1):
         column = picked.columns.get(_role(system, _MOTION[0], mass))
         if column is not None:
-            amplitude = column.values * amplitude_factors(column.unit, "m", frequency)
+            amplitude = _displaced(column, "m", frequency)
             ratios[mass] = amplitude / _unit_response(rig, picked, frequency, column.name)
     return ratios
 
@@ -180,7 +185,7 @@ def _ratios(
 def _unit_response(rig: Rig, picked: Columns, frequency: np.ndarray, name: str) -> np.ndarray:
     """Amplitudes that make the ratio one [m]: of the base, or force over stiffness."""
     if "base" in picked.columns:
-        return picked.columns["base"].values * amplitude_factors(picked.columns["base"].unit, "m", frequency)
+        return _displaced(picked.columns["base"], "m", frequency)
     if "force" not in picked.columns:
         raise InputError(
             f"file {rig.file} must have a column base_mm or force_N, over which the amplitudes {name} are "

@@ -27,6 +27,8 @@ TABLES = {
 _POSITIVE = number(above=0.0)
 _TIMES = several(number(), 2, maxItems=2)
 
+_TITLE = KEYS[""][0]._replace(meaning="what pictures are called; default: the name of the file of data")
+
 _DATA = (
     Key("kind", "what was measured", word(*KINDS)),
     Key("file", "the file, relative to this one", {"type": "string", "minLength": 1}, example='"data.csv"'),
@@ -116,7 +118,7 @@ def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
     data = ("kind", "file", "columns", "missing", *of.data)
     known = (*of.parameters, *of.known)
     tables = {
-        "": KEYS[""],
+        "": (_TITLE,),
         "data": tuple(key for key in _DATA if key.name in data),
         "system": _SYSTEMS.get(kind, ()),
         "known": tuple(_known(name) for name in known),

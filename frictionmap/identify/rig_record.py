@@ -1,18 +1,24 @@
 """Records of steady motion from the file of a rig."""
 
+import numpy as np
 import xarray as xr
 
 from .. import checks
 from ..errors import InputError
 from ..files.config import unknown_key
-from ..units.table import conversion
-from .columns import check_increasing, pick_columns
+from ..units.table import COLUMN_NAMES, conversion
+from .columns import Column, check_increasing, pick_columns
+from .decay_checks import within
+from .integration import Displacements, derivative_order, displacements
 from .record import record
 from .record_motion import CONTACTS, DAMPING_REFERENCES, PARAMETERS
 from .rig import Kind, Rig, check_columns, with_remarks
 from .tables import Table
 
-_WANTED = {"time": "time", "base": "length", "x": "length"}
+_WANTED = {"time": "time", "base": "motion", "x": "motion"}
+
+#: Noise of displacements beyond this share of the motion is much.
+_NOISY = 0.05
 
 #: What is given in mm, whatever the unit of the data.
 _LENGTHS = ("x_F", "offset_x")
@@ -26,21 +32,49 @@ def _record(rig: Rig, table: Table) -> xr.Dataset:
     picked = pick_columns(table, _WANTED, rig.columns, rig.missing)
     time, base, x = (picked.columns[role] for role in _WANTED)
     check_increasing(table, time, picked.rows)
+    unit = "mm" if derivative_order(COLUMN_NAMES[x.unit]) else x.unit
     known = {
-        key: value * conversion("mm", x.unit) if key in _LENGTHS else value
-        for key, value in rig.known.items()
+        key: value * conversion("mm", unit) if key in _LENGTHS else value for key, value in rig.known.items()
     }
     stiffness = known.pop("stiffness", None)
     try:
+        times, found = _displaced(time, base, x, unit, rig.data.get("window"))
         ds = record(
-            time.values * conversion(time.unit, "s"), base.values * conversion(base.unit, x.unit), x.values,
-            unit=x.unit, contact=contact, damping_reference=reference, known=known, stiffness=stiffness,
-            window=rig.data.get("window"),
+            times, found.base, found.x, unit=unit, contact=contact, damping_reference=reference, known=known,
+            stiffness=stiffness, window=rig.data.get("window"),
         )  # fmt: skip
     except InputError as error:
         names = f"columns {time.name}, {base.name} and {x.name}"
         raise InputError(f"file {rig.file}, {names}: {error}") from None
+    remarks = _of_integration((base, x), found)
+    ds.attrs["warnings"] = "; ".join(filter(None, (*remarks, ds.attrs["warnings"])))
     return with_remarks(ds, table, picked)
+
+
+def _displaced(
+    time: Column, base: Column, x: Column, unit: str, window: object
+) -> tuple[np.ndarray, Displacements]:
+    """Times [s] within the window, and displacements of base and mass."""
+    times = time.values * conversion(time.unit, "s")
+    inside = within(window, times)
+    return times[inside], displacements(
+        times[inside], base.values[inside], x.values[inside], base_unit=COLUMN_NAMES[base.unit],
+        x_unit=COLUMN_NAMES[x.unit], unit=unit,
+    )  # fmt: skip
+
+
+def _of_integration(columns: tuple[Column, Column], found: Displacements) -> list[str]:
+    """What to mind of displacements that were not measured, in words."""
+    words = []
+    for column, noise in zip(columns, found.noise, strict=True):
+        if noise > _NOISY:
+            words.append(
+                f"{column.name} as a displacement has noise of {noise:.0%} of its motion: integration "
+                "amplifies what is slow"
+            )
+    if any(derivative_order(COLUMN_NAMES[column.unit]) for column in columns):
+        words.append("offset_x has no meaning: velocities and accelerations do not show where the mass rests")
+    return words
 
 
 def _checked_system(rig: Rig) -> tuple[str, str]:

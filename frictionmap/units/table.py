@@ -66,6 +66,9 @@ _ALIASES = {"\u00b5m": "um", "\u03bcm": "um", "m/s\u00b2": "m/s^2"}
 #: Units that names of columns may end in, by how they do.
 COLUMN_UNITS = {unit.column: unit for unit in UNITS.values() if unit.column}
 
+#: How the table writes the units that names of columns end in.
+COLUMN_NAMES = {unit.column: name for name, unit in UNITS.items() if unit.column}
+
 #: What motion is measured as, in the order of its derivatives.
 MOTIONS = ("length", "velocity", "acceleration")
 
@@ -105,11 +108,6 @@ def ending(name: str) -> str:
 def conversion(unit: str, into: str) -> float:
     """What a number in one unit of columns is multiplied by to be in another."""
     return float(COLUMN_UNITS[unit].size / COLUMN_UNITS[into].size)
-
-
-def derivative_order(unit: str) -> int:
-    """How often a displacement was differentiated to give what is in this unit: 0, 1 or 2."""
-    return MOTIONS.index(COLUMN_UNITS[unit].measures)
 
 
 def checked_unit(unit: str, measures: str, name: str) -> str:

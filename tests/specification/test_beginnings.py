@@ -92,9 +92,9 @@ def test_a_rig_to_begin_with_runs_as_it_stands(kind, tmp_path, monkeypatch):
     assert sorted(listing(tmp_path)) == sorted(["rig.toml", f"{kind}.csv"])
     committed = ROOT / "configs" / "rigs" / f"{kind}.csv"
     assert (tmp_path / f"{kind}.csv").read_text() == committed.read_text()
-    assert load_rig("rig.toml")._replace(text="", name="", file="", files=()) == load_rig(
+    assert load_rig("rig.toml")._replace(title="", text="", name="", file="", files=()) == load_rig(
         committed.with_suffix(".toml")
-    )._replace(text="", name="", file="", files=())
+    )._replace(title="", text="", name="", file="", files=())
 
 
 def test_nothing_is_overwritten_unasked(tmp_path, monkeypatch, capsys):
@@ -167,6 +167,20 @@ def test_units_however_they_are_written_obey_the_schema(base, tmp_path):
 @pytest.mark.parametrize("kind", TRUTHS)
 def test_rigs_that_init_writes_obey_the_schema(kind):
     RIG_SCHEMA.validate(tomllib.loads(starting_rig(kind)[0]))
+
+
+@pytest.mark.parametrize("kind", TRUTHS)
+def test_a_template_does_not_name_the_data_that_take_its_place(kind, tmp_path, monkeypatch):
+    """Pictures of measured data are called after their file, not after the synthetic data of the template."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "--rig", kind, "--quiet"]) == 0
+    (tmp_path / f"{kind}.csv").rename(tmp_path / "storey-7.csv")
+    config = tmp_path / "rig.toml"
+    config.write_text(config.read_text().replace(f"{kind}.csv", "storey-7.csv"))
+    rig = load_rig(config)
+    assert rig.title == "storey-7"
+    assert "title" not in tomllib.loads(config.read_text())
+    assert "synthetic" not in rig.text.lower()
 
 
 #: What a schema cannot say, beside what is no TOML at all: these it takes, and the program refuses.

@@ -32,7 +32,7 @@ ROW_CELLS = 262144
 
 #: What a cell costs, about, in hundredths of one that is followed: decided by a formula; followed; looked at
 #: for what else it could end in, with mu = 1 and above.
-_DECIDED, _FOLLOWED, _LOOKED_AT_SMOOTH, _LOOKED_AT = 2, 100, 25, 800
+_DECIDED, FOLLOWED, LOOKED_AT_SMOOTH, LOOKED_AT = 2, 100, 25, 800
 
 #: The arrays of a map, one for every output but those that are read from the results of a cycle.
 _NAMES = tuple(name for name, label in CELL_VARIABLES.items() if label.needs != "cycle")
@@ -164,11 +164,11 @@ def _fill(
         costs.append(_DECIDED * (last - first) * columns)
     for first, last in work.tiles():
         jobs.append(cells.opened(first, last, opened, out, cancel))
-        costs.append(_FOLLOWED * (last - first))
+        costs.append(FOLLOWED * (last - first))
 
     others = cells.reachable(out, cancel)
     jobs += others
-    per_row = columns * np.repeat(np.where(smooth, _LOOKED_AT_SMOOTH, _LOOKED_AT), shape[1])
+    per_row = columns * np.repeat(np.where(smooth, LOOKED_AT_SMOOTH, LOOKED_AT), shape[1])
     costs += per_row.tolist()[: len(others)]
 
     spent, total = 0, sum(costs)

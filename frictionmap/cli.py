@@ -175,16 +175,18 @@ def _store(options: Options) -> None:
     from .files.config import load_config
     from .files.studies import describe_cells
     from .progress import Progress
+    from .stores.cuts import cut_by_cost
     from .stores.run import fill_store
     from .stores.study import study_of
 
     config = load_config(options.config, options.overrides, lambda *_: None)  # a block is all that is held
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
     study = study_of(config.system, config.variations, axes, config.solver, config.units)
-    with Progress(f"map of {study.cells:,} cells in {study.blocks:,} blocks", options.quiet) as progress:
+    find_cut = functools.partial(cut_by_cost, workers=options.workers or 0, threads=options.threads)
+    with Progress(f"map of {study.cells:,} cells", options.quiet) as progress:
         fill = _fill(options, progress)
         listeners.append(progress.compiling)
-        store = fill_store(options.output, study, config.title, fill, options.overwrite, progress)
+        store = fill_store(options.output, study, config.title, fill, options.overwrite, progress, find_cut)
         listeners.remove(progress.compiling)
     if not options.quiet:
         first, *others = describe_cells(store.path)

@@ -5,6 +5,7 @@ import math
 import os
 import time
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -41,6 +42,16 @@ _SAMPLE = 0.5
 
 #: Smallest and largest number of values of an axis in that part.
 _FEWEST, _MOST = 8, 256
+
+
+#: Values of an axis of which cells are counted, at most.
+_COUNTED = {"mu": 3, "r": 12, "beta": 12}
+
+#: Seconds, measured: of a cell that a formula decides; of a period of a cell that is followed, whatever r is and
+#: times r, of one mass; the same of structures, where the latter grows with the masses.
+_DECIDED = 1e-7
+_ONE_MASS = (1e-6, 3e-7)
+_RETURN, _STEP, _STEP_OF_MASS = 6e-6, 5e-7, 2e-7
 
 
 def memory_of_map(
@@ -167,6 +178,45 @@ def seconds_of_map(
         if values > _FEWEST and (took > _SAMPLE or values >= _MOST):  # the first one compiles
             return took * (r.size * beta.size) / (some_r.size * some_beta.size)
         values *= 2
+
+
+def seconds_of_cells(
+    system: System, axes: Mapping[str, np.ndarray], solver: Solver, threads: int | None = None
+) -> float:
+    """Seconds that a cell of a map takes on average, on one thread of a common processor; > 0.
+
+    They are counted, not timed: from the excitation periods that some cells are followed for, to the bit the
+    same at every call.  Within a factor 3 of what cells take.
+    """
+    from ..datasets.labels import CELL_VARIABLES
+    from .maps import FOLLOWED, SEARCHED, SEARCHED_UNIQUE, solve_map
+
+    names = [name for name in solver.outputs if CELL_VARIABLES[name].needs != "coexistence"]
+    looked_at = len(names) < len(solver.outputs)
+    counting = replace(solver, outputs=tuple(dict.fromkeys((*names, "cycles"))))  # type: ignore[arg-type]
+    some = {name: _spread(values, _COUNTED[name]) for name, values in axes.items()}
+    cycles = solve_map(system, some, counting, threads, None)[0]["cycles"]
+    seconds = cycles * _seconds_of_period(system.n, some["r"])[:, np.newaxis] + _DECIDED
+    if looked_at:  # the motions from other starts; they cost what a cell does that is followed
+        others = np.where(some["mu"] == 1.0, SEARCHED_UNIQUE, SEARCHED) / FOLLOWED
+        seconds *= 1.0 + others[:, np.newaxis, np.newaxis]
+    return float(seconds.mean())
+
+
+def _spread(values: np.ndarray, most: int) -> np.ndarray:
+    """So many values of an axis at most: the middles of equal parts of it."""
+    count = min(values.size, most)
+    return values[((np.arange(count) + 0.5) * values.size / count).astype(int)]
+
+
+def _seconds_of_period(masses: int, r: np.ndarray) -> np.ndarray:
+    """Seconds to follow a cell for an excitation period, over r; a longer period has more steps.
+
+    At r = 0 nothing is followed.
+    """
+    of_return, of_step = _ONE_MASS if masses == 1 else (_RETURN, _STEP + _STEP_OF_MASS * masses)
+    steps = np.divide(of_step, r, out=np.zeros_like(r), where=r > 0.0)
+    return of_return + steps
 
 
 def in_bytes(size: float) -> str:

@@ -33,7 +33,7 @@ ROW_CELLS = 262144
 
 #: Approximate cost of a cell, in hundredths of one that is integrated: decided by a formula; integrated;
 #: searched for further regimes, with mu = 1 and with mu > 1.
-_DECIDED, _FOLLOWED, _SEARCHED_UNIQUE, _SEARCHED = 2, 100, 25, 800
+_DECIDED, FOLLOWED, SEARCHED_UNIQUE, SEARCHED = 2, 100, 25, 800
 
 #: Outputs with an array in a map: all but those that are read from the results over a cycle.
 _NAMES = tuple(name for name, label in CELL_VARIABLES.items() if label.needs != "cycle")
@@ -177,11 +177,11 @@ def _fill(
         costs.append(_DECIDED * (last - first) * columns)
     for first, last in work.tiles():
         jobs.append(cells.opened(first, last, opened, out, cancel))
-        costs.append(_FOLLOWED * (last - first))
+        costs.append(FOLLOWED * (last - first))
 
     others = cells.reachable(out, cancel)
     jobs += others
-    per_row = columns * np.repeat(np.where(unique, _SEARCHED_UNIQUE, _SEARCHED), shape[1])
+    per_row = columns * np.repeat(np.where(unique, SEARCHED_UNIQUE, SEARCHED), shape[1])
     costs += per_row.tolist()[: len(others)]
 
     spent, total = 0, sum(costs)

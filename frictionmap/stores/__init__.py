@@ -4,6 +4,7 @@
 module     what is in it, in the order in which data flows
 =========  =============================================================================
 study      what is computed: systems, grid, settings; its blocks
+cuts       where it is cut into blocks, by what its cells cost
 layout     the arrays of a store: their dimensions, types and chunks
 store      a store on disk: made, recognised, tidied; blocks written and marked as done
 run        one block after the other, in this process

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,11 +10,14 @@ import numpy as np
 from ..errors import InputError
 from ..files.places import claimed_folder
 from ..steady.maps import Progress
-from .store import Store, check_same, make_store, remove_strays
-from .study import Batch, Study
+from .store import Store, check_same, cut_of, make_store, remove_strays
+from .study import Batch, Cut, Study
 
 #: Computes and writes batches of blocks, and yields each when it is done.
 Fill = Callable[[Store, Iterable[Batch]], Iterator[Batch]]
+
+#: Finds where the cells of a study are cut.
+FindCut = Callable[[Study], Cut]
 
 
 def in_this_process(threads: int | None) -> Fill:
@@ -34,8 +38,11 @@ def fill_store(
     fill: Fill,
     overwrite: bool = False,
     progress: Progress | None = None,
+    find_cut: FindCut | None = None,
 ) -> Store:
     """Make the store of a study, or go on with it, until all its blocks are done.
+
+    A store keeps the cut that it was made with; `find_cut` is asked for that of a new one.
 
     Raises
     ------
@@ -50,8 +57,10 @@ def fill_store(
     with claimed_folder(path) as claim:
         if path.exists() and not overwrite:
             check_same(path, study, title)
+            study = replace(study, cut=cut_of(path))
         else:
             _check_replaceable(path)
+            study = study if find_cut is None else replace(study, cut=find_cut(study))
             make_store(path, study, title)
         remove_strays(path)
         store = Store(path, study)

@@ -7,6 +7,7 @@ import secrets
 import shutil
 import threading
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,7 +23,7 @@ from ..files.config import Config, config_of, parse
 from ..model.matrices import Matrices
 from ..version import __version__
 from .layout import MARKS, Array, arrays_of, chunk, coordinates_of, plain, region
-from .study import Batch, Study, study_of
+from .study import Batch, Cut, Study, study_of
 
 if TYPE_CHECKING:
     import zarr
@@ -84,10 +85,7 @@ class Store:
         except OSError:
             raise
         except Exception as error:  # the library raises anything over files that are not its own
-            raise InputError(
-                f"store {self.path} must be whole to go on with; its {name} cannot be read "
-                f"({checks.one_line(error)}); use --overwrite or another -o"
-            ) from None
+            raise _damaged(self.path, name, error) from None
 
     def done(self) -> np.ndarray:
         """Which blocks are done: `marks`, but for blocks of which a chunk is missing, by whose hand ever."""
@@ -206,7 +204,35 @@ def opened(path: Path) -> Store:
     """
     config = _config(path)
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
-    return Store(path, study_of(config.system, config.variations, axes, config.solver, config.units))
+    study = study_of(config.system, config.variations, axes, config.solver, config.units)
+    return Store(path, replace(study, cut=cut_of(path)))
+
+
+def cut_of(path: Path) -> Cut:
+    """How the store at a path is cut, by the chunks of its arrays.
+
+    Raises
+    ------
+    InputError
+        An array that tells it is missing or damaged.
+    """
+    name = MARKS
+    try:
+        group = _zarr().open_group(path, mode="r", use_consolidated=False)
+        together = group[name].chunks
+        name = "status"  # which every store has, over mu, r and beta
+        return Cut(group[name].chunks[-2], together)
+    except OSError:
+        raise
+    except Exception as error:  # the library raises anything over files that are not its own
+        raise _damaged(path, name, error) from None
+
+
+def _damaged(path: Path, name: str, error: Exception) -> InputError:
+    return InputError(
+        f"store {path} must be whole to go on with; its {name} cannot be read "
+        f"({checks.one_line(error)}); use --overwrite or another -o"
+    )
 
 
 def _config(path: Path) -> Config:

@@ -20,7 +20,7 @@ from ..steady.refinement import reduction_check
 from ..steady.sweep import regime_map, study_coordinates
 from ..units.scales import Scales, Units, scales_of
 
-#: Cells of a block: some seconds of work at most, and few files.
+#: Cells of a block at most, whatever they cost: memory, and few files.
 BLOCK_CELLS = 2**20
 
 
@@ -45,6 +45,14 @@ class Batch(NamedTuple):
         return product(*(range(part.start, part.stop) for part in self.places[:-2]))
 
 
+class Cut(NamedTuple):
+    """Where the cells of a study are cut: into blocks, and into batches of blocks."""
+
+    rows: int  # of a block; the last one of a map may have fewer
+    #: blocks of a batch along every axis of the marks; those at the ends may have fewer
+    together: tuple[int, ...]
+
+
 @dataclass(frozen=True)
 class Study:
     """Maps of one system, or of many along further axes."""
@@ -56,6 +64,7 @@ class Study:
     solver: Solver
     block_cells: int = BLOCK_CELLS
     units: Units | None = None
+    cut: Cut | None = None  # as its store is cut; None: by the number of cells alone
 
     @property
     def system(self) -> System:
@@ -67,6 +76,10 @@ class Study:
         """What the ratios are in SI units."""
         return scales_of(self.units, self.system, self.variations)
 
+    @cached_property
+    def _cut(self) -> Cut:
+        return self.cut or self.cut_at(self.cells)
+
     @property
     def reduction_check(self) -> dict[str, str]:
         """What twice as many modes of a reduced structure change, see `steady.refinement`."""
@@ -75,7 +88,12 @@ class Study:
     @property
     def rows(self) -> int:
         """Rows of a block; the last one of a map may have fewer."""
-        return max(1, min(self.r.size, self.block_cells // self._row))
+        return self._cut.rows
+
+    @property
+    def together(self) -> tuple[int, ...]:
+        """Blocks of a batch along every axis of the marks; batches at the ends may have fewer."""
+        return self._cut.together
 
     @property
     def _row(self) -> int:
@@ -85,7 +103,10 @@ class Study:
     @property
     def shape(self) -> tuple[int, ...]:
         """Blocks along the further axes, mu and r."""
-        return (*self.variations.shape, self.mu.size, math.ceil(self.r.size / self.rows))
+        return self._shape(self.rows)
+
+    def _shape(self, rows: int) -> tuple[int, ...]:
+        return (*self.variations.shape, self.mu.size, math.ceil(self.r.size / rows))
 
     @property
     def blocks(self) -> int:
@@ -97,18 +118,19 @@ class Study:
         """Number of cells."""
         return self.variations.count * self.mu.size * self.r.size * self.beta.size
 
-    @property
-    def together(self) -> tuple[int, ...]:
-        """Blocks of a batch along every axis of the marks; batches at the ends may have fewer.
+    def cut_at(self, cells: int) -> Cut:
+        """Blocks, and batches of blocks, of so many cells at most; a block has one row at least.
 
         Large blocks are alone; small ones share files, and what it costs to write them.
         """
-        room = min(TOGETHER, self.block_cells // TOGETHER // (self.rows * self._row))
+        rows = max(1, min(self.r.size, self.block_cells // self._row, cells // self.beta.size))
+        small = self.block_cells // TOGETHER // (rows * self._row)
+        room = min(TOGETHER, small, cells // (rows * self.beta.size))
         sizes: list[int] = []
-        for size in reversed(self.shape):
+        for size in reversed(self._shape(rows)):
             sizes.append(max(1, min(size, room)))
             room //= sizes[-1]
-        return tuple(reversed(sizes))
+        return Cut(rows, tuple(reversed(sizes)))
 
     def batch(self, first: tuple[int, ...]) -> Batch:
         """The batch whose first block is at this place among the marks."""

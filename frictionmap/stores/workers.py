@@ -6,6 +6,7 @@ What was done by a worker that is lost is done again, to the same bytes.
 
 import contextlib
 import logging
+import os
 import sys
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator
@@ -127,6 +128,7 @@ def local(workers: int) -> Fill:
     import dask
 
     def fill(store: Store, batches: Iterable[Batch]) -> Iterator[Batch]:
+        _tidy_in_silence()
         with (
             dask.config.set({"distributed.scheduler.allowed-failures": _LOSSES}),
             _cluster(workers) as cluster,
@@ -135,6 +137,25 @@ def local(workers: int) -> Fill:
             yield from _on(client, store, batches)
 
     return fill
+
+
+def _tidy_in_silence() -> None:
+    """Start Python's resource tracker without its warnings.
+
+    An interrupt ends this process at once.  The tracker outlives it and removes the semaphores of the workers,
+    which is what it is for.
+    """
+    from multiprocessing import resource_tracker
+
+    before = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = "ignore:resource_tracker:UserWarning"
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        if before is None:
+            del os.environ["PYTHONWARNINGS"]
+        else:
+            os.environ["PYTHONWARNINGS"] = before
 
 
 def _cluster(workers: int) -> "LocalCluster":

@@ -1,9 +1,9 @@
 """The interface of a kind of motion: what the driver asks of it.
 
 A kind of motion is two named tuples, of a system over a map and of the system at one frequency, and a body
-for each of the functions here (`by_class`).  Every slide is followed as an upward one: a motion that goes back
-is mirrored.  Where a motion is, a `Moment` says, together with arrays of the kind's own that these functions
-move along with it.
+for each of the functions here (`by_class`).  Every slide is followed as an upward one: a motion that goes
+back is mirrored.  Where a motion is, a `Moment` says, together with arrays of the kind's own that these
+functions move along with it.
 
 The fields of a kind of motion that the driver reads: `h`, the scan step in tau; `r`; `v_abs`, the response
 function of the contact; `marginal`, whether continuous motions are a continuum; `memory`; `load`, the unit of

@@ -11,8 +11,8 @@ from ..errors import InputError
 from ..model.modes import angles, modulus
 from ..model.system import System
 
-#: Least r over the fastest rate of free motion; the search for S takes about 10^6 intervals there, and a period
-#: of the load about 10^7 scan steps.
+#: Least r over the fastest rate of free motion; there the search for S takes about 10^6 intervals, and a
+#: period of the load about 10^7 scan steps.
 _LEAST_RATIO = 1e-6
 
 

@@ -6,8 +6,8 @@
 MOVING_START = 1.5
 MOVING_START_CAP = 10.0
 
-#: Friction ratio, relative to the load in the contact, below which friction is treated as zero: half a unit of
-#: rounding of the load.
+#: Friction ratio, relative to the load in the contact, below which friction is treated as zero: half a unit
+#: of rounding of the load.
 NO_FRICTION = 2.0**-53
 
 #: Scan steps per fastest period for bounds over a whole orbit; the bounds tighten with the square of the

@@ -47,8 +47,8 @@ _FEWEST, _MOST = 8, 256
 #: Values of an axis of which cells are counted, at most.
 _COUNTED = {"mu": 3, "r": 12, "beta": 12}
 
-#: Seconds, measured: per cell that a formula decides; per integrated period of one mass, a constant and a part
-#: in proportion to 1/r; the same for a structure, where the latter part grows with the number of masses.
+#: Seconds, measured: per cell that a formula decides; per integrated period of one mass, a constant and a
+#: part in proportion to 1/r; the same for a structure, where the latter part grows with the number of masses.
 _DECIDED = 1e-7
 _ONE_MASS = (1e-6, 3e-7)
 _RETURN, _STEP, _STEP_OF_MASS = 6e-6, 5e-7, 2e-7

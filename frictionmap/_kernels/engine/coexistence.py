@@ -26,8 +26,8 @@ from .records import ContactState, Limits, unresolved
 _HALVINGS = 22
 
 #: Largest number of scan steps, relative to that of one motion, of all motions along the ladders of a row
-#: (with the search for the end of sliding), and of all motions of a cell: at low frequency each may take all of
-#: its own.
+#: (with the search for the end of sliding), and of all motions of a cell: at low frequency each may take all
+#: of its own.
 _ROW_SHARE, _CELL_SHARE = 4.0, 2.0
 
 #: Relative rounding error of beta and of mu beta_stick.

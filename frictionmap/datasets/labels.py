@@ -189,11 +189,11 @@ CELL_VARIABLES = {
     "sliding_distance": _of_cell(
         "distance that the contact slides", "per excitation cycle, over P/k1 (Y); 0 where stuck", least=0.0
     ),
-    "work_friction": _of_cell("work that friction takes", _PER_CYCLE, least=0.0),
+    "work_friction": _of_cell("work dissipated by friction", _PER_CYCLE, least=0.0),
     "work_input": _of_cell(
         "work of the load, or of what moves the base", f"{_PER_CYCLE}; a joined wall is moved with the base"
     ),
-    "work_damping": _of_cell("work that viscous damping takes", _PER_CYCLE, least=0.0),
+    "work_damping": _of_cell("work dissipated by viscous damping", _PER_CYCLE, least=0.0),
     "equivalent_damping": _of_cell(
         "equivalent viscous damping of the contact, c omega/k1",
         "work of friction over pi times the contact amplitude squared; NaN where stuck",
@@ -385,30 +385,30 @@ CURVES = {
     ),
     "invariant_point": Label(
         np.float64,
-        "frequency ratios where friction leaves the motion in the contact as it is",
+        "frequency ratios where friction does not change the motion in the contact",
         ("invariant",),
         comment="zeros of U, thesis (6.9); with damping they are invariant for the phase only",
         least=0.0,
     ),
     "mass_invariant_point": Label(
         np.float64,
-        "frequency ratios where friction leaves the monoharmonic amplitude of a mass as it is",
+        "frequency ratios where friction does not change the monoharmonic amplitude of a mass",
         ("dof", "mass_invariant"),
-        comment="zeros of U_k and thesis (6.10), undamped; NaN fills up where a mass has fewer",
+        comment="zeros of U_k and thesis (6.10), undamped; padded with NaN where a mass has fewer",
         least=0.0,
         nan=True,
     ),
     "invariant_first_harmonic": Label(
         np.float64,
-        "frequency ratios where friction leaves the first harmonic's amplitude of a mass as it is",
+        "frequency ratios where friction does not change the first harmonic's amplitude of a mass",
         ("dof", "root"),
-        comment="undamped; NaN fills up where a mass has fewer",
+        comment="undamped; padded with NaN where a mass has fewer",
         least=0.0,
         nan=True,
     ),
     "contact_invariant_first_harmonic": Label(
         np.float64,
-        "frequency ratios where friction leaves the first harmonic's amplitude in the contact as it is",
+        "frequency ratios where friction does not change the first harmonic's amplitude in the contact",
         ("contact_root",),
         comment="undamped; those of the natural frequencies with the contact held leave its phase, too",
         least=0.0,
@@ -430,7 +430,7 @@ HISTORY_VARIABLES = {
     "v": Label(np.float64, "velocity of the masses, dx/dtau, over P/k1 (Y)", ("dof", "tau")),
     "z": Label(np.float64, "motion in the contact, over P/k1 (Y)", ("tau",)),
     "friction": Label(np.float64, "friction force against the motion in the contact, over P", ("tau",)),
-    "phase": Label(np.int8, "sense of the motion in the contact", ("tau",), _SENSES),
+    "phase": Label(np.int8, "direction of the motion in the contact", ("tau",), _SENSES),
     "event_tau": Label(
         np.float64, "excitation phase at which a phase of the motion begins", ("event",), least=0.0
     ),

@@ -40,8 +40,8 @@ class Decoupling:
     def _checked(self, error: float) -> float:
         if not error <= self.allowed:
             raise InputError(
-                f"decouple must be at least {error:.2g}, by which linear responses change in the range of r "
-                f"if C is taken by its diagonal; got {self.allowed:g}"
+                f"decouple must be at least {error:.2g}, the change of linear responses in the range of r "
+                f"when C is replaced by its diagonal; got {self.allowed:g}"
             )
         return error
 

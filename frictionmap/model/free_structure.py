@@ -87,7 +87,7 @@ def coupled_structure(
     free = modal_structure(w, zeta, chi)
     coupled = np.flatnonzero(coupling.any(axis=1))
     damping = np.diag(2.0 * zeta * w)[np.ix_(coupled, coupled)] + coupling[np.ix_(coupled, coupled)]
-    part = damped_oscillators(np.diag(w[coupled]), damping, "structure one", chi[coupled])
+    part = damped_oscillators(np.diag(w[coupled]), damping, "structure", chi[coupled])
     both = np.concatenate((coupled, w.size + coupled))
     to_modes, to_oscillators = free.to_modes.copy(), free.to_oscillators.copy()
     to_modes[np.ix_(both, both)] = part.to_coordinates

@@ -60,7 +60,7 @@ def held_structure(
         if coupling is not None:
             damping += allowed.T @ coupling @ allowed
         root = np.linalg.cholesky(stiffness).T
-        what = f"held structure one; got ratios {zeta.tolist()}"
+        what = f"held structure with damping ratios {zeta.tolist()}"
         omega, ratio, basis, inverse, _ = damped_oscillators(root, damping, what)
     zero = np.zeros_like(allowed)
     spread = np.block([[allowed, zero], [zero, allowed]])

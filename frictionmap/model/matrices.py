@@ -91,8 +91,8 @@ def full_matrices(structure: Structure) -> Matrices:
         largest = np.linalg.eigvalsh(dense["M"])[-1]
         raise InputError(
             f"matrices: M must be positive definite; it is singular, with eigenvalues from 0 to "
-            f"{largest:.3g}: degree of freedom {structure.dofs.word(massless[0])} has no mass, which only "
-            f"reduce can take"
+            f"{largest:.3g}: degree of freedom {structure.dofs.word(massless[0])} has no mass; "
+            f"eliminate it with reduce"
         )
     return definite(dense, structure.dofs, structure.source)
 
@@ -133,6 +133,6 @@ def _semidefinite(damping: np.ndarray) -> None:
     eigenvalues = np.linalg.eigvalsh(damping)
     if eigenvalues[0] < -TOLERANCE * np.abs(eigenvalues).max():
         raise InputError(
-            f"matrices: C must be positive semi-definite, or it would feed the motion; it is indefinite, "
-            f"with eigenvalues from {eigenvalues[0]:.3g} to {eigenvalues[-1]:.3g}"
+            f"matrices: C must be positive semi-definite; it is indefinite and would feed energy into the "
+            f"motion, with eigenvalues from {eigenvalues[0]:.3g} to {eigenvalues[-1]:.3g}"
         )

@@ -126,7 +126,7 @@ def merged(solver: Solver | None, settings: Mapping[str, object]) -> Solver:
     for name in settings:
         if name not in names:
             hint = checks.nearest(name, names)
-            raise InputError(f"settings must be some of {', '.join(names)}; got {name}{hint}")
+            raise InputError(f"unknown setting {name!r}{hint}; valid: {', '.join(names)}")
     return replace(solver or Solver(), **settings)  # type: ignore[arg-type]
 
 

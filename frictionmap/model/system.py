@@ -80,7 +80,7 @@ def _damping(values: object, n: int) -> tuple[float, ...]:
         return (checks.number(values, "damping_ratios", **bounds),) * n
     values = _sequence(values, "damping_ratios", "numbers")
     if len(values) != n:
-        raise InputError(f"damping_ratios must be one number or one a mode ({n}); got {len(values)}")
+        raise InputError(f"damping_ratios must be one number, or one per mode ({n}); got {len(values)}")
     return tuple(
         checks.number(value, f"damping_ratios[{index}]", **bounds) for index, value in enumerate(values)
     )
@@ -96,7 +96,7 @@ def _complex(value: object, name: str) -> complex:
 def _load(values: object, n: int) -> tuple[complex, ...]:
     values = _sequence(values, "load", "numbers")
     if len(values) != n:
-        raise InputError(f"load must have one number a mass ({n}); got {len(values)}")
+        raise InputError(f"load must have one number per mass ({n}); got {len(values)}")
     load = tuple(_complex(value, f"load[{index}]") for index, value in enumerate(values))
     if not any(load):
         raise InputError("load must have a value that is not zero; got none")
@@ -435,7 +435,7 @@ class System:
             words["reduction"] = f"{reduced.words()}{where}; {reduced.beyond()}"
         if decoupled is not None:
             words["decoupling"] = (
-                f"C, taken by its diagonal in the modes, changes linear responses by {decoupled:.1e}{where}"
+                f"C, replaced by its modal diagonal, changes linear responses by {decoupled:.1e}{where}"
             )
         return words
 
@@ -484,8 +484,8 @@ class System:
         if not w[0] > math.sqrt(w.size * _EPS) * w[-1]:
             name = "mass_ratios and stiffness_ratios" if self.matrices is None else "matrices"
             raise InputError(
-                f"{name} must make natural frequencies that double precision can hold together; the highest, "
-                f"{w[-1]:.3g}, drowns the lowest"
+                f"cannot compute the natural frequencies: the highest, {w[-1]:.3g}, exceeds the lowest by "
+                f"more than double precision resolves; change {name}"
             )
         return w, phi
 

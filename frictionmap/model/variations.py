@@ -193,12 +193,12 @@ def checked_variations(system: System, axes: "Mapping[str, Any] | Variations") -
 
 def _axis(name: object, values: object) -> Axis:
     if not isinstance(name, str) or not name:
-        raise InputError(f"axes must have texts as names; got {checks.one_line(name)}")
+        raise InputError(f"axes must have strings as names; got {checks.one_line(name)}")
     if isinstance(values, Mapping):
         if not re.fullmatch("[a-z][a-z0-9_]*", name) or re.sub("_[0-9]+$", "", name) in (*NUMBERS, *LISTS):
             raise InputError(
-                f"axes must give keys that change together a name of their own, of small letters, such as "
-                f"sample; got {name!r}"
+                f"axes must have a name of its own in lower-case letters, such as sample, for parameters "
+                f"that vary together; got {name!r}"
             )
         columns = {key: _column(f"axes.{name}.{key}", column) for key, column in values.items()}
         sizes = {key: column.size for key, column in columns.items()}

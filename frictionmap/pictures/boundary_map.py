@@ -88,7 +88,7 @@ def _draw(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
     low, high = found.both
     if (high > low).any():
         ax.fill_between(x, low, high, facecolor="white", edgecolor=HATCH_COLOUR, hatch=HATCH, linewidth=0.0)
-        handles.append(patch("continuous or stuck: the start decides", "white", HATCH))
+        handles.append(patch("continuous or stuck: the initial state decides", "white", HATCH))
     curves = [("beta_lim", LIM), ("beta_stick", STICK)]
     if "beta_lim_modal" in panel and _differ(panel["beta_lim"].values, panel["beta_lim_modal"].values, top):
         curves.append(("beta_lim_modal", MODAL))
@@ -117,9 +117,8 @@ def _reading(mu: np.ndarray) -> str:
     """Remark on how to read the regions."""
     if (mu == 1.0).all():
         return ""
-    return r"for mu > 1 stick-slip is possible in all areas" + (
-        ", for mu = 1 what is possible is certain" if (mu == 1.0).any() else ""
-    )
+    exact = "for μ = 1 the regions are exact; " if (mu == 1.0).any() else ""
+    return f"{exact}for μ > 1 stick-slip can also occur outside its region"
 
 
 @overload

@@ -74,7 +74,7 @@ def about_peaks(family: Family) -> list[str]:
     """Remarks on infinite peaks and the friction ratio at which they become finite."""
     return [
         f"infinite at r = {r:.4g}, "
-        + (f"finite from β = {beta:.4g} on" if np.isfinite(beta) else "whatever the friction")
+        + (f"finite at or above β = {beta:.4g}" if np.isfinite(beta) else "for any friction")
         for r, beta in infinite_resonances(family)
     ]
 

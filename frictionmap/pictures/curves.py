@@ -119,7 +119,7 @@ def plot_curves(
     ds = to_draw(ds, "plot_curves", "curves", "map")
     quantity = _quantity(ds, quantity)
     if log and quantity == "harmonics":
-        raise InputError("log is for amplitudes: harmonics are in decibels; leave it out")
+        raise InputError("cannot draw harmonics with log: they are in decibels; omit log")
     family = family_of(ds)
     _check_lines(family)
     picture = _picture(family, quantity, log)

@@ -97,7 +97,7 @@ def spectrum_picture(family: Family) -> Picture:
         return draw
 
     panels: list[Row] = [[panel(spectrum) for spectrum in row] for row in rows]
-    remarks = [f"harmonics below {LOWEST:g} dB are left out"]
+    remarks = [f"harmonics below {LOWEST:g} dB are not shown"]
     if len(panels[0]) == 1:
         panels = in_rows([panel(row[0]) for row in rows], [])
     return Picture(panels, 2.6, remarks)

@@ -137,7 +137,7 @@ def _mark_phases(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray) -> lis
     stuck = int(ds["regime"]) == regimes.PERMANENT_STICKING if "regime" in ds else bool(stopped.all())
     handles: list[Handle] = []
     if stopped.any():
-        handles.append(Patch(**_SHADE, label="stuck for good" if stuck else "stop"))
+        handles.append(Patch(**_SHADE, label="permanent sticking" if stuck else "stop"))
     load = "maximum of the load (of the base's motion)" if moves_base(ds) else "maximum of the load"
     handles.append(
         Line2D([], [], color=_LOAD_COLOUR, label=load, marker="v", markersize=5.0, linestyle=(0, (1, 2)))
@@ -157,7 +157,7 @@ def title_of(ds: xr.Dataset) -> str:
     stops = float(ds["stops_per_cycle"]) if "stops_per_cycle" in ds else 0.0
     counted = f", {stops:.4g} stops per cycle" if stops > 0 else ""
     if "status" in ds and int(ds["status"]) == regimes.NOT_PERIODIC:
-        return f"{cell}: {words}{counted}, not periodic: a part of it"
+        return f"{cell}: {words}{counted}, not periodic, excerpt"
     period = int(ds["period"]) if "period" in ds else 1
     return f"{cell}: {words}{counted}" + (f", period {period}" if period > 1 else "")
 

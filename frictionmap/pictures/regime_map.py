@@ -159,7 +159,7 @@ def _ring(ax: Axes, cells: Cells) -> list[Handle]:
     (drawn,) = ax.plot(
         *places.T, "o", markersize=9.0, markerfacecolor="none", markeredgecolor="black", markeredgewidth=0.9,
         transform=ax.transAxes, path_effects=halo(2.2), clip_on=False,
-        label="few cells of their kind: ringed",
+        label="few cells of their class: circled",
     )  # fmt: skip
     return [drawn]
 
@@ -183,7 +183,7 @@ def draw_map(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
         handles.append(
             Patch(
                 facecolor="none", edgecolor=HATCH_COLOUR, hatch=HATCH, linewidth=0.0,
-                label="several answers: the start decides",
+                label="several regimes: the initial state decides",
             )
         )  # fmt: skip
     handles += mark_features(ax, features_of(panel), cells.r)

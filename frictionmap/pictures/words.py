@@ -53,5 +53,7 @@ def caption(ds: xr.Dataset, *, cells_counted: bool = False) -> str:
         parts.append(_STARTS.get(stored_start(ds), ""))
         parts.append("in brackets: numbers of cells")
         if max(ds.sizes["r"], ds.sizes["beta"]) > _MANY:
-            parts.append("a pixel shows the commonest of its cells; what is thin keeps a pixel")
+            parts.append(
+                "cells that share a pixel show the most frequent class; isolated cells are never dropped"
+            )
     return "; ".join(part for part in parts if part)

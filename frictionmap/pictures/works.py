@@ -55,7 +55,7 @@ def scalar_picture(family: Family, quantity: str, log: bool) -> Picture:
         return draw
 
     scales = {name: scale_of(family, [values], _cut(values), log) for name, values in rows.items()}
-    remarks = ["works and distances a cycle of the load"] if quantity == "energy" else []
+    remarks = ["work and distances per cycle of the load"] if quantity == "energy" else []
     if any(about_cut(scales[name], [values]) for name, values in rows.items()):
         remarks.append("peaks cut off")
     panels = [panel(name, values, scales[name]) for name, values in rows.items()]

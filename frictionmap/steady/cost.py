@@ -146,8 +146,9 @@ def _refuse(counts: Mapping[str, int], needed: float, fewer: str) -> None:
     if needed > there:
         cells = counts["mu"] * counts["r"] * counts["beta"] * counts["points"]
         raise InputError(
-            f"grid must fit in memory: its {cells:,} cells need about {in_bytes(needed)}, available are "
-            f"{in_bytes(there)}; make it coarser, ask for fewer {fewer}, or insist with --yes"
+            f"cannot fit the grid in memory: its {cells:,} cells need about {in_bytes(needed)}, "
+            f"{in_bytes(there)} are available; use a coarser grid, request fewer {fewer}, or override "
+            f"with --yes"
         )
 
 

@@ -34,8 +34,8 @@ from .quantity_data import VARIABLES, quantity_request, read_result
 WINDOW = 8
 
 _WINDOWED = (
-    f"the motion repeats in no 8 periods: x, v, z, friction and the events are those of {WINDOW} periods at "
-    "the end of the {} that were followed, the scalars averages over the last 100"
+    f"the motion does not repeat within 8 periods: x, v, z, friction and events cover the last {WINDOW} "
+    "of the {} periods followed; the scalars are averages over the last 100"
 )
 
 _TURN = 2.0 * math.pi

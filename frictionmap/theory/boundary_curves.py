@@ -128,8 +128,8 @@ def many_mode_curves(system: System, r: np.ndarray, mu: np.ndarray) -> Curves:
     small = (r > 0.0) & (r < least)
     if small.any():
         raise InputError(
-            f"r must be 0, or >= {least:.3g} for this structure: below, S takes too many steps to find; "
-            f"got {r[small][0]:g}"
+            f"r must be 0, or >= {least:.3g} for this structure; below it the search for S takes "
+            f"too many steps; got {r[small][0]:g}"
         )
     v = modes.contact_response(r)
     u, g, h, s, by_modes = np.empty((5, r.size))

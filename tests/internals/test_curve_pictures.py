@@ -172,7 +172,7 @@ def test_axes_end_above_the_largest_peak_or_where_peaks_are_infinite():
     free, sizes = family_with(fm.System(), [0.2])
     scale = curve_axes.scale_of(free, sizes, 5.0, False)
     assert scale.top == 5.0
-    assert curve_axes.about_peaks(free) == ["infinite at r = 1, finite from β = 0.7854 on"]
+    assert curve_axes.about_peaks(free) == ["infinite at r = 1, finite at or above β = 0.7854"]
     assert curve_axes.about_cut(scale, [np.array([4.9, 5.1])]) == ["cut off above 5"]
     assert curve_axes.about_cut(scale, sizes) == []
 

@@ -377,7 +377,7 @@ def test_a_window_of_a_motion_that_does_not_repeat(contact, r, beta, mu, start, 
     ds = fm.response(system, r, beta, mu, points=8000, **settings)
     assert int(ds.status) == regimes.NOT_PERIODIC
     assert int(ds.period) == 0
-    assert "repeats in no 8 periods" in ds.attrs["comment"]
+    assert "does not repeat within 8 periods" in ds.attrs["comment"]
     assert "not periodic" in describe_response(ds)
     assert "not periodic" in fm.plot_response(ds)[0].figure.get_suptitle()
     tau, x, v = ds.tau.values, ds.x.values[0], ds.v.values[0]

@@ -224,7 +224,7 @@ BAD_CONFIGURATIONS = {
     ),
     "a damping ratio too many": (
         toml(system="damping_ratios = [0.1, 0.2]"),
-        ["system.damping_ratios must be one number or one a mode (1)", "got 2"],
+        ["system.damping_ratios must be one number, or one per mode (1)", "got 2"],
     ),
 }
 

@@ -40,7 +40,7 @@ def test_bad_mu():
         ({"load_mass": 2}, "load_mass must be <= 1; got 2"),
         ({"mass_ratios": [1.0, -1.0], "stiffness_ratios": [1, 1]}, r"mass_ratios\[1\] must be > 0; got -1"),
         ({"mass_ratios": [2.0]}, "must be 1, the unit"),
-        ({"damping_ratios": [0.1, 0.2]}, "one number or one a mode"),
+        ({"damping_ratios": [0.1, 0.2]}, "one number, or one per mode"),
     ],
 )
 def test_bad_systems(arguments, message):

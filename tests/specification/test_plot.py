@@ -107,7 +107,7 @@ def test_several_answers_are_hatched():
             ax = Figure().subplots()
             fm.plot_regimes(part.sel(mu=mu), ax=ax)
             words = [text.get_text() for text in ax.get_legend().get_texts()]
-            assert ("several answers: the start decides" in words) == expected
+            assert ("several regimes: the initial state decides" in words) == expected
             drawn(ax.figure)
 
 
@@ -279,7 +279,7 @@ def test_legends_of_boundaries_say_what_is_certain_and_what_is_possible(tiny_bou
     assert certain[:3] == ["continuous", "stick-slip", "permanent sticking"]
     possible = words_of(fm.plot_boundaries(tiny_boundaries))
     assert possible[:3] == ["continuous motion possible", "stick-slip", "sticking possible"]
-    assert "continuous or stuck: the start decides" in possible
+    assert "continuous or stuck: the initial state decides" in possible
 
 
 def test_boundaries_are_drawn_from_a_map_too(tiny_map):
@@ -457,7 +457,7 @@ def test_a_lone_cell_is_ringed_and_keeps_a_pixel():
     (ax,) = fm.plot_regimes(synthetic(stops))
     (ring,) = (line for line in ax.lines if line.get_marker() == "o")
     np.testing.assert_allclose(ring.get_xydata(), [[123 / 499, 77 / 399]], atol=1e-12)
-    assert {"9 stops (1)", "few cells of their kind: ringed"} <= set(words_of([ax]))
+    assert {"9 stops (1)", "few cells of their class: circled"} <= set(words_of([ax]))
     for size in ((450, 350), (90, 70)):
         assert (raster_of(ax, size) == MORE).sum() == 1
     image = np.asarray(rendered(ax.figure))
@@ -521,7 +521,7 @@ def test_the_caption_tells_the_start_and_the_axis_the_features(tiny_map):
 def test_large_maps_say_how_they_are_reduced():
     (ax,) = fm.plot_regimes(synthetic(np.full((1500, 10), 2.0)))
     heading = ax.figure.legends[0].get_title().get_text().replace("\n", " ")
-    assert "a pixel shows the commonest of its cells" in heading
+    assert "cells that share a pixel show the most frequent class" in heading
 
 
 def test_arrays_of_axes_are_drawn_into(tiny_map, tiny_boundaries, tiny_response):
@@ -590,7 +590,7 @@ def test_every_mass_is_drawn_and_numbered():
     assert [text.get_text() for text in masses.texts] == [f"$x_{{{k}}}$" for k in range(1, 6)]
     heights = np.sort([text.xy[1] for text in masses.texts])
     assert np.diff(heights).min() > 0.08  # x3 = x4 = x5 = 0: their numbers lie apart nevertheless
-    assert words_of([load]) == ["stuck for good", "maximum of the load"]
+    assert words_of([load]) == ["permanent sticking", "maximum of the load"]
     low, high = contact.get_ylim()
     assert (low, high) == (-0.5, 0.5)
     assert (friction.get_ylim()[0] < -9.0) & (friction.get_ylim()[1] > 9.0)

@@ -253,7 +253,7 @@ def test_captions_say_what_is_cut_off_and_which_peaks_are_finite(wall):
     caption = caption_of(axes)
     assert caption.startswith(wall.attrs["system"])
     assert "cut off above 5" in caption
-    assert "infinite at r = 1, finite from β = 0.7854 on" in caption
+    assert "infinite at r = 1, finite at or above β = 0.7854" in caption
     assert "cut off" not in caption_of(fm.plot_curves(wall.sel(beta=[0.6], r=slice(1.3, 2.5)), "amplitude"))
 
 
@@ -272,7 +272,7 @@ def test_amplitudes_may_have_a_logarithmic_axis(two):
     assert [ax.get_yscale() for ax in axes] == ["log", "log", "linear", "linear"]
     assert axes[0].get_ylim()[1] == 100.0
     rendered(axes)
-    with pytest.raises(InputError, match=r"^log is for amplitudes: harmonics are in decibels"):
+    with pytest.raises(InputError, match=r"^cannot draw harmonics with log: they are in decibels; omit log"):
         fm.plot_curves(two, "harmonics", log=True)
 
 

@@ -193,8 +193,8 @@ def test_a_map_beyond_the_memory_is_refused_before_it_takes_any(tmp_path, monkey
     out, err = capsys.readouterr()
     assert out == ""
     assert err == (
-        "frictionmap: grid must fit in memory: its 800,000,000 cells need about 13 GB, available are 3 GB; "
-        "make it coarser, ask for fewer outputs, or insist with --yes\n"
+        "frictionmap: cannot fit the grid in memory: its 800,000,000 cells need about 13 GB, "
+        "3 GB are available; use a coarser grid, request fewer outputs, or override with --yes\n"
     )
     assert [path.name for path in tmp_path.iterdir()] == ["large.toml"]
 
@@ -207,9 +207,10 @@ def test_curves_beyond_the_memory_are_refused_before_they_take_any(tmp_path, mon
     assert main(["curves", "large.toml", "--set", "curves.quantities=['energy']"]) == 2
     out, err = capsys.readouterr()
     assert out == ""
-    assert err.startswith("frictionmap: grid must fit in memory: its 800,000,000 cells need about ")
+    assert err.startswith("frictionmap: cannot fit the grid in memory: its 800,000,000 cells need about ")
     assert err.endswith(
-        "available are 3 GB; make it coarser, ask for fewer quantities or harmonics, or insist with --yes\n"
+        "3 GB are available; use a coarser grid, request fewer quantities or harmonics, or override "
+        "with --yes\n"
     )
     monkeypatch.undo()
     monkeypatch.chdir(tmp_path)

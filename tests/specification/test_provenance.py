@@ -155,7 +155,7 @@ def test_no_system_in_the_text(text):
             r"system.load\[0\] must be a number or \[real part, imag.*; got \[1.0, 2.0",
         ),
         ('load = [[1.0, "x"]]', r"system.load\[0\] must be a number; got 'x'"),
-        ("load = [1.0, 2.0]", r"system.load must have one number a mass \(1\); got 2"),
+        ("load = [1.0, 2.0]", r"system.load must have one number per mass \(1\); got 2"),
         ("load = 3", r"system.load must be a list of numbers; got 3"),
         (
             "matrices = { M = [[1.0]] }",

@@ -180,11 +180,11 @@ BAD_SYSTEMS = {
     "tiny": ({"matrices": {**CHAIN, "M": 1e-200 * CHAIN["M"]}}, ["matrices: M must have a largest entry"]),
     "frequencies too far apart": (
         {"matrices": {"M": np.diag([1.0, 1e-10]), "K": np.diag([1.0, 1e10])}},
-        ["matrices must make natural frequencies that double precision can hold together", "1e+10"],
+        ["cannot compute the natural frequencies", "1e+10", "change matrices"],
     ),
     "stiffness ratios too far apart": (
         {"mass_ratios": [1, 1], "stiffness_ratios": [1, 1e20]},
-        ["mass_ratios and stiffness_ratios must make natural frequencies", "1.41e+10"],
+        ["change mass_ratios and stiffness_ratios", "1.41e+10"],
     ),
     "no K": ({"matrices": {"M": np.eye(2)}}, ["matrices must have arrays M, K", "K is missing", "got M"]),
     "no arrays": ({"matrices": {}}, ["matrices must have arrays M, K", "M is missing", "got none"]),
@@ -222,7 +222,7 @@ BAD_SYSTEMS = {
     ),
     "a damping ratio too few": (
         {**FRAME, "damping_ratios": [0.1, 0.2]},
-        ["damping_ratios must be one number or one a mode (3)", "got 2"],
+        ["damping_ratios must be one number, or one per mode (3)", "got 2"],
     ),
     # contact and load
     "a contact that does not exist": (
@@ -325,8 +325,8 @@ def test_bad_systems_from_the_command_line(tmp_path, capsys, settings, words):
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
-        ({"load": [1.0, 2.0]}, ["load must have one number a mass (1)", "got 2"]),
-        ({"load": []}, ["load must have one number a mass (1)", "got 0"]),
+        ({"load": [1.0, 2.0]}, ["load must have one number per mass (1)", "got 2"]),
+        ({"load": []}, ["load must have one number per mass (1)", "got 0"]),
         ({"load": [0.0]}, ["load must have a value that is not zero"]),
         ({"load": [0j, 0, 0.0], **RATIOS}, ["load must have a value that is not zero"]),
         ({"load": [math.nan]}, ["load[0] must be finite", "nan"]),

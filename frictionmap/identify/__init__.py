@@ -27,6 +27,7 @@ two_masses       two masses without friction in closed form
 chain_response   response of a chain of masses without friction, and its derivatives
 chain_inverse    a chain from where its first mass resonates and where it stands still
 chain_fit        the chain nearest to amplitudes and lags
+chain_errors     such fits where errors are not known
 chain_estimates  the dataset of such a fit
 sweep_data       tables of sweeps, checked
 sweep            `sweep`: from amplitudes and lags over frequency to estimates

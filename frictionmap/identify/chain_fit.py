@@ -44,9 +44,6 @@ _ROUNDING = 1e-8
 #: A search that ends so many times above the least sum, with more unknowns free, is not followed.
 _HOPELESS = 3.0
 
-#: Half of all normal deviates are within so many standard deviations.
-_NORMAL_MEDIAN = 0.6745
-
 #: A peak stands out by this factor, by its logarithm: more than noise makes.
 _PEAK = 0.3
 
@@ -112,25 +109,12 @@ class Found(NamedTuple):
     outliers: float | None = None  # residuals beyond this, over their errors, have little weight
 
 
-def fit_robust_chain(data: Measured, known: np.ndarray, given: bool) -> tuple[Found, Problem]:
-    """The same with little weight of outliers: of residuals beyond the errors that are given, or usual."""
-    if given:
-        return fit_chain(data, known, 1.0)
-    found, task = fit_chain(data, known)
-    for _ in range(2):  # the first errors are those of a fit that outliers pull
-        usual = float(np.median(np.abs(task.residuals(found.best.values)[0]))) / _NORMAL_MEDIAN
-        if usual == 0.0:  # exact data have none
-            break
-        found, task = fit_chain(data, known, usual)
-    return found, task
-
-
 def fit_chain(data: Measured, known: np.ndarray, outliers: float | None = None) -> tuple[Found, Problem]:
     """The least sum over searches from many starts, always the same ones; the problem is the plain one."""
     plain = problem(data, known)
     task = plain if outliers is None else softened(plain, outliers)
     minima: list[Solution] = []
-    times, nothing = 0, float(np.sum((_ROUNDING / data.sigma) ** 2))
+    times, nothing = 0, no_sum(data)
     for start in _starts(data, known):
         least = max(minima[0].sum, nothing) if minima else np.inf
         end = _search(data, known, task, start)
@@ -147,6 +131,11 @@ def fit_chain(data: Measured, known: np.ndarray, outliers: float | None = None) 
         if times >= _FOUND_AGAIN and 0 in data.mass and _usual_error(data, minima[0]) < _OUTLIER:
             break
     return Found(minima[0], minima[1:], times, nothing, outliers), plain
+
+
+def no_sum(data: Measured) -> float:
+    """Sums of squares that are no larger are zero."""
+    return float(np.sum((_ROUNDING / data.sigma) ** 2))
 
 
 def _usual_error(data: Measured, found: Solution) -> float:

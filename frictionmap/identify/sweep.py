@@ -10,8 +10,9 @@ from scipy.special import gammaincc
 from .. import checks
 from ..errors import InputError
 from .cautions import bounded, coloured, trading
+from .chain_errors import fit_by_residuals, fit_robust_by_residuals
 from .chain_estimates import chain_estimates, chain_names
-from .chain_fit import SEARCHES, Found, Measured, fit_chain, fit_robust_chain
+from .chain_fit import SEARCHES, Found, Measured, fit_chain
 from .estimates import verdict
 from .least_squares import Errors, Problem, Solution, errors, undetermined
 from .robust import LOSSES, effective_variance, softened
@@ -28,6 +29,9 @@ _AS_GOOD = 4.0
 
 #: Answers are others if a parameter differs by so many standard errors.
 _ELSEWHERE = 3.0
+
+#: Residuals beyond this many given errors have little weight in a robust fit.
+_GIVEN = 1.0
 
 #: Chains that differ by less are one, as far as a search goes.
 _SAME = 1e-6
@@ -76,7 +80,7 @@ def sweep(
         Parameters to be held.  Others are fitted.
     sigma_amplitude, sigma_phase : float
         Relative error of the amplitudes, and error of the lags [deg], > 0; by default both are taken from the
-        residuals, 1 rad as a relative error of 1.
+        residuals, those of amplitudes and of lags apart.
     cost : "logarithmic" or "relative"
         What is least: the squares of ln(X/measured), or of X/measured - 1, as T(6.16) has it.
     loss : "linear" or "soft_l1"
@@ -112,7 +116,7 @@ def sweep(
     check_enough(data, held)
     robust = checks.choice(loss, "loss", LOSSES) == "soft_l1"
     fit = _fit(data, held, names, sigma_amplitude is not None, robust)
-    ds = chain_estimates(data, fit.found.best, fit.errors, fit.problem.free, fit.given, damped)
+    ds = chain_estimates(fit.data, fit.found.best, fit.errors, fit.problem.free, fit.given, damped)
     ds["verdict"] = _verdict(fit)
     ds.attrs |= {"damping": DAMPINGS[data.base_damping] if damped else "none", "cost": cost}
     ds.attrs["title"] = f"Sweep of {WORDS[n - 1]} mass{'es' * (n > 1)}"
@@ -138,7 +142,10 @@ def _held(known: Mapping[str, float], names: tuple[str, ...], n: int, damped: bo
 
 
 def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool, robust: bool) -> _Fit:
-    found, problem = fit_robust_chain(data, held, given) if robust else fit_chain(data, held)
+    if given:
+        found, problem = fit_chain(data, held, _GIVEN if robust else None)
+    else:
+        found, problem, data = (fit_robust_by_residuals if robust else fit_by_residuals)(data, held)
     unseen, too_many = undetermined(problem, found.best)
     if too_many:
         unknown = ", ".join(names[index] for index in unseen)

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
-from records import Truth, base_at, steady, synthetic
+from records import Truth, base_at, filtered, rates, steady, synthetic
 from refusals import refusal
 
 import frictionmap as fm
@@ -73,6 +73,45 @@ def test_units_of_the_columns(rig, measured_record):
         assert found["x_F"] == pytest.approx(0.8e-3)
         assert found["beta"] == pytest.approx(0.8 / 1.8, rel=1e-3)
         assert found["f_n"] == pytest.approx(TRUTH.f_n, abs=0.02)
+
+
+@pytest.mark.parametrize(("unit", "order", "size"), [("m_s2", 2, 1e3), ("g", 2, 9806.65), ("mm_s", 1, 1.0)])
+def test_accelerations_and_velocities(rig, capsys, unit, order, size):
+    """Of base and mass, with 1 % noise: friction as a length in mm, of the integrated harmonics."""
+    motion = steady(TRUTH)
+    time = np.arange(int(TRUTH.rate * TRUTH.length) + 1) / TRUTH.rate
+    mass = filtered(TRUTH, lambda t: rates(TRUTH, motion, t)[order - 1], time)
+    rng = np.random.default_rng(3)
+    channels = [
+        (one + rng.normal(0.0, 0.01 * np.std(one), time.size)) / size
+        for one in (base_at(TRUTH, time, order), mass)
+    ]
+    path = rig((time, *channels), "stiffness = 1191.0", f"time_s,base_{unit},x_{unit}")
+    assert main(["identify", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert "warning: offset_x has no meaning: velocities and accelerations do not show" in out
+    assert "integration amplifies" not in out
+    with xr.open_dataset("rig-identify.nc") as ds:
+        found = dict(zip(ds.parameter.values, ds.estimate.values, strict=True))
+        assert ds.unit.values[2] == "mm"
+    assert found["x_F"] == pytest.approx(TRUTH.x_F, abs=0.008)
+    assert found["f_n"] == pytest.approx(TRUTH.f_n, abs=0.02)
+    assert found["zeta"] == pytest.approx(TRUTH.zeta, abs=0.003)
+    assert found["beta"] == pytest.approx(TRUTH.x_F / 1.8, abs=0.005)
+
+
+def test_noise_that_integration_amplifies_is_told(rig, capsys, measured_record):
+    """A noisy accelerometer on the mass, a displacement of the base, in a window."""
+    motion = steady(TRUTH)
+    time, base, _ = measured_record
+    mass = filtered(TRUTH, lambda t: rates(TRUTH, motion, t)[1], time)
+    mass = mass + np.random.default_rng(3).normal(0.0, 0.4 * np.std(mass), time.size)
+    path = rig((time, base, mass), head="time_s,base_mm,x_mm_s2")
+    assert main(["identify", str(path), "--set", "data.window=[0.5, 7.0]"]) == 0
+    assert re.search(
+        r"warning: x_mm_s2 as a displacement has noise of \d+% of its motion: integration amplifies",
+        capsys.readouterr().out,
+    )
 
 
 def warnings(measured_record, change, **arguments):

@@ -1,0 +1,72 @@
+"""Fits of chains whose errors are not known: the residuals tell those of amplitudes and of lags apart."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .chain_fit import Found, Measured, fit_chain, no_sum, problem
+from .least_squares import Problem, minimise
+
+#: Half of all normal deviates are within so many standard deviations.
+_NORMAL_MEDIAN = 0.6745
+
+#: Errors from residuals are found again and again until they change by less than this share.
+_SETTLED, _ROUNDS = 1e-3, 20
+
+#: Other answers whose sums are so many times the least are not followed.
+_HOPELESS = 3.0
+
+
+def fit_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, Problem, Measured]:
+    """The least sum, weights of amplitudes and of lags by their residuals; the data have these weights."""
+    found, task = fit_chain(data, known)
+    for _ in range(_ROUNDS if _of_both_kinds(data) else 0):
+        weighed = _weighed(data, task, found, _root_mean_square)
+        if np.allclose(weighed.sigma, data.sigma, rtol=_SETTLED, atol=0.0):
+            break
+        data, task = weighed, problem(weighed, known)
+        found = found._replace(best=minimise(task, found.best.values))
+    if not _of_both_kinds(data):
+        return found, task, data
+    near = [one for one in found.others if one.sum <= _HOPELESS * found.others[0].sum]
+    others = sorted((minimise(task, one.values) for one in near), key=lambda one: one.sum)
+    return found._replace(others=others, nothing=no_sum(data)), task, data
+
+
+def fit_robust_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, Problem, Measured]:
+    """The same with little weight of residuals beyond those that are usual."""
+    found, task = fit_chain(data, known)
+    for _ in range(2):  # the first errors are those of a fit that outliers pull
+        data = _weighed(data, task, found, _usual)
+        task = problem(data, known)
+        usual = _usual(task.residuals(found.best.values)[0])
+        if usual == 0.0:  # exact data have none
+            break
+        found, task = fit_chain(data, known, usual)
+    return found, task, data
+
+
+def _weighed(data: Measured, task: Problem, found: Found, size: Callable[[np.ndarray], float]) -> Measured:
+    """The data with errors of both kinds in the ratio of their residuals, of exact data as they are.
+
+    size : of some residuals
+    """
+    residual = task.residuals(found.best.values)[0] * data.sigma
+    together, sigma = size(residual), data.sigma.copy()
+    for kind in (data.is_phase, ~data.is_phase):
+        if _of_both_kinds(data):
+            sigma[kind] = size(residual[kind]) / together if together > 0.0 else 0.0
+    return data._replace(sigma=sigma) if (sigma > 0.0).all() else data
+
+
+def _of_both_kinds(data: Measured) -> bool:
+    return bool(data.is_phase.any() and not data.is_phase.all())
+
+
+def _root_mean_square(residual: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(residual**2)))
+
+
+def _usual(residual: np.ndarray) -> float:
+    """The standard deviation of normal deviates with the same median, outliers or not."""
+    return float(np.median(np.abs(residual))) / _NORMAL_MEDIAN

@@ -46,8 +46,8 @@ _FEWEST, _MOST = 8, 256
 #: Values of an axis of which cells are counted, at most.
 _COUNTED = {"mu": 3, "r": 12, "beta": 12}
 
-#: Seconds, measured: of a cell that a formula decides; of a period of a cell that is followed, whatever r is and
-#: times r, of one mass; the same of structures, where the latter grows with the masses.
+#: Seconds, measured: of a cell that a formula decides; of a period of a cell that is followed, a part for
+#: whatever r and one times r, of one mass; the same of structures, the latter part growing with the masses.
 _DECIDED = 1e-7
 _ONE_MASS = (1e-6, 3e-7)
 _RETURN, _STEP, _STEP_OF_MASS = 6e-6, 5e-7, 2e-7
@@ -187,7 +187,7 @@ def seconds_of_cells(
 
     names = [name for name in solver.outputs if CELL_VARIABLES[name].needs != "coexistence"]
     looked_at = len(names) < len(solver.outputs)
-    counting = replace(solver, outputs=tuple(dict.fromkeys((*names, "cycles"))))  # type: ignore[arg-type]
+    counting = replace(solver, outputs=tuple(dict.fromkeys((*names, "cycles"))))
     some = {name: _spread(values, _COUNTED[name]) for name, values in axes.items()}
     cycles = solve_map(system, some, counting, threads, None)[0]["cycles"]
     seconds = cycles * _seconds_of_period(system.n, some["r"])[:, np.newaxis] + _DECIDED

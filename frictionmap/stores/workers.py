@@ -142,8 +142,8 @@ def local(workers: int) -> Fill:
 def _tidy_in_silence() -> None:
     """Start Python's resource tracker without its warnings.
 
-    An interrupt ends this process at once.  The tracker outlives it and removes the semaphores of the workers,
-    which is what it is for.
+    An interrupt ends this process at once.  The tracker outlives it and removes the semaphores of the
+    workers, which is what it is for.
     """
     from multiprocessing import resource_tracker
 

@@ -63,11 +63,22 @@ def one(tmp_path_factory):
 @contextlib.contextmanager
 def held(page, *kinds):
     """Requests of these kinds have no answer until the end."""
+    waiting, ended = [], False
+
+    def hold(route):
+        if ended:
+            route.continue_()
+        else:
+            waiting.append(route)
+
     for kind in kinds:
-        page.route(f"**/{kind}?**", lambda route: None)
+        page.route(f"**/{kind}?**", hold)
     yield
+    ended = True
+    for route in waiting:
+        route.continue_()
     for kind in kinds:
-        page.unroute(f"**/{kind}?**")  # what was kept waiting goes on
+        page.unroute(f"**/{kind}?**", hold)
 
 
 def saved(page):

@@ -33,6 +33,7 @@ forced_lags      what the lags of a table tell one by one
 forced_told      what to mind of such a fit, in words
 forced_labels    the dataset of such a fit
 forced           `forced`: from amplitudes and lags to estimates
+orthonormal      orthonormal columns of tall matrices
 record_noise     slow wander of a zero, noise near harmonics, the error of the model in it
 plateaus         clipped ends, and ends at which a mass sticks
 record_motion    exact steady motions under the measured base, and their derivatives

@@ -11,6 +11,7 @@ from ..datasets.provenance import system_text
 from ..errors import InputError
 from ..model.system import System
 from ..units.table import checked_unit, conversion
+from .cautions import only_interval
 from .estimates import estimates, number, usable_errors, verdict
 from .joint_fit import F_N, MU, ZETA, JointFit, fit_jointly, places_of
 from .joint_parts import SHARED, Part, decay_part, record_part, whole_of
@@ -100,7 +101,8 @@ def joint(
     Notes
     -----
     Each part counts by its noise.  A record that the model does not explain down to its noise counts by what
-    is left at the harmonics of the base, so that the decay prevails.  mu is 1 unless the records ask for more.
+    is left at the harmonics of the base, so that the decay prevails.  mu is 1 unless the records ask for
+    more.
     """
     checked_unit(unit, "length", "unit")
     checks.choice(contact, "contact", CONTACTS)
@@ -347,8 +349,7 @@ def _of_fit(fit: JointFit, found: Errors) -> list[str]:
             "mu = 1 explains the data as well as a larger mu does: the other estimates are those for mu = 1, "
             "and their intervals allow for the whole interval of mu"
         )
-    if fit.static == FITTED and found.lower[MU] <= 1.0:
-        words.append("the interval of mu begins at 1: its standard error is not usable, the interval is")
+    words += only_interval("mu", 1.0, not fit.with_mu.free[MU] or bool(found.lower[MU] > 1.0))
     names = _names(fit)
     bound = [names[k] for k in np.flatnonzero(fit.solution.at_bound) if names[k]]
     return words + ([f"{listed(bound)} on the bound: the interval is one-sided"] if bound else [])

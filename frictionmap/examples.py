@@ -48,6 +48,30 @@ _HEAD = """\
 
 _SYNTHETIC = "# Synthetic: made by frictionmap.examples, not measured."
 
+#: The decay and the record together: one mass with one f_n and zeta, and two friction forces.
+_JOINT = f"""{_SYNTHETIC}
+# The truth, in Hz, mm and s: f_n = 3.12, zeta = 0.008, mu = 1.2, x_F_decay = 0.2, x_F_shaken = 0.7
+title = "One storey, pulled aside and let go, then on a shaken base (synthetic)"
+
+[[data]]
+kind = "free-decay"
+file = "free-decay.csv"
+label = "decay"
+
+[[data]]
+kind = "record"
+file = "record.csv"
+label = "shaken"
+
+[system]
+contact = "fixed-wall"
+excitation = "base"
+damping_reference = "base"
+
+[known]
+stiffness = 1191.0        # N/m: the friction forces in N
+"""
+
 
 def rig_files(seed: int = 1) -> dict[str, str]:
     """Texts of all files by their names: a configuration and a table for each kind of data."""
@@ -55,7 +79,7 @@ def rig_files(seed: int = 1) -> dict[str, str]:
     for kind in _TABLES:
         files[f"{kind}.csv"] = rig_table(kind, seed)
         files[f"{kind}.toml"] = _configuration(kind)
-    return files
+    return files | {"joint.toml": _JOINT}
 
 
 def starting_rig(kind: str) -> tuple[str, str]:

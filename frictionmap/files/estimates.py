@@ -83,7 +83,9 @@ def _row(one: xr.Dataset) -> tuple[str, str, str, str, str]:
         return name, f"{float(one['estimate']):.6g}", "", "held", unit
     interval = f"{float(one['lower']):.6g} to {float(one['upper']):.6g}"
     interval += " (on a bound)" if one["at_bound"] else ""
-    return name, f"{float(one['estimate']):.6g}", f"{float(one['standard_error']):.2g}", interval, unit
+    error = float(one["standard_error"])
+    shown = "see interval" if np.isnan(error) else f"{error:.2g}"
+    return name, f"{float(one['estimate']):.6g}", shown, interval, unit
 
 
 def _is_number(variable: xr.DataArray) -> bool:
@@ -101,9 +103,14 @@ def estimates_in_short(ds: xr.Dataset) -> str:
     for name in ds["parameter"].values:
         one = ds.sel(parameter=name)
         if not one["known"]:
-            value = _with_error(float(one["estimate"]), float(one["standard_error"]))
-            words.append(f"{name} {value} {unit_in_words(str(one['unit'].values))}".rstrip())
+            words.append(f"{name} {_in_short(one)} {unit_in_words(str(one['unit'].values))}".rstrip())
     return ", ".join(part.replace(" ", "\u00a0") for part in words)
+
+
+def _in_short(one: xr.Dataset) -> str:
+    """An estimate with its standard error, or with its interval where only that can be used."""
+    value, error, lower, upper = (float(one[key]) for key in ("estimate", "standard_error", "lower", "upper"))
+    return f"{value:.4g} ({lower:.4g} to {upper:.4g})" if np.isnan(error) else _with_error(value, error)
 
 
 def _with_error(value: float, error: float) -> str:

@@ -41,16 +41,27 @@ forced_lags      what the lags of a table tell one by one
 forced_told      what to mind of such a fit, in words
 forced_labels    the dataset of such a fit
 forced           `forced`: from amplitudes and lags to estimates
+orthonormal      orthonormal columns of tall matrices
+record_noise     slow wander of a zero, noise near harmonics, the error of the model in it
+plateaus         clipped ends, and ends at which a mass sticks
 record_motion    exact steady motions under the measured base, and their derivatives
 record_starts    where their fit starts
 record_fit       the steady motion nearest to all samples
+static_friction  whether mu is fitted, and its interval
 record_errors    errors of that, and of what follows from it
+record_data      records, checked, with their harmonics
+record_labels    what a record is without any model
+record_verdict   what a record shows, and what it cannot tell apart
 record           `record`: from arrays to estimates
+joint_parts      decays and records as parts of one fit
+joint_fit        that fit, with shared parameters
+joint            `joint`: from several measurements to estimates
 likelihood       the likelihood of the data of a fit, for samplers
 rig              what a configuration says of measured data, and a kind of data of itself
 rig_decay        free decays from the file of a rig
 rig_forced       forced responses from the file of a rig
 rig_record       records of steady motion from the file of a rig
+rig_joint        several decays and records from the files of a rig
 rig_sweep        sweeps from the file of a rig
 configuration    configurations of rigs, for the command `identify`
 rig_keys         their keys in words and as JSON Schema
@@ -60,9 +71,19 @@ rig_keys         their keys in words and as JSON Schema
 from .forced import forced
 from .free_decay import free_decay
 from .integration import displacements
+from .joint import joint
 from .likelihood import log_likelihood
 from .phase_inversion import friction_ratio
 from .record import record
 from .sweep import sweep
 
-__all__ = ["displacements", "forced", "free_decay", "friction_ratio", "log_likelihood", "record", "sweep"]
+__all__ = [
+    "displacements",
+    "forced",
+    "free_decay",
+    "friction_ratio",
+    "joint",
+    "log_likelihood",
+    "record",
+    "sweep",
+]

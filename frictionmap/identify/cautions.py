@@ -26,6 +26,13 @@ def trading(names: Sequence[str], correlation: np.ndarray) -> list[str]:
     return [f"{names[i]} and {names[j]} trade: correlation {correlation[i, j]:.2f}" for i, j in pairs]
 
 
+def only_interval(name: str, bound: float, usable: bool) -> list[str]:
+    """A parameter whose standard error cannot be used, as its interval begins on its bound."""
+    if usable:
+        return []
+    return [f"the interval of {name} begins at {bound:g}: it has no standard error that could be used"]
+
+
 def bounded(names: Sequence[str], floor: np.ndarray, at_bound: np.ndarray) -> list[str]:
     """Estimates on a bound."""
     words = []

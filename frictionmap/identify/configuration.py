@@ -7,6 +7,7 @@ one like `rig_decay` and add it to `KINDS`.
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import cast
 
 import xarray as xr
 
@@ -17,9 +18,10 @@ from ..units.axes import rounded
 from ..units.quantities import quantity
 from ..units.table import UNITS
 from .columns import MISSING
-from .rig import KNOWN_UNITS, Rig
+from .rig import KNOWN_UNITS, Kind, Rig
 from .rig_decay import FREE_DECAY
 from .rig_forced import FORCED
+from .rig_joint import JOINT, checked_data, data_paths, fit_together
 from .rig_record import RECORD
 from .rig_sweep import SWEEP
 from .tables import read_table
@@ -27,6 +29,9 @@ from .tables import read_table
 #: What is known of every kind of data.
 KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "record": RECORD, "sweep": SWEEP}
 
+
+#: What several measurements in tables [[data]] are called.
+JOINT_NAME = "joint"
 
 #: Endings of what is data, not a configuration.
 _DATA = (".csv", ".mat", ".npz", ".txt", ".uff", ".unv", ".tdms", ".xlsx")
@@ -45,25 +50,47 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     _refuse_data(path)
     tree, text = read_tree(path, overrides)
     path = Path(path)
+    if isinstance(tree.get("data"), list):
+        return _joint_rig(tree, text, path)
     data, known, fit = (_table(tree, name) for name in ("data", "known", "fit"))
     name = _checked_kind(tree, data)
     kind = KINDS[name]
-    _check_keys(tree, name)
+    _check_keys(tree, name, kind)
     file = data.get("file")
     if not isinstance(file, str) or not file:
         given = f"got {checks.one_line(file)}" if "file" in data else "there is none"
         raise InputError(f"data.file must be the path of a file of measured data; {given}")
     missing = checks.choice(data.get("missing", MISSING[0]), "data.missing", MISSING)
-    title = tree.get("title", Path(file).stem)
-    if not isinstance(title, str):
-        raise InputError(f"title must be text; got {checks.one_line(title)}")
     values = {key: _known_number(value, key) for key, value in known.items()}
     free = _checked_free(fit.get("free"), values, kind.parameters)
     source = path.parent / file
     return Rig(
-        title, name, source, _names(data.get("columns", {})), _chosen(data, kind.data), missing,
+        _title(tree, Path(file).stem), name, source, _names(data.get("columns", {})),
+        _chosen(data, kind.data), missing,
         _table(tree, "system"), values, free, _chosen(fit, kind.fit), text, path.stem, (path, source),
     )  # fmt: skip
+
+
+def _joint_rig(tree: Mapping[str, object], text: str, path: Path) -> Rig:
+    """A rig with several measurements, tables [[data]]."""
+    parts = checked_data(list(cast(list[object], tree["data"])))
+    _check_keys({key: value for key, value in tree.items() if key != "data"}, JOINT_NAME, JOINT)
+    known, fit = _table(tree, "known"), _table(tree, "fit")
+    values = {key: _known_number(value, key) for key, value in known.items()}
+    free = _checked_free(fit.get("free"), values, JOINT.parameters)
+    files = data_paths(parts, path.parent)
+    return Rig(
+        _title(tree, path.stem), JOINT_NAME, files[0], {}, {"parts": parts}, MISSING[0],
+        _table(tree, "system"),
+        values, free, _chosen(fit, JOINT.fit), text, path.stem, (path, *files),
+    )  # fmt: skip
+
+
+def _title(tree: Mapping[str, object], default: str) -> str:
+    title = tree.get("title", default)
+    if not isinstance(title, str):
+        raise InputError(f"title must be text; got {checks.one_line(title)}")
+    return title
 
 
 def identify(rig: Rig) -> xr.Dataset:
@@ -74,6 +101,10 @@ def identify(rig: Rig) -> xr.Dataset:
     InputError
         The data cannot be read or fitted; one line with the file.
     """
+    if rig.kind == JOINT_NAME:
+        ds = fit_together(rig)
+        ds.attrs |= {"title": rig.title, "config": rig.text}
+        return ds
     table = read_table(rig.file)
     ds = KINDS[rig.kind].identify(rig, table)
     ds.attrs |= {
@@ -109,9 +140,8 @@ def _checked_kind(tree: Mapping[str, object], data: Mapping[str, object]) -> str
     raise InputError(f"the configuration must have a table [data] with kind, one of {kinds}; it has none")
 
 
-def _check_keys(tree: Mapping[str, object], name: str) -> None:
+def _check_keys(tree: Mapping[str, object], name: str, kind: Kind) -> None:
     """Refuse what no key of the kind is; [system] is checked as in maps, where it is used."""
-    kind = KINDS[name]
     sections = {
         "data": ("kind", "file", "columns", "missing", *kind.data),
         "known": (*kind.parameters, *kind.known),

@@ -11,7 +11,16 @@ from ..model.system import System
 from .forced_data import ForcedTable
 from .forced_model import F_N, MU, ZETA, Fitted, ForcedModel, Samples, evaluate
 from .forced_start import closer, starts
-from .least_squares import Errors, Problem, Solution, errors, minimise, undetermined
+from .least_squares import (
+    Errors,
+    Problem,
+    Solution,
+    errors,
+    minimise,
+    profile_end,
+    two_sided,
+    undetermined,
+)
 
 #: The natural frequency is within this share of where the fit begins.
 _FREQUENCY_RANGE = 0.2
@@ -57,8 +66,21 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray) -> Fit:
         model, solution, task = _with_errors(model, known, table.given)
         here = evaluate(model, solution.values, task.free)
     _check_told(table, model, solution, task)
-    found = errors(task, solution, 1.0 if any(table.given) else None)
+    variance = 1.0 if any(table.given) else None
+    found = _near_bound(errors(task, solution, variance), task, solution, variance)
     return Fit(model, task, solution, found, here, idle)
+
+
+def _near_bound(found: Errors, task: Problem, solution: Solution, variance: float | None) -> Errors:
+    """The interval of mu from the profile of the sum where it begins at 1: there slopes say little."""
+    if not task.free[MU] or solution.at_bound[MU] or found.lower[MU] > 1.0:
+        return found
+    freedom = solution.residual.size - int(task.free.sum())
+    of_one = (found.variance if variance is None else variance) * found.inflation**2
+    scale = float(found.standard_error[MU])
+    upper = found.upper.copy()
+    upper[MU] = profile_end(task, solution, MU, two_sided(freedom) ** 2 * of_one, scale)[0]
+    return found._replace(upper=upper)
 
 
 def problem(model: ForcedModel, free: np.ndarray, f_n: float) -> Problem:

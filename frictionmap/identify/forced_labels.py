@@ -5,10 +5,10 @@ import xarray as xr
 
 from .. import regimes
 from ..units.table import checked_unit, conversion
-from .estimates import estimates, number
+from .estimates import estimates, number, usable_errors
 from .forced_data import ForcedTable
 from .forced_fit import Fit, parameter_names
-from .forced_model import F_N, points_of
+from .forced_model import F_N, MU, points_of
 
 _QUANTITIES = ("amplitude_ratio", "phase_lag")
 
@@ -32,7 +32,9 @@ def labelled(table: ForcedTable, fit: Fit, unit: str | None) -> xr.Dataset:
     names = parameter_names(table)
     meanings = {name: _WORDS.get(name) or f"{_WORDS['beta']} {name[5:]}" for name in names}
     units = tuple("Hz" if name == "f_n" else "1" for name in names)
-    ds = estimates(meanings, units, solution, fit.errors, fit.problem.free, np.zeros(samples.row.size), "1")
+    errors = usable_errors(fit.errors, MU, 1.0, bool(fit.problem.free[MU]))
+    shown = fit.errors._replace(standard_error=errors)
+    ds = estimates(meanings, units, solution, shown, fit.problem.free, np.zeros(samples.row.size), "1")
     ds = ds.assign(_of_samples(table, fit))
     if unit is not None:
         ds = ds.assign(_friction(table, fit, unit))

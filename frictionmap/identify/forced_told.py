@@ -4,7 +4,7 @@ import numpy as np
 from scipy.special import gammaincc
 
 from .. import regimes
-from .cautions import bounded, coloured, trading
+from .cautions import bounded, coloured, only_interval, trading
 from .forced_data import ForcedTable
 from .forced_fit import Fit, parameter_names
 from .forced_model import MU, ZETA, points_of
@@ -23,6 +23,7 @@ def told(table: ForcedTable, fit: Fit) -> list[str]:
         *_scatter(table, fit),
         *coloured(fit.errors),
         *trading(names, fit.errors.correlation),
+        *only_interval("mu", 1.0, not fit.problem.free[MU] or bool(fit.errors.lower[MU] > 1.0)),
         *bounded(names, fit.problem.floor, fit.solution.at_bound),
         *_near_sticking(fit),
         *_several(fit),

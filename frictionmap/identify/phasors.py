@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import InputError
+from .orthonormal import orthonormal
 from .record_noise import noise_levels, slow_waves, wanders
 
 #: Harmonics, fewer where there are not this many samples a cycle of the highest one.
@@ -291,7 +292,7 @@ def _linear(
     slopes[:, 2:end:2], slopes[:, 3:end:2] = -rate * columns[:, 3:end:2], rate * columns[:, 2:end:2]
     if waves is not None:
         columns[:, end:] = waves
-    orthogonal, inverse = _orthonormal(columns)
+    orthogonal, inverse = orthonormal(columns)
     along = orthogonal.T @ channels
     coefficients = inverse @ along
     moved = slopes @ coefficients
@@ -300,22 +301,3 @@ def _linear(
         coefficients, channels - orthogonal @ along, inverse, -inverse @ moved_along,
         -(moved - orthogonal @ moved_along),
     )  # fmt: skip
-
-
-def _orthonormal(columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Q and the inverse of R: twice by Cholesky's decomposition, exact to rounding while columns differ.
-
-    Three products of matrices; LAPACK's decomposition of tall matrices waits for its threads at every column.
-    """
-    orthogonal, inverse = columns, np.eye(columns.shape[1])
-    for _ in range(2):
-        try:
-            triangle = np.linalg.cholesky(orthogonal.T @ orthogonal).T
-        except np.linalg.LinAlgError:
-            raise InputError(
-                "time must have no gap that harmonics of the base cannot bridge: at the times given, "
-                "some of them cannot be told from others"
-            ) from None
-        step = np.linalg.inv(triangle)
-        orthogonal, inverse = orthogonal @ step, inverse @ step
-    return orthogonal, inverse

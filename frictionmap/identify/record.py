@@ -11,6 +11,7 @@ from ..datasets.provenance import system_text
 from ..errors import InputError
 from ..model.system import System
 from ..units.table import checked_unit, conversion
+from .cautions import only_interval
 from .estimates import estimates, number, usable_errors, verdict
 from .least_squares import Errors
 from .phasors import Phasors
@@ -21,7 +22,7 @@ from .record_labels import of_data, of_record
 from .record_motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
 from .record_verdict import CORRELATED, record_verdict
 from .robust import LOSSES
-from .static_friction import FITTED, IDLE, ONE
+from .static_friction import IDLE, ONE
 
 #: Estimates so many standard errors above zero are found, and drifts so many are no chance.
 _FOUND = 3.0
@@ -191,8 +192,7 @@ def _of_fit(fit: Fit, found: Errors) -> list[str]:
             "mu = 1 explains the data as well as a larger mu does: the other estimates are those for mu = 1, "
             "and their intervals allow for the whole interval of mu"
         )
-    if fit.static == FITTED and found.lower[MU] <= 1.0:
-        words.append("the interval of mu begins at 1: its standard error is not usable, the interval is")
+    words += only_interval("mu", 1.0, not fit.free[MU] or bool(found.lower[MU] > 1.0))
     if fit.model_error > 1.0:
         words.append(
             f"the model does not explain the record down to its noise: at the harmonics of the base it "

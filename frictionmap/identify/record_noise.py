@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import chdtrc
 
 from .least_squares import Noise
+from .orthonormal import orthonormal
 
 #: Noise that white noise exceeds this rarely is coloured.
 _CHANCE = 1e-3
@@ -35,14 +36,16 @@ def slow_waves(time: np.ndarray, frequency: float) -> np.ndarray:
     """Orthonormal waves below half the base's frequency without mean and drift, shape (samples, waves).
 
     They have nearly no part in a motion that repeats with the base: a parabola, a cubic, and cosines of whole
-    half periods, which then leave little of a smooth wander that does not end where it began.
+    half periods, which then leave little of a smooth wander that does not end where it began.  Gaps are
+    shorter than half a period of any.
     """
     length = float(time[-1] - time[0])
-    count = min(int(np.ceil(length * frequency)) - 1, _MOST_WAVES)
+    bridged = int(length / float(np.diff(time).max()))  # half periods as long as the longest gap
+    count = max(min(int(np.ceil(length * frequency)) - 1, _MOST_WAVES, bridged), 0)
     angle = np.pi * (time - time[0]) / length
     waves = np.cos(np.multiply.outer(angle, np.arange(1, count + 1)))
     powers = (2.0 * angle[:, None] / np.pi - 1.0) ** np.arange(min(4, 2 + count))
-    return np.linalg.qr(np.hstack((powers, waves)))[0][:, 2:]
+    return orthonormal(np.hstack((powers, waves)))[0][:, 2:]
 
 
 def wanders(residual: np.ndarray, waves: np.ndarray) -> bool:
@@ -120,7 +123,7 @@ def harmonic_columns(time: np.ndarray, frequency: float, harmonics: int) -> np.n
     """A constant and the two parts of each harmonic, orthonormal, shape (samples, 1 + 2 H)."""
     turn = np.multiply.outer(2.0 * np.pi * frequency * (time - time[0]), np.arange(1, harmonics + 1))
     pairs = np.stack((np.cos(turn), np.sin(turn)), axis=-1).reshape(time.size, -1)
-    return np.linalg.qr(np.column_stack((np.ones(time.size), pairs)))[0]
+    return orthonormal(np.column_stack((np.ones(time.size), pairs)))[0]
 
 
 def _spectrum(time: np.ndarray, residual: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -41,10 +41,10 @@ def record_verdict(fit: Fit, found: Errors) -> tuple[int, dict[str, str]]:
     """A code and the meanings of all codes."""
     meanings = dict(_VERDICTS)
     sticks = fit.motion.stops > 0
-    friction = float(fit.values[X_F]) > _FOUND * float(found.standard_error[X_F])
+    friction = friction_found(float(fit.values[X_F]), float(found.standard_error[X_F]))
     together = inseparable(fit, found)
     meanings["not_identified"] = (
-        f"not identifiable: {_listed(together)} cannot be determined together from this record, "
+        f"not identifiable: {listed(together)} cannot be determined together from this record, "
         f"and their estimates must not be used: {REMEDY}"
     )
     if together and (friction or sticks):
@@ -52,16 +52,27 @@ def record_verdict(fit: Fit, found: Errors) -> tuple[int, dict[str, str]]:
     return int(friction) * (1 + int(sticks)), meanings
 
 
+def friction_found(friction: float, error: float) -> bool:
+    """Whether friction is beyond what its standard error explains."""
+    return friction > _FOUND * error
+
+
 def inseparable(fit: Fit, found: Errors) -> list[str]:
     """Fitted parameters that the record does not tell from each other, none or two and more."""
-    friction = float(fit.values[X_F])
-    width = max(friction - float(found.lower[X_F]), float(found.upper[X_F]) - friction)
-    if fit.model_error == 1.0 and width <= _VAGUE * friction:
-        return []
-    limit = CORRELATED if fit.model_error == 1.0 else _CORRELATED_BY_MODEL
+    limit = limit_of_correlation(
+        fit.model_error, float(fit.values[X_F]), float(found.lower[X_F]), float(found.upper[X_F])
+    )
     pairs = [pair for pair in combinations(_SHAPING, 2) if abs(float(found.correlation[pair])) > limit]
     return [PARAMETERS[index] for index in _SHAPING if any(index in pair for pair in pairs)]
 
 
-def _listed(names: list[str]) -> str:
+def limit_of_correlation(model_error: float, friction: float, lower: float, upper: float) -> float:
+    """The correlation beyond which estimates cannot be told apart; 1 where the friction is well known."""
+    if model_error > 1.0:
+        return _CORRELATED_BY_MODEL
+    return CORRELATED if max(friction - lower, upper - friction) > _VAGUE * friction else 1.0
+
+
+def listed(names: list[str]) -> str:
+    """Names in a sentence."""
     return " and ".join(filter(None, (", ".join(names[:-1]), names[-1]))) if names else "estimates"

@@ -9,9 +9,10 @@ from ..files.json_schema import DIALECT, described, keyed_table
 from ..files.keys import KEYS, Key, either, number, several, table, whole, with_unit, word
 from ..units.table import UNITS, units_of
 from .columns import MISSING
-from .configuration import KINDS
+from .configuration import JOINT_NAME, KINDS
 from .record_motion import CONTACTS, DAMPING_REFERENCES
 from .rig import KNOWN_UNITS
+from .rig_joint import DATA_KEYS, JOINED, JOINT
 from .robust import LOSSES
 from .sweep import COSTS
 from .sweep_data import MOST_MASSES
@@ -49,6 +50,10 @@ _DATA = (
         example="0.02"),
     Key("unreachable", "lags that no friction gives", word("refuse", "drop"), "refuse"),
 )  # fmt: skip
+
+#: Of each of several measurements.
+_LABEL = Key("label", "name in the results; default: its number", {"type": "string", "minLength": 1},
+             example='"10 N"')  # fmt: skip
 
 _FIT = (
     Key("free", "what is fitted, which is what [known] does not hold", several({"type": "string"}),
@@ -145,10 +150,26 @@ def rig_schema() -> dict[str, Any]:
         "$schema": DIALECT,
         "title": "Configuration of a rig, for frictionmap identify",
         "type": "object",
-        "properties": {"data": {"type": "object", "required": ["kind", "file"]}},
+        "properties": {"data": either({"type": "object", "required": ["kind", "file"]}, {"type": "array"})},
         "required": ["data"],
-        "oneOf": [_of_kind(kind) for kind in KINDS],
+        "oneOf": [*(_of_kind(kind) for kind in KINDS), _of_several()],
     }
+
+
+def _of_several() -> dict[str, Any]:
+    """Several measurements, tables [[data]]."""
+    named = {key.name: key for key in (*_DATA, _LABEL)}
+    data = table(described(tuple(named[name] for name in DATA_KEYS)), ("kind", "file"))
+    data["properties"]["kind"] = {"description": "what was measured", **word(*JOINED)}
+    known = tuple(_known(name) for name in (*JOINT.parameters, *JOINT.known))
+    fit = tuple(key for key in _FIT if key.name in (*JOINT.fit, "free"))
+    tables = {
+        "data": {"description": "Measurements that are fitted together.", **several(data, least=2)},
+        "system": keyed_table("system", _SYSTEMS["record"], TABLES["system"]),
+        "known": keyed_table("known", known, TABLES["known"]),
+        "fit": keyed_table("fit", fit, TABLES["fit"]),
+    }
+    return {**table({**described(KEYS[""]), **tables}), "title": JOINT_NAME}
 
 
 def _of_kind(kind: str) -> dict[str, Any]:

@@ -1,5 +1,7 @@
 """Records of steady motion from the file of a rig."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -27,7 +29,7 @@ SYSTEM_KEYS = ("contact", "damping_reference", "excitation", "contact_masses")
 
 
 def _record(rig: Rig, table: Table) -> xr.Dataset:
-    contact, reference = _checked_system(rig)
+    contact, reference = one_mass_on_base(rig)
     check_columns(rig, tuple(_WANTED))
     picked = pick_columns(table, _WANTED, rig.columns, rig.missing)
     time, base, x = (picked.columns[role] for role in _WANTED)
@@ -37,11 +39,12 @@ def _record(rig: Rig, table: Table) -> xr.Dataset:
         key: value * conversion("mm", unit) if key in _LENGTHS else value for key, value in rig.known.items()
     }
     stiffness = known.pop("stiffness", None)
+    options: dict[str, Any] = dict(rig.fit)
     try:
         times, found = _displaced(time, base, x, unit, rig.data.get("window"))
         ds = record(
             times, found.base, found.x, unit=unit, contact=contact, damping_reference=reference, known=known,
-            stiffness=stiffness, window=rig.data.get("window"),
+            stiffness=stiffness, window=rig.data.get("window"), **options,
         )  # fmt: skip
     except InputError as error:
         names = f"columns {time.name}, {base.name} and {x.name}"
@@ -77,7 +80,7 @@ def _of_integration(columns: tuple[Column, Column], found: Displacements) -> lis
     return words
 
 
-def _checked_system(rig: Rig) -> tuple[str, str]:
+def one_mass_on_base(rig: Rig) -> tuple[str, str]:
     """Contact and damping reference of one mass on a shaken base."""
     for key in rig.system:
         if key not in SYSTEM_KEYS:
@@ -96,4 +99,4 @@ def _checked_system(rig: Rig) -> tuple[str, str]:
     )
 
 
-RECORD = Kind(_record, PARAMETERS, known=("stiffness",), data=("window",), system=True)
+RECORD = Kind(_record, PARAMETERS, known=("stiffness",), data=("window",), fit=("loss",), system=True)

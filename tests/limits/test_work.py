@@ -44,7 +44,7 @@ def check(cells, cycles):
         began = time.perf_counter()
         ds = fm.sweep(system, [r], [beta], mu, outputs=OUTPUTS, cycles=cycles, start=start)
         assert time.perf_counter() - began < WALL, (r, beta, mu, zeta)
-        periods = FREE_PERIODS * cycles * r  # those of the load at rate 1, which the fastest motion may double
+        periods = FREE_PERIODS * cycles * r  # of the load at rate 1, which the fastest motion may double
         assert ds.cycles.item() <= min(cycles, np.ceil(periods) + 1.0) + 1.0, (r, beta, mu, zeta)
         short += periods < cycles and ds.status.item() == regimes.NOT_REACHED
     return short
@@ -114,9 +114,7 @@ def test_friction_below_the_rounding_of_the_load_counts_as_none():
         r = np.array([1e-4, 0.3, 0.8, 2.7])
         load = fm.boundaries(system, r).beta_stick.values[0]
         for k, ratio in enumerate(r):
-            ds = fm.sweep(
-                system, [ratio], [1e-18 * load[k]], 1.5, outputs=[*OUTPUTS[:8], "also_reachable"]
-            )
+            ds = fm.sweep(system, [ratio], [1e-18 * load[k]], 1.5, outputs=[*OUTPUTS[:8], "also_reachable"])
             none = fm.sweep(system, [ratio], [0.0], 1.5)
             assert ds.regime.item() == regimes.CONTINUOUS
             assert ds.also_reachable.item() == 1 << regimes.CONTINUOUS

@@ -281,6 +281,16 @@ def test_without_a_home(place, monkeypatch):
     assert all(path.is_absolute() for path in folders.places())
 
 
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="places of Linux")
+def test_the_cache_of_the_user_follows_the_environment(monkeypatch, tmp_path):
+    monkeypatch.undo()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "own"))
+    assert folders._user_cache() == tmp_path / "own" / "frictionmap"
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert folders._user_cache() == tmp_path / ".cache" / "frictionmap"
+
+
 # States
 
 
@@ -307,6 +317,9 @@ def test_states_long_past_go(place):
         (path / "new-half").write_text("")
         (path / "kernel.nbc").write_text("")
     (other / "thesis.tex").write_text("all of it")
+    (old / "engine_0").mkdir()  # of plain numba
+    for ending in ("nbi", "1.nbc"):
+        (old / "engine_0" / f"fill.{ending}").write_text("")
     past = time.time() - 100 * 86400
     for path in (old, other):
         os.utime(path, (past, past))

@@ -32,9 +32,8 @@ def decay_solution(record: Record, fit: Fit) -> Solution:
 def _of_one(record: Record, fit: Fit) -> Errors:
     """Errors of one fit; the variance is that of a sample with its full weight."""
     grown, by_lag_1 = long_inflation(fit.solution.residual), inflation(fit.solution.residual)[1]
-    variance = (
-        sample_variance(record, fit) * (grown / by_lag_1) ** 2
-    )  # errors() knows of the lag-1 correlation
+    # errors() allows for the lag-1 correlation itself
+    variance = sample_variance(record, fit) * (grown / by_lag_1) ** 2
     found = errors(fit.problem, fit.solution, variance)
     residual = fit.plain.residuals(fit.solution.values)[0]
     named = slice(len(record.names))

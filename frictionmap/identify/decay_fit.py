@@ -77,8 +77,13 @@ def fit_decay(record: Record, points: TurningPoints) -> list[Fit]:
 
 def noise_variance(record: Record, fit: Fit) -> float:
     """The variance of a sample that tells chance from a worse fit: larger where residuals are correlated."""
-    rounding = (_ROUNDING * float(np.ptp(record.x))) ** 2
-    return max(sample_variance(record, fit) * long_inflation(fit.solution.residual) ** 2, rounding)
+    variance = sample_variance(record, fit) * long_inflation(fit.solution.residual) ** 2
+    return max(variance, rounding_variance(record))
+
+
+def rounding_variance(record: Record) -> float:
+    """The variance of a sample below which residuals are rounding."""
+    return (_ROUNDING * float(np.ptp(record.x))) ** 2
 
 
 def sample_variance(record: Record, fit: Fit) -> float:

@@ -10,7 +10,7 @@ from numpy.polynomial import legendre
 from scipy.special import chdtri
 
 from .correlation import long_inflation
-from .decay_fit import Fit, fit_decay
+from .decay_fit import Fit, fit_decay, rounding_variance
 from .decay_problem import DRIFT, Record, problem
 from .turning_points import TurningPoints
 
@@ -57,9 +57,8 @@ def _wander_terms(record: Record, fit: Fit) -> np.ndarray:
     shares = directions.T @ residual
     left = residual - directions @ shares
     variance = float(left @ left) / (left.size - shares.size) * long_inflation(left) ** 2
+    variance = max(variance, rounding_variance(record))
     gains = np.cumsum(shares[-basis.shape[1] :] ** 2)
-    if variance == 0.0:
-        return basis[:, :0]
     terms = np.arange(1, basis.shape[1] + 1)
     best = int(np.argmax(gains / variance - _WORTH * terms))
     found = gains[best] / variance > chdtri(terms[best], _CHANCE)

@@ -143,6 +143,13 @@ def test_no_wander_is_found_in_white_noise():
         assert "low-frequency" not in ds.warnings
 
 
+def test_rounding_is_no_wander():
+    """Residuals of exact data are rounding of a model with 24 half cycles, and so are correlated."""
+    ds = fm.identify.free_decay(*synthetic(MIXED._replace(noise=0.0), 1))
+    assert "wander_terms" not in ds
+    assert ds.estimate.values[:3] == pytest.approx([MIXED.f_n, MIXED.zeta, MIXED.x_F], rel=1e-9)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("amplitude", [0.5, 1.0])
 def test_intervals_hold_the_truth_although_the_zero_wanders(amplitude):

@@ -6,9 +6,7 @@ import numpy as np
 
 from .chain_fit import Found, Measured, fit_chain, no_sum, problem
 from .least_squares import Problem, minimise
-
-#: Half of all normal deviates are within so many standard deviations.
-_NORMAL_MEDIAN = 0.6745
+from .robust import root_mean_square, usual_size
 
 #: Errors from residuals are found again and again until they change by less than this share.
 _SETTLED, _ROUNDS = 1e-3, 20
@@ -21,7 +19,7 @@ def fit_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, Problem,
     """The least sum, weights of amplitudes and of lags by their residuals; the data have these weights."""
     found, task = fit_chain(data, known)
     for _ in range(_ROUNDS if _of_both_kinds(data) else 0):
-        weighed = _weighed(data, task, found, _root_mean_square)
+        weighed = _weighed(data, task, found, root_mean_square)
         if np.allclose(weighed.sigma, data.sigma, rtol=_SETTLED, atol=0.0):
             break
         data, task = weighed, problem(weighed, known)
@@ -29,17 +27,17 @@ def fit_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, Problem,
     if not _of_both_kinds(data):
         return found, task, data
     near = [one for one in found.others if one.sum <= _HOPELESS * found.others[0].sum]
-    others = sorted((minimise(task, one.values) for one in near), key=lambda one: one.sum)
-    return found._replace(others=others, nothing=no_sum(data)), task, data
+    minima = sorted([found.best, *(minimise(task, one.values) for one in near)], key=lambda one: one.sum)
+    return found._replace(best=minima[0], others=minima[1:], nothing=no_sum(data)), task, data
 
 
 def fit_robust_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, Problem, Measured]:
     """The same with little weight of residuals beyond those that are usual."""
     found, task = fit_chain(data, known)
     for _ in range(2):  # the first errors are those of a fit that outliers pull
-        data = _weighed(data, task, found, _usual)
+        data = _weighed(data, task, found, usual_size)
         task = problem(data, known)
-        usual = _usual(task.residuals(found.best.values)[0])
+        usual = usual_size(task.residuals(found.best.values)[0])
         if usual == 0.0:  # exact data have none
             break
         found, task = fit_chain(data, known, usual)
@@ -61,12 +59,3 @@ def _weighed(data: Measured, task: Problem, found: Found, size: Callable[[np.nda
 
 def _of_both_kinds(data: Measured) -> bool:
     return bool(data.is_phase.any() and not data.is_phase.all())
-
-
-def _root_mean_square(residual: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(residual**2)))
-
-
-def _usual(residual: np.ndarray) -> float:
-    """The standard deviation of normal deviates with the same median, outliers or not."""
-    return float(np.median(np.abs(residual))) / _NORMAL_MEDIAN

@@ -16,6 +16,7 @@ from .forced_labels import friction_forces, labelled
 from .forced_lags import friction_ratios, impossible, refuse_impossible, without
 from .forced_model import F_N, MU, ZETA
 from .forced_told import told
+from .robust import LOSSES
 
 #: Estimates so many standard errors above zero are found.
 _FOUND = 3.0
@@ -47,10 +48,11 @@ def forced(
     sigma_amplitude: Error = None,
     unreachable: object = "refuse",
     stiffness: float | None = None,
+    loss: str = "linear",
 ) -> xr.Dataset:
     """Fit the exact steady states to first harmonics of forced responses, all friction forces at once.
 
-    Twelve arguments: the columns of a table, and what is known.
+    Thirteen arguments: the columns of a table, and what is known.
 
     Parameters
     ----------
@@ -78,6 +80,8 @@ def forced(
     stiffness : float
         k1 [N/m] > 0 of the first spring; with the amplitudes of the base as `load` it gives the friction
         force k1 x_F of every set [N].
+    loss : "linear" or "soft_l1"
+        What residuals cost: their squares, or less beyond their errors, for outliers.
 
     Returns
     -------
@@ -111,13 +115,14 @@ def forced(
         warnings.append(
             f"lags alone do not tell f_n: it is held at {held[F_N]:.6g} Hz, where they pass 90 deg"
         )
+    robust = checks.choice(loss, "loss", LOSSES) == "soft_l1"
     drop = checks.choice(unreachable, "unreachable", ("refuse", "drop")) == "drop"
     table = _reachable(table, system, held[F_N], drop, warnings)
     _check_count(table, held)
-    fit = fit_forced(table, system, held)
+    fit = fit_forced(table, system, held, robust)
     possible = _reachable(table, system, float(fit.solution.values[F_N]), drop, warnings)
     if possible is not table:
-        table, fit = possible, fit_forced(possible, system, held)
+        table, fit = possible, fit_forced(possible, system, held, robust)
     ds = labelled(table, fit, unit if load is not None else None).assign(friction_ratios(fit))
     if stiffness is not None:
         newtons = checks.number(stiffness, "stiffness", above=0.0)

@@ -21,6 +21,7 @@ from .least_squares import (
     two_sided,
     undetermined,
 )
+from .robust import effective_variance, root_mean_square, softened, usual_size
 
 #: The natural frequency is within this share of where the fit begins.
 _FREQUENCY_RANGE = 0.2
@@ -34,6 +35,8 @@ _CLOSER_LOOKS = 2
 #: Errors from residuals are found again and again until they change by less than this share.
 _SETTLED, _ROUNDS = 1e-3, 20
 
+#: Residuals beyond so many of their errors have little weight in a robust fit.
+_OUTLIER = 1.0
 
 #: Singular values of slopes below this share of the largest are zero, as are changes of lags [rad] and of
 #: logarithms of amplitudes, per unit of a parameter: differences have some such errors.
@@ -51,39 +54,50 @@ class Fit(NamedTuple):
     mu_idle: bool  # mu was to be fitted, but no motion that was found stops
 
 
-def fit_forced(table: ForcedTable, system: System, known: np.ndarray) -> Fit:
+def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bool = False) -> Fit:
     """The steady states nearest to a table.
 
     known : (parameters,) values that are held; NaN of the others
+    robust : whether residuals far beyond their errors have little weight
     """
     model = ForcedModel(system, bool(system.modes.zeta.any()), table.rows, table.samples)
-    model, solution, task = _with_errors(model, known, table.given)
+    model, solution, task = _with_errors(model, known, table.given, robust)
     here = evaluate(model, solution.values, task.free)
     idle = bool(task.free[MU]) and not (here.regime == regimes.STICK_SLIP).any()
     if idle:
         known = known.copy()
         known[MU] = 1.0
-        model, solution, task = _with_errors(model, known, table.given)
+        model, solution, task = _with_errors(model, known, table.given, robust)
         here = evaluate(model, solution.values, task.free)
     _check_told(table, model, solution, task)
     variance = 1.0 if any(table.given) else None
+    plain = problem(model, task.free, float(solution.values[F_N])) if robust else None
+    if plain is not None:
+        variance = effective_variance(plain, solution, _OUTLIER)
     found = _near_bound(errors(task, solution, variance), task, solution, variance)
+    if plain is not None:
+        solution = solution._replace(residual=plain.residuals(solution.values)[0])
+        found = found._replace(variance=solution.sum / _freedom(solution, task))
     return Fit(model, task, solution, found, here, idle)
 
 
+def _freedom(solution: Solution, task: Problem) -> int:
+    return solution.residual.size - int(task.free.sum())
+
+
 def _near_bound(found: Errors, task: Problem, solution: Solution, variance: float | None) -> Errors:
-    """The interval of mu from the profile of the sum where it begins at 1: there slopes say little."""
+    """Take the interval of mu from the profile of the sum where it begins at 1: there slopes say little."""
     if not task.free[MU] or solution.at_bound[MU] or found.lower[MU] > 1.0:
         return found
-    freedom = solution.residual.size - int(task.free.sum())
     of_one = (found.variance if variance is None else variance) * found.inflation**2
     scale = float(found.standard_error[MU])
     upper = found.upper.copy()
-    upper[MU] = profile_end(task, solution, MU, two_sided(freedom) ** 2 * of_one, scale)[0]
+    allowed = two_sided(_freedom(solution, task)) ** 2 * of_one
+    upper[MU] = profile_end(task, solution, MU, allowed, scale)[0]
     return found._replace(upper=upper)
 
 
-def problem(model: ForcedModel, free: np.ndarray, f_n: float) -> Problem:
+def problem(model: ForcedModel, free: np.ndarray, f_n: float, robust: bool = False) -> Problem:
     """Least squares of all samples; `f_n` is where the fit begins.
 
     Below a bound, where there is no model, its tangent there takes its place.
@@ -99,37 +113,44 @@ def problem(model: ForcedModel, free: np.ndarray, f_n: float) -> Problem:
     lowest, highest = np.full(free.size, -np.inf), np.full(free.size, np.inf)
     lowest[F_N], highest[F_N] = f_n * (1.0 - _FREQUENCY_RANGE), f_n * (1.0 + _FREQUENCY_RANGE)
     highest[ZETA] = checks.LARGEST_DAMPING
-    return Problem(residuals, free, floor, lowest, highest)
+    plain = Problem(residuals, free, floor, lowest, highest)
+    return softened(plain, _OUTLIER) if robust else plain
 
 
 def _with_errors(
-    model: ForcedModel, known: np.ndarray, given: tuple[bool, bool]
+    model: ForcedModel, known: np.ndarray, given: tuple[bool, bool], robust: bool
 ) -> tuple[ForcedModel, Solution, Problem]:
     """The least sum with errors as given, or as the residuals tell them of lags and of amplitudes apart."""
     free = np.isnan(known)
-    solution, task = _best(model, known, all(given))
+    solution, task = _best(model, known, all(given), robust)
     for _ in range(0 if all(given) else _ROUNDS):
-        samples = _with_scatter(model.samples, solution, int(free.sum()), given)
+        samples = _with_scatter(model, solution, free, given, robust)
         change = samples.sigma / model.samples.sigma
         if (np.abs(change - 1.0) < _SETTLED).all() or not (samples.sigma > 0.0).all():
             break
         model = model._replace(samples=samples)
-        task = problem(model, free, float(solution.values[F_N]))
+        task = problem(model, free, float(solution.values[F_N]), robust)
         solution = minimise(task, solution.values)
     return model, solution, task
 
 
-def _with_scatter(samples: Samples, solution: Solution, unknowns: int, given: tuple[bool, bool]) -> Samples:
+def _with_scatter(
+    model: ForcedModel, solution: Solution, free: np.ndarray, given: tuple[bool, bool], robust: bool
+) -> Samples:
     """Samples with the errors of lags, or amplitudes, from their residuals, if they were not given."""
-    share = 1.0 - unknowns / samples.row.size  # of the residuals that the fit has left
+    samples, residual = model.samples, solution.residual
+    if robust:  # those of the solution are drawn in
+        residual = problem(model, free, float(solution.values[F_N])).residuals(solution.values)[0]
+    size = usual_size if robust else root_mean_square
+    share = 1.0 - free.sum() / samples.row.size  # of the residuals that the fit has left
     sigma = samples.sigma.copy()
     for kind, known in zip((samples.is_phase, ~samples.is_phase), given, strict=True):
         if not known and kind.any():
-            sigma[kind] *= np.sqrt(np.mean(solution.residual[kind] ** 2) / share)
+            sigma[kind] *= size(residual[kind]) / np.sqrt(share)
     return samples._replace(sigma=sigma)
 
 
-def _best(model: ForcedModel, known: np.ndarray, sure: bool) -> tuple[Solution, Problem]:
+def _best(model: ForcedModel, known: np.ndarray, sure: bool, robust: bool) -> tuple[Solution, Problem]:
     """The least sum over all starts, or the first that chance explains if the errors are sure."""
     free = np.isnan(known)
     freedom = model.samples.row.size - int(free.sum())
@@ -139,7 +160,7 @@ def _best(model: ForcedModel, known: np.ndarray, sure: bool) -> tuple[Solution, 
     best: tuple[Solution, Problem] | None = None
     while begun and (best is None or best[0].sum > enough):
         start = begun.pop(0)
-        task = problem(model, free, float(start[F_N]))
+        task = problem(model, free, float(start[F_N]), robust)
         found = minimise(task, start)
         if best is None or found.sum < best[0].sum:
             best = found, task

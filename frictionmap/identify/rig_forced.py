@@ -15,6 +15,7 @@ from .forced import forced
 from .forced_data import check_lag
 from .integration import amplitude_factors, derivative_order
 from .rig import Kind, Rig, check_columns, with_remarks
+from .robust import LOSSES
 from .tables import Table
 
 #: What may be fitted: the columns, and what they measure.
@@ -56,6 +57,7 @@ def _forced(rig: Rig, table: Table) -> xr.Dataset:
             frequency, lags or None, ratios or None, system=system, load=load, unit=unit, stiffness=stiffness,
             sets=_sets(rig, table, picked.rows), known=known, sigma_phase=sigmas[0],
             sigma_amplitude=sigmas[1], unreachable=rig.data.get("unreachable", "refuse"),
+            loss=checks.choice(rig.fit.get("loss", LOSSES[0]), "fit.loss", LOSSES),
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"file {rig.file}: {error}") from None
@@ -244,5 +246,6 @@ FORCED = Kind(
     ("beta", "f_n", "zeta", "mu"),
     known=("stiffness",),
     data=("use", "sigma_phase_deg", "sigma_amplitude", "unreachable"),
+    fit=("loss",),
     system=True,
 )

@@ -11,6 +11,9 @@ from .least_squares import Problem, Solution
 
 LOSSES = ("linear", "soft_l1")
 
+#: Half of all normal deviates are within so many standard deviations.
+_NORMAL_MEDIAN = 0.6745
+
 
 def softened(problem: Problem, scale: float) -> Problem:
     """The problem with little weight of residuals beyond `scale` > 0."""
@@ -34,3 +37,13 @@ def effective_variance(problem: Problem, best: Solution, scale: float) -> float:
     weight = 0.5 * (1.0 + q) / q**2
     freedom = plain.size - int(problem.free.sum())
     return float(np.sum(influence**2) / freedom * np.mean(weight) / np.mean(change) ** 2)
+
+
+def root_mean_square(residual: np.ndarray) -> float:
+    """The standard deviation of residuals whose mean is zero."""
+    return float(np.sqrt(np.mean(residual**2)))
+
+
+def usual_size(residual: np.ndarray) -> float:
+    """The standard deviation of normal deviates whose sizes have the same median, outliers or not."""
+    return float(np.median(np.abs(residual))) / _NORMAL_MEDIAN

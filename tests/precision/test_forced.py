@@ -102,3 +102,36 @@ def test_motions_that_stop_with_noise():
     for seed in range(3):
         ds = stopping(seed, 0.3, 0.005)
         assert np.abs((ds.estimate - truth) / ds.standard_error).max() < 4.0
+
+
+def test_outliers_of_a_table_have_little_weight():
+    """A lag 25 errors off, an amplitude 40: friction is where it is without them, errors given or not."""
+    sets, f, lag, ratio = table(WALL, 5)
+    known, truth = {"mu": 1.0}, np.array([*WALL.beta, WALL.f_n, WALL.zeta])
+    clean = fm.identify.forced(f, lag, ratio, sets=sets, known=known)
+    lag[3] += 18.0
+    ratio[12] *= np.exp(0.4)
+    for given in ({}, {"sigma_phase": 0.7, "sigma_amplitude": 0.01}):
+        pulled, soft = (
+            fm.identify.forced(f, lag, ratio, sets=sets, known=known, loss=loss, **given)
+            for loss in ("linear", "soft_l1")
+        )
+        off = np.abs(soft.estimate.values[:-1] - truth) / clean.standard_error.values[:-1]
+        assert off.max() < 3.0
+        assert (
+            np.abs(pulled.estimate.values[:-1] - truth).max()
+            > np.abs(soft.estimate.values[:-1] - truth).max()
+        )
+        ratios = soft.standard_error.values[:-1] / clean.standard_error.values[:-1]
+        assert ((ratios > 0.7) & (ratios < 1.7)).all()
+
+
+def test_the_robust_loss_of_clean_data():
+    """Without outliers it costs little: errors grow by some percent."""
+    linear, soft = (fitted(WALL, 6, loss=loss) for loss in ("linear", "soft_l1"))
+    errors = soft.standard_error.values[:-1] / linear.standard_error.values[:-1]
+    assert ((errors > 0.8) & (errors < 1.4)).all()
+    pull = (soft.estimate - linear.estimate).values[:-1] / linear.standard_error.values[:-1]
+    assert np.abs(pull).max() < 1.5
+    with pytest.raises(fm.InputError, match="loss must be one of linear, soft_l1; got 'cauchy'"):
+        fitted(WALL, 6, loss="cauchy")

@@ -2,8 +2,6 @@
 
 from itertools import combinations
 
-import numpy as np
-
 from .least_squares import Errors
 from .record_fit import Fit
 from .record_motion import F_N, MU, PARAMETERS, X_F, ZETA
@@ -17,9 +15,9 @@ CORRELATED = 0.95
 #: ... if the friction that is told has an interval wider than this share of it, to either side.
 _VAGUE = 0.1
 
-#: The same where the model itself is wrong by more than the noise: half of the variance of either is the
+#: The same where the model itself is wrong by more than the noise: a quarter of the variance of either is the
 #: other's, and the model's error goes where it costs least, along both.
-_CORRELATED_BY_MODEL = float(np.sqrt(0.5))
+_CORRELATED_BY_MODEL = 0.5
 
 #: What a motion depends on in a way of its own; the offset only moves it.
 _SHAPING = (F_N, ZETA, X_F, MU)

@@ -26,6 +26,7 @@ free_decay       `free_decay`: from arrays to estimates
 two_masses       two masses without friction in closed form
 chain_response   response of a chain of masses without friction, and its derivatives
 chain_inverse    a chain from where its first mass resonates and where it stands still
+chain_sides      the sides of samples that resonances are on
 chain_fit        the chain nearest to amplitudes and lags
 chain_errors     such fits where errors are not known
 chain_estimates  the dataset of such a fit

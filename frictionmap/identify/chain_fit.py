@@ -13,6 +13,7 @@ from scipy.optimize import least_squares
 from ..model.modes import wrapped
 from .chain_inverse import chain_of
 from .chain_response import modes, response_and_slopes
+from .chain_sides import other_sides
 from .least_squares import Problem, Solution, minimise
 from .robust import softened
 from .turning_points import turns
@@ -130,6 +131,10 @@ def fit_chain(data: Measured, known: np.ndarray, outliers: float | None = None) 
         # the first mass has one answer only; others may have several, which are looked for
         if times >= _FOUND_AGAIN and 0 in data.mass and _usual_error(data, minima[0]) < _OUTLIER:
             break
+    if 0 in data.mass and not task.free[2 * data.n - 1 :].any() and not known[2 * data.n - 1 :].any():
+        other = other_sides(task, minima[0], data.amplitudes(0)[0], data.n)
+        if other is not minima[0]:
+            minima, times = [other, *minima], 1
     return Found(minima[0], minima[1:], times, nothing, outliers), plain
 
 

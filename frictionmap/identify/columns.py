@@ -86,7 +86,7 @@ def unused_columns(table: Table, used: Collection[str]) -> str:
         return ""
     more = len(others) - _NAMED
     words = ", ".join(others[:_NAMED]) + (f" and {more} more" if more > 0 else "")
-    return f"not used of {table.file.name}: {words}"
+    return f"columns of {table.file.name} that are not used: {words}"
 
 
 def check_increasing(table: Table, time: Column, rows: np.ndarray) -> None:

@@ -314,10 +314,10 @@ def test_columns_that_are_not_used_are_named(rig, capsys):
     rows = "\n".join(f"{t:.6g},{place:.6g},{place:.6g},note" for t, place in zip(time, x, strict=True))
     text = f"time_s,x_mm,x_volt,remark\n{rows}\n"
     assert main(["identify", str(rig(text))]) == 0
-    assert "warning: not used of decay.csv: x_volt, remark\n" in capsys.readouterr().out
+    assert "warning: columns of decay.csv that are not used: x_volt, remark\n" in capsys.readouterr().out
     text = text.replace("x_volt", "x_time_s")
     assert main(["identify", str(rig(text, 'columns = { x = "x_mm" }')), "--overwrite"]) == 0
-    assert "warning: not used of decay.csv: x_time_s, remark\n" in capsys.readouterr().out
+    assert "warning: columns of decay.csv that are not used: x_time_s, remark\n" in capsys.readouterr().out
 
 
 def test_unused_columns_of_large_files(rig, capsys):

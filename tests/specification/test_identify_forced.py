@@ -182,7 +182,7 @@ def test_columns_that_nobody_asked_for(rig, capsys):
          "frequency_Hz, note, base_inch"),
     ]):  # fmt: skip
         assert main(["identify", rig(lines, text, head), "-o", f"{k}.nc"]) == 0
-        assert f"not used of table.csv: {left}\n" in capsys.readouterr().out
+        assert f"columns of table.csv that are not used: {left}\n" in capsys.readouterr().out
         np.testing.assert_allclose(
             estimates_of(f"{k}.nc").estimate, estimates_of("rig-identify.nc").estimate, rtol=1e-4
         )
@@ -199,7 +199,7 @@ def test_no_base_but_a_frequency_that_begins_like_one(rig):
 def test_what_data_use_leaves_out_is_not_named(rig, capsys):
     text = RIG.replace("sigma_p", 'use = ["amplitude"]\nsigma_p')
     assert main(["identify", rig(text=text)]) == 0
-    assert "not used" not in capsys.readouterr().out
+    assert "that are not used" not in capsys.readouterr().out
 
 
 def test_a_measured_frequency_goes_before_its_ratio(rig):
@@ -211,7 +211,7 @@ def test_a_measured_frequency_goes_before_its_ratio(rig):
 def test_the_load_of_the_other_excitation_beside_its_own(rig, capsys):
     lines = [f"{line},3.0" for line in LINES]
     assert main(["identify", rig(lines, head=f"{HEAD},force_N")]) == 0
-    assert "not used of table.csv: force_N" in capsys.readouterr().out
+    assert "columns of table.csv that are not used: force_N" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ Examples
 --------
 >>> import frictionmap as fm
 >>> ds = fm.sweep(fm.System(), r=[0.3], beta=[0.01, 0.5, 1.0])
->>> (ds.regime == fm.regimes.CONTINUOUS).values
-array([[[ True, False, False]]])
+>>> (ds.regime == fm.regimes.CONTINUOUS).values.ravel().tolist()
+[True, False, False]
 >>> [fm.regimes.regime_name(code) for code in ds.regime.values.ravel()]
 ['continuous', 'stick_slip', 'permanent_sticking']
 """

@@ -120,7 +120,7 @@ def _motion(system: fm.System, r: float, steps: int, special: bool) -> Callable[
         step = phases.step_constants(r, system.zeta, float(steps))
         work = np.empty(phases.MAX_TERMS)
         return lambda slides: follow_one(step, BETA, BETA, slides, work)
-    found = Cells(system, np.array([r]), np.array([BETA]), np.ones(1), Solver()).structures
+    found = Cells(system, np.array([r]), np.array([BETA]), np.ones(1), Solver()).structure_arrays
     n = found.participating.size
     st = make_structure(found.model, found.loads, 0, r, float(steps))
     state, held, scratch = np.zeros((2, n)), np.zeros((2, n - 1)), make_scratch(n)

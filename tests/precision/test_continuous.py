@@ -336,8 +336,8 @@ def test_monoharmonic_amplitude():
         ds = fm.boundaries(system, at)
         v, u_z = complex(ds.V[0], ds.V_imag[0]), ds.U.item()
         v_k = np.array([modes.response(at, row)[0] for row in modes.phi])
-        u = motion._compliance @ motion._answers.u[0]
-        g = motion._compliance @ motion._answers.g[0]
+        u = motion._compliance @ motion._responses.u[0]
+        g = motion._compliance @ motion._responses.g[0]
         if not damped and system.load is None:
             squares = v_k.real**2 + (1.0 - 2.0 * v_k.real * u_z / (v.real * u)) * (beta * u) ** 2
             np.testing.assert_allclose(found**2, squares, rtol=1e-9, atol=1e-12)

@@ -175,7 +175,7 @@ MASKED = np.ma.masked_array([0.4, 0.5], [True, False])
         ),
         (
             lambda: fm.sweep(fm.System(), [1.0], [0.5], output=["regime"]),
-            r"got output \(did you mean outputs",
+            r"unknown setting 'output' \(did you mean outputs\?\); valid: start",
         ),
         (lambda: fm.sweep(fm.System(), [1.0], [0.5], progress=1), "progress must be a function"),
         (lambda: fm.sweep(fm.System(), MASKED, [0.5]), "r must have no masked values"),

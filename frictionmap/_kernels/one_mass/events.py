@@ -279,7 +279,13 @@ def slide(step, b, z, w, acceleration, c, s, max_steps, work):
 
 @inner_kernel
 def slide_within(step, b, z, w, acceleration, c, s, max_steps, scratch):
-    """`slide` within the scan steps that are left, and takes off what it needs: at least one."""
+    """Follow a slide as `slide` does within the scan steps left; subtract those taken, at least one.
+
+    Parameters
+    ----------
+    step, b, z, w, acceleration, c, s, max_steps : see `slide`
+    scratch : Scratch
+    """
     allowed = max(min(max_steps, scratch.left[0]), 0.0)
     steps, z, c, s = slide(step, b, z, w, acceleration, c, s, allowed, scratch.series)
     scratch.left[0] -= 1.0 + (allowed if steps == NO_END else steps)

@@ -68,7 +68,7 @@ def _return_map(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, scratc
     c, s : cosine and sine of the load phase there
     after_stop : whether the anchor ends a stop
     sequence : EventSequence
-    work : (MAX_TERMS,) scratch
+    scratch : Scratch
 
     Returns
     -------
@@ -130,7 +130,7 @@ def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolera
     after_stop : whether the anchor ends a stop
     sequence : EventSequence of one recurrence
     tolerance : largest Newton step, relative to z
-    work : (MAX_TERMS,) scratch
+    scratch : Scratch
 
     Returns
     -------

@@ -9,14 +9,13 @@ import xarray as xr
 from .. import checks
 from ..datasets.provenance import system_text
 from ..errors import InputError
-from ..model.system import System
 from ..units.table import checked_unit, conversion
 from .cautions import only_interval
 from .estimates import estimates, number, usable_errors, verdict
 from .joint_fit import F_N, MU, ZETA, JointFit, fit_jointly, places_of
 from .joint_parts import SHARED, Part, decay_part, record_part, whole_of
 from .least_squares import Errors, Solution, errors, growth, two_sided
-from .record_labels import of_data, of_record
+from .record_labels import of_data, of_record, one_mass
 from .record_motion import CONTACTS, DAMPING_REFERENCES, motion, outer
 from .record_motion import PARAMETERS as OF_RECORD
 from .record_verdict import friction_found, limit_of_correlation, listed
@@ -118,8 +117,7 @@ def joint(
     found = _errors(fit)
     ds = _dataset(fit, found, unit).assign(_of_parts(fit, found, unit, stiffness, loss))
     ds.attrs["title"] = "Several measurements"
-    words = System(excitation="base", contact=contact, damping_reference=damping_reference)  # type: ignore[arg-type]
-    ds.attrs["config"] = system_text(words)
+    ds.attrs["config"] = system_text(one_mass(contact, damping_reference))
     ds.attrs["warnings"] = "; ".join([*_of_data(fit, unit, loss), *_of_fit(fit, found)])
     return ds
 

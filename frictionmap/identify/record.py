@@ -1,7 +1,6 @@
 """Natural frequency, damping, friction and mu of one mass from a record of its steady motion."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -9,7 +8,6 @@ import xarray as xr
 from .. import checks
 from ..datasets.provenance import system_text
 from ..errors import InputError
-from ..model.system import System
 from ..units.table import checked_unit, conversion
 from .cautions import only_interval
 from .estimates import estimates, number, usable_errors, verdict
@@ -18,14 +16,11 @@ from .phasors import Phasors
 from .record_data import measured_record, whole_record
 from .record_errors import DERIVED, derived_values, record_errors
 from .record_fit import Fit, fit_record
-from .record_labels import of_data, of_record
+from .record_labels import of_data, of_record, one_mass
 from .record_motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
 from .record_verdict import CORRELATED, record_verdict
 from .robust import LOSSES
 from .static_friction import IDLE, ONE
-
-#: Estimates so many standard errors above zero are found, and drifts so many are no chance.
-_FOUND = 3.0
 
 _MODEL_ERROR = (
     "what the fit leaves at the harmonics of the base, over the noise beside them; 1 if chance makes it"
@@ -77,6 +72,8 @@ def record(
         k [N/m] > 0; gives the friction force F = k x_F [N].
     window : [begin, end]
         Times [s] of the part to be fitted; default: all.
+    loss : "linear" or "soft_l1"
+        What residuals cost: their squares, or less beyond the level of the noise, for outliers.
 
     Returns
     -------
@@ -96,8 +93,15 @@ def record(
     Notes
     -----
     The base moves the mass by its harmonics 0 to 5, which are measured with errors: these are part of the
-    fit and of the standard errors.  mu is told by how late the mass leaves its stops, as (mu - 1)^2: near 1
-    its interval is wide.  Where the mass never sticks, it has no part in the motion.
+    fit and of the standard errors, as are drift and slow wander of the zero of the mass.
+
+    mu is 1 unless it is known or the data ask for more (likelihood ratio).  It shows in how late the mass
+    leaves its stops, as (mu - 1)^2: where its interval begins at 1 its standard error is NaN, and the
+    intervals of the others allow for all mu in it.  Where the mass never sticks, mu changes nothing.
+
+    The verdict is `not_identified` where estimates depend so much on each other that this record cannot
+    determine them: by correlations beyond 0.95 if friction is not known to 10 %, and beyond 0.5 if the model
+    leaves more than noise at the harmonics of the base (`model_error` > 1).  `joint` fits several records.
     """
     checked_unit(unit, "length", "unit")
     checks.choice(contact, "contact", CONTACTS)
@@ -116,15 +120,9 @@ def record(
     ds["base"] = xr.Variable("sample", base_used, {"long_name": "base, measured", "units": unit})
     ds = ds.assign(of_record(given, unit)).assign(_of_motion(fit, found, unit, stiffness))
     ds.attrs["title"] = "Record of steady motion"
-    ds.attrs["config"] = system_text(_structure(contact, damping_reference))
+    ds.attrs["config"] = system_text(one_mass(contact, damping_reference))
     ds.attrs["warnings"] = "; ".join(of_data(given, ds) + _of_fit(fit, found))
     return ds
-
-
-def _structure(contact: str, damping_reference: str) -> System:
-    """One mass on a shaken base, whose words have been checked."""
-    words: dict[str, Any] = {"contact": contact, "damping_reference": damping_reference}
-    return System(excitation="base", **words)
 
 
 def checked_known(known: Mapping[str, float]) -> dict[str, float]:

@@ -1,8 +1,11 @@
 """What a record is without any model, and what to mind of it."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
+from ..model.system import System
 from .decay_checks import largest_gap
 from .estimates import number
 from .phasors import changes
@@ -16,6 +19,12 @@ _DISTORTED = 0.05
 
 #: Squared change of a phasor over its variance that chance makes in one of a thousand: -2 ln 0.001.
 _CHANGED = 13.8
+
+
+def one_mass(contact: str, damping_reference: str) -> System:
+    """Make one mass on a shaken base, whose words have been checked."""
+    words: dict[str, Any] = {"contact": contact, "damping_reference": damping_reference}
+    return System(excitation="base", **words)
 
 
 def of_record(given: MeasuredRecord, unit: str) -> dict[str, xr.Variable]:

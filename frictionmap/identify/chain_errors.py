@@ -18,14 +18,14 @@ _HOPELESS = 3.0
 def fit_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, Problem, Measured]:
     """The least sum, weights of amplitudes and of lags by their residuals; the data have these weights."""
     found, task = fit_chain(data, known)
-    for _ in range(_ROUNDS if _of_both_kinds(data) else 0):
+    if not _of_both_kinds(data):
+        return found, task, data
+    for _ in range(_ROUNDS):
         weighed = _weighed(data, task, found, root_mean_square)
         if np.allclose(weighed.sigma, data.sigma, rtol=_SETTLED, atol=0.0):
             break
         data, task = weighed, problem(weighed, known)
         found = found._replace(best=minimise(task, found.best.values))
-    if not _of_both_kinds(data):
-        return found, task, data
     near = [one for one in found.others if one.sum <= _HOPELESS * found.others[0].sum]
     minima = sorted([found.best, *(minimise(task, one.values) for one in near)], key=lambda one: one.sum)
     return found._replace(best=minima[0], others=minima[1:], nothing=no_sum(data)), task, data
@@ -35,8 +35,9 @@ def fit_robust_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, P
     """The same with little weight of residuals beyond those that are usual."""
     found, task = fit_chain(data, known)
     for _ in range(2):  # the first errors are those of a fit that outliers pull
-        data = _weighed(data, task, found, usual_size)
-        task = problem(data, known)
+        if _of_both_kinds(data):
+            data = _weighed(data, task, found, usual_size)
+            task = problem(data, known)
         usual = usual_size(task.residuals(found.best.values)[0])
         if usual == 0.0:  # exact data have none
             break
@@ -50,11 +51,10 @@ def _weighed(data: Measured, task: Problem, found: Found, size: Callable[[np.nda
     size : of some residuals
     """
     residual = task.residuals(found.best.values)[0] * data.sigma
-    together, sigma = size(residual), data.sigma.copy()
-    for kind in (data.is_phase, ~data.is_phase):
-        if _of_both_kinds(data):
-            sigma[kind] = size(residual[kind]) / together if together > 0.0 else 0.0
-    return data._replace(sigma=sigma) if (sigma > 0.0).all() else data
+    sizes = np.array([size(residual[~data.is_phase]), size(residual[data.is_phase])])
+    if not (sizes > 0.0).all():
+        return data
+    return data._replace(sigma=sizes[data.is_phase.astype(int)] / size(residual))
 
 
 def _of_both_kinds(data: Measured) -> bool:

@@ -132,9 +132,9 @@ def fit_chain(data: Measured, known: np.ndarray, outliers: float | None = None) 
         if times >= _FOUND_AGAIN and 0 in data.mass and _usual_error(data, minima[0]) < _OUTLIER:
             break
     if 0 in data.mass and not task.free[2 * data.n - 1 :].any() and not known[2 * data.n - 1 :].any():
-        other = other_sides(task, minima[0], data.amplitudes(0)[0], data.n)
-        if other is not minima[0]:
-            minima, times = [other, *minima], 1
+        sides = other_sides(task, minima[0], data.amplitudes(0)[0], data.n)
+        times = times if sides[0].sum >= minima[0].sum * (1.0 - _SAME_SUM) else 1
+        minima = sorted([*sides, *minima[1:]], key=lambda one: one.sum)
     return Found(minima[0], minima[1:], times, nothing, outliers), plain
 
 

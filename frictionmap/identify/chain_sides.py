@@ -15,20 +15,25 @@ from .least_squares import Problem, Solution, minimise
 _LESS = 1e-4
 
 
-def other_sides(task: Problem, found: Solution, f: np.ndarray, n: int) -> Solution:
-    """The least sum when every resonance and standstill of mass 1 may change sides of the sample next to it.
+def other_sides(task: Problem, found: Solution, f: np.ndarray, n: int) -> list[Solution]:
+    """Minima with every resonance and standstill of mass 1 on either side of the sample next to it.
 
     f : frequencies at which mass 1 was measured, increasing
+
+    Returns
+    -------
+    list of Solution
+        By their sums, `found` among them: where a sample is very near, both sides may be as good.
     """
-    best, again = found, True
+    best, minima, again = found, [found], True
     while again:
-        again = False
-        for start in list(_mirrored(best.values, f, n)):
-            other = minimise(task, np.where(task.free, start, best.values))
-            if other.sum < best.sum * (1.0 - _LESS):
-                best, again = other, True
-                break
-    return best
+        tried = [
+            minimise(task, np.where(task.free, start, best.values)) for start in _mirrored(best.values, f, n)
+        ]
+        minima = sorted([*minima, *tried], key=lambda one: one.sum)
+        again = minima[0].sum < best.sum * (1.0 - _LESS)
+        best = minima[0]
+    return minima
 
 
 def standstills(values: np.ndarray, n: int) -> np.ndarray:

@@ -13,7 +13,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from ..units.table import MOTIONS, UNITS, units_of
-from .decay_checks import checked_record
+from .decay_checks import checked_record, unclipped
 from .phasors import harmonics_at, phasors_of
 
 #: Harmonics of a record, at most, and samples in a cycle of the highest.  An acceleration jumps where
@@ -66,15 +66,21 @@ def displacements(
     Raises
     ------
     InputError
-        An argument is illegal; fewer than 2 cycles or 8 samples a cycle.
+        An argument is illegal, a velocity or acceleration is clipped; fewer than 2 cycles or 8 samples a
+        cycle.
     """
     times, places = checked_record(time, x)
     channels = [checked_record(times, base, "base")[1], places]
-    into = _size(unit, "unit", "length")
+    _check_unit(unit, "unit", "length")
     units = (base_unit, x_unit)
-    sizes = [_size(one, name, *MOTIONS) for one, name in zip(units, ("base_unit", "x_unit"), strict=True)]
-    scaled = np.column_stack([channel * size / into for channel, size in zip(channels, sizes, strict=True)])
+    for one, name in zip(units, ("base_unit", "x_unit"), strict=True):
+        _check_unit(one, name, *MOTIONS)
+    sizes = [float(UNITS[one].size / UNITS[unit].size) for one in units]
+    scaled = np.column_stack([channel * size for channel, size in zip(channels, sizes, strict=True)])
     orders = [derivative_order(one) for one in units]
+    for name, channel, order in zip(("base", "x"), channels, orders, strict=True):
+        if order:
+            _check_unclipped(name, channel)
     if not any(orders):
         return Displacements(scaled[:, 0], scaled[:, 1], (0.0, 0.0))
     found = phasors_of(times, scaled)
@@ -102,12 +108,21 @@ def derivative_order(unit: str) -> int:
     return MOTIONS.index(UNITS[unit].measures)
 
 
-def _size(unit: str, name: str, *kinds: str) -> float:
-    """The size in the SI unit, if a unit is of one of the kinds."""
+def _check_unit(unit: str, name: str, *kinds: str) -> None:
+    """Refuse a unit that is of none of the kinds."""
     legal = tuple(one for kind in kinds for one in units_of(kind))
     if unit not in legal:
         raise InputError(f"{name} must be one of {', '.join(legal)}; got {checks.one_line(unit)}")
-    return float(UNITS[unit].size)
+
+
+def _check_unclipped(name: str, values: np.ndarray) -> None:
+    """Refuse what is cut off at the ends of its range: integration spreads the error over all samples."""
+    clipped = 1.0 - np.mean(unclipped(values))
+    if clipped > 0.0:
+        raise InputError(
+            f"cannot integrate {name}: it is clipped, {clipped:.1%} of the samples are at the extremes; "
+            "choose a window without them, or measure with a larger range"
+        )
 
 
 def _integrated(t: np.ndarray, values: np.ndarray, frequency: float, order: int) -> tuple[np.ndarray, float]:

@@ -35,8 +35,11 @@ def effective_variance(problem: Problem, best: Solution, scale: float) -> float:
     q = np.hypot(1.0, plain / scale)
     influence, change = plain / q, q**-3
     weight = 0.5 * (1.0 + q) / q**2
-    freedom = plain.size - int(problem.free.sum())
-    return float(np.sum(influence**2) / freedom * np.mean(weight) / np.mean(change) ** 2)
+    unknowns = int(problem.free.sum())
+    # of few samples: Huber's correction for unknowns that the residuals have followed
+    few = 1.0 + unknowns / plain.size * float(np.var(change)) / float(np.mean(change)) ** 2
+    spread = float(np.sum(influence**2)) / (plain.size - unknowns)
+    return few**2 * spread * float(np.mean(weight)) / float(np.mean(change)) ** 2
 
 
 def root_mean_square(residual: np.ndarray) -> float:

@@ -82,3 +82,14 @@ def test_bad_units(arguments, message):
 def test_too_few_cycles():
     with pytest.raises(fm.InputError, match="time must span at least 2 cycles"):
         fm.identify.displacements(TIME[:100], signal(TIME, 0)[:100], signal(TIME, 2)[:100], x_unit="g")
+
+
+def test_clipped_accelerations_are_refused():
+    """A clipped displacement is left to `record`."""
+    clipped = np.clip(signal(TIME, 2), -80.0, 80.0)
+    with pytest.raises(fm.InputError, match=r"cannot integrate x: it is clipped, \d+\.\d% of the samples"):
+        fm.identify.displacements(TIME, signal(TIME, 0), clipped, x_unit="mm/s^2")
+    found = fm.identify.displacements(
+        TIME, np.clip(signal(TIME, 0), -1.5, 1.5), signal(TIME, 2), x_unit="mm/s^2"
+    )
+    np.testing.assert_array_equal(found.base, np.clip(signal(TIME, 0), -1.5, 1.5))

@@ -17,6 +17,7 @@ from .least_squares import (
     Solution,
     errors,
     minimise,
+    one_sided,
     profile_end,
     two_sided,
     undetermined,
@@ -41,6 +42,10 @@ _OUTLIER = 1.0
 #: Singular values of slopes below this share of the largest are zero, as are changes of lags [rad] and of
 #: logarithms of amplitudes, per unit of a parameter: differences have some such errors.
 _RANK = 1e-5
+
+
+#: Steps in which the end of the interval of mu is looked for where slopes do not say how far it may be.
+_STEP_OF_MU = 0.05
 
 
 class Fit(NamedTuple):
@@ -69,16 +74,53 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bo
         known[MU] = 1.0
         model, solution, task = _with_errors(model, known, table.given, robust)
         here = evaluate(model, solution.values, task.free)
-    _check_told(table, model, solution, task)
+    flat = _is_flat(model, solution, task)
+    told = _without_mu(task) if flat else task
+    _check_told(table, model, solution, told)
     variance = 1.0 if any(table.given) else None
     plain = problem(model, task.free, float(solution.values[F_N])) if robust else None
     if plain is not None:
         variance = effective_variance(plain, solution, _OUTLIER)
-    found = _near_bound(errors(task, solution, variance), task, solution, variance)
+    found = errors(told, solution._replace(at_bound=solution.at_bound & told.free), variance)
+    interval = _on_bound if flat else _near_bound
+    found = interval(found, task, solution, variance)
+    if flat:
+        solution = solution._replace(at_bound=solution.at_bound | (task.free & ~told.free))
     if plain is not None:
         solution = solution._replace(residual=plain.residuals(solution.values)[0])
         found = found._replace(variance=solution.sum / _freedom(solution, task))
     return Fit(model, task, solution, found, here, idle)
+
+
+def _is_flat(model: ForcedModel, solution: Solution, task: Problem) -> bool:
+    """Check whether mu ended on its bound and nothing changes with it there to first order."""
+    return bool(task.free[MU] and solution.at_bound[MU]) and float(_effects(model, solution)[MU]) < _RANK
+
+
+def _effects(model: ForcedModel, solution: Solution) -> np.ndarray:
+    """Return the changes of lags [rad] and logarithms of amplitudes per unit of each parameter."""
+    unit = np.ones(solution.values.size)
+    unit[F_N] = solution.values[F_N]
+    return np.linalg.norm(solution.slopes * model.samples.sigma[:, np.newaxis], axis=0) * unit
+
+
+def _without_mu(task: Problem) -> Problem:
+    """Hold mu."""
+    free = task.free.copy()
+    free[MU] = False
+    return task._replace(free=free)
+
+
+def _on_bound(found: Errors, task: Problem, solution: Solution, variance: float | None) -> Errors:
+    """Take the interval of mu = 1 from the profile of the sum; those of the others allow for all of it."""
+    of_one = (found.variance if variance is None else variance) * found.inflation**2
+    allowed = one_sided(_freedom(solution, task)) ** 2 * of_one
+    most, end = profile_end(task, solution, MU, allowed, _STEP_OF_MU)
+    moved = end.values - solution.values
+    lower, upper = found.lower + np.minimum(moved, 0.0), found.upper + np.maximum(moved, 0.0)
+    lower = np.where(task.free, np.maximum(lower, task.floor), lower)
+    upper[MU] = most
+    return found._replace(lower=lower, upper=upper)
 
 
 def _freedom(solution: Solution, task: Problem) -> int:
@@ -178,10 +220,7 @@ def _best(model: ForcedModel, known: np.ndarray, sure: bool, robust: bool) -> tu
 def _check_told(table: ForcedTable, model: ForcedModel, solution: Solution, task: Problem) -> None:
     """Refuse data that leave parameters, or some together, untold."""
     names = parameter_names(table)
-    unit = np.ones(task.free.size)
-    unit[F_N] = solution.values[F_N]
-    effect = np.linalg.norm(solution.slopes * model.samples.sigma[:, np.newaxis], axis=0) * unit
-    for index in np.flatnonzero(task.free & (effect < _RANK)):
+    for index in np.flatnonzero(task.free & (_effects(model, solution) < _RANK)):
         raise InputError(f"the data do not tell {names[index]}, on which nothing that was measured depends")
     together, _ = undetermined(task, solution, _RANK)
     if together.size:

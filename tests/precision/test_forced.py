@@ -135,3 +135,28 @@ def test_the_robust_loss_of_clean_data():
     assert np.abs(pull).max() < 1.5
     with pytest.raises(fm.InputError, match="loss must be one of linear, soft_l1; got 'cauchy'"):
         fitted(WALL, 6, loss="cauchy")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(2))
+def test_mu_beside_one_has_an_interval_and_no_standard_error(seed):
+    """Motions hardly change with mu there: slopes say nothing of how far mu can go, and were refused."""
+    r, beta = STOPPING[:, 0], STOPPING[:, 1]
+    system = fm.System(excitation="base", damping_reference="base", damping_ratios=0.02)
+    rng = np.random.default_rng(seed)
+    lag, ratio = np.empty(r.size), np.empty(r.size)
+    for friction in np.unique(beta):
+        rows = beta == friction
+        ds = fm.curves(system, r[rows], friction, quantities=["first_harmonic"]).isel(mu=0, dof=0, beta=0)
+        lag[rows] = np.degrees(ds.first_harmonic_phase.values) + rng.normal(0.0, 0.3, rows.sum())
+        ratio[rows] = ds.first_harmonic_amplitude.values * np.exp(rng.normal(0.0, 0.005, rows.sum()))
+    sets = [f"{one:.1f}" for one in beta]
+    found = fm.identify.forced(3.0 * r, lag, ratio, sets=sets, sigma_phase=0.3, sigma_amplitude=0.005)
+    mu = found.sel(parameter="mu")
+    assert float(mu.lower) == 1.0 <= float(mu.estimate) <= float(mu.upper) < 1.5
+    assert np.isnan(mu.standard_error)
+    assert "the interval of mu begins at 1: it has no standard error that could be used" in found.warnings
+    others = found.drop_sel(parameter="mu")
+    assert np.isfinite(others.standard_error).all()
+    truth = [0.3, 0.5, 3.0, 0.02]
+    assert (np.abs(others.estimate.values - truth) < 4.0 * others.standard_error.values).all()

@@ -1,7 +1,8 @@
 """Errors of a decay: those of the best fit, and of others that the noise cannot distinguish from it.
 
 Where the noise hides the number of half cycles, an interval holds whichever number is right: it reaches from
-the least end of the intervals of all numbers that fit alike to the largest one.
+the least end of the intervals of all numbers that fit alike to the largest one.  The same holds for a slow
+wander of the zero that the residuals neither show nor exclude.
 """
 
 import numpy as np
@@ -9,14 +10,17 @@ import numpy as np
 from .correlation import long_inflation
 from .decay_fit import Fit, freedom_of, sample_variance
 from .decay_problem import Record
+from .decay_wander import Search
 from .least_squares import Errors, Solution, errors, inflation, one_sided
 
 
-def decay_errors(record: Record, fits: list[Fit]) -> Errors:
-    """Errors of the named parameters: intervals of all fits, the rest of the first one, which is the best."""
-    each = [_of_one(record, fit) for fit in fits]
-    lower = np.min([found.lower for found in each], axis=0)
-    upper = np.max([found.upper for found in each], axis=0)
+def decay_errors(found: Search) -> Errors:
+    """Errors of the named parameters: intervals of all fits, the rest of the best one."""
+    each = [_of_one(found.record, fit) for fit in found.fits]
+    if found.doubted is not None:
+        each += [_of_one(found.doubted, fit) for fit in found.also]
+    lower = np.min([one.lower for one in each], axis=0)
+    upper = np.max([one.upper for one in each], axis=0)
     return each[0]._replace(lower=lower, upper=upper)
 
 

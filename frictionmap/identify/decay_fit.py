@@ -7,7 +7,7 @@ import numpy as np
 from .correlation import long_inflation
 from .decay_motion import PARAMETERS, Decay, amplitudes, half_period, in_record, is_possible
 from .decay_problem import Record, plain_problem, problem
-from .decay_starts import Start, improving, starts
+from .decay_starts import improving, starts
 from .least_squares import Problem, Solution, minimise
 from .robust import effective_variance
 from .turning_points import TurningPoints
@@ -65,7 +65,7 @@ def fit_decay(record: Record, points: TurningPoints) -> list[Fit]:
         margin = _HOPELESS if start.possible else -_AS_GOOD
         if start.sum > reference + margin * allowed or len(fits) == _MOST_FITS:
             continue
-        fits.append(_fit(record, start))
+        fits.append(_fit(record, start.n, start.values))
         if fits[-1].solution.sum < least:
             least, allowed = fits[-1].solution.sum, noise_variance(record, fits[-1])
             reference = _sum(some, start.n, fits[-1].solution.values)
@@ -73,6 +73,13 @@ def fit_decay(record: Record, points: TurningPoints) -> list[Fit]:
     alike.sort(key=lambda fit: (not fit.possible, fit.solution.sum))
     best = alike[0]
     return [best, *(fit for fit in alike[1:] if fit.possible and _same_release(fit, best))]
+
+
+def refitted(record: Record, fit: Fit) -> Fit:
+    """A fit of a record that has further terms of a wander, with the same number of half cycles."""
+    values = np.zeros(record.free.size)
+    values[: fit.solution.values.size] = fit.solution.values
+    return _fit(record, fit.n, values)
 
 
 def noise_variance(record: Record, fit: Fit) -> float:
@@ -98,13 +105,13 @@ def freedom_of(record: Record) -> int:
     return record.time.size - int(record.free.sum())
 
 
-def _fit(record: Record, start: Start) -> Fit:
-    task = problem(record, start.n, start.values)
-    solution = minimise(task, start.values)
+def _fit(record: Record, n: int, start: np.ndarray) -> Fit:
+    task = problem(record, n, start)
+    solution = minimise(task, start)
     decay = Decay(*solution.values[: len(PARAMETERS)])
     most = in_record(decay, record.time[-1])
-    plain = plain_problem(record, start.n, start.values)
-    return Fit(start.n, solution, min(start.n, most + 1), start.n <= most, task, plain)
+    plain = plain_problem(record, n, start)
+    return Fit(n, solution, min(n, most + 1), n <= most, task, plain)
 
 
 def _sum(record: Record, n: int, values: np.ndarray) -> float:

@@ -5,12 +5,14 @@ place of rest, and with it x_F, by many standard errors.  Legendre polynomials u
 cycles in a record, roughly.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.polynomial import legendre
-from scipy.special import chdtri
+from scipy.special import chdtrc
 
 from .correlation import long_inflation
-from .decay_fit import Fit, fit_decay, rounding_variance
+from .decay_fit import Fit, fit_decay, refitted, rounding_variance
 from .decay_problem import DRIFT, Record, problem
 from .turning_points import TurningPoints
 
@@ -23,30 +25,53 @@ _FEWEST_TERMS, _MOST_TERMS, _SAMPLES_PER_TERM = 4, 16, 10
 #: What a term must lower the sum by, in variances of a sample, to be of use (Akaike 1974).
 _WORTH = 2.0
 
+#: Terms beyond the best number, an even and an odd one: the wander does not end where the noise covers it.
+_MARGIN = 2
+
 #: A wander is found if chance makes one as large in this share of all records.
-_CHANCE = 1e-3
+_FOUND = 1e-3
+
+#: It is not excluded if chance makes one as large in no more than this share.
+_NOT_EXCLUDED = 0.05
 
 #: Another number of half cycles can change the number of terms; so many fits with such terms at most.
 _PASSES = 2
 
 
-def fit_with_wander(record: Record, points: TurningPoints) -> tuple[Record, list[Fit]]:
-    """Fits as by `fit_decay`, with the terms of a wander as further unknowns if the residuals show one.
+class Search(NamedTuple):
+    """Fits of a record that noise cannot distinguish."""
 
-    The record that is returned holds these terms.
-    """
+    record: Record  # with the terms of a wander, if one is found
+    fits: list[Fit]  # the best one first
+    doubted: Record | None  # with the terms of a wander that is neither found nor excluded
+    also: list[Fit]  # fits of that
+
+
+class _Wander(NamedTuple):
+    """What the residuals show of a wander."""
+
+    basis: np.ndarray  # shape (samples, terms)
+    chance: float  # the probability that white noise shows as much
+
+
+def search(record: Record, points: TurningPoints) -> Search:
+    """Fits as by `fit_decay`, with the terms of a wander as further unknowns if the residuals show one."""
     fits = fit_decay(record, points)
+    wander = _wander(record, fits[0])
     for _ in range(_PASSES):
-        terms = _wander_terms(record, fits[0])
-        if terms.shape[1] == record.terms:
+        if wander.chance >= _FOUND or wander.basis.shape[1] == record.terms:
             break
-        record = record._replace(wander=terms)
+        record = record._replace(wander=wander.basis)
         fits = fit_decay(record, points)
-    return record, fits
+        wander = _wander(record, fits[0])
+    if record.terms or wander.chance >= _NOT_EXCLUDED:
+        return Search(record, fits, None, [])
+    doubted = record._replace(wander=wander.basis)
+    return Search(record, fits, doubted, [refitted(doubted, fit) for fit in fits])
 
 
-def _wander_terms(record: Record, fit: Fit) -> np.ndarray:
-    """Slow functions of time, shape (samples, terms), that the residuals of a decay follow; perhaps none."""
+def _wander(record: Record, fit: Fit) -> _Wander:
+    """Slow functions of time that the residuals of a decay follow best."""
     basis = polynomials(record, _most_terms(record, fit))
     wide = record._replace(wander=basis)
     named = len(record.names)
@@ -57,12 +82,9 @@ def _wander_terms(record: Record, fit: Fit) -> np.ndarray:
     shares = directions.T @ residual
     left = residual - directions @ shares
     variance = float(left @ left) / (left.size - shares.size) * long_inflation(left) ** 2
-    variance = max(variance, rounding_variance(record))
-    gains = np.cumsum(shares[-basis.shape[1] :] ** 2)
-    terms = np.arange(1, basis.shape[1] + 1)
-    best = int(np.argmax(gains / variance - _WORTH * terms))
-    found = gains[best] / variance > chdtri(terms[best], _CHANCE)
-    return basis[:, : best + 1 if found else 0]
+    gains = np.cumsum(shares[-basis.shape[1] :] ** 2) / max(variance, rounding_variance(record))
+    best = int(np.argmax(gains - _WORTH * np.arange(gains.size)))
+    return _Wander(basis[:, : best + 1 + _MARGIN], float(chdtrc(best + 1, gains[best])))
 
 
 def _most_terms(record: Record, fit: Fit) -> int:

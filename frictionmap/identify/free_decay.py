@@ -14,7 +14,7 @@ from .decay_errors import decay_errors, decay_solution
 from .decay_fit import Fit, fit_decay, noise_variance
 from .decay_motion import PARAMETERS
 from .decay_problem import DRIFT, X_F, ZETA, Record
-from .decay_wander import fit_with_wander
+from .decay_wander import Search, search
 from .estimates import estimates, number, verdict
 from .least_squares import Errors
 from .robust import LOSSES
@@ -123,11 +123,12 @@ def free_decay(
     points = checked_turning_points(t, without_spikes(data) if loss == "soft_l1" else data)
     outliers = noise_level(data) if loss == "soft_l1" else 0.0
     record = Record(t, data, held, names, outliers or None)  # exact data have none
-    record, fits = fit_with_wander(record, points)
+    searched = search(record, points)
+    record, fits = searched.record, searched.fits
     fit = fits[0]
     if not held:  # a value that is held may be wrong on purpose
         check_misfit(data, float(np.sqrt(fit.solution.sum / data.size)))
-    found, solution = decay_errors(record, fits), decay_solution(record, fit)
+    found, solution = decay_errors(searched), decay_solution(record, fit)
     losses = _losses(record, points, fit)
     meanings = {name: _MEANINGS[name] for name in names}
     units = (*_units(unit), f"{unit}/s")[: len(names)]
@@ -147,7 +148,7 @@ def free_decay(
         .assign(_scaled(fit, found, unit, base, stiffness))
     )
     ds.attrs["title"] = "Free decay"
-    ds.attrs["warnings"] = "; ".join(_warnings(times, good, record, fits, found))
+    ds.attrs["warnings"] = "; ".join(_warnings(times, good, searched, found))
     return ds
 
 
@@ -258,9 +259,7 @@ def _scaled(
     return result
 
 
-def _warnings(
-    time: np.ndarray, good: np.ndarray, record: Record, fits: list[Fit], found: Errors
-) -> list[str]:
+def _warnings(time: np.ndarray, good: np.ndarray, searched: Search, found: Errors) -> list[str]:
     """What to mind, in words."""
     words = []
     if not good.all():
@@ -269,18 +268,24 @@ def _warnings(
         words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
     pair = np.ix_((ZETA, X_F), (ZETA, X_F))
     words += coloured(found) + trading(("zeta", "x_F"), found.correlation[pair])
-    words += _wandering(record) + _other_counts(fits)
-    named = len(record.names)
-    return words + bounded(record.names, np.zeros(named), fits[0].solution.at_bound[:named])
+    words += _wandering(searched) + _other_counts(searched.fits)
+    names = searched.record.names
+    at_bound = searched.fits[0].solution.at_bound[: len(names)]
+    return words + bounded(names, np.zeros(len(names)), at_bound)
 
 
-def _wandering(record: Record) -> list[str]:
+def _wandering(searched: Search) -> list[str]:
     """A slow part of the residuals, in words."""
-    if record.terms == 0:
+    if searched.doubted is not None:
+        return [
+            "the residuals may have a low-frequency part, as if the zero of the measurement wandered: "
+            "intervals hold with and without it, standard errors without it"
+        ]
+    if searched.record.terms == 0:
         return []
     return [
         "the residuals have a low-frequency part, as if the zero of the measurement wandered: "
-        f"a polynomial of time with {record.terms} terms is fitted beside the decay"
+        f"a polynomial of time with {searched.record.terms} terms is fitted beside the decay"
     ]
 
 

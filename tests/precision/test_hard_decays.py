@@ -140,7 +140,7 @@ def test_no_wander_is_found_in_white_noise():
     for seed in range(4):
         ds = fm.identify.free_decay(*synthetic(MIXED, seed))
         assert "wander_terms" not in ds
-        assert "low-frequency" not in ds.warnings
+        assert "is fitted beside the decay" not in ds.warnings
 
 
 def test_rounding_is_no_wander():

@@ -109,4 +109,5 @@ def test_one_version_everywhere():
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert re.findall(r"^version: (.*)$", citation, re.MULTILINE) == [fm.__version__]
     news = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
-    assert re.findall(r"^## (\S+)", news, re.MULTILINE)[0] == fm.__version__
+    released = [name for name in re.findall(r"^## (\S+)", news, re.MULTILINE) if name != "Unreleased"]
+    assert released[0] == fm.__version__

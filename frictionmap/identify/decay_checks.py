@@ -63,8 +63,8 @@ def within(window: object, time: np.ndarray) -> np.ndarray:
 def unclipped(x: np.ndarray) -> np.ndarray:
     """Samples that are not cut off at the ends of a measuring range."""
     good = np.ones(x.size, dtype=bool)
-    for begin, end in clipped_runs(x):
-        good[begin:end] = False
+    for begin, _ in clipped_runs(x):
+        good[x == x[begin]] = False
     return good
 
 

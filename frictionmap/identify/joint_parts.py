@@ -15,8 +15,8 @@ from .decay_motion import PARAMETERS as DECAY
 from .decay_motion import Decay, displacement_and_slopes
 from .free_decay import free_decay
 from .least_squares import Problem, Solution
-from .record_data import MeasuredRecord, measured_record, whole_record
-from .record_fit import Fit, fit_record, noise_of_record, problem_of
+from .record_data import MeasuredRecord, fit_clipped, measured_record, whole_record
+from .record_fit import Fit, noise_of_record, problem_of
 from .record_motion import PARAMETERS
 from .robust import effective_variance, softened
 from .turning_points import noise_level
@@ -118,7 +118,8 @@ def _of_record(
     known: Mapping[str, float],
     held: Mapping[str, float],
 ) -> Part:
-    fit = fit_record(contact, reference, given.phasors, given.samples, {"mu": 1.0, **held})
+    robust = given.samples.scale is not None
+    given, fit = fit_clipped(contact, reference, given, {"mu": 1.0, **held}, robust)
     problem = problem_of(fit, known)
     part = Part(
         label, PARAMETERS, problem, fit.solution.values, 1.0, 1, 1.0, given, fit, given.samples.time,

@@ -32,20 +32,22 @@ def unclipped_mass(time: np.ndarray, x: np.ndarray) -> np.ndarray:
     """Samples that are not cut off at the ends of a measuring range, of a mass that may stick there."""
     good = np.ones(x.size, dtype=bool)
     runs = clipped_runs(x)
-    noisy = bool(runs) and _shows_noise(x)
+    noisy = bool(runs) and _shows_noise(x, runs)
     for extreme in {float(x[begin]) for begin, _ in runs}:
         here = [(begin, end) for begin, end in runs if x[begin] == extreme]
         speeds = [steps for run in here for steps in _cut_off(time, x, run)]
         if noisy or not speeds or np.median(speeds) > _CUT_OFF:
-            for begin, end in here:
-                good[begin:end] = False
+            good[x == extreme] = False
     return good
 
 
-def _shows_noise(x: np.ndarray) -> bool:
-    """Whether there is noise above the resolution."""
-    higher = noise_level(x, 6)
-    return higher > max(resolution(x), _AS_LARGE * noise_level(x))
+def _shows_noise(x: np.ndarray, runs: list[tuple[int, int]]) -> bool:
+    """Return whether there is noise above the resolution outside the flat parts, where it may be cut off."""
+    moves = np.ones(x.size, dtype=bool)
+    for begin, end in runs:
+        moves[begin:end] = False
+    higher = noise_level(x, 6, moves)
+    return higher > max(resolution(x), _AS_LARGE * noise_level(x, 4, moves))
 
 
 def _cut_off(time: np.ndarray, x: np.ndarray, run: tuple[int, int]) -> list[float]:

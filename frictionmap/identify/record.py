@@ -13,9 +13,9 @@ from .cautions import only_interval
 from .estimates import estimates, number, usable_errors, verdict
 from .least_squares import Errors
 from .phasors import Phasors
-from .record_data import measured_record, whole_record
+from .record_data import fit_clipped, measured_record, whole_record
 from .record_errors import DERIVED, derived_values, record_errors
-from .record_fit import Fit, fit_record
+from .record_fit import Fit
 from .record_labels import of_data, of_record, one_mass
 from .record_motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
 from .record_verdict import CORRELATED, record_verdict
@@ -110,7 +110,7 @@ def record(
     held = checked_known(known or {})
     robust = loss == "soft_l1"
     given = measured_record(time, base, x, window, robust)
-    fit = fit_record(contact, damping_reference, given.phasors, given.samples, held)
+    given, fit = fit_clipped(contact, damping_reference, given, held, robust)
     given = whole_record(given, fit, robust)
     phasors = given.phasors
     found = record_errors(fit, phasors, given.time, given.good)

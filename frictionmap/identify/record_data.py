@@ -1,5 +1,6 @@
 """A record as it was measured: checked, its clipped samples found, its harmonics."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +9,7 @@ from ..errors import InputError
 from .decay_checks import checked_record, unclipped, within
 from .phasors import Phasors, amplitude_and_lag, harmonics_of, ratio_error
 from .plateaus import unclipped_mass
-from .record_fit import Fit, Samples, places_at, samples_of
+from .record_fit import Fit, Samples, fit_record, places_at, samples_of
 from .turning_points import resolution
 
 #: Leads so many standard errors beyond zero are no chance.
@@ -20,6 +21,12 @@ _WORSE = 4.0
 #: A lead of so many degrees may come from higher harmonics of the base.
 _LEAD = 1.0
 
+#: Noise brings a motion to the ends of the range that is nearer to them than so many standard deviations.
+_MARGIN = 3.0
+
+#: Fits after which the samples that are left out are settled, and samples that a fit needs.
+_REFITS, _FEWEST = 4, 40
+
 #: A first harmonic of the mass below so many standard errors is no motion.
 _MOVES = 5.0
 
@@ -30,7 +37,9 @@ class MeasuredRecord(NamedTuple):
     every_time: np.ndarray  # s, those of clipped samples among them
     time: np.ndarray  # s, where the base is not clipped
     channels: np.ndarray  # shape (samples, 2), base and mass at `time`
-    good: np.ndarray  # shape (samples,), bool: where the mass is not clipped
+    clipped: np.ndarray  # shape (samples,), bool: where the mass is cut off
+    limits: tuple[float, float]  # where the range ends that cuts it off; infinite where none does
+    good: np.ndarray  # shape (samples,), bool: samples of the mass that are part of the fit
     phasors: Phasors
     samples: Samples  # of the mass, where it is good
 
@@ -45,19 +54,61 @@ def measured_record(time: object, base: object, x: object, window: object, robus
     t, data = times[whole], channels[whole]
     good = unclipped_mass(t, data[:, 1])
     phasors, tamed = _checked_phasors(t, data, robust)
-    return MeasuredRecord(
-        times, t, data, good, phasors, samples_of(phasors, t, data[:, 1], tamed[:, 1], good, robust)
-    )
+    samples = samples_of(phasors, t, data[:, 1], tamed[:, 1], good, robust)
+    return MeasuredRecord(times, t, data, ~good, _limits(data[:, 1], good), good, phasors, samples)
+
+
+def _limits(x: np.ndarray, good: np.ndarray) -> tuple[float, float]:
+    """Ends of the range by which samples that are not good are cut off."""
+    lowest = -np.inf if good[np.argmin(x)] else float(x.min())
+    return lowest, np.inf if good[np.argmax(x)] else float(x.max())
+
+
+def fit_clipped(
+    contact: str, damping_reference: str, given: MeasuredRecord, known: Mapping[str, float], robust: bool
+) -> tuple[MeasuredRecord, Fit]:
+    """Fit a steady motion as by `fit_record`, without what happens beside the ends of a measuring range.
+
+    There noise decides which samples are cut off: those that are left lie too far inside, and would draw the
+    motion with them.  So samples are left out by the fitted motion, which has no noise, and the motion is
+    fitted anew.  Its harmonics then take the place of the clipped ones, where the search begins.
+    """
+    fit = fit_record(contact, damping_reference, given.phasors, given.samples, known)
+    if not given.clipped.any():
+        return given, fit
+    for _ in range(_REFITS):
+        inside = _inside(given, fit)
+        if inside.sum() < _FEWEST or (inside == given.good).all():
+            break
+        given = _filled(given, fit, inside, robust)
+        fit = fit_record(contact, damping_reference, given.phasors, given.samples, known)
+    return given, fit
+
+
+def _inside(given: MeasuredRecord, fit: Fit) -> np.ndarray:
+    """Samples that are not clipped, where the fitted motion is farther from the ends than noise reaches."""
+    fitted, (lowest, highest) = _fitted(given, fit), given.limits
+    margin = _MARGIN * float(np.std(fit.residual))
+    return ~given.clipped & (fitted > lowest + margin) & (fitted < highest - margin)
 
 
 def whole_record(given: MeasuredRecord, fit: Fit, robust: bool) -> MeasuredRecord:
     """The record with the fitted motion where it is clipped, and the harmonics of that."""
-    if given.good.all():
-        return given
-    fitted = places_at(fit, given.phasors, given.time) + fit.slow_at(given.samples.everywhere)
-    x = np.where(given.good, given.channels[:, 1], fitted)
+    return given if not given.clipped.any() else _filled(given, fit, given.good, robust)
+
+
+def _filled(given: MeasuredRecord, fit: Fit, used: np.ndarray, robust: bool) -> MeasuredRecord:
+    """The record with the fitted motion where it is clipped, its harmonics, and the samples to be used."""
+    x = np.where(given.clipped, _fitted(given, fit), given.channels[:, 1])
     channels = np.column_stack((given.channels[:, 0], x))
-    return given._replace(channels=channels, phasors=harmonics_of(given.time, channels, robust)[0])
+    phasors, tamed = harmonics_of(given.time, channels, robust)
+    samples = samples_of(phasors, given.time, x, tamed[:, 1], used, robust)
+    return given._replace(channels=channels, good=used, phasors=phasors, samples=samples)
+
+
+def _fitted(given: MeasuredRecord, fit: Fit) -> np.ndarray:
+    """The fitted motion, drift and wander of the zero included, at all times."""
+    return places_at(fit, given.phasors, given.time) + fit.slow_at(given.samples.everywhere)
 
 
 def _checked_phasors(time: np.ndarray, channels: np.ndarray, robust: bool) -> tuple[Phasors, np.ndarray]:

@@ -75,9 +75,13 @@ def of_data(given: MeasuredRecord, ds: xr.Dataset) -> list[str]:
     """What to mind of the data, in words."""
     words = []
     phasors, time = given.phasors, given.every_time
-    clipped = 1.0 - given.good.sum() / time.size
-    if clipped > 0.0:
-        words.append(f"clipped: {clipped:.1%} of the samples are at the extremes and were left out")
+    if not given.good.all() or given.time.size < time.size:
+        cut_off = 1.0 - np.sum(~given.clipped) / time.size
+        near = (np.sum(~given.clipped) - given.good.sum()) / time.size
+        words.append(
+            f"clipped: {cut_off:.1%} of the samples are at the extremes and were left out"
+            + (f", with {near:.1%} so near to them that noise decides which are clipped" if near else "")
+        )
     if gap := largest_gap(time):
         words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
     distortion = float(ds["base_distortion"])

@@ -34,12 +34,20 @@ class TurningPoints(NamedTuple):
     number: np.ndarray  # half cycles since the first one, whole; those that a gap hides are counted
 
 
-def noise_level(x: np.ndarray, order: int = 4) -> float:
-    """Standard deviation of the noise: the median of fourth differences, in which smooth motion cancels."""
+def noise_level(x: np.ndarray, order: int = 4, used: np.ndarray | None = None) -> float:
+    """Standard deviation of the noise: the median of fourth differences, in which smooth motion cancels.
+
+    used : bool (samples,), samples that may be part of a difference; default: all
+    """
     if x.size <= order:
         return 0.0
+    differences = np.diff(x, order)
+    if used is not None:
+        differences = differences[np.lib.stride_tricks.sliding_window_view(used, order + 1).all(axis=1)]
+        if not differences.size:
+            return 0.0
     # a normal deviate is below 0.6745 deviations in half of all cases; the squares 1, 4, 6, 4, 1 add to 70
-    return float(np.median(np.abs(np.diff(x, order))) / (0.6745 * np.sqrt(math.comb(2 * order, order))))
+    return float(np.median(np.abs(differences)) / (0.6745 * np.sqrt(math.comb(2 * order, order))))
 
 
 def without_spikes(x: np.ndarray) -> np.ndarray:

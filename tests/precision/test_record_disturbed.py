@@ -170,3 +170,19 @@ def test_a_record_of_a_mass_that_sticks_has_no_warning_of_clipping(motion):
     ds = fm.identify.record(time, base, x, damping_reference="base", known={"mu": 1.0})
     assert "clipped" not in ds.warnings
     assert ds.sizes["sample"] == time.size
+
+
+def test_noise_shows_beside_flat_parts_that_are_most_of_a_record(motion):
+    time = np.arange(0.0, 8.0, 0.0125)
+    x = places(RIG, motion, time) + np.random.default_rng(1).normal(0.0, 0.01, time.size)
+    cut = np.clip(x, -0.7, 0.5)
+    assert np.mean((cut == -0.7) | (cut == 0.5)) > 0.5
+    np.testing.assert_array_equal(unclipped_mass(time, cut), (x > -0.7) & (x < 0.5))
+
+
+@pytest.mark.slow
+def test_samples_beside_the_ends_of_the_range_do_not_draw_the_fit_inside(motion):
+    """Noise decides there which samples are cut off.  The mean of 12 errors has a deviation of 1/sqrt(12)."""
+    fits = [fit(motion, seed, lambda time, x, rng: np.clip(x, -1.0, 1.3)) for seed in range(12)]
+    mean = np.mean([off(ds) for ds in fits], axis=0)
+    assert (np.abs(mean) < 3.0 / np.sqrt(12.0)).all(), mean

@@ -16,13 +16,14 @@ from .least_squares import (
     Problem,
     Solution,
     errors,
+    leverage,
     minimise,
     one_sided,
     profile_end,
     two_sided,
     undetermined,
 )
-from .robust import effective_variance, root_mean_square, softened, usual_size
+from .robust import effective_variance, jackknife_covariance, root_mean_square, softened, usual_size
 
 #: The natural frequency is within this share of where the fit begins.
 _FREQUENCY_RANGE = 0.2
@@ -79,9 +80,13 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bo
     _check_told(table, model, solution, told)
     variance = 1.0 if any(table.given) else None
     plain = problem(model, task.free, float(solution.values[F_N])) if robust else None
+    covariance = None
     if plain is not None:
         variance = effective_variance(plain, solution, _OUTLIER)
-    found = errors(told, solution._replace(at_bound=solution.at_bound & told.free), variance)
+        covariance = jackknife_covariance(plain._replace(free=told.free), solution, _OUTLIER)
+    found = errors(
+        told, solution._replace(at_bound=solution.at_bound & told.free), variance, covariance=covariance
+    )
     interval = _on_bound if flat else _near_bound
     found = interval(found, task, solution, variance)
     if flat:
@@ -184,11 +189,11 @@ def _with_scatter(
     if robust:  # those of the solution are drawn in
         residual = problem(model, free, float(solution.values[F_N])).residuals(solution.values)[0]
     size = usual_size if robust else root_mean_square
-    share = 1.0 - free.sum() / samples.row.size  # of the residuals that the fit has left
+    left = 1.0 - leverage(solution.slopes[:, free & ~solution.at_bound])  # of each residual
     sigma = samples.sigma.copy()
     for kind, known in zip((samples.is_phase, ~samples.is_phase), given, strict=True):
         if not known and kind.any():
-            sigma[kind] *= size(residual[kind]) / np.sqrt(share)
+            sigma[kind] *= size(residual[kind], max(float(left[kind].sum()), 1.0))
     return samples._replace(sigma=sigma)
 
 

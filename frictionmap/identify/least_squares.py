@@ -95,7 +95,11 @@ def _below(problem: Problem, fit: Solution) -> np.ndarray:
 
 
 def errors(
-    problem: Problem, best: Solution, known_variance: float | None = None, noise: Noise | None = None
+    problem: Problem,
+    best: Solution,
+    known_variance: float | None = None,
+    noise: Noise | None = None,
+    covariance: np.ndarray | None = None,
 ) -> Errors:
     """Standard errors, 95 % intervals and correlations from the slopes at the least sum.
 
@@ -103,6 +107,8 @@ def errors(
     count as fewer: errors grow by the root of the integrated autocorrelation time, (1 + c)/(1 - c) for the
     lag-1 correlation c, or as `noise` says.  On a bound the interval is one-sided, from the profile of the
     sum.
+
+    covariance : that of the estimates, if it does not follow from the slopes
     """
     free = problem.free
     freedom = best.residual.size - int(free.sum())
@@ -115,6 +121,9 @@ def errors(
     if noise is not None:
         variance, freedom = noise.variance, noise.freedom
         inverse, grown = _with_excess(inverse, best.slopes, noise.excess)
+    if covariance is not None:
+        inverse = covariance / variance if variance > 0.0 else np.zeros_like(covariance)
+        deviation = np.sqrt(np.diag(inverse))
     standard_error = deviation * np.sqrt(variance) * grown
     scale = np.where(free, deviation * (grown if noise is not None else 1.0), 1.0)
     correlation = np.where(np.eye(free.size, dtype=bool), 1.0, inverse / np.outer(scale, scale))
@@ -126,6 +135,13 @@ def errors(
         allowed = one_sided(freedom) ** 2 * variance * float(grown[index]) ** 2
         upper[index], _ = profile_end(problem, best, int(index), allowed, float(standard_error[index]))
     return Errors(standard_error, lower, upper, correlation, reduced, lag, float(grown.max()))
+
+
+def leverage(slopes: np.ndarray) -> np.ndarray:
+    """How much of each residual a fit takes away, 0 to 1, shape (samples,); their sum is that of unknowns."""
+    length = np.linalg.norm(slopes, axis=0)
+    directions, sizes, _ = np.linalg.svd(slopes[:, length > 0.0] / length[length > 0.0], full_matrices=False)
+    return np.sum(directions[:, sizes > _RANK * sizes.max(initial=0.0)] ** 2, axis=1)
 
 
 def growth(problem: Problem, best: Solution, noise: Noise) -> np.ndarray:

@@ -20,7 +20,7 @@ import numpy as np
 
 from ...report.quoted_coverage import HEADER, coverage_notes, coverage_rows
 from ...report.record import save, table
-from . import decays, forced, records, sweeps
+from . import decays, forced, joint, records, sweeps
 from .case import SEEDS, Trial, attempt
 from .counting import STATED, row
 from .figure import draw
@@ -31,6 +31,7 @@ KINDS = {
     "forced": forced.CASES,
     "record": records.CASES,
     "sweep": sweeps.CASES,
+    "joint": joint.CASES,
 }
 
 #: Processes at a time, and fits that one of them is given at once.

@@ -26,7 +26,7 @@ _DRAWS = 20
 Disturbed = tuple[np.ndarray, np.ndarray]
 Disturbance = Callable[[np.random.Generator, Rig, np.ndarray, np.ndarray], Disturbed]
 
-_steady = lru_cache(maxsize=4)(steady)
+settled = lru_cache(maxsize=4)(steady)
 
 
 def _random(rng: np.random.Generator, heavy: bool = False) -> Rig:
@@ -46,10 +46,18 @@ def _random(rng: np.random.Generator, heavy: bool = False) -> Rig:
 def _settled(rng: np.random.Generator, draw: Callable[[np.random.Generator], Rig]) -> Steady:
     """The steady motion of a rig that has one with the period of the base."""
     for _ in range(_DRAWS):
-        motion = _steady(draw(rng))
+        motion = settled(draw(rng))
         if motion.settled:
             return motion
     raise RuntimeError(f"none of {_DRAWS} rigs settled")
+
+
+def measured(rng: np.random.Generator, motion: Steady) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times, base and mass, both with noise."""
+    rig, time = motion.rig, np.arange(int(RATE * LENGTH)) / RATE
+    base = np.exp(2j * np.pi * rig.f * np.multiply.outer(time, np.arange(len(rig.base)))) @ np.array(rig.base)
+    shakes = base.real + rng.normal(0.0, BASE_NOISE, time.size)
+    return time, shakes, motion.places(time) + rng.normal(0.0, NOISE, time.size)
 
 
 def _made(
@@ -62,10 +70,7 @@ def _made(
     """Noise on a steady motion, then a disturbance of the mass."""
     motion = _settled(rng, draw)
     rig = motion.rig
-    time = np.arange(int(RATE * LENGTH)) / RATE
-    base = np.exp(2j * np.pi * rig.f * np.multiply.outer(time, np.arange(len(rig.base)))) @ np.array(rig.base)
-    shakes = base.real + rng.normal(0.0, BASE_NOISE, time.size)
-    x = motion.places(time) + rng.normal(0.0, NOISE, time.size)
+    time, shakes, x = measured(rng, motion)
     kept = np.ones(time.size, dtype=bool)
     if change is not None:
         kept, x = change(rng, rig, time, x)

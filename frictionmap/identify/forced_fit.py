@@ -23,7 +23,7 @@ from .least_squares import (
     two_sided,
     undetermined,
 )
-from .robust import effective_variance, jackknife_covariance, root_mean_square, softened, usual_size
+from .robust import effective_variance, jackknife_growth, root_mean_square, softened, usual_size
 
 #: The natural frequency is within this share of where the fit begins.
 _FREQUENCY_RANGE = 0.2
@@ -80,13 +80,11 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bo
     _check_told(table, model, solution, told)
     variance = 1.0 if any(table.given) else None
     plain = problem(model, task.free, float(solution.values[F_N])) if robust else None
-    covariance = None
+    larger: np.ndarray | float = 1.0
     if plain is not None:
         variance = effective_variance(plain, solution, _OUTLIER)
-        covariance = jackknife_covariance(plain._replace(free=told.free), solution, _OUTLIER)
-    found = errors(
-        told, solution._replace(at_bound=solution.at_bound & told.free), variance, covariance=covariance
-    )
+        larger = jackknife_growth(plain._replace(free=told.free), solution, _OUTLIER)
+    found = errors(told, solution._replace(at_bound=solution.at_bound & told.free), variance, larger=larger)
     interval = _on_bound if flat else _near_bound
     found = interval(found, task, solution, variance)
     if flat:

@@ -99,7 +99,7 @@ def errors(
     best: Solution,
     known_variance: float | None = None,
     noise: Noise | None = None,
-    covariance: np.ndarray | None = None,
+    larger: np.ndarray | float = 1.0,
 ) -> Errors:
     """Standard errors, 95 % intervals and correlations from the slopes at the least sum.
 
@@ -108,7 +108,7 @@ def errors(
     lag-1 correlation c, or as `noise` says.  On a bound the interval is one-sided, from the profile of the
     sum.
 
-    covariance : that of the estimates, if it does not follow from the slopes
+    larger : by what standard errors are larger than the slopes make them, one for each parameter
     """
     free = problem.free
     freedom = best.residual.size - int(free.sum())
@@ -121,10 +121,7 @@ def errors(
     if noise is not None:
         variance, freedom = noise.variance, noise.freedom
         inverse, grown = _with_excess(inverse, best.slopes, noise.excess)
-    if covariance is not None:
-        inverse = covariance / variance if variance > 0.0 else np.zeros_like(covariance)
-        deviation = np.sqrt(np.diag(inverse))
-    standard_error = deviation * np.sqrt(variance) * grown
+    standard_error = deviation * np.sqrt(variance) * grown * larger
     scale = np.where(free, deviation * (grown if noise is not None else 1.0), 1.0)
     correlation = np.where(np.eye(free.size, dtype=bool), 1.0, inverse / np.outer(scale, scale))
     reach = two_sided(freedom) * standard_error

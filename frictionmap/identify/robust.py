@@ -52,29 +52,33 @@ def effective_variance(problem: Problem, best: Solution, scale: float) -> float:
     return few**2 * spread * float(np.mean(weight)) / float(np.mean(change)) ** 2
 
 
-def jackknife_covariance(problem: Problem, best: Solution, scale: float) -> np.ndarray:
-    """The covariance of estimates as each sample's own influence shows it, shape (parameters, parameters).
+def jackknife_growth(problem: Problem, best: Solution, scale: float) -> np.ndarray:
+    """By what errors are larger as each sample's own influence shows them, >= 1, shape (parameters,).
 
-    With A = (J^T diag(psi') J)^-1 and leverages h it is A (sum psi_i^2/(1 - h_i)^2 J_i J_i^T) A, nearly what
-    the estimates vary by when one sample after another is left out (MacKinnon and White, J. Econometrics 29,
-    1985, HC3).  It holds for tables, in which few samples decide a parameter; variances need not be alike.
+    With A = (J^T diag(psi') J)^-1 and leverages h the covariance A (sum psi_i^2/(1 - h_i)^2 J_i J_i^T) A is
+    nearly that by which estimates vary when one sample after another is left out (MacKinnon and White,
+    J. Econometrics 29, 1985, HC3).  It allows for tables, in which few samples decide a parameter, and for
+    variances that are not alike.
 
     problem : as it was before it was softened
     """
     plain, slopes = problem.residuals(best.values)
     x = slopes[:, problem.free]
+    x = x / np.linalg.norm(x, axis=0)
     q = np.hypot(1.0, plain / scale)
     influence, change = plain / q, q**-3
-    length = np.linalg.norm(x, axis=0)
-    x = x / length
     inverse = np.linalg.inv(x.T @ (change[:, np.newaxis] * x))
     unseen = 1.0 - change * np.einsum("ij,jk,ik->i", x, inverse, x)
-    usual = np.sqrt(float(np.sum(influence**2)) / (plain.size - x.shape[1]))
-    alone = np.where(unseen > _UNSEEN, influence / np.maximum(unseen, _UNSEEN), usual)
-    moved = inverse @ (x * alone[:, np.newaxis]).T
-    covariance = np.zeros((problem.free.size, problem.free.size))
-    covariance[np.ix_(problem.free, problem.free)] = (moved @ moved.T) / np.outer(length, length)
-    return covariance
+    alone = np.where(unseen > _UNSEEN, influence / np.maximum(unseen, _UNSEEN), 0.0)
+    own = np.sum((inverse @ (x * alone[:, np.newaxis]).T) ** 2, axis=1)
+    soft = np.sqrt(0.5 * (1.0 + q)) / q
+    usual = np.diag(np.linalg.inv(x.T @ (soft[:, np.newaxis] ** 2 * x)))
+    usual = usual * effective_variance(problem, best, scale)
+    grown = np.ones(problem.free.size)
+    grown[problem.free] = np.sqrt(
+        np.maximum(np.divide(own, usual, out=np.ones(own.size), where=usual > 0.0), 1.0)
+    )
+    return grown
 
 
 def root_mean_square(residual: np.ndarray, freedom: float) -> float:

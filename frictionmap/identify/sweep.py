@@ -15,7 +15,7 @@ from .chain_estimates import chain_estimates, chain_names
 from .chain_fit import SEARCHES, Found, Measured, fit_chain
 from .estimates import verdict
 from .least_squares import Errors, Problem, Solution, errors, undetermined
-from .robust import LOSSES, effective_variance, jackknife_covariance, softened
+from .robust import LOSSES, effective_variance, jackknife_growth, softened
 from .sweep_data import MOST_MASSES, WORDS, Values, check_enough, checked_sweep
 
 DAMPINGS = ("ground", "base")
@@ -157,9 +157,8 @@ def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool, 
     if found.outliers is None:
         return _Fit(data, found, problem, errors(problem, found.best, 1.0 if given else None), names, given)
     variance = effective_variance(problem, found.best, found.outliers)
-    covariance = jackknife_covariance(problem, found.best, found.outliers)
-    task = softened(problem, found.outliers)
-    of_estimates = errors(task, found.best, variance, covariance=covariance)
+    larger = jackknife_growth(problem, found.best, found.outliers)
+    of_estimates = errors(softened(problem, found.outliers), found.best, variance, larger=larger)
     plain = found.best._replace(residual=problem.residuals(found.best.values)[0])
     freedom = plain.residual.size - int(problem.free.sum())
     of_estimates = of_estimates._replace(variance=plain.sum / freedom)

@@ -25,8 +25,8 @@ _FEWEST_TERMS, _MOST_TERMS, _SAMPLES_PER_TERM = 4, 16, 10
 #: What a term must lower the sum by, in variances of a sample, to be of use (Akaike 1974).
 _WORTH = 2.0
 
-#: Terms beyond the best number, an even and an odd one: the wander does not end where the noise covers it.
-_MARGIN = 2
+#: Terms beyond the best number, and terms in all: the wander does not end where the noise covers it.
+_MARGIN, _LEAST = 2, 8
 
 #: A wander is found if chance makes one as large in this share of all records.
 _FOUND = 1e-3
@@ -84,7 +84,7 @@ def _wander(record: Record, fit: Fit) -> _Wander:
     variance = float(left @ left) / (left.size - shares.size) * long_inflation(left) ** 2
     gains = np.cumsum(shares[-basis.shape[1] :] ** 2) / max(variance, rounding_variance(record))
     best = int(np.argmax(gains - _WORTH * np.arange(gains.size)))
-    return _Wander(basis[:, : best + 1 + _MARGIN], float(chdtrc(best + 1, gains[best])))
+    return _Wander(basis[:, : max(best + 1 + _MARGIN, _LEAST)], float(chdtrc(best + 1, gains[best])))
 
 
 def _most_terms(record: Record, fit: Fit) -> int:

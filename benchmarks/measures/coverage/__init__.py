@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from ...report.quoted_coverage import HEADER, coverage_notes, coverage_rows
-from ...report.record import save, table
+from ...report.record import machine, save, table
 from . import decays, forced, joint, records, sweeps
 from .case import SEEDS, Trial, attempt
 from .counting import STATED, row
@@ -54,32 +54,34 @@ def _tasks(share: float | None) -> Iterator[tuple[str, int, int]]:
                 yield kind, place, seed
 
 
-def measure(share: float | None = 1.0) -> dict[str, dict[str, dict]]:
-    """Rows by kind and case; without a share the quick form, in this process."""
+def measure(share: float | None = 1.0) -> Iterator[dict[str, dict[str, dict]]]:
+    """Rows by kind and case, more after each case; without a share the quick form, in this process."""
     tasks = list(_tasks(share))
     if share is None:
-        return _rows(tasks, map(trial, tasks))
+        yield from _rows(tasks, map(trial, tasks))
+        return
     with ProcessPoolExecutor(_PROCESSES, mp_context=get_context("spawn")) as pool:
-        return _rows(tasks, pool.map(trial, tasks, chunksize=_AT_ONCE))
+        yield from _rows(tasks, pool.map(trial, tasks, chunksize=_AT_ONCE))
 
 
-def _rows(tasks: list[tuple[str, int, int]], trials: Iterable[Trial]) -> dict[str, dict[str, dict]]:
-    """A row for every case, said when its last fit is done."""
+def _rows(tasks: list[tuple[str, int, int]], trials: Iterable[Trial]) -> Iterator[dict[str, dict[str, dict]]]:
     found: dict[str, dict[str, dict]] = {}
     for (kind, place), some in groupby(zip(tasks, trials, strict=True), key=lambda one: one[0][:2]):
         name = KINDS[kind][place].name
         found.setdefault(kind, {})[name] = row([one for _, one in some])
-        print(f"{kind}: {name}", flush=True)
-    return found
+        yield found
 
 
 def run(quick: bool, results: Path) -> dict:
-    """Draw, fit, count, print, draw the figure and save."""
-    kinds = measure(None if quick else 1.0)
+    """Draw, fit, count, print, draw the figure and save, all anew after each case."""
+    content: dict = {"machine": machine(), "stated coverage": STATED}
+    for kinds in measure(None if quick else 1.0):
+        content["kinds"] = kinds
+        save("coverage", content, results)
+        kind = list(kinds)[-1]
+        print(*coverage_rows({kind: dict([list(kinds[kind].items())[-1]])})[0], sep="  ", flush=True)
     table(HEADER, coverage_rows(kinds))
     for note in coverage_notes(kinds):
         print(note)
     draw(kinds, results / "coverage.png")
-    content = {"stated coverage": STATED, "kinds": kinds}
-    save("coverage", content, results)
     return content

@@ -253,7 +253,7 @@ def _identify(options: Options) -> None:
     from .files.estimates import describe_estimates
     from .files.places import claimed
     from .files.storage import write_netcdf
-    from .identify.configuration import identify, load_rig
+    from .identify.rigs.configuration import identify, load_rig
 
     _refuse_store(options)
     rig = load_rig(options.config, options.overrides)
@@ -350,7 +350,7 @@ def _schema(options: Options) -> None:
     import json
 
     if options.rig:
-        from .identify.rig_keys import rig_schema as schema
+        from .identify.rigs.keys import rig_schema as schema
     else:
         from .files.json_schema import map_schema as schema
     _print(json.dumps(schema(), indent=2))
@@ -359,7 +359,7 @@ def _schema(options: Options) -> None:
 def _completion(options: Options) -> None:
     from .completion import completion
     from .files.keys import KEYS
-    from .identify.rig_keys import rig_settings
+    from .identify.rigs.keys import rig_settings
 
     settings = [f"{section}.{key.name}=" for section, keys in KEYS.items() if section for key in keys]
     words: dict[str, dict[str, Sequence[str]]] = {

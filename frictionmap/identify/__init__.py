@@ -69,14 +69,14 @@ rig_keys         their keys in words and as JSON Schema
 ===============  =======================================================================
 """
 
-from .forced import forced
-from .free_decay import free_decay
-from .integration import displacements
-from .joint import joint
+from .chain.sweep import sweep
+from .decay.free_decay import free_decay
+from .joint_fit.joint import joint
 from .likelihood import log_likelihood
-from .phase_inversion import friction_ratio
-from .record import record
-from .sweep import sweep
+from .response.forced import forced
+from .response.phase_inversion import friction_ratio
+from .signals.integration import displacements
+from .time_series.record import record
 
 __all__ = [
     "displacements",

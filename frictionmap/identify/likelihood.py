@@ -7,14 +7,14 @@ import xarray as xr
 
 from .. import checks
 from ..errors import InputError
-from .chain_estimates import chain_names
-from .chain_fit import Measured
-from .chain_fit import problem as chain_problem
-from .decay_motion import PARAMETERS
-from .decay_problem import DRIFT, Record
-from .decay_problem import problem as decay_problem
-from .decay_wander import polynomials
-from .least_squares import Problem
+from .chain.estimates import chain_names
+from .chain.fit import Measured
+from .chain.fit import problem as chain_problem
+from .decay.motion import PARAMETERS
+from .decay.problem import DRIFT, Record
+from .decay.problem import problem as decay_problem
+from .decay.wander import polynomials
+from .statistics.least_squares import Problem
 
 #: Half cycles of a decay that does not come to rest within any record.
 _NO_REST = 2

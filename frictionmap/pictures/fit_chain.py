@@ -7,8 +7,8 @@ import xarray as xr
 
 from .. import regimes
 from ..errors import InputError
-from ..identify.chain_estimates import chain_names
-from ..identify.chain_response import response_and_slopes
+from ..identify.chain.estimates import chain_names
+from ..identify.chain.response import response_and_slopes
 from .fit_picture import FitPicture
 from .fit_responses import LAG, ResponseCurves, ResponseSet, response_panels
 from .palette import LINES

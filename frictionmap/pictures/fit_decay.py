@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from ..errors import InputError
-from ..identify.decay_motion import PARAMETERS, Decay, amplitudes, displacement, envelope, half_period
+from ..identify.decay.motion import PARAMETERS, Decay, amplitudes, displacement, envelope, half_period
 from .fit_data import FITTED, Samples, draw_data, draw_residuals, in_brackets, samples_of
 from .fit_picture import FitPicture
 from .fit_samples import RESIDUALS, VALUES

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from ..errors import InputError
-from ..identify.two_masses import log_amplitude
+from ..identify.chain.two_masses import log_amplitude
 from .fit_data import FITTED, Samples, draw_data, draw_residuals, samples_of
 from .fit_picture import FitPicture
 from .fit_samples import RESIDUALS, VALUES

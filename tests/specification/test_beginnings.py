@@ -23,10 +23,10 @@ from frictionmap.examples import TRUTHS, starting_rig
 from frictionmap.files.json_schema import map_schema
 from frictionmap.files.keys import KEYS
 from frictionmap.files.template import starting_configuration
-from frictionmap.identify.configuration import KINDS, load_rig
-from frictionmap.identify.rig_keys import rig_keys, rig_schema
-from frictionmap.identify.rig_record import SYSTEM_KEYS as RECORD_SYSTEM
-from frictionmap.identify.rig_sweep import SYSTEM_KEYS as SWEEP_SYSTEM
+from frictionmap.identify.rigs.configuration import KINDS, load_rig
+from frictionmap.identify.rigs.keys import rig_keys, rig_schema
+from frictionmap.identify.rigs.record import SYSTEM_KEYS as RECORD_SYSTEM
+from frictionmap.identify.rigs.sweep import SYSTEM_KEYS as SWEEP_SYSTEM
 from frictionmap.model import system
 from frictionmap.pictures.curves import CURVE_QUANTITIES
 

@@ -10,7 +10,7 @@ from jsonschema import Draft202012Validator
 from refusals import refusal
 
 from frictionmap.cli import main
-from frictionmap.identify.rig_keys import rig_schema
+from frictionmap.identify.rigs.keys import rig_schema
 
 RIGS = ROOT / "configs" / "rigs"
 

@@ -10,14 +10,14 @@ import xarray as xr
 from .datasets.labels import HISTORY_VARIABLES, SHARES
 from .errors import InputError
 from .files.reading import kind
-from .pictures.boundary_map import plot_boundaries
-from .pictures.curves import CURVE_VARIABLES, plot_curves
-from .pictures.fits import plot_fit
-from .pictures.harmonics import HARMONIC_VARIABLES
-from .pictures.history import plot_response
-from .pictures.orbit import plot_orbit
-from .pictures.regime_map import plot_regimes
-from .pictures.share_map import plot_shares
+from .pictures.curves.figure import CURVE_VARIABLES, plot_curves
+from .pictures.curves.harmonics import HARMONIC_VARIABLES
+from .pictures.fits.figure import plot_fit
+from .pictures.maps.boundary_map import plot_boundaries
+from .pictures.maps.regime_map import plot_regimes
+from .pictures.maps.share_map import plot_shares
+from .pictures.motions.history import plot_response
+from .pictures.motions.orbit import plot_orbit
 
 if TYPE_CHECKING:
     from .pictures.panels import AxesArray

@@ -9,7 +9,8 @@ from colours import SIMULATIONS, ciede2000, difference, lab, linear, seen_by
 from matplotlib.colors import to_rgb
 
 from frictionmap import regimes
-from frictionmap.pictures import classes, features, grids, marks, palette, raster, words
+from frictionmap.pictures import classes, features, grids, marks, palette, words
+from frictionmap.pictures.maps import raster
 
 LABELS = [look.label for look in palette.CLASSES]
 COLOURS = {look.label: to_rgb(look.colour) for look in palette.CLASSES}

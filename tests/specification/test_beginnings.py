@@ -28,7 +28,7 @@ from frictionmap.identify.rigs.keys import rig_keys, rig_schema
 from frictionmap.identify.rigs.record import SYSTEM_KEYS as RECORD_SYSTEM
 from frictionmap.identify.rigs.sweep import SYSTEM_KEYS as SWEEP_SYSTEM
 from frictionmap.model import system
-from frictionmap.pictures.curves import CURVE_QUANTITIES
+from frictionmap.pictures.curves.figure import CURVE_QUANTITIES
 
 MAPS = sorted([*(ROOT / "configs").glob("*.toml"), *(ROOT / "configs" / "studies").glob("*.toml")])
 RIG_FILES = sorted((ROOT / "configs" / "rigs").glob("*.toml"))

@@ -18,11 +18,11 @@ from frictionmap import InputError, plot, regimes
 from frictionmap.files.reading import read
 from frictionmap.files.storage import write
 from frictionmap.model.settings import OUTPUTS
-from frictionmap.pictures.boundary_map import areas
 from frictionmap.pictures.classes import classes
+from frictionmap.pictures.maps.boundary_map import areas
+from frictionmap.pictures.maps.raster import rasterise
+from frictionmap.pictures.maps.regime_map import CellImage
 from frictionmap.pictures.palette import CLASSES, MORE, ONE, colour_table
-from frictionmap.pictures.raster import rasterise
-from frictionmap.pictures.regime_map import CellImage
 
 MAGIC = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
 

@@ -6,13 +6,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from ..errors import InputError
-from ..identify.decay.motion import PARAMETERS, Decay, amplitudes, displacement, envelope, half_period
-from .fit_data import FITTED, Samples, draw_data, draw_residuals, in_brackets, samples_of
-from .fit_picture import FitPicture
-from .fit_samples import RESIDUALS, VALUES
-from .palette import CLASSES, STUCK
-from .panels import Handle
+from ...errors import InputError
+from ...identify.decay.motion import PARAMETERS, Decay, amplitudes, displacement, envelope, half_period
+from ..palette import CLASSES, STUCK
+from ..panels import Handle
+from .data import FITTED, Samples, draw_data, draw_residuals, in_brackets, samples_of
+from .picture import FitPicture
+from .samples import RESIDUALS, VALUES
 
 #: Samples of a half cycle of the fitted curve; half cycles that a picture can show.
 _SAMPLES, _MOST_HALVES = 40, 400

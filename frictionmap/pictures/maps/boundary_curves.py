@@ -8,10 +8,10 @@ the boundaries in the file are drawn.
 import numpy as np
 import xarray as xr
 
-from ..files.stored import stored_system
-from ..model.system import System
-from ..theory.boundary_curves import find_curves
-from .grids import Grid
+from ...files.stored import stored_system
+from ...model.system import System
+from ...theory.boundary_curves import find_curves
+from ..grids import Grid
 
 BOUNDARIES = ("beta_lim", "beta_stick")
 

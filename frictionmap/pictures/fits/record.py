@@ -6,13 +6,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from ..errors import InputError
-from .fit_data import FITTED, MEASURED, Samples, draw_data, draw_residuals, in_brackets, samples_of
-from .fit_picture import FitPicture, Tall
-from .fit_position import MAP_HEIGHT, Positions, fitted, fitted_system, position_panel
-from .fit_samples import RESIDUALS, VALUES
-from .palette import LINES
-from .panels import Handle
+from ...errors import InputError
+from ..palette import LINES
+from ..panels import Handle
+from .data import FITTED, MEASURED, Samples, draw_data, draw_residuals, in_brackets, samples_of
+from .picture import FitPicture, Tall
+from .position import MAP_HEIGHT, Positions, fitted, fitted_system, position_panel
+from .samples import RESIDUALS, VALUES
 
 _NEEDED = ("time", "base", "base_frequency")
 _BASE_COLOUR, _DOT_COLOUR = LINES[1], LINES[4]

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from .. import regimes
-from ..files.stored import stored_system
-from ..model.system import System
-from .grids import Grid
-from .palette import sequence
-from .second_axes import in_brackets
+from ... import regimes
+from ...files.stored import stored_system
+from ...model.system import System
+from ..grids import Grid
+from ..palette import sequence
+from ..second_axes import in_brackets
 
 
 class Family(NamedTuple):

@@ -7,21 +7,21 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..errors import InputError
-from ..files.estimates import estimates_in_short, verdict_in_words
-from .fit_chain import chain_picture, is_chain
-from .fit_data import about_residuals
-from .fit_decay import decay_picture, is_decay
-from .fit_forced import forced_picture, is_forced
-from .fit_picture import FitPicture
-from .fit_record import is_record, record_picture
-from .fit_samples import samples_picture
-from .fit_sweep import is_sweep, sweep_picture
-from .panels import distinct, given_axes, legend_below, legend_under, new_figure, title_figure
-from .shapes import check_holds, check_range, to_draw
+from ...errors import InputError
+from ...files.estimates import estimates_in_short, verdict_in_words
+from ..panels import distinct, given_axes, legend_below, legend_under, new_figure, title_figure
+from ..shapes import check_holds, check_range, to_draw
+from .chain import chain_picture, is_chain
+from .data import about_residuals
+from .decay import decay_picture, is_decay
+from .forced import forced_picture, is_forced
+from .picture import FitPicture
+from .record import is_record, record_picture
+from .samples import samples_picture
+from .sweep import is_sweep, sweep_picture
 
 if TYPE_CHECKING:
-    from .panels import AxesArray
+    from ..panels import AxesArray
 
 #: Height of the title and of the names of an axis [inch].
 _REST = 0.6

@@ -8,14 +8,14 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
-from .grids import Grid
-from .panels import Handle, distinct, halo, legend_below, name_axes, table_of_panels
-from .second_axes import frequency_on_top, on_the_right
-from .shapes import check_holds, to_draw
-from .words import system_words
+from ..grids import Grid
+from ..panels import Handle, distinct, halo, legend_below, name_axes, table_of_panels
+from ..second_axes import frequency_on_top, on_the_right
+from ..shapes import check_holds, to_draw
+from ..words import system_words
 
 if TYPE_CHECKING:
-    from .panels import AxesArray
+    from ..panels import AxesArray
 
 #: Regimes with a panel if any sample is in them, from left to right.
 _OUTCOMES = ("continuous", "stick_slip", "permanent_sticking", "unresolved")

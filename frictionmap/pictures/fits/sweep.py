@@ -4,12 +4,12 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from ..errors import InputError
-from ..identify.chain.two_masses import log_amplitude
-from .fit_data import FITTED, Samples, draw_data, draw_residuals, samples_of
-from .fit_picture import FitPicture
-from .fit_samples import RESIDUALS, VALUES
-from .panels import Handle
+from ...errors import InputError
+from ...identify.chain.two_masses import log_amplitude
+from ..panels import Handle
+from .data import FITTED, Samples, draw_data, draw_residuals, samples_of
+from .picture import FitPicture
+from .samples import RESIDUALS, VALUES
 
 _FREQUENCIES = ("f0", "f1", "f2")
 

@@ -8,10 +8,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .features import features_of, mark_features
-from .grids import Grid
-from .palette import CLASSES, CONTINUOUS, HATCH, HATCH_COLOUR, LIM, MODAL, STICK, STUCK, UNCOUNTED
-from .panels import (
+from ..features import features_of, mark_features
+from ..grids import Grid
+from ..palette import CLASSES, CONTINUOUS, HATCH, HATCH_COLOUR, LIM, MODAL, STICK, STUCK, UNCOUNTED
+from ..panels import (
     Handle,
     distinct,
     given_axes,
@@ -22,12 +22,12 @@ from .panels import (
     panel_grid,
     patch,
 )
-from .second_axes import frequency_on_top, on_the_right
-from .shapes import check_holds, panels_of, to_draw
-from .words import caption
+from ..second_axes import frequency_on_top, on_the_right
+from ..shapes import check_holds, panels_of, to_draw
+from ..words import caption
 
 if TYPE_CHECKING:
-    from .panels import AxesArray
+    from ..panels import AxesArray
 
 #: Height of the axis over the largest value, and over the largest beta_lim where beta_stick has poles.
 _ABOVE, _ABOVE_LIM = 1.15, 2.0

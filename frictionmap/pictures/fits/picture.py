@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .curve_axes import Panel
+from ..curves.axes import Panel
 
 if TYPE_CHECKING:
-    from .panels import AxesArray
+    from ..panels import AxesArray
 
 #: A panel with its height [inch].
 Tall = tuple[float, Panel]

@@ -8,16 +8,16 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from .harmonics import LOWEST, levels_of
+from ..curves.harmonics import LOWEST, levels_of
+from ..palette import LINES
+from ..panels import Handle, given_axes, legend_below, table_of_panels
+from ..second_axes import length_on_top, on_the_right
+from ..shapes import check_holds, to_draw
+from ..words import caption
 from .history import MOST_LABELS, check_can_be_seen, contact_is_a_mass, title_of
-from .palette import LINES
-from .panels import Handle, given_axes, legend_below, table_of_panels
-from .second_axes import length_on_top, on_the_right
-from .shapes import check_holds, to_draw
-from .words import caption
 
 if TYPE_CHECKING:
-    from .panels import AxesArray
+    from ..panels import AxesArray
 
 _CONTACT_COLOUR = "black"
 

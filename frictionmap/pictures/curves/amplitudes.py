@@ -6,15 +6,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from .curve_axes import CUT, CUT_LOG, Panel, Picture, about_cut, about_peaks, in_rows, over_r, scale_of
-from .curve_lines import HIGH, band_handle, draw_band, draw_curve, without_jumps
+from ..features import frequencies_of, mark_features
+from ..palette import HELD, LIMIT, LineStyle
+from ..panels import Handle
+from ..second_axes import on_the_right
+from ..words import moves_base
+from .axes import CUT, CUT_LOG, Panel, Picture, about_cut, about_peaks, in_rows, over_r, scale_of
 from .families import Family
-from .features import frequencies_of, mark_features
 from .invariants import Invariant, invariant_points
-from .palette import HELD, LIMIT, LineStyle
-from .panels import Handle
-from .second_axes import on_the_right
-from .words import moves_base
+from .lines import HIGH, band_handle, draw_band, draw_curve, without_jumps
 
 
 class Names(NamedTuple):

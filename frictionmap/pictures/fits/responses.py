@@ -9,13 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter
 
-from ..errors import InputError
-from .curve_axes import Panel
-from .curve_lines import draw_curve, regime_handles
-from .fit_data import BAND, FITTED, Samples, draw_data, samples_of
-from .fit_picture import Tall
-from .fit_samples import RESIDUALS
-from .panels import Handle
+from ...errors import InputError
+from ..curves.axes import Panel
+from ..curves.lines import draw_curve, regime_handles
+from ..panels import Handle
+from .data import BAND, FITTED, Samples, draw_data, samples_of
+from .picture import Tall
+from .samples import RESIDUALS
 
 #: Codes of what a sample is.
 _AMPLITUDE, LAG = 0, 1

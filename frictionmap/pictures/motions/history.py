@@ -9,17 +9,17 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from .. import regimes
-from ..errors import InputError
-from .marks import spread
-from .palette import CLASSES, LINES, STUCK, Shade
-from .panels import Handle, given_axes, halo, legend_below, new_figure, title_figure
-from .second_axes import in_brackets, on_the_right, time_on_top
-from .shapes import check_holds, check_range, to_draw
-from .words import caption, load_of, moves_base
+from ... import regimes
+from ...errors import InputError
+from ..marks import spread
+from ..palette import CLASSES, LINES, STUCK, Shade
+from ..panels import Handle, given_axes, halo, legend_below, new_figure, title_figure
+from ..second_axes import in_brackets, on_the_right, time_on_top
+from ..shapes import check_holds, check_range, to_draw
+from ..words import caption, load_of, moves_base
 
 if TYPE_CHECKING:
-    from .panels import AxesArray
+    from ..panels import AxesArray
 
 
 #: Height of the panels: load, motion in the contact, masses, friction.

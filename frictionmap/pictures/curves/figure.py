@@ -8,19 +8,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ..errors import InputError
-from .curve_axes import Picture
-from .curve_lines import regime_handles
+from ...errors import InputError
+from ..panels import MOST_PANELS, Handle, distinct, given_axes, legend_below, legend_under, table_of_panels
+from ..shapes import to_draw
+from ..words import caption
+from .amplitudes import MOTION_VARIABLES, NAMES, motion_picture
+from .axes import Picture
 from .families import Family, family_of
 from .harmonics import HARMONIC_VARIABLES, spectrum_picture
-from .motions import MOTION_VARIABLES, NAMES, motion_picture
-from .panels import MOST_PANELS, Handle, distinct, given_axes, legend_below, legend_under, table_of_panels
-from .shapes import to_draw
-from .words import caption
+from .lines import regime_handles
 from .works import SCALARS, scalar_picture
 
 if TYPE_CHECKING:
-    from .panels import AxesArray
+    from ..panels import AxesArray
 
 #: Quantities that can be drawn, and the variables of which at least one is required.
 CURVE_QUANTITIES: dict[str, tuple[str, ...]] = {

@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from .. import regimes
-from .palette import REGIME_LINES
-from .panels import Handle
+from ... import regimes
+from ..palette import REGIME_LINES
+from ..panels import Handle
 
 #: Height, in units of the axis, at which infinite values are drawn, so that lines leave the picture.
 HIGH = 1e3

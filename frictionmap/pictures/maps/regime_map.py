@@ -13,13 +13,12 @@ from matplotlib.backend_bases import RendererBase
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from ..errors import InputError
-from .boundary_curves import boundary_curves
-from .classes import classes, count, legend_label, stops_range
-from .features import features_of, mark_features
-from .grids import Grid
-from .marks import COARSE, rare_classes, rings, room_for, trace
-from .palette import (  # fmt: skip
+from ...errors import InputError
+from ..classes import classes, count, legend_label, stops_range
+from ..features import features_of, mark_features
+from ..grids import Grid
+from ..marks import COARSE, rare_classes, rings, room_for, trace
+from ..palette import (  # fmt: skip
     BROKEN,
     CLASSES,
     CONTINUOUS,
@@ -35,7 +34,7 @@ from .palette import (  # fmt: skip
     STUCK,
     colour_table,
 )
-from .panels import (  # fmt: skip
+from ..panels import (  # fmt: skip
     Handle,
     distinct,
     given_axes,
@@ -47,13 +46,14 @@ from .panels import (  # fmt: skip
     patch,
     size_of,
 )
+from ..second_axes import frequency_on_top, on_the_right
+from ..shapes import panels_of, to_draw
+from ..words import caption
+from .boundary_curves import boundary_curves
 from .raster import paint, rasterise, shade, stripes
-from .second_axes import frequency_on_top, on_the_right
-from .shapes import panels_of, to_draw
-from .words import caption
 
 if TYPE_CHECKING:
-    from .panels import AxesArray
+    from ..panels import AxesArray
 
 _STYLES = {"beta_lim": LIM, "beta_stick": STICK}
 

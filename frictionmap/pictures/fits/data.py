@@ -7,9 +7,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
-from ..files.estimates import unit_in_words
-from .palette import CLASSES, LINES, STUCK, Shade
-from .panels import Handle
+from ...files.estimates import unit_in_words
+from ..palette import CLASSES, LINES, STUCK, Shade
+from ..panels import Handle
 
 #: With more samples bars of errors would hide them: the band beside the residuals tells it.
 _MOST_BARS = 120

@@ -5,13 +5,13 @@ import re
 import numpy as np
 import xarray as xr
 
-from .. import regimes
-from ..errors import InputError
-from ..identify.chain.estimates import chain_names
-from ..identify.chain.response import response_and_slopes
-from .fit_picture import FitPicture
-from .fit_responses import LAG, ResponseCurves, ResponseSet, response_panels
-from .palette import LINES
+from ... import regimes
+from ...errors import InputError
+from ...identify.chain.estimates import chain_names
+from ...identify.chain.response import response_and_slopes
+from ..palette import LINES
+from .picture import FitPicture
+from .responses import LAG, ResponseCurves, ResponseSet, response_panels
 
 _NEEDED = ("frequency", "quantity", "mass", "sigma")
 

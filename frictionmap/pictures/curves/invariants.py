@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import features
-from ..model.system import System
-from ..theory.boundary_curves import find_curves
+from ... import features
+from ...model.system import System
+from ...theory.boundary_curves import find_curves
 from .families import Family
 
 

@@ -6,11 +6,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from .curve_axes import Panel, Picture, Row, in_rows, over_r
-from .curve_lines import draw_curve
+from ..palette import sequence
+from ..panels import Handle
+from .axes import Panel, Picture, Row, in_rows, over_r
 from .families import Family
-from .palette import sequence
-from .panels import Handle
+from .lines import draw_curve
 
 HARMONIC_VARIABLES = ("displacement_harmonic", "contact_harmonic")
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .classes import blocks
+from ..classes import blocks
 
 
 class Cover(NamedTuple):

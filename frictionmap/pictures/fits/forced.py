@@ -5,14 +5,14 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from .. import checks
-from ..errors import InputError
-from ..model.system import System
-from ..steady.curves import curves
-from .fit_picture import FitPicture, Tall
-from .fit_position import MAP_HEIGHT, Positions, fitted, fitted_system, position_panel
-from .fit_responses import ResponseCurves, ResponseSet, response_panels
-from .palette import sequence
+from ... import checks
+from ...errors import InputError
+from ...model.system import System
+from ...steady.curves import curves
+from ..palette import sequence
+from .picture import FitPicture, Tall
+from .position import MAP_HEIGHT, Positions, fitted, fitted_system, position_panel
+from .responses import ResponseCurves, ResponseSet, response_panels
 
 _NEEDED = ("frequency", "quantity", "mass", "set", "sigma", "frequency_ratio", "friction_ratio")
 

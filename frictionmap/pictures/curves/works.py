@@ -3,12 +3,12 @@
 import numpy as np
 from matplotlib.axes import Axes
 
-from ..datasets.labels import MEASURE_OF
-from .curve_axes import Panel, Picture, Scale, about_cut, about_peaks, in_rows, over_r, scale_of
-from .curve_lines import draw_curve
+from ...datasets.labels import MEASURE_OF
+from ..panels import Handle
+from ..second_axes import on_the_right
+from .axes import Panel, Picture, Scale, about_cut, about_peaks, in_rows, over_r, scale_of
 from .families import Family
-from .panels import Handle
-from .second_axes import on_the_right
+from .lines import draw_curve
 
 #: Variables and the labels of their axes.
 SCALARS = {

@@ -3,9 +3,9 @@
 import xarray as xr
 from matplotlib.axes import Axes
 
-from .fit_data import FITTED, draw_data, draw_residuals, in_brackets, samples_of
-from .fit_picture import FitPicture
-from .panels import Handle
+from ..panels import Handle
+from .data import FITTED, draw_data, draw_residuals, in_brackets, samples_of
+from .picture import FitPicture
 
 #: Heights of the panels of values and of residuals [inch].
 VALUES, RESIDUALS = 3.2, 1.5

@@ -7,13 +7,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from ..files.stored import stored_system
-from ..model.system import System
-from ..steady.sweep import sweep
-from .curve_axes import Panel
-from .palette import CLASSES
-from .panels import Handle, distinct, halo, patch
-from .regime_map import cells_of, draw_map
+from ...files.stored import stored_system
+from ...model.system import System
+from ...steady.sweep import sweep
+from ..curves.axes import Panel
+from ..maps.regime_map import cells_of, draw_map
+from ..palette import CLASSES
+from ..panels import Handle, distinct, halo, patch
 
 #: Cells of the map each way: of one mass, and of structures, whose cells take longer.
 _CELLS, _CELLS_OF_STRUCTURES = (150, 120), (70, 50)

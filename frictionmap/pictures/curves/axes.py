@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 
+from ..panels import Handle
+from ..second_axes import frequency_on_top
 from .families import Family
 from .invariants import infinite_resonances
-from .panels import Handle
-from .second_axes import frequency_on_top
 
 #: End of the axis where some amplitude is infinite, in units of P/k1; linear and logarithmic.
 CUT, CUT_LOG = 5.0, 100.0

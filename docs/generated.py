@@ -6,7 +6,7 @@ from pathlib import Path
 
 import frictionmap as fm
 from frictionmap import regimes
-from frictionmap.arguments import Command, described
+from frictionmap.command_line.arguments import Command, described
 from frictionmap.datasets.labels import LABELS, Label
 from frictionmap.datasets.provenance import value_text
 from frictionmap.files.keys import KEYS, TABLES, Key, in_words

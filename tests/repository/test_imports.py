@@ -48,10 +48,10 @@ def run(code):
 def test_help_and_usage_errors_import_nothing_heavy(arguments):
     code = f"""
 import contextlib, io, sys
-import frictionmap, frictionmap.cli
+import frictionmap, frictionmap.command_line.cli
 text = io.StringIO()
 with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text), contextlib.suppress(SystemExit):
-    frictionmap.cli.main({arguments!r})
+    frictionmap.command_line.cli.main({arguments!r})
 print([name for name in {HEAVY!r} if name in sys.modules])
 """
     assert run(code) == "[]\n"
@@ -135,11 +135,11 @@ def test_one_folder(module, folder):
 
 #: Rooms, and modules that stand alone, in the order in which data flows: none knows a later one.
 ORDER = (
-    "errors", "version", "regimes", "checks", "interrupts", "packages", "mat_files", "structures",
+    "errors", "version", "regimes", "checks", "packages", "mat_files", "structures",
     "_kernels", "model", "units", "datasets", "roots",
     "features",
     "theory", "steady", "files", "probabilities", "stores", "identify", "examples", "pictures", "plot",
-    "explorer", "progress", "arguments", "completion", "cli", "__main__",
+    "explorer", "command_line", "__main__",
 )  # fmt: skip
 
 

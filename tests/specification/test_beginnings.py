@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from test_cli import BAD_CONFIGURATIONS, listing, toml
 
 from frictionmap import InputError, load_config
-from frictionmap.arguments import CONTACTS, QUANTITIES, RIGS, SHELLS, build_parser, described
-from frictionmap.cli import main
-from frictionmap.completion import completion
+from frictionmap.command_line.arguments import CONTACTS, QUANTITIES, RIGS, SHELLS, build_parser, described
+from frictionmap.command_line.cli import main
+from frictionmap.command_line.completion import completion
 from frictionmap.examples import TRUTHS, starting_rig
 from frictionmap.files.json_schema import map_schema
 from frictionmap.files.keys import KEYS

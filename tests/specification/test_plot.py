@@ -639,7 +639,7 @@ def test_a_large_map_is_drawn_in_little_memory(tmp_path):
     axes = {"mu": [1.0], "r": np.linspace(0.1, 2.0, n), "beta": np.linspace(0.1, 1.0, n)}
     ds = xr.Dataset({name: (("mu", "r", "beta"), values) for name, values in cells.items()}, axes)
     write(ds.assign_attrs(source="frictionmap test"), tmp_path / "large.nc")
-    code = "import sys; from frictionmap.cli import main; main(sys.argv[1:]); "
+    code = "import sys; from frictionmap.command_line.cli import main; main(sys.argv[1:]); "
     code += "print(*(line for line in open('/proc/self/status') if line.startswith('VmHWM')))"
     command = [sys.executable, "-c", code, "plot", "large.nc"]
     environment = os.environ | {"PYTHONPATH": str(Path(fm.__file__).parents[1])}

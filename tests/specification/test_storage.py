@@ -13,7 +13,7 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.files import reading, storage
 from frictionmap.model.settings import OUTPUTS
 

@@ -9,7 +9,7 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.files.reading import opened, read
 from frictionmap.files.slices import parse_choices
 from frictionmap.files.storage import write

@@ -15,7 +15,7 @@ from refusals import refusal
 
 import frictionmap as fm
 from frictionmap import InputError, load_config
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.files.reading import read
 from frictionmap.identify.rigs.configuration import load_rig
 from frictionmap.units.axes import Ladder, typed

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
-from .version import __version__
+from ..version import __version__
 
 __all__ = [
     "CONTACTS",

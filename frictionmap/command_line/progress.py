@@ -6,7 +6,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from .steady.cost import in_bytes, in_time
+from ..steady.cost import in_bytes, in_time
 
 #: Seconds after which work counts as long, and between two looks at it.
 _LONG, _BETWEEN = 0.5, 0.1

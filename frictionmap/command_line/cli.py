@@ -9,17 +9,18 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..errors import InputError, NoSteadyState
 from .arguments import CONTACTS, QUANTITIES, Options, build_parser, one_line, parse
-from .errors import InputError, NoSteadyState
+from .interrupts import before_exit
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from .explorer.scene import Scene
-    from .files.config import Config
-    from .files.places import Output
+    from ..explorer.scene import Scene
+    from ..files.config import Config
+    from ..files.places import Output
+    from ..stores.run import Fill
     from .progress import Progress
-    from .stores.run import Fill
 
 
 #: Beginnings of --at that a shell completes: the further axes in most frequent use.
@@ -31,7 +32,7 @@ _MANY = 3_000_000
 
 def _finish(ds: "xr.Dataset", config: "Config", options: Options) -> Callable[[Path], None]:
     """What writes the dataset, once it is told where."""
-    from .files.storage import write_netcdf
+    from ..files.storage import write_netcdf
 
     ds.attrs["title"] = config.title
     ds.attrs["config"] = config.text
@@ -44,7 +45,7 @@ def _tell(options: Options, output: "Output", *summary: str) -> None:
 
 
 def _map(options: Options, config: "Config", output: "Output") -> None:
-    from .steady.sweep import sweep
+    from ..steady.sweep import sweep
 
     points = 1 if config.variations is None else config.variations.count
     cells = points * config.mu.size * config.r.size * config.beta.size
@@ -60,7 +61,7 @@ def _map(options: Options, config: "Config", output: "Output") -> None:
 
 
 def _curves(options: Options, config: "Config", output: "Output") -> None:
-    from .steady.curves import curves
+    from ..steady.curves import curves
 
     asked = config.curves
 
@@ -77,8 +78,8 @@ def _fill_cells(
     options: Options, config: "Config", output: "Output", what: str, run: Callable[["Progress"], "xr.Dataset"]
 ) -> None:
     """Compute a grid of cells with progress shown, write it, and tell what came out."""
-    from ._kernels.compiler.notices import listeners
-    from .files.summary import describe_causes, describe_map, describe_reduction
+    from .._kernels.compiler.notices import listeners
+    from ..files.summary import describe_causes, describe_map, describe_reduction
     from .progress import Progress
 
     with Progress(what, options.quiet) as progress:
@@ -93,7 +94,7 @@ def _fill_cells(
 
 
 def _cost(options: Options, config: "Config") -> str:
-    from .steady.cost import in_bytes, in_time, memory_of_map, seconds_of_map
+    from ..steady.cost import in_bytes, in_time, memory_of_map, seconds_of_map
 
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
     counts = {name: axis.size for name, axis in axes.items()}
@@ -106,8 +107,8 @@ def _cost(options: Options, config: "Config") -> str:
 
 
 def _boundaries(options: Options, config: "Config", output: "Output") -> None:
-    from .files.summary import describe_reduction
-    from .theory.boundaries import boundaries
+    from ..files.summary import describe_reduction
+    from ..theory.boundaries import boundaries
 
     ds = boundaries(config.system, config.r, config.mu, units=config.units)
     output.fill(_finish(ds, config, options))
@@ -115,8 +116,8 @@ def _boundaries(options: Options, config: "Config", output: "Output") -> None:
 
 
 def _response(options: Options, config: "Config", output: "Output") -> None:
-    from .files.summary import describe_response
-    from .steady.response import response
+    from ..files.summary import describe_response
+    from ..steady.response import response
 
     mu = _one_mu(config) if options.mu is None else options.mu
     ds = response(config.system, options.r, options.beta, mu, solver=config.solver, units=config.units)
@@ -133,9 +134,9 @@ def _one_mu(config: "Config") -> float:
 
 
 def _compute(options: Options) -> None:
-    from .files.config import load_config
-    from .files.places import claimed
-    from .steady.cost import refuse_curves_without_memory, refuse_map_without_memory
+    from ..files.config import load_config
+    from ..files.places import claimed
+    from ..steady.cost import refuse_curves_without_memory, refuse_map_without_memory
 
     rooms = {"map": refuse_map_without_memory, "curves": refuse_curves_without_memory}
     room = rooms.get(options.command)
@@ -171,13 +172,13 @@ def _refuse_store(options: Options) -> None:
 
 def _store(options: Options) -> None:
     """Compute a map into a store, or go on with one."""
-    from ._kernels.compiler.notices import listeners
-    from .files.config import load_config
-    from .files.studies import describe_cells
+    from .._kernels.compiler.notices import listeners
+    from ..files.config import load_config
+    from ..files.studies import describe_cells
+    from ..stores.cuts import cut_by_cost
+    from ..stores.run import fill_store
+    from ..stores.study import study_of
     from .progress import Progress
-    from .stores.cuts import cut_by_cost
-    from .stores.run import fill_store
-    from .stores.study import study_of
 
     config = load_config(options.config, options.overrides, lambda *_: None)  # a block is all that is held
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
@@ -195,11 +196,11 @@ def _store(options: Options) -> None:
 
 def _fill(options: Options, progress: "Progress") -> "Fill":
     """What computes the blocks of a store."""
-    from .stores.run import in_this_process
+    from ..stores.run import in_this_process
 
     if not options.workers and not options.scheduler:
         return in_this_process(options.threads)
-    from .stores import workers
+    from ..stores import workers
 
     if options.scheduler:
         return workers.running(options.scheduler, lambda text: progress.say(text, always=True))
@@ -208,16 +209,15 @@ def _fill(options: Options, progress: "Progress") -> "Fill":
 
 def _explore(options: Options) -> None:
     """Serve the page until an interrupt, or write it as a file."""
-    from .explorer.scene import scene_of
-    from .files.config import load_config
-    from .interrupts import before_exit
+    from ..explorer.scene import scene_of
+    from ..files.config import load_config
 
     config = load_config(options.config, options.overrides, lambda *_: None)  # the page has its own grid
     scene = scene_of(config)
     if options.output is not None:
         _export_page(options, scene)
         return
-    from .explorer.server import begin, open_server, show
+    from ..explorer.server import begin, open_server, show
 
     server = open_server(scene, options.port)
     begin(server)
@@ -233,9 +233,9 @@ def _put(content: bytes, path: Path) -> None:
 
 
 def _export_page(options: Options, scene: "Scene") -> None:
-    from ._kernels.compiler.notices import listeners
-    from .explorer.stored import check_page, write_page
-    from .files.places import claimed
+    from .._kernels.compiler.notices import listeners
+    from ..explorer.stored import check_page, write_page
+    from ..files.places import claimed
     from .progress import Progress
 
     check_page(options.output)
@@ -250,10 +250,10 @@ def _export_page(options: Options, scene: "Scene") -> None:
 
 
 def _identify(options: Options) -> None:
-    from .files.estimates import describe_estimates
-    from .files.places import claimed
-    from .files.storage import write_netcdf
-    from .identify.rigs.configuration import identify, load_rig
+    from ..files.estimates import describe_estimates
+    from ..files.places import claimed
+    from ..files.storage import write_netcdf
+    from ..identify.rigs.configuration import identify, load_rig
 
     _refuse_store(options)
     rig = load_rig(options.config, options.overrides)
@@ -266,9 +266,9 @@ def _identify(options: Options) -> None:
 
 def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None) -> "xr.Dataset":
     """The point of a file, or its shares over an axis, that the arguments choose; `only`: see `read`."""
-    from .files.reading import read
-    from .files.slices import parse_choices
-    from .probabilities import read_shares
+    from ..files.reading import read
+    from ..files.slices import parse_choices
+    from ..probabilities import read_shares
 
     choices = parse_choices(options.at)
     if options.over is None:
@@ -277,8 +277,8 @@ def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None)
 
 
 def _plot(options: Options) -> None:
-    from .files.places import claimed
-    from .plot import PICTURED, check_picture, save_picture
+    from ..files.places import claimed
+    from ..plot import PICTURED, check_picture, save_picture
 
     ds = _chosen(options, PICTURED)
     path = options.output or Path(f"{options.file.stem}.png")
@@ -290,8 +290,8 @@ def _plot(options: Options) -> None:
 
 
 def _export(options: Options) -> None:
-    from .files.export import check_export, write_export
-    from .files.places import claimed
+    from ..files.export import check_export, write_export
+    from ..files.places import claimed
 
     path = options.output or Path(f"{options.file.stem}.csv")
     check_export(path)
@@ -303,10 +303,10 @@ def _export(options: Options) -> None:
 
 
 def _info(options: Options) -> None:
-    from .files.reading import read
-    from .files.slices import parse_choices
-    from .files.studies import describe_study, is_study
-    from .files.summary import describe_file
+    from ..files.reading import read
+    from ..files.slices import parse_choices
+    from ..files.studies import describe_study, is_study
+    from ..files.summary import describe_file
 
     if not options.at and is_study(options.file):
         _print(describe_study(options.file))
@@ -316,19 +316,19 @@ def _info(options: Options) -> None:
 
 def _init(options: Options) -> None:
     """Write a configuration to begin with; that of a rig with the data that it reads beside it."""
-    from .files.places import claimed
+    from ..files.places import claimed
 
     path = options.config or Path("rig.toml" if options.rig else "map.toml")
     if path.suffix != ".toml":
         raise InputError(f"NAME.toml must end in .toml; got {path}")
     if options.rig:
-        from .examples import starting_rig
+        from ..examples import starting_rig
 
         text, data = starting_rig(options.rig)
         texts = {path: text, path.parent / f"{options.rig}.csv": data}
         then = f"frictionmap identify {path}"
     else:
-        from .files.template import starting_configuration
+        from ..files.template import starting_configuration
 
         texts = {path: starting_configuration(path.stem, options.contact or CONTACTS[0])}
         then = f"frictionmap explore {path}, or frictionmap map {path} && frictionmap plot {path.stem}.nc"
@@ -350,16 +350,16 @@ def _schema(options: Options) -> None:
     import json
 
     if options.rig:
-        from .identify.rigs.keys import rig_schema as schema
+        from ..identify.rigs.keys import rig_schema as schema
     else:
-        from .files.json_schema import map_schema as schema
+        from ..files.json_schema import map_schema as schema
     _print(json.dumps(schema(), indent=2))
 
 
 def _completion(options: Options) -> None:
+    from ..files.keys import KEYS
+    from ..identify.rigs.keys import rig_settings
     from .completion import completion
-    from .files.keys import KEYS
-    from .identify.rigs.keys import rig_settings
 
     settings = [f"{section}.{key.name}=" for section, keys in KEYS.items() if section for key in keys]
     words: dict[str, dict[str, Sequence[str]]] = {
@@ -411,8 +411,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program; the exit status."""
     given = sys.argv[1:] if arguments is None else list(arguments)
     options = parse(given)
+    from ..files.places import abandon
+
     options.command_line = f"frictionmap {shlex.join(given)}"
     run = _COMMANDS.get(options.command, _compute)
+    before_exit(abandon)
     try:
         _check_text(given)
         run(options)

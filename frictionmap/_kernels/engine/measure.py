@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 from ..compiler import kernel
-from ..one_mass.events import NO_END
-from ..one_mass.newton import half_periods
+from ..event_codes import NO_END
 from .motion import after_turn, bring_back, has_returned, keep_state, put_slide, put_stop, slide_to_turn
+from .periods import half_periods
 from .policies import ANCHOR
 from .records import SHORTEST_STOP, TURN, stops_at, turns_at
 from .segment_table import CONTACT_FORCE, EVENT, put_segment

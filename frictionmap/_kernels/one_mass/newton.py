@@ -12,7 +12,8 @@ import math
 
 from ..closed_form import decay
 from ..compiler import kernel
-from .events import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, slide_within
+from ..event_codes import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON
+from .events import after_slide, slide_within
 
 _MAX_NEWTON = 16
 
@@ -22,18 +23,6 @@ _NEAR_END = 1e-6
 #: Longest slide of an orbit, in periods of the slower of oscillator and load; no resolved orbit has a longer
 #: one.
 _LONGEST_SLIDE = 100.0
-
-
-@kernel
-def half_periods(time):
-    """Number of half periods of the excitation nearest to a time in tau."""
-    return int(math.floor(time / math.pi + 0.5))
-
-
-@kernel
-def full_period(halves):
-    """Excitation periods of a motion that recurs after `halves` half periods, as its mirror image if odd."""
-    return halves if halves % 2 == 1 else halves // 2
 
 
 @kernel

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..closed_form import decay
 from ..compiler import entry, kernel
-from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
+from ..event_codes import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
 from .events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
 from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA
 from .state import PUSH, SPEED, SPEED_RATE, STATIC_SHAPE, Z_RATE, Z, energy

@@ -133,26 +133,10 @@ def test_one_folder(module, folder):
     assert [path for path in users if not path.is_relative_to(PACKAGE / folder)] == []
 
 
-#: Rooms, and modules that stand alone, in the order in which data flows: none knows a later one.
-ORDER = (
-    "errors", "version", "regimes", "checks", "packages", "mat_files", "structures",
-    "_kernels", "model", "units", "datasets", "roots",
-    "features",
-    "theory", "steady", "files", "probabilities", "stores", "identify", "examples", "pictures", "plot",
-    "explorer", "command_line", "__main__",
-)  # fmt: skip
-
-
-def test_data_flows_one_way():
-    places = {path.relative_to(PACKAGE).parts[0].removesuffix(".py") for path in SOURCES}
-    assert places == {*ORDER, "__init__"}
-    for path in SOURCES:
-        own = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
-        if own == "__init__":  # the door: it loads what is asked for
-            continue
-        used = {name.split(".")[1] for name in imported(path) if name.startswith("frictionmap.")}
-        later = {name for name in used if ORDER.index(name) > ORDER.index(own)}
-        assert not later, path
+def test_the_page_takes_classes_and_their_colours_from_the_pictures():
+    used = {name for path in SOURCES if "explorer" in path.parts for name in imported(path)}
+    pictures = {".".join(name.split(".")[:3]) for name in used if name.startswith("frictionmap.pictures")}
+    assert pictures == {"frictionmap.pictures.classes", "frictionmap.pictures.palette"}
 
 
 # Public names

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from .datasets.labels import HISTORY_VARIABLES, SHARES
+from .datasets.labels import BOUNDARIES, HISTORY_VARIABLES, SHARES
 from .errors import InputError
 from .files.reading import kind
 from .pictures.curves.figure import CURVE_VARIABLES, plot_curves
@@ -38,15 +38,14 @@ __all__ = [
 
 FORMATS = (".png", ".pdf", ".svg")
 
-_BOUNDARIES = ("beta_lim", "beta_lim_modal", "beta_stick")
 _FEATURES = ("natural_frequency", "held_frequency", "invariant_point")
 
 #: What pictures are made of, by the kind of file: no other variable need be read.
 PICTURED = {
     "map": frozenset(
-        ("regime", "stops_per_cycle", "status", "also_reachable", "period", *_BOUNDARIES, *_FEATURES)
+        ("regime", "stops_per_cycle", "status", "also_reachable", "period", *BOUNDARIES, *_FEATURES)
     ),
-    "boundaries": frozenset((*_BOUNDARIES, *_FEATURES)),
+    "boundaries": frozenset((*BOUNDARIES, *_FEATURES)),
     "response": frozenset(
         ("regime", "stops_per_cycle", "period", "status", *HISTORY_VARIABLES, *HARMONIC_VARIABLES)
     ),

@@ -7,6 +7,7 @@ compiler           how kernels are compiled, linked and kept on disk; the fall-b
 closed_form        one vibrating mode: trigonometry of pi/(2R), decay and damping functions
 continuous_motion  amplitude and phase of the continuous motion of one mass
 event_codes        what follows the end of a slide
+newton_limits      limits of Newton's method on the return map
 taylor_series      the motion in one scan step: number of terms, first root, refined roots
 boundary           response functions V, U, G, H, S and the boundaries, of one mass and of structures
 one_mass           scan step, events, return map and sliding orbit of one mass

@@ -5,14 +5,9 @@ from collections.abc import Callable
 import numpy as np
 
 from ..statistics.least_squares import Problem, minimise
+from ..statistics.levels import ROUNDS, SETTLED
 from ..statistics.robust import root_mean_square, usual_size
-from .fit import Found, Measured, fit_chain, no_sum, problem
-
-#: Errors from residuals are found again and again until they change by less than this share.
-_SETTLED, _ROUNDS = 1e-3, 20
-
-#: Other answers whose sums are so many times the least are not followed.
-_HOPELESS = 3.0
+from .fit import HOPELESS, Found, Measured, fit_chain, no_sum, problem
 
 
 def fit_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, Problem, Measured]:
@@ -20,13 +15,13 @@ def fit_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, Problem,
     found, task = fit_chain(data, known)
     if not _of_both_kinds(data):
         return found, task, data
-    for _ in range(_ROUNDS):
+    for _ in range(ROUNDS):
         weighed = _weighed(data, task, found, root_mean_square)
-        if np.allclose(weighed.sigma, data.sigma, rtol=_SETTLED, atol=0.0):
+        if np.allclose(weighed.sigma, data.sigma, rtol=SETTLED, atol=0.0):
             break
         data, task = weighed, problem(weighed, known)
         found = found._replace(best=minimise(task, found.best.values))
-    near = [one for one in found.others if one.sum <= _HOPELESS * found.others[0].sum]
+    near = [one for one in found.others if one.sum <= HOPELESS * found.others[0].sum]
     minima = sorted([found.best, *(minimise(task, one.values) for one in near)], key=lambda one: one.sum)
     return found._replace(best=minima[0], others=minima[1:], nothing=no_sum(data)), task, data
 

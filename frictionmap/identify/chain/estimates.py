@@ -3,12 +3,10 @@
 import numpy as np
 import xarray as xr
 
-from ..statistics.estimates import estimates
+from ..statistics.estimates import QUANTITIES, estimates
 from ..statistics.least_squares import Errors, Solution, two_sided
 from .fit import Measured
 from .two_masses import frequencies, ratio_slopes
-
-QUANTITIES = ("amplitude_ratio", "phase_lag")
 
 _FREQUENCIES = {
     "f0": "natural frequency of the second mass on its spring alone",

@@ -42,8 +42,9 @@ _SAME_SUM = 1e-4
 #: Relative errors that no measurement has: sums of smaller ones are zero.
 _ROUNDING = 1e-8
 
-#: A search that ends so many times above the least sum, with more unknowns free, is not followed.
-_HOPELESS = 3.0
+#: Other answers, and searches with more unknowns free, are not followed if their sums are so many times the
+#: least.
+HOPELESS = 3.0
 
 #: A peak stands out by this factor, by its logarithm: more than noise makes.
 _PEAK = 0.3
@@ -119,7 +120,7 @@ def fit_chain(data: Measured, known: np.ndarray, outliers: float | None = None) 
     for start in _starts(data, known):
         least = max(minima[0].sum, nothing) if minima else np.inf
         end = _search(data, known, task, start)
-        if np.sum(task.residuals(end)[0] ** 2) > _HOPELESS * least:
+        if np.sum(task.residuals(end)[0] ** 2) > HOPELESS * least:
             continue
         found = minimise(task, np.where(task.free, end, known))
         sum_found = max(found.sum, nothing)

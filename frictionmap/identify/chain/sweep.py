@@ -12,6 +12,7 @@ from ...errors import InputError
 from ..statistics.cautions import bounded, coloured, trading
 from ..statistics.estimates import verdict
 from ..statistics.least_squares import Errors, Problem, Solution, errors, undetermined
+from ..statistics.levels import CHANCE
 from ..statistics.robust import LOSSES, effective_variance, softened
 from .data import MOST_MASSES, WORDS, Values, check_enough, checked_sweep
 from .errors import fit_by_residuals, fit_robust_by_residuals
@@ -20,9 +21,6 @@ from .fit import SEARCHES, Found, Measured, fit_chain
 
 DAMPINGS = ("ground", "base")
 COSTS = ("logarithmic", "relative")
-
-#: Scatter that chance makes more rarely is beyond the errors that are given.
-_CHANCE = 1e-3
 
 #: Answers whose sums of squares differ by less variances of a sample are as good.
 _AS_GOOD = 4.0
@@ -174,7 +172,7 @@ def _verdict(fit: _Fit) -> xr.Variable:
     }
     best = fit.found.best
     freedom = best.residual.size - int(fit.problem.free.sum())
-    beyond = fit.given and gammaincc(0.5 * freedom, 0.5 * best.sum) < _CHANCE
+    beyond = fit.given and gammaincc(0.5 * freedom, 0.5 * best.sum) < CHANCE
     return verdict(int(beyond), meanings)
 
 

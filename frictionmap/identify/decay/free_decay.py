@@ -18,6 +18,7 @@ from ..signals.turning_points import TurningPoints, linear_decrement, noise_leve
 from ..statistics.cautions import bounded, coloured, trading
 from ..statistics.estimates import estimates, number, verdict
 from ..statistics.least_squares import Errors
+from ..statistics.levels import FOUND
 from ..statistics.robust import LOSSES
 from .checks import check_misfit, checked_turning_points
 from .errors import decay_errors, decay_solution
@@ -25,9 +26,6 @@ from .fit import Fit, fit_decay, noise_variance
 from .motion import PARAMETERS
 from .problem import DRIFT, X_F, ZETA, Record
 from .wander import Search, search
-
-#: Estimates so many standard errors above zero are found.
-_FOUND = 3.0
 
 #: Codes of what was found, in order.
 _VERDICTS = {
@@ -196,8 +194,8 @@ def _losses(record: Record, points: TurningPoints, fit: Fit) -> dict[str, float]
 def _verdict(fit: Fit, found: Errors, losses: Mapping[str, float]) -> int:
     """What was found: beyond three standard errors, and the fit is as much worse without it."""
     friction, damping = (
-        losses[PARAMETERS[index]] > _FOUND**2
-        and fit.solution.values[index] > _FOUND * found.standard_error[index]
+        losses[PARAMETERS[index]] > FOUND**2
+        and fit.solution.values[index] > FOUND * found.standard_error[index]
         for index in (X_F, ZETA)
     )
     return int(friction) + 2 * int(damping)

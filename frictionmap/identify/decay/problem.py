@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from ..statistics.least_squares import Problem
 from ..statistics.robust import softened
@@ -16,6 +17,9 @@ DRIFT = "drift"
 _LINEAR = ("x_F", "X0", "centre", DRIFT)
 
 ZETA, X_F = PARAMETERS.index("zeta"), PARAMETERS.index("x_F")
+
+#: Half cycles of a decay that does not come to rest within any record.
+_NO_REST = 2
 
 #: The natural frequency is within this share of where a fit starts, which is what the turning points give.
 _FREQUENCY_RANGE = 0.2
@@ -57,6 +61,11 @@ class Record(NamedTuple):
     def linear(self) -> np.ndarray:
         """Unknowns in which the motion is linear, bool (unknowns,)."""
         return np.concatenate((np.isin(self.names, _LINEAR), np.ones(self.terms, dtype=bool)))
+
+
+def half_cycles_of(ds: xr.Dataset) -> int:
+    """Half cycles before rest of a decay that was fitted; more than its record has if that shows no rest."""
+    return int(ds["half_cycles"]) + (0 if int(ds["at_rest"]) else _NO_REST)
 
 
 def model(record: Record, n: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

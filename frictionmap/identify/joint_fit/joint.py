@@ -9,13 +9,14 @@ import xarray as xr
 from ... import checks
 from ...datasets.provenance import system_text
 from ...errors import InputError
+from ...model.system import DAMPING_REFERENCES
 from ...units.table import checked_unit, conversion
 from ..statistics.cautions import only_interval
 from ..statistics.estimates import estimates, number, usable_errors, verdict
 from ..statistics.least_squares import Errors, Solution, errors, growth, two_sided
 from ..statistics.robust import LOSSES
 from ..time_series.labels import of_data, of_record, one_mass
-from ..time_series.motion import CONTACTS, DAMPING_REFERENCES, motion, outer
+from ..time_series.motion import CONTACTS, motion, outer
 from ..time_series.motion import PARAMETERS as OF_RECORD
 from ..time_series.static_friction import FITTED, IDLE, ONE, highest, interval, per_square
 from ..time_series.verdict import friction_found, limit_of_correlation, listed

@@ -14,6 +14,7 @@ import xarray as xr
 from ..decay.free_decay import free_decay
 from ..decay.motion import PARAMETERS as DECAY
 from ..decay.motion import Decay, displacement_and_slopes
+from ..decay.problem import half_cycles_of
 from ..signals.turning_points import noise_level
 from ..statistics.least_squares import Problem, Solution
 from ..statistics.robust import effective_variance, softened
@@ -23,9 +24,6 @@ from ..time_series.motion import PARAMETERS
 
 #: What all parts share, in this order; (mu - 1)^2 stands for mu in the fit.
 SHARED = ("f_n", "zeta", "mu")
-
-#: Half cycles of a decay that does not come to rest within any record.
-_NO_REST = 2
 
 #: The natural frequency lies within this factor of that of a decay alone.
 _RANGE = 1.5
@@ -60,7 +58,7 @@ def decay_part(label: str, time: object, x: object, unit: str, known: Mapping[st
     ds = free_decay(time, x, unit=unit, known=held, loss=loss)  # type: ignore[arg-type]
     times, data = ds["time"].values, ds["data"].values
     start = ds["estimate"].values[: len(DECAY)].astype(float)
-    rest = int(ds["half_cycles"]) + (0 if int(ds["at_rest"]) else _NO_REST)
+    rest = half_cycles_of(ds)
     terms = int(ds["wander_terms"]) if "wander_terms" in ds else 0
     middle, half = 0.5 * (times[0] + times[-1]), 0.5 * (times[-1] - times[0])
     slow = ((times[:, None] - middle) / half) ** np.arange(1, terms + 1)

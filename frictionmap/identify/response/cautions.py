@@ -5,12 +5,10 @@ from scipy.special import gammaincc
 
 from ... import regimes
 from ..statistics.cautions import bounded, coloured, only_interval, trading
+from ..statistics.levels import CHANCE
 from .data import ForcedTable
 from .fit import Fit, parameter_names
 from .model import MU, ZETA, points_of
-
-#: Sums of squares that chance makes larger more rarely are beyond the errors that are given.
-_CHANCE = 1e-3
 
 #: From this share of beta_stick on structures got stuck in tests, T 4.4.
 _NEAR_STICKING = 0.7
@@ -33,7 +31,7 @@ def told(table: ForcedTable, fit: Fit) -> list[str]:
 
 def _scatter(table: ForcedTable, fit: Fit) -> list[str]:
     freedom = fit.solution.residual.size - int(fit.problem.free.sum())
-    if not all(table.given) or gammaincc(0.5 * freedom, 0.5 * fit.solution.sum) >= _CHANCE:
+    if not all(table.given) or gammaincc(0.5 * freedom, 0.5 * fit.solution.sum) >= CHANCE:
         return []
     return [f"residuals are larger than the errors given: reduced chi square {fit.errors.variance:.3g}"]
 

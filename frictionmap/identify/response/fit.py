@@ -19,6 +19,7 @@ from ..statistics.least_squares import (
     two_sided,
     undetermined,
 )
+from ..statistics.levels import ROUNDS, SETTLED
 from ..statistics.robust import effective_variance, root_mean_square, softened, usual_size
 from .data import ForcedTable
 from .model import F_N, MU, ZETA, Fitted, ForcedModel, Samples, evaluate
@@ -32,9 +33,6 @@ _CHANCE = 1e-2
 
 #: Looks around the least sum, where chance does not explain it and motions come and go with friction.
 _CLOSER_LOOKS = 2
-
-#: Errors from residuals are found again and again until they change by less than this share.
-_SETTLED, _ROUNDS = 1e-3, 20
 
 #: Residuals beyond so many of their errors have little weight in a robust fit.
 _OUTLIER = 1.0
@@ -165,10 +163,10 @@ def _with_errors(
     """The least sum with errors as given, or as the residuals tell them of lags and of amplitudes apart."""
     free = np.isnan(known)
     solution, task = _best(model, known, all(given), robust)
-    for _ in range(0 if all(given) else _ROUNDS):
+    for _ in range(0 if all(given) else ROUNDS):
         samples = _with_scatter(model, solution, free, given, robust)
         change = samples.sigma / model.samples.sigma
-        if (np.abs(change - 1.0) < _SETTLED).all() or not (samples.sigma > 0.0).all():
+        if (np.abs(change - 1.0) < SETTLED).all() or not (samples.sigma > 0.0).all():
             break
         model = model._replace(samples=samples)
         task = problem(model, free, float(solution.values[F_N]), robust)

@@ -10,6 +10,7 @@ from ...datasets.provenance import system_text
 from ...errors import InputError
 from ...model.system import System
 from ..statistics.estimates import verdict
+from ..statistics.levels import FOUND
 from ..statistics.robust import LOSSES
 from .cautions import told
 from .data import ForcedTable, Values, checked_table
@@ -17,9 +18,6 @@ from .fit import Fit, fit_forced
 from .labels import friction_forces, labelled
 from .lags import friction_ratios, impossible, refuse_impossible, without
 from .model import F_N, MU, ZETA
-
-#: Estimates so many standard errors above zero are found.
-_FOUND = 3.0
 
 #: An error of all rows, or one of each.
 Error = float | Sequence[float] | np.ndarray | None
@@ -207,7 +205,7 @@ def _passing(table: ForcedTable) -> float:
 
 def _verdict(fit: Fit) -> int:
     values, error = fit.solution.values, fit.errors.standard_error
-    found = values > _FOUND * error
+    found = values > FOUND * error
     friction = bool(found[:F_N].all())
     if not fit.problem.free[ZETA]:
         return 4 + int(friction)

@@ -5,12 +5,10 @@ import xarray as xr
 
 from ... import regimes
 from ...units.table import checked_unit, conversion
-from ..statistics.estimates import estimates, number, usable_errors
+from ..statistics.estimates import QUANTITIES, estimates, number, usable_errors
 from .data import ForcedTable
 from .fit import Fit, parameter_names
 from .model import F_N, MU, points_of
-
-_QUANTITIES = ("amplitude_ratio", "phase_lag")
 
 #: From where the motion is reached: both starts, or one.
 _REACHED = ("from_anywhere", "from_rest_only", "moving_only")
@@ -71,7 +69,7 @@ def _of_samples(table: ForcedTable, fit: Fit) -> dict[str, xr.Variable]:
         "model": put(as_measured(samples.value + residual), "fitted", **in_units),
         "residual": put(np.where(phase, np.degrees(residual), residual), "fitted less measured", **relative),
         "sigma": put(np.where(phase, np.degrees(samples.sigma), samples.sigma), "standard error", **relative),
-        "quantity": put(phase.astype(np.int8), "what was measured", **_flags(_QUANTITIES)),
+        "quantity": put(phase.astype(np.int8), "what was measured", **_flags(QUANTITIES)),
         "mass": put((samples.mass + 1).astype(np.int16), "mass, counted from 1", units="1"),
         "set": put(sets[samples.row], "test, of one friction force"),
         "frequency": put(rows.frequency[samples.row], "frequency of the load or base", units="Hz"),

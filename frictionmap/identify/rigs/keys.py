@@ -7,12 +7,13 @@ from typing import Any
 
 from ...files.json_schema import DIALECT, described, keyed_table
 from ...files.keys import KEYS, Key, either, number, several, table, whole, with_unit, word
+from ...model.system import DAMPING_REFERENCES
 from ...units.table import UNITS, units_of
 from ..chain.data import MOST_MASSES
 from ..chain.sweep import COSTS
 from ..statistics.robust import LOSSES
 from ..tables.columns import MISSING
-from ..time_series.motion import CONTACTS, DAMPING_REFERENCES
+from ..time_series.motion import CONTACTS
 from .configuration import JOINT_NAME, KINDS
 from .joint import DATA_KEYS, JOINED, JOINT
 from .rig import KNOWN_UNITS

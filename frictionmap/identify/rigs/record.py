@@ -8,12 +8,13 @@ import xarray as xr
 from ... import checks
 from ...errors import InputError
 from ...files.config import unknown_key
+from ...model.system import DAMPING_REFERENCES
 from ...units.table import COLUMN_NAMES, conversion
 from ..signals.integration import Displacements, derivative_order, displacements
 from ..signals.samples import within
 from ..tables.columns import Column, check_increasing, pick_columns
 from ..tables.files import Table
-from ..time_series.motion import CONTACTS, DAMPING_REFERENCES, PARAMETERS
+from ..time_series.motion import CONTACTS, PARAMETERS
 from ..time_series.record import record
 from .rig import Kind, Rig, check_columns, with_remarks
 

@@ -13,12 +13,12 @@ import numpy as np
 from ... import checks
 from ...errors import InputError
 from ...units.table import MOTIONS, UNITS, units_of
-from .phasors import harmonics_at, phasors_of
+from .phasors import SAMPLES_OF_HIGHEST, harmonics_at, phasors_of
 from .samples import checked_record, unclipped
 
-#: Harmonics of a record, at most, and samples in a cycle of the highest.  An acceleration jumps where
+#: Harmonics of a record, at most.  An acceleration jumps where
 #: friction changes sign: harmonics that are left out would leak into the others where cycles are not whole.
-_HARMONICS, _SAMPLES_OF_HIGHEST = 40, 2.5
+_HARMONICS = 40
 
 #: Lines below this share of the base's frequency are left out.
 _LOWEST = 0.5
@@ -128,7 +128,7 @@ def _check_unclipped(name: str, values: np.ndarray) -> None:
 def _integrated(t: np.ndarray, values: np.ndarray, frequency: float, order: int) -> tuple[np.ndarray, float]:
     """The displacement of a channel, and the root mean square of its noise over that of its harmonics."""
     samples = 1.0 / (float(np.median(np.diff(t))) * frequency)
-    harmonics = max(1, min(_HARMONICS, int(samples / _SAMPLES_OF_HIGHEST), (t.size - 3) // 4))
+    harmonics = max(1, min(_HARMONICS, int(samples / SAMPLES_OF_HIGHEST), (t.size - 3) // 4))
     phasors, rest = _harmonics(t, values, frequency, harmonics)
     turn = 2j * np.pi * frequency * np.arange(harmonics + 1)
     phasors[0], turn[0] = 0.0, 1.0

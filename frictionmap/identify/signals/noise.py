@@ -10,10 +10,8 @@ import numpy as np
 from scipy.special import chdtrc
 
 from ..statistics.least_squares import Noise
+from ..statistics.levels import CHANCE
 from ..statistics.orthonormal import orthonormal
-
-#: Noise that white noise exceeds this rarely is coloured.
-_CHANCE = 1e-3
 
 #: What a right model leaves at the harmonics exceeds the noise beside them this rarely.
 _CHANCE_OF_MODEL = 1e-5
@@ -54,7 +52,7 @@ def wanders(residual: np.ndarray, waves: np.ndarray) -> bool:
     if not parts.size:
         return False
     rest = float(residual @ residual - parts @ parts) / (residual.size - parts.size)
-    return rest > 0.0 and bool(chdtrc(parts.size, float(parts @ parts) / rest) < _CHANCE)
+    return rest > 0.0 and bool(chdtrc(parts.size, float(parts @ parts) / rest) < CHANCE)
 
 
 def noise_levels(time: np.ndarray, residual: np.ndarray, frequency: float, harmonics: int) -> Levels:
@@ -69,7 +67,7 @@ def noise_levels(time: np.ndarray, residual: np.ndarray, frequency: float, harmo
     nearest = np.abs(cycles - np.round(cycles)) * frequency * float(time[-1] - time[0])
     counts = (cycles > 0.5) & (cycles < harmonics + 0.5) & (nearest > _TAKEN_OUT)
     cycles, power = cycles[counts], power[counts] / white
-    if power.size and chdtrc(2 * power.size, 2.0 * float(power.sum())) < _CHANCE:
+    if power.size and chdtrc(2 * power.size, 2.0 * float(power.sum())) < CHANCE:
         around = [power[np.abs(cycles - n) < 1.0] for n in range(1, harmonics + 1)]
         level[1:] = [np.sqrt(max(_typical(one), 1.0)) if one.size else 1.0 for one in around]
         freedom = 2 * min(one.size for one in around if one.size)

@@ -18,7 +18,7 @@ from .noise import noise_levels, slow_waves, wanders
 
 #: Harmonics, fewer where there are not this many samples a cycle of the highest one.
 _HARMONICS = 9
-_SAMPLES_OF_HIGHEST = 2.5
+SAMPLES_OF_HIGHEST = 2.5
 
 #: Cycles that a record must have.
 _LEAST_CYCLES = 2.0
@@ -217,7 +217,7 @@ def _checked_harmonics(t: np.ndarray, frequency: float) -> int:
         raise InputError(
             f"time must have more samples: {samples:.2g} samples a cycle; {_LEAST_SAMPLES} are needed"
         )
-    harmonics = min(_HARMONICS, int(samples / _SAMPLES_OF_HIGHEST))
+    harmonics = min(_HARMONICS, int(samples / SAMPLES_OF_HIGHEST))
     unknowns = 2 * harmonics + 3
     if t.size <= unknowns:
         raise InputError(f"time must have more samples than there are unknowns, {unknowns}; got {t.size}")

@@ -4,15 +4,12 @@ import numpy as np
 
 from ... import checks
 from ...errors import InputError
-from .turning_points import resolution
+from .turning_points import GAP, resolution
 
 #: Samples in a row at an extreme value are clipped if the next one is far from it: by so many steps of the
 #: resolution, of which a smooth turning point makes few.
 _CLIPPED_ROW = 3
 _CLIPPED_STEPS = 4.0
-
-#: A gap is longer than so many usual steps.
-_GAP = 3.0
 
 
 def checked_record(time: object, x: object, name: str = "x") -> tuple[np.ndarray, np.ndarray]:
@@ -73,4 +70,4 @@ def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:
 def largest_gap(time: np.ndarray) -> float:
     """The longest step between samples, if it is much longer than usual; else 0."""
     steps = np.diff(time)
-    return float(steps.max()) if steps.max() > _GAP * float(np.median(steps)) else 0.0
+    return float(steps.max()) if steps.max() > GAP * float(np.median(steps)) else 0.0

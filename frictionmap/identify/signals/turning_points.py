@@ -15,7 +15,7 @@ _LARGE = 0.2
 _LEAST_SAMPLES = 8
 
 #: A step between two samples is a gap if it is longer than so many usual ones.
-_GAP = 3.0
+GAP = 3.0
 
 #: A gap of this share of half a cycle, or less, hides one turning point at most, and a parabola through both
 #: of its edges still locates that one.  A longer gap can hide several.
@@ -85,7 +85,7 @@ def _located(
 def gaps_after(time: np.ndarray, least: float = 0.0) -> np.ndarray:
     """Samples, by their indices, after which there is a gap that is longer than `least` [s]."""
     steps = np.diff(time)
-    return np.flatnonzero(steps > max(_GAP * float(np.median(steps)), least))
+    return np.flatnonzero(steps > max(GAP * float(np.median(steps)), least))
 
 
 def hides_turning_points(time: np.ndarray, half: float) -> bool:

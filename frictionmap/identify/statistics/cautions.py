@@ -5,9 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from .least_squares import Errors
-
-#: Beyond this two estimates cannot well be told apart.
-_CORRELATED = 0.95
+from .levels import CORRELATED
 
 
 def coloured(found: Errors) -> list[str]:
@@ -22,7 +20,7 @@ def coloured(found: Errors) -> list[str]:
 
 def trading(names: Sequence[str], correlation: np.ndarray) -> list[str]:
     """Pairs of estimates that can hardly be told apart."""
-    pairs = np.argwhere(np.triu(np.abs(correlation) > _CORRELATED, 1))
+    pairs = np.argwhere(np.triu(np.abs(correlation) > CORRELATED, 1))
     return [f"{names[i]} and {names[j]} trade: correlation {correlation[i, j]:.2f}" for i, j in pairs]
 
 

@@ -10,6 +10,9 @@ from ...datasets.provenance import now
 from ...version import __version__
 from .least_squares import Errors, Solution
 
+#: What a sample of a first harmonic is; files hold the place in this list.
+QUANTITIES = ("amplitude_ratio", "phase_lag")
+
 
 def number(value: float, long_name: str, units: str = "1") -> xr.Variable:
     """A labelled number."""

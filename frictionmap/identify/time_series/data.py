@@ -9,10 +9,8 @@ from ..signals.phasors import Phasors, amplitude_and_lag, harmonics_of, ratio_er
 from ..signals.plateaus import unclipped_mass
 from ..signals.samples import checked_record, unclipped, within
 from ..signals.turning_points import resolution
+from ..statistics.levels import FOUND
 from .fit import Fit, Samples, places_at, samples_of
-
-#: Leads so many standard errors beyond zero are no chance.
-_FOUND = 3.0
 
 #: Errors of the base's first harmonic so many times those of samples at all phases.
 _WORSE = 4.0
@@ -89,7 +87,7 @@ def _checked_phasors(time: np.ndarray, channels: np.ndarray, robust: bool) -> tu
 def _check_lag(phasors: Phasors) -> None:
     """Energy flows from the base to the mass: its first harmonic lags by 0 to 180 degrees."""
     lag = np.degrees(amplitude_and_lag(phasors)[1])
-    if lag < -(_LEAD + _FOUND * np.degrees(ratio_error(phasors))):
+    if lag < -(_LEAD + FOUND * np.degrees(ratio_error(phasors))):
         raise InputError(
             "x must lag behind the base by 0 to 180 degrees, as energy comes from it; "
             f"it leads by {-lag:.4g} (are the columns exchanged, or is one of opposite sign?)"

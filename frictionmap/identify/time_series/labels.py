@@ -9,10 +9,8 @@ from ...model.system import System
 from ..signals.phasors import changes
 from ..signals.samples import largest_gap
 from ..statistics.estimates import number
+from ..statistics.levels import FOUND
 from .data import MeasuredRecord
-
-#: Drifts of so many standard errors are no chance.
-_FOUND = 3.0
 
 #: Harmonics of the base beyond this share of the first one are much.
 _DISTORTED = 0.05
@@ -86,6 +84,6 @@ def of_data(given: MeasuredRecord, ds: xr.Dataset) -> list[str]:
     if "change" in ds and float(ds["change"]) > _CHANGED:
         words.append("not steady: first and last third of the record differ beyond their errors")
     for name, drift, error in zip(("base", "x"), phasors.drift, phasors.drift_errors, strict=True):
-        if abs(drift) > _FOUND * error:
+        if abs(drift) > FOUND * error:
             words.append(f"{name} drifts by {drift:.3g} {ds['base_amplitude'].attrs['units']} a second")
     return words

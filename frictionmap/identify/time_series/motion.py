@@ -21,7 +21,6 @@ PARAMETERS = ("f_n", "zeta", "x_F", "mu", "offset_x")
 F_N, ZETA, X_F, MU, OFFSET = range(len(PARAMETERS))
 
 CONTACTS = ("fixed-wall", "joined-base-wall")
-DAMPING_REFERENCES = ("ground", "base")
 
 #: Harmonics of the base that move the mass.
 BASE_HARMONICS = 5

@@ -8,9 +8,10 @@ import xarray as xr
 from ... import checks
 from ...datasets.provenance import system_text
 from ...errors import InputError
+from ...model.system import DAMPING_REFERENCES
 from ...units.table import checked_unit, conversion
 from ..signals.phasors import Phasors
-from ..statistics.cautions import only_interval
+from ..statistics.cautions import bounded, only_interval, trading
 from ..statistics.estimates import estimates, number, usable_errors, verdict
 from ..statistics.least_squares import Errors
 from ..statistics.robust import LOSSES
@@ -18,9 +19,12 @@ from .data import measured_record, whole_record
 from .errors import DERIVED, derived_values, record_errors
 from .fit import Fit, fit_record
 from .labels import of_data, of_record, one_mass
-from .motion import CONTACTS, DAMPING_REFERENCES, MU, PARAMETERS, X_F, ZETA
+from .motion import CONTACTS, FLOOR, MU, PARAMETERS, X_F, ZETA, outer
 from .static_friction import IDLE, ONE
-from .verdict import CORRELATED, record_verdict
+from .verdict import record_verdict
+
+#: Estimates that can take each other's place: all of these dissipate, or hold the mass.
+_TRADING = (ZETA, X_F, MU)
 
 _MODEL_ERROR = (
     "what the fit leaves at the harmonics of the base, over the noise beside them; 1 if chance makes it"
@@ -202,11 +206,6 @@ def _of_fit(fit: Fit, found: Errors) -> list[str]:
             f"the noise is not white: near the harmonics of the base it is larger, and standard errors are "
             f"{found.inflation:.3g} times as large"
         )
-    for one, other in ((ZETA, X_F), (ZETA, MU), (X_F, MU)):
-        correlation = float(found.correlation[one, other])
-        if abs(correlation) > CORRELATED:
-            words.append(f"{PARAMETERS[one]} and {PARAMETERS[other]} trade: correlation {correlation:.2f}")
-    names = [PARAMETERS[index] for index in np.flatnonzero(fit.solution.at_bound[: len(PARAMETERS)])]
-    if names:
-        words.append(f"{' and '.join(names)} on the bound: the interval is one-sided")
-    return words
+    pairs = found.correlation[np.ix_(_TRADING, _TRADING)]
+    words += trading([PARAMETERS[index] for index in _TRADING], pairs)
+    return words + bounded(PARAMETERS, outer(FLOOR), fit.solution.at_bound[: len(PARAMETERS)])

@@ -3,20 +3,16 @@
 from itertools import combinations
 
 from ..statistics.least_squares import Errors
+from ..statistics.levels import CORRELATED, FOUND
 from .fit import Fit
 from .motion import F_N, MU, PARAMETERS, X_F, ZETA
 
-#: Estimates so many standard errors above zero are found.
-_FOUND = 3.0
-
-#: Beyond this correlation two estimates cannot be told apart.
-CORRELATED = 0.95
-
-#: ... if the friction that is told has an interval wider than this share of it, to either side.
+#: Estimates that correlate by more than `CORRELATED` cannot be told apart if the interval of the friction is
+#: wider than this share of it, to either side.
 _VAGUE = 0.1
 
-#: The same where the model itself is wrong by more than the noise: a quarter of the variance of either is the
-#: other's, and the model's error goes where it costs least, along both.
+#: The same correlation where the model itself is wrong by more than the noise: a quarter of the variance of
+#: either is the other's, and the model's error goes where it costs least, along both.
 _CORRELATED_BY_MODEL = 0.5
 
 #: What a motion depends on in a way of its own; the offset only moves it.
@@ -52,7 +48,7 @@ def record_verdict(fit: Fit, found: Errors) -> tuple[int, dict[str, str]]:
 
 def friction_found(friction: float, error: float) -> bool:
     """Whether friction is beyond what its standard error explains."""
-    return friction > _FOUND * error
+    return friction > FOUND * error
 
 
 def inseparable(fit: Fit, found: Errors) -> list[str]:

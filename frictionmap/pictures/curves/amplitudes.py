@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from ..features import frequencies_of, mark_features
+from ..grids import HIGH
 from ..palette import HELD, LIMIT, LineStyle
 from ..panels import Handle
 from ..second_axes import on_the_right
@@ -14,7 +15,7 @@ from ..words import moves_base
 from .axes import CUT, CUT_LOG, Panel, Picture, about_cut, about_peaks, in_rows, over_r, scale_of
 from .families import Family
 from .invariants import Invariant, invariant_points
-from .lines import HIGH, band_handle, draw_band, draw_curve, without_jumps
+from .lines import band_handle, draw_band, draw_curve, without_jumps
 
 
 class Names(NamedTuple):

@@ -8,11 +8,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ... import regimes
+from ..grids import HIGH
 from ..palette import REGIME_LINES
 from ..panels import Handle
-
-#: Height, in units of the axis, at which infinite values are drawn, so that lines leave the picture.
-HIGH = 1e3
 
 _BAND = 0.3  # opacity
 

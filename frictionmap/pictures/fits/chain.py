@@ -10,13 +10,11 @@ from ...errors import InputError
 from ...identify.chain.estimates import chain_names
 from ...identify.chain.response import response_and_slopes
 from ..palette import LINES
+from .data import check_logarithms
 from .picture import FitPicture
 from .responses import LAG, ResponseCurves, ResponseSet, response_panels
 
 _NEEDED = ("frequency", "quantity", "mass", "sigma")
-
-#: Amplitudes whose logarithms are larger have no place on an axis of doubles.
-_LARGEST_LOGARITHM = 600.0
 
 #: Points of a curve; room beside the data, as a share of their span.
 _POINTS, _MARGIN = 1001, 0.03
@@ -33,11 +31,7 @@ def is_chain(ds: xr.Dataset) -> bool:
 
 def chain_picture(ds: xr.Dataset) -> FitPicture:
     """Amplitudes and lags, mass by mass, over the fitted curves; residuals over their errors below."""
-    largest = float((np.abs(ds["data"].values) + ds["sigma"].values).max())
-    if largest > _LARGEST_LOGARITHM:
-        raise InputError(
-            f"data must be logarithms of at most {_LARGEST_LOGARITHM:g} to be drawn; got {largest:g}"
-        )
+    check_logarithms(ds["data"].values, ds["sigma"].values)
     every = ResponseSet("fitted, and measured", LINES[0], 0.0, np.ones(ds.sizes["sample"], dtype=bool))
     panels = response_panels(_as_measured(ds), [every], _dense(ds))
     return FitPicture(panels, [], ["bars and band: one standard error"])

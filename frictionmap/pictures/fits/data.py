@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
+from ...errors import InputError
 from ...files.estimates import unit_in_words
 from ..palette import CLASSES, LINES, STUCK, Shade
 from ..panels import Handle
@@ -16,6 +17,9 @@ _MOST_BARS = 120
 
 #: Lag-1 correlations within so many standard errors, each 1/sqrt(samples), are no more than chance makes.
 _CHANCE = 2.0
+
+#: Amplitudes whose logarithms are larger have no place on an axis of doubles.
+_LARGEST_LOGARITHM = 600.0
 
 #: Of dots, and of many dots.
 _SIZE, _MANY_SIZE = 4.5, 2.8
@@ -103,3 +107,12 @@ def about_residuals(ds: xr.Dataset) -> str:
     inflation = float(ds["error_inflation"]) if "error_inflation" in ds else 1.0
     taken = f": errors are taken {inflation:.2f} times as large" if inflation > 1.0 else ""
     return f"{words}, more than chance makes ({chance:.2f}){taken}"
+
+
+def check_logarithms(data: np.ndarray, sigma: np.ndarray) -> None:
+    """Refuse logarithms of amplitudes that no axis could show."""
+    largest = float((np.abs(data) + sigma).max())
+    if largest > _LARGEST_LOGARITHM:
+        raise InputError(
+            f"data must be logarithms of at most {_LARGEST_LOGARITHM:g} to be drawn; got {largest:g}"
+        )

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from ...errors import InputError
 from ...identify.chain.two_masses import log_amplitude
 from ..panels import Handle
-from .data import FITTED, Samples, draw_data, draw_residuals, samples_of
+from .data import FITTED, Samples, check_logarithms, draw_data, draw_residuals, samples_of
 from .picture import FitPicture
 from .samples import RESIDUALS, VALUES
 
@@ -18,9 +18,6 @@ _POINTS = 2001
 
 #: Room beside the data, as a share of their span.
 _MARGIN = 0.04
-
-#: Amplitudes whose logarithms are larger have no place on an axis of doubles.
-_LARGEST_LOGARITHM = 600.0
 
 #: The curve is infinite, and zero, within the axis: it ends so many times beyond the data.
 _BEYOND = 4.0
@@ -53,11 +50,7 @@ def _check(samples: Samples, frequencies: np.ndarray) -> None:
     """Refuse what no fit can be: frequencies of zero, amplitudes beyond all doubles."""
     if frequencies.min() <= 0.0:
         raise InputError(f"f0, f1 and f2 must be > 0 to be drawn; got {frequencies.min():g}")
-    largest = float((np.abs(samples.data) + samples.sigma).max())
-    if largest > _LARGEST_LOGARITHM:
-        raise InputError(
-            f"data must be logarithms of at most {_LARGEST_LOGARITHM:g} to be drawn; got {largest:g}"
-        )
+    check_logarithms(samples.data, samples.sigma)
 
 
 def _draw_amplitudes(ax: Axes, samples: Samples) -> list[Handle]:

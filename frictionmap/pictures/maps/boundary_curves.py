@@ -11,7 +11,7 @@ import xarray as xr
 from ...files.stored import stored_system
 from ...model.system import System
 from ...theory.boundary_curves import find_curves
-from ..grids import Grid
+from ..grids import HIGH, Grid
 
 BOUNDARIES = ("beta_lim", "beta_stick")
 
@@ -27,10 +27,6 @@ _MOST_STEPS = 1e6
 
 #: Share of the axis, about a line's width, below which two curves look the same.
 _LINE = 0.004
-
-#: Height, in units of the axis, at which infinite values are drawn, so that curves leave the picture towards
-#: a pole.
-_HIGH = 1e3
 
 
 def _affordable(r: np.ndarray, system: System) -> np.ndarray:
@@ -81,4 +77,4 @@ def boundary_curves(panel: xr.Dataset, r: Grid, top: float) -> dict[str, tuple[n
         curves = {name: (r.edges, np.repeat(values, 2)) for name, values in stored.items()}
     else:
         curves = _computed(stored, panel, r, top) or {n: (r.values, v) for n, v in stored.items()}
-    return {name: (x, np.minimum(values, _HIGH * top)) for name, (x, values) in curves.items()}
+    return {name: (x, np.minimum(values, HIGH * top)) for name, (x, values) in curves.items()}

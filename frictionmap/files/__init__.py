@@ -13,7 +13,7 @@ storage      datasets as NetCDF files
 slices       one point of further axes, chosen from a file
 estimates    estimates: read, checked, in words
 reading      files and stores read, and checked against the schema
-stored       system and start that a dataset was made with
+stored       system, excitation and start that a dataset was made with
 summary      what a dataset holds, in words
 studies      files with further axes, and stores, in words
 export       slices of files as NetCDF or as a table

@@ -7,7 +7,7 @@ palette      one colour for each class of cells, one style for each curve
 classes      the class of every cell, cells per class, labels of the legend
 grids        axes of cells: edges, limits, linear or logarithmic
 marks        positions of names, rings and labels, so that they do not overlap
-words        titles and captions
+words        titles, captions, names of loads
 panels       figures, panels, axes, legends
 second_axes  axes in hertz, newtons, millimetres in addition to ratios
 shapes       datasets in the form that pictures require

@@ -1,4 +1,4 @@
-"""Titles and captions."""
+"""Titles, captions, and the names of loads."""
 
 import re
 import textwrap

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import frictionmap as fm
 from frictionmap import regimes
-from frictionmap.arguments import Command, described
+from frictionmap.command_line.arguments import Command, described
 from frictionmap.datasets.labels import LABELS, Label
 from frictionmap.datasets.provenance import value_text
 from frictionmap.files.keys import KEYS, TABLES, Key, in_words
-from frictionmap.identify.configuration import KINDS
-from frictionmap.identify.rig_keys import TABLES as RIG_TABLES
-from frictionmap.identify.rig_keys import rig_keys
+from frictionmap.identify.rigs.configuration import KINDS
+from frictionmap.identify.rigs.keys import TABLES as RIG_TABLES
+from frictionmap.identify.rigs.keys import rig_keys
 
 #: The public names by what they are for; a name that is in none of these goes to the last.
 _GROUPS: Mapping[str, tuple[str, ...]] = {

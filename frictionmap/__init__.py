@@ -1,29 +1,36 @@
 """Exact regime maps of vibrating structures with one dry-friction contact.
 
-=============  =========================================================================
-room           what is in it, in the order in which data flows
-=============  =========================================================================
-regimes        the table of regime, origin and status codes
-checks         checks of input, whose messages name what is legal; `errors`
-structures     matrices from the files of finite-element programs; `packages`, `mat_files`
-_kernels       the only home of jitted code: numbers and arrays in, numbers and codes out
-model          what is simulated: system, matrices, modes, the structure held at its
-               contact, settings of the solver
-units          units of measurement: their table, `Units`, axes in hertz and newtons
-datasets       what a dataset holds: labels, variables, schema, provenance
-roots          the search for all roots of functions with poles
-features       limits, peak thresholds, invariant points, quasi-static displacement
-theory         closed forms over frequency: `boundary_curves`, `boundaries`, `continuous_motion`
-steady         steady states: cells, maps, `sweep`, `curves`, `motion`, `response`; what a map costs
+In the order in which data flows: none imports one that stands below it.
+
+=============  =================================================================================
+module         what is in it
+=============  =================================================================================
+errors         the exceptions of the package
+version        the number of this version
+regimes        codes of regime, origin and status, their names and meanings
+checks         checks of input, whose messages name what is legal
+packages       packages of the extras, and what is said where one is missing
+mat_files      arrays of MAT files, of all versions
+structures     matrices from the files of finite-element programs, and their reduction
+_kernels       all compiled code: numbers and arrays in, numbers and codes out
+model          what is simulated: system, matrices, modes, settings of the solver
+units          units of measurement: hertz and newtons for the ratios r and beta
+datasets       what a dataset holds: names, types, units, legal values; how it was made
+roots          the search for all roots of functions with known poles
+features       limits, peak thresholds, invariant points: what needs no map
+theory         closed forms over frequency: boundaries of the regimes, continuous motion
+steady         steady states: cells, maps, response curves, one motion in time; what a map costs
 files          configurations; places of output, storage, reading; files in words
 probabilities  many samples of an uncertain structure as probabilities
 stores         maps block by block into a zarr store, in this process or on workers
-identify       measured data: files, fits, estimates with their errors
+identify       measured data: tables, fits, estimates with their errors
 examples       synthetic measurements of rigs whose truth is known
-pictures       palette, panels, and a module for each kind of picture; `plot` is the door
+pictures       pictures of maps, curves, motions and fits; colours
+plot           the functions `plot_...`, and which picture a file is drawn as
 explorer       the map in a browser: a server for this machine, and the page
-cli            the command line; `arguments`, `completion`, `progress`, `interrupts`
-=============  =========================================================================
+command_line   the command line: arguments, commands, completion, progress, interrupts
+__main__       the program as a process: streams, exit status
+=============  =================================================================================
 
 The names in `__all__`, and what is written into files, may grow and not change: people have scripts and
 files.  What begins with an underscore, `_kernels` first, may change at any time.

@@ -5,7 +5,7 @@ import os
 import sys
 import warnings
 
-from . import interrupts
+from .command_line import interrupts
 
 
 def _open_streams() -> None:
@@ -39,7 +39,7 @@ def run() -> int:
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    from .cli import main
+    from .command_line.cli import main
 
     try:
         status = main()

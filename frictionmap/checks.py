@@ -1,4 +1,4 @@
-"""Checks of input at the door; every message names the argument, the value and what is legal."""
+"""Checks of input; every message names the argument, the value and what is legal."""
 
 import difflib
 import math

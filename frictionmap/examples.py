@@ -13,12 +13,12 @@ import numpy as np
 from .datasets.provenance import value_text
 from .files.config import parse
 from .files.template import section_text
-from .identify.chain_estimates import chain_names
-from .identify.decay_motion import Decay, displacement
-from .identify.phasors import harmonics_at
-from .identify.record_motion import PARAMETERS, Shaken, motion
-from .identify.rig_keys import TABLES, rig_keys
-from .identify.two_masses import log_amplitude
+from .identify.chain.estimates import chain_names
+from .identify.chain.two_masses import log_amplitude
+from .identify.decay.motion import Decay, displacement
+from .identify.rigs.keys import TABLES, rig_keys
+from .identify.signals.phasors import harmonics_at
+from .identify.time_series.motion import PARAMETERS, Shaken, motion
 from .model.system import System
 from .steady.curves import curves
 

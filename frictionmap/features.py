@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from . import checks
-from ._kernels.boundary.damping import fill_damping_functions
+from ._kernels.boundary.functions import fill_damping_functions
 from .errors import InputError
 from .model.free_structure import FreeStructure
 from .model.modes import ModalModel

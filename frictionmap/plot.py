@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from .datasets.labels import HISTORY_VARIABLES, SHARES
+from .datasets.labels import BOUNDARIES, HISTORY_VARIABLES, SHARES
 from .errors import InputError
 from .files.reading import kind
-from .pictures.boundary_map import plot_boundaries
-from .pictures.curves import CURVE_VARIABLES, plot_curves
-from .pictures.fits import plot_fit
-from .pictures.harmonics import HARMONIC_VARIABLES
-from .pictures.history import plot_response
-from .pictures.orbit import plot_orbit
-from .pictures.regime_map import plot_regimes
-from .pictures.share_map import plot_shares
+from .pictures.curves.figure import CURVE_VARIABLES, plot_curves
+from .pictures.curves.harmonics import HARMONIC_VARIABLES
+from .pictures.fits.figure import plot_fit
+from .pictures.maps.boundary_map import plot_boundaries
+from .pictures.maps.regime_map import plot_regimes
+from .pictures.maps.share_map import plot_shares
+from .pictures.motions.history import plot_response
+from .pictures.motions.orbit import plot_orbit
 
 if TYPE_CHECKING:
     from .pictures.panels import AxesArray
@@ -38,15 +38,14 @@ __all__ = [
 
 FORMATS = (".png", ".pdf", ".svg")
 
-_BOUNDARIES = ("beta_lim", "beta_lim_modal", "beta_stick")
 _FEATURES = ("natural_frequency", "held_frequency", "invariant_point")
 
 #: What pictures are made of, by the kind of file: no other variable need be read.
 PICTURED = {
     "map": frozenset(
-        ("regime", "stops_per_cycle", "status", "also_reachable", "period", *_BOUNDARIES, *_FEATURES)
+        ("regime", "stops_per_cycle", "status", "also_reachable", "period", *BOUNDARIES, *_FEATURES)
     ),
-    "boundaries": frozenset((*_BOUNDARIES, *_FEATURES)),
+    "boundaries": frozenset((*BOUNDARIES, *_FEATURES)),
     "response": frozenset(
         ("regime", "stops_per_cycle", "period", "status", *HISTORY_VARIABLES, *HARMONIC_VARIABLES)
     ),

@@ -75,7 +75,7 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     }
     coords = {name: coordinate(name, values) for name, values in axes.items()}
     coords |= {name: coordinate(name, np.atleast_1d(ds[name].values)) for name in BESIDE if name in ds.coords}
-    kept = ("title", "system", "config", *SCALES.values())
+    kept = ("title", "system", "excitation", "config", *SCALES.values())
     attributes = {
         **{name: ds.attrs[name] for name in kept if name in ds.attrs},
         "Conventions": "CF-1.11", "source": f"frictionmap {__version__}", "references": REFERENCES,

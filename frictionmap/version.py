@@ -1,3 +1,3 @@
-"""The version, once."""
+"""The number of this version."""
 
 __version__ = "0.2.0"

@@ -1,6 +1,6 @@
 """What the program says to input that is at fault."""
 
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 
 
 def refusal(capsys, *arguments):

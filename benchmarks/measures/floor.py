@@ -18,7 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from frictionmap._kernels.one_mass.events import _sum_at, after_slide, slide
-from frictionmap._kernels.one_mass.scan_step import MAX_TERMS, expand, step_constants
+from frictionmap._kernels.one_mass.scan_step import expand, step_constants
+from frictionmap._kernels.taylor_series import MAX_TERMS
 
 from ..report.record import pinned, spread, table, timed
 from .own_entry import own_entry

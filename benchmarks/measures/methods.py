@@ -13,12 +13,13 @@ import numpy as np
 
 import frictionmap as fm
 from frictionmap._kernels.engine.one_mass import OneMassSystem
+from frictionmap._kernels.event_codes import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from frictionmap._kernels.one_mass import events
-from frictionmap._kernels.one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
-from frictionmap._kernels.one_mass.scan_step import MAX_TERMS, step_constants
+from frictionmap._kernels.one_mass.scan_step import step_constants
 from frictionmap._kernels.structure.events import after_slide, slide_on
 from frictionmap._kernels.structure.oscillators import make_scratch
 from frictionmap._kernels.structure.state import contact_displacement, make_structure
+from frictionmap._kernels.taylor_series import MAX_TERMS
 from frictionmap.model.settings import Solver
 from frictionmap.steady.cells import Cells
 

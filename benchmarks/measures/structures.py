@@ -24,12 +24,13 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import regimes
+from frictionmap._kernels.event_codes import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from frictionmap._kernels.one_mass import events
 from frictionmap._kernels.one_mass import scan_step as phases
-from frictionmap._kernels.one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from frictionmap._kernels.structure.events import after_slide, slide_on
 from frictionmap._kernels.structure.oscillators import FELL, make_scratch
 from frictionmap._kernels.structure.state import make_structure
+from frictionmap._kernels.taylor_series import MAX_TERMS
 from frictionmap.model.settings import Solver
 from frictionmap.steady.cells import Cells
 from frictionmap.steady.maps import Arrays
@@ -118,7 +119,7 @@ def _motion(system: fm.System, r: float, steps: int, special: bool) -> Callable[
     """A function that follows the motion for so many slides: slides done, stops, scan steps."""
     if special:
         step = phases.step_constants(r, system.zeta, float(steps))
-        work = np.empty(phases.MAX_TERMS)
+        work = np.empty(MAX_TERMS)
         return lambda slides: follow_one(step, BETA, BETA, slides, work)
     found = Cells(system, np.array([r]), np.array([BETA]), np.ones(1), Solver()).structure_arrays
     n = found.participating.size

@@ -25,6 +25,9 @@ CELL = ("mu", "r", "beta")
 CURVE = ("mu", "r")
 LIMIT = (*CURVE, "dof")
 
+#: Boundaries of the regimes over r, which every map has.
+BOUNDARIES = ("beta_lim", "beta_lim_modal", "beta_stick")
+
 
 class Label(NamedTuple):
     """One variable: type, dimensions, description, and valid values."""

@@ -39,6 +39,11 @@ _SYSTEM = {
 }
 
 
+def excitation_of(system: "System") -> str:
+    """Global attribute `excitation`: "base", "force" on one mass, or "forces", one on each with its phase."""
+    return "forces" if system.load is not None else str(system.excitation)
+
+
 def now() -> str:
     """Present time in the format of a history."""
     return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")

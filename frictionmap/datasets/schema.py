@@ -25,8 +25,8 @@ from .labels import (
 
 #: Global attributes that are text, if present.
 TEXTS = (
-    "title", "system", "source", "history", "references", "config", "reduction", "reduction_check",
-    "decoupling",
+    "title", "system", "excitation", "source", "history", "references", "config", "reduction",
+    "reduction_check", "decoupling",
 )  # fmt: skip
 
 

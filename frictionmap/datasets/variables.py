@@ -10,7 +10,7 @@ from ..model.system import System
 from ..units.scales import Units
 from ..version import __version__
 from .labels import BESIDE, COORDINATES, REFERENCES, attributes, labels_of
-from .provenance import made_by
+from .provenance import excitation_of, made_by
 
 
 def coordinate(name: str, values: np.ndarray | float) -> xr.Variable:
@@ -54,6 +54,7 @@ def stamp(
         "source": f"frictionmap {__version__}",
         "references": REFERENCES,
         "system": system.describe(),
+        "excitation": excitation_of(system),
         **system.costs(np.atleast_1d(axes["r"])),
         **made_by(function, title, system, axes, solver, curves, study, units),
     }

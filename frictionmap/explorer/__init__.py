@@ -9,11 +9,12 @@ cell        one cell of it: its motion in numbers, words and curves, and what ot
 cut         a line through it as response curves
 queries     what the page asks for, checked as a configuration is
 packets     numbers on their way to the page
+told        what the page is told first: names, ranges, what can be changed, colours
 jobs        what is being computed, what is outdated, whether kernels are being compiled
 downloads   a view as a configuration, NetCDF or CSV
 server      the standard library's HTTP server, for this machine only
 stored      the page as one file with maps that are computed beforehand
 notebook    the page in a notebook
-`page/`     what the browser runs, as it is written: HTML, CSS, modules of JavaScript
+page        what the browser runs, as it is written: HTML, CSS, modules of JavaScript
 ==========  ================================================================================
 """

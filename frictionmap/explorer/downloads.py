@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
-from ..datasets.labels import MEASURE_OF
+from ..datasets.labels import BOUNDARIES, MEASURE_OF
 from ..datasets.provenance import configuration, to_toml
 from ..errors import InputError
 from ..files.config import config_of, parse, read_system
@@ -23,8 +23,8 @@ _WRITTEN = 64
 #: What every map that is saved has.
 _ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "contact_amplitude")
 
-#: What a map has beside its outputs, over r; and outputs that NetCDF packs into next to nothing.
-_BOUNDARIES, _CODES = ("beta_lim", "beta_lim_modal", "beta_stick"), ("regime", "stops_per_cycle")
+#: Outputs that NetCDF packs into next to nothing.
+_CODES = ("regime", "stops_per_cycle")
 
 #: Bytes of a number of a table, of one of a cell in NetCDF, and of all else there; measured.
 _PER_NUMBER, _PER_FLOAT, _PER_FILE = 13.0, 5.0, 60e3
@@ -98,7 +98,7 @@ def sizes(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> dict[st
         return 1 + (name in MEASURE_OF and scales.of(MEASURE_OF[name]) is not None)
 
     axes = sum(1 + (scales.of(measure) is not None) for measure in ("frequency", "force"))
-    numbers = axes + len(("mu",)) + (masses > 1) + sum(map(copies, (*outputs, *_BOUNDARIES)))
+    numbers = axes + len(("mu",)) + (masses > 1) + sum(map(copies, (*outputs, *BOUNDARIES)))
     floats = sum(
         copies(name) * (masses if name == "amplitude" else 1) for name in outputs if name not in _CODES
     )

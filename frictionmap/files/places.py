@@ -16,7 +16,6 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from .. import interrupts
 from ..errors import InputError
 
 if sys.platform != "win32":
@@ -192,8 +191,11 @@ def _check(path: Path, overwrite: bool, inputs: Sequence[Path], name: str) -> No
         ) from None
 
 
-def _abandon() -> str:
-    """Clear away every claim, for good: nothing can be claimed or put in its place after it."""
+def abandon() -> str:
+    """Clear away every claim, for good: nothing can be claimed or put in its place after it.
+
+    For the end of a program that is interrupted; returned is in words what was written all the same.
+    """
     known = _guard.acquire(timeout=1.0)
     kept = "".join(output.kept() for output in _claims)
     for output in list(_claims):
@@ -202,9 +204,6 @@ def _abandon() -> str:
     if not known:  # a file system that has stopped answering
         return "the output may have been written"
     return kept or (f"{', '.join(map(str, _written))} had been written" if _written else "")
-
-
-interrupts.before_exit(_abandon)
 
 
 def _enter(folder: Path) -> int:

@@ -1,4 +1,4 @@
-"""What a dataset remembers of how it was made: the system and the start, from the configuration in it."""
+"""What a dataset remembers of how it was made: system, excitation and start, from its attributes."""
 
 import xarray as xr
 
@@ -14,6 +14,22 @@ def stored_system(ds: xr.Dataset) -> System | None:
     Then the matrices are in a file of their own or too large to be stored, or there is no configuration.
     """
     return system_in(str(ds.attrs.get("config", "")))
+
+
+def stored_excitation(ds: xr.Dataset) -> str | None:
+    """How the system is loaded: "base", "force" or "forces", see `excitation_of`; None if nothing says.
+
+    Files made before there was an attribute `excitation` have it in their configuration.
+    """
+    if "excitation" in ds.attrs:
+        return str(ds.attrs["excitation"])
+    table = _table(ds, "system")
+    if table is None:
+        return None
+    if "load" in table:
+        return "forces"
+    moves = table.get("excitation") == "base" or table.get("contact") == "joined-base-wall"
+    return "base" if moves else "force"
 
 
 def stored_start(ds: xr.Dataset) -> str | None:

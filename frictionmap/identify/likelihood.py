@@ -7,17 +7,14 @@ import xarray as xr
 
 from .. import checks
 from ..errors import InputError
-from .chain_estimates import chain_names
-from .chain_fit import Measured
-from .chain_fit import problem as chain_problem
-from .decay_motion import PARAMETERS
-from .decay_problem import DRIFT, Record
-from .decay_problem import problem as decay_problem
-from .decay_wander import polynomials
-from .least_squares import Problem
-
-#: Half cycles of a decay that does not come to rest within any record.
-_NO_REST = 2
+from .chain.estimates import chain_names
+from .chain.fit import Measured
+from .chain.fit import problem as chain_problem
+from .decay.motion import PARAMETERS
+from .decay.problem import DRIFT, Record, half_cycles_of
+from .decay.problem import problem as decay_problem
+from .decay.wander import polynomials
+from .statistics.least_squares import Problem
 
 
 @dataclass(frozen=True)
@@ -104,7 +101,7 @@ def _of_decay(ds: xr.Dataset) -> LogLikelihood:
     held = ds["known"].sel(parameter=list(names)).values == 1
     known = {name: float(value) for name, value, is_held in zip(names, values, held, strict=True) if is_held}
     record = Record(ds["time"].values, ds["data"].values, known, names)
-    n = int(ds["half_cycles"]) + (0 if int(ds["at_rest"]) else _NO_REST)
+    n = half_cycles_of(ds)
     sigma = ds["sigma"].values
     plain = decay_problem(record, n, values)
 

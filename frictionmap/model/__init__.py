@@ -1,1 +1,19 @@
-"""Systems: structure, damping, load and contact; their matrices and modes; settings of the solver."""
+"""Systems: structure, damping, load and contact; their matrices and modes; settings of the solver.
+
+==================  ===================================================================================
+module              what is in it
+==================  ===================================================================================
+settings            settings of the solver and of response curves; names of the outputs
+matrices            mass, stiffness and damping matrices: small, dense, definite
+phasors             complex arrays as pairs of real ones, which round alike wherever they stand
+damped_oscillators  a damped structure as oscillators that do not depend on r
+free_structure      the sliding structure as oscillators
+balance             linear response at many frequencies, free or held
+modes               modes, participation factors of contact and load, the structure held at its contact
+decoupling          the error of leaving out the damping that couples modes
+coupled_modes       structures whose damping couples their modes: responses to loads
+system              `System`: structure, damping, load, contact, and what they must be
+variations          further axes of a study: parameters of a system that vary
+held_structure      the structure held at its contact as oscillators
+==================  ===================================================================================
+"""

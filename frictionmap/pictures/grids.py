@@ -21,6 +21,10 @@ def is_logarithmic(values: np.ndarray) -> bool:
     return _is_even(np.diff(np.log(values))) and not _is_even(np.diff(values))
 
 
+#: Height, in units of the axis, at which infinite values are drawn, so that lines leave the picture.
+HIGH = 1e3
+
+
 @dataclass(frozen=True)
 class Grid:
     """One axis of a map: grid points, and the cells around them."""

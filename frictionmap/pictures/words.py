@@ -1,11 +1,11 @@
-"""Titles and captions."""
+"""Titles, captions, and the names of loads."""
 
 import re
 import textwrap
 
 import xarray as xr
 
-from ..files.stored import stored_start
+from ..files.stored import stored_excitation, stored_start
 
 
 def balanced(text: str, width: int) -> str:
@@ -29,14 +29,16 @@ def _times(repeated: re.Match) -> str:
 
 def moves_base(ds: xr.Dataset) -> bool:
     """Whether the system has base excitation."""
-    return "base motion" in system_words(ds)
+    return stored_excitation(ds) == "base"
+
+
+#: Labels of cos(tau), by the excitation.
+_LOADS: dict[str | None, str | None] = {"base": "base / $Y$", "forces": None}
 
 
 def load_of(ds: xr.Dataset) -> str | None:
     """Label of cos(tau); None where loads are given mass by mass, each with its own phase."""
-    if moves_base(ds):
-        return "base / $Y$"
-    return None if "harmonic load (" in system_words(ds) else "load / $P$"
+    return _LOADS.get(stored_excitation(ds), "load / $P$")
 
 
 #: Grid points per axis above which a panel has fewer pixels than the map has cells.

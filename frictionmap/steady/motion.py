@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import regimes
+from .._kernels.continuous_motion import orbit_phase
 from .._kernels.engine import segment_table
 from .._kernels.engine.fill import one_cell
 from .._kernels.engine.quantities import (
@@ -17,7 +18,6 @@ from .._kernels.engine.quantities import (
 from .._kernels.engine.records import Cell
 from .._kernels.engine.time_history import Samples, sample_segments
 from .._kernels.engine.window import window_table
-from .._kernels.one_mass.sliding_orbit import orbit_phase
 from .._kernels.structure.newton import make_workspace
 from .._kernels.structure.oscillators import make_scratch
 from .._kernels.structure.state import make_structure

@@ -1,7 +1,7 @@
 """Maps that outgrow memory and patience: computed block by block into a zarr store.
 
 =========  =============================================================================
-module     what is in it, in the order in which data flows
+module     what is in it
 =========  =============================================================================
 study      what is computed: systems, grid, settings; its blocks
 cuts       where it is cut into blocks, by what its cells cost

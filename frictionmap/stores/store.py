@@ -17,7 +17,7 @@ import numpy as np
 from .. import checks
 from ..datasets.labels import REFERENCES
 from ..datasets.physical import scale_attributes
-from ..datasets.provenance import configuration
+from ..datasets.provenance import configuration, excitation_of
 from ..errors import InputError
 from ..files.config import Config, config_of, parse
 from ..model.matrices import Matrices
@@ -137,7 +137,7 @@ def make_store(path: Path, study: Study, title: str) -> None:
         text = _configuration(study, title)
         attributes = {
             "Conventions": "CF-1.11", "title": title, "source": _SOURCE, "references": REFERENCES,
-            "system": study.variations.describe(), "config": text,
+            "system": study.variations.describe(), "excitation": excitation_of(study.system), "config": text,
             **study.system.costs(study.r), **study.reduction_check, **scale_attributes(study.scales),
         }  # fmt: skip
         group = zarr.create_group(away, attributes=attributes)

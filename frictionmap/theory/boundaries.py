@@ -5,7 +5,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
-from ..datasets.labels import LABELS
+from ..datasets.labels import BOUNDARIES, LABELS
 from ..datasets.physical import with_units
 from ..datasets.variables import coordinate, label_variable, stamp
 from ..features import (
@@ -37,10 +37,7 @@ _ON_END = 1e-13
 
 def boundary_variables(found: Curves) -> dict[str, xr.Variable]:
     """Label beta_lim, beta_lim_modal and beta_stick, dims (mu, r)."""
-    return {
-        name: label_variable(name, getattr(found, name))
-        for name in ("beta_lim", "beta_lim_modal", "beta_stick")
-    }
+    return {name: label_variable(name, getattr(found, name)) for name in BOUNDARIES}
 
 
 def _padded(rows: list[np.ndarray]) -> np.ndarray:

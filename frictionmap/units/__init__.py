@@ -1,7 +1,7 @@
 """Physical units: hertz and newtons for the frequency ratio r and the friction ratio beta.
 
 ==========  ============================================================================
-module      what is in it, in the order in which data flows
+module      what is in it
 ==========  ============================================================================
 table       every unit that is understood, and its exact size
 quantities  a number with its unit, from text or from another package, as an exact number

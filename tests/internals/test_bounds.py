@@ -8,17 +8,18 @@ import pytest
 from kernels import callable_kernel
 
 import frictionmap as fm
-from frictionmap._kernels import closed_form
-from frictionmap._kernels.one_mass import events
-from frictionmap._kernels.one_mass import sliding_orbit as continuous
-from frictionmap._kernels.one_mass.scan_step import MAX_TERMS, step_constants
-from frictionmap._kernels.one_mass.sliding_orbit import Oscillator, orbit_phase
+from frictionmap._kernels import closed_form, continuous_motion, taylor_series
+from frictionmap._kernels.continuous_motion import orbit_phase
+from frictionmap._kernels.one_mass import events, sliding_orbit
+from frictionmap._kernels.one_mass.scan_step import step_constants
+from frictionmap._kernels.one_mass.sliding_orbit import Oscillator
+from frictionmap._kernels.taylor_series import MAX_TERMS
 from frictionmap.theory.boundary_curves import one_mass_curves
 
 decay = callable_kernel(closed_form.decay)
-continuous_amplitude = callable_kernel(continuous.continuous_amplitude)
-stop_free_radius = callable_kernel(continuous.stop_free_radius)
-first_root = callable_kernel(events.first_root)
+continuous_amplitude = callable_kernel(continuous_motion.continuous_amplitude)
+stop_free_radius = callable_kernel(sliding_orbit.stop_free_radius)
+first_root = callable_kernel(taylor_series.first_root)
 slide = callable_kernel(events.slide)
 
 

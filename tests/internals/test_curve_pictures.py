@@ -10,7 +10,10 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import frictionmap as fm
-from frictionmap.pictures import curve_axes, curve_lines, families, harmonics, invariants, palette, works
+from frictionmap.pictures import palette
+from frictionmap.pictures.curves import axes as curve_axes
+from frictionmap.pictures.curves import families, harmonics, invariants, works
+from frictionmap.pictures.curves import lines as curve_lines
 
 UNRESOLVED, STUCK, SLIP, CONTINUOUS = -1, 0, 1, 2
 TWO = {"mass_ratios": [1.0, 1.0], "stiffness_ratios": [1.0, 1.0]}

@@ -8,8 +8,10 @@ import xarray as xr
 from colours import SIMULATIONS, ciede2000, difference, lab, linear, seen_by
 from matplotlib.colors import to_rgb
 
+import frictionmap as fm
 from frictionmap import regimes
-from frictionmap.pictures import classes, features, grids, marks, palette, raster, words
+from frictionmap.pictures import classes, features, grids, marks, palette, words
+from frictionmap.pictures.maps import raster
 
 LABELS = [look.label for look in palette.CLASSES]
 COLOURS = {look.label: to_rgb(look.colour) for look in palette.CLASSES}
@@ -406,3 +408,39 @@ def test_repeated_ratios_are_told_once():
     system = "chain of 4 masses (1, 1, 1, 1), springs (1, 1, 1.5, 1); load (0, 0, 0.5, 0.5, 0.5)"
     told = words.system_words(xr.Dataset(attrs={"system": system}))
     assert told == "chain of 4 masses (4 × 1), springs (1, 1, 1.5, 1); load (0, 0, 3 × 0.5)"
+
+
+EXCITATIONS = [
+    ({}, "force", "load / $P$"),
+    ({"excitation": "base"}, "base", "base / $Y$"),
+    ({"contact": "joined-base-wall"}, "base", "base / $Y$"),
+    ({"mass_ratios": (1.0, 2.0), "stiffness_ratios": (1.0, 1.0), "load": (1.0, 0.5j)}, "forces", None),
+]
+
+
+@pytest.mark.parametrize(("system", "excitation", "label"), EXCITATIONS)
+def test_the_load_is_told_by_an_attribute_and_in_older_files_by_the_configuration(system, excitation, label):
+    ds = fm.sweep(fm.System(**system), [0.3], [2.0])
+    assert ds.attrs["excitation"] == excitation
+    assert words.load_of(ds) == label
+    assert words.moves_base(ds) is (excitation == "base")
+    ds.attrs["system"] = "a system of base motion and of a harmonic load (in other words)"
+    assert words.load_of(ds) == label
+    del ds.attrs["excitation"]
+    assert words.load_of(ds) == label
+    assert words.moves_base(ds) is (excitation == "base")
+
+
+def test_a_file_that_tells_nothing_of_its_load_is_labelled_as_loaded_by_a_force():
+    ds = xr.Dataset(attrs={"system": "base motion"})
+    assert words.load_of(ds) == "load / $P$"
+    assert not words.moves_base(ds)
+
+
+@pytest.mark.parametrize("kept", [("system", "config"), ("system",), ()])
+def test_files_without_the_attribute_are_drawn(kept):
+    ds = fm.response(fm.System(excitation="base"), 0.6, 0.4)
+    ds.attrs = {name: ds.attrs[name] for name in kept}
+    axes = fm.plot_response(ds)
+    labels = {ax.get_ylabel() for ax in axes.flat}
+    assert any("base / $Y$" in label or "Y" in label for label in labels) is ("config" in kept), labels

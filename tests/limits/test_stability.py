@@ -9,7 +9,7 @@ from kernels import callable_kernel
 from structures import random_chain
 
 import frictionmap as fm
-from frictionmap._kernels.one_mass.events import REVERSE, EventSequence
+from frictionmap._kernels.event_codes import REVERSE, EventSequence
 from frictionmap._kernels.structure import events as follow
 from frictionmap._kernels.structure import newton as returns
 from frictionmap._kernels.structure.events import UNDER_WAY

@@ -7,8 +7,8 @@ import pytest
 from sweeps import natural_frequencies, responses
 
 import frictionmap as fm
-from frictionmap.identify.chain_inverse import chain_of
-from frictionmap.identify.chain_response import response_and_slopes
+from frictionmap.identify.chain.inverse import chain_of
+from frictionmap.identify.chain.response import response_and_slopes
 
 MASSES, SPRINGS = [1.0, 1.3, 0.7, 0.9, 1.1], [1.0, 0.8, 1.2, 0.6, 1.4]
 ZETA = [0.01, 0.02, 0.015, 0.03, 0.012]

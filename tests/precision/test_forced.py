@@ -8,7 +8,7 @@ import xarray as xr
 from responses import Truth, integrated, table
 
 import frictionmap as fm
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 
 WALL = Truth(3.086, 0.004, (0.2, 0.4, 0.5), (0.65, 0.7, 0.85, 0.93, 1.06, 1.2, 1.5, 2.0))
 

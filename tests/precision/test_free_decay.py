@@ -8,7 +8,7 @@ import pytest
 from decays import Truth, marched, synthetic
 
 import frictionmap as fm
-from frictionmap.identify.decay_motion import (
+from frictionmap.identify.decay.motion import (
     PARAMETERS,
     Decay,
     amplitudes,

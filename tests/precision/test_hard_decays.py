@@ -7,8 +7,8 @@ import pytest
 from decays import Truth, synthetic
 
 import frictionmap as fm
-from frictionmap.identify.correlation import long_inflation
-from frictionmap.identify.turning_points import turning_points
+from frictionmap.identify.signals.turning_points import turning_points
+from frictionmap.identify.statistics.correlation import long_inflation
 
 GAP = Truth(3.0, 0.01, 0.5, 10.0, -0.03, 0.1, 200.0, 4.0, 0.03)
 HEAVY = Truth(1.2, 0.3, 0.2, 10.0, -0.05, 0.1, 200.0, 5.0, 0.05)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frictionmap as fm
-from frictionmap.identify.phasors import (
+from frictionmap.identify.signals.phasors import (
     _checked_harmonics,
     amplitude_and_lag,
     changes,

@@ -7,7 +7,7 @@ import pytest
 from records import Truth, places, steady, synthetic
 
 import frictionmap as fm
-from frictionmap.identify.plateaus import unclipped_mass
+from frictionmap.identify.signals.plateaus import unclipped_mass
 
 RIG = Truth(
     3.13, 0.0055, 0.8372, 1.0, -0.1, 1.001, (0.0, 1.82 * np.exp(0.7j), 0.02 * np.exp(2.0j)), rate=100.0,

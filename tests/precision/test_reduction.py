@@ -12,7 +12,7 @@ from scipy.sparse import csr_array, diags_array, eye_array, kron
 from structures import chain_matrices
 
 import frictionmap as fm
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.datasets.provenance import to_toml
 from frictionmap.theory.refinement import boundary_changes, with_more_modes
 

@@ -12,7 +12,8 @@ from benchmarks.references.naive import naive_steady_state
 from benchmarks.references.settled import settle
 from frictionmap import regimes
 from frictionmap._kernels.one_mass.events import after_slide, slide
-from frictionmap._kernels.one_mass.scan_step import MAX_TERMS, step_constants
+from frictionmap._kernels.one_mass.scan_step import step_constants
+from frictionmap._kernels.taylor_series import MAX_TERMS
 from frictionmap.files.summary import describe_response
 
 

@@ -8,7 +8,7 @@ import pytest
 from sweeps import F_K1M1, FREQUENCIES, GAMMA, KAPPA, amplitudes, responses
 
 import frictionmap as fm
-from frictionmap.identify.two_masses import ratio_slopes, ratios
+from frictionmap.identify.chain.two_masses import ratio_slopes, ratios
 
 
 def test_ratios_of_a_known_structure():

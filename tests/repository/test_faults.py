@@ -50,7 +50,9 @@ def package(tmp_path_factory):
     folder = tmp_path_factory.mktemp("package") / "frictionmap"
     folder.mkdir()
     (folder / "__init__.py").write_text(textwrap.dedent(STAND_IN))
-    (folder / "cli.py").write_text("from . import main\n")
+    (folder / "command_line").mkdir()
+    (folder / "command_line" / "__init__.py").write_text("")
+    (folder / "command_line" / "cli.py").write_text("from .. import main\n")
     return folder.parent
 
 
@@ -198,7 +200,7 @@ def test_a_changed_number_is_seen(good, tmp_path):
         (Said(1, err="x\n"), verdict.STATUS),
         (Said(-11), verdict.STATUS),
         (
-            Said(1, err='Traceback (most recent call last):\n  File "/a/frictionmap/cli.py"'),
+            Said(1, err='Traceback (most recent call last):\n  File "/a/frictionmap/command_line/cli.py"'),
             verdict.TRACEBACK,
         ),
         (Said(130, err="one\ntwo\n"), verdict.LINES),

@@ -16,13 +16,8 @@ MOST_ARGUMENTS = 10
 MOST_OF_A_KERNEL = 6
 
 
-#: Modules of kernels; the others there have annotations.
-PLUMBING = {"jit.py", "kinds.py", "linking.py", "cache.py", "cache_folders.py"}
-KERNELS = [
-    path
-    for path in sorted((PACKAGE / "_kernels").rglob("*.py"))
-    if path.name not in PLUMBING and path.parent.name != "compiler"
-]
+#: Modules of kernels; those that compile them have annotations.
+KERNELS = sorted(path for path in (PACKAGE / "_kernels").rglob("*.py") if path.parent.name != "compiler")
 
 
 def functions(text):

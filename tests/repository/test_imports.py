@@ -48,10 +48,10 @@ def run(code):
 def test_help_and_usage_errors_import_nothing_heavy(arguments):
     code = f"""
 import contextlib, io, sys
-import frictionmap, frictionmap.cli
+import frictionmap, frictionmap.command_line.cli
 text = io.StringIO()
 with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text), contextlib.suppress(SystemExit):
-    frictionmap.cli.main({arguments!r})
+    frictionmap.command_line.cli.main({arguments!r})
 print([name for name in {HEAVY!r} if name in sys.modules])
 """
     assert run(code) == "[]\n"
@@ -126,34 +126,17 @@ def test_one_home(module, home):
     assert users == home
 
 
-@pytest.mark.parametrize(("module", "folder"), [("numba", "compiler"), ("matplotlib", "pictures")])
+@pytest.mark.parametrize(("module", "folder"), [("numba", "_kernels/compiler"), ("matplotlib", "pictures")])
 def test_one_folder(module, folder):
-    users = {
-        path.parent.name for path in SOURCES if any(name.split(".")[0] == module for name in imported(path))
-    }
-    assert users == {folder}
+    users = [path for path in SOURCES if any(name.split(".")[0] == module for name in imported(path))]
+    assert users
+    assert [path for path in users if not path.is_relative_to(PACKAGE / folder)] == []
 
 
-#: Rooms, and modules that stand alone, in the order in which data flows: none knows a later one.
-ORDER = (
-    "errors", "version", "regimes", "checks", "interrupts", "packages", "mat_files", "structures",
-    "_kernels", "model", "units", "datasets", "roots",
-    "features",
-    "theory", "steady", "files", "probabilities", "stores", "identify", "examples", "pictures", "plot",
-    "explorer", "progress", "arguments", "completion", "cli", "__main__",
-)  # fmt: skip
-
-
-def test_data_flows_one_way():
-    places = {path.relative_to(PACKAGE).parts[0].removesuffix(".py") for path in SOURCES}
-    assert places == {*ORDER, "__init__"}
-    for path in SOURCES:
-        own = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
-        if own == "__init__":  # the door: it loads what is asked for
-            continue
-        used = {name.split(".")[1] for name in imported(path) if name.startswith("frictionmap.")}
-        later = {name for name in used if ORDER.index(name) > ORDER.index(own)}
-        assert not later, path
+def test_the_page_takes_classes_and_their_colours_from_the_pictures():
+    used = {name for path in SOURCES if "explorer" in path.parts for name in imported(path)}
+    pictures = {".".join(name.split(".")[:3]) for name in used if name.startswith("frictionmap.pictures")}
+    assert pictures == {"frictionmap.pictures.classes", "frictionmap.pictures.palette"}
 
 
 # Public names

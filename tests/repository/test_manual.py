@@ -9,7 +9,7 @@ import pytest
 from conftest import ROOT
 
 import frictionmap as fm
-from frictionmap.arguments import described
+from frictionmap.command_line.arguments import described
 from frictionmap.files.keys import KEYS
 from frictionmap.model.settings import OUTPUTS
 

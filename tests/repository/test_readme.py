@@ -10,7 +10,7 @@ import sys
 import pytest
 from conftest import ROOT
 
-from frictionmap.arguments import parse
+from frictionmap.command_line.arguments import parse
 
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 GUIDES = [path for path in sorted((ROOT / "docs").rglob("*.md")) if path.parent.name != "reference"]

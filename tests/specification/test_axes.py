@@ -7,7 +7,7 @@ import pytest
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.files.reading import read
 from frictionmap.files.stored import stored_system
 

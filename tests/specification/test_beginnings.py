@@ -16,19 +16,19 @@ from hypothesis import strategies as st
 from test_cli import BAD_CONFIGURATIONS, listing, toml
 
 from frictionmap import InputError, load_config
-from frictionmap.arguments import CONTACTS, QUANTITIES, RIGS, SHELLS, build_parser, described
-from frictionmap.cli import main
-from frictionmap.completion import completion
+from frictionmap.command_line.arguments import CONTACTS, QUANTITIES, RIGS, SHELLS, build_parser, described
+from frictionmap.command_line.cli import main
+from frictionmap.command_line.completion import completion
 from frictionmap.examples import TRUTHS, starting_rig
 from frictionmap.files.json_schema import map_schema
 from frictionmap.files.keys import KEYS
 from frictionmap.files.template import starting_configuration
-from frictionmap.identify.configuration import KINDS, load_rig
-from frictionmap.identify.rig_keys import rig_keys, rig_schema
-from frictionmap.identify.rig_record import SYSTEM_KEYS as RECORD_SYSTEM
-from frictionmap.identify.rig_sweep import SYSTEM_KEYS as SWEEP_SYSTEM
+from frictionmap.identify.rigs.configuration import KINDS, load_rig
+from frictionmap.identify.rigs.keys import rig_keys, rig_schema
+from frictionmap.identify.rigs.record import SYSTEM_KEYS as RECORD_SYSTEM
+from frictionmap.identify.rigs.sweep import SYSTEM_KEYS as SWEEP_SYSTEM
 from frictionmap.model import system
-from frictionmap.pictures.curves import CURVE_QUANTITIES
+from frictionmap.pictures.curves.figure import CURVE_QUANTITIES
 
 MAPS = sorted([*(ROOT / "configs").glob("*.toml"), *(ROOT / "configs" / "studies").glob("*.toml")])
 RIG_FILES = sorted((ROOT / "configs" / "rigs").glob("*.toml"))

@@ -17,7 +17,7 @@ import xarray as xr
 from conftest import ROOT
 
 import frictionmap as fm
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.model.settings import OUTPUTS
 
 ENVIRONMENT = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}

@@ -6,7 +6,7 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 
 TWO = fm.System("between-masses", [1, 2], mass_ratios=[1.0, 0.5], stiffness_ratios=[1.0, 2.0])
 CELL, MASS, LIMIT = ("mu", "r", "beta"), ("mu", "r", "beta", "dof"), ("mu", "r", "dof")

@@ -12,7 +12,7 @@ from sweeps import swept
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.files.reading import read, standard_form
 from frictionmap.files.storage import write
 from frictionmap.files.summary import describe_file

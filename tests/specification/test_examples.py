@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 from conftest import ROOT
 
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.examples import TRUTHS, rig_files
 
 RIGS = ROOT / "configs" / "rigs"

@@ -447,7 +447,7 @@ def test_what_is_wrong_is_refused_in_a_line(one, query, words):
 
 @pytest.mark.parametrize(
     "target",
-    ["/nothing", "/page", "/../cli.py", "/%2e%2e/cli.py", "/map/", "/server.py", "/__init__.py"],
+    ["/nothing", "/page", "/../errors.py", "/%2e%2e/errors.py", "/map/", "/server.py", "/__init__.py"],
 )
 def test_what_is_not_there(one, target):
     status, body, _ = ask(one, target)
@@ -879,7 +879,7 @@ def test_the_command_writes_a_page(tmp_path, capsys, monkeypatch):
     for name, value in {"_CELLS": {False: (4, 3)}, "_PLACES": 2}.items():
         monkeypatch.setattr(stored, name, value)
     (tmp_path / "one.toml").write_text(ONE)
-    from frictionmap.cli import main
+    from frictionmap.command_line.cli import main
 
     assert main(["explore", "one.toml", "--export", "page.html"]) == 0
     assert re.fullmatch(r"wrote page.html \(0\.\d+ MB\)\n", capsys.readouterr().out)

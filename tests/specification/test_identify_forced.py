@@ -7,7 +7,7 @@ from refusals import refusal
 from responses import Truth, table
 
 import frictionmap as fm
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 
 TRUTH = Truth(3.0, 0.01, (0.2, 0.4), (0.65, 0.7, 0.9, 1.1, 1.4, 1.8))
 SETS, FREQUENCY, LAG, RATIO = table(TRUTH, 1)

@@ -8,7 +8,7 @@ import xarray as xr
 from refusals import refusal
 from sweeps import responses
 
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 
 SWEEP = """
 [data]

@@ -130,7 +130,7 @@ BUSY = {
     "writing": (WRITING.format(seconds=1000), "writing"),
     "in the main thread": (
         "import sys, time\n"
-        "from frictionmap import interrupts\n"
+        "from frictionmap.command_line import interrupts\n"
         "interrupts.obey()\n"
         "import ctypes\n"
         "print('busy', flush=True)\n"

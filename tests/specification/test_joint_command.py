@@ -9,8 +9,8 @@ from conftest import ROOT
 from jsonschema import Draft202012Validator
 from refusals import refusal
 
-from frictionmap.cli import main
-from frictionmap.identify.rig_keys import rig_schema
+from frictionmap.command_line.cli import main
+from frictionmap.identify.rigs.keys import rig_schema
 
 RIGS = ROOT / "configs" / "rigs"
 

@@ -8,7 +8,7 @@ import xarray as xr
 from decays import Truth, synthetic
 from sweeps import responses
 
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 
 TRUTH = Truth(3.1, 0.01, 0.2, 10.0, -0.02, 0.3, 200.0, 4.0, 0.02)
 

@@ -18,11 +18,11 @@ from frictionmap import InputError, plot, regimes
 from frictionmap.files.reading import read
 from frictionmap.files.storage import write
 from frictionmap.model.settings import OUTPUTS
-from frictionmap.pictures.boundary_map import areas
 from frictionmap.pictures.classes import classes
+from frictionmap.pictures.maps.boundary_map import areas
+from frictionmap.pictures.maps.raster import rasterise
+from frictionmap.pictures.maps.regime_map import CellImage
 from frictionmap.pictures.palette import CLASSES, MORE, ONE, colour_table
-from frictionmap.pictures.raster import rasterise
-from frictionmap.pictures.regime_map import CellImage
 
 MAGIC = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
 
@@ -639,7 +639,7 @@ def test_a_large_map_is_drawn_in_little_memory(tmp_path):
     axes = {"mu": [1.0], "r": np.linspace(0.1, 2.0, n), "beta": np.linspace(0.1, 1.0, n)}
     ds = xr.Dataset({name: (("mu", "r", "beta"), values) for name, values in cells.items()}, axes)
     write(ds.assign_attrs(source="frictionmap test"), tmp_path / "large.nc")
-    code = "import sys; from frictionmap.cli import main; main(sys.argv[1:]); "
+    code = "import sys; from frictionmap.command_line.cli import main; main(sys.argv[1:]); "
     code += "print(*(line for line in open('/proc/self/status') if line.startswith('VmHWM')))"
     command = [sys.executable, "-c", code, "plot", "large.nc"]
     environment = os.environ | {"PYTHONPATH": str(Path(fm.__file__).parents[1])}

@@ -8,7 +8,8 @@ from layouts import assert_inside_and_apart, rendered, words_of
 from matplotlib.figure import Figure
 
 import frictionmap as fm
-from frictionmap import InputError, cli, plot
+from frictionmap import InputError, plot
+from frictionmap.command_line import cli
 from frictionmap.files.reading import read
 from frictionmap.files.storage import write
 

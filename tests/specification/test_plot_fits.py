@@ -20,7 +20,8 @@ from scipy.linalg import eigh
 from sweeps import F_K1M1, GAMMA, KAPPA, amplitudes, swept
 
 import frictionmap as fm
-from frictionmap import InputError, cli, plot
+from frictionmap import InputError, plot
+from frictionmap.command_line import cli
 from frictionmap.files.reading import read
 from frictionmap.files.storage import write
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import frictionmap as fm
-from frictionmap import progress
-from frictionmap.cli import main
+from frictionmap.command_line import progress
+from frictionmap.command_line.cli import main
+from frictionmap.command_line.progress import Progress
 from frictionmap.model.settings import curve_settings
-from frictionmap.progress import Progress
 from frictionmap.steady import cost
 
 
@@ -231,7 +231,7 @@ def test_yes_overrides(tmp_path, monkeypatch):
 
 
 def test_the_cost_of_many_cells_is_told_before_the_work(tmp_path, monkeypatch, capsys):
-    from frictionmap import cli
+    from frictionmap.command_line import cli
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(cli, "_MANY", 2)

@@ -9,7 +9,7 @@ from records import Truth, base_at, filtered, rates, steady, synthetic
 from refusals import refusal
 
 import frictionmap as fm
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 
 TRUTH = Truth(3.13, 0.01, 0.8, 1.0, -0.1, 1.001, (0.1, 1.8j, 0.02), rate=100.0, length=7.3)
 

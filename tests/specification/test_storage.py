@@ -13,7 +13,7 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.files import reading, storage
 from frictionmap.model.settings import OUTPUTS
 
@@ -158,7 +158,7 @@ def test_only_what_was_asked_for_is_stored(files, tmp_path):
 def test_global_attributes(opened, kind, files):
     attributes = opened.attrs
     assert set(attributes) == {
-        "Conventions", "title", "source", "history", "references", "config", "system"
+        "Conventions", "title", "source", "history", "references", "config", "system", "excitation"
     }  # fmt: skip
     assert attributes["Conventions"].startswith("CF-1.")
     assert attributes["title"] == "Tiny"
@@ -168,6 +168,7 @@ def test_global_attributes(opened, kind, files):
     assert command.startswith(f"frictionmap {kind} ")
     assert tomllib.loads(attributes["config"])["system"] == {"contact": "joined-base-wall"}
     assert "one mass" in attributes["system"]
+    assert attributes["excitation"] == "base"
     if kind != "map":  # overrides rewrite the text
         assert attributes["config"] == CONFIG
 

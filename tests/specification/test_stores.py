@@ -19,7 +19,7 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.files.config import load_config
 from frictionmap.files.places import claimed_folder
 from frictionmap.model.variations import checked_variations

@@ -11,7 +11,7 @@ import xarray as xr
 from structures import CHAIN
 
 import frictionmap as fm
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.datasets.provenance import to_toml
 from frictionmap.structures.harwell_boeing import read_harwell_boeing
 

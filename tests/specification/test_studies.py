@@ -9,14 +9,14 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.files.reading import opened, read
 from frictionmap.files.slices import parse_choices
 from frictionmap.files.storage import write
 from frictionmap.files.stored import stored_system
 from frictionmap.pictures.classes import count
+from frictionmap.pictures.maps.regime_map import cells_of
 from frictionmap.pictures.palette import NOT_YET
-from frictionmap.pictures.regime_map import cells_of
 from frictionmap.plot import save_picture
 from frictionmap.probabilities import read_shares
 

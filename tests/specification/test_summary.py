@@ -6,7 +6,7 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import regimes
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.files.summary import describe_causes, describe_file, describe_map, describe_response
 from frictionmap.model.settings import OUTPUTS
 

@@ -12,7 +12,7 @@ import xarray as xr
 from structures import CHAIN, RATIOS
 
 import frictionmap as fm
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.datasets.provenance import to_toml
 
 # The object

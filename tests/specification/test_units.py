@@ -15,9 +15,9 @@ from refusals import refusal
 
 import frictionmap as fm
 from frictionmap import InputError, load_config
-from frictionmap.cli import main
+from frictionmap.command_line.cli import main
 from frictionmap.files.reading import read
-from frictionmap.identify.configuration import load_rig
+from frictionmap.identify.rigs.configuration import load_rig
 from frictionmap.units.axes import Ladder, typed
 from frictionmap.units.quantities import quantity
 from frictionmap.units.scales import NO_SCALES, scales_of

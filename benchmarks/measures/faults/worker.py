@@ -69,7 +69,7 @@ class Worker:
 
     def main(self, arguments: list[str], folder: str) -> dict:
         """The command line: status, what it printed, and the error that escaped from it."""
-        from frictionmap.cli import main
+        from frictionmap.command_line.cli import main
 
         os.chdir(folder)
         status, escaped = None, ""

@@ -1,4 +1,4 @@
-"""Response functions of one mass over frequency: evaluated once per r, independent of beta."""
+"""Response functions of one mass, and damping functions of several modes, over many frequencies."""
 
 import math
 
@@ -42,3 +42,11 @@ def response_functions(r, zeta, u, g, v_abs, v_arg, h, s):
         inverse = 1.0 / (x * x)
         h[i] = 0.0 if zeta == 0.0 else inverse * (g[i] + 2.0 * zeta * x * u[i])
         s[i] = largest_bracket(1.0 / x, zeta, u[i], g[i], h[i] + inverse)
+
+
+@entry
+def fill_damping_functions(r, w, zeta, u, g):
+    """Fill u and g, (n_r, n), of T(7.11), (7.12) for frequencies r > 0, (n_r,), and modes w, zeta, (n,)."""
+    for j in range(r.size):
+        for i in range(w.size):
+            u[j, i], g[j, i] = damping_functions(w[i], zeta[i], r[j])

@@ -1,21 +1,31 @@
 """Solver of single cells, shared by one mass and by structures.
 
-| module | what is in it |
-|---|---|
-| `records` | records passed to and returned by the solver: contact, contact state, limits, orbit, cell |
-| `motion` | interface that each kind of motion implements |
-| `one_mass`, `many_masses` | the two kinds of motion |
-| `memory` | ring buffer of past anchors |
-| `recurrence` | recurrence detection |
-| `statistics` | averages of motions that do not repeat; schedule of Newton's method |
-| `march` | solver: follow the motion from event to event, then solve for the periodic orbit |
-| `measure` | stops, amplitude, share stuck and segment table of a periodic orbit |
-| `segment_table` | table of the slides and stops of a steady state |
-| `extremes`, `transforms`, `harmonics`, `dissipation`, `distortion`, `floquet`, `time_history` | results that
-are read from the segment table |
-| `details`, `quantities` | the results that a map or a set of response curves requests |
-| `coexistence` | further regimes that a cell can reach from other initial states |
-| `window` | segment table of the last periods of a motion that does not repeat |
-| `fill` | cells of a map |
-| `policies` | initial states and thresholds shared by both kinds of motion |
+=============  ====================================================================================
+module         what is in it
+=============  ====================================================================================
+periods        half periods in a time, and periods of a motion that recurs
+policies       initial states and thresholds shared by both kinds of motion
+records        records passed to and returned by the solver: contact, state, limits, orbit, cell
+memory         ring buffer of past anchors
+statistics     averages of motions that do not repeat; schedule of Newton's method
+segment_table  slides and stops of a steady state in order, each with its exact motion
+one_mass       one mass as a kind of motion
+many_masses    a structure as a kind of motion
+motion         the operations that each kind of motion implements
+recurrence     recurrence detection
+measure        stops, amplitude, share stuck and segment table of a periodic orbit
+march          the solver: follow the motion from event to event, then solve for the periodic orbit
+window         segment table of the last periods of a motion that does not repeat
+extremes       largest displacements, and largest force to the ground
+transforms     Fourier integrals over one segment
+harmonics      exact harmonics of friction, masses and contact
+dissipation    sliding distance, and work of the dampers
+distortion     the part of a motion beyond its mean and first harmonic
+time_history   a steady state sampled in time
+floquet        Floquet multipliers, and deviation from antiperiodicity
+details        further outputs of a map: amplitudes of the masses, multipliers, asymmetry
+quantities     what response curves hold: extremes, harmonics, work
+coexistence    `also_reachable`: regimes that other initial states lead to
+fill           the cells of a map
+=============  ====================================================================================
 """

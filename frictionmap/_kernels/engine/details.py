@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import by_class, entry, kernel
-from ..one_mass.sliding_orbit import orbit_phase
+from ..continuous_motion import orbit_phase
 from ..structure.newton import Workspace, make_workspace
 from ..structure.oscillators import Scratch, make_scratch
 from ..structure.sliding_orbit import Continuous

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...regimes import CLOSED_FORM, CONTINUOUS, PERMANENT_STICKING, RESOLVED
 from ..compiler import entry, kernel
-from ..one_mass.sliding_orbit import continuous_amplitude
+from ..continuous_motion import continuous_amplitude
 from .details import (
     Details,
     NotRequested,

@@ -5,12 +5,12 @@ import math
 import numpy as np
 
 from ..compiler import entry, kernel
-from ..one_mass.events import REVERSE, EventSequence
-from ..one_mass.newton import half_periods
-from ..one_mass.sliding_orbit import orbit_phase
+from ..continuous_motion import orbit_phase
+from ..event_codes import REVERSE, EventSequence
 from ..structure.events import slide_on
 from ..structure.newton import copy_state, return_map, spectral_radius
 from ..structure.sliding_orbit import orbit_state
+from .periods import half_periods
 from .segment_table import CONTACT_FORCE, COS, EVENT, LENGTH, SENSE, SIN, take_start
 from .time_history import Samples, sample_segments
 

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
-from ..one_mass.newton import half_periods
 from ..structure.oscillators import F1, FC, FS, OW, OZ, YC, YS, D, K
 from ..structure.state import DAMPING, PUSH, STATIC_SHAPE, W
+from .periods import half_periods
 from .segment_table import COS, LENGTH, SENSE, SIGN, SIN, STATE, STOP_Z
 from .transforms import Driven, end_of, near_harmonic, transform
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, inner_kernel, kernel
-from ..one_mass.events import NO_END, STOP_THEN_BACK, EventSequence
-from ..one_mass.sliding_orbit import continuous_amplitude, orbit_phase
+from ..continuous_motion import continuous_amplitude, orbit_phase
+from ..event_codes import NO_END, STOP_THEN_BACK, EventSequence
 from ..structure.events import UNDER_WAY, after_slide, slide_on
 from ..structure.newton import (
     BETA,

@@ -19,7 +19,7 @@ from ...regimes import (
     UNRESOLVED,
 )
 from ..compiler import inner_kernel, kernel
-from ..one_mass.events import GRAZING, NO_END, STUCK
+from ..event_codes import GRAZING, NO_END, STUCK
 from ..structure.events import NO_RELEASE
 from .measure import measure, proven_stops
 from .memory import Recurrence, record_anchor, settled

@@ -3,16 +3,13 @@
 from typing import NamedTuple
 
 from ..compiler import kernel
-from ..one_mass.events import NO_END
-from ..one_mass.newton import half_periods
+from ..event_codes import NO_END
+from ..newton_limits import LONGEST_SLIDE
 from .motion import after_turn, bring_back, has_returned, keep_state, put_slide, put_stop, slide_to_turn
+from .periods import half_periods
 from .policies import ANCHOR
 from .records import SHORTEST_STOP, TURN, stops_at, turns_at
 from .segment_table import CONTACT_FORCE, EVENT, put_segment
-
-#: Longest slide of an orbit, in periods of the slower of oscillator and load; no resolved orbit has a longer
-#: one.
-_LONGEST_SLIDE = 100.0
 
 
 class Measured(NamedTuple):
@@ -48,7 +45,7 @@ def measure(motion, contact, orbit, table):
     contact_state, sign = orbit.contact_state, orbit.sign
     time = stuck = amplitude = 0.0
     stops = segments = count = 0
-    longest = _LONGEST_SLIDE * TURN * max(1.0, motion.r) / motion.h
+    longest = LONGEST_SLIDE * TURN * max(1.0, motion.r) / motion.h
     for _ in range(orbit.slides):
         if writes:
             put_slide(motion, contact_state, table[segments])

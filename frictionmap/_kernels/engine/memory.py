@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, inner_kernel, kernel
-from ..one_mass.newton import full_period, half_periods
+from .periods import full_period, half_periods
 
 #: Least and largest number of anchors kept; a steady period with more anchors is not recognised.
 _SHORTEST = 2048

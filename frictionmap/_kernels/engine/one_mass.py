@@ -11,25 +11,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, inner_kernel, kernel
-from ..one_mass.events import (
-    REVERSE,
-    STOP_THEN_BACK,
-    STOP_THEN_ON,
-    EventSequence,
-    Scratch,
-    after_slide,
-    make_scratch,
-    slide_within,
-)
+from ..continuous_motion import continuous_amplitude, orbit_phase
+from ..event_codes import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, EventSequence
+from ..one_mass.events import Scratch, after_slide, make_scratch, slide_within
 from ..one_mass.newton import first_contact_force, solve_orbit
 from ..one_mass.scan_step import Step, step_constants
-from ..one_mass.sliding_orbit import (
-    Oscillator,
-    continuous_amplitude,
-    distance_to_orbit,
-    orbit_phase,
-    stop_free_radius,
-)
+from ..one_mass.sliding_orbit import Oscillator, distance_to_orbit, stop_free_radius
 from .memory import STATE, Memory, make_memory, turned
 from .policies import FINE_STEPS, MOVING_START, MOVING_START_CAP
 from .records import Contact, ContactState, Orbit, known_orbit, no_orbit, stops_at

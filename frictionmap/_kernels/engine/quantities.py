@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import by_class, entry, kernel
-from ..one_mass.newton import full_period
-from ..one_mass.sliding_orbit import continuous_amplitude, orbit_phase
+from ..continuous_motion import continuous_amplitude, orbit_phase
 from ..structure.newton import Workspace, make_workspace
 from ..structure.oscillators import Scratch, make_scratch
 from ..structure.sliding_orbit import Continuous
@@ -43,6 +42,7 @@ from .extremes import (
 )
 from .harmonics import Spectrum, harmonics_of_continuous, harmonics_of_segments, make_spectrum
 from .measure import measure
+from .periods import full_period
 from .records import known_orbit
 from .segment_table import continuous_segment, segment_columns
 

@@ -17,8 +17,8 @@ from ...regimes import (
     UNRESOLVED,
 )
 from ..compiler import kernel
-from ..one_mass.events import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
-from ..one_mass.newton import full_period
+from ..event_codes import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
+from .periods import full_period
 
 #: A stop shorter than this (in tau) counts as a turn without a stop: its duration is rounding error, about
 #: 1e-15 for the load phase of one mass and up to 1e-13 for a sum over many modes.

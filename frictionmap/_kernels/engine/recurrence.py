@@ -1,4 +1,4 @@
-"""Recurrence detection."""
+"""Recurrence detection: whether a motion has returned to an earlier state."""
 
 import math
 

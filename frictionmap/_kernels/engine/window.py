@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..compiler import entry, kernel
-from ..one_mass.events import NO_END, STUCK
+from ..event_codes import NO_END, STUCK
 from ..structure.events import NO_RELEASE
 from .measure import measure
 from .motion import after_turn, at_frequency, bring_back, contact_at, keep_state, slide_to_turn, start

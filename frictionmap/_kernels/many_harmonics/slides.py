@@ -15,7 +15,7 @@ import numpy as np
 
 from ..closed_form import fastest_rate
 from ..compiler import entry, kernel
-from ..one_mass.events import first_root
+from ..taylor_series import first_root
 
 #: Largest angle of the fastest part per step [rad] ...
 _TURN = 0.5

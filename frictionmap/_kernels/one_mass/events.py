@@ -10,22 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, inner_kernel, kernel
-from .scan_step import MAX_TERMS, expand
-
-#: Event codes: what follows the end of a slide.
-REVERSE = 0  # turns without a stop
-STOP_THEN_BACK = 1  # stops, then slides in the opposite direction
-STOP_THEN_ON = 2  # stops, then slides on in the same direction
-GRAZING = 3  # the velocity touches zero and the slide continues: the load exceeds mu b in its direction
-STUCK = 4  # sticks permanently
-
-
-class EventSequence(NamedTuple):
-    """Events that end the slides of one recurrence, in order."""
-
-    events: np.ndarray  # ring buffer of event codes
-    first: int  # index of the first event in it
-    count: int
+from ..event_codes import GRAZING, NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
+from ..taylor_series import MAX_POLISH, MAX_TERMS, NEARLY, ONE_STEP, cubic_root, first_root, reversion
+from .scan_step import expand
 
 
 class Scratch(NamedTuple):
@@ -41,78 +28,8 @@ def make_scratch():
     return Scratch(np.empty(MAX_TERMS), np.full(1, np.inf))
 
 
-#: Code for a slide whose end was not found within the scan steps allowed.
-NO_END = -1
-
 #: 1/(k+1): from the series of the velocity to that of the displacement.
 _INVERSE = np.array([1.0 / (k + 1.0) for k in range(MAX_TERMS)])
-
-#: If the first guess of an event has a larger error than this, in scan steps, the velocity only touches zero
-#: there.
-NEARLY = 0.25
-
-#: A Newton step of fourth order shorter than this, in scan steps, converges to rounding.
-ONE_STEP = 2e-4
-
-MAX_POLISH = 8
-
-#: Limit on the steps to a root.  They converge quadratically, but pass a grazing minimum slowly, at a rate
-#: that is the square root of its curvature over the bound: a minimum of rounding depth takes thousands of
-#: steps.
-_MAX_APPROACH = 20000
-
-
-@kernel
-def first_root(p, first, terms):
-    """Find the first root in (0, 1] of p[first] + p[first+1] x + ...; 2.0 if there is none.
-
-    The value at 0 must be >= 0.  From x the polynomial stays above the parabola p(x) + p'(x) d - B d^2/2,
-    where B bounds |p''|; the step d to the root of the parabola passes no root of p, and at a simple root of
-    p the steps become Newton's from one side.  No root can be missed.
-    """
-    bound = 0.0
-    for k in range(first + 2, terms):
-        bound += (k - first) * (k - first - 1.0) * abs(p[k])
-    x = 0.0
-    for _ in range(_MAX_APPROACH):
-        value = 0.0
-        slope = 0.0
-        for k in range(terms - 1, first - 1, -1):
-            slope = slope * x + value
-            value = value * x + p[k]
-        if value <= 0.0 and (x > 0.0 or slope <= 0.0):
-            return x  # a zero at the start with a rising slope is not an exit
-        value = max(value, 0.0)
-        root = math.sqrt(slope * slope + 2.0 * bound * value)
-        # the parabola's root, in the form that does not cancel
-        if slope > 0.0:
-            if bound == 0.0:
-                return 2.0  # rises from here on
-            new = x + (slope + root) / bound
-        elif root > slope:
-            new = x + 2.0 * value / (root - slope)
-        else:
-            return 2.0  # constant
-        if new > 1.0:
-            return 2.0
-        if new == x:
-            return x
-        x = new
-    return x
-
-
-@kernel
-def cubic_root(w, slope, w1, slope1):
-    """Find the root in [0, 1] of the cubic with these values and slopes at 0 and 1, falling from w > 0 to w1
-    <= 0.
-    """
-    third = 2.0 * (w - w1) + slope + slope1
-    second = 3.0 * (w1 - w) - 2.0 * slope - slope1
-    x = w / (w - w1)
-    for _ in range(2):
-        value = w + x * (slope + x * (second + x * third))
-        x -= value / (slope + x * (2.0 * second + 3.0 * x * third))
-    return min(max(x, 0.0), 1.0)
 
 
 @kernel
@@ -132,15 +49,6 @@ def _sum_at(p, terms, x):
         even_rise = even_rise * square + p[k] * _INVERSE[k]
         odd_rise = odd_rise * square + p[k + 1] * _INVERSE[k + 1]
     return even + odd * x, (even_rise + odd_rise * x) * x
-
-
-@kernel
-def reversion(value, slope, bend, third):
-    """Find the root m of value + slope m + bend m^2/2 + third m^3/6, to fourth order in value/slope."""
-    inverse = 1.0 / slope
-    first = -value * inverse
-    second = 0.5 * bend * inverse
-    return first * (1.0 - first * (second - first * (2.0 * second * second - third * inverse * (1.0 / 6.0))))
 
 
 @kernel

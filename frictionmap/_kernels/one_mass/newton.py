@@ -12,28 +12,9 @@ import math
 
 from ..closed_form import decay
 from ..compiler import kernel
-from .events import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, after_slide, slide_within
-
-_MAX_NEWTON = 16
-
-#: Newton steps below this share of the displacement must shrink quadratically.
-_NEAR_END = 1e-6
-
-#: Longest slide of an orbit, in periods of the slower of oscillator and load; no resolved orbit has a longer
-#: one.
-_LONGEST_SLIDE = 100.0
-
-
-@kernel
-def half_periods(time):
-    """Number of half periods of the excitation nearest to a time in tau."""
-    return int(math.floor(time / math.pi + 0.5))
-
-
-@kernel
-def full_period(halves):
-    """Excitation periods of a motion that recurs after `halves` half periods, as its mirror image if odd."""
-    return halves if halves % 2 == 1 else halves // 2
+from ..event_codes import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON
+from ..newton_limits import LONGEST_SLIDE, MAX_NEWTON, NEAR_END
+from .events import after_slide, slide_within
 
 
 @kernel
@@ -52,7 +33,7 @@ def first_contact_force(b, mu_b, z, c):
 @kernel
 def longest_slide(step, r):
     """Longest slide of an orbit, in scan steps."""
-    return _LONGEST_SLIDE * 2.0 * math.pi * max(1.0, r) / step.h
+    return LONGEST_SLIDE * 2.0 * math.pi * max(1.0, r) / step.h
 
 
 @kernel
@@ -138,7 +119,7 @@ def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolera
         modulus of the multipliers of one recurrence
     """
     last = math.inf
-    for _ in range(_MAX_NEWTON):
+    for _ in range(MAX_NEWTON):
         if after_stop:
             c, s = stop_ends(mu_b, z)
             if not s < 0.0:
@@ -174,7 +155,7 @@ def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolera
             break
         if size <= tolerance * abs(z) and size >= 0.5 * last:
             return True, z, c, s, contraction  # converged to rounding
-        if size > 0.25 * last and tolerance * abs(z) < size < _NEAR_END * abs(z):
+        if size > 0.25 * last and tolerance * abs(z) < size < NEAR_END * abs(z):
             break  # not quadratic: the map only touches the identity there (marginal continua, R = 1/(2n))
         z += move
         if turn != 0.0:

@@ -17,12 +17,7 @@ import numpy as np
 
 from ..closed_form import fastest_rate
 from ..compiler import entry, kernel
-
-#: Largest number of Taylor terms, for the lowest allowed number of scan steps per period.
-MAX_TERMS = 44
-
-#: Taylor terms below this size relative to the first are rounding error.
-_NEGLIGIBLE = 1e-18
+from ..taylor_series import series_terms
 
 
 class Step(NamedTuple):
@@ -110,22 +105,6 @@ def expand(step, b, z, w, acceleration, c, s, out):
             - b * series[4, k]
         )  # fmt: skip
     out[1] = acceleration
-
-
-@kernel
-def series_terms(steps):
-    """Return (turn, terms): angle of the fastest part per step, and number of Taylor terms for that angle.
-
-    The number of steps per period is made odd, so that a slide of half a period (every slide of a continuous
-    motion) ends inside a step and not next to a node.
-    """
-    turn = 2.0 * math.pi / (2.0 * math.floor(0.5 * steps) + 1.0)
-    terms = 4
-    size = turn * turn * turn * turn / 24.0
-    while size > _NEGLIGIBLE and terms < MAX_TERMS:
-        terms += 1
-        size *= turn / terms
-    return turn, terms
 
 
 @entry

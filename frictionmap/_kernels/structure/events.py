@@ -6,7 +6,7 @@ Every slide is followed upwards; downward slides are mirrored.
 import math
 
 from ..compiler import kernel
-from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
+from ..event_codes import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
 from .oscillators import AT_LIMIT, FAILED, ROSE, STARTS_INSIDE, scan
 from .state import (
     contact_displacement,
@@ -19,7 +19,7 @@ from .state import (
     vibrates_in_step,
 )
 
-#: Code in addition to those of `one_mass.events`: it was not determined whether the stop ends.
+#: Code in addition to those of `event_codes`: it was not determined whether the stop ends.
 NO_RELEASE = 5
 
 #: Value of `contact_force` for a slide that is already under way.

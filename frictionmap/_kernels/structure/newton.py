@@ -13,12 +13,11 @@ import numpy as np
 
 from ..closed_form import decay
 from ..compiler import entry, kernel
-from ..one_mass.events import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
+from ..event_codes import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
+from ..newton_limits import MAX_NEWTON, NEAR_END
 from .events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
 from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA
 from .state import PUSH, SPEED, SPEED_RATE, STATIC_SHAPE, Z_RATE, Z, energy
-
-_MAX_NEWTON = 16
 
 #: Largest number of events recorded by `follow_events`.
 LONGEST_SEQUENCE = 64
@@ -27,9 +26,6 @@ LONGEST_SEQUENCE = 64
 #: number of slides, beta, and beta of the previous orbit, NaN if that is anchored at another phase.
 HALVES, PHASE_COS, PHASE_SIN, SIDE, SLIDES, BETA, EARLIER_BETA = 0, 1, 2, 3, 4, 5, 6
 ANCHORED = 7
-
-#: Newton steps below this share of the motion must shrink quadratically.
-_NEAR_END = 1e-6
 
 #: Squarings of the derivative for its spectral radius: the root of this power is exact to rounding.
 _SQUARINGS = 40
@@ -417,14 +413,14 @@ def solve_return(st, beta, mu_beta, c, s, sequence, halves, tolerance, work, scr
     """
     n = st.n
     last = math.inf
-    for _ in range(_MAX_NEWTON):
+    for _ in range(MAX_NEWTON):
         move, miss = newton_step(st, beta, mu_beta, c, s, sequence, halves, work, scratch)
         if not move < math.inf:
             return False
         scale = energy(st, work.middle)
         if move <= tolerance * scale and move >= 0.5 * last:
             return True  # converged to rounding
-        if move > 0.25 * last and tolerance * scale < move < _NEAR_END * scale:
+        if move > 0.25 * last and tolerance * scale < move < NEAR_END * scale:
             return False  # not quadratic: the map only touches the identity there
         for i in range(n):
             work.middle[0, i] += work.moved[0, i]

@@ -16,8 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, inner_kernel, kernel
-from ..one_mass.events import MAX_POLISH, NEARLY, ONE_STEP, cubic_root, first_root, reversion
-from ..one_mass.scan_step import MAX_TERMS
+from ..taylor_series import MAX_POLISH, MAX_TERMS, NEARLY, ONE_STEP, cubic_root, first_root, reversion
 
 # Columns of a table of oscillators, one oscillator per row: the equation, the watched sum, ...
 K, D, FC, FS, F1, OZ, OW = 0, 1, 2, 3, 4, 5, 6

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..closed_form import decay
 from ..compiler import kernel
-from ..one_mass.sliding_orbit import since_maximum
+from ..continuous_motion import since_maximum
 from .oscillators import OW, OZ, YC, YS, bounds, step_on, watch_load
 from .state import DAMPING, LOAD, LOAD_RATE, PUSH, W, contact_load
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..closed_form import fastest_rate
 from ..compiler import entry, kernel
-from ..one_mass.scan_step import series_terms
+from ..taylor_series import series_terms
 from .oscillators import (
     COLUMNS,
     F1,

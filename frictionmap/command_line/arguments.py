@@ -1,0 +1,340 @@
+"""Command-line arguments: every command with its options and help texts."""
+
+import argparse
+from argparse import Action, ArgumentParser
+from argparse import Namespace as Options
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple, NoReturn
+
+from ..version import __version__
+
+__all__ = [
+    "CONTACTS",
+    "QUANTITIES",
+    "RIGS",
+    "SHELLS",
+    "Action",
+    "Argument",
+    "ArgumentParser",
+    "Command",
+    "Options",
+    "build_parser",
+    "described",
+    "one_line",
+    "parse",
+    "subcommands",
+]
+
+#: Valid contacts of `System` and kinds of data of `identify`.  They are repeated here because importing them
+#: would take longer than all of `--help`; a test compares them.
+CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
+RIGS = ("free-decay", "forced", "record", "sweep")
+
+#: Shells that shtab knows; repeated here as the above, and compared by the same test.
+SHELLS = ("bash", "zsh", "tcsh", "fish", "powershell")
+
+#: Quantities of response curves and of responses that `plot` draws, compared by the same test.
+QUANTITIES = (
+    "amplitude",
+    "first_harmonic",
+    "contact",
+    "harmonics",
+    "energy",
+    "transmitted_force",
+    "history",
+    "orbit",
+)
+
+_DESCRIPTION = """\
+Exact regime maps of a vibrating structure with one dry-friction contact: does the contact slide
+continuously, stick and slip, or stay stuck, for each frequency ratio r, friction ratio beta and
+static-to-kinetic ratio mu?"""
+
+_EPILOG = """\
+getting started:
+  frictionmap init                                           write a configuration, map.toml
+  frictionmap explore map.toml                               show its map in the browser
+  frictionmap map map.toml && frictionmap plot map.nc        write the map and its picture to files
+
+exit status: 0 success, 1 any other error, 2 invalid input, 130 interrupted"""
+
+
+def one_line(message: object) -> str:
+    """Join a message into one line: names and keys in it may contain line breaks."""
+    return " ".join(str(message).split())
+
+
+class _Parser(argparse.ArgumentParser):
+    """Parser with one-line errors that accepts no abbreviated options: --over is not --overwrite."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(allow_abbrev=False, **settings)
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {one_line(message)} (see {self.prog} --help)\n")
+
+
+class _Once(argparse.Action):
+    """Option that may be given once; argparse would silently drop the first of two values."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: Options, values: object, option: str | None = None
+    ) -> None:
+        if getattr(namespace, self.dest, None) is not None:
+            raise argparse.ArgumentError(self, "must be given once")
+        setattr(namespace, self.dest, values)
+
+
+def _file(text: str) -> Path:
+    """Check the name of an output: a file, or a store, which is a folder."""
+    if text in ("", "-") or (text.endswith(("/", "\\")) and not text.rstrip("/\\").endswith(".zarr")):
+        raise argparse.ArgumentTypeError(f"must be the name of a file; got {text!r}")
+    return Path(text)
+
+
+def _threads(text: str) -> int:
+    if (number := int(text)) < 1:
+        raise argparse.ArgumentTypeError(f"must be >= 1; got {text}")
+    return number
+
+
+def _port(text: str) -> int:
+    if not 0 <= (number := int(text)) <= 65535:
+        raise argparse.ArgumentTypeError(f"must be 0 to 65535; got {text}")
+    return number
+
+
+_threads.__name__ = _port.__name__ = "whole number"  # its name in argparse's errors
+
+
+def _ratio(text: str) -> float | str:
+    """Convert a ratio; leave a number with a unit as text, to be checked where the units are known."""
+    try:
+        return float(text)
+    except ValueError:
+        if text[:1].isalpha() or not text:
+            raise
+        return text
+
+
+_ratio.__name__ = "float"  # its name in argparse's errors
+
+
+def _address(text: str) -> str:
+    if not text:
+        raise argparse.ArgumentTypeError("must be an address such as tcp://10.0.0.1:8786; got ''")
+    return text
+
+
+def _takes_output(sub: argparse.ArgumentParser, metavar: str, text: str) -> None:
+    sub.add_argument("-o", dest="output", metavar=metavar, type=_file, action=_Once, help=text)
+    _takes_replacement(sub)
+
+
+def _takes_replacement(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("--overwrite", action="store_true", help="replace an existing output")
+    sub.add_argument("--quiet", action="store_true", help="print errors only")
+
+
+def _takes_config(
+    sub: argparse.ArgumentParser,
+    name: str = "CONFIG",
+    what: str = "configuration of the computation",
+    key: str = "grid.r.step=0.01",
+    out: str = "OUT.nc",
+) -> None:
+    sub.add_argument("config", metavar=f"{name}.toml", type=Path, help=what)
+    _takes_output(sub, out, f"output file (default: named after {name}, in the current folder)")
+    _takes_overrides(sub, name, key)
+
+
+def _takes_overrides(
+    sub: argparse.ArgumentParser, name: str = "CONFIG", key: str = "grid.r.step=0.01"
+) -> None:
+    text = f"override a key of {name}, e.g. --set {key}; repeatable, once per key"
+    sub.add_argument("--set", dest="overrides", metavar="KEY=VALUE", action="append", default=[], help=text)
+
+
+def _takes_yes(sub: argparse.ArgumentParser) -> None:
+    text = "run even if the estimated memory exceeds what is available"
+    sub.add_argument("--yes", action="store_true", help=text)
+
+
+def _takes_threads(sub: argparse.ArgumentParser) -> None:
+    text = "number of threads (default: all processors); results do not depend on it"
+    sub.add_argument("--threads", metavar="N", type=_threads, action=_Once, help=text)
+
+
+def _takes_cell(sub: argparse.ArgumentParser) -> None:
+    with_unit = "; with [units] in CONFIG also '"
+    sub.add_argument(
+        "--r", type=_ratio, required=True, action=_Once, help=f"frequency ratio, > 0{with_unit}4.2 Hz'"
+    )
+    sub.add_argument(
+        "--beta", type=_ratio, required=True, action=_Once, help=f"friction ratio, >= 0{with_unit}2 N'"
+    )
+    text = "static over kinetic friction, >= 1 (default: grid.mu of CONFIG if it is a single value)"
+    sub.add_argument("--mu", type=float, action=_Once, help=text)
+
+
+def _takes_choices(sub: argparse.ArgumentParser) -> None:
+    text = "select a value on a further axis, e.g. --at damping_ratios=0.01; repeatable"
+    sub.add_argument("--at", metavar="NAME=VALUE", action="append", default=[], help=text)
+
+
+def _takes_over(sub: argparse.ArgumentParser, what: str) -> None:
+    text = (
+        f"{what} the share of each regime over a further axis such as sample, and quantiles of the boundaries"
+    )
+    sub.add_argument("--over", metavar="NAME", action=_Once, help=text)
+
+
+def _takes_page(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("config", metavar="CONFIG.toml", type=Path, help="configuration of the map to explore")
+    _takes_overrides(sub)
+    text = "local port of the page (default: 8712, or any free port)"
+    sub.add_argument("--port", metavar="N", type=_port, action=_Once, help=text)
+    text = "print the address without opening a browser"
+    sub.add_argument("--no-browser", action="store_true", help=text)
+    text = "save the page as a single file, with precomputed maps for its sliders, instead of serving it"
+    sub.add_argument("--export", dest="output", metavar="PAGE.html", type=_file, action=_Once, help=text)
+    _takes_replacement(sub)
+
+
+def _takes_workers(sub: argparse.ArgumentParser) -> None:
+    where = sub.add_mutually_exclusive_group()
+    text = "compute OUT.zarr with N local worker processes (needs dask)"
+    where.add_argument("--workers", metavar="N", type=_threads, action=_Once, help=text)
+    text = "compute OUT.zarr on the workers of a running dask scheduler"
+    where.add_argument("--scheduler", metavar="ADDRESS", type=_address, action=_Once, help=text)
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Build the parser of the whole command line."""
+    parser = _Parser(
+        prog="frictionmap",
+        description=_DESCRIPTION,
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"frictionmap {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    def command(name: str, text: str, description: str) -> argparse.ArgumentParser:
+        return commands.add_parser(name, help=text, description=description)
+
+    text = "Determine the regime and the stops per cycle of every cell of a grid; write NetCDF."
+    sub = command("map", "regime of every cell of a grid", text)
+    _takes_config(sub, out="OUT.nc|OUT.zarr")
+    _takes_threads(sub)
+    _takes_yes(sub)
+    _takes_workers(sub)
+    text = "Compute amplitude, phase, harmonics and energy over frequency; write NetCDF."
+    sub = command("curves", "response curves: amplitude, phase, harmonics, energy", text)
+    _takes_config(sub)
+    _takes_threads(sub)
+    _takes_yes(sub)
+    text = "Compute the regime boundaries over frequency, without classifying cells; write NetCDF."
+    _takes_config(command("boundaries", "regime boundaries only", text))
+    text = "Compute the time history of one steady state; write NetCDF."
+    sub = command("response", "time history of one steady state", text)
+    _takes_config(sub)
+    _takes_cell(sub)
+    text = "Open an interactive map in the browser; it runs locally and sends nothing over the network."
+    _takes_page(command("explore", "interactive map in the browser", text))
+    text = (
+        "Fit friction, damping and natural frequency to measured data; print the estimates with their "
+        "standard errors, write NetCDF."
+    )
+    sub = command("identify", "friction, damping and natural frequency from measured data", text)
+    _takes_config(sub, "RIG", "description of the data and of the known parameters", "data.window=[0.5,4]")
+    sub = command("plot", "picture of any output file", "Draw any file written by the other commands.")
+    sub.add_argument("file", metavar="FILE", type=Path, help="file to draw: FILE.nc, or a store FILE.zarr")
+    _takes_output(sub, "PICTURE", ".png, .pdf or .svg (default: FILE.png in the current folder)")
+    text = (
+        "quantity to draw; response curves: amplitude (with the phase), first_harmonic, contact, harmonics, "
+        "energy or transmitted_force (default: the first available); a response: history (default) or orbit"
+    )
+    sub.add_argument("--quantity", metavar="NAME", action=_Once, help=text)
+    _takes_choices(sub)
+    _takes_over(sub, "draw")
+    sub.add_argument("--log", action="store_true", help="logarithmic amplitude axis for response curves")
+    text = "Write a map, or a slice of one, as NetCDF or as a table (CSV)."
+    sub = command("export", "map or slice as NetCDF or CSV", text)
+    sub.add_argument("file", metavar="FILE", type=Path, help="file to read: FILE.nc, or a store FILE.zarr")
+    _takes_output(sub, "OUT", "OUT.nc or OUT.csv (default: FILE.csv in the current folder)")
+    _takes_choices(sub)
+    _takes_over(sub, "write")
+    sub = command("info", "summary of a file", "Summarise the contents of a file in one screen.")
+    sub.add_argument("file", metavar="FILE", type=Path, help="file to read: FILE.nc, or a store FILE.zarr")
+    _takes_choices(sub)
+    _takes_beginnings(command)
+    return parser
+
+
+def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:
+    """Add the commands that help to write configurations and command lines."""
+    text = "Write a commented configuration that explains every key and runs as it stands."
+    sub = command("init", "write a commented configuration", text)
+    text = "output file (default: map.toml, or rig.toml with --rig, in the current folder)"
+    sub.add_argument("config", metavar="NAME.toml", type=_file, nargs="?", help=text)
+    which = sub.add_mutually_exclusive_group()
+    text = f"kind of contact: {', '.join(CONTACTS)} (default: {CONTACTS[0]})"
+    which.add_argument("--contact", choices=CONTACTS, metavar="CONTACT", action=_Once, help=text)
+    text = f"configuration for measured data, with a synthetic data file: {', '.join(RIGS)}"
+    which.add_argument("--rig", choices=RIGS, metavar="KIND", action=_Once, help=text)
+    _takes_replacement(sub)
+    text = "Print the JSON Schema of configurations, with which editors complete and check them."
+    sub = command("schema", "JSON schema of configurations, for editors", text)
+    sub.add_argument("--rig", action="store_true", help="schema of configurations for identify")
+    text = "Print the completion script of a shell, to be loaded when the shell starts."
+    sub = command("completion", "shell completion for bash, zsh, tcsh, fish or PowerShell", text)
+    sub.add_argument("shell", choices=SHELLS, metavar="SHELL", help=f"one of {', '.join(SHELLS)}")
+
+
+class Argument(NamedTuple):
+    """An argument of a command as shown in its help."""
+
+    flags: tuple[str, ...]  # empty for a positional argument
+    metavar: str  # empty if it takes no value
+    choices: tuple[str, ...]
+    help: str
+
+
+class Command(NamedTuple):
+    """A command as shown in its help."""
+
+    name: str
+    help: str
+    description: str
+    usage: str
+    arguments: tuple[Argument, ...]
+
+
+def subcommands(parser: ArgumentParser) -> argparse._SubParsersAction:
+    """Return the action of a parser that holds the parsers of its commands, by name, as `choices`."""
+    (commands,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    return commands
+
+
+def described() -> Iterator[Command]:
+    """List every command with its arguments, for completion and for the manual."""
+    commands = subcommands(build_parser())
+    for listed in commands._choices_actions:
+        sub = commands.choices[listed.dest]
+        usage = " ".join(sub.format_usage().removeprefix("usage: ").split())
+        arguments = tuple(_described(action) for action in sub._actions)
+        yield Command(listed.dest, str(listed.help), str(sub.description), usage, arguments)
+
+
+def _described(action: argparse.Action) -> Argument:
+    takes_value = action.nargs != 0
+    metavar = str(action.metavar or action.dest.upper()) if takes_value else ""
+    choices = tuple(str(choice) for choice in action.choices or ())
+    return Argument(tuple(action.option_strings), metavar, choices, str(action.help))
+
+
+def parse(arguments: Sequence[str]) -> Options:
+    """Parse and check the arguments; help, version and errors end the program."""
+    return build_parser().parse_args(arguments)

@@ -1,0 +1,430 @@
+"""The command line: parses, calls, writes; no logic of its own."""
+
+import contextlib
+import functools
+import shlex
+import sys
+import time
+from collections.abc import Callable, Collection, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import InputError, NoSteadyState
+from .arguments import CONTACTS, QUANTITIES, Options, build_parser, one_line, parse
+from .interrupts import before_exit
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..explorer.scene import Scene
+    from ..files.config import Config
+    from ..files.places import Output
+    from ..stores.run import Fill
+    from .progress import Progress
+
+
+#: Beginnings of --at that a shell completes: the further axes in most frequent use.
+_FURTHER_AXES = ("damping_ratios=", "mass_ratios_2=", "stiffness_ratios_2=", "sample=")
+
+#: Cells of a map from which on its cost is told before it is taken.
+_MANY = 3_000_000
+
+
+def _finish(ds: "xr.Dataset", config: "Config", options: Options) -> Callable[[Path], None]:
+    """What writes the dataset, once it is told where."""
+    from ..files.storage import write_netcdf
+
+    ds.attrs["title"] = config.title
+    ds.attrs["config"] = config.text
+    return lambda scratch: write_netcdf(ds, scratch, options.command_line)
+
+
+def _tell(options: Options, output: "Output", *summary: str) -> None:
+    if not options.quiet:
+        _print("\n  ".join((f"{summary[0]}; wrote {output.path}", *summary[1:])))
+
+
+def _map(options: Options, config: "Config", output: "Output") -> None:
+    from ..steady.sweep import sweep
+
+    points = 1 if config.variations is None else config.variations.count
+    cells = points * config.mu.size * config.r.size * config.beta.size
+
+    def run(progress: "Progress") -> "xr.Dataset":
+        if cells >= _MANY and not options.quiet:
+            progress.say(f"{cells:,} cells take about {_cost(options, config)}", always=True)
+        return sweep(config.system, config.r, config.beta, config.mu, solver=config.solver,
+                     axes=config.variations, threads=options.threads, progress=progress,
+                     units=config.units)  # fmt: skip
+
+    _fill_cells(options, config, output, f"map of {cells:,} cells", run)
+
+
+def _curves(options: Options, config: "Config", output: "Output") -> None:
+    from ..steady.curves import curves
+
+    asked = config.curves
+
+    def run(progress: "Progress") -> "xr.Dataset":
+        return curves(config.system, config.r, config.beta, config.mu, harmonics=asked.harmonics,
+                      quantities=asked.quantities, solver=config.solver, threads=options.threads,
+                      progress=progress, units=config.units)  # fmt: skip
+
+    lines = config.mu.size * config.beta.size
+    _fill_cells(options, config, output, f"{lines:,} response curves", run)
+
+
+def _fill_cells(
+    options: Options, config: "Config", output: "Output", what: str, run: Callable[["Progress"], "xr.Dataset"]
+) -> None:
+    """Compute a grid of cells with progress shown, write it, and tell what came out."""
+    from .._kernels.compiler.notices import listeners
+    from ..files.summary import describe_causes, describe_map, describe_reduction
+    from .progress import Progress
+
+    with Progress(what, options.quiet) as progress:
+        listeners.append(progress.compiling)
+        began = time.perf_counter()
+        ds = run(progress)
+        took = time.perf_counter() - began
+        output.fill(_finish(ds, config, options), lambda size: progress.writing(output.path, size))
+        listeners.remove(progress.compiling)
+    first = f"{describe_map(ds)} in {took:.2g} s"
+    _tell(options, output, first, *describe_causes(ds), *describe_reduction(ds))
+
+
+def _cost(options: Options, config: "Config") -> str:
+    from ..steady.cost import in_bytes, in_time, memory_of_map, seconds_of_map
+
+    axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
+    counts = {name: axis.size for name, axis in axes.items()}
+    counts["points"] = 1 if config.variations is None else config.variations.count
+    memory = memory_of_map(counts, config.system.n, tuple(config.solver.outputs), config.units)
+    seconds = counts["points"] * seconds_of_map(
+        config.system, **axes, solver=config.solver, threads=options.threads
+    )
+    return f"{in_bytes(memory)} of memory and {in_time(seconds)}"
+
+
+def _boundaries(options: Options, config: "Config", output: "Output") -> None:
+    from ..files.summary import describe_reduction
+    from ..theory.boundaries import boundaries
+
+    ds = boundaries(config.system, config.r, config.mu, units=config.units)
+    output.fill(_finish(ds, config, options))
+    _tell(options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu", *describe_reduction(ds))
+
+
+def _response(options: Options, config: "Config", output: "Output") -> None:
+    from ..files.summary import describe_response
+    from ..steady.response import response
+
+    mu = _one_mu(config) if options.mu is None else options.mu
+    ds = response(config.system, options.r, options.beta, mu, solver=config.solver, units=config.units)
+    output.fill(_finish(ds, config, options))
+    _tell(options, output, describe_response(ds))
+
+
+def _one_mu(config: "Config") -> float:
+    """The mu of a configuration that has one."""
+    if config.mu.size > 1:
+        values = ", ".join(f"{mu:g}" for mu in config.mu[:5])
+        raise InputError(f"--mu must be given where grid.mu has {config.mu.size} values; they are {values}")
+    return float(config.mu[0])
+
+
+def _compute(options: Options) -> None:
+    from ..files.config import load_config
+    from ..files.places import claimed
+    from ..steady.cost import refuse_curves_without_memory, refuse_map_without_memory
+
+    rooms = {"map": refuse_map_without_memory, "curves": refuse_curves_without_memory}
+    room = rooms.get(options.command)
+    if options.command == "map" and _is_store(options):
+        _store(options)
+        return
+    _refuse_store(options)
+    config = load_config(options.config, options.overrides, None if room and options.yes else room)
+    ending = "" if options.command == "map" else f"-{options.command}"
+    if config.variations is not None and options.command != "map":
+        raise InputError(f"[axes] must be left out for {options.command}: further axes are of maps")
+    path = options.output or Path(f"{config.name}{ending}.nc")
+    commands = {"map": _map, "curves": _curves, "boundaries": _boundaries, "response": _response}
+    command = commands[options.command]
+    with claimed(path, options.overwrite, config.files) as output:
+        command(options, config, output)
+
+
+def _is_store(options: Options) -> bool:
+    """Whether a map goes into a store, block by block."""
+    stored = options.output is not None and options.output.suffix == ".zarr"
+    if not stored and (options.workers or options.scheduler):
+        raise InputError("--workers and --scheduler must come with a store, -o OUT.zarr")
+    if options.threads and (options.workers or options.scheduler):
+        raise InputError("--threads must be left out with --workers and --scheduler: a worker has one thread")
+    return stored
+
+
+def _refuse_store(options: Options) -> None:
+    if options.output is not None and options.output.suffix == ".zarr":
+        raise InputError(f"-o must be a file for {options.command}: stores are of maps; got {options.output}")
+
+
+def _store(options: Options) -> None:
+    """Compute a map into a store, or go on with one."""
+    from .._kernels.compiler.notices import listeners
+    from ..files.config import load_config
+    from ..files.studies import describe_cells
+    from ..stores.cuts import cut_by_cost
+    from ..stores.run import fill_store
+    from ..stores.study import study_of
+    from .progress import Progress
+
+    config = load_config(options.config, options.overrides, lambda *_: None)  # a block is all that is held
+    axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
+    study = study_of(config.system, config.variations, axes, config.solver, config.units)
+    find_cut = functools.partial(cut_by_cost, workers=options.workers or 0, threads=options.threads)
+    with Progress(f"map of {study.cells:,} cells", options.quiet) as progress:
+        fill = _fill(options, progress)
+        listeners.append(progress.compiling)
+        store = fill_store(options.output, study, config.title, fill, options.overwrite, progress, find_cut)
+        listeners.remove(progress.compiling)
+    if not options.quiet:
+        first, *others = describe_cells(store.path)
+        _print("\n  ".join((f"{first}; wrote {options.output}", *others)))
+
+
+def _fill(options: Options, progress: "Progress") -> "Fill":
+    """What computes the blocks of a store."""
+    from ..stores.run import in_this_process
+
+    if not options.workers and not options.scheduler:
+        return in_this_process(options.threads)
+    from ..stores import workers
+
+    if options.scheduler:
+        return workers.running(options.scheduler, lambda text: progress.say(text, always=True))
+    return workers.local(options.workers)
+
+
+def _explore(options: Options) -> None:
+    """Serve the page until an interrupt, or write it as a file."""
+    from ..explorer.scene import scene_of
+    from ..files.config import load_config
+
+    config = load_config(options.config, options.overrides, lambda *_: None)  # the page has its own grid
+    scene = scene_of(config)
+    if options.output is not None:
+        _export_page(options, scene)
+        return
+    from ..explorer.server import begin, open_server, show
+
+    server = open_server(scene, options.port)
+    begin(server)
+    before_exit(lambda: "the page is closed")
+    _print(f"{scene.title} at {server.url} until Ctrl-C")
+    if not options.no_browser:
+        show(server.url)
+    server.serve_forever()
+
+
+def _put(content: bytes, path: Path) -> None:
+    path.write_bytes(content)
+
+
+def _export_page(options: Options, scene: "Scene") -> None:
+    from .._kernels.compiler.notices import listeners
+    from ..explorer.stored import check_page, write_page
+    from ..files.places import claimed
+    from .progress import Progress
+
+    check_page(options.output)
+    with claimed(options.output, options.overwrite, scene.files) as output:
+        with Progress(f"page of {scene.title}", options.quiet, "maps") as progress:
+            listeners.append(progress.compiling)
+            page = write_page(scene, progress)
+            listeners.remove(progress.compiling)
+        output.fill(lambda scratch: _put(page, scratch))
+    if not options.quiet:
+        _print(f"wrote {options.output} ({len(page) / 1e6:.2g} MB)")
+
+
+def _identify(options: Options) -> None:
+    from ..files.estimates import describe_estimates
+    from ..files.places import claimed
+    from ..files.storage import write_netcdf
+    from ..identify.rigs.configuration import identify, load_rig
+
+    _refuse_store(options)
+    rig = load_rig(options.config, options.overrides)
+    path = options.output or Path(f"{rig.name}-identify.nc")
+    with claimed(path, options.overwrite, rig.files) as output:
+        ds = identify(rig)
+        output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
+    _tell(options, output, rig.title, *describe_estimates(ds))
+
+
+def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None) -> "xr.Dataset":
+    """The point of a file, or its shares over an axis, that the arguments choose; `only`: see `read`."""
+    from ..files.reading import read
+    from ..files.slices import parse_choices
+    from ..probabilities import read_shares
+
+    choices = parse_choices(options.at)
+    if options.over is None:
+        return read(options.file, only, choices)
+    return read_shares(options.file, options.over, choices)
+
+
+def _plot(options: Options) -> None:
+    from ..files.places import claimed
+    from ..plot import PICTURED, check_picture, save_picture
+
+    ds = _chosen(options, PICTURED)
+    path = options.output or Path(f"{options.file.stem}.png")
+    check_picture(path)
+    with claimed(path, options.overwrite, [options.file]) as output:
+        output.fill(lambda scratch: save_picture(ds, scratch, options.quantity, log=options.log))
+    if not options.quiet:
+        _print(f"wrote {path}")
+
+
+def _export(options: Options) -> None:
+    from ..files.export import check_export, write_export
+    from ..files.places import claimed
+
+    path = options.output or Path(f"{options.file.stem}.csv")
+    check_export(path)
+    with claimed(path, options.overwrite, [options.file]) as output:
+        ds = _chosen(options)
+        output.fill(lambda scratch: write_export(ds, scratch, options.command_line))
+    if not options.quiet:
+        _print(f"wrote {path}")
+
+
+def _info(options: Options) -> None:
+    from ..files.reading import read
+    from ..files.slices import parse_choices
+    from ..files.studies import describe_study, is_study
+    from ..files.summary import describe_file
+
+    if not options.at and is_study(options.file):
+        _print(describe_study(options.file))
+    else:
+        _print(describe_file(read(options.file, at=parse_choices(options.at))))
+
+
+def _init(options: Options) -> None:
+    """Write a configuration to begin with; that of a rig with the data that it reads beside it."""
+    from ..files.places import claimed
+
+    path = options.config or Path("rig.toml" if options.rig else "map.toml")
+    if path.suffix != ".toml":
+        raise InputError(f"NAME.toml must end in .toml; got {path}")
+    if options.rig:
+        from ..examples import starting_rig
+
+        text, data = starting_rig(options.rig)
+        texts = {path: text, path.parent / f"{options.rig}.csv": data}
+        then = f"frictionmap identify {path}"
+    else:
+        from ..files.template import starting_configuration
+
+        texts = {path: starting_configuration(path.stem, options.contact or CONTACTS[0])}
+        then = f"frictionmap explore {path}, or frictionmap map {path} && frictionmap plot {path.stem}.nc"
+    with contextlib.ExitStack() as places:
+        outputs = [
+            places.enter_context(claimed(place, options.overwrite, name="NAME.toml")) for place in texts
+        ]
+        for output, text in zip(outputs, texts.values(), strict=True):
+            output.fill(functools.partial(_write, text=text))
+    if not options.quiet:
+        _print(f"wrote {', '.join(map(str, texts))}; next: {then}")
+
+
+def _write(scratch: Path, text: str) -> None:
+    scratch.write_text(text, encoding="utf-8", newline="\n")
+
+
+def _schema(options: Options) -> None:
+    import json
+
+    if options.rig:
+        from ..identify.rigs.keys import rig_schema as schema
+    else:
+        from ..files.json_schema import map_schema as schema
+    _print(json.dumps(schema(), indent=2))
+
+
+def _completion(options: Options) -> None:
+    from ..files.keys import KEYS
+    from ..identify.rigs.keys import rig_settings
+    from .completion import completion
+
+    settings = [f"{section}.{key.name}=" for section, keys in KEYS.items() if section for key in keys]
+    words: dict[str, dict[str, Sequence[str]]] = {
+        "identify": {"--set": [f"{key}=" for key in rig_settings()]},
+        "": {"--set": settings, "--at": _FURTHER_AXES, "--quantity": QUANTITIES},
+    }
+    _print(completion(build_parser(), options.shell, words))
+
+
+def _print(text: str) -> None:
+    """Print, so that it has arrived."""
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:  # whoever reads it has had enough
+        raise
+    except OSError as error:
+        raise OSError(f"what was to be printed is lost ({error.strerror}): {text}") from error
+
+
+def _complain(error: Exception) -> None:
+    with contextlib.suppress(OSError):  # nobody to hear it
+        print(f"frictionmap: {one_line(error) or type(error).__name__}", file=sys.stderr)
+
+
+def _check_text(arguments: Sequence[str]) -> None:
+    """Refuse what no file could record, before any work is done."""
+    for argument in arguments:
+        try:
+            argument.encode()
+        except UnicodeEncodeError:
+            encoding = sys.getfilesystemencoding().upper()
+            raise InputError(f"arguments must be text in {encoding}; got {argument!r}") from None
+
+
+#: What runs a command; others compute what a configuration says.
+_COMMANDS: dict[str, Callable[[Options], None]] = {
+    "plot": _plot,
+    "info": _info,
+    "identify": _identify,
+    "export": _export,
+    "explore": _explore,
+    "init": _init,
+    "schema": _schema,
+    "completion": _completion,
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the program; the exit status."""
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    options = parse(given)
+    from ..files.places import abandon
+
+    options.command_line = f"frictionmap {shlex.join(given)}"
+    run = _COMMANDS.get(options.command, _compute)
+    before_exit(abandon)
+    try:
+        _check_text(given)
+        run(options)
+    except InputError as error:
+        _complain(error)
+        return 2
+    except BrokenPipeError:  # whoever reads what we print has had enough
+        return 0
+    except (NoSteadyState, OSError, MemoryError) as error:
+        _complain(error)
+        return 1
+    return 0

@@ -1,0 +1,95 @@
+"""What a long run is at, on standard error: a line that is renewed on a terminal, some lines elsewhere."""
+
+import sys
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from ..steady.cost import in_bytes, in_time
+
+#: Seconds after which work counts as long, and between two looks at it.
+_LONG, _BETWEEN = 0.5, 0.1
+
+_COMPILING = "compiling kernels, once: up to a minute"
+
+
+class Progress:
+    """Of one piece of work, named by `what`, as a context.
+
+    parts : what is counted, such as "maps", if the work is done one by one; each is told when it is done
+    """
+
+    def __init__(self, what: str, quiet: bool, parts: str = "") -> None:
+        self._what, self._parts = what, parts
+        self._done = 0  # parts
+        self._active = sys.stderr is not None and not quiet
+        self._terminal = self._active and sys.stderr.isatty()
+        self._began = time.monotonic()
+        self._next = self._began + _LONG
+        self._first: tuple[float, float] | None = None  # time and share when work was first heard of
+        self._begun = self._compiles = False
+        self._shown = 0  # characters that stand on the terminal
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._show("")
+        if error is None:
+            self.say(f"{self._what} done in {in_time(time.monotonic() - self._began)}")
+
+    def say(self, text: str, always: bool = False) -> None:
+        """A line of its own; on a terminal only if it is to stay there."""
+        if self._active and (always or not self._terminal):
+            self._show("")
+            print(f"frictionmap: {text}", file=sys.stderr, flush=True)
+
+    def _begin(self) -> None:
+        """Work has begun: what was asked for is not refused any more."""
+        if not self._begun:
+            self._begun = True
+            self.say(f"{self._what} begun")
+
+    def compiling(self) -> None:
+        """A kernel is not on disk yet."""
+        self._begin()
+        if not self._compiles:
+            self._compiles = True
+            self._show(_COMPILING)
+            self.say(_COMPILING)
+
+    def __call__(self, done: float, total: float) -> None:
+        """So much of the work is done."""
+        self._begin()
+        now, share = time.monotonic(), done / max(total, 1)
+        if self._first is None:
+            self._first = now, share
+        counted, left = f"{int(done)} of {total:g} {self._parts}", self._left(now, share)
+        if self._parts and done >= self._done + 1:
+            self._done = int(done)
+            self.say(f"{counted}{left}")
+        if now >= self._next:
+            self._next = now + _BETWEEN
+            self._show(f"{f'{counted}  ' if self._parts else ''}{100.0 * share:5.1f} %{left}")
+
+    def _left(self, now: float, share: float) -> str:
+        """The time left if the rest goes as what was seen of it; compiling came before."""
+        assert self._first is not None
+        since, before = self._first
+        if share <= before:
+            return ""
+        return f"  about {in_time((1.0 - share) * (now - since) / (share - before))} left"
+
+    def writing(self, path: Path, size: int) -> None:
+        """A file is being written, so many bytes so far."""
+        self._show(f"writing {path}: {in_bytes(size)}")
+
+    def _show(self, text: str) -> None:
+        """`text` in the place of what stands on the terminal."""
+        if self._terminal and (text or self._shown):
+            wipe = "\r" if text else "\r" + " " * self._shown + "\r"
+            print(f"{wipe}{text:<{self._shown if text else 0}}", end="", file=sys.stderr, flush=True)
+            self._shown = max(self._shown, len(text)) if text else 0

@@ -1,0 +1,16 @@
+"""Chains of masses without friction, base shaken: sweeps of amplitudes and lags.
+
+==========  =====================================================================
+module      what is in it
+==========  =====================================================================
+response    response of a chain, and its derivatives
+two_masses  two masses in closed form
+inverse     a chain from where its first mass resonates and where it stands still
+sides       the sides of samples that resonances are on
+fit         the chain nearest to amplitudes and lags
+errors      such fits where errors are not known
+estimates   the dataset of such a fit
+data        tables of sweeps, checked
+sweep       `sweep`: from amplitudes and lags over frequency to estimates
+==========  =====================================================================
+"""

@@ -1,0 +1,116 @@
+"""Amplitudes and lags over frequency as they were measured, checked value by value."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ... import checks
+from ...errors import InputError
+from .fit import Measured, peaks
+
+#: Values of the only mass measured, or by mass, counted from 1.
+Values = Sequence[float] | np.ndarray | Mapping[int, Sequence[float] | np.ndarray]
+
+#: Chains with more masses have more unknowns than sweeps usually tell.
+MOST_MASSES = 5
+
+WORDS = ("one", "two", "three", "four", "five")
+
+
+def checked_sweep(
+    frequency: object,
+    quantities: tuple[Values, Values | None],
+    sigmas: tuple[float | None, float | None],
+    n: int,
+) -> Measured:
+    """Amplitudes and lags [deg] of the masses measured, with their errors, relative and [deg].
+
+    Without errors amplitudes and lags count alike, 1 rad as a relative error of 1.
+    """
+    f = _frequencies(frequency)
+    parts = []
+    for is_phase, (values, sigma) in enumerate(zip(quantities, _errors(quantities, sigmas), strict=True)):
+        for mass, given in _by_mass(values, ("amplitude_ratio", "phase_lag")[is_phase], n).items():
+            ones = np.ones(f.size)
+            checked = _numbers(given, f.size, mass, bool(is_phase))
+            parts.append((f, (mass - 1) * ones, is_phase * ones, checked, sigma * ones))
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    order = np.lexsort((columns[0], columns[1], columns[2]))  # lags after amplitudes, mass by mass
+    at, of, phase, value, error = (column[order] for column in columns)
+    return Measured(at, of.astype(int), phase == 1.0, value, error, n)
+
+
+def check_enough(data: Measured, known: np.ndarray) -> None:
+    """Refuse fewer data than unknowns, and fewer peaks than frequencies that are wanted."""
+    unknowns = int(np.isnan(known).sum())
+    if data.value.size <= unknowns:
+        raise InputError(
+            f"frequency must have more values than there are unknowns, {unknowns}; got {data.value.size}"
+        )
+    wanted = min(data.n, int(np.isnan(known[: 2 * data.n - 1]).sum()))
+    found = peaks(data)
+    undamped = bool((known[2 * data.n - 1 :] == 0.0).all())
+    if undamped and found < wanted:  # damping hides peaks
+        number = WORDS[wanted - 1]
+        some = f"{WORDS[found - 1]} peak{'s' * (found > 1)}" if found else "no peak"
+        raise InputError(
+            f"amplitude_ratio must have {number} peak{'s' * (wanted > 1)}; it has {some}: "
+            f"{number} frequenc{'ies' if wanted > 1 else 'y'} wanted"
+        )
+
+
+def _frequencies(values: object) -> np.ndarray:
+    """Frequencies in any order; the same one may stand there several times."""
+    f = np.atleast_1d(checks.array(values, "frequency"))
+    if f.dtype.kind not in "iuf" or f.ndim != 1 or not f.size:
+        raise InputError(f"frequency must be a list of numbers; got {checks.one_line(values)}")
+    _check(f, np.isfinite(f) & (f > 0.0), "frequency must be finite and > 0")
+    return f.astype(float)
+
+
+def _errors(
+    quantities: tuple[Values, Values | None], sigmas: tuple[float | None, float | None]
+) -> tuple[float, float]:
+    """Errors of logarithms and of lags [rad]."""
+    amplitude, phase = sigmas
+    if quantities[1] is None and phase is not None:
+        raise InputError(f"sigma_phase must be left out without phase_lag; got {phase}")
+    if quantities[1] is not None and (amplitude is None) != (phase is None):
+        raise InputError("sigma_amplitude and sigma_phase must both be given, or none; got one of them")
+    return (
+        1.0 if amplitude is None else checks.number(amplitude, "sigma_amplitude", above=0.0),
+        1.0 if phase is None else float(np.radians(checks.number(phase, "sigma_phase", above=0.0))),
+    )
+
+
+def _by_mass(values: Values | None, name: str, masses: int) -> Mapping[int, object]:
+    if values is None:
+        return {}
+    if not isinstance(values, Mapping):
+        return {1: values}
+    for mass in values:
+        checks.whole(mass, f"a mass in {name}", least=1, most=masses)
+    if not values:
+        raise InputError(f"{name} must have at least one mass; got none")
+    return values
+
+
+def _numbers(values: object, size: int, mass: int, is_phase: bool) -> np.ndarray:
+    """Logarithms of amplitudes, or lags in radian."""
+    name = "phase_lag" if is_phase else "amplitude_ratio"
+    given = np.atleast_1d(checks.array(values, name))
+    if given.dtype.kind not in "iuf" or given.shape != (size,):
+        raise InputError(
+            f"{name} of mass {mass} must be {size} numbers, one a frequency; got {checks.one_line(values)}"
+        )
+    if is_phase:
+        _check(given, np.isfinite(given), f"{name} of mass {mass} must be finite")
+        return np.radians(given)
+    _check(given, np.isfinite(given) & (given > 0.0), f"{name} of mass {mass} must be finite and > 0")
+    return np.log(given.astype(float))
+
+
+def _check(values: np.ndarray, good: np.ndarray, wanted: str) -> None:
+    wrong = np.flatnonzero(~good)
+    if wrong.size:
+        raise InputError(f"{wanted}; got {values[wrong[0]]} at index {wrong[0]}")

@@ -1,0 +1,209 @@
+"""Masses, springs and damping of a chain from amplitudes over frequency, base shaken, without friction."""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.special import gammaincc
+
+from ... import checks
+from ...errors import InputError
+from ..statistics.cautions import bounded, coloured, trading
+from ..statistics.estimates import verdict
+from ..statistics.least_squares import Errors, Problem, Solution, errors, undetermined
+from ..statistics.levels import CHANCE
+from ..statistics.robust import LOSSES, effective_variance, jackknife_growth, softened
+from .data import MOST_MASSES, WORDS, Values, check_enough, checked_sweep
+from .errors import fit_by_residuals, fit_robust_by_residuals
+from .estimates import chain_estimates, chain_names
+from .fit import SEARCHES, Found, Measured, fit_chain
+
+DAMPINGS = ("ground", "base")
+COSTS = ("logarithmic", "relative")
+
+#: Answers whose sums of squares differ by less variances of a sample are as good.
+_AS_GOOD = 4.0
+
+#: Answers are others if a parameter differs by so many standard errors.
+_ELSEWHERE = 3.0
+
+#: Residuals beyond this many given errors have little weight in a robust fit.
+_GIVEN = 1.0
+
+#: Chains that differ by less are one, as far as a search goes.
+_SAME = 1e-6
+
+
+class _Fit(NamedTuple):
+    data: Measured
+    found: Found
+    problem: Problem
+    errors: Errors
+    names: tuple[str, ...]  # of all unknowns
+    given: bool  # whether errors of the data are
+
+
+def sweep(
+    frequency: Sequence[float] | np.ndarray,
+    amplitude_ratio: Values,
+    phase_lag: Values | None = None,
+    *,
+    masses: int = 2,
+    damping: str | None = None,
+    known: Mapping[str, float] | None = None,
+    sigma_amplitude: float | None = None,
+    sigma_phase: float | None = None,
+    cost: str = "logarithmic",
+    loss: str = "linear",
+) -> xr.Dataset:
+    """Fit a chain of masses on a shaken base, without friction, to amplitudes and lags over frequency.
+
+    Of its eleven arguments the first three are the data; the others say what is known and wanted.
+
+    Parameters
+    ----------
+    frequency : array, shape (samples,)
+        Of the base [Hz], > 0, in any order.
+    amplitude_ratio : array, shape (samples,), or mapping of such
+        X_k/Y > 0 of mass 1, or by mass, counted from 1, such as {1: ..., 3: ...}.
+    phase_lag : array, shape (samples,), or mapping of such
+        Lags [deg] behind the base, the same way; they tell damping.
+    masses : int
+        Of the chain, 1 to 5.
+    damping : "ground" or "base"
+        Where the dampers are that give every mode its damping ratio; by default there is no damping, with
+        lags it is "ground".
+    known : mapping
+        Parameters to be held.  Others are fitted.
+    sigma_amplitude, sigma_phase : float
+        Relative error of the amplitudes, and error of the lags [deg], > 0; by default both are taken from the
+        residuals, those of amplitudes and of lags apart.
+    cost : "logarithmic" or "relative"
+        What is least: the squares of ln(X/measured), or of X/measured - 1, as T(6.16) has it.
+    loss : "linear" or "soft_l1"
+        What residuals cost: their squares, or less beyond their errors, for outliers.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of `free_decay`.  Parameters of two masses: f1 and f2, the natural frequencies [Hz], f0, that of
+        mass 2 on its spring alone, f_k1m1, that of mass 1 on its own, gamma = m_2/m_1, kappa = k_2/k_1; of
+        others f_k1m1, mass_ratio_2.., stiffness_ratio_2..; with damping zeta_1.., one a mode.  On sample:
+        frequency, mass, `quantity`; data, model and residual are natural logarithms of amplitudes, lags
+        [rad].
+
+    Raises
+    ------
+    InputError
+        An argument is illegal, data or peaks are fewer than unknowns ask for, or data cannot tell unknowns
+        apart: they are named.
+
+    Notes
+    -----
+    T(6.15) to (6.19) and Appendix A for two masses; theory.md 10.
+    """
+    n = checks.whole(masses, "masses", least=1, most=MOST_MASSES)
+    data = checked_sweep(frequency, (amplitude_ratio, phase_lag), (sigma_amplitude, sigma_phase), n)
+    damped = damping is not None or phase_lag is not None
+    if damping is not None:
+        data = data._replace(base_damping=checks.choice(damping, "damping", DAMPINGS) == "base")
+    data = data._replace(relative=checks.choice(cost, "cost", COSTS) == "relative")
+    names = chain_names(n)
+    held = _held(known or {}, names, n, damped)
+    check_enough(data, held)
+    robust = checks.choice(loss, "loss", LOSSES) == "soft_l1"
+    fit = _fit(data, held, names, sigma_amplitude is not None, robust)
+    ds = chain_estimates(fit.data, fit.found.best, fit.errors, fit.problem.free, fit.given, damped)
+    ds["verdict"] = _verdict(fit)
+    ds.attrs |= {"damping": DAMPINGS[data.base_damping] if damped else "none", "cost": cost}
+    ds.attrs["title"] = f"Sweep of {WORDS[n - 1]} mass{'es' * (n > 1)}"
+    ds.attrs["warnings"] = "; ".join(_warnings(fit))
+    return ds
+
+
+def _held(known: Mapping[str, float], names: tuple[str, ...], n: int, damped: bool) -> np.ndarray:
+    """Unknowns that are held, shape (3 n - 1,), NaN of the others."""
+    legal = names if damped else names[: 2 * n - 1]
+    held = np.full(len(names), np.nan)
+    for name, value in known.items():
+        place = names.index(checks.choice(name, "known", legal))
+        if place < 2 * n - 1:
+            held[place] = np.log(checks.number(value, f"known.{name}", above=0.0))
+        else:
+            held[place] = checks.number(value, f"known.{name}", least=0.0)
+    if not damped:
+        held[2 * n - 1 :] = 0.0
+    if not np.isnan(held).any():
+        raise InputError(f"known must leave something to fit; got all of {', '.join(legal)}")
+    return held
+
+
+def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool, robust: bool) -> _Fit:
+    if given:
+        found, problem = fit_chain(data, held, _GIVEN if robust else None)
+    else:
+        found, problem, data = (fit_robust_by_residuals if robust else fit_by_residuals)(data, held)
+    unseen, too_many = undetermined(problem, found.best)
+    if too_many:
+        unknown = ", ".join(names[index] for index in unseen)
+        measured = ", ".join(str(mass + 1) for mass in np.unique(data.mass))
+        raise InputError(
+            f"amplitude_ratio of mass {measured} cannot tell {unknown} apart: {too_many} of them must be "
+            "known, or another mass measured"
+        )
+    if found.outliers is None:
+        return _Fit(data, found, problem, errors(problem, found.best, 1.0 if given else None), names, given)
+    variance = effective_variance(problem, found.best, found.outliers)
+    larger = jackknife_growth(problem, found.best, found.outliers)
+    of_estimates = errors(softened(problem, found.outliers), found.best, variance, larger=larger)
+    plain = found.best._replace(residual=problem.residuals(found.best.values)[0])
+    freedom = plain.residual.size - int(problem.free.sum())
+    of_estimates = of_estimates._replace(variance=plain.sum / freedom)
+    return _Fit(data, found._replace(best=plain, others=[]), problem, of_estimates, names, given)
+
+
+def _verdict(fit: _Fit) -> xr.Variable:
+    n = fit.data.n
+    found = f"{WORDS[n - 1]} natural frequenc{'ies' if n > 1 else 'y'} found"
+    words = f"{found}, and the one between them" if n == 2 else found
+    meanings = {
+        f"{WORDS[n - 1]}_frequenc{'ies' if n > 1 else 'y'}_found": words,
+        "scatter_beyond_errors": f"{found}, but residuals are larger than the errors given",
+    }
+    best = fit.found.best
+    freedom = best.residual.size - int(fit.problem.free.sum())
+    beyond = fit.given and gammaincc(0.5 * freedom, 0.5 * best.sum) < CHANCE
+    return verdict(int(beyond), meanings)
+
+
+def _warnings(fit: _Fit) -> list[str]:
+    """What to mind, in words."""
+    words = coloured(fit.errors) + trading(fit.names, fit.errors.correlation)
+    words += bounded(fit.names, fit.problem.floor, fit.found.best.at_bound)
+    if fit.found.times == 1:
+        words.append(f"the least sum of squares was found in one of {SEARCHES} searches only")
+    return words + _other_answers(fit)
+
+
+def _other_answers(fit: _Fit) -> list[str]:
+    """Chains elsewhere that the data cannot tell from the one that was found."""
+    best, ratios = fit.found.best, 2 * fit.data.n - 1
+    variance = 1.0 if fit.given else fit.errors.variance
+    words: list[str] = []
+    seen = [best]
+    for other in fit.found.others:
+        if other.sum > max(best.sum, fit.found.nothing) + _AS_GOOD * variance:
+            break
+        if all(_elsewhere(other, one, fit.errors) for one in seen):
+            seen.append(other)
+            values = ", ".join(
+                f"{fit.names[k]} {np.exp(other.values[k]):.5g}" for k in range(ratios) if fit.problem.free[k]
+            )
+            words.append(f"the data cannot tell this from {values}")
+    return words
+
+
+def _elsewhere(other: Solution, one: Solution, found: Errors) -> bool:
+    least = np.maximum(_ELSEWHERE * found.standard_error, _SAME)
+    return bool((np.abs(other.values - one.values) > least).any())

@@ -1,0 +1,82 @@
+"""Whether a record is a free decay: its turning points, and how far a fit may be from the samples."""
+
+import numpy as np
+
+from ...errors import InputError
+from ..signals.samples import largest_gap
+from ..signals.turning_points import (
+    TurningPoints,
+    grows,
+    noise_level,
+    regular_run,
+    resolution,
+    turning_points,
+    undersampled,
+    without_spikes,
+)
+
+#: Residuals so many times as large as the noise between samples, and beyond this share of the motion, are not
+#: those of a free decay.  Higher harmonics, and friction that is not constant, leave far less of a real one.
+_MISFIT, _MISFIT_SHARE = 10.0, 0.1
+
+#: Spikes make turning points that are not half a period apart; noise and a mass that is held make few.
+_REGULAR = 0.5
+
+
+def checked_turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
+    """Turning points of a record that is a free decay.
+
+    Raises
+    ------
+    InputError
+        Nothing moves, samples are too few a cycle, there are fewer than 3 extrema, or the amplitude grows.
+    """
+    if float(np.ptp(x)) <= 2.0 * resolution(x):
+        raise InputError(f"x must move; there is no motion above its own resolution ({resolution(x):g})")
+    if wrong := undersampled(x):
+        raise InputError(f"time must have more samples: {wrong}")
+    points = _turning_points(time, x)
+    if points.time.size < 2:  # the last extremum is where it rests, or where the record ends
+        gap = largest_gap(time)
+        outside = f" outside a gap of {gap:.4g} s" if gap else ""
+        raise InputError(
+            f"x must be a longer decay: fewer than 3 extrema in {x.size} samples{outside}, "
+            "no damping can be told"
+        )
+    if grows(points, noise_level(x)):
+        raise InputError(
+            f"x must decay; its amplitude grows: no free decay (its swings grow from "
+            f"{abs(points.place[1] - points.place[0]):.4g} to {abs(points.place[-1] - points.place[-2]):.4g})"
+        )
+    return points
+
+
+def _turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
+    """Turning points; if many are spikes, those of the record without spikes."""
+    points = turning_points(time, x)
+    if points.time.size < 2 or _share_regular(points) > _REGULAR:
+        return points
+    calm = turning_points(time, without_spikes(x))
+    return calm if calm.time.size > 1 and _share_regular(calm) > _share_regular(points) else points
+
+
+def _share_regular(points: TurningPoints) -> float:
+    """The share of turning points in the longest run of those half a period apart."""
+    run = regular_run(points)
+    return (run.stop - run.start) / points.time.size
+
+
+def check_misfit(x: np.ndarray, rms: float) -> None:
+    """Refuse a fit whose residuals are far above the noise between samples.
+
+    Raises
+    ------
+    InputError
+        The record does not follow a free decay, or no fit of it was found.
+    """
+    noise = noise_level(x)
+    if rms > _MISFIT * noise and rms > _MISFIT_SHARE * float(np.std(x)):
+        raise InputError(
+            f"cannot fit x as a free decay: the residuals ({rms:.4g} rms) are far above the noise between "
+            f"samples ({noise:.4g}); choose a window of one decay, without gaps, impacts or other motion"
+        )

@@ -1,0 +1,309 @@
+"""Natural frequency, viscous damping and friction force from the free decay of one mass."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from ... import checks
+from ...errors import InputError
+from ...units.table import checked_unit, conversion
+from ..signals.samples import (
+    checked_record,
+    largest_gap,
+    unclipped,
+    within,
+)
+from ..signals.turning_points import TurningPoints, linear_decrement, noise_level, without_spikes
+from ..statistics.cautions import bounded, coloured, trading
+from ..statistics.estimates import estimates, number, verdict
+from ..statistics.least_squares import Errors
+from ..statistics.levels import FOUND
+from ..statistics.robust import LOSSES
+from .checks import check_misfit, checked_turning_points
+from .errors import decay_errors, decay_solution
+from .fit import Fit, fit_decay, noise_variance
+from .motion import PARAMETERS
+from .problem import DRIFT, X_F, ZETA, Record
+from .wander import Search, search
+
+#: Codes of what was found, in order.
+_VERDICTS = {
+    "neither_found": "neither friction nor viscous damping found",
+    "friction_found": "friction found, viscous damping not",
+    "viscous_damping_found": "viscous damping found, friction not",
+    "both_found": "friction and viscous damping found",
+}
+
+_LOSS = "growth of the sum of squares without {}, over the variance of a sample"
+
+_IMPOSSIBLE = (
+    "in the best fit the mass leaves a turning point at which friction would hold it: friction is not "
+    "constant, or the record is no free decay, and mu has no bounds"
+)
+
+_MEANINGS = {
+    "f_n": "natural frequency without friction and damping",
+    "zeta": "viscous damping ratio",
+    "x_F": "kinetic friction force over stiffness",
+    "X0": "turning point at t0, from the centre",
+    "t0": "time of a turning point at the beginning",
+    "centre": "place of the unloaded mass",
+    DRIFT: "of the measured place of the unloaded mass",
+}
+
+
+def free_decay(
+    time: Sequence[float] | np.ndarray,
+    x: Sequence[float] | np.ndarray,
+    *,
+    unit: str = "mm",
+    known: Mapping[str, float] | None = None,
+    base: float | None = None,
+    stiffness: float | None = None,
+    window: object = None,
+    drift: bool = False,
+    loss: str = "linear",
+) -> xr.Dataset:
+    """Fit the exact decay with Coulomb and viscous friction to all samples of a record.
+
+    Parameters
+    ----------
+    time : array, shape (samples,)
+        Times [s], increasing; equal steps are not needed.
+    x : array, shape (samples,)
+        Displacements of the mass, in `unit`.
+    unit : "mm", "m" or "um"
+        Of `x`, and of every length that is given or returned.
+    known : mapping
+        Parameters to be held: f_n [Hz] > 0, zeta in [0, 1), x_F >= 0, X0, t0 [s], centre.  Others are fitted.
+    base : float
+        Amplitude Y > 0 of a base motion; gives the friction ratio beta = x_F/Y.
+    stiffness : float
+        k [N/m] > 0; gives the friction force F = k x_F [N].
+    window : [begin, end]
+        Times [s] of the part to be fitted; default: all.
+    drift : bool
+        Whether the zero of the measurement drifts: a parameter drift [`unit`/s], so that the centre is
+        centre + drift t.
+    loss : "linear" or "soft_l1"
+        What residuals cost: their squares, or less beyond the level of the noise, for outliers.
+
+    Returns
+    -------
+    xarray.Dataset
+        On parameter (f_n, zeta, x_F, X0, t0, centre, perhaps drift): estimate, standard_error, lower and
+        upper (95 %, one-sided where `at_bound`), `known`, unit; `correlation`; on sample: time, data,
+        model, residual; scalars `reduced_chi_square` (the variance of a sample, as no error of the data is
+        given), `residual_rms`, `verdict`, `half_cycles` before rest or the end, `at_rest`, and
+        `mu_lower` <= mu < `mu_upper` from where it came to rest and where it did not.  Attribute `warnings`.
+        Intervals and bounds of mu also hold for other numbers of half cycles that fit as well within the
+        noise; `standard_error` is that of the best one.  Where the zero wanders slowly, a polynomial of time
+        is fitted beside the decay (`wander_terms`, `wander_rms`); model and residual are of the decay alone.
+
+    Raises
+    ------
+    InputError
+        An argument is illegal, or the record is no free decay: no motion, fewer than 3 extrema, an amplitude
+        that grows, fewer than 8 samples a cycle, residuals far above the noise between samples.
+
+    Notes
+    -----
+    Distances of the extrema from the centre follow A_{j+1} = q A_j - (1 + q) x_F with
+    q = exp(-pi zeta/sqrt(1 - zeta^2)), T(4.2) without viscous damping; the mass rests from the first
+    A_j <= mu x_F.  The number of half cycles before rest is an unknown of the fit.
+    """
+    checked_unit(unit, "length", "unit")
+    if not isinstance(drift, bool):
+        raise InputError(f"drift must be true or false; got {checks.one_line(drift)}")
+    checks.choice(loss, "loss", LOSSES)
+    names = (*PARAMETERS, DRIFT) if drift else PARAMETERS
+    held = checked_known(known or {}, names)
+    times, places = checked_record(time, x)
+    inside = within(window, times)
+    times, places = times[inside], places[inside]
+    good = unclipped(places)
+    t, data = times[good], places[good]
+    points = checked_turning_points(t, without_spikes(data) if loss == "soft_l1" else data)
+    outliers = noise_level(data) if loss == "soft_l1" else 0.0
+    record = Record(t, data, held, names, outliers or None)  # exact data have none
+    searched = search(record, points)
+    record, fits = searched.record, searched.fits
+    fit = fits[0]
+    if not held:  # a value that is held may be wrong on purpose
+        check_misfit(data, float(np.sqrt(fit.solution.sum / data.size)))
+    found, solution = decay_errors(searched), decay_solution(record, fit)
+    losses = _losses(record, points, fit)
+    meanings = {name: _MEANINGS[name] for name in names}
+    units = (*_units(unit), f"{unit}/s")[: len(names)]
+    ds = estimates(meanings, units, solution, found, record.free[: len(names)], data, unit)
+    ds["time"] = xr.Variable("sample", t, {"long_name": "time", "units": "s"})
+    ds["verdict"] = verdict(_verdict(fit, found, losses), _VERDICTS)
+    ds["likelihood_ratio_friction"] = number(losses["x_F"], _LOSS.format("friction"))
+    ds["likelihood_ratio_viscous"] = number(losses["zeta"], _LOSS.format("viscous damping"))
+    decrement = linear_decrement(points)
+    if decrement is not None:
+        ds["linear_decrement"] = number(
+            decrement, "x_F by the linear decrement T(4.3), true if zeta = 0", unit
+        )
+    ds = (
+        ds.assign(_motion(fits, unit))
+        .assign(_wander(record, fit, unit))
+        .assign(_scaled(fit, found, unit, base, stiffness))
+    )
+    ds.attrs["title"] = "Free decay"
+    ds.attrs["warnings"] = "; ".join(_warnings(times, good, searched, found))
+    return ds
+
+
+def checked_known(known: Mapping[str, float], names: tuple[str, ...] = PARAMETERS) -> dict[str, float]:
+    """Parameters to be held, if they are known by name and in range."""
+    ranges: dict[str, dict[str, float]] = {
+        "f_n": {"above": 0.0},
+        "zeta": {"least": 0.0},
+        "x_F": {"least": 0.0},
+    }
+    result = {}
+    for name, value in known.items():
+        checks.choice(name, "known", names)
+        result[name] = checks.number(value, f"known.{name}", **ranges.get(name, {}))
+    if result.get("zeta", 0.0) >= 1.0:
+        raise InputError(f"known.zeta must be < 1, or there are no extrema; got {known['zeta']}")
+    if len(result) == len(names):
+        raise InputError(f"known must leave something to fit; got all of {', '.join(names)}")
+    return result
+
+
+def _units(unit: str) -> tuple[str, ...]:
+    return ("Hz", "1", unit, unit, "s", unit)
+
+
+def _losses(record: Record, points: TurningPoints, fit: Fit) -> dict[str, float]:
+    """Growth of the sum of squares without friction, and without damping, over the variance of a sample."""
+    losses, variance = {}, noise_variance(record, fit)
+    for name in ("x_F", "zeta"):
+        if name in record.known:
+            losses[name] = 0.0
+            continue
+        without = fit_decay(record._replace(known={**record.known, name: 0.0}), points)[0].solution.sum
+        # another number of half cycles may fit a little better where the least sum lies on the bound
+        losses[name] = max(without - fit.solution.sum, 0.0) / variance
+    return losses
+
+
+def _verdict(fit: Fit, found: Errors, losses: Mapping[str, float]) -> int:
+    """What was found: beyond three standard errors, and the fit is as much worse without it."""
+    friction, damping = (
+        losses[PARAMETERS[index]] > FOUND**2
+        and fit.solution.values[index] > FOUND * found.standard_error[index]
+        for index in (X_F, ZETA)
+    )
+    return int(friction) + 2 * int(damping)
+
+
+def _motion(fits: list[Fit], unit: str) -> dict[str, xr.Variable]:
+    """How many half cycles there were, where it came to rest, and what that says of mu."""
+    fit = fits[0]
+    bounds = np.array([_bounds_of_mu(one) for one in fits])
+    lower, upper = bounds[:, 0].min(), bounds[:, 1].max()
+    result = {
+        "half_cycles": xr.Variable(
+            (), np.int32(fit.half_cycles), {"long_name": "half cycles before rest, or begun in the record"}
+        ),
+        "at_rest": xr.Variable((), np.int8(fit.at_rest), {"long_name": "1 if it came to rest in the record"}),
+        "mu_lower": number(lower, "static over kinetic friction is at least this, as it rests where it does"),
+        "mu_upper": number(
+            upper, "static over kinetic friction is below this, as it left the turning point before"
+        ),
+    }
+    if fit.at_rest:
+        heights = fit.heights
+        side = np.sign(fit.decay.X0) * (-1.0) ** fit.half_cycles
+        result["rest"] = number(fit.decay.centre + side * float(heights[-1]), "place of rest", unit)
+    return result
+
+
+def _bounds_of_mu(fit: Fit) -> tuple[float, float]:
+    """Least and largest mu, from where the mass came to rest and which turning point it left last."""
+    heights, friction = fit.heights, fit.decay.x_F
+    if friction == 0.0 or not fit.possible:
+        return 0.0, np.inf
+    passed = heights[:-1] if fit.at_rest else heights
+    return abs(float(heights[-1])) / friction if fit.at_rest else 0.0, float(passed[-1]) / friction
+
+
+def _wander(record: Record, fit: Fit, unit: str) -> dict[str, xr.Variable]:
+    """The wander of the zero that was fitted, if there is one."""
+    if record.wander is None or not record.terms:
+        return {}
+    slow = record.wander @ fit.solution.values[len(record.names) :]
+    return {
+        "wander_terms": xr.Variable(
+            (), np.int32(record.terms), {"long_name": "terms of the polynomial that the zero follows"}
+        ),
+        "wander_rms": number(float(np.std(slow)), "slow wander of the zero, root mean square", unit),
+    }
+
+
+def _scaled(
+    fit: Fit, found: Errors, unit: str, base: float | None, stiffness: float | None
+) -> dict[str, xr.Variable]:
+    """x_F as a friction ratio and as a force, with its error."""
+    scales: list[tuple[str, str, str, float]] = []
+    if base is not None:
+        scales.append(("beta", "friction ratio x_F/Y", "1", 1.0 / checks.number(base, "base", above=0.0)))
+    if stiffness is not None:
+        newtons = checks.number(stiffness, "stiffness", above=0.0) * conversion(unit, "m")
+        scales.append(("friction_force", "kinetic friction force k x_F", "N", newtons))
+    result = {}
+    for name, words, units, scale in scales:
+        result[name] = number(scale * fit.decay.x_F, words, units)
+        error = scale * float(found.standard_error[X_F])
+        result[f"{name}_standard_error"] = number(error, f"standard error of {name}", units)
+    return result
+
+
+def _warnings(time: np.ndarray, good: np.ndarray, searched: Search, found: Errors) -> list[str]:
+    """What to mind, in words."""
+    words = []
+    if not good.all():
+        words.append(f"clipped: {1.0 - good.mean():.1%} of the samples are at the extremes and were left out")
+    if gap := largest_gap(time):
+        words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
+    pair = np.ix_((ZETA, X_F), (ZETA, X_F))
+    words += coloured(found) + trading(("zeta", "x_F"), found.correlation[pair])
+    words += _wandering(searched) + _other_counts(searched.fits)
+    names = searched.record.names
+    at_bound = searched.fits[0].solution.at_bound[: len(names)]
+    return words + bounded(names, np.zeros(len(names)), at_bound)
+
+
+def _wandering(searched: Search) -> list[str]:
+    """A slow part of the residuals, in words."""
+    if searched.doubted is not None:
+        return [
+            "the residuals may have a low-frequency part, as if the zero of the measurement wandered: "
+            "intervals hold with and without it, standard errors without it"
+        ]
+    if searched.record.terms == 0:
+        return []
+    return [
+        "the residuals have a low-frequency part, as if the zero of the measurement wandered: "
+        f"a polynomial of time with {searched.record.terms} terms is fitted beside the decay"
+    ]
+
+
+def _other_counts(fits: list[Fit]) -> list[str]:
+    """Other numbers of half cycles before rest that fit as well, in words."""
+    words = [] if fits[0].possible else [_IMPOSSIBLE]
+    others = sorted({_count(fit) for fit in fits[1:]} - {_count(fits[0])})
+    if others:
+        words.append(
+            f"the noise hides the number of half cycles ({_count(fits[0])} fit best, {', '.join(others)} as "
+            "well): intervals and bounds of mu hold for all of them, standard errors for the best fit only"
+        )
+    return words
+
+
+def _count(fit: Fit) -> str:
+    return str(fit.half_cycles) if fit.at_rest else "no rest in the record"

@@ -1,0 +1,101 @@
+"""Least squares of a measured record on the exact decay, perhaps with a drifting or wandering zero."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ..statistics.least_squares import Problem
+from ..statistics.robust import softened
+from .motion import PARAMETERS, Decay, displacement_and_slopes
+
+#: The measured place of the centre may change by so much a second.
+DRIFT = "drift"
+
+#: In these the motion is linear.
+_LINEAR = ("x_F", "X0", "centre", DRIFT)
+
+ZETA, X_F = PARAMETERS.index("zeta"), PARAMETERS.index("x_F")
+
+#: Half cycles of a decay that does not come to rest within any record.
+_NO_REST = 2
+
+#: The natural frequency is within this share of where a fit starts, which is what the turning points give.
+_FREQUENCY_RANGE = 0.2
+
+#: Ranges in which the model holds; beyond 1 there are no turning points.
+_ZETA_RANGE = (-0.5, 0.99)
+
+
+class Record(NamedTuple):
+    """What was measured, and what is fitted to it."""
+
+    time: np.ndarray  # s
+    x: np.ndarray
+    known: Mapping[str, float]  # parameters that are held
+    names: tuple[str, ...]  # of all parameters: those of a decay, and perhaps the drift
+    outliers: float | None = None  # residuals beyond this have little weight
+    wander: np.ndarray | None = (
+        None  # shape (samples, terms): slow functions of time that the zero may follow
+    )
+
+    def thinned(self, most: int) -> "Record":
+        """The record with no more samples than `most`, or a few."""
+        every = max(1, self.time.size // most)
+        wander = None if self.wander is None else self.wander[::every]
+        return self._replace(time=self.time[::every], x=self.x[::every], wander=wander)
+
+    @property
+    def terms(self) -> int:
+        """Unknowns after the named ones: the terms of the wander."""
+        return 0 if self.wander is None else self.wander.shape[1]
+
+    @property
+    def free(self) -> np.ndarray:
+        """Which unknowns are fitted, bool (unknowns,)."""
+        named = [name not in self.known for name in self.names]
+        return np.array(named + [True] * self.terms)
+
+    @property
+    def linear(self) -> np.ndarray:
+        """Unknowns in which the motion is linear, bool (unknowns,)."""
+        return np.concatenate((np.isin(self.names, _LINEAR), np.ones(self.terms, dtype=bool)))
+
+
+def half_cycles_of(ds: xr.Dataset) -> int:
+    """Half cycles before rest of a decay that was fitted; more than its record has if that shows no rest."""
+    return int(ds["half_cycles"]) + (0 if int(ds["at_rest"]) else _NO_REST)
+
+
+def model(record: Record, n: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Places of a decay that ends at turning point `n`, and their slopes by all unknowns."""
+    place, slopes = displacement_and_slopes(Decay(*values[: len(PARAMETERS)]), n, record.time)
+    further = [slopes]
+    if len(record.names) > len(PARAMETERS):
+        further.append(record.time[:, np.newaxis])
+    if record.wander is not None:
+        further.append(record.wander)
+    slopes = np.concatenate(further, axis=1) if len(further) > 1 else slopes
+    return place + slopes[:, len(PARAMETERS) :] @ values[len(PARAMETERS) :], slopes
+
+
+def problem(record: Record, n: int, start: np.ndarray) -> Problem:
+    """Least squares of all samples on a decay that ends at turning point `n`; outliers have little weight."""
+    plain = plain_problem(record, n, start)
+    return plain if record.outliers is None else softened(plain, record.outliers)
+
+
+def plain_problem(record: Record, n: int, start: np.ndarray) -> Problem:
+    """Least squares of all samples on a decay that ends at turning point `n`, each with its full weight."""
+
+    def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        place, slopes = model(record, n, values)
+        return place - record.x, slopes
+
+    lowest, highest = np.full(start.size, -np.inf), np.full(start.size, np.inf)
+    lowest[0], highest[0] = start[0] * (1.0 - _FREQUENCY_RANGE), start[0] * (1.0 + _FREQUENCY_RANGE)
+    lowest[ZETA], highest[ZETA] = _ZETA_RANGE
+    floor = np.full(start.size, -np.inf)
+    floor[[ZETA, X_F]] = 0.0
+    return Problem(residuals, record.free, floor, lowest, highest)

@@ -1,0 +1,17 @@
+"""Amplitudes and lags of forced responses with friction.
+
+===============  =====================================================================
+module           what is in it
+===============  =====================================================================
+model            amplitudes and lags by the exact steady states, and their derivatives
+data             tables of forced responses, checked
+start            where the fit begins
+fit              the steady states nearest to the data
+extremes         extremes of sampled functions between their samples
+phase_inversion  `friction_ratio`: friction ratios from single lags
+lags             what the lags of a table tell one by one
+cautions         what to mind of the fit, in words
+labels           the dataset of the fit
+forced           `forced`: from amplitudes and lags to estimates
+===============  =====================================================================
+"""

@@ -1,0 +1,235 @@
+"""The exact steady states nearest to forced responses, and the errors of what they tell."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import gammainccinv
+
+from ... import checks, regimes
+from ...errors import InputError
+from ...model.system import System
+from ..statistics.least_squares import (
+    Errors,
+    Problem,
+    Solution,
+    errors,
+    leverage,
+    minimise,
+    one_sided,
+    profile_end,
+    two_sided,
+    undetermined,
+)
+from ..statistics.levels import ROUNDS, SETTLED
+from ..statistics.robust import effective_variance, jackknife_growth, root_mean_square, softened, usual_size
+from .data import ForcedTable
+from .model import F_N, MU, ZETA, Fitted, ForcedModel, Samples, evaluate
+from .start import closer, starts
+
+#: The natural frequency is within this share of where the fit begins.
+_FREQUENCY_RANGE = 0.2
+
+#: Sums that chance makes larger this rarely end the search for a better one.
+_CHANCE = 1e-2
+
+#: Looks around the least sum, where chance does not explain it and motions come and go with friction.
+_CLOSER_LOOKS = 2
+
+#: Residuals beyond so many of their errors have little weight in a robust fit.
+_OUTLIER = 1.0
+
+#: Singular values of slopes below this share of the largest are zero, as are changes of lags [rad] and of
+#: logarithms of amplitudes, per unit of a parameter: differences have some such errors.
+_RANK = 1e-5
+
+
+#: Steps in which the end of the interval of mu is looked for where slopes do not say how far it may be.
+_STEP_OF_MU = 0.05
+
+
+class Fit(NamedTuple):
+    """A fit with its errors."""
+
+    model: ForcedModel  # its samples have the errors that were taken
+    problem: Problem
+    solution: Solution
+    errors: Errors
+    here: Fitted
+    mu_idle: bool  # mu was to be fitted, but no motion that was found stops
+
+
+def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bool = False) -> Fit:
+    """The steady states nearest to a table.
+
+    known : (parameters,) values that are held; NaN of the others
+    robust : whether residuals far beyond their errors have little weight
+    """
+    model = ForcedModel(system, bool(system.modes.zeta.any()), table.rows, table.samples)
+    model, solution, task = _with_errors(model, known, table.given, robust)
+    here = evaluate(model, solution.values, task.free)
+    idle = bool(task.free[MU]) and not (here.regime == regimes.STICK_SLIP).any()
+    if idle:
+        known = known.copy()
+        known[MU] = 1.0
+        model, solution, task = _with_errors(model, known, table.given, robust)
+        here = evaluate(model, solution.values, task.free)
+    flat = _is_flat(model, solution, task)
+    told = _without_mu(task) if flat else task
+    _check_told(table, model, solution, told)
+    variance = 1.0 if any(table.given) else None
+    plain = problem(model, task.free, float(solution.values[F_N])) if robust else None
+    larger: np.ndarray | float = 1.0
+    if plain is not None:
+        variance = effective_variance(plain, solution, _OUTLIER)
+        larger = jackknife_growth(plain._replace(free=told.free), solution, _OUTLIER)
+    found = errors(told, solution._replace(at_bound=solution.at_bound & told.free), variance, larger=larger)
+    interval = _on_bound if flat else _near_bound
+    found = interval(found, task, solution, variance)
+    if flat:
+        solution = solution._replace(at_bound=solution.at_bound | (task.free & ~told.free))
+    if plain is not None:
+        solution = solution._replace(residual=plain.residuals(solution.values)[0])
+        found = found._replace(variance=solution.sum / _freedom(solution, task))
+    return Fit(model, task, solution, found, here, idle)
+
+
+def _is_flat(model: ForcedModel, solution: Solution, task: Problem) -> bool:
+    """Check whether mu ended on its bound and nothing changes with it there to first order."""
+    return bool(task.free[MU] and solution.at_bound[MU]) and float(_effects(model, solution)[MU]) < _RANK
+
+
+def _effects(model: ForcedModel, solution: Solution) -> np.ndarray:
+    """Return the changes of lags [rad] and logarithms of amplitudes per unit of each parameter."""
+    unit = np.ones(solution.values.size)
+    unit[F_N] = solution.values[F_N]
+    return np.linalg.norm(solution.slopes * model.samples.sigma[:, np.newaxis], axis=0) * unit
+
+
+def _without_mu(task: Problem) -> Problem:
+    """Hold mu."""
+    free = task.free.copy()
+    free[MU] = False
+    return task._replace(free=free)
+
+
+def _on_bound(found: Errors, task: Problem, solution: Solution, variance: float | None) -> Errors:
+    """Take the interval of mu = 1 from the profile of the sum; those of the others allow for all of it."""
+    of_one = (found.variance if variance is None else variance) * found.inflation**2
+    allowed = one_sided(_freedom(solution, task)) ** 2 * of_one
+    most, end = profile_end(task, solution, MU, allowed, _STEP_OF_MU)
+    moved = end.values - solution.values
+    lower, upper = found.lower + np.minimum(moved, 0.0), found.upper + np.maximum(moved, 0.0)
+    lower = np.where(task.free, np.maximum(lower, task.floor), lower)
+    upper[MU] = most
+    return found._replace(lower=lower, upper=upper)
+
+
+def _freedom(solution: Solution, task: Problem) -> int:
+    return solution.residual.size - int(task.free.sum())
+
+
+def _near_bound(found: Errors, task: Problem, solution: Solution, variance: float | None) -> Errors:
+    """Take the interval of mu from the profile of the sum where it begins at 1: there slopes say little."""
+    if not task.free[MU] or solution.at_bound[MU] or found.lower[MU] > 1.0:
+        return found
+    of_one = (found.variance if variance is None else variance) * found.inflation**2
+    scale = float(found.standard_error[MU])
+    upper = found.upper.copy()
+    allowed = two_sided(_freedom(solution, task)) ** 2 * of_one
+    upper[MU] = profile_end(task, solution, MU, allowed, scale)[0]
+    return found._replace(upper=upper)
+
+
+def problem(model: ForcedModel, free: np.ndarray, f_n: float, robust: bool = False) -> Problem:
+    """Least squares of all samples; `f_n` is where the fit begins.
+
+    Below a bound, where there is no model, its tangent there takes its place.
+    """
+    floor = np.full(free.size, -np.inf)
+    floor[:F_N], floor[ZETA], floor[MU] = 0.0, 0.0, 1.0
+
+    def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        inside = np.maximum(values, floor)
+        found = evaluate(model, inside, free)
+        return found.residual + found.slopes @ (values - inside), found.slopes
+
+    lowest, highest = np.full(free.size, -np.inf), np.full(free.size, np.inf)
+    lowest[F_N], highest[F_N] = f_n * (1.0 - _FREQUENCY_RANGE), f_n * (1.0 + _FREQUENCY_RANGE)
+    highest[ZETA] = checks.LARGEST_DAMPING
+    plain = Problem(residuals, free, floor, lowest, highest)
+    return softened(plain, _OUTLIER) if robust else plain
+
+
+def _with_errors(
+    model: ForcedModel, known: np.ndarray, given: tuple[bool, bool], robust: bool
+) -> tuple[ForcedModel, Solution, Problem]:
+    """The least sum with errors as given, or as the residuals tell them of lags and of amplitudes apart."""
+    free = np.isnan(known)
+    solution, task = _best(model, known, all(given), robust)
+    for _ in range(0 if all(given) else ROUNDS):
+        samples = _with_scatter(model, solution, free, given, robust)
+        change = samples.sigma / model.samples.sigma
+        if (np.abs(change - 1.0) < SETTLED).all() or not (samples.sigma > 0.0).all():
+            break
+        model = model._replace(samples=samples)
+        task = problem(model, free, float(solution.values[F_N]), robust)
+        solution = minimise(task, solution.values)
+    return model, solution, task
+
+
+def _with_scatter(
+    model: ForcedModel, solution: Solution, free: np.ndarray, given: tuple[bool, bool], robust: bool
+) -> Samples:
+    """Samples with the errors of lags, or amplitudes, from their residuals, if they were not given."""
+    samples, residual = model.samples, solution.residual
+    if robust:  # those of the solution are drawn in
+        residual = problem(model, free, float(solution.values[F_N])).residuals(solution.values)[0]
+    size = usual_size if robust else root_mean_square
+    left = 1.0 - leverage(solution.slopes[:, free & ~solution.at_bound])  # of each residual
+    sigma = samples.sigma.copy()
+    for kind, known in zip((samples.is_phase, ~samples.is_phase), given, strict=True):
+        if not known and kind.any():
+            sigma[kind] *= size(residual[kind], max(float(left[kind].sum()), 1.0))
+    return samples._replace(sigma=sigma)
+
+
+def _best(model: ForcedModel, known: np.ndarray, sure: bool, robust: bool) -> tuple[Solution, Problem]:
+    """The least sum over all starts, or the first that chance explains if the errors are sure."""
+    free = np.isnan(known)
+    freedom = model.samples.row.size - int(free.sum())
+    enough = 2.0 * float(gammainccinv(0.5 * freedom, _CHANCE)) if sure else 0.0
+    begun = starts(model, known)
+    looks = _CLOSER_LOOKS if np.isnan(known[MU]) else 0
+    best: tuple[Solution, Problem] | None = None
+    while begun and (best is None or best[0].sum > enough):
+        start = begun.pop(0)
+        task = problem(model, free, float(start[F_N]), robust)
+        found = minimise(task, start)
+        if best is None or found.sum < best[0].sum:
+            best = found, task
+            if looks and found.sum > enough:
+                begun = closer(model, found.values, known) + begun
+                looks -= 1
+    assert best is not None  # there is a start at least
+    if not np.isfinite(best[0].sum):
+        raise InputError(
+            "the data must be of masses that move; one that was measured is held, whatever the friction"
+        )
+    return best
+
+
+def _check_told(table: ForcedTable, model: ForcedModel, solution: Solution, task: Problem) -> None:
+    """Refuse data that leave parameters, or some together, untold."""
+    names = parameter_names(table)
+    for index in np.flatnonzero(task.free & (_effects(model, solution) < _RANK)):
+        raise InputError(f"the data do not tell {names[index]}, on which nothing that was measured depends")
+    together, _ = undetermined(task, solution, _RANK)
+    if together.size:
+        words = " and ".join(names[index] for index in together)
+        raise InputError(f"the data do not tell {words} apart; known may hold one, or measure more")
+
+
+def parameter_names(table: ForcedTable) -> tuple[str, ...]:
+    """beta, or one of every set; f_n, zeta and mu."""
+    betas = [f"beta_{label}" for label in table.labels] if len(table.labels) > 1 else ["beta"]
+    return (*betas, "f_n", "zeta", "mu")

@@ -1,0 +1,129 @@
+"""The dataset of a fit of forced responses."""
+
+import numpy as np
+import xarray as xr
+
+from ... import regimes
+from ...units.table import checked_unit, conversion
+from ..statistics.estimates import QUANTITIES, estimates, number, usable_errors
+from .data import ForcedTable
+from .fit import Fit, parameter_names
+from .model import F_N, MU, points_of
+
+#: From where the motion is reached: both starts, or one.
+_REACHED = ("from_anywhere", "from_rest_only", "moving_only")
+
+#: Two motions whose first harmonics differ by less of their size are one.
+_SAME = 1e-9
+
+_WORDS = {
+    "beta": "kinetic friction force over the load's amplitude, the mean of the set",
+    "f_n": "natural frequency of the first mass on its spring alone, where r = 1",
+    "zeta": "viscous damping ratio of every mode; of the first one where the system's own are held",
+    "mu": "static over kinetic friction force",
+}
+
+
+def labelled(table: ForcedTable, fit: Fit, unit: str | None) -> xr.Dataset:
+    """The dataset of a fit but for its verdict; `unit` of the loads, if they were given."""
+    samples, solution = fit.model.samples, fit.solution
+    names = parameter_names(table)
+    meanings = {name: _WORDS.get(name) or f"{_WORDS['beta']} {name[5:]}" for name in names}
+    units = tuple("Hz" if name == "f_n" else "1" for name in names)
+    errors = usable_errors(fit.errors, MU, 1.0, bool(fit.problem.free[MU]))
+    shown = fit.errors._replace(standard_error=errors)
+    ds = estimates(meanings, units, solution, shown, fit.problem.free, np.zeros(samples.row.size), "1")
+    ds = ds.assign(_of_samples(table, fit))
+    if unit is not None:
+        ds = ds.assign(_friction(table, fit, unit))
+    sources = [
+        f"{what} {'as given' if given else 'from the residuals'}"
+        for what, given in zip(("of lags", "of amplitudes"), table.given, strict=True)
+    ]
+    ds.attrs["errors"] = ", ".join(sources)
+    return ds
+
+
+def _of_samples(table: ForcedTable, fit: Fit) -> dict[str, xr.Variable]:
+    """What is told of every sample: data and model as measured, residuals in degrees or relative."""
+    samples, rows = fit.model.samples, table.rows
+    phase = samples.is_phase
+    residual = fit.here.residual * samples.sigma
+    r, beta = points_of(rows, fit.solution.values)
+
+    def put(values: np.ndarray, words: str, **attributes: object) -> xr.Variable:
+        return xr.Variable("sample", values, {"long_name": words, **attributes})
+
+    def as_measured(values: np.ndarray) -> np.ndarray:
+        return np.where(phase, np.degrees(values), np.exp(np.where(phase, 0.0, values)))
+
+    in_units = {"comment": "degrees of lags, ratios of amplitudes; see quantity"}
+    relative = {"comment": "degrees of lags, natural logarithms of ratios of amplitudes; see quantity"}
+    sets = np.array(table.labels)[rows.member]
+    regime = {
+        "flag_values": np.array([code.value for code in regimes.REGIMES], dtype=np.int8),
+        "flag_meanings": " ".join(code.name for code in regimes.REGIMES),
+    }
+    return {
+        "data": put(as_measured(samples.value), "measured", **in_units),
+        "model": put(as_measured(samples.value + residual), "fitted", **in_units),
+        "residual": put(np.where(phase, np.degrees(residual), residual), "fitted less measured", **relative),
+        "sigma": put(np.where(phase, np.degrees(samples.sigma), samples.sigma), "standard error", **relative),
+        "quantity": put(phase.astype(np.int8), "what was measured", **_flags(QUANTITIES)),
+        "mass": put((samples.mass + 1).astype(np.int16), "mass, counted from 1", units="1"),
+        "set": put(sets[samples.row], "test, of one friction force"),
+        "frequency": put(rows.frequency[samples.row], "frequency of the load or base", units="Hz"),
+        "frequency_ratio": put(r[samples.row], "frequency over f_n", units="1"),
+        "friction_ratio": put(beta[samples.row], "friction force over the load of this row", units="1"),
+        "regime": put(fit.here.regime[samples.row], "regime of the motion fitted", **regime),
+        "reached": put(_reached(fit)[samples.row], "starts from which it is reached", **_flags(_REACHED)),
+    }
+
+
+def _flags(meanings: tuple[str, ...]) -> dict[str, object]:
+    return {"flag_values": np.arange(len(meanings), dtype=np.int8), "flag_meanings": " ".join(meanings)}
+
+
+def _reached(fit: Fit) -> np.ndarray:
+    """Codes of `_REACHED`, row by row."""
+    codes = np.zeros(fit.here.phasors.shape[0], dtype=np.int8)
+    if len(fit.here.states) == 1:  # mu = 1
+        return codes
+    rest, moving = (_is_one(fit.here.phasors, states.phasors) for states in fit.here.states[1:])
+    codes[rest & ~moving], codes[moving & ~rest] = 1, 2
+    return codes
+
+
+def _is_one(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    return (np.abs(other - one) <= _SAME * np.abs(one)).all(axis=1)
+
+
+def friction_forces(table: ForcedTable, fit: Fit, unit: str, stiffness: float) -> dict[str, xr.Variable]:
+    """Friction force k1 x_F [N] of every set on a shaken base, with its error; `stiffness` k1 [N/m].
+
+    Under a force it is told in the unit of the force already: nothing is added.
+    """
+    if fit.model.system.excitation != "base":
+        return {}
+    newtons = stiffness * conversion(checked_unit(unit, "length", "unit"), "m")
+    return _per_set(table, fit, "friction_force", "kinetic friction force k1 x_F", newtons, "N")
+
+
+def _friction(table: ForcedTable, fit: Fit, unit: str) -> dict[str, xr.Variable]:
+    """Friction of every set in the unit of its loads: of a base a length, F/k1; of a force a force."""
+    base = fit.model.system.excitation == "base"
+    what, words = ("x_F", "F/k1") if base else ("friction_force", "F")
+    return _per_set(table, fit, what, f"kinetic friction, {words}", 1.0, unit)
+
+
+def _per_set(
+    table: ForcedTable, fit: Fit, what: str, words: str, scale: float, unit: str
+) -> dict[str, xr.Variable]:
+    """beta of every set as friction, times its load and `scale`, with the standard error."""
+    result = {}
+    for k, name in enumerate(parameter_names(table)[:F_N]):
+        own, size = name.replace("beta", what), table.load[k] * scale
+        result[own] = number(fit.solution.values[k] * size, words, unit)
+        error = fit.errors.standard_error[k] * size
+        result[f"{own}_standard_error"] = number(error, f"standard error of {own}", unit)
+    return result

@@ -1,0 +1,71 @@
+"""What the lags of a table tell of friction one by one, and which of them no friction gives."""
+
+import numpy as np
+import xarray as xr
+
+from ...errors import InputError
+from ...model.system import System
+from .data import ForcedTable, most_beyond
+from .fit import Fit
+from .model import F_N, ZETA, Samples
+from .phase_inversion import MEANINGS, invert, reach
+
+#: Code of what is no lag, after those of `MEANINGS`.
+_NO_LAG = len(MEANINGS)
+
+
+def impossible(table: ForcedTable, system: System, f_n: float) -> np.ndarray:
+    """Samples, by index, that are lags of one mass further off all that friction gives than their errors."""
+    if system.n > 1:
+        return np.empty(0, dtype=int)
+    samples = table.samples
+    which = np.flatnonzero(samples.is_phase)
+    off = reach(system, table.rows.frequency[samples.row[which]] / f_n, samples.value[which])
+    return which[off > most_beyond(table)[which]]
+
+
+def refuse_impossible(table: ForcedTable, system: System, f_n: float, sample: int) -> None:
+    """Name a lag that no friction gives."""
+    row = table.samples.row[sample : sample + 1]
+    lag = table.samples.value[sample : sample + 1]
+    told = invert(system, table.rows.frequency[row] / f_n, lag, np.zeros(1, dtype=int))[0]
+    raise InputError(
+        f'{told.reason} (row {int(row[0]) + 1} of the table; unreachable = "drop" leaves such lags out)'
+    )
+
+
+def without(table: ForcedTable, samples: np.ndarray) -> ForcedTable:
+    """The table without some samples."""
+    kept = np.delete(np.arange(table.samples.row.size), samples)
+    return table._replace(samples=Samples(*(part[kept] for part in table.samples)))
+
+
+def friction_ratios(fit: Fit) -> dict[str, xr.Variable]:
+    """Friction ratios from single lags, at the frequency and damping that were fitted, mu = 1."""
+    samples, values = fit.model.samples, fit.solution.values
+    lags = np.flatnonzero(samples.is_phase)
+    r = fit.model.rows.frequency[samples.row[lags]] / values[F_N]
+    told = invert(fit.model.with_zeta(float(values[ZETA])), r, samples.value[lags], samples.mass[lags])
+    status = np.full(samples.row.size, _NO_LAG, dtype=np.int8)
+    status[lags] = [one.code for one in told]
+    flags = {
+        "long_name": "what the lag tells of friction",
+        "flag_values": np.arange(_NO_LAG + 1, dtype=np.int8),
+        "flag_meanings": " ".join((*MEANINGS, "no_lag")),
+    }
+    found = {"lag_status": xr.Variable("sample", status, flags)}
+    counts = [len(one.beta) for one in told]
+    if sum(counts):
+        beta, slope = (np.concatenate([getattr(one, name) for one in told]) for name in ("beta", "slope"))
+        sample = np.repeat(lags, counts)
+        error = np.degrees(samples.sigma[sample]) / np.abs(slope)
+        found |= {
+            "lag_sample": xr.Variable("answer", sample, {"long_name": "sample of the lag", "units": "1"}),
+            "lag_friction_ratio": xr.Variable(
+                "answer", beta, {"long_name": "friction ratio of this row that gives the lag", "units": "1"}
+            ),
+            "lag_friction_ratio_error": xr.Variable(
+                "answer", error, {"long_name": "its standard error, to first order", "units": "1"}
+            ),
+        }
+    return found

@@ -1,0 +1,207 @@
+"""Configurations of rigs: which file is read, what is known, what is fitted.
+
+A kind of data is a `Kind`: what may be said of it, and the function that fits it.  To build another, write
+one like `FREE_DECAY` in `decay` and add it to `KINDS`.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import cast
+
+import xarray as xr
+
+from ... import checks
+from ...errors import InputError
+from ...files.config import read_tree, unknown_key
+from ...units.axes import rounded
+from ...units.quantities import quantity
+from ...units.table import UNITS
+from ..tables.columns import MISSING
+from ..tables.files import read_table
+from .decay import FREE_DECAY
+from .forced import FORCED
+from .joint import JOINT, checked_data, data_paths, fit_together
+from .record import RECORD
+from .rig import KNOWN_UNITS, Kind, Rig
+from .sweep import SWEEP
+
+#: What is known of every kind of data.
+KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "record": RECORD, "sweep": SWEEP}
+
+
+#: What several measurements in tables [[data]] are called.
+JOINT_NAME = "joint"
+
+#: Endings of what is data, not a configuration.
+_DATA = (".csv", ".mat", ".npz", ".txt", ".uff", ".unv", ".tdms", ".xlsx")
+
+
+def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
+    """Read the configuration of a rig and apply overrides such as ``data.file=other.csv``.
+
+    The data file is relative to the folder of the configuration.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or is not TOML; a key is unknown, missing, of the wrong type or out of range.
+    """
+    _refuse_data(path)
+    tree, text = read_tree(path, overrides)
+    path = Path(path)
+    if isinstance(tree.get("data"), list):
+        return _joint_rig(tree, text, path)
+    data, known, fit = (_table(tree, name) for name in ("data", "known", "fit"))
+    name = _checked_kind(tree, data)
+    kind = KINDS[name]
+    _check_keys(tree, name, kind)
+    file = data.get("file")
+    if not isinstance(file, str) or not file:
+        given = f"got {checks.one_line(file)}" if "file" in data else "there is none"
+        raise InputError(f"data.file must be the path of a file of measured data; {given}")
+    missing = checks.choice(data.get("missing", MISSING[0]), "data.missing", MISSING)
+    values = {key: _known_number(value, key) for key, value in known.items()}
+    free = _checked_free(fit.get("free"), values, kind.parameters)
+    source = path.parent / file
+    return Rig(
+        _title(tree, Path(file).stem), name, source, _names(data.get("columns", {})),
+        _chosen(data, kind.data), missing,
+        _table(tree, "system"), values, free, _chosen(fit, kind.fit), text, path.stem, (path, source),
+    )  # fmt: skip
+
+
+def _joint_rig(tree: Mapping[str, object], text: str, path: Path) -> Rig:
+    """A rig with several measurements, tables [[data]]."""
+    parts = checked_data(list(cast(list[object], tree["data"])))
+    _check_keys({key: value for key, value in tree.items() if key != "data"}, JOINT_NAME, JOINT)
+    known, fit = _table(tree, "known"), _table(tree, "fit")
+    values = {key: _known_number(value, key) for key, value in known.items()}
+    free = _checked_free(fit.get("free"), values, JOINT.parameters)
+    files = data_paths(parts, path.parent)
+    return Rig(
+        _title(tree, path.stem), JOINT_NAME, files[0], {}, {"parts": parts}, MISSING[0],
+        _table(tree, "system"),
+        values, free, _chosen(fit, JOINT.fit), text, path.stem, (path, *files),
+    )  # fmt: skip
+
+
+def _title(tree: Mapping[str, object], default: str) -> str:
+    title = tree.get("title", default)
+    if not isinstance(title, str):
+        raise InputError(f"title must be text; got {checks.one_line(title)}")
+    return title
+
+
+def identify(rig: Rig) -> xr.Dataset:
+    """Fit what the data of a rig tell; see the function of its kind, such as `free_decay`.
+
+    Raises
+    ------
+    InputError
+        The data cannot be read or fitted; one line with the file.
+    """
+    if rig.kind == JOINT_NAME:
+        ds = fit_together(rig)
+        ds.attrs |= {"title": rig.title, "config": rig.text}
+        return ds
+    table = read_table(rig.file)
+    ds = KINDS[rig.kind].identify(rig, table)
+    ds.attrs |= {
+        "title": rig.title, "config": rig.text, "data_file": rig.file.as_posix(), "data_form": table.form,
+    }  # fmt: skip
+    return ds
+
+
+def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
+    table = tree.get(name, {})
+    if not isinstance(table, Mapping):
+        raise InputError(f"{name} must be a table [{name}]; got {checks.one_line(table)}")
+    return table
+
+
+def _refuse_data(path: object) -> None:
+    """Refuse measured data where their configuration is due."""
+    if isinstance(path, (str, Path)) and Path(path).suffix.lower() in _DATA:
+        raise InputError(
+            f"RIG.toml must be a configuration, which says with [data] kind and file what {path} holds; "
+            "got the file of data itself"
+        )
+
+
+def _checked_kind(tree: Mapping[str, object], data: Mapping[str, object]) -> str:
+    kinds = ", ".join(KINDS)
+    if "kind" in data:
+        return checks.choice(data["kind"], "data.kind", tuple(KINDS))
+    if "grid" in tree:
+        raise InputError(
+            f"the configuration must have data.kind, one of {kinds}; it is that of a map, for frictionmap map"
+        )
+    raise InputError(f"the configuration must have a table [data] with kind, one of {kinds}; it has none")
+
+
+def _check_keys(tree: Mapping[str, object], name: str, kind: Kind) -> None:
+    """Refuse what no key of the kind is; [system] is checked as in maps, where it is used."""
+    sections = {
+        "data": ("kind", "file", "columns", "missing", *kind.data),
+        "known": (*kind.parameters, *kind.known),
+        "fit": ("free", *kind.fit),
+    }
+    legal = ("title", *sections, *(("system",) if kind.system else ()))
+    for key in tree:
+        if key not in legal:
+            raise _unknown(key, "", legal, name)
+    for section, keys in sections.items():
+        for key in _table(tree, section):
+            if key not in keys:
+                raise _unknown(key, section, keys, name)
+
+
+def _unknown(key: str, section: str, legal: Sequence[str], kind: str) -> InputError:
+    """What is no key of a kind may well be one of another."""
+    return InputError(f"{unknown_key(key, section, legal)}, for data.kind = {kind!r}")
+
+
+def _checked_free(
+    free: object, known: Mapping[str, float], parameters: Sequence[str]
+) -> tuple[str, ...] | None:
+    """What is fitted is what is not known: a list of it must say the same."""
+    if free is None:
+        return None
+    if not parameters:
+        raise InputError("fit.free must be left out for this kind: what [known] does not hold is fitted")
+    if not isinstance(free, list) or not free:
+        raise InputError(f"fit.free must be a list of parameters; got {checks.one_line(free)}")
+    for index, name in enumerate(free):
+        checks.choice(name, f"fit.free[{index}]", tuple(parameters))
+    for name in parameters:
+        if name in free and name in known:
+            raise InputError(f"fit.free must not name what [known] holds; got {name}")
+        if name not in free and name not in known:
+            raise InputError(f"fit.free must name {name}, or known.{name} give its value; got {free}")
+    return tuple(free)
+
+
+def _known_number(value: object, key: str) -> float:
+    """A number of [known]; one with its unit in that of the key."""
+    unit = KNOWN_UNITS.get(key, "")
+    if unit and isinstance(value, str):
+        found = quantity(value, f"known.{key}", UNITS[unit].measures)
+        number = rounded(found.value / UNITS[unit].size)
+        if math.isinf(number):
+            raise InputError(f"known.{key} must be finite in {unit}; got {value!r}")
+        value = number
+    return checks.number(value, f"known.{key}")
+
+
+def _names(columns: object) -> dict[str, str]:
+    if not isinstance(columns, Mapping) or not all(isinstance(name, str) for name in columns.values()):
+        raise InputError(
+            f'data.columns must be names of columns, such as {{ time = "time_s", x = "x_mm" }}; '
+            f"got {checks.one_line(columns)}"
+        )
+    return dict(columns)
+
+
+def _chosen(table: Mapping[str, object], keys: Sequence[str]) -> dict[str, object]:
+    return {key: table[key] for key in keys if key in table}

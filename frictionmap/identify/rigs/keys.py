@@ -1,0 +1,182 @@
+"""The keys of the configuration of a rig, by the kind of data: meanings and what is legal.
+
+Which keys a kind has, its `Kind` says; what they mean stands here.
+"""
+
+from typing import Any
+
+from ...files.json_schema import DIALECT, described, keyed_table
+from ...files.keys import KEYS, Key, either, number, several, table, whole, with_unit, word
+from ...model.system import DAMPING_REFERENCES
+from ...units.table import UNITS, units_of
+from ..chain.data import MOST_MASSES
+from ..chain.sweep import COSTS
+from ..statistics.robust import LOSSES
+from ..tables.columns import MISSING
+from ..time_series.motion import CONTACTS
+from .configuration import JOINT_NAME, KINDS
+from .joint import DATA_KEYS, JOINED, JOINT
+from .rig import KNOWN_UNITS
+
+#: What is said of a table as a whole.
+TABLES = {
+    "data": "What was measured.",
+    "system": "The structure, as in maps.",
+    "known": "What is held, and what scales the result, in Hz, mm, s, N/m; the rest is fitted.",
+    "fit": "How it is fitted.",
+}
+
+_POSITIVE = number(above=0.0)
+_TIMES = several(number(), 2, maxItems=2)
+
+_TITLE = KEYS[""][0]._replace(meaning="what pictures are called; default: the name of the file of data")
+
+_DATA = (
+    Key("kind", "what was measured", word(*KINDS)),
+    Key("file", "the file, relative to this one", {"type": "string", "minLength": 1}, example='"data.csv"'),
+    Key(
+        "columns",
+        "names of columns; default: these names, whose endings are units",
+        {"type": "object", "additionalProperties": {"type": "string"}},
+        example='{ time = "time_s", x = "x_mm" }',
+        words="a table of names",
+    ),
+    Key("missing", "rows without a number: refused, or up to 1 % of them left out", word(*MISSING),
+        MISSING[0]),
+    Key("window", "the part to be fitted, s", _TIMES, example="[0.5, 4.0]", words="[begin, end]"),
+    Key("use", "what is fitted; all that is there if left out", several(word("phase", "amplitude")),
+        example='["phase", "amplitude"]'),
+    Key("sigma_phase_deg", "error of lags; from the residuals if left out", _POSITIVE, example="1.0"),
+    Key("sigma_amplitude", "relative error of amplitudes; from the residuals if left out", _POSITIVE,
+        example="0.02"),
+    Key("unreachable", "lags that no friction gives", word("refuse", "drop"), "refuse"),
+)  # fmt: skip
+
+#: Of each of several measurements.
+_LABEL = Key("label", "name in the results; default: its number", {"type": "string", "minLength": 1},
+             example='"10 N"')  # fmt: skip
+
+_FIT = (
+    Key("free", "what is fitted, which is what [known] does not hold", several({"type": "string"}),
+        example='["zeta", "x_F"]'),
+    Key("drift", "whether the zero of the measurement drifts", {"type": "boolean"}, False,
+        words="true or false"),
+    Key("loss", "what residuals cost: soft_l1 gives little weight to outliers", word(*LOSSES), LOSSES[0]),
+    Key("cost", "whether the logarithms of amplitudes are fitted, or relative differences", word(*COSTS),
+        COSTS[0]),
+)  # fmt: skip
+
+_CONTACT, _MASSES, *_ = KEYS["system"]
+_BASE = Key("excitation", "what shakes it", word("base"), "base")
+_REFERENCE = Key(
+    "damping_reference", "whether damping acts on velocities in space or relative to the base",
+    word(*DAMPING_REFERENCES), DAMPING_REFERENCES[0],
+)  # fmt: skip
+_SYSTEMS = {
+    "forced": KEYS["system"],
+    "record": (
+        _CONTACT._replace(legal=word(*CONTACTS)),
+        _MASSES._replace(legal=several({"const": 1}, maxItems=1), words="[1]"),
+        _BASE,
+        _REFERENCE,
+    ),
+    "sweep": (
+        Key("masses", "how many masses the chain has", whole(least=1, most=MOST_MASSES), example="2"),
+        _BASE,
+        _REFERENCE._replace(default=None, example='"ground"'),
+    ),
+}
+
+_KNOWN = {
+    "f_n": ("natural frequency, Hz", "3.12"),
+    "zeta": ("viscous damping ratio", "0.01"),
+    "beta": ("friction ratio, of all sets", "0.2"),
+    "mu": ("static over kinetic friction force, >= 1", "1.0"),
+    "x_F": ("kinetic friction force over stiffness, mm", "0.2"),
+    "X0": ("amplitude at t0, mm", "9.5"),
+    "t0": ("time of the first turning point, s", "0.0"),
+    "centre": ("place of the unloaded mass, mm", "0.0"),
+    "offset_x": ("place of the unloaded mass where the base is at its zero, mm", "0.0"),
+    "base_mm": ("amplitude of the base for which beta = x_F/Y is wanted, mm", "1.75"),
+    "stiffness": ("of the spring, N/m: gives the friction force in N", "1191.0"),
+    "f_k1m1": ("natural frequency of mass 1 on its spring alone, Hz", "3.0"),
+    "gamma": ("mass ratio m_2/m_1, of two masses", "1.0"),
+    "kappa": ("stiffness ratio k_2/k_1, of two masses", "1.0"),
+}
+_KNOWN |= {f"mass_ratio_{k}": (f"mass ratio m_{k}/m_1", "1.0") for k in range(2, MOST_MASSES + 1)}
+_KNOWN |= {f"stiffness_ratio_{k}": (f"stiffness ratio k_{k}/k_1", "1.0") for k in range(2, MOST_MASSES + 1)}
+_KNOWN |= {f"zeta_{k}": (f"damping ratio of mode {k}", "0.01") for k in range(1, MOST_MASSES + 1)}
+
+
+def _known(name: str) -> Key:
+    """A key of [known]; with the unit that its meaning ends in, or with any other of that kind as text."""
+    meaning, example = _KNOWN[name]
+    if name not in KNOWN_UNITS:
+        return Key(name, meaning, number(), example=example)
+    kind = UNITS[KNOWN_UNITS[name]].measures
+    words = f"a number, or text with {', '.join(units_of(kind))}"
+    return Key(name, meaning, either(number(), with_unit(kind)), example=example, words=words)
+
+
+def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
+    """The keys of each table, for a kind of data."""
+    of = KINDS[kind]
+    data = ("kind", "file", "columns", "missing", *of.data)
+    known = (*of.parameters, *of.known)
+    tables = {
+        "": (_TITLE,),
+        "data": tuple(key for key in _DATA if key.name in data),
+        "system": _SYSTEMS.get(kind, ()),
+        "known": tuple(_known(name) for name in known),
+        "fit": tuple(key for key in _FIT if key.name in (*of.fit, *(("free",) if of.parameters else ()))),
+    }
+    return {name: keys for name, keys in tables.items() if keys}
+
+
+def rig_settings() -> list[str]:
+    """The keys of all kinds, each with its table, as `--set` takes them."""
+    found = {
+        f"{section}.{key.name}": None
+        for kind in KINDS
+        for section, keys in rig_keys(kind).items()
+        for key in keys
+        if section
+    }
+    return list(found)
+
+
+def rig_schema() -> dict[str, Any]:
+    """The schema of what `identify` reads."""
+    return {
+        "$schema": DIALECT,
+        "title": "Configuration of a rig, for frictionmap identify",
+        "type": "object",
+        "properties": {"data": either({"type": "object", "required": ["kind", "file"]}, {"type": "array"})},
+        "required": ["data"],
+        "oneOf": [*(_of_kind(kind) for kind in KINDS), _of_several()],
+    }
+
+
+def _of_several() -> dict[str, Any]:
+    """Several measurements, tables [[data]]."""
+    named = {key.name: key for key in (*_DATA, _LABEL)}
+    data = table(described(tuple(named[name] for name in DATA_KEYS)), ("kind", "file"))
+    data["properties"]["kind"] = {"description": "what was measured", **word(*JOINED)}
+    known = tuple(_known(name) for name in (*JOINT.parameters, *JOINT.known))
+    fit = tuple(key for key in _FIT if key.name in (*JOINT.fit, "free"))
+    tables = {
+        "data": {"description": "Measurements that are fitted together.", **several(data, least=2)},
+        "system": keyed_table("system", _SYSTEMS["record"], TABLES["system"]),
+        "known": keyed_table("known", known, TABLES["known"]),
+        "fit": keyed_table("fit", fit, TABLES["fit"]),
+    }
+    return {**table({**described(KEYS[""]), **tables}), "title": JOINT_NAME}
+
+
+def _of_kind(kind: str) -> dict[str, Any]:
+    keys = rig_keys(kind)
+    sections = {name: keyed_table(name, keys[name], TABLES[name]) for name in keys if name}
+    sections["data"]["properties"]["kind"] = {"description": "what was measured", "const": kind}
+    if kind in ("forced", "sweep"):
+        return {**table({**described(keys[""]), **sections}, ("system",)), "title": kind}
+    return {**table({**described(keys[""]), **sections}), "title": kind}

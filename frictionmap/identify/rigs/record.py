@@ -1,0 +1,103 @@
+"""Records of steady motion from the file of a rig."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ... import checks
+from ...errors import InputError
+from ...files.config import unknown_key
+from ...model.system import DAMPING_REFERENCES
+from ...units.table import COLUMN_NAMES, conversion
+from ..signals.integration import Displacements, derivative_order, displacements
+from ..signals.samples import within
+from ..tables.columns import Column, check_increasing, pick_columns
+from ..tables.files import Table
+from ..time_series.motion import CONTACTS, PARAMETERS
+from ..time_series.record import record
+from .rig import Kind, Rig, check_columns, with_remarks
+
+_WANTED = {"time": "time", "base": "motion", "x": "motion"}
+
+#: Noise of displacements beyond this share of the motion is much.
+_NOISY = 0.05
+
+#: What is given in mm, whatever the unit of the data.
+_LENGTHS = ("x_F", "offset_x")
+
+SYSTEM_KEYS = ("contact", "damping_reference", "excitation", "contact_masses")
+
+
+def _record(rig: Rig, table: Table) -> xr.Dataset:
+    contact, reference = one_mass_on_base(rig)
+    check_columns(rig, tuple(_WANTED))
+    picked = pick_columns(table, _WANTED, rig.columns, rig.missing)
+    time, base, x = (picked.columns[role] for role in _WANTED)
+    check_increasing(table, time, picked.rows)
+    unit = "mm" if derivative_order(COLUMN_NAMES[x.unit]) else x.unit
+    known = {
+        key: value * conversion("mm", unit) if key in _LENGTHS else value for key, value in rig.known.items()
+    }
+    stiffness = known.pop("stiffness", None)
+    options: dict[str, Any] = dict(rig.fit)
+    try:
+        times, found = _displaced(time, base, x, unit, rig.data.get("window"))
+        ds = record(
+            times, found.base, found.x, unit=unit, contact=contact, damping_reference=reference, known=known,
+            stiffness=stiffness, window=rig.data.get("window"), **options,
+        )  # fmt: skip
+    except InputError as error:
+        names = f"columns {time.name}, {base.name} and {x.name}"
+        raise InputError(f"file {rig.file}, {names}: {error}") from None
+    remarks = _of_integration((base, x), found)
+    ds.attrs["warnings"] = "; ".join(filter(None, (*remarks, ds.attrs["warnings"])))
+    return with_remarks(ds, table, picked)
+
+
+def _displaced(
+    time: Column, base: Column, x: Column, unit: str, window: object
+) -> tuple[np.ndarray, Displacements]:
+    """Times [s] within the window, and displacements of base and mass."""
+    times = time.values * conversion(time.unit, "s")
+    inside = within(window, times)
+    return times[inside], displacements(
+        times[inside], base.values[inside], x.values[inside], base_unit=COLUMN_NAMES[base.unit],
+        x_unit=COLUMN_NAMES[x.unit], unit=unit,
+    )  # fmt: skip
+
+
+def _of_integration(columns: tuple[Column, Column], found: Displacements) -> list[str]:
+    """What to mind of displacements that were not measured, in words."""
+    words = []
+    for column, noise in zip(columns, found.noise, strict=True):
+        if noise > _NOISY:
+            words.append(
+                f"{column.name} as a displacement has noise of {noise:.0%} of its motion: integration "
+                "amplifies what is slow"
+            )
+    if any(derivative_order(COLUMN_NAMES[column.unit]) for column in columns):
+        words.append("offset_x has no meaning: velocities and accelerations do not show where the mass rests")
+    return words
+
+
+def one_mass_on_base(rig: Rig) -> tuple[str, str]:
+    """Contact and damping reference of one mass on a shaken base."""
+    for key in rig.system:
+        if key not in SYSTEM_KEYS:
+            raise unknown_key(key, "system", SYSTEM_KEYS)
+    if rig.system.get("contact_masses", [1]) != [1]:
+        masses = checks.one_line(rig.system["contact_masses"])
+        raise InputError(f"system.contact_masses must be [1], a record is of one mass; got {masses}")
+    checks.choice(rig.system.get("excitation", "base"), "system.excitation", ("base",))
+    return (
+        checks.choice(rig.system.get("contact", CONTACTS[0]), "system.contact", CONTACTS),
+        checks.choice(
+            rig.system.get("damping_reference", DAMPING_REFERENCES[0]),
+            "system.damping_reference",
+            DAMPING_REFERENCES,
+        ),
+    )
+
+
+RECORD = Kind(_record, PARAMETERS, known=("stiffness",), data=("window",), fit=("loss",), system=True)

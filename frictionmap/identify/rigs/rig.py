@@ -1,0 +1,73 @@
+"""A rig: what a configuration says of measured data, and what a kind of data has to tell of itself."""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import xarray as xr
+
+from ...files.config import unknown_key
+from ..tables.columns import Columns, unused_columns
+from ..tables.files import Table
+
+
+class Rig(NamedTuple):
+    """A checked configuration; what its kind says of single values is checked where they are used."""
+
+    title: str
+    kind: str
+    file: Path
+    columns: Mapping[str, str]  # names in the file, by what the column is
+    data: Mapping[str, object]  # what else [data] says
+    missing: str
+    system: Mapping[str, object]
+    known: Mapping[str, float]  # in Hz, mm, s, N/m
+    free: tuple[str, ...] | None  # None: by kind
+    fit: Mapping[str, object]  # what else [fit] says
+    text: str
+    name: str  # of the configuration, without its ending
+    files: tuple[Path, ...]
+
+
+#: Units of numbers of [known] that have one; as text they may be in another of its kind.
+KNOWN_UNITS = {
+    "f_n": "Hz", "f_k1m1": "Hz", "x_F": "mm", "X0": "mm", "centre": "mm", "offset_x": "mm", "base_mm": "mm",
+    "stiffness": "N/m", "t0": "s",
+}  # fmt: skip
+
+
+class Kind(NamedTuple):
+    """What may be said of a kind of data, and the function that fits them."""
+
+    identify: Callable[[Rig, Table], xr.Dataset]
+    parameters: tuple[str, ...]  # that [known] may hold and fit.free may name
+    known: tuple[str, ...] = ()  # further keys of [known]
+    data: tuple[str, ...] = ()  # further keys of [data]
+    fit: tuple[str, ...] = ()  # further keys of [fit]
+    system: bool = False  # whether there is a table [system]
+
+
+def check_columns(rig: Rig, legal: Sequence[str]) -> None:
+    """Refuse a name in data.columns for what no column of the kind is."""
+    for key in rig.columns:
+        if key not in legal:
+            raise unknown_key(key, "data.columns", tuple(legal))
+
+
+def with_remarks(ds: xr.Dataset, table: Table, picked: Columns, known_of: Collection[str] = ()) -> xr.Dataset:
+    """The dataset with what is to be minded of the table before its own warnings.
+
+    known_of : columns that the configuration leaves out itself, or that are no numbers; they are not named
+    """
+    used = {column.name for column in picked.columns.values()} | set(known_of)
+    remarks = (_dropped_rows(table, picked), unused_columns(table, used), ds.attrs["warnings"])
+    ds.attrs["warnings"] = "; ".join(filter(None, remarks))
+    return ds
+
+
+def _dropped_rows(table: Table, picked: Columns) -> str:
+    """A warning of rows that were left out, or nothing."""
+    if not picked.dropped:
+        return ""
+    total = picked.dropped + picked.rows.size
+    return f"{picked.dropped} of {total} rows of {table.file.name} have no number and were left out"

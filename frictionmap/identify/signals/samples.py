@@ -1,0 +1,73 @@
+"""Samples of a record, checked: times that increase, the window, samples that are clipped, gaps."""
+
+import numpy as np
+
+from ... import checks
+from ...errors import InputError
+from .turning_points import GAP, resolution
+
+#: Samples in a row at an extreme value are clipped if the next one is far from it: by so many steps of the
+#: resolution, of which a smooth turning point makes few.
+_CLIPPED_ROW = 3
+_CLIPPED_STEPS = 4.0
+
+
+def checked_record(time: object, x: object, name: str = "x") -> tuple[np.ndarray, np.ndarray]:
+    """Times and displacements as arrays of one length, finite, times increasing."""
+    times = checks.axis(time, "time", least=-np.inf)
+    places = np.atleast_1d(checks.array(x, name))
+    if places.dtype.kind not in "iuf" or places.shape != times.shape:
+        raise InputError(f"{name} must be {times.size} numbers, as many as times; got {checks.one_line(x)}")
+    wrong = np.flatnonzero(~np.isfinite(places))
+    if wrong.size:
+        raise InputError(f"{name} must be finite; got {places[wrong[0]]} at index {wrong[0]}")
+    return times, places.astype(float)
+
+
+def within(window: object, time: np.ndarray) -> np.ndarray:
+    """Samples within a window, a list of two times."""
+    if window is None:
+        return np.ones(time.size, dtype=bool)
+    times = checks.axis(window, "window", least=-np.inf)
+    if times.size != 2:
+        raise InputError(f"window must be two times; got {checks.one_line(window)}")
+    begin, end = times
+    inside = (time >= begin) & (time <= end)
+    if not inside.any():
+        raise InputError(
+            f"window must hold samples, which lie between {time[0]:g} and {time[-1]:g} s; "
+            f"got {begin:g} to {end:g}"
+        )
+    return inside
+
+
+def unclipped(x: np.ndarray) -> np.ndarray:
+    """Samples that are not cut off at the ends of a measuring range."""
+    good = np.ones(x.size, dtype=bool)
+    for begin, _ in clipped_runs(x):
+        good[x == x[begin]] = False
+    return good
+
+
+def clipped_runs(x: np.ndarray) -> list[tuple[int, int]]:
+    """Begin and end of every run of samples that lie at an extreme value, the samples beside far from it."""
+    step = resolution(x)
+    found = []
+    for extreme in (x.min(), x.max()):
+        for begin, end in _runs(x == extreme):
+            beside = [abs(x[k] - extreme) for k in (begin - 1, end) if 0 <= k < x.size]
+            if end - begin >= _CLIPPED_ROW and beside and max(beside) > _CLIPPED_STEPS * step:
+                found.append((begin, end))
+    return found
+
+
+def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:
+    """Begin and end of every run of chosen samples."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], chosen.astype(int), [0]))))
+    return [(int(begin), int(end)) for begin, end in edges.reshape(-1, 2)]
+
+
+def largest_gap(time: np.ndarray) -> float:
+    """The longest step between samples, if it is much longer than usual; else 0."""
+    steps = np.diff(time)
+    return float(steps.max()) if steps.max() > GAP * float(np.median(steps)) else 0.0

@@ -1,0 +1,125 @@
+"""Estimates with their errors as a labelled dataset."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from ...datasets.labels import REFERENCES
+from ...datasets.provenance import now
+from ...version import __version__
+from .least_squares import Errors, Solution
+
+#: What a sample of a first harmonic is; files hold the place in this list.
+QUANTITIES = ("amplitude_ratio", "phase_lag")
+
+
+def number(value: float, long_name: str, units: str = "1") -> xr.Variable:
+    """A labelled number."""
+    return xr.Variable((), float(value), {"long_name": long_name, "units": units})
+
+
+def verdict(code: int, meanings: Mapping[str, str]) -> xr.Variable:
+    """What was found, as a CF flag; codes count the meanings from 0."""
+    flags = {
+        "long_name": "what the data show",
+        "flag_values": np.arange(len(meanings), dtype=np.int8),
+        "flag_meanings": " ".join(meanings),
+        "comment": "; ".join(f"{name}: {words}" for name, words in meanings.items()),
+    }
+    return xr.Variable((), np.int8(code), flags)
+
+
+def usable_errors(found: Errors, index: int, bound: float, fitted: bool) -> np.ndarray:
+    """Standard errors, NaN of a parameter whose interval begins on its bound.
+
+    Near such a bound the data see the square of the distance from it: its likelihood is no normal curve, and
+    only the interval says what is known.
+    """
+    result = found.standard_error.copy()
+    if fitted and found.lower[index] <= bound:
+        result[index] = np.nan
+    return result
+
+
+def _of_parameters(values: np.ndarray, words: str) -> xr.Variable:
+    return xr.Variable("parameter", values, {"long_name": words, "comment": "each in its own unit"})
+
+
+def _parameter_variables(
+    units: Sequence[str], solution: Solution, errors: Errors, free: np.ndarray
+) -> dict[str, xr.Variable]:
+    """What is told of every parameter."""
+    held, bound = (~free).astype(np.int8), solution.at_bound.astype(np.int8)
+    of_errors = {"long_name": "correlation of errors", "units": "1"}
+    return {
+        "estimate": _of_parameters(solution.values, "estimate"),
+        "standard_error": _of_parameters(
+            errors.standard_error,
+            "standard error; 0 of what was held, NaN where only the interval can be used",
+        ),
+        "lower": _of_parameters(errors.lower, "lower end of the 95 % interval"),
+        "upper": _of_parameters(errors.upper, "upper end of the 95 % interval"),
+        "unit": xr.Variable("parameter", np.array(units), {"long_name": "unit"}),
+        "known": xr.Variable("parameter", held, {"long_name": "1 if held, not fitted"}),
+        "at_bound": xr.Variable("parameter", bound, {"long_name": "1 if on a bound of what is possible"}),
+        "correlation": xr.Variable(("parameter", "parameter2"), errors.correlation, of_errors),
+    }
+
+
+def estimates(
+    meanings: Mapping[str, str],
+    units: Sequence[str],
+    solution: Solution,
+    errors: Errors,
+    free: np.ndarray,
+    data: np.ndarray,
+    data_unit: str,
+    sigma: float | np.ndarray | None = None,
+) -> xr.Dataset:
+    """The dataset of a fit.
+
+    meanings : the parameters and what they are, in order
+    units : theirs
+    free : shape (parameters,), bool: whether a parameter was fitted; the others have no error
+    data : shape (samples,), in `data_unit`; residuals are model less data
+    sigma : the error of a sample, or of all, in `data_unit`; by default it is that of the residuals
+    """
+    of_one = np.sqrt(errors.variance) if sigma is None else sigma
+    source = "from the residuals" if sigma is None else "as given"
+
+    def of_samples(values: np.ndarray, words: str) -> xr.Variable:
+        return xr.Variable("sample", values, {"long_name": words, "units": data_unit})
+
+    names = np.array(list(meanings))
+    words = {"long_name": "parameter", "comment": "; ".join(f"{k}: {v}" for k, v in meanings.items())}
+    variables = _parameter_variables(units, solution, errors, free) | {
+        "data": of_samples(data, "measured"),
+        "model": of_samples(data + solution.residual, "fitted"),
+        "residual": of_samples(solution.residual, "fitted less measured"),
+        "sigma": of_samples(
+            np.broadcast_to(of_one, data.shape).copy(), f"standard error of a sample, {source}"
+        ),
+        "reduced_chi_square": number(
+            errors.variance,
+            "reduced chi square: squares of residuals, over given errors if any, per degree of freedom",
+            "1" if data_unit == "1" else f"{data_unit}2",
+        ),
+        "residual_rms": number(
+            np.sqrt(np.mean(solution.residual**2)), "root mean square of residuals", data_unit
+        ),
+        "residual_correlation": number(errors.lag_correlation, "lag-1 correlation of residuals"),
+        "error_inflation": number(errors.inflation, "what errors were multiplied by for that"),
+    }
+    coords = {
+        "parameter": xr.Variable("parameter", names, words),
+        "parameter2": xr.Variable("parameter2", names, words),
+        "sample": xr.Variable("sample", np.arange(data.size), {"long_name": "sample fitted", "units": "1"}),
+    }
+    attributes = {
+        "Conventions": "CF-1.11",
+        "source": f"frictionmap {__version__}",
+        "history": f"{now()} frictionmap.identify",
+        "references": REFERENCES,
+    }
+    return xr.Dataset(variables, coords, attributes)

@@ -1,0 +1,190 @@
+"""Columns of a table by what they are, with their units: no unit is guessed, no value is repaired."""
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ... import checks
+from ...errors import InputError
+from ...units.table import COLUMN_UNITS, ending, suffixes
+from .files import Table
+
+#: What is done about values that are no numbers.
+MISSING = ("refuse", "drop")
+
+#: Columns that are not used are named, no more than these.
+_NAMED = 8
+
+#: The share of rows that may be dropped.
+_DROPPED = 0.01
+
+
+class Column(NamedTuple):
+    """One column."""
+
+    name: str
+    unit: str
+    values: np.ndarray
+
+
+class Columns(NamedTuple):
+    """Columns by what they are, all of one length."""
+
+    columns: dict[str, Column]
+    rows: np.ndarray  # of the table
+    dropped: int
+
+
+def pick_columns(
+    table: Table, wanted: Mapping[str, str], names: Mapping[str, str], missing: str = "refuse"
+) -> Columns:
+    """The columns that a fit needs.
+
+    wanted : what it measures ("time", "length", ..., or "ratio", which has no unit) of every column, such as
+        {"time": "time", "x": "length"}
+    names : names in the file where they are not the default, which is what the column is with a suffix
+    missing : "refuse", or "drop" rows without a number, of which there may be 1 %
+
+    Raises
+    ------
+    InputError
+        A column or its unit is missing or unknown, lengths differ, or there is no number where one must be;
+        one line with file, column and row.
+    """
+    checks.choice(missing, "data.missing", MISSING)
+    found = {role: _find(table, role, names, measures) for role, measures in wanted.items()}
+    _check_lengths(table, found)
+    bad = np.zeros(next(iter(found.values())).values.size, dtype=bool)
+    for column in found.values():
+        bad |= ~np.isfinite(column.values)
+    if bad.any():
+        _refuse(table, found, bad, missing)
+    rows = np.flatnonzero(~bad)
+    kept = {role: column._replace(values=column.values[rows]) for role, column in found.items()}
+    return Columns(kept, rows, int(bad.sum()))
+
+
+def columns_like(
+    table: Table, role: str, measures: str, names: Mapping[str, str], sure: bool = False
+) -> list[str]:
+    """Columns that `pick_columns` would take for a role, or refuse for their unit.
+
+    sure : whether only columns count that have a unit of what is measured
+    """
+    if role in names:
+        return [names[role]]
+    others = set(names.values())
+    free = [name for name in table.columns if name not in others]
+    return _named_like(free, role, suffixes(measures), sure)
+
+
+def unused_columns(table: Table, used: Collection[str]) -> str:
+    """A line that names the columns of a file that nothing was read from, or nothing."""
+    others = [name for name in table.columns if name not in used]
+    if not others:
+        return ""
+    more = len(others) - _NAMED
+    words = ", ".join(others[:_NAMED]) + (f" and {more} more" if more > 0 else "")
+    return f"columns of {table.file.name} that are not used: {words}"
+
+
+def check_increasing(table: Table, time: Column, rows: np.ndarray) -> None:
+    """Refuse times that repeat or go back."""
+    wrong = np.flatnonzero(np.diff(time.values) <= 0.0)
+    if wrong.size:
+        before, after = time.values[wrong[0]], time.values[wrong[0] + 1]
+        raise InputError(
+            f"{table.place(time.name, int(rows[wrong[0] + 1]))} must be later than the row before, "
+            f"{before:g}; got {after:g} (rows are not sorted: mend the file)"
+        )
+
+
+def check_positive(table: Table, column: Column, rows: np.ndarray) -> None:
+    """Refuse values that are not above zero."""
+    wrong = np.flatnonzero(column.values <= 0.0)
+    if wrong.size:
+        raise InputError(
+            f"{table.place(column.name, int(rows[wrong[0]]))} must be > 0; got {column.values[wrong[0]]:g}"
+        )
+
+
+def _find(table: Table, role: str, names: Mapping[str, str], measures: str) -> Column:
+    """The column of a name, or the one whose name is what it is and a unit."""
+    legal, name = suffixes(measures), names.get(role)
+    has = f"it has {', '.join(table.columns) or 'none'}"
+    known = f" (suffixes: {', '.join(legal)})" if legal else ""
+    wanted = f"a column {name or role + next(iter(legal), '')}{known}"
+    if name is not None and name not in table.columns:
+        raise InputError(
+            f"file {table.file} must have {wanted}, named by data.columns.{role}; {has}"
+            f"{checks.nearest(name, table.columns)}"
+        )
+    candidates = columns_like(table, role, measures, names)
+    if not candidates:
+        raise InputError(f"file {table.file} must have {wanted}, or data.columns.{role} names another; {has}")
+    if len(candidates) > 1:
+        raise InputError(
+            f"file {table.file} must have one column {role}, or data.columns.{role} names it; "
+            f"it has {', '.join(candidates)}"
+        )
+    column = candidates[0]
+    unit = _unit(table, column, legal) if legal else "1"
+    return Column(column, unit, table.columns[column])
+
+
+def _unit(table: Table, column: str, legal: Sequence[str]) -> str:
+    """The unit that the name of a column ends in."""
+    unit = ending(column)
+    if f"_{unit}" not in legal:
+        what = f"it has {unit!r}" if unit else "it has none"
+        raise InputError(
+            f"file {table.file}, column {column} must end in its unit, one of {', '.join(legal)}; {what}"
+        )
+    return unit
+
+
+def _named_like(columns: Sequence[str], role: str, legal: Sequence[str], sure: bool = False) -> list[str]:
+    """Columns of a role: its name and a unit, or else a name that begins with it.
+
+    The latter has a unit of what is measured at its end, or, unless it must be sure, nothing but one word or
+    another unit behind it: base_frequency_rad_s is no base.
+    """
+    if not legal:
+        return [name for name in columns if name == role]
+    exact = [name for name in columns if name in {f"{role}{unit}" for unit in legal}]
+    if exact:
+        return exact
+    like = [name for name in columns if name == role or name.startswith(f"{role}_")]
+    measured = [name for name in like if f"_{ending(name)}" in legal]
+    if measured or sure:
+        return measured
+    rests = {name: name.removeprefix(role).removeprefix("_") for name in like}
+    return [name for name, rest in rests.items() if "_" not in rest or rest in COLUMN_UNITS]
+
+
+def _check_lengths(table: Table, found: Mapping[str, Column]) -> None:
+    sizes = {column.name: column.values.size for column in found.values()}
+    if len(set(sizes.values())) > 1:
+        words = ", ".join(f"{name} {size}" for name, size in sizes.items())
+        raise InputError(f"file {table.file}: columns must have one length; got {words}")
+    if 0 in sizes.values():
+        raise InputError(f"file {table.file} must have values below {', '.join(sizes)}; there are none")
+
+
+def _refuse(table: Table, found: Mapping[str, Column], bad: np.ndarray, missing: str) -> None:
+    """Name the first value that is no number, unless few are, and they may be dropped."""
+    if missing == "drop" and bad.mean() <= _DROPPED:
+        return
+    row = int(np.argmax(bad))
+    column = next(column for column in found.values() if not np.isfinite(column.values[row]))
+    few = bad.mean() <= _DROPPED
+    remedy = (
+        'data.missing = "drop" leaves out such rows'
+        if few
+        else f"{int(bad.sum())} of {bad.size} rows are such, and no more than {_DROPPED:.0%} may be left out"
+    )
+    raise InputError(
+        f"{table.place(column.name, row)} must be a finite number; "
+        f"got {checks.one_line(table.text(column.name, row))} ({remedy})"
+    )

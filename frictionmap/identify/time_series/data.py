@@ -1,0 +1,145 @@
+"""A record as it was measured: checked, its clipped samples found, its harmonics."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from ...errors import InputError
+from ..signals.phasors import Phasors, amplitude_and_lag, harmonics_of, ratio_error
+from ..signals.plateaus import unclipped_mass
+from ..signals.samples import checked_record, unclipped, within
+from ..signals.turning_points import resolution
+from ..statistics.levels import FOUND
+from .fit import Fit, Samples, fit_record, places_at, samples_of
+
+#: Errors of the base's first harmonic so many times those of samples at all phases.
+_WORSE = 4.0
+
+#: A lead of so many degrees may come from higher harmonics of the base.
+_LEAD = 1.0
+
+#: Noise brings a motion to the ends of the range that is nearer to them than so many standard deviations.
+_MARGIN = 3.0
+
+#: Fits after which the samples that are left out are settled, and samples that a fit needs.
+_REFITS, _FEWEST = 4, 40
+
+#: A first harmonic of the mass below so many standard errors is no motion.
+_MOVES = 5.0
+
+
+class MeasuredRecord(NamedTuple):
+    """Base and mass over time."""
+
+    every_time: np.ndarray  # s, those of clipped samples among them
+    time: np.ndarray  # s, where the base is not clipped
+    channels: np.ndarray  # shape (samples, 2), base and mass at `time`
+    clipped: np.ndarray  # shape (samples,), bool: where the mass is cut off
+    limits: tuple[float, float]  # where the range ends that cuts it off; infinite where none does
+    good: np.ndarray  # shape (samples,), bool: samples of the mass that are part of the fit
+    phasors: Phasors
+    samples: Samples  # of the mass, where it is good
+
+
+def measured_record(time: object, base: object, x: object, window: object, robust: bool) -> MeasuredRecord:
+    """Check a record and find its harmonics; see `record`."""
+    times, places = checked_record(time, x)
+    shakes = checked_record(times, base, "base")[1]
+    inside = within(window, times)
+    times, channels = times[inside], np.column_stack((shakes, places))[inside]
+    whole = unclipped(channels[:, 0])
+    t, data = times[whole], channels[whole]
+    good = unclipped_mass(t, data[:, 1])
+    phasors, tamed = _checked_phasors(t, data, robust)
+    samples = samples_of(phasors, t, data[:, 1], tamed[:, 1], good, robust)
+    return MeasuredRecord(times, t, data, ~good, _limits(data[:, 1], good), good, phasors, samples)
+
+
+def _limits(x: np.ndarray, good: np.ndarray) -> tuple[float, float]:
+    """Ends of the range by which samples that are not good are cut off."""
+    lowest = -np.inf if good[np.argmin(x)] else float(x.min())
+    return lowest, np.inf if good[np.argmax(x)] else float(x.max())
+
+
+def fit_clipped(
+    contact: str, damping_reference: str, given: MeasuredRecord, known: Mapping[str, float], robust: bool
+) -> tuple[MeasuredRecord, Fit]:
+    """Fit a steady motion as by `fit_record`, without what happens beside the ends of a measuring range.
+
+    There noise decides which samples are cut off: those that are left lie too far inside, and would draw the
+    motion with them.  So samples are left out by the fitted motion, which has no noise, and the motion is
+    fitted anew.  Its harmonics then take the place of the clipped ones, where the search begins.
+    """
+    fit = fit_record(contact, damping_reference, given.phasors, given.samples, known)
+    if not given.clipped.any():
+        return given, fit
+    for _ in range(_REFITS):
+        inside = _inside(given, fit)
+        if inside.sum() < _FEWEST or (inside == given.good).all():
+            break
+        given = _filled(given, fit, inside, robust)
+        fit = fit_record(contact, damping_reference, given.phasors, given.samples, known)
+    return given, fit
+
+
+def _inside(given: MeasuredRecord, fit: Fit) -> np.ndarray:
+    """Samples that are not clipped, where the fitted motion is farther from the ends than noise reaches."""
+    fitted, (lowest, highest) = _fitted(given, fit), given.limits
+    margin = _MARGIN * float(np.std(fit.residual))
+    return ~given.clipped & (fitted > lowest + margin) & (fitted < highest - margin)
+
+
+def whole_record(given: MeasuredRecord, fit: Fit, robust: bool) -> MeasuredRecord:
+    """The record with the fitted motion where it is clipped, and the harmonics of that."""
+    return given if not given.clipped.any() else _filled(given, fit, given.good, robust)
+
+
+def _filled(given: MeasuredRecord, fit: Fit, used: np.ndarray, robust: bool) -> MeasuredRecord:
+    """The record with the fitted motion where it is clipped, its harmonics, and the samples to be used."""
+    x = np.where(given.clipped, _fitted(given, fit), given.channels[:, 1])
+    channels = np.column_stack((given.channels[:, 0], x))
+    phasors, tamed = harmonics_of(given.time, channels, robust)
+    samples = samples_of(phasors, given.time, x, tamed[:, 1], used, robust)
+    return given._replace(channels=channels, good=used, phasors=phasors, samples=samples)
+
+
+def _fitted(given: MeasuredRecord, fit: Fit) -> np.ndarray:
+    """The fitted motion, drift and wander of the zero included, at all times."""
+    return places_at(fit, given.phasors, given.time) + fit.slow_at(given.samples.everywhere)
+
+
+def _checked_phasors(time: np.ndarray, channels: np.ndarray, robust: bool) -> tuple[Phasors, np.ndarray]:
+    """Harmonics of a base and of a mass that move, and the channels without outliers."""
+    for name, places in zip(("base", "x"), channels.T, strict=True):
+        if float(np.ptp(places)) <= 2.0 * resolution(places):
+            raise InputError(
+                f"{name} must move; there is no motion above its own resolution ({resolution(places):g})"
+            )
+    phasors, tamed = harmonics_of(time, channels, robust)
+    ideal = phasors.inflation[0, 1] * phasors.rms[0] * np.sqrt(2.0 / time.size)
+    if phasors.errors[0, 1] > _WORSE * ideal:
+        raise InputError(
+            "time must reach all phases of the cycle: harmonics of the base cannot be told where there are "
+            "no samples, as in a long gap or where the base is clipped"
+        )
+    for k, name in enumerate(("base", "x")):
+        first, error = abs(phasors.values[k, 1]), float(phasors.errors[k, 1])
+        if first <= _MOVES * error:
+            raise InputError(
+                f"{name} must move with the base, at {phasors.frequency:.4g} Hz; its first harmonic there is "
+                f"{first:.3g}, of the size of its error, {error:.2g} (a mass that sticks for good tells "
+                "nothing of its motion)"
+            )
+    _check_lag(phasors)
+    return phasors, tamed
+
+
+def _check_lag(phasors: Phasors) -> None:
+    """Energy flows from the base to the mass: its first harmonic lags by 0 to 180 degrees."""
+    lag = np.degrees(amplitude_and_lag(phasors)[1])
+    if lag < -(_LEAD + FOUND * np.degrees(ratio_error(phasors))):
+        raise InputError(
+            "x must lag behind the base by 0 to 180 degrees, as energy comes from it; "
+            f"it leads by {-lag:.4g} (are the columns exchanged, or is one of opposite sign?)"
+        )

@@ -1,0 +1,124 @@
+"""Errors of what a record tells, and of what follows from it.
+
+What is fitted, p, has the covariance s^2 (J^T V^-1 J)^-1, with V as in `fit`.  Errors b of the base's
+harmonics move it by -(J^T V^-1 J)^-1 J^T V^-1 J_b b, and the noise of the mass moves p and X_1 together.
+
+Where the data do not ask for mu > 1, estimates are those with mu = 1; their intervals reach as far as they
+would move if mu were at the upper end of its own.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..signals.phasors import Phasors, first_harmonics
+from ..statistics.least_squares import Errors, errors, growth, two_sided
+from .fit import Fit, base_errors
+from .motion import F_N, MU, OFFSET, PARAMETERS, X_F, ZETA
+from .static_friction import FITTED, IDLE, ONE, highest, interval, per_square
+
+#: What follows from the parameters and the phasors.
+DERIVED = ("beta", "lag_deg", "amplitude_ratio", "stops_per_cycle")
+
+#: Of the parameters and of `DERIVED`, those that cannot be negative.
+_POSITIVE = [F_N, ZETA, X_F, len(PARAMETERS)]
+
+
+class _Linear(NamedTuple):
+    """Estimates to first order in what is fitted, in X_1 and in the base's harmonics, in real numbers."""
+
+    transfer: np.ndarray  # shape (estimates, sources)
+    covariance: np.ndarray  # shape (sources, sources)
+
+    @property
+    def of_estimates(self) -> np.ndarray:
+        """Their covariance."""
+        return self.transfer @ self.covariance @ self.transfer.T
+
+
+def derived_values(fit: Fit, phasors: Phasors) -> np.ndarray:
+    """beta, lag [deg], amplitude ratio and stops a cycle."""
+    base, mass = phasors.values[0, 1], phasors.values[1, 1]
+    lag = -np.degrees(np.angle(mass / base))
+    return np.array([fit.values[X_F] / abs(base), lag, abs(mass / base), float(fit.motion.stops)])
+
+
+def record_errors(fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray) -> Errors:
+    """Errors of the parameters and of `DERIVED`, in this order.
+
+    used : shape (samples,), bool: whether a sample is part of the fit, which takes the place of the others
+    """
+    size = len(PARAMETERS)
+    on_bound = fit.solution.at_bound & fit.problem.free
+    found = errors(fit.problem, fit.solution._replace(at_bound=on_bound), noise=fit.noise)
+    linear = _in_what_is_fitted(fit, phasors, time, used, found)
+    of_square = float(found.standard_error[MU])
+    linear.transfer[MU] *= per_square(float(fit.values[MU]), of_square)
+    covariance = linear.of_estimates
+    deviation = np.sqrt(np.diag(covariance))
+    scale = np.where(deviation > 0.0, deviation, 1.0)
+    correlation = np.where(np.eye(deviation.size, dtype=bool), 1.0, covariance / np.outer(scale, scale))
+    reach = two_sided(fit.noise.freedom)
+    values = np.concatenate((fit.values, derived_values(fit, phasors)))
+    lower, upper = values - reach * deviation, values + reach * deviation
+    for index in np.flatnonzero(on_bound[:size]):  # one-sided, from the profile of the sum
+        lower[index], upper[index] = 0.0, found.upper[index]
+    if fit.static == ONE:
+        upper[MU], moved = highest(fit.with_mu, fit.solution, fit.noise, MU)
+        moves = np.concatenate((moved[:size], np.zeros(len(DERIVED))))
+        moves[size] = moved[X_F] / abs(phasors.values[0, 1])  # beta
+        lower, upper = lower + np.minimum(moves, 0.0), upper + np.maximum(moves, 0.0)
+    elif fit.static == IDLE:
+        upper[MU] = _mu_of_first_stop(fit)
+    elif fit.static == FITTED:
+        lower[MU], upper[MU] = interval(float(fit.solution.values[MU]), reach * of_square)
+    lower[_POSITIVE] = np.maximum(lower[_POSITIVE], 0.0)
+    return found._replace(
+        standard_error=deviation, lower=lower, upper=upper, correlation=correlation,
+        inflation=float(growth(fit.problem, fit.solution, fit.noise)[:OFFSET].max()),
+    )  # fmt: skip
+
+
+def _mu_of_first_stop(fit: Fit) -> float:
+    """Up to where the mass would not stick, and nothing changes with mu."""
+    friction = float(fit.values[X_F])
+    return max(fit.motion.turn_load / friction, 1.0) if friction > 0.0 else np.inf
+
+
+def _in_what_is_fitted(
+    fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray, found: Errors
+) -> _Linear:
+    """What is fitted and `DERIVED`."""
+    size, own = len(PARAMETERS), found.standard_error
+    of_all = found.correlation * np.outer(own, own)  # the parts of slow waves among them
+    of_fit = of_all[:size]
+    slopes = fit.whitening(fit.solution.slopes)
+    at_all = np.zeros((time.size, slopes.shape[1]))
+    at_all[used] = slopes
+    first = first_harmonics(time, at_all, phasors)
+    of_base = base_errors(fit.mass, phasors) ** 2
+    variance = fit.noise.variance * found.inflation**2
+    by_base = -of_fit @ (slopes.T @ fit.by_base) * (of_base / variance if variance > 0.0 else 0.0)
+    others = np.concatenate((np.full(2, phasors.errors[1, 1] ** 2), of_base))
+    in_common = np.column_stack((of_fit @ first.real, of_fit @ first.imag, by_base))
+    covariance = np.block([[of_fit[:, :size], in_common], [in_common.T, np.diag(others)]])
+    transfer = np.zeros((size + len(DERIVED), covariance.shape[0]))
+    transfer[:size, :size] = np.eye(size)
+    _add_derived(transfer, fit, phasors)
+    return _Linear(transfer, covariance)
+
+
+def _add_derived(transfer: np.ndarray, fit: Fit, phasors: Phasors) -> None:
+    """Rows of beta, the lag and the amplitude ratio."""
+    size = len(PARAMETERS)
+    base, mass = phasors.values[0, 1], phasors.values[1, 1]
+    of_mass = [size, size + 1]  # Re X_1, Im X_1
+    of_base = [size + 3, size + 3 + fit.mass.base.size]  # Re Y_1, Im Y_1, after the means
+    beta, lag, ratio, _ = range(size, size + len(DERIVED))
+    along = np.array([base.real, base.imag]) / abs(base) ** 2
+    transfer[beta] = transfer[X_F] / abs(base)
+    transfer[beta, of_base] -= fit.values[X_F] / abs(base) * along
+    transfer[lag, of_base] = np.degrees(np.array([-base.imag, base.real]) / abs(base) ** 2)
+    transfer[lag, of_mass] = -np.degrees(np.array([-mass.imag, mass.real]) / abs(mass) ** 2)
+    transfer[ratio, of_mass] = np.array([mass.real, mass.imag]) / (abs(mass) * abs(base))
+    transfer[ratio, of_base] = -abs(mass / base) * along

@@ -1,0 +1,264 @@
+"""The steady motion nearest to all samples of a record.
+
+The base is measured, too: errors b of its harmonics, with covariance B, move the motion by J_b b, and the
+residuals are correlated by that, s^2 V = s^2 I + J_b B J_b^T.  The least sum is that of V^(-1/2) times the
+residuals: the most likely motion and base together, with b eliminated.  The zero of the measurement may drift
+and wander: a straight line and slow waves are fitted with the motion.
+"""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from ..signals.noise import noise_of_fit
+from ..signals.phasors import Phasors, scatter_of
+from ..statistics.least_squares import Noise, Problem, Solution, minimise
+from ..statistics.robust import effective_variance, softened
+from .motion import (
+    F_N,
+    FLOOR,
+    MU,
+    OFFSET,
+    PARAMETERS,
+    Motion,
+    Shaken,
+    base_slopes,
+    inner,
+    motion,
+    outer,
+    places_and_slopes,
+    shaken,
+)
+from .starts import starts
+from .static_friction import FITTED, IDLE, KNOWN, ONE, is_asked_for
+
+#: Starts that are followed, on so many samples; the best one goes on with all.
+_FOLLOWED = 4
+_SAMPLES = 600
+
+#: The natural frequency lies within this factor of a start.
+_RANGE = 1.5
+
+#: Where straight lines go on below the floors, and where motions end: f_n apart.
+_BELOW = np.array([0.0, -0.5, -np.inf, -1.0, -np.inf])
+_HIGHEST = np.array([0.0, 10.0, np.inf, 16.0, np.inf])
+
+
+class Whitening(NamedTuple):
+    """V^(-1/2) = I - U diag(shrink) U^T."""
+
+    directions: np.ndarray  # U, shape (samples, harmonics)
+    shrink: np.ndarray
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        """V^(-1/2) times residuals or slopes."""
+        along = (self.directions.T @ values).T * self.shrink
+        return values - self.directions @ along.T
+
+
+class Samples(NamedTuple):
+    """The mass as it was measured."""
+
+    time: np.ndarray  # s
+    x: np.ndarray
+    near: np.ndarray  # x without drift, wander and outliers, to begin with
+    slow: np.ndarray  # shape (samples, 1 + waves), a straight line and slow waves, of norm 1
+    everywhere: np.ndarray  # the same at all times of the record
+    scale: float | None  # beyond which residuals have little weight; None: never
+
+
+class Fit(NamedTuple):
+    """A steady motion; the solution is in what is fitted, see `inner`, and its residuals are whitened.
+
+    After the parameters come the parts of the slow waves, see `Samples`.
+    """
+
+    mass: Shaken
+    samples: Samples
+    problem: Problem  # mu is not free where it is not told
+    with_mu: Problem  # with mu free, if it is not known
+    solution: Solution
+    noise: Noise
+    model_error: float  # what is left at the harmonics over the noise beside them; 1 if chance makes it
+    whitening: Whitening
+    by_base: np.ndarray  # J_b, shape (samples, harmonics): real parts, then imaginary ones
+    motion: Motion
+    static: int  # KNOWN, ONE, FITTED or IDLE
+
+    @property
+    def values(self) -> np.ndarray:
+        """The parameters."""
+        return outer(self.solution.values[: len(PARAMETERS)])
+
+    @property
+    def free(self) -> np.ndarray:
+        """Parameters that are not known, bool (parameters,)."""
+        return self.with_mu.free[: len(PARAMETERS)]
+
+    @property
+    def residual(self) -> np.ndarray:
+        """Fitted less measured."""
+        return self.motion.places + self.slow_at(self.samples.slow) - self.samples.x
+
+    def slow_at(self, waves: np.ndarray) -> np.ndarray:
+        """Drift and wander of the zero, `Samples.slow` at some times."""
+        return waves @ self.solution.values[len(PARAMETERS) :]
+
+
+def samples_of(
+    phasors: Phasors, time: np.ndarray, x: np.ndarray, tamed: np.ndarray, used: np.ndarray, robust: bool
+) -> Samples:
+    """The samples that are used.
+
+    time, x, tamed, used : shape (samples,), all that the phasors are of; x without outliers; which are used
+    """
+    line = time - phasors.middle
+    slow = np.column_stack((line, phasors.waves))
+    slow /= np.linalg.norm(slow[used], axis=0)
+    near = tamed - phasors.drift[1] * line - phasors.wander[:, 1]
+    scale = float(scatter_of(phasors.residual[:, 1])) if robust else 0.0
+    return Samples(time[used], x[used], near[used], slow[used], slow, scale or None)
+
+
+def fit_record(
+    contact: str, damping_reference: str, phasors: Phasors, samples: Samples, known: Mapping[str, float]
+) -> Fit:
+    """The least sum over all samples, with mu = 1 unless it is known or the data ask for more."""
+    few = slice(None, None, max(1, samples.time.size // _SAMPLES))
+    coarse = shaken(contact, damping_reference, phasors, samples.time[few])
+    mass = shaken(contact, damping_reference, phasors, samples.time)
+    held = {"mu": 1.0, **known}
+    near = _nearest(coarse, samples.near[few], phasors, held)
+    by_base = base_slopes(mass, outer(near.values))
+    whitening = _whitening(by_base, base_errors(mass, phasors), np.sqrt(near.sum / samples.near[few].size))
+    with_mu = _problem(mass, samples, _free(known, samples), near.values, whitening)
+    problem = with_mu._replace(free=_free(held, samples))
+    solution = minimise(problem, _begin(near, samples))
+    found = motion(mass, outer(solution.values[: len(PARAMETERS)]))
+    noise = noise_of_record(mass, phasors, samples, problem, solution)
+    fit = Fit(mass, samples, problem, with_mu, solution, *noise, whitening, by_base, found, KNOWN)
+    if "mu" in known:
+        return fit
+    begin = [solution.values]
+    if fit.model_error > 1.0:  # else nothing far away can be much nearer
+        begin.append(_begin(_nearest(coarse, samples.near[few], phasors, known), samples))
+    return _with_static(fit, phasors, begin)
+
+
+def _with_static(fit: Fit, phasors: Phasors, begin: list[np.ndarray]) -> Fit:
+    """The fit with mu free, if the data ask for it; else that with mu = 1."""
+    task = fit.with_mu
+    solution = min((minimise(task, start) for start in begin), key=lambda found: found.sum)
+    found = motion(fit.mass, outer(solution.values[: len(PARAMETERS)]))
+    noise, model_error = noise_of_record(fit.mass, phasors, fit.samples, task, solution)
+    gain = fit.solution.sum - solution.sum
+    if found.stops > 0 and is_asked_for(gain, task, solution, noise, MU):
+        return fit._replace(
+            problem=task, solution=solution, noise=noise, model_error=model_error, motion=found,
+            static=FITTED,
+        )  # fmt: skip
+    on_bound = fit.solution.at_bound.copy()
+    on_bound[MU] = True
+    return fit._replace(
+        solution=fit.solution._replace(at_bound=on_bound),
+        static=ONE if fit.motion.stops > 0 else IDLE,
+    )  # fmt: skip
+
+
+def problem_of(fit: Fit, known: Mapping[str, float]) -> Problem:
+    """The problem that was solved, with other parameters held."""
+    return _problem(fit.mass, fit.samples, _free(known, fit.samples), fit.solution.values, fit.whitening)
+
+
+def noise_of_record(
+    mass: Shaken, phasors: Phasors, samples: Samples, problem: Problem, solution: Solution
+) -> tuple[Noise, float]:
+    """The noise, and the error of the model in it."""
+    free = problem.free & ~solution.at_bound
+    noise, model_error = noise_of_fit(
+        samples.time, solution.residual, phasors.frequency, phasors.values.shape[1] - 1,
+        int(free[:OFFSET].sum()), samples.slow.shape[1] - 1,
+    )  # fmt: skip
+    if samples.scale is None:
+        return noise, model_error
+    plain = _problem(mass, samples._replace(scale=None), problem.free, solution.values)
+    softened_variance = solution.sum / (solution.residual.size - int(problem.free.sum()))
+    larger = effective_variance(plain, solution, samples.scale) / softened_variance
+    return noise._replace(variance=noise.variance * larger), model_error
+
+
+def _begin(near: Solution, samples: Samples) -> np.ndarray:
+    """Where the fit of all samples begins: the motion near them, and what of drift and wander there is."""
+    slow = np.linalg.lstsq(samples.slow, samples.x - samples.near, rcond=None)[0]
+    return np.concatenate((near.values, slow))
+
+
+def _nearest(mass: Shaken, x: np.ndarray, phasors: Phasors, known: Mapping[str, float]) -> Solution:
+    """The least sum from several starts, of samples without drift and outliers."""
+    none = np.zeros((x.size, 0))
+    samples = Samples(np.zeros(x.size), x, x, none, none, None)
+    free = _free(known, samples)
+    candidates = starts(mass.contact, mass.damping_reference, phasors, known)[:_FOLLOWED]
+    problems = [(_problem(mass, samples, free, inner(start)), inner(start)) for start in candidates]
+    return min((minimise(_within(task), start) for task, start in problems), key=lambda found: found.sum)
+
+
+def _free(known: Mapping[str, float], samples: Samples) -> np.ndarray:
+    return np.array([name not in known for name in PARAMETERS] + [True] * samples.slow.shape[1])
+
+
+def places_at(fit: Fit, phasors: Phasors, time: np.ndarray) -> np.ndarray:
+    """The fitted motion at other times."""
+    mass = shaken(fit.mass.contact, fit.mass.damping_reference, phasors, time)
+    return motion(mass, fit.values).places
+
+
+def _within(problem: Problem) -> Problem:
+    """The same with no straight line below the floors: a fit that ends near them will do for a start."""
+    return problem._replace(lowest=np.maximum(problem.lowest, problem.floor))
+
+
+def base_errors(mass: Shaken, phasors: Phasors) -> np.ndarray:
+    """Standard errors of the base's harmonics: of the real parts, then of the imaginary ones."""
+    return np.tile(phasors.errors[0, : mass.base.size], 2)
+
+
+def _whitening(by_base: np.ndarray, errors: np.ndarray, scatter: float) -> Whitening:
+    """V^(-1/2), for residuals that scatter by that much on their own."""
+    if scatter == 0.0:  # samples without any noise
+        return Whitening(by_base[:, :0], errors[:0])
+    directions, sizes, _ = np.linalg.svd(by_base * (errors / scatter), full_matrices=False)
+    return Whitening(directions, 1.0 - 1.0 / np.hypot(1.0, sizes))
+
+
+def _problem(
+    mass: Shaken,
+    samples: Samples,
+    free: np.ndarray,
+    start: np.ndarray,
+    whitening: Whitening | None = None,
+) -> Problem:
+    """Residuals are softened where samples may be outliers, then whitened."""
+    size = len(PARAMETERS)
+
+    def plain(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        places, slopes = places_and_slopes(mass, values[:size], free[:size])
+        slow = samples.slow @ values[size:]
+        return places + slow - samples.x, np.hstack((slopes, samples.slow))
+
+    waves = np.full(samples.slow.shape[1], np.inf)
+    lowest, highest = np.concatenate((_BELOW, -waves)), np.concatenate((_HIGHEST, waves))
+    lowest[F_N], highest[F_N] = start[F_N] / _RANGE, start[F_N] * _RANGE
+    problem = Problem(plain, free, np.concatenate((FLOOR, -waves)), lowest, highest)
+    if samples.scale is not None:
+        problem = softened(problem, samples.scale)
+    return problem if whitening is None else _whitened(problem, whitening)
+
+
+def _whitened(problem: Problem, whitening: Whitening) -> Problem:
+    def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        residual, slopes = problem.residuals(values)
+        return whitening(residual), whitening(slopes)
+
+    return problem._replace(residuals=residuals)

@@ -1,0 +1,160 @@
+"""Steady motion of one mass with friction on a base that moves with several harmonics, and its derivatives.
+
+    x'' = -w^2 (x - offset_x - y) - 2 zeta w (x' - y') - w^2 x_F s,   w = 2 pi f_n,   s = sgn(x' or x' - y')
+
+The mass rubs on a wall that stands still or moves with the base y; the damper acts relative to the base or to
+the ground.  In q = x - offset_x, less y where the wall moves, all four are one oscillator, r = f/f_n:
+
+    r^2 q'' + 2 zeta r q' + q + x_F sgn(q') = Re sum_n G_n e^{i n tau}
+    wall still: G_n = Y_n (1 + 2 i n zeta r), moving: G_n = (n r)^2 Y_n,   relative to the base
+    wall still: G_n = Y_n,   moving: G_n = ((n r)^2 - 2 i n zeta r) Y_n,   relative to the ground
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..._kernels.many_harmonics.steady import REPEATS, steady_motion
+from ..signals.phasors import Phasors, harmonics_at
+
+PARAMETERS = ("f_n", "zeta", "x_F", "mu", "offset_x")
+F_N, ZETA, X_F, MU, OFFSET = range(len(PARAMETERS))
+
+CONTACTS = ("fixed-wall", "joined-base-wall")
+
+#: Harmonics of the base that move the mass.
+BASE_HARMONICS = 5
+
+#: Cycles after which a motion that has not repeated is given up.
+_CYCLES = 150
+
+#: What is fitted cannot be below; see `inner`.
+FLOOR = np.array([-np.inf, 0.0, 0.0, 0.0, -np.inf])
+
+#: Steps of the difference quotients, of (mu - 1)^2 their square: steady states are exact to some 1e-12.
+_STEP = 1e-5
+
+
+class Shaken(NamedTuple):
+    """One mass on its base, and the phases at which it is looked at."""
+
+    contact: str
+    damping_reference: str
+    frequency: float  # Hz, of the base
+    base: np.ndarray  # complex harmonics 0, 1, ...
+    start: tuple[float, float]  # x and dx/dtau at tau = 0, from which a steady state is looked for
+    phases: np.ndarray  # increasing, in [0, 2 pi)
+    order: np.ndarray  # of the samples by phase
+
+
+class Motion(NamedTuple):
+    """A steady state."""
+
+    places: np.ndarray  # x of every sample
+    repeats: bool
+    stops: int  # a cycle
+    stuck: float  # share of the cycle
+    turn_load: float  # the least load over stiffness at a turn without a stop; infinite if there is none
+
+
+def shaken(contact: str, damping_reference: str, phasors: Phasors, time: np.ndarray) -> Shaken:
+    """The mass on the base of a record, at these times."""
+    base = phasors.values[0, : BASE_HARMONICS + 1]
+    angle = 2.0 * np.pi * phasors.frequency * (time - phasors.middle)
+    folded = np.mod(angle, 2.0 * np.pi)
+    folded[folded == 2.0 * np.pi] = 0.0  # a tiny negative angle is rounded up
+    order = np.argsort(folded, kind="stable")
+    phases = folded[order]
+    mass = phasors.values[1]
+    start = (float(mass.sum().real), float((1j * np.arange(mass.size) * mass).sum().real))
+    return Shaken(contact, damping_reference, phasors.frequency, base, start, phases, order)
+
+
+def moved(mass: Shaken, change: np.ndarray) -> Shaken:
+    """The same on a base that moves otherwise."""
+    return mass._replace(base=mass.base + change)
+
+
+def contact_harmonics(mass: Shaken, x: np.ndarray) -> np.ndarray:
+    """Harmonics of q, but for the offset, of a mass with harmonics x."""
+    result = x.copy()
+    if mass.contact == "joined-base-wall":
+        result[: mass.base.size] -= mass.base
+    return result
+
+
+def load_harmonics(mass: Shaken, f_n: float, zeta: float) -> np.ndarray:
+    """G_n of the oscillator in q."""
+    n = np.arange(mass.base.size)
+    turn = n * mass.frequency / f_n
+    moves, relative = mass.contact == "joined-base-wall", mass.damping_reference == "base"
+    spring = turn**2 if moves else np.ones(n.size)
+    damper = 2j * zeta * turn * (int(relative) - int(moves))
+    return mass.base * (spring + damper)
+
+
+def motion(mass: Shaken, values: np.ndarray) -> Motion:
+    """The steady state for f_n > 0, zeta >= 0, x_F >= 0, mu >= 1 and offset_x."""
+    f_n, zeta, friction, mu, offset = (float(value) for value in values)
+    moves = mass.contact == "joined-base-wall"
+    q = mass.start[0] - offset - (float(mass.base.sum().real) if moves else 0.0)
+    rate = (1j * np.arange(mass.base.size) * mass.base).sum().real if moves else 0.0
+    places = np.empty(mass.phases.size)
+    found = steady_motion(
+        mass.frequency / f_n, zeta, friction, mu, load_harmonics(mass, f_n, zeta), q,
+        mass.start[1] - float(rate), mass.phases, places, _CYCLES,
+    )  # fmt: skip
+    by_sample = np.empty(places.size)
+    by_sample[mass.order] = places + offset + (harmonics_at(mass.base, mass.phases) if moves else 0.0)
+    return Motion(by_sample, found.status == REPEATS, found.stops, found.stuck, found.turn_load)
+
+
+def inner(values: np.ndarray) -> np.ndarray:
+    """What is fitted: (mu - 1)^2 stands for mu.
+
+    After a stop the mass leaves with an acceleration in proportion to mu - 1, but later by as much: at mu = 1
+    the motion does not change with mu to first order.
+    """
+    result = values.copy()
+    result[MU] = (values[MU] - 1.0) ** 2
+    return result
+
+
+def outer(values: np.ndarray) -> np.ndarray:
+    """The parameters of what is fitted."""
+    result = values.copy()
+    result[MU] = 1.0 + np.sqrt(max(float(values[MU]), 0.0))
+    return result
+
+
+def places_and_slopes(mass: Shaken, fitted: np.ndarray, free: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """x of every sample and its derivatives by what is fitted, shape (samples, parameters).
+
+    Below its floor a parameter has no motion: there the places go on as a straight line.
+    """
+    legal = np.maximum(fitted, FLOOR)
+    places = motion(mass, outer(legal)).places
+    slopes = np.zeros((places.size, fitted.size))
+    slopes[:, OFFSET] = 1.0  # the whole motion is moved
+    unit = float(np.abs(mass.base[1:]).max())
+    steps = _STEP * np.array([legal[F_N], 1.0, unit, _STEP, unit])
+    for index in np.flatnonzero(free[:OFFSET]):
+        step = np.zeros(fitted.size)
+        step[index] = steps[index]
+        middle = np.maximum(legal, FLOOR + step)
+        ahead, behind = (motion(mass, outer(at)).places for at in (middle + step, middle - step))
+        slopes[:, index] = (ahead - behind) / (2.0 * steps[index])
+    return places + slopes @ (fitted - legal), slopes
+
+
+def base_slopes(mass: Shaken, values: np.ndarray) -> np.ndarray:
+    """Derivatives of x by the real parts of the base's harmonics, then by the imaginary ones."""
+    columns = []
+    step = _STEP * float(np.abs(mass.base[1:]).max())
+    for part in (1.0, 1j):
+        for n in range(mass.base.size):
+            change = np.zeros(mass.base.size, dtype=complex)
+            change[n] = part * step
+            ahead, behind = (motion(moved(mass, side * change), values).places for side in (1.0, -1.0))
+            columns.append((ahead - behind) / (2.0 * step))
+    return np.stack(columns, axis=1)

@@ -1,0 +1,72 @@
+"""What a record shows of friction, and whether its estimates can be told from each other."""
+
+from itertools import combinations
+
+from ..statistics.least_squares import Errors
+from ..statistics.levels import CORRELATED, FOUND
+from .fit import Fit
+from .motion import F_N, MU, PARAMETERS, X_F, ZETA
+
+#: Estimates that correlate by more than `CORRELATED` cannot be told apart if the interval of the friction is
+#: wider than this share of it, to either side.
+_VAGUE = 0.1
+
+#: The same correlation where the model itself is wrong by more than the noise: a quarter of the variance of
+#: either is the other's, and the model's error goes where it costs least, along both.
+_CORRELATED_BY_MODEL = 0.5
+
+#: What a motion depends on in a way of its own; the offset only moves it.
+_SHAPING = (F_N, ZETA, X_F, MU)
+
+_VERDICTS = {
+    "no_friction_found": "no friction found",
+    "continuous": "friction found, and the mass never sticks: mu cannot be told beyond its interval",
+    "stick_slip": "friction found, and the mass sticks and slips",
+}
+
+#: What makes estimates identifiable that one record leaves together.
+REMEDY = (
+    "hold f_n and zeta from a free decay, hold mu = 1, or fit several records together (kind = 'joint', "
+    "fm.identify.joint)"
+)
+
+
+def record_verdict(fit: Fit, found: Errors) -> tuple[int, dict[str, str]]:
+    """A code and the meanings of all codes."""
+    meanings = dict(_VERDICTS)
+    sticks = fit.motion.stops > 0
+    friction = friction_found(float(fit.values[X_F]), float(found.standard_error[X_F]))
+    together = inseparable(fit, found)
+    meanings["not_identified"] = (
+        f"not identifiable: {listed(together)} cannot be determined together from this record, "
+        f"and their estimates must not be used: {REMEDY}"
+    )
+    if together and (friction or sticks):
+        return list(meanings).index("not_identified"), meanings
+    return int(friction) * (1 + int(sticks)), meanings
+
+
+def friction_found(friction: float, error: float) -> bool:
+    """Whether friction is beyond what its standard error explains."""
+    return friction > FOUND * error
+
+
+def inseparable(fit: Fit, found: Errors) -> list[str]:
+    """Fitted parameters that the record does not tell from each other, none or two and more."""
+    limit = limit_of_correlation(
+        fit.model_error, float(fit.values[X_F]), float(found.lower[X_F]), float(found.upper[X_F])
+    )
+    pairs = [pair for pair in combinations(_SHAPING, 2) if abs(float(found.correlation[pair])) > limit]
+    return [PARAMETERS[index] for index in _SHAPING if any(index in pair for pair in pairs)]
+
+
+def limit_of_correlation(model_error: float, friction: float, lower: float, upper: float) -> float:
+    """The correlation beyond which estimates cannot be told apart; 1 where the friction is well known."""
+    if model_error > 1.0:
+        return _CORRELATED_BY_MODEL
+    return CORRELATED if max(friction - lower, upper - friction) > _VAGUE * friction else 1.0
+
+
+def listed(names: list[str]) -> str:
+    """Names in a sentence."""
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1]))) if names else "estimates"

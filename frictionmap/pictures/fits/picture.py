@@ -1,0 +1,50 @@
+"""What a picture of a fit consists of."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..curves.axes import Panel
+
+if TYPE_CHECKING:
+    from ..panels import AxesArray
+
+#: A panel with its height [inch].
+Tall = tuple[float, Panel]
+
+#: Widths of the panels over one axis, and of those beside them [inch].
+WIDTH, BESIDE = 7.2, 5.4
+
+
+class FitPicture(NamedTuple):
+    """Panels over one axis, from top to bottom, and others beside them."""
+
+    panels: list[Tall]
+    beside: list[Tall]
+    remarks: list[str]
+
+    @property
+    def all(self) -> list[Panel]:
+        """All panels, those beside last."""
+        return [panel for _, panel in (*self.panels, *self.beside)]
+
+    def size(self) -> tuple[float, float]:
+        """Width and height [inch]."""
+        tallest = max(sum(height for height, _ in column) for column in (self.panels, self.beside))
+        return WIDTH + BESIDE * bool(self.beside), tallest
+
+    def lay_out(self, figure: Figure) -> "AxesArray":
+        """Axes in a figure, as many as there are panels."""
+        columns = [(WIDTH, self.panels), (BESIDE, self.beside)][: 1 + bool(self.beside)]
+        outer = figure.add_gridspec(1, len(columns), width_ratios=[width for width, _ in columns])
+        axes: list[Axes] = []
+        for k, (_, column) in enumerate(columns):
+            inner = outer[0, k].subgridspec(len(column), 1, height_ratios=[height for height, _ in column])
+            axes += [figure.add_subplot(inner[row, 0]) for row in range(len(column))]
+        main = axes[: len(self.panels)]
+        for one in main[:-1]:
+            one.sharex(main[-1])
+            one.tick_params(labelbottom=False)
+        return np.array(axes, dtype=object)

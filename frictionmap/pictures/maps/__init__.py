@@ -1,0 +1,12 @@
+"""Pictures over frequency and friction.
+
+===============  =======================================================
+module           what is in it
+===============  =======================================================
+raster           cells to pixels, without losing small features
+boundary_curves  boundaries over a map, at the resolution of the picture
+regime_map       maps of regimes and stops
+boundary_map     maps of the boundaries alone
+share_map        maps of probabilities
+===============  =======================================================
+"""

@@ -1,0 +1,177 @@
+"""Pictures of the boundaries: the possible steady states over frequency and friction."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple, overload
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..features import features_of, mark_features
+from ..grids import Grid
+from ..palette import CLASSES, CONTINUOUS, HATCH, HATCH_COLOUR, LIM, MODAL, STICK, STUCK, UNCOUNTED
+from ..panels import (
+    Handle,
+    distinct,
+    given_axes,
+    halo,
+    legend_below,
+    legend_under,
+    name_axes,
+    panel_grid,
+    patch,
+)
+from ..second_axes import frequency_on_top, on_the_right
+from ..shapes import check_holds, panels_of, to_draw
+from ..words import caption
+
+if TYPE_CHECKING:
+    from ..panels import AxesArray
+
+#: Height of the axis over the largest value, and over the largest beta_lim where beta_stick has poles.
+_ABOVE, _ABOVE_LIM = 1.15, 2.0
+
+
+class Areas(NamedTuple):
+    """Bounds in beta of the possible regimes over frequency; each area lies between its two arrays.
+
+    Continuous motion is possible below beta_lim, sticking at or above beta_stick.  For mu = 1 the regions are
+    exact.  For mu > 1 both may be possible, depending on the initial state, and stick-slip can occur as well.
+    """
+
+    continuous: tuple[np.ndarray, np.ndarray]
+    sticking: tuple[np.ndarray, np.ndarray]
+    both: tuple[np.ndarray, np.ndarray]
+    neither: tuple[np.ndarray, np.ndarray]
+
+
+def areas(lim: np.ndarray, stick: np.ndarray, top: float) -> Areas:
+    """Bounds of the areas of a picture from beta = 0 to `top`."""
+    lim, stick = np.minimum(lim, top), np.minimum(stick, top)
+    lower, upper = np.minimum(lim, stick), np.maximum(lim, stick)
+    return Areas((np.zeros_like(lim), lower), (upper, np.full_like(lim, top)), (lower, lim), (lower, stick))
+
+
+def top_of(lim: np.ndarray, stick: np.ndarray) -> float:
+    """Upper end of the axis of beta, common to all mu.
+
+    beta_stick has poles at resonances of the held structure: they leave the picture at the top.
+    """
+    lim = lim[np.isfinite(lim)]
+    finite = np.concatenate((lim, stick[np.isfinite(stick)]))
+    return float(min(_ABOVE * finite.max(initial=0.1), _ABOVE_LIM * lim.max(initial=0.05)))
+
+
+def _over(r: Grid, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A curve over frequency; a single value extends over its cell."""
+    return (r.values, values) if r.values.size > 1 else (r.edges, np.repeat(values, 2))
+
+
+def _differ(lim: np.ndarray, modal: np.ndarray, top: float) -> bool:
+    """Whether two curves differ by more than a line's width anywhere in the picture."""
+    return bool((np.abs(np.minimum(lim, top) - np.minimum(modal, top)) > 0.004 * top).any())
+
+
+def _draw(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
+    """Draw one mu; return the entries for the legend that depend on its content."""
+    x, lim = _over(r, panel["beta_lim"].values)
+    _, stick = _over(r, panel["beta_stick"].values)
+    found = areas(lim, stick, top)
+    handles: list[Handle] = []
+    for bounds, index in (
+        (found.sticking, STUCK),
+        (found.neither, UNCOUNTED),
+        (found.continuous, CONTINUOUS),
+    ):
+        ax.fill_between(x, *bounds, color=CLASSES[index].colour, linewidth=0.0)
+    low, high = found.both
+    if (high > low).any():
+        ax.fill_between(x, low, high, facecolor="white", edgecolor=HATCH_COLOUR, hatch=HATCH, linewidth=0.0)
+        handles.append(patch("continuous or stuck: the initial state decides", "white", HATCH))
+    curves = [("beta_lim", LIM), ("beta_stick", STICK)]
+    if "beta_lim_modal" in panel and _differ(panel["beta_lim"].values, panel["beta_lim_modal"].values, top):
+        curves.append(("beta_lim_modal", MODAL))
+    for name, style in curves:
+        rim = [] if style is MODAL else halo()  # it often coincides with beta_lim, which must stay visible
+        handles += ax.plot(*_over(r, panel[name].values), path_effects=rim, **style)
+    name_axes(ax, r, float(panel["mu"]))
+    ax.set_ylim(0.0, top)
+    frequency_on_top(ax, panel)
+    on_the_right(ax, panel, "force")
+    return handles + mark_features(ax, features_of(panel), r)
+
+
+def _area_handles(mu: np.ndarray) -> list[Handle]:
+    """Legend entries of the areas: exact for mu = 1, otherwise possible regimes."""
+    certain = bool((mu == 1.0).all())
+    words = (
+        (CONTINUOUS, "continuous", "continuous motion possible"),
+        (UNCOUNTED, "stick-slip", "stick-slip"),
+        (STUCK, "permanent sticking", "sticking possible"),
+    )
+    return [patch(sure if certain else may, CLASSES[index].colour) for index, sure, may in words]
+
+
+def _reading(mu: np.ndarray) -> str:
+    """Remark on how to read the regions."""
+    if (mu == 1.0).all():
+        return ""
+    exact = "for μ = 1 the regions are exact; " if (mu == 1.0).any() else ""
+    return f"{exact}for μ > 1 stick-slip can also occur outside its region"
+
+
+@overload
+def plot_boundaries(ds: xr.Dataset, ax: None = None) -> "AxesArray": ...
+
+
+@overload
+def plot_boundaries(ds: xr.Dataset, ax: Axes) -> Axes: ...
+
+
+@overload
+def plot_boundaries(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray") -> "AxesArray": ...
+
+
+def plot_boundaries(
+    ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" = None
+) -> "Axes | AxesArray":
+    """Draw the boundaries over frequency, one panel for each mu, with a common axis of beta.
+
+    Continuous motion is possible below `beta_lim`, permanent sticking at or above `beta_stick`; where both
+    are possible, the area is hatched.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `boundaries`, or a map: any dataset with `beta_lim` and `beta_stick`.
+    ax : matplotlib axes, or an array of them, optional
+        Axes to draw into, one for each mu; the legend is placed below the last of them (save the figure with
+        ``bbox_inches="tight"``).  Without it a figure is created.
+
+    Returns
+    -------
+    The axes: those given, or an array with one for each mu.
+
+    Raises
+    ------
+    InputError
+        The dataset has no boundaries, or the number of axes differs from the number of mu.
+    """
+    ds = to_draw(ds, "plot_boundaries", "boundaries", "map")
+    check_holds(ds, ("beta_lim", "beta_stick"), "its boundaries")
+    r, panels = Grid(ds["r"].values), panels_of(ds)
+    title = str(ds.attrs.get("title", ""))
+    axes = panel_grid(len(panels), title) if ax is None else given_axes(ax, len(panels), "one for each mu")
+    top = top_of(ds["beta_lim"].values, ds["beta_stick"].values)
+    handles = _area_handles(ds["mu"].values)
+    for panel_ax, panel in zip(axes, panels, strict=True):
+        handles += _draw(panel_ax, panel, r, top)
+    handles = distinct(handles)
+    if ax is None:
+        figure = axes[0].figure
+        assert isinstance(figure, Figure)
+        legend_below(figure, handles, "; ".join(filter(None, (caption(ds), _reading(ds["mu"].values)))))
+        return axes
+    legend_under(axes[-1], handles)
+    return ax if isinstance(ax, Axes) else axes

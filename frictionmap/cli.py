@@ -128,7 +128,7 @@ def _one_mu(config: "Config") -> float:
     """The mu of a configuration that has one."""
     if config.mu.size > 1:
         values = ", ".join(f"{mu:g}" for mu in config.mu[:5])
-        raise InputError(f"--mu must be given where grid.mu has {config.mu.size} values; they are {values}")
+        raise InputError(f"cannot choose mu: grid.mu has {config.mu.size} values, {values}; give --mu")
     return float(config.mu[0])
 
 
@@ -146,7 +146,9 @@ def _compute(options: Options) -> None:
     config = load_config(options.config, options.overrides, None if room and options.yes else room)
     ending = "" if options.command == "map" else f"-{options.command}"
     if config.variations is not None and options.command != "map":
-        raise InputError(f"[axes] must be left out for {options.command}: further axes are of maps")
+        raise InputError(
+            f"cannot run {options.command} with [axes]: [axes] is supported by `map` only; remove it"
+        )
     path = options.output or Path(f"{config.name}{ending}.nc")
     commands = {"map": _map, "curves": _curves, "boundaries": _boundaries, "response": _response}
     command = commands[options.command]
@@ -158,15 +160,15 @@ def _is_store(options: Options) -> bool:
     """Whether a map goes into a store, block by block."""
     stored = options.output is not None and options.output.suffix == ".zarr"
     if not stored and (options.workers or options.scheduler):
-        raise InputError("--workers and --scheduler must come with a store, -o OUT.zarr")
+        raise InputError("cannot use --workers or --scheduler: they compute stores only; give -o OUT.zarr")
     if options.threads and (options.workers or options.scheduler):
-        raise InputError("--threads must be left out with --workers and --scheduler: a worker has one thread")
+        raise InputError("cannot use --threads with workers: every worker has one thread; omit --threads")
     return stored
 
 
 def _refuse_store(options: Options) -> None:
     if options.output is not None and options.output.suffix == ".zarr":
-        raise InputError(f"-o must be a file for {options.command}: stores are of maps; got {options.output}")
+        raise InputError(f"cannot write {options.output}: only `map` can write a .zarr store; use another -o")
 
 
 def _store(options: Options) -> None:
@@ -376,7 +378,7 @@ def _print(text: str) -> None:
     except BrokenPipeError:  # whoever reads it has had enough
         raise
     except OSError as error:
-        raise OSError(f"what was to be printed is lost ({error.strerror}): {text}") from error
+        raise OSError(f"cannot print: {error.strerror}; lost output: {text}") from error
 
 
 def _complain(error: Exception) -> None:

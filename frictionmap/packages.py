@@ -21,7 +21,7 @@ def package(name: str, path: Path, extra: str) -> Any:
     except ImportError:
         missing = name.partition(".")[0]
         raise InputError(
-            f"file {path} needs the package {missing}; install it with: pip install 'frictionmap[{extra}]'"
+            f"cannot read {path}: {missing} is not installed; run pip install 'frictionmap[{extra}]'"
         ) from None
 
 
@@ -39,4 +39,4 @@ def read_by(path: Path, form: str, read: Callable[[], Any]) -> Any:
         raise
     except Exception as error:
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(f"file {path} must be a {form}; it cannot be read ({reason})") from None
+        raise InputError(f"cannot read {path}: it is not a valid {form} ({reason}); write it again") from None

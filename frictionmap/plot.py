@@ -77,11 +77,11 @@ def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
     }
     legal = drawn_of[what]
     if log:
-        raise InputError(f"log is for response curves; got a dataset of kind {what}")
+        raise InputError(f"cannot draw {what} with log: it applies to response curves only; omit log")
     if quantity is None:
         quantity = next(iter(legal))
     if quantity not in legal:
-        raise InputError(f"quantity must be one of {', '.join(legal)} of a {what}; got {quantity}")
+        raise InputError(f"unknown quantity {quantity!r} in a file of kind {what}; valid: {', '.join(legal)}")
     return legal[quantity](ds)
 
 

@@ -51,17 +51,18 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     further = further_axes(ds)
     if kind(ds) != "map" or over not in further:
         raise InputError(
-            f"over must name a further axis of maps; they have {', '.join(further) or 'none'}; "
-            f"got {checks.one_line(over)}"
+            f"unknown further axis of maps {checks.one_line(over)}; valid: {', '.join(further) or 'none'}"
         )
     if len(further) > 1:
         others = ", ".join(name for name in further if name != over)
-        raise InputError(f"ds must have no further axis but {over}: choose one point of {others}")
+        raise InputError(
+            f"cannot compute shares over {over}: ds has the further axis {others}; choose one point of it"
+        )
     if "regime" not in ds:
-        raise InputError("ds must hold regime; it does not")
+        raise InputError("cannot compute shares: ds has no variable regime; compute the map with it")
     for name in CELL:
         if name not in ds.coords:
-            raise InputError(f"ds must hold the coordinate {name}; it does not")
+            raise InputError(f"cannot compute shares: ds has no coordinate {name}; keep it when slicing")
     if MARKS in ds:
         ds = _finished(ds, over)
     levels = checks.axis(quantiles, "quantiles", least=0.0, most=1.0)
@@ -96,7 +97,9 @@ def _finished(ds: xr.Dataset, over: str) -> xr.Dataset:
     others = [dim for dim in ds[MARKS].dims if dim != over]
     done = np.flatnonzero((ds[MARKS] != 0).all(others).values)
     if not done.size:
-        raise InputError(f"a store must have at least one point of {over} finished; it has none")
+        raise InputError(
+            f"cannot compute shares over {over}: no point of it is finished; resume the map first"
+        )
     return ds.isel({over: done})
 
 

@@ -57,7 +57,9 @@ def configuration_text(scene: Scene, view: View, quantity: Quantity, piece: Piec
     again = {"r": loaded.r, "beta": loaded.beta, "mu": loaded.mu}
     found = configuration(scene.title, loaded.system, again, loaded.solver, units=loaded.units)
     if _uncommented(found) != _uncommented(text):
-        raise InputError("this view has no configuration that gives it again")
+        raise InputError(
+            "cannot save this view: no configuration reproduces it exactly; save its map instead"
+        )
     return text
 
 
@@ -73,7 +75,10 @@ def _is_large(view: View) -> bool:
 def _with_files(scene: Scene, view: View, text: str) -> str:
     """The view that `text` describes, with matrices by the names of their files."""
     if scene.config is None:
-        raise InputError(f"a system of {scene.system.n} degrees of freedom is too large to be put into text")
+        raise InputError(
+            f"cannot save this view: its matrices ({scene.system.n} degrees of freedom) are too large for "
+            "a configuration; save its map instead"
+        )
     given = parse(scene.config.text)
     of_view = parse(_uncommented(text))
     of_files = {key: given["system"][key] for key in ("matrices", "reduce") if key in given["system"]}
@@ -83,7 +88,9 @@ def _with_files(scene: Scene, view: View, text: str) -> str:
     tree.pop("axes", None)
     written = to_toml(tree)
     if read_system(parse(written)["system"], scene.config.files[0].parent) != view.system:
-        raise InputError("this view has no configuration that gives it again: its files have changed")
+        raise InputError(
+            "cannot save this view: the files of its matrices have changed; restart frictionmap explore"
+        )
     return written
 
 

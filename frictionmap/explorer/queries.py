@@ -66,7 +66,7 @@ def _read(text: str, legal: Sequence[str]) -> dict[str, str]:
     for key, value in pairs:
         if key not in legal:
             hint = checks.nearest(key, legal)
-            raise InputError(f"unknown key {key}{hint}; the keys are {', '.join(legal)}")
+            raise InputError(f"unknown key {key!r}{hint}; valid: {', '.join(legal)}")
         if key in given:
             raise InputError(f"{key} must be given once; got {given[key]!r} and {value!r}")
         given[key] = value
@@ -97,7 +97,7 @@ def _whole(given: Mapping[str, str], name: str, default: int | None = None) -> i
 def needed(given: Mapping[str, str], name: str) -> str:
     """What was given under a key that must be there."""
     if name not in given:
-        raise InputError(f"{name} must be given; it is missing")
+        raise InputError(f"{name} must be given; got nothing")
     return given[name]
 
 
@@ -106,7 +106,9 @@ def _range(given: Mapping[str, str], name: str, default: tuple[float, float]) ->
         return default
     parts = given[name].split(",")
     if len(parts) != 2:
-        raise InputError(f"{name} must be two numbers with a comma; got {checks.one_line(given[name])}")
+        raise InputError(
+            f"{name} must be two numbers separated by a comma; got {checks.one_line(given[name])}"
+        )
     return checked_range([number(part, name) for part in parts], name)
 
 
@@ -136,7 +138,9 @@ def cell_of(query: Query) -> tuple[float, float]:
     """r and beta of a cell."""
     parts = needed(query.given, "at").split(",")
     if len(parts) != 2:
-        raise InputError(f"at must be r and beta with a comma; got {checks.one_line(query.given['at'])}")
+        raise InputError(
+            f"at must be r and beta separated by a comma; got {checks.one_line(query.given['at'])}"
+        )
     r, beta = (number(part, name) for part, name in zip(parts, ("r", "beta"), strict=True))
     r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
     return r, checks.number(beta, "beta", least=0.0)
@@ -155,5 +159,5 @@ def page_of(query: Query) -> tuple[str, int]:
     """The page that asks, and which of its requests it is: a later one makes this one outdated."""
     page = query.given.get("page", "")
     if len(page) > 64 or not page.isascii():
-        raise InputError(f"page must be a short word; got {checks.one_line(page)}")
+        raise InputError(f"page must be at most 64 ASCII characters; got {checks.one_line(page)}")
     return page, checks.whole(_whole(query.given, "turn", 0), "turn", least=0)

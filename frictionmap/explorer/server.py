@@ -351,7 +351,7 @@ def open_server(scene: Scene, port: int | None = None) -> Server:
             reason = getattr(error, "strerror", None) or str(error)
             free = getattr(error, "errno", None) in (errno.EADDRINUSE, errno.EACCES)
             if number == tried[-1] or not free:
-                raise InputError(f"--port must be one that is free; got {number} ({reason})") from None
+                raise InputError(f"--port must be a free port; got {number} ({reason})") from None
     raise AssertionError("there is always a last one")
 
 

@@ -90,7 +90,9 @@ def middles(ends: tuple[float, float], count: int, name: str) -> np.ndarray:
     half = 0.5 * (ends[1] - ends[0]) / count
     found = np.linspace(ends[0] + half, ends[1] - half, count)
     if count > 1 and not (np.diff(found) > 0.0).all():
-        raise InputError(f"{name} must be fewer in so narrow a range, {ends[0]!r} to {ends[1]!r}")
+        raise InputError(
+            f"cannot place distinct {name} between {ends[0]!r} and {ends[1]!r}: range too narrow; widen it"
+        )
     return found
 
 

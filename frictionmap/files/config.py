@@ -43,6 +43,9 @@ _RIVALS = {
 _NOT_TOML = (ValueError, RecursionError)
 
 
+#: How errors begin that do not begin with a key.
+_NO_KEY = ("cannot ", "unknown ")
+
 T = TypeVar("T")
 
 
@@ -103,7 +106,9 @@ def config_of(text: str, system: Mapping[str, object]) -> Config:
     tree["system"] = {**tree.get("system", {}), **system}
     in_files = _matrix_files(_system_table(tree, Path()))
     if in_files:
-        raise InputError(f"system.matrices must be at hand; they are in a file, {in_files[0]}")
+        raise InputError(
+            f"cannot use system.matrices: they are in a file, {in_files[0]}; give them as arrays"
+        )
     return _check(tree, text, Path("config"), lambda *_: None)
 
 
@@ -125,17 +130,18 @@ def read_tree(path: str | Path, overrides: Sequence[str] = ()) -> tuple[dict, st
     try:
         text = path.read_bytes().decode("utf-8-sig")  # some editors put a mark at the beginning
     except UnicodeDecodeError:
-        hint = "; results are read by frictionmap plot, info and export" if path.suffix == ".nc" else ""
-        raise InputError(f"configuration {path} must be text in UTF-8; it is not{hint}") from None
+        results = "results are read by frictionmap plot, info and export"
+        advice = results if path.suffix == ".nc" else "save it as UTF-8"
+        raise InputError(f"cannot read configuration {path}: it is not text in UTF-8; {advice}") from None
     except (OSError, ValueError) as error:  # a name with a null character is a ValueError
         reason = getattr(error, "strerror", None) or error
         raise InputError(
-            f"configuration {path} cannot be read ({reason}); give the path of a TOML file"
+            f"cannot read configuration {path}: {reason}; give the path of a TOML file"
         ) from None
     try:
         tree = parse(text)
     except InputError as error:
-        raise InputError(f"configuration {path} {error}") from None
+        raise InputError(f"configuration {path}: {error}") from None
     _override_all(tree, overrides)
     return tree, to_toml(tree) if overrides else text
 
@@ -145,7 +151,7 @@ def parse(text: str) -> dict:
     try:
         return tomllib.loads(text)
     except _NOT_TOML as error:
-        raise InputError(f"must be TOML; got: {error}") from None
+        raise InputError(f"cannot parse as TOML: {error}; correct the syntax") from None
 
 
 def _override_all(tree: dict, overrides: Sequence[str]) -> None:
@@ -159,7 +165,9 @@ def _override_all(tree: dict, overrides: Sequence[str]) -> None:
         key, value = _key_and_value(override)
         for before, text in done.items():
             if _undoes(key, before):
-                raise InputError(f"--set {override} must not undo --set {text}; give one of the two")
+                raise InputError(
+                    f"cannot apply --set {override}: it undoes --set {text}; give one of the two"
+                )
         done[key] = override
         _override(tree, key.split("."), value, override)
 
@@ -199,7 +207,9 @@ def _override(tree: dict, parts: list[str], value: object, override: str) -> Non
         branch = branch.setdefault(part, {})
         if not isinstance(branch, dict):
             name = ".".join(parts[:depth])
-            raise InputError(f"--set {override}: {name} must be a table to have keys; it is {branch!r}")
+            raise InputError(
+                f"cannot apply --set {override}: {name} is not a table; set {name} itself, now {branch!r}"
+            )
     if parts[0] in ("grid", "axes") and len(parts) == 3:
         for rival in _RIVALS.get(parts[-1], ()):
             branch.pop(rival, None)
@@ -209,8 +219,7 @@ def _override(tree: dict, parts: list[str], value: object, override: str) -> Non
 def unknown_key(key: str, section: str, legal: Sequence[str]) -> InputError:
     """An error that names the key and those that are legal."""
     name = f"{section}.{key}" if section else key
-    where = f"the keys of [{section}]" if section else "the keys"
-    return InputError(f"unknown key {name}{checks.nearest(key, legal)}; {where} are {', '.join(legal)}")
+    return InputError(f"unknown key {name!r}{checks.nearest(key, legal)}; valid: {', '.join(legal)}")
 
 
 def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
@@ -224,11 +233,17 @@ def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
     return table
 
 
+def within(section: str, error: InputError) -> InputError:
+    """Return an error about a key of a table, with the table named."""
+    text = str(error)
+    return InputError(f"[{section}]: {text}" if text.startswith(_NO_KEY) else f"{section}.{text}")
+
+
 def _build(kind: Callable[..., T], table: Mapping[str, object], section: str) -> T:
     try:
         return kind(**table)
     except InputError as error:
-        raise InputError(f"{section}.{error}") from None
+        raise within(section, error) from None
 
 
 def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]:
@@ -291,7 +306,8 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     name = path.stem
     if "data" in tree and "grid" not in tree:
         raise InputError(
-            "the configuration must have [system] and [grid]; it is of a rig, for frictionmap identify"
+            "cannot compute from a configuration with [data]: it describes measured data; "
+            "use frictionmap identify"
         )
     for key in tree:
         if key not in _SECTIONS:
@@ -300,7 +316,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     if not isinstance(title, str):
         raise InputError(f"title must be text; got {title!r}")
     if "system" not in tree:
-        raise InputError("the configuration must have a table [system]; it has none")
+        raise InputError("the configuration must have a table [system]; got none")
     described = _system_table(tree, path.parent)
     system = _build(System, described, "system")
     solver = _build(Solver, _table(tree, "solver"), "solver")
@@ -320,7 +336,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     try:
         (variations or system).costs(axes["r"])
     except InputError as error:
-        raise InputError(f"system.{error}") from None
+        raise within("system", error) from None
     files = (path, *_matrix_files(described))
     return Config(
         title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, name, variations, files,
@@ -333,7 +349,7 @@ def _grid(tree: Mapping[str, object], scales: Scales) -> dict[str, Any]:
     grid: dict[str, Any] = {"mu": [1.0], **_table(tree, "grid")}
     for key, kind in KINDS.items():
         if key not in grid:
-            raise InputError(f"grid.{key} must be given; it is missing")
+            raise InputError(f"grid.{key} must be a number, a list of numbers or a range; got nothing")
         if isinstance(grid[key], Mapping):
             _check_form(grid[key], f"grid.{key}")
         grid[key] = grid_ratios(grid[key], f"grid.{key}", kind, scales)

@@ -35,7 +35,9 @@ def estimates_form(ds: xr.Dataset) -> xr.Dataset:
             )
     for name in ("parameter", *OF_PARAMETERS):
         if name not in variables:
-            raise InputError(f"a dataset of estimates must hold {name}; it does not")
+            raise InputError(
+                f"cannot use the estimates: variable {name!r} is missing; give a file of frictionmap identify"
+            )
     _check_parameters(variables["parameter"].values)
     kept = {name: ds.variables[name] for name in ds.variables if _is_further(ds, name)}
     coords = {
@@ -54,7 +56,7 @@ def _is_further(ds: xr.Dataset, name: Hashable) -> bool:
 def _check_parameters(names: np.ndarray) -> None:
     if not names.size or np.unique(names).size < names.size:
         words = ", ".join(names.tolist()) or "none"
-        raise InputError(f"parameter must be different names, one or more; got {words}")
+        raise InputError(f"parameter must be a list of different names; got {words}")
 
 
 def describe_estimates(ds: xr.Dataset) -> list[str]:

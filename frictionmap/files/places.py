@@ -74,9 +74,11 @@ class Output:
         except FileExistsError:
             raise OSError(self._keep_elsewhere()) from None
         except OSError as error:
-            raise OSError(f"{self.path} cannot be written ({error.strerror or error})") from error
+            raise OSError(
+                f"cannot write {self.path}: {error.strerror or error}; check disk space and permissions"
+            ) from error
         except RuntimeError as error:  # netCDF's word for any trouble, a full disk above all
-            raise OSError(f"{self.path} cannot be written ({error}); is there room on the disk?") from error
+            raise OSError(f"cannot write {self.path}: {error}; check disk space") from error
 
     def _place(self) -> None:
         if self._overwrite and self._target.exists():
@@ -94,7 +96,10 @@ class Output:
             with contextlib.suppress(FileExistsError), _guard:
                 _create(self._scratch, self._target.with_name(beside.name))
                 _written.append(beside)
-                return f"{self.path} appeared during the work and was left alone; the result is in {beside}"
+                return (
+                    f"cannot write {self.path}: a file of this name has appeared meanwhile; "
+                    f"the result is in {beside}"
+                )
             number += 1
 
     def claim(self) -> None:
@@ -105,11 +110,9 @@ class Output:
                 _claims.add(self)
                 self._lock = _enter(self._folder)
         except _Taken:
-            raise InputError(f"output {self.path} is being written by another run; use another -o") from None
+            raise InputError(f"cannot write {self.path}: another run is writing it; use another -o") from None
         except OSError as error:
-            raise InputError(
-                f"-o must be a place that can be written to; got {self.path} ({error.strerror})"
-            ) from None
+            raise InputError(f"cannot write {self.path}: {error.strerror}; use another -o") from None
 
     def release(self) -> None:
         """Give the name back; nothing is left but the file itself, if it was put in its place."""
@@ -155,7 +158,7 @@ def claimed_folder(path: Path) -> Iterator[Output]:
     """
     target = Path(os.path.realpath(path))
     if not target.parent.is_dir():
-        raise InputError(f"-o must lie in a folder that exists; got {path}")
+        raise InputError(f"-o must be in an existing folder; got {path}")
     if target.exists() and not target.is_dir():
         raise InputError(f"-o must be a store, which is a folder; got the file {path}")
     output = Output(path, True)
@@ -170,7 +173,7 @@ def _check(path: Path, overwrite: bool, inputs: Sequence[Path], name: str) -> No
     try:
         target = Path(os.path.realpath(path))
         if not target.parent.is_dir():
-            raise InputError(f"{name} must lie in a folder that exists; got {path}")
+            raise InputError(f"{name} must be in an existing folder; got {path}")
         try:
             mode = os.lstat(target).st_mode
         except FileNotFoundError:
@@ -181,15 +184,13 @@ def _check(path: Path, overwrite: bool, inputs: Sequence[Path], name: str) -> No
             raise InputError(f"{name} must be an ordinary file; got {path}")
         for given in inputs:
             if os.path.samefile(given, target):
-                raise InputError(f"{name} must not be a file that is read; got {path}, which is {given}")
+                raise InputError(f"cannot write {path}: it is the input file {given}; use another {name}")
         if not overwrite:
-            raise InputError(f"output {path} exists already; use --overwrite or another {name}")
+            raise InputError(f"cannot write {path}: it already exists; use --overwrite or another {name}")
         if not os.access(target, os.W_OK):
-            raise InputError(f"output {path} is protected from writing; use another {name}")
+            raise InputError(f"cannot write {path}: it is write-protected; use another {name}")
     except OSError as error:
-        raise InputError(
-            f"{name} must be a place that can be written to; got {path} ({error.strerror})"
-        ) from None
+        raise InputError(f"cannot write {path}: {error.strerror}; use another {name}") from None
 
 
 def _abandon() -> str:

@@ -64,17 +64,19 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
     store = _is_file(path / "zarr.json")
     if not store and not _is_file(path):
         wrong = "is not a file" if path.exists() else "does not exist"
-        raise InputError(f"file {path} {wrong}; give a file written by frictionmap")
+        raise InputError(f"cannot read {path}: it {wrong}; give a file written by frictionmap")
     if path.suffix == ".toml":
         raise InputError(
-            f"file {path} must be NetCDF written by frictionmap; a configuration is computed first, "
-            f"as by frictionmap map {path}"
+            f"cannot read results from {path}: it is a configuration; compute it first, "
+            f"e.g. frictionmap map {path}"
         )
     # no value of ours is a time, whatever the units say
     options: dict = {"engine": "netcdf4"}
     if store:
         if importlib.util.find_spec("zarr") is None:
-            raise InputError(f"store {path} can be read where zarr is: pip install 'frictionmap[zarr]'")
+            raise InputError(
+                f"cannot read {path}: zarr is not installed; run pip install 'frictionmap[zarr]'"
+            )
         options = {"engine": "zarr", "consolidated": False, "chunks": None}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a malformed file; what is wrong with it is said below
@@ -102,7 +104,7 @@ def _is_file(path: Path) -> bool:
 
 
 def _protected(path: Path) -> InputError:
-    return InputError(f"file {path} must be readable; it is protected from reading")
+    return InputError(f"cannot read {path}: it is read-protected; change its permissions")
 
 
 def _damaged(path: Path, error: Exception) -> InputError:
@@ -110,8 +112,8 @@ def _damaged(path: Path, error: Exception) -> InputError:
     if isinstance(error, PermissionError):
         return _protected(Path(error.filename or path))
     return InputError(
-        f"file {path} must be NetCDF written by frictionmap; it cannot be opened "
-        f"({checks.one_line(error) if not str(error) else error})"
+        f"cannot read {path}: it is damaged or not NetCDF "
+        f"({checks.one_line(error) if not str(error) else error}); give a file written by frictionmap"
     )
 
 
@@ -127,7 +129,7 @@ def _check_ours(path: Path, ds: xr.Dataset) -> None:
     source = ds.attrs.get("source", "not given")
     ours = LABELS.keys() & ds.variables.keys() or kind(ds) == "estimates"
     if not str(source).startswith("frictionmap") or not ours:
-        raise InputError(f"file {path} must be written by frictionmap; its source is {source!r}")
+        raise InputError(f"cannot read {path}: its source is {source!r}; give a file written by frictionmap")
 
 
 @contextlib.contextmanager
@@ -217,9 +219,7 @@ def _increasing(ds: xr.Dataset) -> xr.Dataset:
         if name not in ds.coords or ds[name].ndim == 0:
             continue
         if ds[name].dims != (name,):
-            raise InputError(
-                f"{name} must be an axis of its own; got the dimensions {in_brackets(ds[name].dims)}"
-            )
+            raise InputError(f"{name} must have the dimensions ({name}); got {in_brackets(ds[name].dims)}")
         values = checked_values(name, ds[name].values)
         if values.size == 0:
             raise InputError(f"{name} must have at least one value; got none")
@@ -260,5 +260,5 @@ def _axes(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:
                 raise InputError(f"a response must have one {name}; got {values.size}")
             axes[name] = coordinate(name, np.atleast_1d(values) if name in used else values)
         elif name in used or of_the_cell:
-            raise InputError(f"{name} must be given as a coordinate; it is missing")
+            raise InputError(f"{name} must be a coordinate; got no such coordinate")
     return axes

@@ -71,17 +71,17 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
     for name, value in choices.items():
         if name not in legal:
             raise InputError(
-                f"--at must name an axis of the file: {', '.join(legal) or 'it has none'}; "
-                f"got {name}{checks.nearest(name, legal)}"
+                f"unknown axis of --at {name!r}{checks.nearest(name, legal)}; "
+                f"valid: {', '.join(legal) or 'none'}"
             )
         dim, found = _found(ds, name, value)
         places[dim] = np.intersect1d(found, places[dim]) if dim in places else found
     if over is not None and over not in further:
-        raise InputError(
-            f"--over must name a further axis of the file: {', '.join(further) or 'it has none'}; got {over}"
-        )
+        raise InputError(f"unknown further axis of --over {over!r}; valid: {', '.join(further) or 'none'}")
     if over in places:
-        raise InputError(f"--at must choose on other axes than --over {over}, which takes all points of it")
+        raise InputError(
+            f"cannot use --at {over} with --over {over}: --over takes all its points; use --at for other axes"
+        )
     point: dict[str, int] = {}
     rows: dict[str, list[int]] = {}
     chosen = [dim for dim in further if dim != over]
@@ -89,8 +89,8 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
         found = places.get(dim, np.arange(ds.sizes[dim]))
         if found.size != 1:
             raise InputError(
-                f"--at {dim}=VALUE must choose one point of {_values(ds, dim)}; "
-                f"plot --over {dim} draws the shares of regimes over it"
+                f"cannot choose a point along {dim}: the file has {_values(ds, dim)}; give --at {dim}=VALUE, "
+                f"or draw the shares of regimes over it with plot --over {dim}"
             )
         if dim in further:
             point[dim] = int(found[0])

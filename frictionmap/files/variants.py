@@ -9,7 +9,7 @@ from .. import checks
 from ..errors import InputError
 
 #: What is most often meant by a row of another length.
-_HINT = "commas stand between numbers, points in them"
+_HINT = "separate numbers by commas, use decimal points"
 
 
 def put_variants(axes: object, folder: Path) -> tuple[Path, ...]:
@@ -41,14 +41,16 @@ def _columns(path: Path, name: str) -> dict[str, list[float]]:
             reader = csv.reader(opened)
             (_, header), *rows = [(reader.line_num, row) for row in reader if any(map(str.strip, row))]
     except (OSError, ValueError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or "no rows of text with commas"
-        raise InputError(f"{name}, {path}, cannot be read ({reason})") from None
+        reason = getattr(error, "strerror", None) or "it has no rows of text"
+        raise InputError(
+            f"cannot read {name}, {path}: {reason}; give a CSV file with names in its first row"
+        ) from None
     columns: dict[str, list[float]] = {key.strip(): [] for key in header}
     if len(columns) < len(header):
         raise InputError(f"{name} must name every number once in its first row; got {','.join(header)}")
     for line, row in rows:
         if len(row) != len(columns):
-            raise InputError(f"{name}, row {line} must have {len(columns)} numbers; got {len(row)}: {_HINT}")
+            raise InputError(f"{name}, row {line} must have {len(columns)} numbers; got {len(row)} ({_HINT})")
         for key, text in zip(columns, row, strict=True):
             columns[key].append(_number(text, f"{name}, row {line}, {key}"))
     return columns

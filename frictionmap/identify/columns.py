@@ -95,8 +95,8 @@ def check_increasing(table: Table, time: Column, rows: np.ndarray) -> None:
     if wrong.size:
         before, after = time.values[wrong[0]], time.values[wrong[0] + 1]
         raise InputError(
-            f"{table.place(time.name, int(rows[wrong[0] + 1]))} must be later than the row before, "
-            f"{before:g}; got {after:g} (rows are not sorted: mend the file)"
+            f"{table.place(time.name, int(rows[wrong[0] + 1]))} must be > {before:g}, "
+            f"the time of the previous row; got {after:g} (sort the rows)"
         )
 
 
@@ -112,21 +112,23 @@ def check_positive(table: Table, column: Column, rows: np.ndarray) -> None:
 def _find(table: Table, role: str, names: Mapping[str, str], measures: str) -> Column:
     """The column of a name, or the one whose name is what it is and a unit."""
     legal, name = suffixes(measures), names.get(role)
-    has = f"it has {', '.join(table.columns) or 'none'}"
+    has = f"the file has {', '.join(table.columns) or 'none'}"
     known = f" (suffixes: {', '.join(legal)})" if legal else ""
-    wanted = f"a column {name or role + next(iter(legal), '')}{known}"
+    wanted = f"column {name or role + next(iter(legal), '')}{known}"
     if name is not None and name not in table.columns:
         raise InputError(
-            f"file {table.file} must have {wanted}, named by data.columns.{role}; {has}"
+            f"cannot read {table.file}: {wanted} is missing, named by data.columns.{role}; {has}"
             f"{checks.nearest(name, table.columns)}"
         )
     candidates = columns_like(table, role, measures, names)
     if not candidates:
-        raise InputError(f"file {table.file} must have {wanted}, or data.columns.{role} names another; {has}")
+        raise InputError(
+            f"cannot read {table.file}: {wanted} is missing; {has}; name it in data.columns.{role}"
+        )
     if len(candidates) > 1:
         raise InputError(
-            f"file {table.file} must have one column {role}, or data.columns.{role} names it; "
-            f"it has {', '.join(candidates)}"
+            f"cannot read {table.file}: several columns may be {role}, {', '.join(candidates)}; "
+            f"choose one with data.columns.{role}"
         )
     column = candidates[0]
     unit = _unit(table, column, legal) if legal else "1"
@@ -137,9 +139,9 @@ def _unit(table: Table, column: str, legal: Sequence[str]) -> str:
     """The unit that the name of a column ends in."""
     unit = ending(column)
     if f"_{unit}" not in legal:
-        what = f"it has {unit!r}" if unit else "it has none"
+        what = f"got {unit!r}" if unit else "got none"
         raise InputError(
-            f"file {table.file}, column {column} must end in its unit, one of {', '.join(legal)}; {what}"
+            f"file {table.file}, column {column}: its name must end in its unit, {', '.join(legal)}; {what}"
         )
     return unit
 
@@ -167,9 +169,9 @@ def _check_lengths(table: Table, found: Mapping[str, Column]) -> None:
     sizes = {column.name: column.values.size for column in found.values()}
     if len(set(sizes.values())) > 1:
         words = ", ".join(f"{name} {size}" for name, size in sizes.items())
-        raise InputError(f"file {table.file}: columns must have one length; got {words}")
+        raise InputError(f"cannot read {table.file}: columns must have the same length; got {words}")
     if 0 in sizes.values():
-        raise InputError(f"file {table.file} must have values below {', '.join(sizes)}; there are none")
+        raise InputError(f"cannot read {table.file}: no values below {', '.join(sizes)}; add rows")
 
 
 def _refuse(table: Table, found: Mapping[str, Column], bad: np.ndarray, missing: str) -> None:
@@ -180,9 +182,9 @@ def _refuse(table: Table, found: Mapping[str, Column], bad: np.ndarray, missing:
     column = next(column for column in found.values() if not np.isfinite(column.values[row]))
     few = bad.mean() <= _DROPPED
     remedy = (
-        'data.missing = "drop" leaves out such rows'
+        'data.missing = "drop" ignores such rows'
         if few
-        else f"{int(bad.sum())} of {bad.size} rows are such, and no more than {_DROPPED:.0%} may be left out"
+        else f"{int(bad.sum())} of {bad.size} rows have none; at most {_DROPPED:.0%} may be ignored"
     )
     raise InputError(
         f"{table.place(column.name, row)} must be a finite number; "

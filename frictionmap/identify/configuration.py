@@ -58,7 +58,7 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     _check_keys(tree, name, kind)
     file = data.get("file")
     if not isinstance(file, str) or not file:
-        given = f"got {checks.one_line(file)}" if "file" in data else "there is none"
+        given = f"got {checks.one_line(file)}" if "file" in data else "got nothing"
         raise InputError(f"data.file must be the path of a file of measured data; {given}")
     missing = checks.choice(data.get("missing", MISSING[0]), "data.missing", MISSING)
     values = {key: _known_number(value, key) for key, value in known.items()}
@@ -124,8 +124,8 @@ def _refuse_data(path: object) -> None:
     """Refuse measured data where their configuration is due."""
     if isinstance(path, (str, Path)) and Path(path).suffix.lower() in _DATA:
         raise InputError(
-            f"RIG.toml must be a configuration, which says with [data] kind and file what {path} holds; "
-            "got the file of data itself"
+            f"cannot read a configuration from {path}: it is a data file; give a RIG.toml that names it "
+            "under data.file"
         )
 
 
@@ -135,9 +135,10 @@ def _checked_kind(tree: Mapping[str, object], data: Mapping[str, object]) -> str
         return checks.choice(data["kind"], "data.kind", tuple(KINDS))
     if "grid" in tree:
         raise InputError(
-            f"the configuration must have data.kind, one of {kinds}; it is that of a map, for frictionmap map"
+            "cannot identify from a configuration with [grid]: it describes a map; use frictionmap map, "
+            f"or give [data] with kind, one of {kinds}"
         )
-    raise InputError(f"the configuration must have a table [data] with kind, one of {kinds}; it has none")
+    raise InputError(f"the configuration must have a table [data] with kind, one of {kinds}; got none")
 
 
 def _check_keys(tree: Mapping[str, object], name: str, kind: Kind) -> None:
@@ -169,16 +170,20 @@ def _checked_free(
     if free is None:
         return None
     if not parameters:
-        raise InputError("fit.free must be left out for this kind: what [known] does not hold is fitted")
+        raise InputError(
+            "cannot use fit.free for this kind of data: all parameters not in [known] are fitted; omit it"
+        )
     if not isinstance(free, list) or not free:
         raise InputError(f"fit.free must be a list of parameters; got {checks.one_line(free)}")
     for index, name in enumerate(free):
         checks.choice(name, f"fit.free[{index}]", tuple(parameters))
     for name in parameters:
         if name in free and name in known:
-            raise InputError(f"fit.free must not name what [known] holds; got {name}")
+            raise InputError(f"cannot fit {name}: [known] holds it; remove it from fit.free or from [known]")
         if name not in free and name not in known:
-            raise InputError(f"fit.free must name {name}, or known.{name} give its value; got {free}")
+            raise InputError(
+                f"cannot hold {name}: its value is missing; add {name} to fit.free or known.{name} to [known]"
+            )
     return tuple(free)
 
 
@@ -197,7 +202,7 @@ def _known_number(value: object, key: str) -> float:
 def _names(columns: object) -> dict[str, str]:
     if not isinstance(columns, Mapping) or not all(isinstance(name, str) for name in columns.values()):
         raise InputError(
-            f'data.columns must be names of columns, such as {{ time = "time_s", x = "x_mm" }}; '
+            f'data.columns must be a table of column names, such as {{ time = "time_s", x = "x_mm" }}; '
             f"got {checks.one_line(columns)}"
         )
     return dict(columns)

@@ -113,7 +113,7 @@ def forced(
     if not (~table.samples.is_phase).any() and np.isnan(held[F_N]):
         held[F_N] = _passing(table)
         warnings.append(
-            f"lags alone do not tell f_n: it is held at {held[F_N]:.6g} Hz, where they pass 90 deg"
+            f"phase data alone cannot determine f_n: it is held at {held[F_N]:.6g} Hz, where lags pass 90 deg"
         )
     robust = checks.choice(loss, "loss", LOSSES) == "soft_l1"
     drop = checks.choice(unreachable, "unreachable", ("refuse", "drop")) == "drop"
@@ -132,9 +132,7 @@ def forced(
     ds.attrs["system"] = fit.model.with_zeta(float(fit.solution.values[ZETA])).describe()
     ds.attrs["config"] = system_text(system)
     if stiffness is not None and load is None:
-        warnings.append(
-            "no friction force in N: there are no amplitudes of the base, over which beta is taken"
-        )
+        warnings.append("no friction force in N: it needs the amplitudes of the base")
     ds.attrs["warnings"] = "; ".join(warnings + told(table, fit))
     return ds
 
@@ -158,10 +156,10 @@ def _checked_known(known: Mapping[str, float], system: System, sets: int) -> np.
             held[MU] = checks.number(value, "known.mu", least=1.0)
     if system.modes.zeta.any():
         if not np.isnan(held[ZETA]):
-            raise InputError(f"known.zeta must be left out for a system with damping; got {held[ZETA]:g}")
+            raise InputError("cannot use known.zeta: the system defines its damping; omit one of the two")
         held[ZETA] = system.zeta
     if not np.isnan(held).any():
-        raise InputError("known must leave something to fit; got all of beta, f_n, zeta, mu")
+        raise InputError("known must leave at least one parameter free; got all of beta, f_n, zeta, mu")
     return held
 
 
@@ -176,14 +174,16 @@ def _reachable(
         return table
     if not drop:
         refuse_impossible(table, system, f_n, int(wrong[0]))
-    warnings.append(f"{wrong.size} lags that no friction ratio gives were left out")
+    warnings.append(f"{wrong.size} lags that no friction ratio gives were ignored")
     return without(table, wrong)
 
 
 def _check_count(table: ForcedTable, held: np.ndarray) -> None:
     unknowns, count = int(np.isnan(held).sum()), table.samples.row.size
     if count <= unknowns:
-        raise InputError(f"there must be more data than unknowns; got {count} data for {unknowns} unknowns")
+        raise InputError(
+            f"cannot fit {unknowns} unknowns to {count} data: more data than unknowns are needed; add data"
+        )
 
 
 def _passing(table: ForcedTable) -> float:
@@ -199,8 +199,8 @@ def _passing(table: ForcedTable) -> float:
             found.append(f[k] - lag[k] * (f[k + 1] - f[k]) / (lag[k + 1] - lag[k]))
     if not found:
         raise InputError(
-            "known.f_n must be given: lags alone do not tell f_n, and those of the first mass "
-            "do not pass 90 deg"
+            "cannot determine f_n: phase data alone do not determine it, and the lags of mass 1 do not "
+            "pass 90 deg; give known.f_n or amplitudes"
         )
     return float(np.median(found))
 

@@ -64,7 +64,7 @@ def _numbers(values: object, name: str, size: int | None, above: float = -np.inf
     """Finite numbers > above, so many of them."""
     given = np.atleast_1d(checks.array(values, name))
     if given.dtype.kind not in "iuf" or given.ndim != 1 or given.size == 0 or size not in (None, given.size):
-        wanted = "numbers" if size is None else f"{size} numbers, one a frequency"
+        wanted = "numbers" if size is None else f"{size} numbers, one per frequency"
         raise InputError(f"{name} must be {wanted}; got {checks.one_line(values)}")
     wrong = np.flatnonzero(~(np.isfinite(given) & (given > above)))
     if wrong.size:
@@ -86,7 +86,7 @@ def _members(sets: Sequence[object] | None, size: int) -> tuple[np.ndarray, tupl
         return np.zeros(size, dtype=int), ("1",)
     labels = [_label(one) for one in checks.array(sets, "sets").tolist()]
     if len(labels) != size:
-        raise InputError(f"sets must be {size} labels, one a frequency; got {len(labels)}")
+        raise InputError(f"sets must be {size} labels, one per frequency; got {len(labels)}")
     known = list(dict.fromkeys(labels))
     if all(label.isdecimal() for label in known):
         known.sort(key=int)
@@ -107,7 +107,7 @@ def _by_mass(values: Values | None, name: str, system: System) -> dict[int, tupl
     if not isinstance(values, Mapping):
         if system.n > 1:
             raise InputError(
-                f"{name} must say of which masses it is, such as {{1: [...]}}, for {system.n} masses; "
+                f"{name} must be a mapping by mass, such as {{1: [...]}}, for {system.n} masses; "
                 f"got {checks.one_line(values)}"
             )
         return {0: (values, name)}
@@ -131,8 +131,8 @@ def check_lag(
     wrong = np.flatnonzero((lag < -slack) | (lag > 180.0 + slack))
     if wrong.size:
         raise InputError(
-            f"{places[wrong[0]]} must be in 0 to 180 deg; got {lag[wrong[0]]:g}: lags of the loaded mass "
-            "are in 0..180; is it a lead, or another mass?"
+            f"{places[wrong[0]]} must be 0 to 180 deg for the loaded mass; got {lag[wrong[0]]:g} "
+            "(is it a lead, or another mass?)"
         )
 
 

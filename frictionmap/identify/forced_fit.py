@@ -212,7 +212,8 @@ def _best(model: ForcedModel, known: np.ndarray, sure: bool, robust: bool) -> tu
     assert best is not None  # there is a start at least
     if not np.isfinite(best[0].sum):
         raise InputError(
-            "the data must be of masses that move; one that was measured is held, whatever the friction"
+            "cannot fit the data: a measured mass never moves in this model, for any friction ratio; "
+            "check contact_masses and the columns"
         )
     return best
 
@@ -221,11 +222,15 @@ def _check_told(table: ForcedTable, model: ForcedModel, solution: Solution, task
     """Refuse data that leave parameters, or some together, untold."""
     names = parameter_names(table)
     for index in np.flatnonzero(task.free & (_effects(model, solution) < _RANK)):
-        raise InputError(f"the data do not tell {names[index]}, on which nothing that was measured depends")
+        raise InputError(
+            f"cannot identify {names[index]}: no measured quantity depends on it; fix it in [known]"
+        )
     together, _ = undetermined(task, solution, _RANK)
     if together.size:
         words = " and ".join(names[index] for index in together)
-        raise InputError(f"the data do not tell {words} apart; known may hold one, or measure more")
+        raise InputError(
+            f"cannot identify {words} separately: not determined by the data; fix one in [known] or add data"
+        )
 
 
 def parameter_names(table: ForcedTable) -> tuple[str, ...]:

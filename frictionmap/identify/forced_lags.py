@@ -28,9 +28,10 @@ def refuse_impossible(table: ForcedTable, system: System, f_n: float, sample: in
     """Name a lag that no friction gives."""
     row = table.samples.row[sample : sample + 1]
     lag = table.samples.value[sample : sample + 1]
-    told = invert(system, table.rows.frequency[row] / f_n, lag, np.zeros(1, dtype=int))[0]
+    inverted = invert(system, table.rows.frequency[row] / f_n, lag, np.zeros(1, dtype=int))[0]
     raise InputError(
-        f'{told.reason} (row {int(row[0]) + 1} of the table; unreachable = "drop" leaves such lags out)'
+        f"cannot fit the lag in row {int(row[0]) + 1}: {inverted.reason}; "
+        'use unreachable = "drop" to ignore such lags'
     )
 
 

@@ -164,9 +164,9 @@ def checked_known(known: Mapping[str, float], names: tuple[str, ...] = PARAMETER
         checks.choice(name, "known", names)
         result[name] = checks.number(value, f"known.{name}", **ranges.get(name, {}))
     if result.get("zeta", 0.0) >= 1.0:
-        raise InputError(f"known.zeta must be < 1, or there are no extrema; got {known['zeta']}")
+        raise InputError(f"known.zeta must be < 1 for a decay with turning points; got {known['zeta']}")
     if len(result) == len(names):
-        raise InputError(f"known must leave something to fit; got all of {', '.join(names)}")
+        raise InputError(f"known must leave at least one parameter free; got all of {', '.join(names)}")
     return result
 
 

@@ -139,7 +139,7 @@ def friction_ratio(
         if values.dtype.kind not in "iuf" or values.ndim != 1 or not np.isfinite(values).all():
             raise InputError(f"{name} must be finite numbers; got {checks.one_line(values)}")
     if at.size != lag.size:
-        raise InputError(f"phase_lag must be {at.size} numbers, one a frequency; got {lag.size}")
+        raise InputError(f"phase_lag must be {at.size} numbers, one per frequency; got {lag.size}")
     if not (at > 0.0).all():
         raise InputError(f"r must be > 0; got {at[at <= 0.0][0]:g}")
     return invert(system, at.astype(float), np.radians(lag), np.full(at.size, system.dofs.row(mass)))
@@ -343,4 +343,4 @@ def _none_reason(measured: _Measured, k: int, seen: _Lags) -> str:
 
 def _flat_reason(r: float, unsure: bool) -> str:
     why = "rises and falls with friction" if unsure else "changes by less than 10 deg per unit of beta"
-    return f"the lag at r = {r:.4g} {why}: it does not tell beta"
+    return f"the lag at r = {r:.4g} {why}: it does not determine beta"

@@ -210,17 +210,18 @@ def _checked_harmonics(t: np.ndarray, frequency: float) -> int:
     if cycles < _LEAST_CYCLES:
         raise InputError(
             f"time must span at least {_LEAST_CYCLES:g} cycles of the base; "
-            f"it spans {cycles:.2g} ({length:.4g} s at {frequency:.4g} Hz)"
+            f"got {cycles:.2g} ({length:.4g} s at {frequency:.4g} Hz)"
         )
     samples = 1.0 / (float(np.median(np.diff(t))) * frequency)
     if samples < _LEAST_SAMPLES:
         raise InputError(
-            f"time must have more samples: {samples:.2g} samples a cycle; {_LEAST_SAMPLES} are needed"
+            f"cannot fit harmonics: sampling rate too low, {samples:.2g} samples per cycle; "
+            f"{_LEAST_SAMPLES} are needed"
         )
     harmonics = min(_HARMONICS, int(samples / _SAMPLES_OF_HIGHEST))
     unknowns = 2 * harmonics + 3
     if t.size <= unknowns:
-        raise InputError(f"time must have more samples than there are unknowns, {unknowns}; got {t.size}")
+        raise InputError(f"time must have more samples than unknowns, {unknowns}; got {t.size}")
     return harmonics
 
 

@@ -138,7 +138,7 @@ def checked_known(known: Mapping[str, float]) -> dict[str, float]:
         checks.choice(name, "known", PARAMETERS)
         result[name] = checks.number(value, f"known.{name}", **ranges.get(name, {}))
     if len(result) == len(PARAMETERS):
-        raise InputError(f"known must leave something to fit; got all of {', '.join(PARAMETERS)}")
+        raise InputError(f"known must leave at least one parameter free; got all of {', '.join(PARAMETERS)}")
     return result
 
 

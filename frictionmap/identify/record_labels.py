@@ -77,7 +77,7 @@ def of_data(given: MeasuredRecord, ds: xr.Dataset) -> list[str]:
     phasors, time = given.phasors, given.every_time
     clipped = 1.0 - given.good.sum() / time.size
     if clipped > 0.0:
-        words.append(f"clipped: {clipped:.1%} of the samples are at the extremes and were left out")
+        words.append(f"clipped: {clipped:.1%} of the samples are at the extremes and were ignored")
     if gap := largest_gap(time):
         words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
     distortion = float(ds["base_distortion"])

@@ -87,7 +87,7 @@ def one_mass_on_base(rig: Rig) -> tuple[str, str]:
             raise unknown_key(key, "system", SYSTEM_KEYS)
     if rig.system.get("contact_masses", [1]) != [1]:
         masses = checks.one_line(rig.system["contact_masses"])
-        raise InputError(f"system.contact_masses must be [1], a record is of one mass; got {masses}")
+        raise InputError(f"system.contact_masses must be [1] for a record of one mass; got {masses}")
     checks.choice(rig.system.get("excitation", "base"), "system.excitation", ("base",))
     return (
         checks.choice(rig.system.get("contact", CONTACTS[0]), "system.contact", CONTACTS),

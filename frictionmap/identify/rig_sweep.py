@@ -87,7 +87,7 @@ def _checked_system(rig: Rig) -> int:
         if key not in SYSTEM_KEYS:
             raise unknown_key(key, "system", SYSTEM_KEYS)
     if "masses" not in rig.system:
-        raise InputError(f"system.masses must be given for a sweep, 1 to {MOST_MASSES}; got none")
+        raise InputError(f"system.masses must be a whole number from 1 to {MOST_MASSES}; got nothing")
     checks.choice(rig.system.get("excitation", "base"), "system.excitation", ("base",))
     return checks.whole(rig.system["masses"], "system.masses", least=1, most=MOST_MASSES)
 

@@ -137,7 +137,7 @@ def _held(known: Mapping[str, float], names: tuple[str, ...], n: int, damped: bo
     if not damped:
         held[2 * n - 1 :] = 0.0
     if not np.isnan(held).any():
-        raise InputError(f"known must leave something to fit; got all of {', '.join(legal)}")
+        raise InputError(f"known must leave at least one parameter free; got all of {', '.join(legal)}")
     return held
 
 
@@ -151,8 +151,8 @@ def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool, 
         unknown = ", ".join(names[index] for index in unseen)
         measured = ", ".join(str(mass + 1) for mass in np.unique(data.mass))
         raise InputError(
-            f"amplitude_ratio of mass {measured} cannot tell {unknown} apart: {too_many} of them must be "
-            "known, or another mass measured"
+            f"cannot identify {unknown} separately: mass {measured} does not determine them; "
+            f"hold {too_many} of them in [known], or measure another mass"
         )
     if found.outliers is None:
         return _Fit(data, found, problem, errors(problem, found.best, 1.0 if given else None), names, given)

@@ -68,7 +68,7 @@ def fill_store(
         if not done.all():
             _check_writable(path)
         claim.kept = lambda: (
-            f"{np.count_nonzero(done):,} of {done.size:,} blocks are in {path}; the same command goes on"
+            f"{np.count_nonzero(done):,} of {done.size:,} blocks are in {path}; repeat the command to resume"
         )
         missing = [batch for batch in study.batches() if not done[batch.places].all()]
         try:
@@ -77,8 +77,8 @@ def fill_store(
                 if progress is not None:
                     progress(int(np.count_nonzero(done)), done.size)
         except OSError as error:
-            why = f"cannot be written ({error.strerror})" if error.strerror else f"is not finished ({error})"
-            raise OSError(f"{path} {why}; {claim.kept()}") from error
+            failed = f"write {path}: {error.strerror}" if error.strerror else f"finish {path}: {error}"
+            raise OSError(f"cannot {failed}; {claim.kept()}") from error
         return store
 
 
@@ -88,11 +88,13 @@ def _check_replaceable(path: Path) -> None:
         return
     _check_writable(path)
     if not (path / "zarr.json").is_file():
-        raise InputError(f"-o must be a store to be overwritten; the folder {path} holds something else")
+        raise InputError(f"cannot overwrite {path}: the folder is not a store; use another -o")
 
 
 def _check_writable(path: Path) -> None:
     """Refuse a store that is protected from writing, or one of whose arrays is."""
     for place in (path, *path.glob("*/")):
         if not os.access(place, os.W_OK):
-            raise InputError(f"output {place} is protected from writing; make it writable or use another -o")
+            raise InputError(
+                f"cannot write {place}: it is write-protected; make it writable or use another -o"
+            )

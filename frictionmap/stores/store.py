@@ -45,7 +45,7 @@ def _zarr() -> Any:
         import zarr
     except ImportError:
         raise InputError(
-            "-o must be a .nc file unless zarr is installed: pip install 'frictionmap[zarr]'"
+            "cannot use a .zarr store: zarr is not installed; run pip install 'frictionmap[zarr]'"
         ) from None
     return zarr
 
@@ -163,7 +163,9 @@ def make_store(path: Path, study: Study, title: str) -> None:
             path.rename(_away(path))
         away.rename(path)
     except OSError as error:
-        raise OSError(f"{path} cannot be written ({error.strerror or error})") from error
+        raise OSError(
+            f"cannot write {path}: {error.strerror or error}; check disk space and permissions"
+        ) from error
     finally:
         shutil.rmtree(away, ignore_errors=True)
 
@@ -230,8 +232,8 @@ def cut_of(path: Path) -> Cut:
 
 def _damaged(path: Path, name: str, error: Exception) -> InputError:
     return InputError(
-        f"store {path} must be whole to go on with; its {name} cannot be read "
-        f"({checks.one_line(error)}); use --overwrite or another -o"
+        f"cannot resume {path}: array {name!r} is damaged ({checks.one_line(error)}); "
+        "use --overwrite or another -o"
     )
 
 
@@ -247,14 +249,12 @@ def _config(path: Path) -> Config:
             return config_of(str(group.attrs["config"]), {"matrices": found} if found else {})
     except PermissionError as error:
         raise InputError(
-            f"store {path} must be readable to go on with; {error.filename} is protected from reading; "
-            "use another -o"
+            f"cannot resume {path}: {error.filename} is read-protected; make it readable or use another -o"
         ) from None
     except Exception:  # whatever the library makes of files that are not its own
         pass
     raise InputError(
-        f"store {path} must be of this version, {_SOURCE}, to go on with; it is of {source}; "
-        "use --overwrite or another -o"
+        f"cannot resume {path}: written by {source}, this is {_SOURCE}; use --overwrite or another -o"
     )
 
 
@@ -274,12 +274,11 @@ def check_same(path: Path, study: Study, title: str) -> None:
         differing = ["system.matrices"]
     if differing:
         words = "; ".join(
-            f"{key}: {checks.one_line(there.get(key))} there, {checks.one_line(here.get(key))} here"
+            f"{key}: {checks.one_line(there.get(key))} there, {checks.one_line(here.get(key))} now"
             for key in differing[:3]
         )
         raise InputError(
-            f"store {path} must be of this configuration to go on with; it differs in {words}; "
-            "use --overwrite or another -o"
+            f"cannot resume {path}: its configuration differs, {words}; use --overwrite or another -o"
         )
 
 

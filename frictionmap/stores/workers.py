@@ -43,8 +43,7 @@ def _distributed() -> Any:
         import distributed
     except ImportError:
         raise InputError(
-            "--workers and --scheduler must be left out unless dask is installed: "
-            "pip install 'frictionmap[dask]'"
+            "cannot use --workers or --scheduler: dask is not installed; run pip install 'frictionmap[dask]'"
         ) from None
     return distributed
 
@@ -54,7 +53,8 @@ def _store(path: str, digest: str) -> Store:
     """The store of a study, opened once a process; of a host one process compiles, the others wait for it."""
     if not Path(path).exists():
         raise OSError(
-            f"{path} must be where all workers see it under this path; one on {gethostname()} does not"
+            f"cannot open {path} on {gethostname()}: workers must see the store under the same path; "
+            "use a shared folder"
         )
     store = opened(Path(path))
     _check_same(store, digest)
@@ -65,7 +65,9 @@ def _store(path: str, digest: str) -> Store:
 
 def _check_same(store: Store, digest: str) -> None:
     if store.digest != digest:
-        raise OSError(f"{store.path} must be the same store for all workers; a worker found another there")
+        raise OSError(
+            f"cannot write {store.path}: a worker found another store there; use a folder that all share"
+        )
 
 
 @contextlib.contextmanager
@@ -109,12 +111,12 @@ def task(version: str) -> Callable[[str, str, tuple[int, ...]], tuple[int, ...]]
             found = import_module("frictionmap.version").__version__
             import_module("zarr")
             compute = import_module("frictionmap.stores.workers").compute
-            lacks = "" if found == version else f"frictionmap is of version {found} there"
+            lacks = "" if found == version else f"frictionmap has version {found} there"
         except ImportError as error:
             lacks = str(error)
         if lacks:
             raise OSError(
-                f"worker {get_worker().address} must have frictionmap[dask] {version}: {lacks}; "
+                f"cannot use worker {get_worker().address}: it needs frictionmap[dask] {version} ({lacks}); "
                 f"install it for {sys.executable} on that machine"
             )
         return compute(path, digest, first)
@@ -170,7 +172,9 @@ def _cluster(workers: int) -> "LocalCluster":
             )  # fmt: skip
         except RuntimeError as error:
             if starts == _STARTS:
-                raise OSError(f"the {workers} workers of --workers cannot be started ({error})") from error
+                raise OSError(
+                    f"cannot start {workers} worker processes: {error}; use fewer --workers"
+                ) from error
 
 
 def running(address: str, say: Callable[[str], None]) -> Fill:
@@ -187,7 +191,7 @@ def running(address: str, say: Callable[[str], None]) -> Fill:
             client = distributed.Client(address, timeout="30s")
         except (OSError, ValueError) as error:
             raise InputError(
-                f"--scheduler must be the address of a running one; got {address} ({error})"
+                f"--scheduler must be the address of a running scheduler; got {address} ({error})"
             ) from None
         with client:
             _wait(client, address, say)
@@ -204,7 +208,9 @@ def _wait(client: "Client", address: str, say: Callable[[str], None]) -> None:
     try:
         client.wait_for_workers(1, timeout=_PATIENCE)
     except TimeoutError:
-        raise OSError(f"{address} had no worker for {_PATIENCE / 3600:g} hours") from None
+        raise OSError(
+            f"cannot compute on {address}: it had no worker for {_PATIENCE / 3600:g} hours; start some"
+        ) from None
 
 
 def _on(client: "Client", store: Store, batches: Iterable[Batch]) -> Iterator[Batch]:
@@ -239,12 +245,14 @@ def _on(client: "Client", store: Store, batches: Iterable[Batch]) -> Iterator[Ba
 def _check_lost(future: "Future", times: int) -> None:
     """Raise what stopped a block, unless it is the loss of workers, and of few."""
     if future.status != "error":
-        raise OSError("the scheduler of dask was lost")
+        raise OSError(
+            "cannot go on: the connection to the dask scheduler is lost; run the command again to resume"
+        )
     error = future.exception()
     if "deserialization" in str(error):  # dask's word where what is sent cannot be read
         raise OSError(
-            "Python and dask must be of the same versions here and where the scheduler runs; "
-            f"dask says: {str(error).splitlines()[0]}"
+            "cannot run on the workers: their versions of Python or dask differ from those here "
+            f"({str(error).splitlines()[0]}); install the same versions"
         ) from error
     if not isinstance(error, _distributed().KilledWorker) or times > _LOSSES:
         raise error

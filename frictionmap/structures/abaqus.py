@@ -50,7 +50,7 @@ def read_abaqus(path: Path) -> Matrix:
         rows.append((places[0], places[1]) if count == _LABELLED else places[0] - 1)
         columns.append((places[half], places[half + 1]) if count == _LABELLED else places[half] - 1)
     if not values:
-        raise InputError(f"file {path} must have a line for every entry of a matrix; it has none")
+        raise InputError(f"cannot read {path}: it has no entries; write one line per entry of the matrix")
     return _matrix(path, rows, columns, values)
 
 
@@ -63,7 +63,7 @@ def _keyword(path: Path, number: int, line: str) -> None:
     """Refuse a keyword other than that of a symmetric matrix."""
     words = re.sub(r"\s", "", line).upper().split(",")
     if not words[0].startswith("*MATRIX") or "TYPE=UNSYMMETRIC" in words:
-        refuse(path, number, "no other keyword than that of a symmetric matrix", line)
+        refuse(path, number, "no keyword but *MATRIX of a symmetric matrix", line)
 
 
 def _matrix(path: Path, rows: list[Any], columns: list[Any], values: list[float]) -> Matrix:

@@ -49,7 +49,7 @@ def checked_reduce(given: object, dofs: Dofs) -> Reduce:
         raise InputError(f"reduce must be {{ keep = [...], modes = 16 }}; got {checks.one_line(given)}")
     for key in given:
         if key not in _KEYS:
-            raise InputError(f"reduce must have the keys {', '.join(_KEYS)}; got {checks.one_line(key)}")
+            raise InputError(f"unknown key of reduce {checks.one_line(key)}; valid: {', '.join(_KEYS)}")
     keep = given.get("keep", ())
     if isinstance(keep, str) or not isinstance(keep, (Sequence, np.ndarray)):
         raise InputError(f"reduce.keep must be a list of degrees of freedom; got {checks.one_line(keep)}")
@@ -111,7 +111,7 @@ def factor(matrix: Any) -> Any:
         found = None
     # without row exchanges the pivots have the signs of the eigenvalues
     if found is None or not (found.U.diagonal() > 0.0).all():
-        raise InputError("matrices: K must be positive definite; it is singular or indefinite")
+        raise InputError("matrices: K must be positive definite; got a singular or indefinite matrix")
     return found
 
 
@@ -149,8 +149,8 @@ def fixed_interface(structure: Structure, kept: Sequence[int], modes: int) -> Fi
     """
     mass, stiffness = structure.arrays["M"], structure.arrays["K"]
     diagonal = np.asarray(mass.diagonal())
-    _refuse_where(structure, "M", "has a negative number", diagonal < 0.0)
-    _refuse_where(structure, "K", "has no positive number", np.asarray(stiffness.diagonal()) <= 0.0)
+    _refuse_where(structure, "M", "a negative mass", diagonal < 0.0)
+    _refuse_where(structure, "K", "no positive stiffness", np.asarray(stiffness.diagonal()) <= 0.0)
     rows = np.array(sorted(kept))
     others = np.setdiff1d(np.arange(structure.n), rows)
     most = int(np.count_nonzero(diagonal[others]))
@@ -169,9 +169,8 @@ def _refuse_where(structure: Structure, name: str, what: str, wrong: np.ndarray)
     """Refuse a matrix by the first degree of freedom whose entry on the diagonal is wrong."""
     if wrong.any():
         where = structure.dofs.word(structure.dofs.numbers[int(np.argmax(wrong))])
-        word = {"M": "mass", "K": "stiffness"}[name]
         raise InputError(
-            f"matrices: {name} must be positive definite; degree of freedom {where} {what} as {word}"
+            f"matrices: {name} must be positive definite; got {what} of degree of freedom {where}"
         )
 
 

@@ -26,7 +26,7 @@ class Matrix(NamedTuple):
 
 def refuse(path: Path, line: int, legal: str, got: str) -> NoReturn:
     """Refuse a line of a file."""
-    raise InputError(f"file {path}, line {line} must have {legal}; got {' '.join(got.split())[:60]!r}")
+    raise InputError(f"cannot read {path}, line {line}: expected {legal}; got {' '.join(got.split())[:60]!r}")
 
 
 def text_of(path: Path) -> str:
@@ -43,7 +43,7 @@ def text_of(path: Path) -> str:
             raise ValueError
         return content.decode("utf-8-sig")
     except ValueError:
-        raise InputError(f"file {path} must be text; it is not") from None
+        raise InputError(f"cannot read {path}: it is not text; write the matrix as text") from None
 
 
 def numbered(text: str, comment: str) -> Iterator[tuple[int, str]]:
@@ -79,13 +79,13 @@ def assembled(path: Path, size: int, rows: ArrayLike, columns: ArrayLike, values
     from scipy.sparse import coo_array
 
     if size > _MOST:
-        raise InputError(f"file {path} must have at most {_MOST} rows; got {size}")
+        raise InputError(f"cannot read {path}: a matrix may have at most {_MOST} rows; got {size}")
     at = np.asarray(rows, dtype=np.int64), np.asarray(columns, dtype=np.int64)
     places, counts = np.unique(at[0] * size + at[1], return_counts=True)
     if (counts > 1).any():
         row, column = divmod(int(places[np.argmax(counts > 1)]), size)
         raise InputError(
-            f"file {path} must have every entry once; got row {row + 1}, column {column + 1} twice"
+            f"cannot read {path}: an entry is given twice; got row {row + 1}, column {column + 1}"
         )
     return coo_array((np.asarray(values, dtype=float), at), shape=(size, size)).tocsr()
 
@@ -121,7 +121,8 @@ def in_one_order(matrices: dict[str, Matrix]) -> tuple[dict[str, Any], tuple[Lab
     bare = [name for name in matrices if name not in labelled]
     if bare:
         raise InputError(
-            f"matrices must all have labels of nodes or none; {bare[0]} has none beside {min(labelled)}"
+            f"matrices: cannot match the rows: {min(labelled)} has labels of nodes, {bare[0]} has none; "
+            f"give all files with labels, or none"
         )
     every = tuple(sorted({label for one in matrices.values() for label in one.labels or ()}))
     return {name: _placed(one, every) for name, one in matrices.items()}, every

@@ -66,12 +66,11 @@ def _known_names(names: Iterable[Any]) -> None:
     listed = [name for name in names if name != DOFS]
     for name in listed:
         if name not in NAMES:
-            raise InputError(f"matrices must have arrays M, K and optionally C, no others; got {name!r}")
+            raise InputError(f"matrices: unknown array {name!r}; valid: {', '.join((*NAMES, DOFS))}")
     for name in ("M", "K"):
         if name not in listed:
             raise InputError(
-                f"matrices must have arrays M, K and optionally C; {name} is missing, "
-                f"got {', '.join(listed) or 'none'}"
+                f"matrices must have arrays M, K and optionally C; got {', '.join(listed) or 'none'}"
             )
 
 
@@ -79,7 +78,7 @@ def _from_path(path: Path) -> Found:
     ending = path.suffix.lower()
     if ending == ".mtx" or ending in _BOEING:
         raise InputError(
-            f"matrices must be given one by one, {_ONE_EACH}: a file {ending} has one; got {path.name}"
+            f"matrices must be given one by one for {ending} files, {_ONE_EACH}; got {path.name}"
         )
     if ending in _SEVERAL:
         matrices = _opened(path, _SEVERAL[ending])
@@ -99,7 +98,9 @@ def _from_mapping(given: Mapping[Any, Any]) -> Found:
     if not paths:
         return Found(arrays, given.get(DOFS), None, None, "")
     if len(paths) < len(arrays) or DOFS in given:
-        raise InputError(f"matrices must be files, such as {_ONE_EACH}, or arrays, all of them")
+        raise InputError(
+            f"matrices must all be files, {_ONE_EACH}, or all arrays; got files of {', '.join(paths)} only"
+        )
     matrices = {name: _one(path, name) for name, path in paths.items()}
     whole, labels = in_one_order(matrices)
     abaqus = paths["K"].suffix.lower() == ".mtx" and not _is_market(paths["K"])
@@ -113,7 +114,7 @@ def _one(path: Path, name: str) -> Matrix:
     if ending in _SEVERAL:
         found = _opened(path, _SEVERAL[ending])
         if name not in found:
-            raise InputError(f"matrices: file {path} must have a matrix {name}; it has {', '.join(found)}")
+            raise InputError(f"matrices: {name} must be in file {path}; got {', '.join(found)}")
         return found[name]
     if ending in _BOEING:
         return _opened(path, read_harwell_boeing)
@@ -135,6 +136,6 @@ def _opened(path: Path, read: Callable[[Path], Any]) -> Any:
         key = "" if str(error).startswith("matrices") else "matrices: "
         raise InputError(f"{key}{error}") from None
     except OSError as error:
-        raise InputError(f"matrices: file {path} cannot be read ({error.strerror or error})") from None
+        raise InputError(f"matrices: cannot read {path}: {error.strerror or error}; check the path") from None
     except ValueError as error:  # a null character in the name
-        raise InputError(f"matrices: file {path} cannot be read ({error})") from None
+        raise InputError(f"matrices: cannot read {path}: {error}; check the path") from None

@@ -52,9 +52,9 @@ def _sizes(path: Path, lines: Iterator[tuple[int, str]], count: int) -> list[int
         if len(sizes) != count or min(sizes) < 0 or sizes[0] < 1:
             raise ValueError(line)
     except ValueError:
-        refuse(path, number, f"{count} whole numbers, the sizes of the matrix", line)
+        refuse(path, number, f"{count} whole numbers, the size of the matrix", line)
     if sizes[0] != sizes[1]:
-        raise InputError(f"file {path} must have a square matrix; got {sizes[0]} by {sizes[1]}")
+        raise InputError(f"cannot read {path}: the matrix must be square; got {sizes[0]} by {sizes[1]}")
     return sizes
 
 
@@ -96,4 +96,4 @@ def _array(path: Path, lines: Iterator[tuple[int, str]], size: int, symmetric: b
 
 def _complete(path: Path, found: int, count: int) -> None:
     if found != count:
-        raise InputError(f"file {path} must have {count} entries, as its header says; it has {found}")
+        raise InputError(f"cannot read {path}: its header announces {count} entries; got {found}")

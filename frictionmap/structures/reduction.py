@@ -95,10 +95,14 @@ class Reduction:
             return comparison.accuracy(project(whole, fixed, modes, self.base)).worst <= self.asked.allow
 
         enough = _enough(do, self.asked.modes, tried)
-        advice = f"{tried} would not do either" if enough is None else f"{enough} would do"
+        advice = (
+            f"{tried} modes do not suffice either, raise reduce.allow"
+            if enough is None
+            else f"{enough} modes suffice"
+        )
         raise InputError(
-            f"reduce.modes must leave errors <= {self.asked.allow:g} in the range of r (or give reduce.allow)"
-            f"; got {self.asked.modes}, with {accuracy.words()}; {advice}"
+            f"reduce: cannot keep the error below {self.asked.allow:g} in the range of r with "
+            f"{self.asked.modes} modes: {accuracy.words()}; {advice}"
         )
 
 
@@ -146,8 +150,8 @@ def reduce_structure(
     for number in kept:
         if number in massless:
             raise InputError(
-                f"matrices: M must give mass to every degree of freedom in contact, loaded or kept; "
-                f"{structure.dofs.word(number)} has none"
+                f"matrices: cannot keep degree of freedom {structure.dofs.word(number)}: no mass in M; "
+                f"contact, load and reduce.keep need degrees of freedom with mass"
             )
     whole = _with_sparse(structure)
     fixed: FixedInterface = fixed_interface(whole, whole.dofs.rows(kept), asked.modes)

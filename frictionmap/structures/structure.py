@@ -57,7 +57,9 @@ def read_structure(given: object) -> Structure:
     if found.held is not None and found.held.any():
         free = np.flatnonzero(~found.held)
         if not free.size:
-            raise InputError("matrices: K must leave a degree of freedom free; boundary conditions hold all")
+            raise InputError(
+                "matrices: cannot use K: boundary conditions hold all degrees of freedom; leave one free"
+            )
         arrays = {name: one[free][:, free] for name, one in arrays.items()}
     # only now: beside the stiffness of a row that is held any difference would be rounding
     arrays = {name: _symmetric(one, name, free) for name, one in arrays.items()}

@@ -79,7 +79,7 @@ def quantity(value: object, name: str, kind: str) -> Quantity:
         raise _refusal(name, kind, value, "it has no unit" if _is_number(value) else "")
     found, unit = _converted(value, name, kind)
     if found.ndim:
-        raise _refusal(name, kind, value, "one number is due")
+        raise _refusal(name, kind, value, "expected one number")
     return _from_text(f"{float(found)!r} {unit}", name, kind)
 
 
@@ -120,17 +120,17 @@ def _from_text(text: str, name: str, kind: str) -> Quantity:
         raise _refusal(name, kind, text, f"{unit} is a unit of {UNITS[unit].measures}")
     size = float(matched[1])  # beyond all doubles no exact number is made: it could fill the memory
     if math.isinf(size) or (size == 0.0 and re.search("[1-9]", re.split("[eE]", matched[1])[0])):
-        raise _refusal(name, kind, text, "it is beyond all doubles")
+        raise _refusal(name, kind, text, "it exceeds the range of double precision")
     return Quantity(Fraction(Decimal(matched[1])) * UNITS[unit].size, text)
 
 
 def _slip(text: str) -> str:
     """What is wrong with text that is no number and unit."""
     if _COMMA.match(text):
-        return "a decimal point, no comma"
+        return "use a decimal point, not a comma"
     if _NO_NUMBER.match(text):
         return "it is not finite"
-    return "it has no unit" if _is_text_of_number(text) else "one number, one space and one unit are due"
+    return "it has no unit" if _is_text_of_number(text) else "expected one number, one space and one unit"
 
 
 def _is_text_of_number(text: str) -> bool:
@@ -147,7 +147,7 @@ def _meant(unit: str, kind: str) -> str:
     legal = [*units_of(kind), *(name for name, known in UNITS.items() if known.measures != kind)]
     same = [name for name in legal if name.lower() == unit.lower()]
     hint = f" (did you mean {same[0]}?)" if same else checks.nearest(unit, legal)
-    return f"{unit} is no unit that is known{hint}"
+    return f"unknown unit {unit}{hint}"
 
 
 def _refusal(name: str, kind: str, value: object, why: str) -> InputError:
@@ -179,7 +179,7 @@ def _unit_of_array(values: Any, name: str, kind: str) -> str | None:
     if unit is None:
         legal = ", ".join(units_of(kind))
         raise InputError(
-            f"{name} must say units of {kind} ({legal}), or 1 of ratios; got {checks.one_line(said)}: "
+            f"{name} must have a unit of {kind} ({legal}), or 1 for ratios; got {checks.one_line(said)}: "
             f"{_meant(str(said), kind)}"
         )
     return unit
@@ -195,7 +195,7 @@ def _converted(value: Any, name: str, kind: str) -> tuple[np.ndarray, str]:
         found = value.to(asked).magnitude if hasattr(value, "magnitude") else value.to_value(asked)
     except Exception:  # each package has its own errors for what it cannot convert
         why = "1/s is neither Hz nor rad/s" if own in ("1 / second", "1 / s", "1/s") else ""
-        raise _refusal(name, kind, value, why or f"{own} is none of them") from None
+        raise _refusal(name, kind, value, why or f"{own} is not one of them") from None
     return np.asarray(found, dtype=float), unit
 
 

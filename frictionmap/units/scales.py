@@ -32,13 +32,13 @@ _RIVALS = (("load", "base_amplitude", "base_acceleration"), ("stiffness", "mass"
 
 #: The one that needs the other, and why.
 _NEEDS = (
-    ("mass", "natural_frequency", "k1 = m1 omega_1^2"),
+    ("mass", "natural_frequency", "the stiffness follows from k1 = m1 omega_1^2"),
     (
         "base_acceleration",
         "acceleration_frequency",
-        "the base moves by the same Y = a/omega^2 at all frequencies, and a is that of one of them",
+        "the base amplitude Y = a/omega^2, equal at all frequencies, needs the frequency of a",
     ),
-    ("acceleration_frequency", "base_acceleration", "it is the frequency at which that holds"),
+    ("acceleration_frequency", "base_acceleration", "it is the frequency of that acceleration"),
 )
 
 
@@ -104,18 +104,16 @@ class Units:
     def __post_init__(self) -> None:
         given = [name for name in UNIT_KINDS if getattr(self, name) is not None]
         if not given:
-            first, *others = UNIT_KINDS
-            raise InputError(f"{first}, or another of {', '.join(others)}, must be given; got none")
+            raise InputError(f"units must have at least one of {', '.join(UNIT_KINDS)}; got none")
         for names in _RIVALS:
             both = [name for name in names if name in given]
             if len(both) > 1:
                 raise InputError(
-                    f"{both[1]} must be left out where {both[0]} is given: one follows from the other; "
-                    f"got {checks.one_line(getattr(self, both[1]))}"
+                    f"cannot use {both[1]} with {both[0]}: one follows from the other; give one of them"
                 )
         for name, needed, why in _NEEDS:
             if name in given and needed not in given:
-                raise InputError(f"{needed} must be given with {name}: {why}; got none")
+                raise InputError(f"cannot use {name} without {needed}: {why}; give both")
         for name in given:
             self._check(name)
 
@@ -168,10 +166,13 @@ class Scales:
         found: Fraction | None = getattr(self, kind)
         if found is None:
             missing = {
-                "frequency": "units.natural_frequency must be given",
-                "force": "units.load must be given, or units.base_amplitude and units.stiffness,",
+                "frequency": "units.natural_frequency",
+                "force": "units.load, or units.base_amplitude with units.stiffness",
             }
-            raise InputError(f"{missing[kind]} for {name} with units; got {checks.one_line(given)}")
+            raise InputError(
+                f"cannot convert {name} = {checks.one_line(given)} to ratios: a reference value is missing; "
+                f"give {missing[kind]}"
+            )
         return found
 
 
@@ -225,13 +226,13 @@ def _check_system(units: Units, system: System) -> None:
     for name in ("base_amplitude", "base_acceleration"):
         if getattr(units, name) is not None and system.excitation != "base":
             raise InputError(
-                f"units.{name} must be left out unless the base moves (excitation base or a joined "
-                f"base-wall): give units.load; got {getattr(units, name)!r}"
+                f"cannot use units.{name}: it needs base excitation; "
+                f"for a force-excited system use units.load"
             )
     if units.mass is not None and system.matrices is not None:
         raise InputError(
-            f"units.mass must be left out with matrices: give units.stiffness, what stiffness_scale is; "
-            f"got {units.mass!r}"
+            "cannot use units.mass with matrices: only a chain has a first mass; "
+            "use units.stiffness for stiffness_scale"
         )
     for name in MODEL_HAS:
         if getattr(units, name) == OF_MODEL and system.matrices is None:
@@ -247,8 +248,8 @@ def _check_variations(variations: Variations | None) -> None:
         for number in axis.numbers:
             if number.key in ("frequency_scale", "stiffness_scale"):
                 raise InputError(
-                    f"units must be left out where {number.key} changes along an axis: one unit is due for "
-                    f"all points; got axes.{axis.name}"
+                    f"cannot use units with axes.{axis.name}: {number.key} changes along it, so one unit "
+                    f"cannot hold for all points; remove one of the two"
                 )
 
 

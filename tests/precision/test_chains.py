@@ -213,16 +213,19 @@ def test_another_chain_that_fits_as_well_is_told():
     [
         ({"amplitude_ratio": {3: [1.0] * 54}}, "a mass in amplitude_ratio must be <= 2; got 3"),
         ({"amplitude_ratio": {}}, "amplitude_ratio must have at least one mass; got none"),
-        ({"amplitude_ratio": {2: [1.0]}}, "amplitude_ratio of mass 2 must be 54 numbers, one a frequency"),
+        ({"amplitude_ratio": {2: [1.0]}}, "amplitude_ratio of mass 2 must be 54 numbers, one per frequency"),
         ({"phase_lag": [np.nan] * 54}, "phase_lag of mass 1 must be finite; got nan at index 0"),
-        ({"sigma_phase": 1.0}, "sigma_phase must be left out without phase_lag; got 1.0"),
+        ({"sigma_phase": 1.0}, "cannot use sigma_phase without phase_lag: there are no lags"),
         ({"phase_lag": [0.0] * 54, "sigma_phase": 1.0}, "sigma_amplitude and sigma_phase must both be given"),
         ({"masses": 6}, "masses must be <= 5; got 6"),
         ({"masses": 3}, "amplitude_ratio must have three peaks; it has two peaks: three frequencies wanted"),
         ({"damping": "both"}, "damping must be one of ground, base; got 'both'"),
         ({"cost": "squares"}, "cost must be one of logarithmic, relative; got 'squares'"),
         ({"known": {"zeta_1": 0.1}}, "known must be one of f_k1m1, gamma, kappa; got 'zeta_1'"),
-        ({"known": {"f_k1m1": 3.0, "gamma": 1.0, "kappa": 1.0}}, "known must leave something to fit"),
+        (
+            {"known": {"f_k1m1": 3.0, "gamma": 1.0, "kappa": 1.0}},
+            "known must leave at least one parameter free",
+        ),
     ],
 )
 def test_bad_chains(arguments, message):

@@ -83,11 +83,11 @@ def test_one_peak():
         (
             [1.0, 2.0, 3.0],
             [1.0, 2.0, 1.0],
-            "frequency must have more values than there are unknowns, 3; got 3",
+            "frequency must have more values than unknowns, 3; got 3",
         ),
         ([-1.0, 2.0], [1.0, 2.0], "frequency must be finite and > 0; got -1.0 at index 0"),
         ([1.0, 2.0], [1.0, 0.0], "amplitude_ratio of mass 1 must be finite and > 0; got 0.0 at index 1"),
-        ([1.0, 2.0], [1.0], "amplitude_ratio of mass 1 must be 2 numbers, one a frequency"),
+        ([1.0, 2.0], [1.0], "amplitude_ratio of mass 1 must be 2 numbers, one per frequency"),
     ],
 )
 def test_bad_sweeps(frequency, amplitude, message):

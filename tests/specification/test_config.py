@@ -206,7 +206,9 @@ def test_overrides_of_an_axis_take_the_place_of_their_rivals(base, overrides, ex
     ],
 )
 def test_no_override_is_dropped_for_another(base, before, after):
-    message = f"^--set {re.escape(after)} must not undo --set {re.escape(before)}; give one of the two$"
+    message = (
+        f"^cannot apply --set {re.escape(after)}: it undoes --set {re.escape(before)}; give one of the two$"
+    )
     with pytest.raises(InputError, match=message):
         load_config(base, [before, after])
 

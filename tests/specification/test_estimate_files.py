@@ -124,10 +124,10 @@ def test_slices_come_in_standard_form(datasets, tmp_path):
 
 
 REFUSED = [
-    (lambda ds: ds.drop_vars("lower"), "a dataset of estimates must hold lower; it does not"),
-    (lambda ds: ds.drop_vars("parameter"), "a dataset of estimates must hold parameter; it does not"),
-    (lambda ds: ds.isel(parameter=[0, 0, 1]), "parameter must be different names, .*; got f_n, f_n, zeta"),
-    (lambda ds: ds.isel(parameter=[]), "parameter must be different names, one or more; got none"),
+    (lambda ds: ds.drop_vars("lower"), "cannot use the estimates: variable 'lower' is missing"),
+    (lambda ds: ds.drop_vars("parameter"), "cannot use the estimates: variable 'parameter' is missing"),
+    (lambda ds: ds.isel(parameter=[0, 0, 1]), "must be a list of different names; got f_n, f_n, zeta"),
+    (lambda ds: ds.isel(parameter=[]), "parameter must be a list of different names; got none"),
     (lambda ds: ds.assign(estimate=ds.estimate * np.nan), r"estimate must be finite; got nan at \[0\]"),
     (lambda ds: ds.assign(standard_error=-ds.standard_error), "standard_error must be finite, >= 0 or NaN; got -"),
     (lambda ds: ds.assign(upper=ds.upper * np.nan), r"upper must be a number; got nan at \[0\]"),

@@ -73,7 +73,7 @@ def test_windows_units_and_columns_are_those_of_each_file(rig, tmp_path):
     [
         (('kind = "record"', 'kind = "forced"'), "data[1].kind must be one of free-decay, record;"),
         (('label = "shaken"', 'labels = "shaken"'), "unknown key data[1].labels"),
-        (('label = "shaken"', 'label = "decay"'), "label must differ between tables [[data]]"),
+        (('label = "shaken"', 'label = "decay"'), "label must be different in every table [[data]]"),
         (('file = "record.csv"', "file = 3"), "data[1].file must be text; got 3"),
         (('file = "record.csv"', 'file = "none.csv"'), "none.csv cannot be read"),
         (('label = "decay"', 'columns = { base = "x_mm" }'), "unknown key data[0].columns.base"),

@@ -88,9 +88,11 @@ def test_the_quantity_of_a_file_that_has_one_picture_only(orbit, tmp_path):
     with pytest.raises(InputError, match=r"must be one of history, orbit of a response; got x$"):
         plot.save_picture(orbit, path, "x")
     ds = fm.boundaries(fm.System(), [0.5, 1.5])
-    with pytest.raises(InputError, match=r"^quantity must be one of boundaries of .*; got orbit$"):
+    with pytest.raises(InputError, match=r"^unknown quantity 'orbit' in .*; valid: boundaries$"):
         plot.save_picture(ds, path, "orbit")
-    with pytest.raises(InputError, match=r"^log is for response curves; got a dataset of kind boundaries$"):
+    with pytest.raises(
+        InputError, match=r"^cannot draw boundaries with log: it applies to response curves only; omit log$"
+    ):
         plot.save_picture(ds, path, log=True)
 
 

@@ -425,7 +425,9 @@ def test_mutants_are_drawn_or_refused(datasets, tmp_path):
 def test_other_pictures_send_fits_here(datasets):
     with pytest.raises(InputError, match=r"^plot_regimes takes .* use plot_fit$"):
         fm.plot_regimes(datasets["decay"])
-    with pytest.raises(InputError, match=r"^quantity must be one of fit of a estimates; got history$"):
+    with pytest.raises(
+        InputError, match=r"^unknown quantity 'history' in a file of kind estimates; valid: fit$"
+    ):
         plot.save_picture(datasets["decay"], Path("no.png"), "history")
 
 

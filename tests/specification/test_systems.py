@@ -151,7 +151,7 @@ BAD_SYSTEMS = {
     ),
     "C and ratios": (
         {"matrices": {**CHAIN, "C": 0.1 * CHAIN["M"]}, "damping_ratios": 0.1},
-        ["damping_ratios must be left out if matrices has C", "0.1"],
+        ["cannot use damping_ratios with matrices: C defines the damping"],
     ),
     "rows": ({"matrices": {**CHAIN, "M": np.ones((2, 3))}}, ["matrices: M must be square", "(2, 3)"]),
     "a vector": ({"matrices": {**CHAIN, "M": np.ones(3)}}, ["matrices: M must be square", "(3,)"]),
@@ -194,11 +194,11 @@ BAD_SYSTEMS = {
     ),
     "matrices and masses": (
         {**FRAME, "mass_ratios": [1.0]},
-        ["mass_ratios must be left out if matrices are given", "[1.0]"],
+        ["cannot use mass_ratios with matrices"],
     ),
     "matrices and springs": (
         {**FRAME, "stiffness_ratios": [1.0, 1.0]},
-        ["stiffness_ratios must be left out if matrices are given", "[1.0, 1.0]"],
+        ["cannot use stiffness_ratios with matrices"],
     ),
     "a frequency of zero": ({**FRAME, "frequency_scale": 0.0}, ["frequency_scale must be > 0", "got 0"]),
     "a frequency below zero": ({**FRAME, "frequency_scale": -1.0}, ["frequency_scale must be > 0", "-1"]),
@@ -214,11 +214,11 @@ BAD_SYSTEMS = {
     ),
     "a frequency scale of a chain": (
         {"frequency_scale": 2.0},
-        ["frequency_scale must be left out without matrices", "2.0"],
+        ["cannot use frequency_scale without matrices"],
     ),
     "a stiffness scale of a chain": (
         {"stiffness_scale": 2.0},
-        ["stiffness_scale must be left out without matrices", "2.0"],
+        ["cannot use stiffness_scale without matrices"],
     ),
     "a damping ratio too few": (
         {**FRAME, "damping_ratios": [0.1, 0.2]},
@@ -258,7 +258,7 @@ BAD_SYSTEMS = {
     ),
     "dashpots to a base at rest": (
         {"damping_reference": "base"},
-        ["damping_reference must be ground unless the base moves", "got 'base'"],
+        ["damping_reference must be ground for a force-excited structure", "got 'base'"],
     ),
     "a load on mass 2 of a moving base": (
         {"excitation": "base", "load_mass": 2, **RATIOS},
@@ -334,9 +334,9 @@ def test_bad_systems_from_the_command_line(tmp_path, capsys, settings, words):
         ({"load": ["1"]}, ["load[0] must be a number", "'1'"]),
         ({"load": [True]}, ["load[0] must be a number", "True"]),
         ({"load": 1.0}, ["load must be a list of numbers", "1.0"]),
-        ({"load": [1.0], "load_mass": 1}, ["load must be left out if load_mass is given", "1"]),
-        ({"load": [1.0], "excitation": "base"}, ["load must be left out with base excitation", "[1.0]"]),
-        ({"load": [1.0], "contact": "joined-base-wall"}, ["load must be left out with base excitation"]),
+        ({"load": [1.0], "load_mass": 1}, ["cannot use load with load_mass"]),
+        ({"load": [1.0], "excitation": "base"}, ["cannot use load with base excitation"]),
+        ({"load": [1.0], "contact": "joined-base-wall"}, ["cannot use load with base excitation"]),
         ({"matrices": 5}, ["matrices must be the path of an .npz file or a mapping", "got 5"]),
         ({"matrices": np.eye(2)}, ["matrices must be the path of an .npz file or a mapping", "array("]),
         ({"matrices": {**CHAIN, "K": [[1.0], [1.0, 2.0]]}}, ["matrices: K must be an array of real numbers"]),
@@ -452,7 +452,7 @@ def test_a_good_file(tmp_path, capsys, monkeypatch):
     [
         (
             {"contact": "joined-base-wall", "excitation": "force"},
-            "excitation must be base, or left out, for a",
+            "excitation must be base for a",
         ),
         ({"mass_ratios": np.ma.masked_array([1.0], [True])}, "mass_ratios must have no masked values"),
         ({"damping_ratios": np.ma.masked_array([0.1], [True])}, "damping_ratios must have no masked values"),
@@ -482,9 +482,7 @@ def test_arrays_of_any_kind_are_lists():
 
 @pytest.mark.filterwarnings("error")
 def test_scales_that_are_none():
-    with pytest.raises(
-        fm.InputError, match=r"^stiffness_scale must be left out without matrices.*; got True$"
-    ):
+    with pytest.raises(fm.InputError, match=r"^cannot use stiffness_scale without matrices"):
         fm.System(stiffness_scale=True)
     with pytest.raises(
         fm.InputError, match=r"^frequency_scale and stiffness_scale must leave M with entries"

@@ -117,8 +117,8 @@ def checked_turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
     if grows(points, noise_level(x)):
         raise InputError(
             f"cannot fit x as a free decay: its amplitude grows (swings grow from "
-            f"{abs(points.place[1] - points.place[0]):.4g} to {abs(points.place[-1] - points.place[-2]):.4g}); "
-            "choose a window of one decay"
+            f"{abs(points.place[1] - points.place[0]):.4g} to {abs(points.place[-1] - points.place[-2]):.4g}"
+            "); choose a window of one decay"
         )
     return points
 

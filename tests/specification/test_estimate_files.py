@@ -129,7 +129,7 @@ REFUSED = [
     (lambda ds: ds.isel(parameter=[0, 0, 1]), "must be a list of different names; got f_n, f_n, zeta"),
     (lambda ds: ds.isel(parameter=[]), "parameter must be a list of different names; got none"),
     (lambda ds: ds.assign(estimate=ds.estimate * np.nan), r"estimate must be finite; got nan at \[0\]"),
-    (lambda ds: ds.assign(standard_error=-ds.standard_error), "standard_error must be finite, >= 0 or NaN; got -"),
+    (lambda ds: ds.assign(standard_error=-ds.standard_error), "standard_error must be finite, >= 0 or NaN"),
     (lambda ds: ds.assign(upper=ds.upper * np.nan), r"upper must be a number; got nan at \[0\]"),
     (lambda ds: ds.assign(at_bound=ds.at_bound + 2), r"at_bound must be whole, >= 0, <= 1; got 2 at \[0\]"),
     (lambda ds: ds.assign(unit=ds.estimate), "unit must be text; got "),

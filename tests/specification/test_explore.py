@@ -419,7 +419,7 @@ VIEW_KEYS = "r, beta, mu, start, contact, damping_ratios"
         ("map?columns=5&rows=5&damping_ratios=-1", "damping_ratios must be >= 0; got -1.0"),
         ("map?columns=5&rows=5&damping_ratios=1e3", "damping_ratios must be <= 100; got 1000.0"),
         ("map?columns=5&columns=6&rows=5", "columns must be given once; got '5' and '6'"),
-        ("map?colums=5&rows=5", f"unknown key colums (did you mean columns?); the keys are {VIEW_KEYS}"),
+        ("map?colums=5&rows=5", f"unknown key 'colums' (did you mean columns?); valid: {VIEW_KEYS}"),
         ("map?columns", "the query must be KEY=VALUE&"),
         ("map?columns=%ff", "the query must be KEY=VALUE&"),
         ("map?" + "&".join(f"k{k}=1" for k in range(200)), "the query must be KEY=VALUE&"),
@@ -884,9 +884,7 @@ def test_the_command_writes_a_page(tmp_path, capsys, monkeypatch):
     assert main(["explore", "one.toml", "--export", "page.html"]) == 0
     assert re.fullmatch(r"wrote page.html \(0\.\d+ MB\)\n", capsys.readouterr().out)
     assert (tmp_path / "page.html").read_text().startswith("<!doctype html>")
-    assert "output page.html exists already" in refusal(
-        capsys, "explore", "one.toml", "--export", "page.html"
-    )
+    assert "page.html: it already exists" in refusal(capsys, "explore", "one.toml", "--export", "page.html")
 
 
 def test_python_serves_the_same_page():

@@ -148,11 +148,11 @@ def test_bad_names(rig, capsys, head, message):
         ("fit.free=['gamma']", "cannot use fit.free for this kind of data"),
         ("known.gamma=-1", "known.gamma must be > 0; got -1"),
         ("known.mass_ratio_2=1", "known must be one of f_k1m1, gamma, kappa; got 'mass_ratio_2'"),
-        ("system.stiffness=3", "unknown key system.stiffness"),
+        ("system.stiffness=3", "unknown key 'system.stiffness'"),
         ("system.excitation=shaker", "system.excitation must be one of base; got 'shaker'"),
         ("data.sigma_amplitude=0", "data.sigma_amplitude must be > 0; got 0"),
-        ("data.window=[1, 2]", "unknown key data.window"),
-        ("known.mu=1", "unknown key known.mu"),
+        ("data.window=[1, 2]", "unknown key 'data.window'"),
+        ("known.mu=1", "unknown key 'known.mu'"),
     ],
 )
 def test_bad_configurations(rig, capsys, override, message):

@@ -70,14 +70,14 @@ def test_a_failing_write_leaves_what_there_was(tiny, tmp_path, monkeypatch, erro
     ("error", "words"),
     [
         (RuntimeError("NetCDF: HDF error"), r"NetCDF: HDF error; check disk space"),
-        (OSError(errno.ENOSPC, "No space left on device", "/secret/scratch"), r"No space left on device\)"),
-        (OSError("odd"), r"odd\)"),
+        (OSError(errno.ENOSPC, "No space left on device", "/secret/scratch"), r"No space left on device.*"),
+        (OSError("odd"), r"odd; check .*"),
     ],
 )
 def test_trouble_names_the_file_that_the_user_named(tiny, tmp_path, monkeypatch, error, words):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(xr.Dataset, "to_netcdf", fail_halfway(error))
-    with pytest.raises(OSError, match=rf"^out\.nc cannot be written \({words}$"):
+    with pytest.raises(OSError, match=rf"^cannot write out\.nc: {words}$"):
         storage.write(tiny, Path("out.nc"))
 
 
@@ -217,7 +217,7 @@ def test_a_run_that_ends_between_a_look_and_a_claim(tmp_path, monkeypatch):
         claim(output)
 
     monkeypatch.setattr(outputs.Output, "claim", late)
-    with pytest.raises(InputError, match=r"out\.nc exists already"), claimed(path):
+    with pytest.raises(InputError, match=r"out\.nc: it already exists"), claimed(path):
         pytest.fail("the work began")
     assert path.read_text() == "first"
     assert os.listdir(tmp_path) == ["out.nc"]
@@ -309,7 +309,7 @@ def test_a_full_disk(folder, arguments, name):
     before = sorted(os.listdir(folder))
     done = program(folder, arguments, capture_output=True, preexec_fn=prepared(file_size=8192))
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr.startswith(f"frictionmap: {name} cannot be written (")
+    assert done.stderr.startswith(f"frictionmap: cannot write {name}: ")
     assert done.stderr.count("\n") == 1
     assert sorted(os.listdir(folder)) == before
 

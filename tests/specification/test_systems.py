@@ -186,11 +186,11 @@ BAD_SYSTEMS = {
         {"mass_ratios": [1, 1], "stiffness_ratios": [1, 1e20]},
         ["change mass_ratios and stiffness_ratios", "1.41e+10"],
     ),
-    "no K": ({"matrices": {"M": np.eye(2)}}, ["matrices must have arrays M, K", "K is missing", "got M"]),
-    "no arrays": ({"matrices": {}}, ["matrices must have arrays M, K", "M is missing", "got none"]),
+    "no K": ({"matrices": {"M": np.eye(2)}}, ["matrices must have arrays M, K", "got M"]),
+    "no arrays": ({"matrices": {}}, ["matrices must have arrays M, K", "got none"]),
     "an unknown array": (
         {"matrices": {**CHAIN, "D": np.eye(3)}},
-        ["matrices must have arrays M, K and optionally C", "'D'"],
+        ["matrices: unknown array 'D'; valid: M, K, C"],
     ),
     "matrices and masses": (
         {**FRAME, "mass_ratios": [1.0]},
@@ -317,7 +317,7 @@ def test_bad_systems_from_the_command_line(tmp_path, capsys, settings, words):
         settings = {**settings, "matrices": "frame.npz"}
     status, message = status_and_message(tmp_path, capsys, settings)
     assert status == 2
-    assert message.startswith("frictionmap: system.")
+    assert message.startswith(("frictionmap: system.", "frictionmap: [system]: cannot "))
     for word in words:
         assert word in message, message
 
@@ -341,7 +341,7 @@ def test_bad_systems_from_the_command_line(tmp_path, capsys, settings, words):
         ({"matrices": np.eye(2)}, ["matrices must be the path of an .npz file or a mapping", "array("]),
         ({"matrices": {**CHAIN, "K": [[1.0], [1.0, 2.0]]}}, ["matrices: K must be an array of real numbers"]),
         ({"matrices": {**CHAIN, "C": None}}, ["matrices: C must be an array of real numbers", "object"]),
-        ({"matrices": {1: np.eye(2)}}, ["matrices must have arrays M, K and optionally C", "got 1"]),
+        ({"matrices": {1: np.eye(2)}}, ["matrices: unknown array 1; valid: M, K, C"]),
     ],
 )
 def test_bad_systems_that_a_configuration_cannot_have(settings, words):
@@ -391,7 +391,7 @@ BAD_FILES = {
     "damaged": (GOOD.replace(b"\x00\x00\xf0\x3f", b"\x00\x00\xf1\x3f"), "not an .npz file of plain arrays"),
     "an archive of something else": (archive(M_npy=b"M", K_npy=b"K"), "real numbers"),
     "an archive of text": (archive(a_txt=b"M"), "'a.txt'"),
-    "an empty archive": (archive(), "M is missing, got none"),
+    "an empty archive": (archive(), "got none"),
     "a header that promises too much": (
         archive(M_npy=EYE.replace(b"(2, 2)", b"(9, 9)"), K_npy=EYE),
         "not an .npz file of plain arrays",
@@ -406,7 +406,7 @@ def test_bad_files(tmp_path, capsys, content, word):
     status, message = status_and_message(tmp_path, capsys, {"matrices": "frame.npz"})
     assert status == 2
     assert message.startswith("frictionmap: system.matrices")
-    assert "arrays M, K and optionally C" in message or "must be an array" in message
+    assert any(words in message for words in ("M, K and optionally C", "unknown array", "must be an array"))
     assert word in message
     assert "a program has run" not in message
 

@@ -133,7 +133,10 @@ def test_a_file_of_variants(tmp_path):
     [
         (None, "cannot read"),
         ("load_mass,damping_ratios\n1,0\n1\n", "row 3 must have 2 numbers; got 1"),
-        ("load_mass,damping_ratios\n\n1,0,0,1\n", "row 3 must have 2 numbers; got 4: commas stand between"),
+        (
+            "load_mass,damping_ratios\n\n1,0,0,1\n",
+            "row 3 must have 2 numbers; got 4 .separate numbers by commas",
+        ),
         ("load_mass,load_mass\n1,1\n", "must name every number once in its first row; got load_mass,load_m"),
         ("load_mass,damping_ratios\n1,nan\n", "row 2, damping_ratios must be a number; got 'nan'"),
         ("load_mass,damping_ratios\n1,1_0\n", "row 2, damping_ratios must be a number; got '1_0'"),

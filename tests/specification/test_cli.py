@@ -248,7 +248,7 @@ def test_configurations_that_cannot_be_read(folder, capsys, command):
         ("latin.toml", "it is not text in UTF-8"),
         ("result.nc", "results are read by frictionmap plot, info and export"),
     ):
-        assert_refused(capsys, folder, [command, name, *more], f"configuration {name} ", word)
+        assert_refused(capsys, folder, [command, name, *more], f"cannot read configuration {name}: ", word)
 
 
 @pytest.mark.parametrize(
@@ -371,9 +371,15 @@ def test_files_of_others(folder, capsys):
             ("strange.nc", "give a file written by frictionmap"),
             ("undecodable.nc", "its source is 'not given'"),
         ):
-            assert_refused(capsys, folder, [command, name], f"file {name} must be", word)
+            assert_refused(capsys, folder, [command, name], f"cannot read {name}: ", word)
         first = "compute it first, e.g. frictionmap map good.toml"
-        assert_refused(capsys, folder, [command, "good.toml"], "file good.toml must be NetCDF", first)
+        assert_refused(
+            capsys,
+            folder,
+            [command, "good.toml"],
+            "cannot read results from good.toml: it is a configuration",
+            first,
+        )
 
 
 OUTPUT_COMMANDS = [

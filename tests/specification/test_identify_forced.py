@@ -134,7 +134,7 @@ def test_lags_that_no_friction_gives(rig, capsys):
     for text in (known, RIG):
         message = refusal(capsys, "identify", rig(lines, text))
         assert "no friction ratio gives a lag of 60 deg at r = 1.9" in message
-        assert "above resonance it is 90 to 180 deg (row 13 of the table" in message
+        assert "above resonance it is 90 to 180 deg; use unreachable" in message
     path = rig(
         lines, RIG.replace("sigma_amp", 'unreachable = "drop"\nuse = ["phase", "amplitude"]\nsigma_amp')
     )
@@ -314,7 +314,7 @@ def test_bad_tables(rig, capsys, lines, head, message):
         ("system.masses=2", "unknown key 'system.masses'"),
         ("known.mu=0.9", "known.mu must be >= 1; got 0.9"),
         ("known.x_F=1", "unknown key 'known.x_F'"),
-        ("fit.free=['beta']", "fit.free must name f_n, or known.f_n give its value"),
+        ("fit.free=['beta']", "cannot hold f_n: its value is missing"),
         ("data.columns={ lag = 'phase_lag_deg' }", "unknown key 'data.columns.lag'"),
     ],
 )

@@ -102,7 +102,7 @@ def test_one_peak(measured, rig, capsys):
     message = refusal(
         capsys, "identify", "rig.toml", "--set", f"data.file={measured / 'bad' / 'sweep-one-peak.csv'}"
     )
-    assert "one peak: two frequencies wanted" in message
+    assert "two peaks for two frequencies; got one peak" in message
     assert "sweep-one-peak.csv" in message
 
 

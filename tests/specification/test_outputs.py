@@ -142,7 +142,7 @@ def test_no_output_is_an_input(tmp_path):
             with (
                 pytest.raises(
                     InputError,
-                    match=r"^cannot write .*given\.toml: it is the input file .*given\.toml; use another -o$",
+                    match=r"^cannot write .*: it is the input file .*given\.toml; use another -o$",
                 ),
                 claimed(tmp_path / name, overwrite, inputs=[given]),
             ):

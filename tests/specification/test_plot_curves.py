@@ -85,7 +85,7 @@ def test_the_quantity_of_a_file_that_has_one_picture_only(orbit, tmp_path):
     path = tmp_path / "picture.png"
     plot.save_picture(orbit, path, "orbit")
     assert path.stat().st_size > 5000
-    with pytest.raises(InputError, match=r"must be one of history, orbit of a response; got x$"):
+    with pytest.raises(InputError, match=r"unknown quantity 'x' .*; valid: history, orbit$"):
         plot.save_picture(orbit, path, "x")
     ds = fm.boundaries(fm.System(), [0.5, 1.5])
     with pytest.raises(InputError, match=r"^unknown quantity 'orbit' in .*; valid: boundaries$"):

@@ -320,11 +320,11 @@ def test_quantiles_of_what_is_missing_or_infinite(samples):
     ("change", "words"),
     [
         (lambda ds: (ds, "mu"), "unknown further axis of maps 'mu'; valid: sample"),
-        (lambda ds: (ds.isel(sample=0), "sample"), "they have none"),
+        (lambda ds: (ds.isel(sample=0), "sample"), "valid: none"),
         (lambda ds: (ds.drop_vars("regime"), "sample"), "ds has no variable regime"),
         (
             lambda ds: (ds.expand_dims(damping_ratios=[0.0, 0.1]), "sample"),
-            "choose one point of damping_ratios",
+            "has the further axis damping_ratios",
         ),
         (lambda ds: (7, "sample"), "ds must be an xarray.Dataset"),
     ],

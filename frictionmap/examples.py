@@ -22,7 +22,7 @@ from .identify.two_masses import log_amplitude
 from .model.system import System
 from .steady.curves import curves
 
-#: What the estimates are to come near to, by the kind of data; in Hz, mm and s.
+#: True parameters by the kind of data, in Hz, mm and s.
 TRUTHS: Mapping[str, Mapping[str, float]] = {
     "free-decay": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.2, "X0": 9.5, "t0": -0.03, "centre": 0.25},
     "forced": {"beta_1": 0.2, "beta_2": 0.4, "f_n": 3.12, "zeta": 0.008},
@@ -74,7 +74,7 @@ stiffness = 1191.0        # N/m: the friction forces in N
 
 
 def rig_files(seed: int = 1) -> dict[str, str]:
-    """Texts of all files by their names: a configuration and a table for each kind of data."""
+    """Return the texts of all files by name: a configuration and a table for each kind of data."""
     files = {}
     for kind in _TABLES:
         files[f"{kind}.csv"] = rig_table(kind, seed)
@@ -174,7 +174,7 @@ def _decay(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
 
 
 def _half_cycles(decay: Decay) -> int:
-    """Until it rests, with mu = 1: A_{j+1} = q A_j - (1 + q) x_F."""
+    """Number of half cycles before rest, with mu = 1: A_{j+1} = q A_j - (1 + q) x_F."""
     q = np.exp(-np.pi * decay.zeta / np.sqrt(1.0 - decay.zeta**2))
     height, count = abs(decay.X0), 0
     while height > decay.x_F:

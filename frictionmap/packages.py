@@ -1,4 +1,4 @@
-"""Packages of extras, and files read by packages: what is said where one is missing or a file is damaged."""
+"""Packages of extras, and files read by them: errors for missing packages and damaged files."""
 
 import importlib
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from .errors import InputError
 
 
 def package(name: str, path: Path, extra: str) -> Any:
-    """A package of an extra that a file needs.
+    """Import a package of an extra that a file needs.
 
     Raises
     ------
@@ -26,12 +26,12 @@ def package(name: str, path: Path, extra: str) -> Any:
 
 
 def read_by(path: Path, form: str, read: Callable[[], Any]) -> Any:
-    """What `read` makes of a file.
+    """Read a file through a package.
 
     Raises
     ------
     InputError
-        Anything but trouble of the disk: of a file that is not of its form packages raise whatever comes.
+        Any error of the package except a missing file: packages raise various exceptions for invalid files.
     """
     try:
         return read()

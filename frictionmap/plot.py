@@ -58,13 +58,13 @@ _DPI = 160
 
 
 def check_picture(path: Path) -> None:
-    """Refuse a name whose ending is not that of a picture."""
+    """Refuse a file name with an unknown suffix of pictures."""
     if path.suffix.lower() not in FORMATS:
         raise InputError(f"-o must end in {', '.join(FORMATS)}; got {path}")
 
 
 def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
-    """A picture of a dataset of any kind; the first of what is drawn of its kind if no quantity is given."""
+    """Draw a dataset of any kind; without a quantity, the first one available."""
     what = kind(ds)
     if what == "curves":
         return plot_curves(ds, quantity, log=log)

@@ -1,4 +1,4 @@
-"""Many samples of an uncertain structure as probabilities: shares of each regime, quantiles of boundaries."""
+"""Probabilities over samples of an uncertain structure: shares of each regime, quantiles of boundaries."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -86,14 +86,14 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
 
 
 def read_shares(path: Path, over: str, choices: Mapping[str, float]) -> xr.Dataset:
-    """`shares` of a file or a store over one of its axes, `choices` of the others."""
+    """Compute `shares` of a file or store over one axis, with `choices` on the others."""
     with opened(path) as ds:
         check_structure(ds, in_parts=True)
         return shares(choose(ds, choices, over), over)
 
 
 def _finished(ds: xr.Dataset, over: str) -> xr.Dataset:
-    """The samples of a store all of whose blocks are computed."""
+    """Select the samples of a store whose blocks are all computed."""
     others = [dim for dim in ds[MARKS].dims if dim != over]
     done = np.flatnonzero((ds[MARKS] != 0).all(others).values)
     if not done.size:
@@ -124,13 +124,13 @@ def _quantiles(ds: xr.Dataset, name: str, over: str, levels: np.ndarray) -> xr.V
 
 
 def _along(variable: xr.Variable, dims: tuple[str, ...]) -> np.ndarray:
-    """Values along these dimensions; of those that were chosen there is one."""
+    """Values along some dimensions, of size 1 where one value was selected."""
     missing = [dim for dim in dims if dim not in variable.dims]
     return variable.set_dims([*missing, *map(str, variable.dims)]).transpose(*dims).values
 
 
 def _parts(ds: xr.Dataset, size: int) -> Iterator[tuple[int, slice]]:
-    """Values of mu, and rows in r, so few that all samples of them can be held."""
+    """Iterate over values of mu and rows in r, so few that all their samples fit in memory."""
     step = max(1, _AT_ONCE * ds["mu"].size * ds["r"].size // max(1, size))
     for m in range(ds["mu"].size):
         for first in range(0, ds["r"].size, step):

@@ -62,7 +62,7 @@ NOT_PERIODIC = 6
 
 
 class Code(NamedTuple):
-    """One value of a coded variable."""
+    """A value of a coded variable."""
 
     value: int
     name: str  # as in the file's flag_meanings

@@ -1,4 +1,4 @@
-"""A view as a configuration, and its map as NetCDF or CSV."""
+"""Downloads: a view as a configuration, its map as NetCDF or CSV."""
 
 import tempfile
 from dataclasses import replace
@@ -20,7 +20,7 @@ from .views import Follower, Piece, Quantity, View
 #: Matrices of so many degrees of freedom are put into a configuration; of larger ones only the file is named.
 _WRITTEN = 64
 
-#: What every map that is saved has.
+#: Outputs of every saved map.
 _ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "contact_amplitude")
 
 #: What a map has beside its outputs, over r; and outputs that NetCDF packs into next to nothing.
@@ -36,7 +36,7 @@ def _solver(view: View, quantity: Quantity) -> Solver:
 
 
 def _described(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> str:
-    """The configuration of a view; matrices that are too large for text are a comment."""
+    """Configuration of a view; matrices too large for text become a comment."""
     axes = view.axes(piece.columns, piece.rows)
     of_grid = {name: axes[name] for name in ("r", "beta", "mu")}
     return configuration(scene.title, view.system, of_grid, _solver(view, quantity), units=scene.units)
@@ -64,7 +64,7 @@ def configuration_text(scene: Scene, view: View, quantity: Quantity, piece: Piec
 
 
 def _uncommented(text: str) -> str:
-    """A configuration without the lines that tell, as how a structure was reduced, but change nothing."""
+    """Remove comments from a configuration, such as those on the reduction of a structure."""
     return "\n".join(line for line in text.splitlines() if not line.startswith("#"))
 
 
@@ -73,7 +73,7 @@ def _is_large(view: View) -> bool:
 
 
 def _with_files(scene: Scene, view: View, text: str) -> str:
-    """The view that `text` describes, with matrices by the names of their files."""
+    """Configuration of the view that `text` describes, with matrices by the names of their files."""
     if scene.config is None:
         raise InputError(
             f"cannot save this view: its matrices ({scene.system.n} degrees of freedom) are too large for "
@@ -95,13 +95,13 @@ def _with_files(scene: Scene, view: View, text: str) -> str:
 
 
 def sizes(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> dict[str, float]:
-    """About how many bytes the files of `saved_map` take, by their formats; less where much of it sticks."""
+    """Estimate the bytes of the files of `saved_map` by format; fewer where many cells stick."""
     scales = scales_of(scene.units, view.system)
     outputs = _solver(view, quantity).outputs
     masses = view.system.n if "amplitude" in outputs else 1
 
     def copies(name: str) -> int:
-        """A ratio, and beside it the same in SI units where they are known."""
+        """Number of variables: the ratio, and its value in SI units if known."""
         return 1 + (name in MEASURE_OF and scales.of(MEASURE_OF[name]) is not None)
 
     axes = sum(1 + (scales.of(measure) is not None) for measure in ("frequency", "force"))

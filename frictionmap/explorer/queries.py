@@ -1,4 +1,4 @@
-"""What the page asks for, checked as a configuration is: every key known, once, and of the right kind."""
+"""Queries of the page, checked like a configuration: every key valid, given once and of the right type."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -29,17 +29,17 @@ class Query(NamedTuple):
 
 
 def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
-    """The view that a query asks for; what it leaves out is as the page begins.
+    """Return the requested view; missing keys have the values with which the page begins.
 
     Parameters
     ----------
     text : the query of an address, such as "r=0.5,1.5&mu=1.2&damping_ratios=0.01"
-    further : keys that are legal beside those of a view
+    further : valid keys other than those of a view
 
     Raises
     ------
     InputError
-        A key is unknown or given twice, or a value is illegal.
+        A key is unknown or given twice, or a value is invalid.
     """
     numbers = tuple(slider.key for slider in scene.sliders if slider.key != "mu")
     given = _read(text, (*_VIEW, *numbers, *further))
@@ -74,7 +74,7 @@ def _read(text: str, legal: Sequence[str]) -> dict[str, str]:
 
 
 def number(text: str, name: str) -> float:
-    """A number as a query has it."""
+    """Convert a number of a query."""
     try:
         if "_" in text:
             raise ValueError
@@ -95,7 +95,7 @@ def _whole(given: Mapping[str, str], name: str, default: int | None = None) -> i
 
 
 def needed(given: Mapping[str, str], name: str) -> str:
-    """What was given under a key that must be there."""
+    """Return the value of a required key."""
     if name not in given:
         raise InputError(f"{name} must be given; got nothing")
     return given[name]
@@ -119,7 +119,7 @@ CUT = ("along", "place", "count", "page", "turn")
 
 
 def piece_of(query: Query) -> tuple[Quantity, Piece]:
-    """Which part of a picture, and coloured by what."""
+    """Requested piece of a map, and the quantity that colours it."""
     given = query.given
     columns, rows = _whole(given, "columns"), _whole(given, "rows")
     piece = Piece(columns, rows, _whole(given, "first", 0), _whole(given, "last", columns))
@@ -130,7 +130,7 @@ def piece_of(query: Query) -> tuple[Quantity, Piece]:
 
 
 def lines_of(query: Query) -> int:
-    """Points of boundaries that are wanted beside a piece of a map; 0: none."""
+    """Number of requested points of the boundaries; 0: none."""
     return checks.whole(_whole(query.given, "lines", 0), "lines", least=0, most=MOST_PIXELS)
 
 
@@ -147,7 +147,7 @@ def cell_of(query: Query) -> tuple[float, float]:
 
 
 def cut_of(query: Query) -> tuple[Along, float, int]:
-    """Along what a cut goes, at which value of the other axis, with how many points."""
+    """Axis of a cut, value of the other axis, number of points."""
     legal: tuple[Along, ...] = get_args(Along)
     along: Any = checks.choice(needed(query.given, "along"), "along", legal)
     place = checks.number(number(needed(query.given, "place"), "place"), "place", least=0.0)
@@ -156,7 +156,7 @@ def cut_of(query: Query) -> tuple[Along, float, int]:
 
 
 def page_of(query: Query) -> tuple[str, int]:
-    """The page that asks, and which of its requests it is: a later one makes this one outdated."""
+    """Page that asks, and the number of its request; a later request cancels this one."""
     page = query.given.get("page", "")
     if len(page) > 64 or not page.isascii():
         raise InputError(f"page must be at most 64 ASCII characters; got {checks.one_line(page)}")

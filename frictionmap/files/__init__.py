@@ -1,1 +1,1 @@
-"""Files: configurations read, datasets written whole or not at all, read with a check, and put in words."""
+"""Files: reading of configurations and datasets, atomic writing, summaries."""

@@ -95,7 +95,7 @@ def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | No
 
 
 def config_of(text: str, system: Mapping[str, object]) -> Config:
-    """A configuration that is at hand as text; `system` takes the place of keys of its table.
+    """Check a configuration given as text; `system` replaces keys of its table.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def read_tree(path: str | Path, overrides: Sequence[str] = ()) -> tuple[dict, st
 
 
 def parse(text: str) -> dict:
-    """The tables of a configuration's text, not checked further."""
+    """Parse the text of a configuration; its keys are not checked."""
     try:
         return tomllib.loads(text)
     except _NOT_TOML as error:
@@ -173,7 +173,7 @@ def _override_all(tree: dict, overrides: Sequence[str]) -> None:
 
 
 def _key_and_value(override: str) -> tuple[str, object]:
-    """A dotted key and a TOML value; a bare word counts as a string."""
+    """Split an override into dotted key and TOML value; a bare word counts as a string."""
     key, equals, text = override.partition("=")
     parts = [part.strip().strip("\"'") for part in key.split(".")]  # quoted as in the file, or not
     text = text.strip()
@@ -217,7 +217,7 @@ def _override(tree: dict, parts: list[str], value: object, override: str) -> Non
 
 
 def unknown_key(key: str, section: str, legal: Sequence[str]) -> InputError:
-    """An error that names the key and those that are legal."""
+    """Return an error that names an unknown key and the valid ones."""
     name = f"{section}.{key}" if section else key
     return InputError(f"unknown key {name!r}{checks.nearest(key, legal)}; valid: {', '.join(legal)}")
 
@@ -274,7 +274,7 @@ def _matrix_files(table: Mapping[str, Any]) -> list[Path]:
 
 
 def _load(value: object, name: str) -> object:
-    """One load: a number, or [real part, imaginary part]."""
+    """Convert one load: a number, or [real part, imaginary part]."""
     if not isinstance(value, list):
         return value
     if len(value) != 2:
@@ -288,7 +288,7 @@ def read_system(table: Mapping[str, object], folder: Path) -> System:
 
 
 def system_in(text: str) -> System | None:
-    """The system of a configuration that is at hand as text only; None if the text does not hold all of it.
+    """System of a configuration given as text; None if the text does not define all of it.
 
     Matrices in a file of their own are not looked for.
     """
@@ -380,7 +380,7 @@ def _is_number(value: object) -> bool:
 
 
 def _check_form(axis: Mapping[str, object], name: str) -> None:
-    """Refuse an axis table that does not say one thing."""
+    """Refuse an axis table with missing or contradictory keys."""
     for key in axis:
         if key not in _AXIS_KEYS:
             raise unknown_key(key, name, _AXIS_KEYS)
@@ -391,7 +391,7 @@ def _check_form(axis: Mapping[str, object], name: str) -> None:
 
 
 def _check_range(axis: Mapping[str, object], name: str) -> None:
-    """Refuse a range whose numbers make no sense."""
+    """Refuse an invalid range."""
     start = checks.number(axis["start"], f"{name}.start")
     stop = checks.number(axis["stop"], f"{name}.stop")
     if stop < start:
@@ -415,7 +415,7 @@ def _steps(axis: Mapping[str, object], name: str) -> int:
 
 
 def _count(axis: object, name: str) -> int:
-    """How many values an axis will have, before any memory is taken for them."""
+    """Number of values of an axis, before memory is allocated."""
     if isinstance(axis, Ladder):
         return axis.count
     if isinstance(axis, Mapping):

@@ -1,4 +1,4 @@
-"""Output files: claimed before the work begins, written beside their place, put there whole or not at all.
+"""Output files: claimed before the work begins, written elsewhere, put in place in one step.
 
 A claim is a hidden folder beside the file, one for each name and user.  A lock in it lasts as long as the
 process: who finds the folder without its lock may clear it away.  What is written in it appears under the
@@ -40,7 +40,7 @@ class _Taken(Exception):
 
 
 class Output:
-    """A place for one file, claimed."""
+    """A claimed output path."""
 
     def __init__(self, path: Path, overwrite: bool) -> None:
         self.path = path  # as the user named it
@@ -56,7 +56,7 @@ class Output:
     def fill(
         self, write: Callable[[Path], None], progress: Callable[[int], None] = lambda size: None
     ) -> None:
-        """Call `write` with a path to write to, and put what it wrote in its place.
+        """Call `write` with a temporary path and move the file into place.
 
         `progress` hears now and then how many bytes there are.  An interrupt waits for `write` to end: the
         libraries that write files keep their locks for good if they are cut off.
@@ -89,7 +89,7 @@ class Output:
         _written.append(self.path)
 
     def _keep_elsewhere(self) -> str:
-        """Put the result beside a file that appeared during the work; what happened, in words."""
+        """Save the result under another name, as a file has appeared meanwhile; return the message."""
         number = 1
         while True:
             beside = self.path.with_name(f"{self.path.stem}-{number}{self.path.suffix}")
@@ -103,7 +103,7 @@ class Output:
             number += 1
 
     def claim(self) -> None:
-        """Take the name, clear away what killed runs have left in the folder."""
+        """Claim the name, and remove leftovers of killed runs from the folder."""
         try:
             _sweep(self._target.parent)
             with _guard:
@@ -115,7 +115,7 @@ class Output:
             raise InputError(f"cannot write {self.path}: {error.strerror}; use another -o") from None
 
     def release(self) -> None:
-        """Give the name back; nothing is left but the file itself, if it was put in its place."""
+        """Release the name; only the finished file is left, if there is one."""
         with _guard:
             if self._lock >= 0:
                 _remove(self._folder, self._lock, self._scratch.name)
@@ -127,7 +127,7 @@ class Output:
 def claimed(
     path: Path, overwrite: bool = False, inputs: Sequence[Path] = (), name: str = "-o"
 ) -> Iterator[Output]:
-    """A place for a file, refused now if it cannot be had, and kept until the end of the context.
+    """Claim an output path, or refuse it at once, until the end of the context.
 
     name : of the argument that gave it, for messages
 
@@ -149,7 +149,7 @@ def claimed(
 
 @contextlib.contextmanager
 def claimed_folder(path: Path) -> Iterator[Output]:
-    """A folder that is filled little by little, whose name is kept until the end of the context.
+    """Claim a folder, filled gradually, until the end of the context.
 
     Raises
     ------
@@ -194,7 +194,7 @@ def _check(path: Path, overwrite: bool, inputs: Sequence[Path], name: str) -> No
 
 
 def _abandon() -> str:
-    """Clear away every claim, for good: nothing can be claimed or put in its place after it."""
+    """Remove all claims for good; nothing can be claimed or moved into place afterwards."""
     known = _guard.acquire(timeout=1.0)
     kept = "".join(output.kept() for output in _claims)
     for output in list(_claims):
@@ -209,7 +209,7 @@ interrupts.before_exit(_abandon)
 
 
 def _enter(folder: Path) -> int:
-    """The lock of a folder, taken; the folder is made if need be."""
+    """Take the lock of a folder, which is made if necessary."""
     while True:
         with contextlib.suppress(FileExistsError):
             folder.mkdir()
@@ -224,7 +224,7 @@ def _flock(handle: int) -> None:
 
 
 def _lock(folder: Path, flags: int) -> int:
-    """The lock of a folder as an open file: taken until that is closed or the process ends."""
+    """Take the lock of a folder; it is held until the returned file is closed or the process ends."""
     path = folder / _LOCK
     handle = os.open(path, flags, 0o600)
     try:
@@ -252,7 +252,7 @@ def _sweep(parent: Path) -> None:
 
 
 def _remove(folder: Path, lock: int, files: str = f"{_FILE}*") -> None:
-    """Remove what a claim may have left, and nothing else."""
+    """Remove leftovers of a claim, and nothing else."""
     folder = _moved_away(folder, lock)
     for _ in range(3):  # a library may make its file just now
         for file in (*folder.glob(files), folder / _LOCK):
@@ -264,7 +264,7 @@ def _remove(folder: Path, lock: int, files: str = f"{_FILE}*") -> None:
 
 
 def _moved_away(folder: Path, lock: int) -> Path:
-    """Where the folder is now: whoever claims its name from here on makes another, which we do not touch."""
+    """Rename a folder, so that another run may claim its name, and return the new path."""
     away = folder.with_name(_PREFIX + secrets.token_hex(8))
     try:
         _flock(lock)  # ours already; an error where there are no locks, as then others may be in the folder
@@ -277,7 +277,7 @@ def _moved_away(folder: Path, lock: int) -> Path:
 
 
 def _aside(work: Callable[[], None], waiting: Callable[[], None]) -> None:
-    """Do the work in a thread of its own, where no interrupt is raised, and wait for its end."""
+    """Run work in a separate thread, where no interrupt is raised, and wait for it."""
     failures: list[BaseException] = []
     wanted, begin, done = threading.Event(), threading.Event(), threading.Event()
 
@@ -310,7 +310,7 @@ def _size(path: Path) -> int:
 
 
 def _flush(path: Path) -> None:
-    """What was written is on the disk, or there is an error now: some file systems tell it no earlier."""
+    """Flush a file to disk; some file systems report errors only then."""
     handle = os.open(path, os.O_RDWR)
     try:
         os.fsync(handle)
@@ -319,7 +319,7 @@ def _flush(path: Path) -> None:
 
 
 def _take_after(new: Path, old: Path) -> None:
-    """Owner, group and permissions of the file that is replaced, as far as we may."""
+    """Copy owner, group and permissions of the replaced file, as far as permitted."""
     before = old.stat()
     if hasattr(os, "chown"):
         for owner, group in ((before.st_uid, -1), (-1, before.st_gid)):
@@ -330,7 +330,7 @@ def _take_after(new: Path, old: Path) -> None:
 
 
 def _create(new: Path, target: Path) -> None:
-    """`new` becomes `target`, which must not exist, in one step."""
+    """Rename `new` to `target`, which must not exist, in one step."""
     try:
         os.link(new, target)
     except FileExistsError:

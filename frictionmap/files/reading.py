@@ -1,4 +1,4 @@
-"""Files that are read: checked against the schema, and brought into the form that they were written in."""
+"""Reading of files: checks against the schema, standard form."""
 
 import contextlib
 import importlib.util
@@ -52,7 +52,7 @@ def read(
 
 @contextlib.contextmanager
 def opened(path: Path) -> Iterator[xr.Dataset]:
-    """A file, or a store, as long as the context lasts; no values are read before they are used.
+    """Open a file or store for the length of the context; values are read when used.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def _protected(path: Path) -> InputError:
 
 
 def _damaged(path: Path, error: Exception) -> InputError:
-    """What is wrong with a file over which a library has raised this."""
+    """Return the error for a file that a library could not read."""
     if isinstance(error, PermissionError):
         return _protected(Path(error.filename or path))
     return InputError(
@@ -134,7 +134,7 @@ def _check_ours(path: Path, ds: xr.Dataset) -> None:
 
 @contextlib.contextmanager
 def naming(path: Path) -> Iterator[None]:
-    """The name of the file, put before what is wrong with it."""
+    """Put the name of the file before error messages."""
     try:
         yield
     except InputError as error:
@@ -144,7 +144,7 @@ def naming(path: Path) -> Iterator[None]:
 def _load(
     path: Path, ds: xr.Dataset, only: Mapping[str, Collection[str]] | None, at: Mapping[str, float]
 ) -> xr.Dataset:
-    """The wanted variables of a file; their values are read once all else about them is known to be well."""
+    """Load the wanted variables of a file, after all other checks."""
     in_store = MARKS in ds
     with naming(path):
         if at or further_axes(ds):
@@ -161,7 +161,7 @@ def _load(
 
 
 def _ours(ds: xr.Dataset) -> xr.Dataset:
-    """What has a label."""
+    """Select the variables that have a label."""
     known = {*LABELS, *COORDINATES, *BESIDE}
     return ds.drop_vars([name for name in ds.variables if name not in known])
 
@@ -240,7 +240,7 @@ def _check_increasing(name: str, values: np.ndarray) -> None:
 
 
 def _beside(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:
-    """Axes in SI units, beside those that are used."""
+    """Axes in SI units that accompany the axes in use."""
     beside = {}
     for name in BESIDE:
         dims = standard_dims(name, what)

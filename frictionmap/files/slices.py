@@ -1,4 +1,4 @@
-"""One point of further axes, chosen from a dataset that has them."""
+"""Selection of one point of the further axes of a dataset."""
 
 import string
 from collections.abc import Mapping, Sequence
@@ -22,7 +22,7 @@ _LISTED = 8
 
 
 def parse_choices(texts: Sequence[str]) -> dict[str, float]:
-    """What was chosen on the command line, such as ``damping_ratios=0.01``."""
+    """Parse selections of the command line, such as ``damping_ratios=0.01``."""
     choices: dict[str, float] = {}
     for text in texts:
         name, equals, value = text.partition("=")
@@ -40,7 +40,7 @@ def parse_choices(texts: Sequence[str]) -> dict[str, float]:
 
 
 def further_axes(ds: xr.Dataset) -> list[str]:
-    """Dimensions of our variables beside those that their labels have; estimates have none."""
+    """Dimensions of known variables beyond those of their labels; none for estimates."""
     if kind(ds) == "estimates":
         return []
     labels = labels_of(kind(ds))
@@ -121,7 +121,7 @@ def _numbers(ds: xr.Dataset, name: str) -> np.ndarray:
 
 
 def _values(ds: xr.Dataset, name: str) -> str:
-    """The values of an axis in words."""
+    """Describe the values of an axis."""
     values = _numbers(ds, name)
     if values.size > _LISTED and values.dtype.kind != "U":
         return f"{name} = {values.min():g} to {values.max():g} ({values.size} values)"
@@ -130,12 +130,12 @@ def _values(ds: xr.Dataset, name: str) -> str:
 
 
 def _word(value: object) -> str:
-    """A value of an axis; what is not ours may have texts."""
+    """Format a value of an axis; foreign files may have string axes."""
     return checks.one_line(value) if isinstance(value, str) else f"{value:g}"
 
 
 def _of_point(ds: xr.Dataset, point: Mapping[str, int]) -> dict[str, str]:
-    """Title, system and configuration of a point; the latter two are empty where the file does not tell."""
+    """Title, system and configuration of a point; the latter two are empty if unknown."""
     words = ", ".join(f"{name} = {_word(_numbers(ds, name)[place])}" for name, place in point.items())
     title = f"{ds.attrs.get('title', '')}, {words}".removeprefix(", ")
     system = text = ""

@@ -1,4 +1,4 @@
-"""What a dataset remembers of how it was made: the system and the start, from the configuration in it."""
+"""System and initial state of a dataset, from the configuration stored in it."""
 
 import xarray as xr
 

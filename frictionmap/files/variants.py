@@ -1,4 +1,4 @@
-"""CSV files of numbers that change together: the first row names them, every other row is a point."""
+"""CSV files of parameters that vary together: names in the first row, one point per further row."""
 
 import csv
 import math
@@ -8,14 +8,14 @@ from pathlib import Path
 from .. import checks
 from ..errors import InputError
 
-#: What is most often meant by a row of another length.
+#: Most frequent cause of a row of another length.
 _HINT = "separate numbers by commas, use decimal points"
 
 
 def put_variants(axes: object, folder: Path) -> tuple[Path, ...]:
-    """Put the numbers of files in the place of their names in a table [axes]; the files.
+    """Replace names of CSV files in a table [axes] by their numbers; return the files.
 
-    So a configuration tells its systems wherever it is read, whatever becomes of the files.
+    The stored configuration then defines its systems even if the files are lost.
 
     Raises
     ------

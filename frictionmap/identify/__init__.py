@@ -1,4 +1,4 @@
-"""From measured data to friction, damping and frequencies, with their errors.
+"""Identification of friction, damping and frequencies from measured data, with standard errors.
 
 ===============  =======================================================================
 module           what is in it, in the order in which data flows

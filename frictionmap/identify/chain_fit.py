@@ -50,7 +50,7 @@ _PEAK = 0.3
 
 
 class Measured(NamedTuple):
-    """What was measured of a chain, s numbers: lags [rad] and natural logarithms of amplitude ratios."""
+    """Measured data of a chain, s numbers: lags [rad] and natural logarithms of amplitude ratios."""
 
     frequency: np.ndarray  # (s,) Hz
     mass: np.ndarray  # (s,) from 0
@@ -148,7 +148,7 @@ def _usual_error(data: Measured, found: Solution) -> float:
 
 
 def _search(data: Measured, known: np.ndarray, task: Problem, start: np.ndarray) -> np.ndarray:
-    """Where a fit with all damping ratios free leads, first with little weight of what is far off."""
+    """Result of a fit with all damping ratios free, first with little weight of outliers."""
     data = data._replace(relative=False)
     free = np.isnan(known)
     free[2 * data.n - 1 :] = True
@@ -191,7 +191,7 @@ def _starts(data: Measured, known: np.ndarray) -> Iterator[np.ndarray]:
 
 
 def peaks(data: Measured) -> int:
-    """How many peaks the mass with the most of them has."""
+    """Largest number of peaks of any mass."""
     return max((p.size for _, p, _ in _extremes(data)), default=0)
 
 
@@ -207,7 +207,7 @@ def _extremes(data: Measured) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]
 
 
 def _alternating(data: Measured) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Between what f_1, z_1, f_2, ... of the first mass lie, if all are seen: likely, and for certain."""
+    """Likely and certain bounds of f_1, z_1, f_2, ... of the first mass, if all are seen."""
     if 0 not in data.mass:
         return []
     f, peak, dip = _extremes(data)[0]

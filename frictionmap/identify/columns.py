@@ -1,4 +1,4 @@
-"""Columns of a table by what they are, with their units: no unit is guessed, no value is repaired."""
+"""Columns of a table by role, with their units; no unit is guessed, no value is repaired."""
 
 from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..units.table import COLUMN_UNITS, ending, suffixes
 from .tables import Table
 
-#: What is done about values that are no numbers.
+#: Treatment of values that are not numbers.
 MISSING = ("refuse", "drop")
 
 #: Columns that are not used are named, no more than these.
@@ -21,7 +21,7 @@ _DROPPED = 0.01
 
 
 class Column(NamedTuple):
-    """One column."""
+    """A column of a table, with its unit."""
 
     name: str
     unit: str
@@ -29,7 +29,7 @@ class Column(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """Columns by what they are, all of one length."""
+    """Columns by role, all of one length."""
 
     columns: dict[str, Column]
     rows: np.ndarray  # of the table
@@ -39,7 +39,7 @@ class Columns(NamedTuple):
 def pick_columns(
     table: Table, wanted: Mapping[str, str], names: Mapping[str, str], missing: str = "refuse"
 ) -> Columns:
-    """The columns that a fit needs.
+    """Select the columns that a fit needs.
 
     wanted : what it measures ("time", "length", ..., or "ratio", which has no unit) of every column, such as
         {"time": "time", "x": "length"}
@@ -68,7 +68,7 @@ def pick_columns(
 def columns_like(
     table: Table, role: str, measures: str, names: Mapping[str, str], sure: bool = False
 ) -> list[str]:
-    """Columns that `pick_columns` would take for a role, or refuse for their unit.
+    """Columns that `pick_columns` would take for a role, or refuse because of their unit.
 
     sure : whether only columns count that have a unit of what is measured
     """
@@ -80,7 +80,7 @@ def columns_like(
 
 
 def unused_columns(table: Table, used: Collection[str]) -> str:
-    """A line that names the columns of a file that nothing was read from, or nothing."""
+    """Remark that names the unused columns of a file, or empty."""
     others = [name for name in table.columns if name not in used]
     if not others:
         return ""
@@ -110,7 +110,7 @@ def check_positive(table: Table, column: Column, rows: np.ndarray) -> None:
 
 
 def _find(table: Table, role: str, names: Mapping[str, str], measures: str) -> Column:
-    """The column of a name, or the one whose name is what it is and a unit."""
+    """Find a column by name, or by its role and a unit."""
     legal, name = suffixes(measures), names.get(role)
     has = f"the file has {', '.join(table.columns) or 'none'}"
     known = f" (suffixes: {', '.join(legal)})" if legal else ""
@@ -147,7 +147,7 @@ def _unit(table: Table, column: str, legal: Sequence[str]) -> str:
 
 
 def _named_like(columns: Sequence[str], role: str, legal: Sequence[str], sure: bool = False) -> list[str]:
-    """Columns of a role: its name and a unit, or else a name that begins with it.
+    """Columns of a role, by exact name with a unit, or by a name that begins with the role.
 
     The latter has a unit of what is measured at its end, or, unless it must be sure, nothing but one word or
     another unit behind it: base_frequency_rad_s is no base.
@@ -175,7 +175,7 @@ def _check_lengths(table: Table, found: Mapping[str, Column]) -> None:
 
 
 def _refuse(table: Table, found: Mapping[str, Column], bad: np.ndarray, missing: str) -> None:
-    """Name the first value that is no number, unless few are, and they may be dropped."""
+    """Refuse the first value that is not a number, unless there are few and they may be dropped."""
     if missing == "drop" and bad.mean() <= _DROPPED:
         return
     row = int(np.argmax(bad))

@@ -1,6 +1,6 @@
-"""Configurations of rigs: which file is read, what is known, what is fitted.
+"""Configurations of measured data: files, known parameters, options of the fit.
 
-A kind of data is a `Kind`: what may be said of it, and the function that fits it.  To build another, write
+A kind of data is a `Kind`: its keys, and the function that fits it.  To add another, write
 one like `rig_decay` and add it to `KINDS`.
 """
 
@@ -94,12 +94,12 @@ def _title(tree: Mapping[str, object], default: str) -> str:
 
 
 def identify(rig: Rig) -> xr.Dataset:
-    """Fit what the data of a rig tell; see the function of its kind, such as `free_decay`.
+    """Fit the data of a rig; see the function of its kind, such as `free_decay`.
 
     Raises
     ------
     InputError
-        The data cannot be read or fitted; one line with the file.
+        The data cannot be read or fitted; the message names the file.
     """
     if rig.kind == JOINT_NAME:
         ds = fit_together(rig)
@@ -121,7 +121,7 @@ def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
 
 
 def _refuse_data(path: object) -> None:
-    """Refuse measured data where their configuration is due."""
+    """Refuse a data file in place of its configuration."""
     if isinstance(path, (str, Path)) and Path(path).suffix.lower() in _DATA:
         raise InputError(
             f"cannot read a configuration from {path}: it is a data file; give a RIG.toml that names it "
@@ -142,7 +142,7 @@ def _checked_kind(tree: Mapping[str, object], data: Mapping[str, object]) -> str
 
 
 def _check_keys(tree: Mapping[str, object], name: str, kind: Kind) -> None:
-    """Refuse what no key of the kind is; [system] is checked as in maps, where it is used."""
+    """Refuse unknown keys of the kind; [system] is checked as in maps, where it is used."""
     sections = {
         "data": ("kind", "file", "columns", "missing", *kind.data),
         "known": (*kind.parameters, *kind.known),
@@ -159,14 +159,14 @@ def _check_keys(tree: Mapping[str, object], name: str, kind: Kind) -> None:
 
 
 def _unknown(key: str, section: str, legal: Sequence[str], kind: str) -> InputError:
-    """What is no key of a kind may well be one of another."""
+    """Return the error of a key that is unknown for this kind of data."""
     return InputError(f"{unknown_key(key, section, legal)}, for data.kind = {kind!r}")
 
 
 def _checked_free(
     free: object, known: Mapping[str, float], parameters: Sequence[str]
 ) -> tuple[str, ...] | None:
-    """What is fitted is what is not known: a list of it must say the same."""
+    """Check fit.free, which must list exactly the parameters that are not known."""
     if free is None:
         return None
     if not parameters:
@@ -188,7 +188,7 @@ def _checked_free(
 
 
 def _known_number(value: object, key: str) -> float:
-    """A number of [known]; one with its unit in that of the key."""
+    """Convert a number of [known], with a unit to that of the key."""
     unit = KNOWN_UNITS.get(key, "")
     if unit and isinstance(value, str):
         found = quantity(value, f"known.{key}", UNITS[unit].measures)

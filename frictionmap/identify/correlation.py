@@ -1,4 +1,4 @@
-"""How much larger errors are because residuals are correlated over many samples."""
+"""Inflation of standard errors by residuals that are correlated over many samples."""
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
@@ -13,7 +13,7 @@ _SIGNIFICANT = 3.0
 
 
 def long_inflation(residual: np.ndarray) -> float:
-    """What errors are multiplied by: the root of the integrated autocorrelation time, in samples.
+    """Factor of standard errors: the root of the integrated autocorrelation time, in samples.
 
     It is the larger one of two estimates: by the lag-1 correlation alone, and by the sum of the correlations
     at all lags up to a window, which also sees a slow part below white noise.

@@ -1,4 +1,4 @@
-"""Which samples of a record can be a free decay, and what is wrong with those that cannot."""
+"""Checks of records of free decays, and selection of their samples."""
 
 import numpy as np
 
@@ -69,7 +69,7 @@ def unclipped(x: np.ndarray) -> np.ndarray:
 
 
 def clipped_runs(x: np.ndarray) -> list[tuple[int, int]]:
-    """Begin and end of every run of samples that lie at an extreme value, the samples beside far from it."""
+    """Begin and end of every run of clipped samples, at an extreme value far from its neighbours."""
     step = resolution(x)
     found = []
     for extreme in (x.min(), x.max()):

@@ -1,4 +1,4 @@
-"""Where the fit of a decay starts: each number of half cycles before rest, at a least sum of its own.
+"""Starting values for a decay: each number of half cycles before rest has a minimum of its own.
 
 A decay is linear in x_F, X0, the centre and the drift.  Frequency and t0 are taken from the turning points,
 zeta from a list, the linear unknowns are solved for, and steps of Levenberg and Marquardt improve the result.
@@ -33,7 +33,7 @@ _SETTLED, _STEPS = 1e-5, 25
 
 
 class Start(NamedTuple):
-    """Where a fit may start."""
+    """Starting values of a fit."""
 
     n: int  # half cycles before rest
     values: np.ndarray  # shape (unknowns,)

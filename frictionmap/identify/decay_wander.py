@@ -48,7 +48,7 @@ class Search(NamedTuple):
 
 
 class _Wander(NamedTuple):
-    """What the residuals show of a wander."""
+    """Slow wander seen in the residuals."""
 
     basis: np.ndarray  # shape (samples, terms)
     chance: float  # the probability that white noise shows as much

@@ -15,7 +15,7 @@ from .forced_fit import Fit, fit_forced
 from .forced_labels import friction_forces, labelled
 from .forced_lags import friction_ratios, impossible, refuse_impossible, without
 from .forced_model import F_N, MU, ZETA
-from .forced_told import told
+from .forced_told import fit_warnings
 from .robust import LOSSES
 
 #: Estimates so many standard errors above zero are found.
@@ -52,7 +52,7 @@ def forced(
 ) -> xr.Dataset:
     """Fit the exact steady states to first harmonics of forced responses, all friction forces at once.
 
-    Thirteen arguments: the columns of a table, and what is known.
+    The arguments are the columns of a table and known parameters.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def forced(
     load : array, shape (rows,)
         Amplitude of the base or of the force, > 0, in `unit`; by default the same in every row.
     unit : str
-        Of `load`, and of the friction that is then told as a length F/k1, or as a force: "mm", say, or "N".
+        Of `load`, and of the friction, which is then given as a length F/k1 or as a force: "mm", say, or "N".
     sets : sequence, shape (rows,)
         Labels of tests; those of one label have one friction force.
     known : mapping
@@ -89,20 +89,21 @@ def forced(
         On parameter (beta, or beta_<label> of every set; f_n, zeta, mu) and on sample as `free_decay`, see
         `quantity`: data and model are lags [deg] and amplitude ratios, residuals degrees and logarithms of
         ratios.  beta is the friction force over the mean load of its set.  Also on sample: frequency,
-        mass, set, sigma, frequency_ratio, friction_ratio, `regime`, and `reached`, the starts from which the
-        motion is reached; `lag_status`, what a lag alone tells of friction, see `friction_ratio`.  On
+        mass, set, sigma, frequency_ratio, friction_ratio, `regime`, and `reached`, the initial
+        states that lead to the motion; `lag_status`, what follows from a lag alone, see `friction_ratio`.  On
         answer: `lag_friction_ratio` with its error, and `lag_sample`, the sample that it is of.  Attribute
         `warnings`.
 
     Raises
     ------
     InputError
-        An argument is illegal, there are fewer data than unknowns, or the data cannot tell a parameter.
+        An argument is invalid, there are fewer data than unknowns, or a parameter is not identifiable.
 
     Notes
     -----
     Motions are continuous, theory.md 2 and 9, or stick-slip, as they come; of several with mu > 1 that
-    nearest to the data counts.  Lags alone do not tell f_n: it is then held where they pass 90 deg.
+    nearest to the data counts.  Phase data alone cannot determine f_n: it is then held where lags pass 90
+    deg.
     """
     system = _default_system() if system is None else checks.instance(system, "system", System)
     table = checked_table(
@@ -133,7 +134,7 @@ def forced(
     ds.attrs["config"] = system_text(system)
     if stiffness is not None and load is None:
         warnings.append("no friction force in N: it needs the amplitudes of the base")
-    ds.attrs["warnings"] = "; ".join(warnings + told(table, fit))
+    ds.attrs["warnings"] = "; ".join(warnings + fit_warnings(table, fit))
     return ds
 
 
@@ -187,7 +188,7 @@ def _check_count(table: ForcedTable, held: np.ndarray) -> None:
 
 
 def _passing(table: ForcedTable) -> float:
-    """Where lags of the first mass pass 90 deg, the median over the sets [Hz]."""
+    """Frequency at which lags of the first mass pass 90 deg, the median over the sets [Hz]."""
     samples, rows = table.samples, table.rows
     found = []
     for one in range(len(table.labels)):

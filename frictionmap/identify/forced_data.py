@@ -61,7 +61,7 @@ def checked_table(
 
 
 def _numbers(values: object, name: str, size: int | None, above: float = -np.inf) -> np.ndarray:
-    """Finite numbers > above, so many of them."""
+    """Check a given number of finite numbers > above."""
     given = np.atleast_1d(checks.array(values, name))
     if given.dtype.kind not in "iuf" or given.ndim != 1 or given.size == 0 or size not in (None, given.size):
         wanted = "numbers" if size is None else f"{size} numbers, one per frequency"
@@ -74,7 +74,7 @@ def _numbers(values: object, name: str, size: int | None, above: float = -np.inf
 
 
 def _errors(values: object, name: str, size: int) -> np.ndarray:
-    """Errors > 0, one for all or one a frequency."""
+    """Check errors > 0, one for all or one per frequency."""
     if np.ndim(checks.array(values, name)) == 0:
         return np.full(size, checks.number(values, name, above=0.0))
     return _numbers(values, name, size, above=0.0)
@@ -137,7 +137,7 @@ def check_lag(
 
 
 def most_beyond(table: ForcedTable) -> np.ndarray:
-    """How far lags may be out of range [rad], sample by sample."""
+    """Tolerance of lags beyond their range [rad], sample by sample."""
     given, sigma = table.given[0], table.samples.sigma
     return _ERRORS * sigma if given else np.full(sigma.size, np.radians(_DEGREES))
 

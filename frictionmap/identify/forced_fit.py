@@ -1,4 +1,4 @@
-"""The exact steady states nearest to forced responses, and the errors of what they tell."""
+"""Fit of the exact steady states to forced responses, with standard errors."""
 
 from typing import NamedTuple
 
@@ -75,17 +75,17 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bo
         model, solution, task = _with_errors(model, known, table.given, robust)
         here = evaluate(model, solution.values, task.free)
     flat = _is_flat(model, solution, task)
-    told = _without_mu(task) if flat else task
-    _check_told(table, model, solution, told)
+    determined = _without_mu(task) if flat else task
+    _check_identifiable(table, model, solution, determined)
     variance = 1.0 if any(table.given) else None
     plain = problem(model, task.free, float(solution.values[F_N])) if robust else None
     if plain is not None:
         variance = effective_variance(plain, solution, _OUTLIER)
-    found = errors(told, solution._replace(at_bound=solution.at_bound & told.free), variance)
+    found = errors(determined, solution._replace(at_bound=solution.at_bound & determined.free), variance)
     interval = _on_bound if flat else _near_bound
     found = interval(found, task, solution, variance)
     if flat:
-        solution = solution._replace(at_bound=solution.at_bound | (task.free & ~told.free))
+        solution = solution._replace(at_bound=solution.at_bound | (task.free & ~determined.free))
     if plain is not None:
         solution = solution._replace(residual=plain.residuals(solution.values)[0])
         found = found._replace(variance=solution.sum / _freedom(solution, task))
@@ -162,7 +162,7 @@ def problem(model: ForcedModel, free: np.ndarray, f_n: float, robust: bool = Fal
 def _with_errors(
     model: ForcedModel, known: np.ndarray, given: tuple[bool, bool], robust: bool
 ) -> tuple[ForcedModel, Solution, Problem]:
-    """The least sum with errors as given, or as the residuals tell them of lags and of amplitudes apart."""
+    """Minimise with given errors, or with errors of lags and amplitudes from their own residuals."""
     free = np.isnan(known)
     solution, task = _best(model, known, all(given), robust)
     for _ in range(0 if all(given) else _ROUNDS):
@@ -218,8 +218,8 @@ def _best(model: ForcedModel, known: np.ndarray, sure: bool, robust: bool) -> tu
     return best
 
 
-def _check_told(table: ForcedTable, model: ForcedModel, solution: Solution, task: Problem) -> None:
-    """Refuse data that leave parameters, or some together, untold."""
+def _check_identifiable(table: ForcedTable, model: ForcedModel, solution: Solution, task: Problem) -> None:
+    """Refuse data that do not identify a parameter, or several of them separately."""
     names = parameter_names(table)
     for index in np.flatnonzero(task.free & (_effects(model, solution) < _RANK)):
         raise InputError(

@@ -1,4 +1,4 @@
-"""What the lags of a table tell of friction one by one, and which of them no friction gives."""
+"""Friction ratios from single lags of a table, and lags that no friction gives."""
 
 import numpy as np
 import xarray as xr
@@ -46,18 +46,20 @@ def friction_ratios(fit: Fit) -> dict[str, xr.Variable]:
     samples, values = fit.model.samples, fit.solution.values
     lags = np.flatnonzero(samples.is_phase)
     r = fit.model.rows.frequency[samples.row[lags]] / values[F_N]
-    told = invert(fit.model.with_zeta(float(values[ZETA])), r, samples.value[lags], samples.mass[lags])
+    inversions = invert(fit.model.with_zeta(float(values[ZETA])), r, samples.value[lags], samples.mass[lags])
     status = np.full(samples.row.size, _NO_LAG, dtype=np.int8)
-    status[lags] = [one.code for one in told]
+    status[lags] = [one.code for one in inversions]
     flags = {
         "long_name": "what the lag tells of friction",
         "flag_values": np.arange(_NO_LAG + 1, dtype=np.int8),
         "flag_meanings": " ".join((*MEANINGS, "no_lag")),
     }
     found = {"lag_status": xr.Variable("sample", status, flags)}
-    counts = [len(one.beta) for one in told]
+    counts = [len(one.beta) for one in inversions]
     if sum(counts):
-        beta, slope = (np.concatenate([getattr(one, name) for one in told]) for name in ("beta", "slope"))
+        beta, slope = (
+            np.concatenate([getattr(one, name) for one in inversions]) for name in ("beta", "slope")
+        )
         sample = np.repeat(lags, counts)
         error = np.degrees(samples.sigma[sample]) / np.abs(slope)
         found |= {

@@ -1,4 +1,4 @@
-"""Where the fit of forced responses begins: a coarse look at all friction ratios and natural frequencies.
+"""Starting values for forced responses: a coarse search over friction ratios and natural frequencies.
 
 Sums of squares have many least values over f_n, and some over beta: the look takes residuals with errors
 so large that it cannot pass between its samples.
@@ -80,9 +80,9 @@ def _candidates(model: ForcedModel) -> np.ndarray:
 
 
 def closer(model: ForcedModel, near: np.ndarray, known: np.ndarray) -> list[np.ndarray]:
-    """Values around others to begin with anew, the most promising first.
+    """Starting values around a solution, the most promising first.
 
-    Motions come and go with friction where mu > 1, and the sum has steps that no slope tells of.
+    Motions appear and disappear with friction where mu > 1, and the sum has steps that slopes do not show.
     """
     samples = model.samples._replace(sigma=_CLOSER * model.samples.sigma)
     frequencies = near[F_N] * _F_BESIDE if np.isnan(known[F_N]) else known[F_N:ZETA]
@@ -113,7 +113,7 @@ def _everywhere(model: ForcedModel, values: np.ndarray, known: np.ndarray) -> np
 def _best_frictions(
     model: ForcedModel, several: list[np.ndarray], tried: list[np.ndarray]
 ) -> list[tuple[float, np.ndarray]]:
-    """Of several values of one zeta and mu: the sum with the best friction ratio of every set, and with it.
+    """Find the best friction ratio of every set for several values of one zeta and mu; return their sums.
 
     tried : (tried, sets) for each of the values
     """

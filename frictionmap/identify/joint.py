@@ -10,7 +10,7 @@ from .. import checks
 from ..datasets.provenance import system_text
 from ..errors import InputError
 from ..units.table import checked_unit, conversion
-from .cautions import only_interval
+from .cautions import interval_warnings
 from .estimates import estimates, number, usable_errors, verdict
 from .joint_fit import F_N, MU, ZETA, JointFit, fit_jointly, places_of
 from .joint_parts import SHARED, Part, decay_part, record_part, whole_of
@@ -94,7 +94,7 @@ def joint(
     Raises
     ------
     InputError
-        An argument is illegal, there are fewer than two data, or one of them cannot be used; its label is
+        An argument is invalid, there are fewer than two data, or one of them cannot be used; its label is
         named.
 
     Notes
@@ -161,7 +161,7 @@ def _part(
 
 
 def _names(fit: JointFit) -> list[str]:
-    """Of all values, but for the parts of drift and wander, which are empty."""
+    """Names of all values; those of drift and wander are empty."""
     names = [*SHARED, *[""] * (fit.solution.values.size - len(SHARED))]
     for part, at in zip(fit.parts, places_of(fit.parts), strict=True):
         for name, place in zip(part.names, at, strict=False):
@@ -251,7 +251,7 @@ def _residual(fit: JointFit, k: int) -> np.ndarray:
 def _of_parts(
     fit: JointFit, found: Errors, unit: str, stiffness: float | None, loss: str
 ) -> dict[str, xr.Variable]:
-    """What is told of each part beside its parameters."""
+    """Further results of each part."""
     result: dict[str, xr.Variable] = {}
     for k, part in enumerate(fit.parts):
         values, friction = fit.of_part(k), int(places_of(fit.parts)[k][part.names.index("x_F")])
@@ -299,7 +299,7 @@ def _verdict(fit: JointFit, found: Errors, names: list[str]) -> tuple[int, dict[
 
 
 def _inseparable(fit: JointFit, found: Errors, names: list[str]) -> list[str]:
-    """Shared parameters and frictions of records that the data do not tell from each other."""
+    """Shared parameters and frictions of records that are not identifiable separately."""
     of_records = {f"x_F_{part.label}" for part in fit.parts if part.fit is not None}
     frictions = [k for k, name in enumerate(names) if name in of_records]
     vague = [
@@ -319,7 +319,7 @@ def _inseparable(fit: JointFit, found: Errors, names: list[str]) -> list[str]:
 
 
 def _of_data(fit: JointFit, unit: str, loss: str) -> list[str]:
-    """What to mind of each part, in words."""
+    """Warnings about each part."""
     words = []
     for part in fit.parts:
         if part.decay is not None:
@@ -333,7 +333,7 @@ def _of_data(fit: JointFit, unit: str, loss: str) -> list[str]:
 
 
 def _of_fit(fit: JointFit, found: Errors) -> list[str]:
-    """What to mind of the estimates, in words."""
+    """Warnings about the estimates."""
     words = [
         f"{part.label}: the model does not explain the record down to its noise: at the harmonics of the "
         f"base it leaves {part.model_error:.3g} times the noise, and the record counts by that"
@@ -347,7 +347,7 @@ def _of_fit(fit: JointFit, found: Errors) -> list[str]:
             "mu = 1 explains the data as well as a larger mu does: the other estimates are those for mu = 1, "
             "and their intervals allow for the whole interval of mu"
         )
-    words += only_interval("mu", 1.0, not fit.with_mu.free[MU] or bool(found.lower[MU] > 1.0))
+    words += interval_warnings("mu", 1.0, not fit.with_mu.free[MU] or bool(found.lower[MU] > 1.0))
     names = _names(fit)
     bound = [names[k] for k in np.flatnonzero(fit.solution.at_bound) if names[k]]
-    return words + ([f"{listed(bound)} on the bound: the interval is one-sided"] if bound else [])
+    return words + ([f"{listed(bound)} at the bound: the interval is one-sided"] if bound else [])

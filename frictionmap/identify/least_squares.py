@@ -27,7 +27,7 @@ _COLOURED = 3.0
 
 
 class Problem(NamedTuple):
-    """What is fitted."""
+    """A least-squares problem."""
 
     residuals: Residuals
     free: np.ndarray  # shape (parameters,), bool: others are held
@@ -51,7 +51,7 @@ class Solution(NamedTuple):
 
 
 class Noise(NamedTuple):
-    """What is known of the noise: its covariance is variance * (I + G G^T)."""
+    """Noise with covariance variance * (I + G G^T)."""
 
     variance: float
     excess: np.ndarray  # G, shape (samples, any number)
@@ -129,7 +129,7 @@ def errors(
 
 
 def growth(problem: Problem, best: Solution, noise: Noise) -> np.ndarray:
-    """By what errors are larger than in white noise, shape (parameters,); 1 of what is held."""
+    """Factors by which errors exceed those of white noise, shape (parameters,); 1 for held parameters."""
     return _with_excess(unscaled_covariance(problem, best), best.slopes, noise.excess)[1]
 
 
@@ -162,7 +162,7 @@ def one_sided(freedom: int) -> float:
 
 
 def undetermined(problem: Problem, best: Solution, rank: float = _RANK) -> tuple[np.ndarray, int]:
-    """Indices of free parameters that the data cannot tell apart, and how many of them are too many.
+    """Indices of free parameters that are not identifiable separately, and the rank deficiency.
 
     The rank of the slopes, each over its length, is that of what the residuals see of the parameters.
 
@@ -215,7 +215,7 @@ def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:
 
 
 def _no_model(values: np.ndarray, samples: int) -> Solution:
-    """What stands for a fit that would begin where the model has no finite residuals: its sum is infinite."""
+    """Placeholder for a fit that starts where the model has no finite residuals; its sum is infinite."""
     return Solution(
         values.copy(), np.full(samples, np.inf), np.zeros((samples, values.size)), np.zeros(values.size, bool)
     )
@@ -265,7 +265,7 @@ def inflation(residual: np.ndarray) -> tuple[float, float]:
 def profile_end(
     problem: Problem, best: Solution, index: int, allowed: float, scale: float
 ) -> tuple[float, Solution]:
-    """How far a parameter can go up before the least sum has grown by what is allowed, and the fit there.
+    """Upper end of a profile: the value at which the least sum has grown by `allowed`, and the fit there.
 
     scale : its standard error, in which steps are counted
     """

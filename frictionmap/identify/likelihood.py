@@ -74,7 +74,7 @@ def log_likelihood(ds: xr.Dataset) -> LogLikelihood:
     Raises
     ------
     InputError
-        The dataset is of another kind, or lacks something.
+        The dataset is of another kind, or lacks a variable.
     """
     if not isinstance(ds, xr.Dataset):
         raise InputError(f"ds must be a dataset of estimates; got {checks.one_line(ds)}")

@@ -45,7 +45,7 @@ MEANINGS = ("one_friction_ratio", "several_friction_ratios", "no_friction_ratio_
 
 
 class FrictionRatios(NamedTuple):
-    """What one lag tells of friction."""
+    """Friction ratios that follow from one lag."""
 
     beta: tuple[float, ...]  # friction ratios that give it, increasing: none, one or more
     slope: tuple[float, ...]  # change of the lag with each of them [deg per unit]
@@ -113,13 +113,13 @@ def friction_ratio(
         One a point: `beta`, none, one or more, and the `slope` of the lag [deg per unit of beta] at each;
         `code`, which `MEANINGS` has in words; `reason`.  Two from 90 deg on below resonance, where the lag
         of one mass on a fixed wall rises beyond 90 deg with friction and comes back as the mass sticks.  For
-        other structures none if the lag does not tell it: less than 10 deg per unit of beta, or rising and
+        other structures none if the lag does not determine it: below 10 deg per unit of beta, or rising and
         falling.
 
     Raises
     ------
     InputError
-        An argument is illegal.
+        An argument is invalid.
 
     Notes
     -----
@@ -146,7 +146,7 @@ def friction_ratio(
 
 
 def invert(system: System, r: np.ndarray, lag: np.ndarray, mass: np.ndarray) -> list[FrictionRatios]:
-    """What lags [rad] of masses, from 0, tell of friction, as `friction_ratio`; all (points,)."""
+    """Determine friction ratios from lags [rad] of masses, from 0, as `friction_ratio`; all (points,)."""
     measured = _Measured(system, r, lag, mass)
     seen = _look(system, r, mass)
     beta, which = _roots(measured, seen)
@@ -173,13 +173,13 @@ def is_one_on_wall(system: System) -> bool:
 
 
 def reach(system: System, r: np.ndarray, lag: np.ndarray) -> np.ndarray:
-    """How far lags [rad] of the first mass are off all that any friction gives, (points,)."""
+    """Distance of lags [rad] of the first mass from the range that friction can give, (points,)."""
     mass = np.zeros(r.size, dtype=int)
     return _reach(_Measured(system, r, lag, mass), _look(system, r, mass))
 
 
 def _reach(measured: _Measured, seen: _Lags) -> np.ndarray:
-    """How far the lags are off all that friction gives, (points,): 0 of those within."""
+    """Distance of lags from the range that friction can give, (points,); 0 within it."""
     low, high = np.nanmin(seen.lag, axis=0), np.nanmax(seen.lag, axis=0)
     off = np.maximum(np.maximum(low - measured.lag, measured.lag - high), 0.0)
     beyond = np.flatnonzero(off)
@@ -221,7 +221,7 @@ def _lag(system: System, r: np.ndarray, beta: np.ndarray, mass: np.ndarray) -> n
 
 
 def _look(system: System, r: np.ndarray, mass: np.ndarray) -> _Lags:
-    """Lags over all friction; where a closed form tells beta in continuous motion, at 0 and beyond it."""
+    """Lags over all friction; where a closed form gives beta in continuous motion, at 0 and beyond it."""
     stick = np.abs(system.contact_load(r))
     # a load that feeds a resonance of the held structure moves it whatever the friction
     stick = np.where(np.isfinite(stick), stick, 1.0 / np.finfo(float).eps)
@@ -323,7 +323,7 @@ def _has_closed_form(system: System) -> bool:
 
 
 def _none_reason(measured: _Measured, k: int, seen: _Lags) -> str:
-    """Which lags friction gives at the frequency of a point, none of which is the one measured."""
+    """State the range of lags that friction can give at a point, which excludes the measured one."""
     r, lag = float(measured.r[k]), float(np.degrees(measured.lag[k]))
     point = np.array([k])
     off = np.degrees(_reach(measured.at(point), _Lags(seen.beta[:, point], seen.lag[:, point]))[0])

@@ -77,7 +77,7 @@ class _Linear(NamedTuple):
 
 
 def phasors_of(time: np.ndarray, channels: np.ndarray) -> Phasors:
-    """Fit harmonics of one frequency to all channels, the first of which tells where to look for it.
+    """Fit harmonics of one frequency to all channels; the first channel gives the initial frequency.
 
     Zeros that wander are fitted with slow waves, if there is more in the residuals than white noise has.
 
@@ -87,7 +87,7 @@ def phasors_of(time: np.ndarray, channels: np.ndarray) -> Phasors:
     Raises
     ------
     InputError
-        There are too few samples a cycle, too few cycles, or too few samples at all.
+        There are too few samples per cycle, too few cycles, or too few samples in all.
     """
     middle = 0.5 * (time[0] + time[-1])
     t = time - middle
@@ -105,7 +105,7 @@ def phasors_of(time: np.ndarray, channels: np.ndarray) -> Phasors:
 
 
 def robust_phasors(time: np.ndarray, channels: np.ndarray) -> tuple[Phasors, np.ndarray]:
-    """The same for channels with outliers, and the channels with their outliers drawn in.
+    """Fit harmonics to channels with outliers; also return the channels with outliers limited.
 
     A sample farther from the harmonics than some deviations of the others counts as one at that distance.
     """
@@ -152,9 +152,9 @@ def ratio_error(phasors: Phasors) -> float:
 
 
 def changes(time: np.ndarray, channels: np.ndarray, whole: Phasors) -> np.ndarray:
-    """How far X_1 of every channel differs between the first and the last third, squared, over its variance.
+    """Squared change of X_1 from the first to the last third of the record, over its variance, by channel.
 
-    Two normal deviates of their own make it 2 on average.  None are told of thirds shorter than a cycle.
+    It is 2 on average for a steady motion.  Empty if a third is shorter than a cycle.
     """
     third = (time[-1] - time[0]) / 3.0
     if third * whole.frequency < 1.0:
@@ -204,7 +204,7 @@ def _coarse_frequency(t: np.ndarray, base: np.ndarray) -> float:
 
 
 def _checked_harmonics(t: np.ndarray, frequency: float) -> int:
-    """How many harmonics the samples can tell."""
+    """Number of harmonics that the samples resolve."""
     length = float(t[-1] - t[0])
     cycles = length * frequency
     if cycles < _LEAST_CYCLES:
@@ -226,7 +226,7 @@ def _checked_harmonics(t: np.ndarray, frequency: float) -> int:
 
 
 def _stride(t: np.ndarray, frequency: float) -> int:
-    """Every so many samples will do for a start: enough a cycle, and enough of them."""
+    """Stride of samples sufficient for initial values: enough per cycle, and enough in all."""
     a_cycle = 1.0 / (float(np.median(np.diff(t))) * frequency)
     return max(1, min(t.size // _SAMPLES, int(a_cycle / _SAMPLES_A_CYCLE)))
 

@@ -72,7 +72,7 @@ def shaken(contact: str, damping_reference: str, phasors: Phasors, time: np.ndar
 
 
 def moved(mass: Shaken, change: np.ndarray) -> Shaken:
-    """The same on a base that moves otherwise."""
+    """Change the motion of the base."""
     return mass._replace(base=mass.base + change)
 
 
@@ -111,7 +111,7 @@ def motion(mass: Shaken, values: np.ndarray) -> Motion:
 
 
 def inner(values: np.ndarray) -> np.ndarray:
-    """What is fitted: (mu - 1)^2 stands for mu.
+    """Convert parameters to fitted variables, with (mu - 1)^2 for mu.
 
     After a stop the mass leaves with an acceleration in proportion to mu - 1, but later by as much: at mu = 1
     the motion does not change with mu to first order.
@@ -122,7 +122,7 @@ def inner(values: np.ndarray) -> np.ndarray:
 
 
 def outer(values: np.ndarray) -> np.ndarray:
-    """The parameters of what is fitted."""
+    """Convert fitted variables to parameters."""
     result = values.copy()
     result[MU] = 1.0 + np.sqrt(max(float(values[MU]), 0.0))
     return result

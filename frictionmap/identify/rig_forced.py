@@ -78,7 +78,7 @@ def _check_load(system: System, rig: Rig, table: Table) -> None:
 
 
 def _wanted(system: System, rig: Rig, table: Table) -> dict[str, str]:
-    """What every column that is made use of measures."""
+    """Quantities of the columns that are used."""
     roles = _roles_by_use(system)
     load = _LOADS[system.excitation or "force"]
     motions = _roles(system, *_MOTION)
@@ -137,7 +137,7 @@ def _role(system: System, role: str, mass: int) -> str:
 
 
 def _checked_use(rig: Rig, there: list[str]) -> list[str]:
-    """What is fitted: what the configuration says, or all that is there."""
+    """Quantities to be fitted: as configured, or all available."""
     use = rig.data.get("use", there or list(_USE))
     if not isinstance(use, list) or not use:
         raise InputError(f"data.use must be a list of {', '.join(_USE)}; got {checks.one_line(use)}")
@@ -223,7 +223,7 @@ def _errors(rig: Rig, picked: Columns) -> list[np.ndarray | None]:
 
 
 def _frequency(rig: Rig, picked: Columns) -> np.ndarray:
-    """In Hz."""
+    """Frequencies [Hz]."""
     if "frequency_ratio" in picked.columns:
         if "f_n" not in rig.known:
             raise InputError("cannot convert the column frequency_ratio: f_n is missing; give known.f_n")

@@ -100,7 +100,7 @@ def _arrays(table: Table, part: Mapping[str, Any], remarks: list[str]) -> list[n
     picked = pick_columns(table, wanted, part["columns"], part["missing"])
     check_increasing(table, picked.columns["time"], picked.rows)
     if picked.dropped:
-        remarks.append(f"{part['label']}: {picked.dropped} rows have no number and were left out")
+        remarks.append(f"{part['label']}: {picked.dropped} rows have no number and were ignored")
     units = {"time": "s", "length": _UNIT}
     arrays = [
         picked.columns[role].values * conversion(picked.columns[role].unit, units[measures])
@@ -119,7 +119,7 @@ def data_paths(parts: list[dict[str, object]], folder: Path) -> tuple[Path, ...]
 
 
 def _refused(rig: Rig, table: Table) -> xr.Dataset:
-    """What no single table is fitted by."""
+    """Refuse to fit a single table."""
     raise InputError("data must be tables [[data]] for several measurements; got one")
 
 

@@ -1,6 +1,6 @@
-"""The keys of the configuration of a rig, by the kind of data: meanings and what is legal.
+"""Keys of the configuration of a rig, by the kind of data: meanings and valid values.
 
-Which keys a kind has, its `Kind` says; what they mean stands here.
+`Kind` lists the keys of a kind of data; this module describes them.
 """
 
 from typing import Any

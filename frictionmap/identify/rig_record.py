@@ -67,13 +67,13 @@ def _displaced(
 
 
 def _of_integration(columns: tuple[Column, Column], found: Displacements) -> list[str]:
-    """What to mind of displacements that were not measured, in words."""
+    """Warnings about displacements obtained by integration."""
     words = []
     for column, noise in zip(columns, found.noise, strict=True):
         if noise > _NOISY:
             words.append(
                 f"{column.name} as a displacement has noise of {noise:.0%} of its motion: integration "
-                "amplifies what is slow"
+                "amplifies low frequencies"
             )
     if any(derivative_order(COLUMN_NAMES[column.unit]) for column in columns):
         words.append("offset_x has no meaning: velocities and accelerations do not show where the mass rests")

@@ -9,7 +9,7 @@ from scipy.special import gammaincc
 
 from .. import checks
 from ..errors import InputError
-from .cautions import bounded, coloured, trading
+from .cautions import autocorrelation_warnings, bound_warnings, correlation_warnings
 from .chain_errors import fit_by_residuals, fit_robust_by_residuals
 from .chain_estimates import chain_estimates, chain_names
 from .chain_fit import SEARCHES, Found, Measured, fit_chain
@@ -61,7 +61,7 @@ def sweep(
 ) -> xr.Dataset:
     """Fit a chain of masses on a shaken base, without friction, to amplitudes and lags over frequency.
 
-    Of its eleven arguments the first three are the data; the others say what is known and wanted.
+    The first three arguments are the data; the others state known parameters and options.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def sweep(
     amplitude_ratio : array, shape (samples,), or mapping of such
         X_k/Y > 0 of mass 1, or by mass, counted from 1, such as {1: ..., 3: ...}.
     phase_lag : array, shape (samples,), or mapping of such
-        Lags [deg] behind the base, the same way; they tell damping.
+        Lags [deg] behind the base, in the same form; they determine the damping.
     masses : int
         Of the chain, 1 to 5.
     damping : "ground" or "base"
@@ -98,8 +98,8 @@ def sweep(
     Raises
     ------
     InputError
-        An argument is illegal, data or peaks are fewer than unknowns ask for, or data cannot tell unknowns
-        apart: they are named.
+        An argument is invalid, data or peaks are fewer than unknowns, or unknowns are not identifiable
+        separately: they are named.
 
     Notes
     -----
@@ -179,16 +179,16 @@ def _verdict(fit: _Fit) -> xr.Variable:
 
 
 def _warnings(fit: _Fit) -> list[str]:
-    """What to mind, in words."""
-    words = coloured(fit.errors) + trading(fit.names, fit.errors.correlation)
-    words += bounded(fit.names, fit.problem.floor, fit.found.best.at_bound)
+    """Warnings about a fit."""
+    words = autocorrelation_warnings(fit.errors) + correlation_warnings(fit.names, fit.errors.correlation)
+    words += bound_warnings(fit.names, fit.problem.floor, fit.found.best.at_bound)
     if fit.found.times == 1:
-        words.append(f"the least sum of squares was found in one of {SEARCHES} searches only")
+        words.append(f"the least sum of squares was found in only one of {SEARCHES} searches")
     return words + _other_answers(fit)
 
 
 def _other_answers(fit: _Fit) -> list[str]:
-    """Chains elsewhere that the data cannot tell from the one that was found."""
+    """Warn of other chains that fit the data as well."""
     best, ratios = fit.found.best, 2 * fit.data.n - 1
     variance = 1.0 if fit.given else fit.errors.variance
     words: list[str] = []
@@ -201,7 +201,7 @@ def _other_answers(fit: _Fit) -> list[str]:
             values = ", ".join(
                 f"{fit.names[k]} {np.exp(other.values[k]):.5g}" for k in range(ratios) if fit.problem.free[k]
             )
-            words.append(f"the data cannot tell this from {values}")
+            words.append(f"the data fit {values} as well")
     return words
 
 

@@ -30,7 +30,7 @@ class Table(NamedTuple):
     form: str  # of the file, in words
 
     def place(self, name: str, row: int) -> str:
-        """A value's place in words."""
+        """Describe the place of a value."""
         return f"file {self.file}, column {name}, {self.row_word} {self.first + row}"
 
     def text(self, name: str, row: int) -> str:
@@ -123,7 +123,7 @@ def _read_npz(path: Path) -> Table:
 
 
 def _from_arrays(path: Path, arrays: Arrays, form: str) -> Table:
-    """What is a list of real numbers is a column; whatever else a file holds is not."""
+    """Make a table of all one-dimensional arrays of real numbers; others are ignored."""
     columns = {name: np.ravel(array).astype(float) for name, array in arrays.items() if _is_column(array)}
     return Table(path, columns, {}, 0, "index", form)
 

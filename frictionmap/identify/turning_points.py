@@ -1,4 +1,4 @@
-"""Turning points of a measured decay, and what they tell without any model."""
+"""Turning points of a measured decay, and results that need no model."""
 
 import math
 from typing import NamedTuple
@@ -57,7 +57,7 @@ def resolution(x: np.ndarray) -> float:
 
 
 def turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
-    """Where the motion turns back by more than its noise, refined by parabolas."""
+    """Find turning points where the motion reverses by more than its noise, refined by parabolas."""
     # normal deviates span about 2 sqrt(2 ln n) deviations, give or take one
     noise = (2.0 * np.sqrt(2.0 * np.log(max(x.size, 2))) + 1.0) * noise_level(x)
     swing = max(noise, _SHARE * float(np.ptp(x)))
@@ -123,13 +123,13 @@ def regular_run(points: TurningPoints) -> slice:
 
 
 def samples_a_cycle(x: np.ndarray) -> float:
-    """Samples in a cycle of the large swings; infinite if there are not two turning points."""
+    """Samples per cycle of the large swings; infinite if there are not two turning points."""
     found = turns(x, _LARGE * float(np.ptp(x)))
     return 2.0 * float(np.median(np.diff(found))) if len(found) > 1 else np.inf
 
 
 def undersampled(x: np.ndarray) -> str:
-    """What is wrong with the rate of sampling, or nothing."""
+    """Describe a sampling rate that is too low; empty if it suffices."""
     found = samples_a_cycle(x)
     return f"{found:g} samples per cycle; {_LEAST_SAMPLES} are needed" if found < _LEAST_SAMPLES else ""
 

@@ -66,8 +66,8 @@ def plot_fit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> 
     if ax is None:
         figure = axes[0].figure
         assert isinstance(figure, Figure)
-        told = (estimates_in_short(ds), verdict_in_words(ds), about_residuals(ds), *picture.remarks)
-        legend_below(figure, handles, "; ".join(filter(None, told)))
+        remarks = (estimates_in_short(ds), verdict_in_words(ds), about_residuals(ds), *picture.remarks)
+        legend_below(figure, handles, "; ".join(filter(None, remarks)))
     else:
         legend_under(axes[-1], handles)
     return axes

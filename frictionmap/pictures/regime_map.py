@@ -20,7 +20,6 @@ from .features import features_of, mark_features
 from .grids import Grid
 from .marks import COARSE, rare_classes, rings, room_for, trace
 from .palette import (  # fmt: skip
-    BROKEN,
     CLASSES,
     CONTINUOUS,
     COUNT,
@@ -28,6 +27,7 @@ from .palette import (  # fmt: skip
     HATCH_COLOUR,
     LIM,
     MORE,
+    NON_INTEGER,
     NOT_YET,
     NOT_YET_HATCH,
     NOT_YET_LABEL,
@@ -197,7 +197,7 @@ def _class_handles(panels: Sequence[xr.Dataset], cells: Sequence[Cells]) -> list
     handles: list[Handle] = []
     for index in np.flatnonzero(counts[:NOT_YET]):
         low, high = np.inf, -np.inf
-        if index in (MORE, BROKEN):
+        if index in (MORE, NON_INTEGER):
             ends = [
                 stops_range(part.found, panel["stops_per_cycle"].values, int(index))
                 for panel, part in zip(panels, cells, strict=True)

@@ -1,4 +1,4 @@
-"""Maps that outgrow memory and patience: computed block by block into a zarr store.
+"""Large maps, computed block by block into a zarr store.
 
 =========  =============================================================================
 module     what is in it, in the order in which data flows

@@ -1,4 +1,4 @@
-"""Filling a store: what is missing is computed block by block, wherever a run was stopped."""
+"""Computation of the missing blocks of a store, wherever a run was stopped."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -21,7 +21,7 @@ FindCut = Callable[[Study], Cut]
 
 
 def in_this_process(threads: int | None) -> Fill:
-    """One batch after the other, each on threads."""
+    """Compute one batch after the other, each on threads."""
 
     def fill(store: Store, batches: Iterable[Batch]) -> Iterator[Batch]:
         for batch in batches:
@@ -40,9 +40,9 @@ def fill_store(
     progress: Progress | None = None,
     find_cut: FindCut | None = None,
 ) -> Store:
-    """Make the store of a study, or go on with it, until all its blocks are done.
+    """Make the store of a study, or resume it, until all its blocks are done.
 
-    A store keeps the cut that it was made with; `find_cut` is asked for that of a new one.
+    A store keeps the cut that it was made with; `find_cut` gives that of a new one.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def fill_store(
 
 
 def _check_replaceable(path: Path) -> None:
-    """Refuse to replace a folder that is no store, or one that is protected from writing."""
+    """Refuse to replace a folder that is not a store or is write-protected."""
     if not path.exists():
         return
     _check_writable(path)
@@ -92,7 +92,7 @@ def _check_replaceable(path: Path) -> None:
 
 
 def _check_writable(path: Path) -> None:
-    """Refuse a store that is protected from writing, or one of whose arrays is."""
+    """Refuse a store that is write-protected, or has a write-protected array."""
     for place in (path, *path.glob("*/")):
         if not os.access(place, os.W_OK):
             raise InputError(

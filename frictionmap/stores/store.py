@@ -1,4 +1,4 @@
-"""A store on disk: made whole, recognised as that of a study, tidied; blocks written, and marked as done."""
+"""Stores on disk: creation, identification, removal of leftovers; writing and marking of blocks."""
 
 import contextlib
 import glob
@@ -63,14 +63,14 @@ class Store:
 
     @property
     def digest(self) -> str:
-        """What tells a store from one of another study."""
+        """Hash of configuration and matrices, by which stores are distinguished."""
         text = str(self._group.attrs["config"])
         matrices = _matrices(self.study.system.matrices)
         content = [text.encode(), *(array.tobytes() for array in matrices.values())]
         return hashlib.sha256(b"".join(content)).hexdigest()
 
     def marks(self) -> np.ndarray:
-        """Which blocks are marked as done; bool, in the shape of `study.shape`.
+        """Blocks marked as done, bool of `study.shape`.
 
         Raises
         ------
@@ -88,14 +88,14 @@ class Store:
             raise _damaged(self.path, name, error) from None
 
     def done(self) -> np.ndarray:
-        """Which blocks are done: `marks`, but for blocks of which a chunk is missing, by whose hand ever."""
+        """Blocks marked as done whose chunks all exist."""
         done = self.marks()
         for batch in self.study.batches():
             done[batch.places] &= not done[batch.places].any() or self._is_whole(batch)
         return done
 
     def _is_whole(self, batch: Batch) -> bool:
-        """Whether all chunks of a batch are there, whatever is in them."""
+        """Whether all chunks of a batch exist."""
         for name, array in self._arrays.items():
             place = chunk(region(self.study, batch, array), array)
             if not (self.path / name / self._writable[name].metadata.encode_chunk_key(place)).exists():
@@ -121,9 +121,9 @@ class Store:
 
 
 def make_store(path: Path, study: Study, title: str) -> None:
-    """Make the store of a study, without any block; it appears whole or not at all.
+    """Make the store of a study without any block; it appears in one step.
 
-    One that is there is put away, in one step as well: a stray.
+    An existing store is set aside in one step as well, to be removed.
 
     Raises
     ------
@@ -181,14 +181,14 @@ def _make_array(group: "zarr.Group", name: str, array: Array) -> "zarr.Array":
 
 
 def _matrices(matrices: object) -> dict[str, np.ndarray]:
-    """Those of a structure, if it is given by matrices, by their names."""
+    """Matrices of a structure by their names; none of a chain."""
     if not isinstance(matrices, Matrices):
         return {}
     return matrices.arrays
 
 
 def _configuration(study: Study, title: str) -> str:
-    """A configuration that makes the study again, beside its matrices."""
+    """Configuration that reproduces the study; matrices are stored as arrays."""
     grid = {"r": study.r, "beta": study.beta, "mu": study.mu}
     further = study.variations.described or None
     return configuration(
@@ -211,7 +211,7 @@ def opened(path: Path) -> Store:
 
 
 def cut_of(path: Path) -> Cut:
-    """How the store at a path is cut, by the chunks of its arrays.
+    """Read the division of a store into blocks from the chunks of its arrays.
 
     Raises
     ------
@@ -238,7 +238,7 @@ def _damaged(path: Path, name: str, error: Exception) -> InputError:
 
 
 def _config(path: Path) -> Config:
-    """The configuration of a store; refused is what is no store of ours, or of another version."""
+    """Read the configuration of a store; refuse other folders, and stores of another version."""
     zarr = _zarr()
     source: object = "something else"
     try:
@@ -263,7 +263,7 @@ def _arrays_in(group: "zarr.Group", name: str) -> list[tuple[str, "zarr.Array"]]
 
 
 def check_same(path: Path, study: Study, title: str) -> None:
-    """Refuse a store of another study, by name of what differs."""
+    """Refuse a store of another study; the message names the differing keys."""
     config = _config(path)
     there = _flat(parse(config.text))
     here = _flat(parse(_configuration(study, title)))
@@ -283,7 +283,7 @@ def check_same(path: Path, study: Study, title: str) -> None:
 
 
 def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """A tree by dotted keys."""
+    """Flatten nested tables to dotted keys."""
     flat: dict[str, Any] = {}
     for key, value in tree.items():
         flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, Mapping) else {f"{prefix}{key}": value}
@@ -291,7 +291,7 @@ def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def _being_made(path: Path) -> str:
-    """How the name of a store begins before and after it is one."""
+    """Prefix of the names of a store that is being made, or was replaced."""
     return f".{path.name}-"
 
 
@@ -301,7 +301,7 @@ def _away(path: Path) -> Path:
 
 
 def remove_strays(path: Path) -> None:
-    """Remove what was being made, written or replaced when a run was stopped; no other may be at it."""
+    """Remove leftovers of stopped runs; no other run may be writing the store."""
     for folder in path.parent.glob(glob.escape(_being_made(path)) + 16 * "[0-9a-f]"):
         shutil.rmtree(folder, ignore_errors=True)
     for stray in path.rglob(_PARTIAL):

@@ -1,4 +1,4 @@
-"""Text that Abaqus writes with *MATRIX GENERATE and *MATRIX OUTPUT.
+"""Matrices as text that Abaqus writes with *MATRIX GENERATE and *MATRIX OUTPUT.
 
 Lines of ``node, dof, node, dof, entry`` (FORMAT=MATRIX INPUT or LABELS) or of ``row column entry``
 (FORMAT=COORDINATE).  Of a symmetric matrix either triangle is there, or all of it.

@@ -34,7 +34,7 @@ _KEYS = ("keep", "modes", "allow")
 
 
 class Reduce(NamedTuple):
-    """What is asked for."""
+    """Settings of a reduction."""
 
     keep: tuple[int, ...]  # numbers of degrees of freedom, beside contact and load
     modes: int
@@ -83,7 +83,7 @@ class FixedInterface:
         return columns
 
     def rows(self, columns: np.ndarray) -> np.ndarray:
-        """Rows whose displacements are the coordinates: the kept ones, and others that tell best."""
+        """Rows whose displacements are the coordinates: the kept ones, and those that separate modes best."""
         from scipy.linalg import qr
 
         inner = columns[self.others, self.kept.size :]
@@ -140,7 +140,7 @@ def slowest(mass: Any, stiffness: Any, count: int) -> tuple[np.ndarray, np.ndarr
 
 
 def fixed_interface(structure: Structure, kept: Sequence[int], modes: int) -> FixedInterface:
-    """Hold these rows of a structure with sparse matrices, and find so many modes of the others.
+    """Hold some rows of a structure with sparse matrices and find modes of the others.
 
     Raises
     ------
@@ -183,7 +183,7 @@ class Reduced(NamedTuple):
 
 
 def project(structure: Structure, fixed: FixedInterface, modes: int, base: bool) -> Reduced:
-    """The structure in so many modes and the kept degrees of freedom."""
+    """Project the structure onto the kept degrees of freedom and some modes."""
     columns = fixed.spanned(modes, base)
     rows = fixed.rows(columns)
     motions = np.linalg.solve(columns[rows].T, columns.T).T

@@ -1,4 +1,4 @@
-"""A matrix as a file has it: its entries, and the labels of its rows where the file has any."""
+"""Matrices in files: entries, and labels of the rows where the file has any."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -47,20 +47,20 @@ def text_of(path: Path) -> str:
 
 
 def numbered(text: str, comment: str) -> Iterator[tuple[int, str]]:
-    """Lines with their numbers, those left out that are empty or begin with the mark of comments."""
+    """Lines with their numbers, without empty lines and comments."""
     for number, line in enumerate(text.splitlines(), start=1):
         if line.strip() and not line.lstrip().startswith(comment):
             yield number, line
 
 
 def as_whole(text: str) -> int:
-    """A whole number in digits.  ValueError if it is none."""
+    """Convert an integer in digits; ValueError if it is none."""
     _check_digits(text)
     return int(text)
 
 
 def as_number(text: str) -> float:
-    """A number as Fortran or C writes it; also 1.5D+03 and 1.5+03.  ValueError if it is none."""
+    """Convert a number as Fortran or C writes it, also 1.5D+03 and 1.5+03; ValueError if it is none."""
     _check_digits(text)
     try:
         return float(text)
@@ -75,7 +75,7 @@ def _check_digits(text: str) -> None:
 
 
 def assembled(path: Path, size: int, rows: ArrayLike, columns: ArrayLike, values: ArrayLike) -> Any:
-    """The sparse matrix of such entries, counted from 0; none may come twice."""
+    """Assemble a sparse matrix from entries, counted from 0, each given once."""
     from scipy.sparse import coo_array
 
     if size > _MOST:
@@ -98,7 +98,7 @@ def mirrored(matrix: Any) -> Any:
 
 
 def half_or_whole(matrix: Any) -> Any:
-    """The matrix of a format that gives either triangle of a symmetric one, or all of it."""
+    """Complete a symmetric matrix that may be given by one triangle or in full."""
     pattern = matrix.copy()
     pattern.data = np.ones_like(pattern.data)
     pattern.setdiag(0.0)
@@ -108,7 +108,7 @@ def half_or_whole(matrix: Any) -> Any:
 
 
 def in_one_order(matrices: dict[str, Matrix]) -> tuple[dict[str, Any], tuple[Label, ...] | None]:
-    """The matrices with the same rows: those of all labels, increasing; and these labels.
+    """Give all matrices the same rows, one per label, increasing; return them and the labels.
 
     Raises
     ------

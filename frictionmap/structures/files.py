@@ -1,4 +1,4 @@
-"""The matrices of a structure from whatever they were given as: a file with all, one file each, or arrays."""
+"""Matrices of a structure from one file, from one file each, or from arrays."""
 
 import os
 from collections.abc import Callable, Iterable, Mapping
@@ -35,7 +35,7 @@ _ONE_EACH = 'matrices = { M = "m.mtx", K = "k.mtx" }'
 
 
 class Found(NamedTuple):
-    """What was given, not checked but for names and labels."""
+    """Given matrices; only names and labels are checked."""
 
     arrays: dict[str, Any]  # M, K and perhaps C: whatever it is, or sparse
     dofs: Any  # their numbers, if they were given, else None
@@ -129,7 +129,7 @@ def _is_market(path: Path) -> bool:
 
 
 def _opened(path: Path, read: Callable[[Path], Any]) -> Any:
-    """What a file holds; what is said of one that is refused begins with the key."""
+    """Read a file; refusals begin with the key."""
     try:
         return read(path)
     except InputError as error:

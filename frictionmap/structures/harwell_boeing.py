@@ -19,7 +19,7 @@ _REAL = re.compile(r"\s*([+-]?\d*)(\.\d*)?(?:[ED]?([+-]?\d+))?\s*", re.IGNORECAS
 
 
 class _Card(NamedTuple):
-    """How numbers stand on a line."""
+    """Fortran format of the numbers on a line."""
 
     most: int
     kind: str
@@ -82,7 +82,7 @@ def read_harwell_boeing(path: Path) -> Matrix:
 
 
 def _whole(path: Path, lines: list[str], index: int, begin: int = 0) -> list[int]:
-    """Whole numbers of a line of the header."""
+    """Read the integers of a header line."""
     try:
         return [as_whole(word) for word in lines[index][begin:].split()]
     except ValueError:
@@ -98,7 +98,7 @@ def _card(path: Path, line: str, word: str) -> _Card:
 
 
 def _numbers(path: Path, lines: list[str], begin: int, count: int, card: _Card, size: int) -> np.ndarray:
-    """So many numbers from so many lines; by blanks, or by the format's width where numbers touch.
+    """Read numbers from several lines, separated by blanks or, where they touch, by the width of the format.
 
     Some programs keep the blanks and not the width.
     """

@@ -45,7 +45,7 @@ def read_market(path: Path) -> Matrix:
 
 
 def _sizes(path: Path, lines: Iterator[tuple[int, str]], count: int) -> list[int]:
-    """Whole numbers of the line with the sizes; refused is a matrix that is not square."""
+    """Read the size of the matrix; refuse one that is not square."""
     number, line = next(lines, (2, ""))
     try:
         sizes = [as_whole(word) for word in line.split()]

@@ -1,4 +1,4 @@
-"""A structure and its reduction: made, and held to its promise in the range of frequency."""
+"""Reduction of a structure, checked against the allowed error in the range of frequency."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -22,7 +22,7 @@ _LEAST_REFINED = 8
 
 @dataclass(frozen=True, eq=False)
 class Reduction:
-    """How a structure was reduced."""
+    """A structure, its reduction and the accuracy of the reduction."""
 
     asked: Reduce
     structure: Structure  # the whole one
@@ -33,7 +33,7 @@ class Reduction:
     _found: Ranges[Accuracy] = field(default_factory=Ranges)
 
     def like(self, asked: Reduce, kept: tuple[int, ...], contact: np.ndarray, base: bool) -> bool:
-        """Whether this is the reduction that is asked for."""
+        """Whether this reduction has the given settings."""
         same = self.asked == asked and self.kept == kept and self.base == base
         return same and bool(np.array_equal(self.contact, contact))
 
@@ -45,12 +45,12 @@ class Reduction:
 
     @property
     def most_modes(self) -> int:
-        """How many modes there are with the kept degrees of freedom held."""
+        """Number of modes with the kept degrees of freedom held."""
         return int(np.count_nonzero(self.structure.arrays["M"].diagonal())) - len(self.kept)
 
     @cached_property
     def refined(self) -> "Reduction | None":
-        """The same structure reduced to twice as many modes, or to all; None if it has all of them."""
+        """Reduction of the structure to twice as many modes, or to all; None if it has all already."""
         modes = min(max(2 * self.asked.modes, _LEAST_REFINED), self.most_modes)
         if modes <= self.asked.modes:
             return None
@@ -60,15 +60,15 @@ class Reduction:
     def checked(self, low: float, high: float) -> Accuracy:
         """Its accuracy from one angular frequency to another, in the units of sqrt(K/M).
 
-        Within a range that was asked for before it is that of this range: a motion at one of its
-        frequencies is told at once.
+        Within a range requested before, the accuracy of that range is returned at once, e.g. for a motion at
+        one of its frequencies.
 
         Raises
         ------
         InputError
-            It is worse than allowed; how many modes would do is told.
+            The error exceeds the limit; the message states how many modes suffice.
         """
-        return self._found.told(low, high, lambda: self._accuracy(low, high))
+        return self._found.lookup(low, high, lambda: self._accuracy(low, high))
 
     def _accuracy(self, low: float, high: float) -> Accuracy:
         comparison = Comparison(self._whole(), low, high)
@@ -107,7 +107,7 @@ class Reduction:
 
 
 def _enough(do: Callable[[int], bool], too_few: int, most: int) -> int | None:
-    """A number of modes that does, where one fewer does not: the same, mostly, whatever was tried first.
+    """Smallest sufficient number of modes, found by bisection.
 
     None if `most` does not.
     """

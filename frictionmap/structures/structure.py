@@ -1,4 +1,4 @@
-"""The matrices of a structure, checked: square, real, finite, symmetric, of one size, dense or sparse."""
+"""Checked matrices of a structure: square, real, finite, symmetric, of one size, dense or sparse."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -1,6 +1,6 @@
 """A number with its unit as an exact number: text such as "4.2 Hz", or a quantity of pint, astropy or unyt.
 
-Of text nothing is guessed and nothing repaired.  Quantities of other packages are converted by their own
+Text is neither guessed nor repaired.  Quantities of other packages are converted by their own
 `to` and `to_value`, into a unit that is chosen here: pint takes 1 Hz for 1 rad/s.
 """
 
@@ -50,7 +50,7 @@ _CF = {"rad s-1": "rad/s"}
 
 
 class Quantity(NamedTuple):
-    """A number in the SI unit of what it measures (Hz of a frequency), and the text that says it."""
+    """An exact number in SI units (Hz for a frequency), and its text."""
 
     value: Fraction
     text: str
@@ -66,7 +66,7 @@ def is_foreign(value: object) -> bool:
 
 
 def quantity(value: object, name: str, kind: str) -> Quantity:
-    """One number with a unit of frequency, force, length, mass, stiffness or acceleration.
+    """Convert a number with a unit of frequency, force, length, mass, stiffness or acceleration.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def _from_text(text: str, name: str, kind: str) -> Quantity:
 
 
 def _slip(text: str) -> str:
-    """What is wrong with text that is no number and unit."""
+    """Describe the error in text that is not a number with a unit."""
     if _COMMA.match(text):
         return "use a decimal point, not a comma"
     if _NO_NUMBER.match(text):
@@ -143,7 +143,7 @@ def _is_text_of_number(text: str) -> bool:
 
 
 def _meant(unit: str, kind: str) -> str:
-    """Which unit an unknown one may be a slip of."""
+    """Suggest a unit for an unknown one."""
     legal = [*units_of(kind), *(name for name, known in UNITS.items() if known.measures != kind)]
     same = [name for name in legal if name.lower() == unit.lower()]
     hint = f" (did you mean {same[0]}?)" if same else checks.nearest(unit, legal)
@@ -166,7 +166,7 @@ def _is_number(value: object) -> bool:
 
 
 def _own_unit(value: Any) -> str:
-    """How another package writes the unit of a quantity."""
+    """Unit of a quantity as its package writes it."""
     return str(getattr(value, "units", None) if hasattr(value, "units") else getattr(value, "unit", ""))
 
 
@@ -200,7 +200,7 @@ def _converted(value: Any, name: str, kind: str) -> tuple[np.ndarray, str]:
 
 
 def _asked(own: str, kind: str) -> tuple[str, str]:
-    """Our unit, and the word for it that a package is asked with; none of what is no frequency."""
+    """Unit, and its spelling for the other package; empty if it is no frequency."""
     if kind != "frequency":
         return units_in_si(kind), _ASKED[kind]
     if _CYCLES.fullmatch(own):

@@ -503,8 +503,8 @@ def output_of(capsys, arguments):
     assert status_of(arguments) == 0
     out, err = capsys.readouterr()
     assert re.fullmatch(
-        r"(frictionmap: map of \d+ cells begun\n"
-        r"(frictionmap: compiling kernels, once: .*\n)?"
+        r"(frictionmap: map of \d+ cells started\n"
+        r"(frictionmap: first use: compiling, .*\n)?"
         r"frictionmap: map of \d+ cells done in \d+ s\n)?",
         err,
     )

@@ -184,7 +184,7 @@ def test_a_lag_that_is_none_says_why(one, asked, period, why):
 def test_a_cell_is_told_in_words(one, at, mu, regime, words):
     header, _ = packet(one, f"/motion?at={at}&mu={mu}")
     assert header["regime"] == regime
-    for sentence, begin in zip(header["told"], words, strict=True):
+    for sentence, begin in zip(header["summary"], words, strict=True):
         assert begin in sentence
 
 
@@ -208,7 +208,7 @@ def test_what_other_starts_give(one):
     assert header["reachable"] == ["permanent_sticking", "stick_slip"]
     assert header["start"] == "moving"
     assert not header["same"]
-    assert "2 stops per cycle" in header["told"][0]
+    assert "2 stops per cycle" in header["summary"][0]
     assert np.abs(arrays["z"]).max() == pytest.approx(0.853, abs=5e-4)
     back, _ = packet(one, "/others?at=0.303,0.76&mu=1.5&start=moving")
     assert (back["start"], back["same"]) == ("rest", False)
@@ -839,7 +839,7 @@ def start(folder, *arguments):
 def test_the_command_serves_until_an_interrupt(tmp_path, sent):
     process = start(tmp_path, "--port", "0", "--set", "grid.mu=1.25")
     line = process.stdout.readline()
-    url = re.fullmatch(r"One mass at (http://127.0.0.1:(\d+)/) until Ctrl-C\n", line)
+    url = re.fullmatch(r"One mass: (http://127.0.0.1:(\d+)/) \(end with Ctrl-C\)\n", line)
     assert url, line
     with socket.create_connection(("127.0.0.1", int(url[2]))) as connection:
         connection.sendall(
@@ -850,7 +850,7 @@ def test_the_command_serves_until_an_interrupt(tmp_path, sent):
     process.send_signal(sent)
     out, err = process.communicate(timeout=HANG)
     assert (process.returncode, out) == (130, "")
-    assert err == "frictionmap: interrupted; the page is closed\n"
+    assert err == "frictionmap: interrupted; page closed\n"
 
 
 def test_a_port_that_is_taken(tmp_path, capsys, one):

@@ -124,7 +124,7 @@ def test_lags_alone_do_not_tell_the_frequency(rig, capsys):
 def test_no_stop_no_mu(rig, capsys):
     assert main(["identify", rig(text=RIG.replace("mu = 1.0", ""))]) == 0
     out = capsys.readouterr().out
-    assert "warning: no motion that was fitted stops: the data do not tell mu, which is held at 1" in out
+    assert "warning: no fitted motion sticks: the data do not determine mu, which is held at 1" in out
 
 
 def test_lags_that_no_friction_gives(rig, capsys):

@@ -224,7 +224,7 @@ BAD_FILES = {
     ),
     "a pattern": (f"{BANNER} pattern general\n1 1 1\n1 1\n", ["line 1", "real general|symmetric", "pattern"]),
     "not square": (f"{BANNER} real general\n1 2 1\n1 1 1.0\n", ["square", "1 by 2"]),
-    "an entry twice": (f"{BANNER} real general\n1 1 2\n1 1 1.0\n1 1 1.0\n", ["given twice", "row 1, column 1"]),
+    "an entry twice": (f"{BANNER} real general\n1 1 2\n1 1 1.0\n1 1 1.0\n", ["twice", "row 1, column 1"]),
     "symmetric, both triangles": (
         f"{BANNER} real symmetric\n2 2 2\n1 1 1.0\n1 2 0.5\n", ["line 4", "an entry of the lower triangle"]
     ),

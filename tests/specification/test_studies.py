@@ -109,7 +109,7 @@ def test_info(files, end, capsys):
     assert [line[0] for line in lines] == axes
     assert "regime                (..., mu, r, beta) motion regime of the steady state" in told
     assert "54 cells (" in told
-    assert ("6 of 6 blocks; all are computed" in told) == (end == ".zarr")
+    assert ("6 of 6 blocks; all computed" in told) == (end == ".zarr")
     assert main(["info", str(files[end]), "--at", "damping_ratios=0.05", "--at", "sample=2"]) == 0
     assert "modal damping ratios 0.05" in capsys.readouterr().out
 
@@ -230,7 +230,7 @@ def test_unfinished_blocks_are_told_and_drawn_as_such(files, tmp_path, capsys):
     assert count(cells_of(ds.isel(mu=0)).found)[NOT_YET] == 0
     assert main(["info", str(path)]) == 0
     told = capsys.readouterr().out
-    assert "3 of 6 blocks; run the command again to go on" in told
+    assert "3 of 6 blocks; repeat the command to resume" in told
     assert "27 cells not_computed" in told
     arguments = ["plot", str(path), "--at", "damping_ratios=0.05", "--at", "sample=0"]
     assert main([*arguments, "-o", str(tmp_path / "part.png"), "--quiet"]) == 0

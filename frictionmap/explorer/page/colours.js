@@ -8,7 +8,7 @@ const VIRIDIS = [
 const STEPS = 256;
 
 /** Indices into the package's palette. */
-export const CLASS = { unresolved: 0, stuck: 1, continuous: 2, one: 3, more: 7, broken: 8, uncounted: 9 };
+export const CLASS = { unresolved: 0, stuck: 1, continuous: 2, one: 3, more: 7, nonInteger: 8, uncounted: 9 };
 
 function parts(hex) {
   return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));

@@ -7,8 +7,8 @@ import { row } from "./packet.js";
 
 const SHOWN = {
   amplitude: "amplitude",
-  work: "energy of friction",
-  phase: "lag of z, first harmonic",
+  work: "energy dissipated by friction",
+  phase: "phase lag of z, first harmonic",
 };
 
 /** Share of values that an axis of amplitudes holds: a resonance goes beyond it. */

@@ -10,7 +10,7 @@ function nameOf(picture, index, look) {
   const ends = picture.stops[index];
   if (!ends) return look.label;
   const range = ends[0] === ends[1] ? short(ends[0]) : `${short(ends[0])} to ${short(ends[1])}`;
-  return index === CLASS.more ? `${range} stops` : `not whole, ${range} stops`;
+  return index === CLASS.more ? `${range} stops` : `non-integer, ${range} stops`;
 }
 
 function swatch(ink) {

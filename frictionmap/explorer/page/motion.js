@@ -72,7 +72,7 @@ export class MotionPanel {
     const { frequency, force } = motion.physical;
     const place = `r = ${short(motion.r)}${inUnits(motion.r, frequency)}, β = ${short(motion.beta)}${inUnits(motion.beta, force)}`;
     this.#part(".where").textContent = `${kept ? "kept: " : ""}${place}`;
-    this.#part(".words").replaceChildren(...(none ? [motion.none] : [...motion.told, motion.comment]).filter(Boolean).map(paragraph));
+    this.#part(".words").replaceChildren(...(none ? [motion.none] : [...motion.summary, motion.comment]).filter(Boolean).map(paragraph));
     for (const figure of this.panel.querySelectorAll(".moves")) figure.hidden = none;
     this.#part(".others").hidden = true;
     this.#part("tbody").replaceChildren(...(none ? [] : motion.entries.map((entry, k) => this.#entry(entry, motion.numbers[k]))));
@@ -91,18 +91,18 @@ export class MotionPanel {
   add(others) {
     const words = this.#part(".others");
     const start = others.start === "moving" ? "a large sliding motion" : "rest";
-    const told = others.same
-      ? [`From ${start} it ends in the same motion.`]
-      : [`From ${start} it ends otherwise (dashed): ${others.told.map(uncapped).join(" ")}`];
+    const sentences = others.same
+      ? [`From ${start} the same motion results.`]
+      : [`From ${start} another motion results (dashed): ${others.summary.map(uncapped).join(" ")}`];
     if (others.reachable.length > 1) {
-      told.push(`Found stable here: ${others.reachable.map((name) => REGIMES[name].toLowerCase()).join(", ")}.`);
+      sentences.push(`Stable regimes in this cell: ${others.reachable.map((name) => REGIMES[name].toLowerCase()).join(", ")}.`);
     }
-    words.replaceChildren(...told.map(paragraph));
+    words.replaceChildren(...sentences.map(paragraph));
     words.hidden = false;
     if (Number.isFinite(others.multiplier[0])) {
       const rate = others.multiplier[0];
-      const told = `${short(rate, 4)} (${rate < 1 ? "stable" : "not attracting"})`;
-      this.#part("tbody").append(tableRow("largest Floquet multiplier", told));
+      const value = `${short(rate, 4)} (${rate < 1 ? "stable" : "not stable"})`;
+      this.#part("tbody").append(tableRow("largest Floquet multiplier", value));
     }
     this.other = others.tau ? others : null;
     if (this.other) this.draw();

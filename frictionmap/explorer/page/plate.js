@@ -8,8 +8,8 @@ const SECOND = { right: 44, top: 26 };
 
 /** Boundaries: how they are drawn. */
 export const LINES = {
-  beta_lim: { label: "β", index: "lim", dash: [], meaning: "slides without stopping below it" },
-  beta_stick: { label: "β", index: "stick", dash: [7, 4], meaning: "can stick for good from it on" },
+  beta_lim: { label: "β", index: "lim", dash: [], meaning: "below: continuous sliding is possible" },
+  beta_stick: { label: "β", index: "stick", dash: [7, 4], meaning: "at or above: the contact can stay stuck" },
 };
 
 const FONT = "12px system-ui, sans-serif";

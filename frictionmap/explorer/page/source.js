@@ -22,7 +22,7 @@ export class Server {
       response = await fetch(`${path}?${query}`, { signal });
     } catch (error) {
       if (error.name === "AbortError") throw error;
-      throw new Refused("frictionmap does not answer: has it been ended? Start it again and reload this page.");
+      throw new Refused("Cannot reach frictionmap: it does not respond. Start it again and reload this page.");
     }
     if (response.status === 204) throw new DOMException("outdated", "AbortError");
     if (!response.ok) throw new Refused((await response.text()).trim());

@@ -94,7 +94,9 @@ def check_structure(ds: xr.Dataset, in_parts: bool = False) -> None:
     known = _labels_by_name(what)
     if not any(name in LABELS or name == "estimate" for name in ds.variables):
         names = ", ".join(map(str, ds.variables)) or "none"
-        raise InputError(f"no frictionmap variable found (expected, e.g., regime or beta_lim); got {names}")
+        raise InputError(
+            f"cannot use the dataset: no frictionmap variable found, such as regime or beta_lim; got {names}"
+        )
     for name, variable in ds.variables.items():
         if name in known:
             _check_type(str(name), variable, known[str(name)])

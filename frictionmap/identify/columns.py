@@ -139,9 +139,9 @@ def _unit(table: Table, column: str, legal: Sequence[str]) -> str:
     """The unit that the name of a column ends in."""
     unit = ending(column)
     if f"_{unit}" not in legal:
-        what = f"got {unit!r}" if unit else "got none"
+        what = repr(unit) if unit else "none"
         raise InputError(
-            f"file {table.file}, column {column}: its name must end in its unit, {', '.join(legal)}; {what}"
+            f"file {table.file}, column {column}: its name must end in a unit, {', '.join(legal)}; got {what}"
         )
     return unit
 

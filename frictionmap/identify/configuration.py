@@ -58,8 +58,8 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     _check_keys(tree, name, kind)
     file = data.get("file")
     if not isinstance(file, str) or not file:
-        given = f"got {checks.one_line(file)}" if "file" in data else "got nothing"
-        raise InputError(f"data.file must be the path of a file of measured data; {given}")
+        given = checks.one_line(file) if "file" in data else "nothing"
+        raise InputError(f"data.file must be the path of a file of measured data; got {given}")
     missing = checks.choice(data.get("missing", MISSING[0]), "data.missing", MISSING)
     values = {key: _known_number(value, key) for key, value in known.items()}
     free = _checked_free(fit.get("free"), values, kind.parameters)
@@ -160,7 +160,7 @@ def _check_keys(tree: Mapping[str, object], name: str, kind: Kind) -> None:
 
 def _unknown(key: str, section: str, legal: Sequence[str], kind: str) -> InputError:
     """Return the error of a key that is unknown for this kind of data."""
-    return InputError(f"{unknown_key(key, section, legal)}, for data.kind = {kind!r}")
+    return InputError(f"data.kind = {kind!r}: {unknown_key(key, section, legal)}")
 
 
 def _checked_free(

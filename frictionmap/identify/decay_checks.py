@@ -105,7 +105,7 @@ def checked_turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
             f"cannot fit x: it does not move by more than its resolution ({resolution(x):g}); check the data"
         )
     if wrong := undersampled(x):
-        raise InputError(f"cannot fit x: sampling rate too low, {wrong}")
+        raise InputError(f"cannot fit x: sampling rate too low, {wrong}; sample faster")
     points = _turning_points(time, x)
     if points.time.size < 2:  # the last extremum is where it rests, or where the record ends
         gap = largest_gap(time)

@@ -215,8 +215,8 @@ def _checked_harmonics(t: np.ndarray, frequency: float) -> int:
     samples = 1.0 / (float(np.median(np.diff(t))) * frequency)
     if samples < _LEAST_SAMPLES:
         raise InputError(
-            f"cannot fit harmonics: sampling rate too low, {samples:.2g} samples per cycle; "
-            f"{_LEAST_SAMPLES} are needed"
+            f"cannot fit harmonics: sampling rate too low, {samples:.2g} samples per cycle, "
+            f"{_LEAST_SAMPLES} needed; sample faster"
         )
     harmonics = min(_HARMONICS, int(samples / _SAMPLES_OF_HIGHEST))
     unknowns = 2 * harmonics + 3

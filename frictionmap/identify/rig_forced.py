@@ -237,7 +237,9 @@ def _sets(rig: Rig, table: Table, rows: np.ndarray) -> list[object] | None:
     name = rig.columns.get("set", "set")
     if name not in table.columns:
         if "set" in rig.columns:
-            raise InputError(f"cannot read {rig.file}: it has no column {name!r}; correct data.columns.set")
+            raise InputError(
+                f"cannot assign rows to sets: there is no column {name!r}; correct data.columns.set"
+            )
         return None
     labels = table.texts[name] if name in table.texts else table.columns[name].tolist()
     return [labels[row] for row in rows]

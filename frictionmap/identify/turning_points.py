@@ -131,7 +131,7 @@ def samples_a_cycle(x: np.ndarray) -> float:
 def undersampled(x: np.ndarray) -> str:
     """Describe a sampling rate that is too low; empty if it suffices."""
     found = samples_a_cycle(x)
-    return f"{found:g} samples per cycle; {_LEAST_SAMPLES} are needed" if found < _LEAST_SAMPLES else ""
+    return f"{found:g} samples per cycle, {_LEAST_SAMPLES} needed" if found < _LEAST_SAMPLES else ""
 
 
 def grows(points: TurningPoints, noise: float) -> bool:

@@ -336,12 +336,12 @@ class System:
         if self.damping_reference == "base" and not base:
             raise InputError("damping_reference must be ground for a force-excited structure; got 'base'")
         if self.load is not None:
-            for wrong, reason in (
-                (base, "base excitation: the base loads all masses; omit load"),
-                (self.load_mass is not None, "load_mass: both define the load; omit one"),
+            for wrong, (other, why) in (
+                (base, ("base excitation", "the base loads all masses")),
+                (self.load_mass is not None, ("load_mass", "both define the load")),
             ):
                 if wrong:
-                    raise InputError(f"cannot use load with {reason}")
+                    raise InputError(f"cannot use load with {other}: {why}; omit one of them")
             self._set("load", _load(self.load, self.n))
             return
         first = self.dofs.numbers[0]

@@ -64,7 +64,7 @@ class Number:
         values = list(before or ())
         if self.place > len(values):
             raise InputError(
-                f"axes.{self.text} must be one of the {len(values)} numbers of {self.key}, counted from 1"
+                f"axes.{self.text} must be one of {len(values)} in {self.key}; got number {self.place}"
             )
         values[self.place - 1] = given
         return values

@@ -58,7 +58,7 @@ def plot_fit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> 
     check_holds(ds, names, "its fit")
     check_range(ds, names)
     if ds.sizes["sample"] < 1:
-        raise InputError("a dataset must have at least one sample for its fit to be drawn; it has none")
+        raise InputError("a dataset must have at least one sample for its fit to be drawn; got none")
     picture = _picture(ds)
     panels = picture.all
     axes = _new_axes(picture, ds) if ax is None else given_axes(ax, len(panels), "one for each panel")

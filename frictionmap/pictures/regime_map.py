@@ -248,7 +248,7 @@ def plot_regimes(ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" 
     """
     ds = to_draw(ds, "plot_regimes", "map")
     if "regime" not in ds and "stops_per_cycle" not in ds:
-        raise InputError("a map must hold regime or stops_per_cycle to be drawn; it holds neither")
+        raise InputError("a map must hold regime or stops_per_cycle to be drawn; got neither")
     panels = panels_of(ds)
     title = str(ds.attrs.get("title", ""))
     axes = panel_grid(len(panels), title) if ax is None else given_axes(ax, len(panels), "one for each mu")

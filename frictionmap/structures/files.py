@@ -31,7 +31,7 @@ _BOEING = (".hb", ".rb", ".rsa", ".rua")
 #: Endings of files with one matrix, or with several by names.
 _ENDINGS = (".mtx", *_BOEING, *_SEVERAL)
 
-_ONE_EACH = 'matrices = { M = "m.mtx", K = "k.mtx" }'
+_ONE_EACH = '{ M = "m.mtx", K = "k.mtx" }'
 
 
 class Found(NamedTuple):
@@ -78,7 +78,7 @@ def _from_path(path: Path) -> Found:
     ending = path.suffix.lower()
     if ending == ".mtx" or ending in _BOEING:
         raise InputError(
-            f"matrices must be given one by one for {ending} files, {_ONE_EACH}; got {path.name}"
+            f"matrices must be given one by one for {ending} files, such as {_ONE_EACH}; got {path.name}"
         )
     if ending in _SEVERAL:
         matrices = _opened(path, _SEVERAL[ending])
@@ -99,7 +99,7 @@ def _from_mapping(given: Mapping[Any, Any]) -> Found:
         return Found(arrays, given.get(DOFS), None, None, "")
     if len(paths) < len(arrays) or DOFS in given:
         raise InputError(
-            f"matrices must all be files, {_ONE_EACH}, or all arrays; got files of {', '.join(paths)} only"
+            f"matrices must all be files, such as {_ONE_EACH}, or arrays; got a file of {', '.join(paths)}"
         )
     matrices = {name: _one(path, name) for name, path in paths.items()}
     whole, labels = in_one_order(matrices)

@@ -96,9 +96,9 @@ class Reduction:
 
         enough = _enough(do, self.asked.modes, tried)
         advice = (
-            f"{tried} modes do not suffice either, raise reduce.allow"
+            f"{tried} modes do not suffice either, increase reduce.allow"
             if enough is None
-            else f"{enough} modes suffice"
+            else f"{enough} mode{'s' * (enough > 1)} suffice{'s' * (enough == 1)}"
         )
         raise InputError(
             f"reduce: cannot keep the error below {self.asked.allow:g} in the range of r with "

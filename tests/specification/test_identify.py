@@ -141,7 +141,7 @@ def changed(line, text):
     ("text", "message"),
     [
         ("\n".join(GOOD[1:]), r"column time_s \(suffixes: _s, _ms\) is missing"),
-        (changed(1, "time,x"), r"column time: its name must end in its unit, _s, _ms; got none"),
+        (changed(1, "time,x"), r"column time: its name must end in a unit, _s, _ms; got none"),
         (changed(1, "time_s,x_furlong"), r"column x_furlong: its name must end .*_um; got 'furlong'"),
         (changed(1, "time_s,y_mm"), r"column x_mm .* is missing; the file has time_s, y_mm"),
         ("time_s,x_mm\n", r"no values below time_s, x_mm"),
@@ -154,7 +154,7 @@ def changed(line, text):
         (changed(9, "0.03,1"), r"column time_s, line 9 must be > 0.03, .* previous row; got 0.03"),
         ("\n".join(GOOD[:20]), r"record too short, fewer than 3 extrema in 19 samples"),
         (csv_of(np.arange(100) / 100, np.full(100, 1.5)), r"does not move by more than its resolution \(0\)"),
-        ("\n".join(GOOD[:1] + GOOD[1::20]), r"samples per cycle; 8 are needed"),
+        ("\n".join(GOOD[:1] + GOOD[1::20]), r"samples per cycle, 8 needed"),
     ],
 )  # fmt: skip
 def test_bad_files(rig, capsys, text, message):
@@ -202,7 +202,7 @@ BAD = {
     "no-header": "_s, _ms", "no-unit": "none", "unknown-unit": "'furlong'", "missing-column": "x_mm",
     "empty": "x_mm", "nan": "line 402", "text": "line 122", "time-backwards": "line 303",
     "time-twice": "line 13", "too-short": "fewer than 3 extrema", "constant": "resolution (0)",
-    "growing": "as a free decay: its amplitude grows", "undersampled": "samples per cycle; 8 are needed",
+    "growing": "as a free decay: its amplitude grows", "undersampled": "samples per cycle, 8 needed",
 }  # fmt: skip
 
 
@@ -241,7 +241,10 @@ def test_odd_measurements(measured, rig, capsys, name, warning):
         ("fit.drift=1", "drift must be true or false; got 1"),
         ("fit.loss=cauchy", "loss must be one of linear, soft_l1; got 'cauchy'"),
         ("grid.r=1", "unknown key 'grid'"),
-        ("system.contact=fixed-wall", "title, data, known, fit, for data.kind = 'free-decay'"),
+        (
+            "system.contact=fixed-wall",
+            "data.kind = 'free-decay': unknown key 'system'; valid: title, data, known, fit",
+        ),
     ],
 )
 def test_bad_configurations(rig, capsys, override, message):

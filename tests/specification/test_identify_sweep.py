@@ -130,7 +130,7 @@ def test_bad_rows(rig, capsys, lines, message):
             "frequency_Hz,ratio",
             "column amplitude_ratio_1 is missing; the file has",
         ),
-        ("frequency_rpm,amplitude_ratio_1", "column frequency_rpm: its name must end in its unit, _Hz"),
+        ("frequency_rpm,amplitude_ratio_1", "column frequency_rpm: its name must end in a unit, _Hz"),
     ],
 )
 def test_bad_names(rig, capsys, head, message):

@@ -238,7 +238,7 @@ def test_the_cost_of_many_cells_is_told_before_the_work(tmp_path, monkeypatch, c
     (tmp_path / "small.toml").write_text("[system]\n[grid]\nr = [0.3, 0.8]\nbeta = 1\n")
     main(["map", "small.toml"])
     lines = capsys.readouterr().err.splitlines()
-    assert "frictionmap: 2 cells take about 400 MB of memory and 1 s" in lines
+    assert "frictionmap: 2 cells need about 400 MB of memory and 1 s" in lines
     main(["map", "small.toml", "--quiet", "--overwrite"])
     assert capsys.readouterr().err == ""
 

@@ -163,7 +163,7 @@ def test_no_system_in_the_text(text):
         ),
         (
             'matrices = { M = "m.mtx", K = [[1.0]] }',
-            "system.matrices must all be files, .*, or all arrays; got files of",
+            "system.matrices must all be files, .*, or arrays; got a file of",
         ),
         ("matrices = 3", "system.matrices must be the path of an .npz file, or a table of arrays"),
     ],

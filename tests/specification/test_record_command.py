@@ -182,7 +182,7 @@ def test_rows_without_a_number_are_dropped_on_request_only(rig, capsys, measured
         (lambda t, y, x: (t, x, y), "are the columns exchanged"),
         (lambda t, y, x: (t, np.minimum(y, 1.3), x), "a part of the cycle has no samples"),
         (lambda t, y, x: (t[:150], y[:150], x[:150]), "time must span at least 2 cycles of the base"),
-        (lambda t, y, x: (t[::17], y[::17], x[::17]), "5.8 samples per cycle; 8 are needed"),
+        (lambda t, y, x: (t[::17], y[::17], x[::17]), "5.8 samples per cycle, 8 needed"),
         (lambda t, y, x: (t[::-1], y, x), "line 3 must be > 7.3, the time of the previous row; got 7.29"),
     ],
 )  # fmt: skip

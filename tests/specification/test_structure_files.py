@@ -311,7 +311,7 @@ def test_bad_files_of_harwell_boeing(text, words, tmp_path, capsys):
         ("K.rsa", ["one by one", ".rsa"]),
         ({"M": "K.mtx", "K": "missing.mtx"}, ["missing.mtx", "No such file"]),
         ({"M": "K.mtx", "K": "K.txt"}, ["K must be a file that ends in .mtx", "K.txt"]),
-        ({"M": "K.mtx", "K": [[1.0]]}, ["must all be files", "or all arrays; got files of M only"]),
+        ({"M": "K.mtx", "K": [[1.0]]}, ["must all be files", "or arrays; got a file of M"]),
         ({"M": "K.mtx"}, ["must have arrays M, K", "got M"]),
         ({"M": "K.mtx", "K": "L.mtx"}, ["K has labels of nodes, M has none"]),
         ("broken.mat", ["it is not a valid MAT file"]),
@@ -355,7 +355,7 @@ def test_bad_files_of_nastran(tmp_path, capsys):
     (tmp_path / "text.op4").write_text("no matrix at all, but words\n" * 4)
     refused(capsys, tmp_path, "text.op4", ["OP4 file of Nastran"])
     (tmp_path / "text.pch").write_text("GRID,1\n")
-    refused(capsys, tmp_path, "text.pch", ["DMIG cards", "none"])
+    refused(capsys, tmp_path, "text.pch", ["it has no DMIG cards"])
     written.punch(tmp_path / "frame.pch", {"PHIX": M, "MAAX": M, "KAAX": K}, LABELS)
     good = (tmp_path / "frame.pch").read_text()
     entry = f"*       {3:>16}{2:>16}{-2.5:>16.9E}\n"

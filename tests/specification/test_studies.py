@@ -341,7 +341,7 @@ def test_a_picture_of_shares(samples, tmp_path):
     assert len(axes) == 2 * len(there)
     shown = axes[0].collections[0].get_array().reshape(7, 9)
     np.testing.assert_array_equal(shown, found["regime_share"].sel(outcome="continuous")[0].values.T)
-    with pytest.raises(InputError, match="plot_shares takes a dataset such as shares returns"):
+    with pytest.raises(InputError, match="ds of plot_shares must be a dataset such as shares returns"):
         fm.plot_shares(samples)
 
 

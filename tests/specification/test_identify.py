@@ -224,34 +224,6 @@ def test_odd_measurements(measured, rig, capsys, name, warning):
 
 
 @pytest.mark.parametrize(
-    ("override", "message"),
-    [
-        ("data.kind=decay", "data.kind must be one of free-decay, forced, record, sweep; got 'decay'"),
-        ("data.fil=a.csv", "unknown key 'data.fil' (did you mean file?)"),
-        ("known.beta=0.2", "unknown key 'known.beta'"),
-        ("known.zeta=1.2", "known.zeta must be < 1 for a decay with turning points; got 1.2"),
-        ("known.f_n=-3", "known.f_n must be > 0; got -3"),
-        ("known.stiffness=0", "stiffness must be > 0; got 0"),
-        ("fit.free=[]", "fit.free must be a list of parameters; got []"),
-        ("data.columns={ x = 3 }", "data.columns must be a table of column names"),
-        ("data.columns={ y = 'y_mm' }", "unknown key 'data.columns.y'"),
-        ("data.missing=ignore", "data.missing must be one of refuse, drop; got 'ignore'"),
-        ("data.window=[1, nan]", "window must be finite"),
-        ("data.window=[1]", "window must be two times; got [1]"),
-        ("fit.drift=1", "drift must be true or false; got 1"),
-        ("fit.loss=cauchy", "loss must be one of linear, soft_l1; got 'cauchy'"),
-        ("grid.r=1", "unknown key 'grid'"),
-        (
-            "system.contact=fixed-wall",
-            "data.kind = 'free-decay': unknown key 'system'; valid: title, data, known, fit",
-        ),
-    ],
-)
-def test_bad_configurations(rig, capsys, override, message):
-    assert message in refusal(capsys, "identify", rig("\n".join(GOOD)), "--set", override)
-
-
-@pytest.mark.parametrize(
     ("text", "message"),
     [
         ("", "must have a table [data] with kind, one of free-decay, "),

@@ -305,23 +305,6 @@ def test_bad_tables(rig, capsys, lines, head, message):
     assert message in found
 
 
-@pytest.mark.parametrize(
-    ("override", "message"),
-    [
-        ("data.use=['lag']", "data.use[0] must be one of phase, amplitude; got 'lag'"),
-        ("data.sigma_phase_deg=0", "data.sigma_phase_deg must be > 0; got 0"),
-        ("system.contact=wall", "system.contact must be one of fixed-wall"),
-        ("system.masses=2", "unknown key 'system.masses'"),
-        ("known.mu=0.9", "known.mu must be >= 1; got 0.9"),
-        ("known.x_F=1", "unknown key 'known.x_F'"),
-        ("fit.free=['beta']", "cannot hold f_n: its value is missing"),
-        ("data.columns={ lag = 'phase_lag_deg' }", "unknown key 'data.columns.lag'"),
-    ],
-)
-def test_bad_configurations(rig, capsys, override, message):
-    assert message in refusal(capsys, "identify", rig(), "--set", override)
-
-
 def test_bad_forced_files(measured, rig, capsys):
     words = {
         "phase-out-of-range": "must be 0 to 180 deg for the loaded mass",

@@ -137,28 +137,6 @@ def test_bad_names(rig, capsys, head, message):
     assert message in refusal(capsys, "identify", rig(LINES, head=head))
 
 
-@pytest.mark.parametrize(
-    ("override", "message"),
-    [
-        ("system.masses=0", "system.masses must be >= 1; got 0"),
-        ("system.masses=6", "system.masses must be <= 5; got 6"),
-        ("system.damping_reference=wall", "system.damping_reference must be one of ground, base; got 'wall'"),
-        ("data.sigma_phase_deg=1", "cannot use sigma_phase without phase_lag: there are no lags"),
-        ("fit.cost=linear", "fit.cost must be one of logarithmic, relative; got 'linear'"),
-        ("fit.free=['gamma']", "cannot use fit.free for this kind of data"),
-        ("known.gamma=-1", "known.gamma must be > 0; got -1"),
-        ("known.mass_ratio_2=1", "known must be one of f_k1m1, gamma, kappa; got 'mass_ratio_2'"),
-        ("system.stiffness=3", "unknown key 'system.stiffness'"),
-        ("system.excitation=shaker", "system.excitation must be one of base; got 'shaker'"),
-        ("data.sigma_amplitude=0", "data.sigma_amplitude must be > 0; got 0"),
-        ("data.window=[1, 2]", "unknown key 'data.window'"),
-        ("known.mu=1", "unknown key 'known.mu'"),
-    ],
-)
-def test_bad_configurations(rig, capsys, override, message):
-    assert message in refusal(capsys, "identify", rig(LINES), "--set", override)
-
-
 def test_masses_are_asked_for(rig, capsys):
     text = SWEEP.replace("masses = 2", "")
     assert "system.masses must be a whole number from 1 to 5; got nothing" in refusal(

@@ -193,25 +193,6 @@ def test_bad_records(rig, capsys, measured_record, change, message):
 
 
 @pytest.mark.parametrize(
-    ("override", "message"),
-    [
-        ("system.contact=between-masses", "system.contact must be one of fixed-wall, joined-base-wall"),
-        ("system.excitation=force", "system.excitation must be one of base; got 'force'"),
-        ("system.contact_masses=[2]", "system.contact_masses must be [1] for a record of one mass; got [2]"),
-        ("system.zeta=0.1", "unknown key 'system.zeta'"),
-        ("known.mu=0.9", "known.mu must be >= 1; got 0.9"),
-        ("known.zeta=-0.1", "known.zeta must be >= 0; got -0.1"),
-        ("known.f_n=0", "known.f_n must be > 0; got 0"),
-        ("known.beta=0.2", "unknown key 'known.beta'"),
-        ('data.columns={ z = "z_mm" }', "unknown key 'data.columns.z'"),
-        ("data.window=[3, 4]", "time must span at least 2 cycles of the base"),
-    ],
-)
-def test_bad_configurations(rig, capsys, measured_record, override, message):
-    assert message in refusal(capsys, "identify", rig(measured_record), "--set", override)
-
-
-@pytest.mark.parametrize(
     ("arguments", "message"),
     [
         ({"base": [1.0, 2.0]}, "base must be 731 numbers, one per time"),

@@ -1,8 +1,8 @@
 """Every kind of refusal as (call, message): the contract of the program with those who make a mistake.
 
-A call is a command (after `frictionmap`), a Python expression, or a query of the page (?key=value).  The indented
-line below it is its message; three dots stand for any text.  `folder` makes the files, `_names` the names in
-expressions.  Messages have one of the forms `FORMS`, in this table and everywhere in the package.
+A call is a command (after `frictionmap`), a Python expression, or a query of the page (?key=value).  Its
+message is the indented line below it, where three dots stand for any text.  `folder` makes the files and
+`_names` the names in expressions.  All messages have one of the forms `FORMS`.
 """
 
 import ast
@@ -124,7 +124,7 @@ map good.toml --set 'solver.outputs=["regim"]'
 map good.toml --set 'axes.damping_ratio=[0,0.1]'
     axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i]; got 'damping_ratio' (did you mean damping_ratios?)
 map good.toml --set 'axes={"mass_ratios[2]"=[1,2]}'
-    axes, at mass_ratios_2 = 1: axes.mass_ratios[2] must be one of 1 in mass_ratios; got number 2
+    axes, at mass_ratios_2 = 1: axes.mass_ratios[2] must have an index of at most 1, as mass_ratios; got 2
 map good.toml --set 'axes={damping_ratios=[]}'
     axes.damping_ratios must have at least one value; got none
 map good.toml --set 'axes={sample={file="none.csv"}}'
@@ -321,6 +321,58 @@ explore good.toml --export page.pdf
     --export must end in .html; got page.pdf
 explore good.toml --set grid.r=-1
     grid.r must be >= 0; got -1.0 at index 0
+map good.toml more
+    unrecognized arguments: more (see frictionmap --help)
+map good.toml --threads=x
+    frictionmap map: argument --threads: invalid whole number value: 'x' (see frictionmap map --help)
+map good.toml --threads -2
+    frictionmap map: argument --threads: must be >= 1; got -2 (see frictionmap map --help)
+map good.toml --threads 1.5
+    frictionmap map: argument --threads: invalid whole number value: '1.5' (see frictionmap map --help)
+map good.toml --set
+    frictionmap map: argument --set: expected one argument (see frictionmap map --help)
+map good.toml --set grid.q=1
+    unknown key 'grid.q'; valid: r, beta, mu
+map good.toml --set solver.outputs=regime
+    solver.outputs must be a list of names; got 'regime'
+map good.toml --set solver.steps=many
+    solver.steps must be a whole number; got 'many'
+response good.toml --r 0.5
+    frictionmap response: the following arguments are required: --beta (see frictionmap response --help)
+response good.toml --r nan --beta 1
+    r must be finite; got nan
+response good.toml --r inf --beta 1
+    r must be finite; got inf
+response good.toml --r -1 --beta 1
+    r must be >= 0; got -1.0
+boundaries good.toml --threads 2
+    unrecognized arguments: --threads 2 (see frictionmap --help)
+map good.toml --over
+    unrecognized arguments: --over (see frictionmap --help)
+map good.toml --threads 1 --threads 2
+    frictionmap map: argument --threads: must be given once (see frictionmap map --help)
+response good.toml --r 1 --r 2 --beta 1
+    frictionmap response: argument --r: must be given once (see frictionmap response --help)
+response good.toml --r 1 --beta 1 --beta 1
+    frictionmap response: argument --beta: must be given once (see frictionmap response --help)
+response good.toml --r 1 --beta 1 --mu 1 --mu 2
+    frictionmap response: argument --mu: must be given once (see frictionmap response --help)
+response good.toml --r 1 --beta 1 --set grid.mu=[1,1.5,2]
+    cannot choose mu: grid.mu has 3 values, 1, 1.5, 2; give --mu
+map good.toml --set grid.r=1 --set grid.r=2
+    cannot apply --set grid.r=2: it undoes --set grid.r=1; give one of the two
+map good.toml --set grid.r={start=0,stop=1,num=3} --set grid.r.num=5 --set grid.r=1
+    cannot apply --set grid.r=1: it undoes --set grid.r={start=0,stop=1,num=3}; give one of the two
+map good.toml --set grid.r={start=0,stop=1,num=3} --set grid.r.num=5 --set grid.r.step=0.5
+    cannot apply --set grid.r.step=0.5: it undoes --set grid.r.num=5; give one of the two
+map good.toml --set 'solver.steps=24 # of old'
+    solver.steps must be a whole number; got '24 # of old'
+map good.toml --set 'solver.steps=24, cycles = 5'
+    solver.steps must be a whole number; got '24, cycles = 5'
+map good.toml --set 'solver.steps=24 }, b = { c = 1'
+    solver.steps must be a whole number; got '24 }, b = { c = 1'
+plot
+    frictionmap plot: the following arguments are required: FILE (see frictionmap plot --help)
 
 # Measured data: configurations
 identify none.toml
@@ -407,6 +459,76 @@ identify record.toml --set system.zeta=0.1
     unknown key 'system.zeta'; valid: contact, damping_reference, excitation, contact_masses
 identify record.toml --set 'data.columns={base="x_mm",x="base_mm"}'
     file record.csv, columns time_s, x_mm and base_mm: x must lag behind the base by 0 to 180 degrees; got a lead of 25.22 (are the columns exchanged, or is one of opposite sign?)
+identify rig.toml --set known.beta=0.2
+    data.kind = 'free-decay': unknown key 'known.beta' (did you mean zeta?); valid: f_n, zeta, x_F, X0, t0, centre, base_mm, stiffness
+identify rig.toml --set known.f_n=-3
+    file free-decay.csv, columns time_s and x_mm: known.f_n must be > 0; got -3.0
+identify rig.toml --set known.stiffness=0
+    file free-decay.csv, columns time_s and x_mm: stiffness must be > 0; got 0.0
+identify rig.toml --set 'fit.free=[]'
+    fit.free must be a list of parameters; got []
+identify rig.toml --set 'data.columns={ x = 3 }'
+    data.columns must be a table of column names, such as { time = "time_s", x = "x_mm" }; got {'x': 3}
+identify rig.toml --set 'data.columns={ y = "y_mm" }'
+    unknown key 'data.columns.y'; valid: time, x
+identify rig.toml --set 'data.window=[1, nan]'
+    file free-decay.csv, columns time_s and x_mm: window must be finite; got nan at index 1
+identify rig.toml --set fit.loss=cauchy
+    file free-decay.csv, columns time_s and x_mm: loss must be one of linear, soft_l1; got 'cauchy'
+identify rig.toml --set grid.r=1
+    data.kind = 'free-decay': unknown key 'grid'; valid: title, data, known, fit
+identify rig.toml --set system.contact=fixed-wall
+    data.kind = 'free-decay': unknown key 'system'; valid: title, data, known, fit
+identify forced.toml --set data.sigma_phase_deg=0
+    data.sigma_phase_deg must be > 0; got 0
+identify forced.toml --set system.contact=wall
+    system.contact must be one of fixed-wall, joined-base-wall, between-masses; got 'wall' (did you mean fixed-wall?)
+identify forced.toml --set system.masses=2
+    unknown key 'system.masses' (did you mean contact_masses?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, damping_ratios, matrices, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference
+identify forced.toml --set known.mu=0.9
+    file forced.csv: known.mu must be >= 1; got 0.9
+identify forced.toml --set known.x_F=1
+    data.kind = 'forced': unknown key 'known.x_F'; valid: beta, f_n, zeta, mu, stiffness
+identify forced.toml --set 'fit.free=["beta"]'
+    cannot hold f_n: its value is missing; add f_n to fit.free or known.f_n to [known]
+identify forced.toml --set 'data.columns={ lag = "phase_lag_deg" }'
+    unknown key 'data.columns.lag' (did you mean phase_lag?); valid: frequency, frequency_ratio, phase_lag, amplitude_ratio, x, base, sigma_phase, sigma_amplitude, set
+identify sweep.toml --set system.masses=6
+    system.masses must be <= 5; got 6
+identify sweep.toml --set system.damping_reference=wall
+    file sweep.csv, columns frequency_Hz, amplitude_ratio_1: system.damping_reference must be one of ground, base; got 'wall'
+identify sweep.toml --set fit.cost=linear
+    file sweep.csv, columns frequency_Hz, amplitude_ratio_1: fit.cost must be one of logarithmic, relative; got 'linear'
+identify sweep.toml --set known.gamma=-1
+    file sweep.csv, columns frequency_Hz, amplitude_ratio_1: known.gamma must be > 0; got -1.0
+identify sweep.toml --set known.mass_ratio_2=1
+    file sweep.csv, columns frequency_Hz, amplitude_ratio_1: known must be one of f_k1m1, gamma, kappa; got 'mass_ratio_2'
+identify sweep.toml --set system.stiffness=3
+    unknown key 'system.stiffness'; valid: masses, excitation, damping_reference
+identify sweep.toml --set system.excitation=shaker
+    system.excitation must be one of base; got 'shaker'
+identify sweep.toml --set data.sigma_amplitude=0
+    file sweep.csv, columns frequency_Hz, amplitude_ratio_1: data.sigma_amplitude must be > 0; got 0
+identify sweep.toml --set 'data.window=[1, 2]'
+    data.kind = 'sweep': unknown key 'data.window' (did you mean kind?); valid: kind, file, columns, missing, sigma_amplitude, sigma_phase_deg
+identify sweep.toml --set known.mu=1
+    data.kind = 'sweep': unknown key 'known.mu'; valid: f_k1m1, zeta_1, gamma, kappa, zeta_2, mass_ratio_2, mass_ratio_3, stiffness_ratio_2, stiffness_ratio_3, zeta_3, mass_ratio_4, stiffness_ratio_4, zeta_4, mass_ratio_5, stiffness_ratio_5, zeta_5
+identify record.toml --set system.contact=between-masses
+    system.contact must be one of fixed-wall, joined-base-wall; got 'between-masses'
+identify record.toml --set system.excitation=force
+    system.excitation must be one of base; got 'force'
+identify record.toml --set known.mu=0.9
+    file record.csv, columns time_s, base_mm and x_mm: known.mu must be >= 1; got 0.9
+identify record.toml --set known.zeta=-0.1
+    file record.csv, columns time_s, base_mm and x_mm: known.zeta must be >= 0; got -0.1
+identify record.toml --set known.f_n=0
+    file record.csv, columns time_s, base_mm and x_mm: known.f_n must be > 0; got 0.0
+identify record.toml --set known.beta=0.2
+    data.kind = 'record': unknown key 'known.beta' (did you mean zeta?); valid: f_n, zeta, x_F, mu, offset_x, stiffness
+identify record.toml --set 'data.columns={ z = "z_mm" }'
+    unknown key 'data.columns.z'; valid: time, base, x
+identify record.toml --set 'data.window=[3, 4]'
+    file record.csv, columns time_s, base_mm and x_mm: time must span at least 2 cycles of the base; got 0.99 (1 s at 0.9926 Hz)
 
 # Python: systems, maps, responses
 fm.System(contact="wall")
@@ -669,14 +791,14 @@ def message_of(call):
         with pytest.raises(fm.InputError) as caught:
             eval(call, _names())
         return str(caught.value)
-    err = io.StringIO()
-    with contextlib.redirect_stderr(err):
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         try:
             status = main(shlex.split(call))
         except SystemExit as ended:  # of argparse
             status = ended.code
     assert status == 2
-    assert err.getvalue().count("\n") == 1
+    assert (out.getvalue(), err.getvalue().count("\n")) == ("", 1)
     return err.getvalue().removeprefix("frictionmap: ").rstrip("\n")
 
 
@@ -695,7 +817,7 @@ def test_a_mistake_is_refused_in_one_line(folder, monkeypatch, call, expected):
 
 
 def test_messages_of_the_table_have_one_of_the_forms():
-    of_argparse = r"frictionmap( \w+)?: (argument|the following arguments|unrecognized).*"
+    of_argparse = r"(frictionmap \w+: (argument|the following arguments) |unrecognized arguments: ).*"
     for call, expected in entries():
         assert any(re.fullmatch(form, expected) for form in (*FORMS, of_argparse)), call
 

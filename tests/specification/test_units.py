@@ -493,7 +493,7 @@ def test_a_response_is_asked_for_in_hertz(rig, tmp_path, monkeypatch, capsys):
     for r, message in (
         ("2,1 Hz", "not a comma"),
         ("2.1 N", "N is a unit of force"),
-        ("4 x", "x is no unit"),
+        ("4 x", "unknown unit x"),
     ):
         assert message in refusal(capsys, "response", rig, "--r", r, "--beta", "1", "-o", "no.nc")
 

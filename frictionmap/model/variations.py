@@ -64,7 +64,7 @@ class Number:
         values = list(before or ())
         if self.place > len(values):
             raise InputError(
-                f"axes.{self.text} must have an index of at most {len(values)}, as {self.key}; got {self.place}"
+                f"axes.{self.text} must have an index <= {len(values)}, as {self.key}; got {self.place}"
             )
         values[self.place - 1] = given
         return values

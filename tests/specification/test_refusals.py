@@ -124,7 +124,7 @@ map good.toml --set 'solver.outputs=["regim"]'
 map good.toml --set 'axes.damping_ratio=[0,0.1]'
     axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i]; got 'damping_ratio' (did you mean damping_ratios?)
 map good.toml --set 'axes={"mass_ratios[2]"=[1,2]}'
-    axes, at mass_ratios_2 = 1: axes.mass_ratios[2] must have an index of at most 1, as mass_ratios; got 2
+    axes, at mass_ratios_2 = 1: axes.mass_ratios[2] must have an index <= 1, as mass_ratios; got 2
 map good.toml --set 'axes={damping_ratios=[]}'
     axes.damping_ratios must have at least one value; got none
 map good.toml --set 'axes={sample={file="none.csv"}}'

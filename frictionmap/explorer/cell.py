@@ -14,7 +14,7 @@ from ..model.system import System
 from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
 from ..steady.maps import solve_map
-from ..steady.motion import Motion, Question, find_motion
+from ..steady.motion import MotionRequest, SteadyMotion, find_motion
 from ..theory.boundary_curves import find_curves
 from .views import Follower, View, name_of_mass
 
@@ -77,7 +77,7 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
     # what a map is asked for beside the motion would take as long again
     solver = replace(view.solver, outputs=("regime",))
     try:
-        found = find_motion(Question(view.system, r, beta, view.mu, solver, _SAMPLES))
+        found = find_motion(MotionRequest(view.system, r, beta, view.mu, solver, _SAMPLES))
     except NoSteadyState as error:
         return {"r": r, "beta": beta, "class": UNRESOLVED, "none": str(error)}, {}
     values = _numbers(found)
@@ -96,7 +96,7 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
     return header, {**curves_of(view, found), "numbers": np.array(numbers)}
 
 
-def _numbers(found: Motion) -> dict[str, Any]:
+def _numbers(found: SteadyMotion) -> dict[str, Any]:
     """The numbers of a cell, as a dataset would have them."""
     limits = {name: float(getattr(found.curves, name)[0, 0]) for name in ("beta_lim", "beta_stick")}
     return {**found.cycle, **found.summary, **limits}
@@ -131,7 +131,7 @@ def _reason_for_no_lag(values: Mapping[str, Any], k: int) -> str:
     return f"held at its maximum from {begin} to {end} rad"
 
 
-def curves_of(view: View, found: Motion) -> dict[str, np.ndarray]:
+def curves_of(view: View, found: SteadyMotion) -> dict[str, np.ndarray]:
     """Curves of a motion for the page, float32."""
     system, history = view.system, found.history
     rate = system.contact_vector @ history.v + system.base_motion * np.sin(history.tau)

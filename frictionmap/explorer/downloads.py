@@ -15,7 +15,7 @@ from ..model.settings import Output, Solver
 from ..steady.sweep import swept
 from ..units.scales import scales_of
 from .scene import Scene
-from .views import Follower, Piece, Quantity, View
+from .views import CellQuantity, Follower, Piece, View
 
 #: Matrices of so many degrees of freedom are put into a configuration; of larger ones only the file is named.
 _WRITTEN = 64
@@ -30,19 +30,19 @@ _BOUNDARIES, _CODES = ("beta_lim", "beta_lim_modal", "beta_stick"), ("regime", "
 _PER_NUMBER, _PER_FLOAT, _PER_FILE = 13.0, 5.0, 60e3
 
 
-def _solver(view: View, quantity: Quantity) -> Solver:
+def _solver(view: View, quantity: CellQuantity) -> Solver:
     wanted = dict.fromkeys((*_ALWAYS, *filter(None, (quantity.output,))))
     return replace(view.solver, outputs=cast(tuple[Output, ...], tuple(wanted)))
 
 
-def _described(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> str:
+def _described(scene: Scene, view: View, quantity: CellQuantity, piece: Piece) -> str:
     """Configuration of a view; matrices too large for text become a comment."""
     axes = view.axes(piece.columns, piece.rows)
     of_grid = {name: axes[name] for name in ("r", "beta", "mu")}
     return configuration(scene.title, view.system, of_grid, _solver(view, quantity), units=scene.units)
 
 
-def configuration_text(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> str:
+def configuration_text(scene: Scene, view: View, quantity: CellQuantity, piece: Piece) -> str:
     """A configuration whose map is that of the view, cell by cell to the bit.
 
     Raises
@@ -94,7 +94,7 @@ def _with_files(scene: Scene, view: View, text: str) -> str:
     return written
 
 
-def sizes(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> dict[str, float]:
+def sizes(scene: Scene, view: View, quantity: CellQuantity, piece: Piece) -> dict[str, float]:
     """Estimate the bytes of the files of `saved_map` by format; fewer where many cells stick."""
     scales = scales_of(scene.units, view.system)
     outputs = _solver(view, quantity).outputs
@@ -114,7 +114,7 @@ def sizes(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> dict[st
 
 
 def saved_map(
-    scene: Scene, view: View, quantity: Quantity, piece: Piece, ending: str, follower: Follower
+    scene: Scene, view: View, quantity: CellQuantity, piece: Piece, ending: str, follower: Follower
 ) -> bytes:
     """The map of a view as a file: `ending` is .nc or .csv."""
     axes = view.axes(piece.columns, piece.rows)

@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..model.settings import Start
 from .cut import Along
 from .scene import Scene, checked_range
-from .views import MOST_PIXELS, Piece, Quantity, View, quantities
+from .views import MOST_PIXELS, CellQuantity, Piece, View, quantities
 
 #: Keys of a query; a page of many masses has some tens.
 _MOST_KEYS = 100
@@ -118,7 +118,7 @@ CELL = ("at", "page", "turn")
 CUT = ("along", "place", "count", "page", "turn")
 
 
-def piece_of(query: Query) -> tuple[Quantity, Piece]:
+def piece_of(query: Query) -> tuple[CellQuantity, Piece]:
     """Requested piece of a map, and the quantity that colours it."""
     given = query.given
     columns, rows = _whole(given, "columns"), _whole(given, "rows")

@@ -20,7 +20,7 @@ from .queries import read_query
 from .scene import Scene, Slider
 from .server import page_files
 from .told import describe_scene, description
-from .views import Follower, Piece, Quantity, View, classes_of, quantities, solve_piece, values_of
+from .views import CellQuantity, Follower, Piece, View, classes_of, quantities, solve_piece, values_of
 
 #: Cells of every map, each way: of one mass, and of structures, whose cells take some hundred times as long
 #: where mu is above 1.
@@ -41,7 +41,7 @@ _POLICY = (
 )
 
 
-class Progress(Protocol):
+class MapProgress(Protocol):
     """Receiver of the number of finished maps, including the share of the current one."""
 
     def __call__(self, done: float, total: float) -> None: ...
@@ -50,7 +50,7 @@ class Progress(Protocol):
 class _OneOf(NamedTuple):
     """Progress of all maps while one is computed; it is never cancelled."""
 
-    progress_of_all: Progress
+    progress_of_all: MapProgress
     before: int  # maps that are done
     total: int
 
@@ -113,7 +113,7 @@ def _stepped(values: np.ndarray, log: bool) -> dict[str, Any]:
     return {"low": low, "high": high, "log": log, "steps": _deflated(steps.astype(np.uint8))}
 
 
-def _map(view: View, offered: tuple[Quantity, ...], follower: Follower) -> dict[str, Any]:
+def _map(view: View, offered: tuple[CellQuantity, ...], follower: Follower) -> dict[str, Any]:
     """The map of a view, with all quantities."""
     columns, rows = _CELLS[view.system.n > 1]
     found = solve_piece(view, offered, Piece(columns, rows, 0, columns), follower)
@@ -134,7 +134,7 @@ def _name(kept: _Kept, point: tuple[float, ...]) -> str:
     return ",".join(map(str, places))
 
 
-def _content(scene: Scene, progress: Progress) -> dict[str, Any]:
+def _content(scene: Scene, progress: MapProgress) -> dict[str, Any]:
     """Content of a saved page."""
     kept = _kept(scene.sliders)
     first = read_query(scene, "")
@@ -190,7 +190,7 @@ def _page(content: dict[str, Any]) -> str:
     return links.sub(lambda _: head, files["index.html"].decode(), count=1)
 
 
-def write_page(scene: Scene, progress: Progress) -> bytes:
+def write_page(scene: Scene, progress: MapProgress) -> bytes:
     """The page of a scene as one file.
 
     Places of sliders: all of mu together with all of the next slider; of further ones each by itself, with

@@ -26,7 +26,7 @@ _MOST_MARKS = 200
 _OFFERED_MASSES = 12
 
 
-class Quantity(NamedTuple):
+class CellQuantity(NamedTuple):
     """A quantity that colours the cells of a map."""
 
     key: str
@@ -37,18 +37,18 @@ class Quantity(NamedTuple):
 
 
 _QUANTITIES = (
-    Quantity("regime", "regime and stops", "", "classes"),
-    Quantity("contact_amplitude", "amplitude in the contact", "contact_amplitude", "log"),
-    Quantity("multiplier", "Floquet multiplier", "multiplier", "linear"),
-    Quantity("stuck_fraction", "share of time stuck", "stuck_fraction", "linear"),
-    Quantity("work_friction", "energy dissipated by friction", "work_friction", "log"),
+    CellQuantity("regime", "regime and stops", "", "classes"),
+    CellQuantity("contact_amplitude", "amplitude in the contact", "contact_amplitude", "log"),
+    CellQuantity("multiplier", "Floquet multiplier", "multiplier", "linear"),
+    CellQuantity("stuck_fraction", "share of time stuck", "stuck_fraction", "linear"),
+    CellQuantity("work_friction", "energy dissipated by friction", "work_friction", "log"),
 )
 
 
-def quantities(system: System) -> tuple[Quantity, ...]:
+def quantities(system: System) -> tuple[CellQuantity, ...]:
     """Quantities that can colour the cells of maps of a system."""
     amplitudes = tuple(
-        Quantity(
+        CellQuantity(
             f"amplitude_{number}", f"amplitude of {name_of_mass(system, number)}", "amplitude", "log", row
         )
         for row, number in enumerate(system.dofs.numbers[:_OFFERED_MASSES])
@@ -124,7 +124,7 @@ class Follower(Protocol):
 
 
 def solve_piece(
-    view: View, wanted: Sequence[Quantity], piece: Piece, follower: Follower
+    view: View, wanted: Sequence[CellQuantity], piece: Piece, follower: Follower
 ) -> dict[str, np.ndarray]:
     """The cells of a piece as `sweep` gives them, (columns, rows): regime, stops per cycle, the quantities.
 
@@ -156,14 +156,14 @@ def classes_of(found: Mapping[str, np.ndarray]) -> tuple[dict[str, Any], dict[st
     return {"stops": counted}, {"classes": classes, **limits}
 
 
-def values_of(found: Mapping[str, np.ndarray], quantity: Quantity) -> np.ndarray:
+def values_of(found: Mapping[str, np.ndarray], quantity: CellQuantity) -> np.ndarray:
     """A quantity of the cells of a piece, float32 (columns, rows)."""
     values = found[quantity.output]
     return (values if quantity.row is None else values[..., quantity.row]).astype(np.float32)
 
 
 def piece_of_map(
-    view: View, quantity: Quantity, piece: Piece, follower: Follower, lines: int = 0
+    view: View, quantity: CellQuantity, piece: Piece, follower: Follower, lines: int = 0
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """A piece of a picture for the page: `classes_of`, and `values` of the quantity if it has some.
 

@@ -97,7 +97,7 @@ class Accuracy(NamedTuple):
         return f"the contact's effective mass is {self.contact_mass:.4g} times that of the whole structure"
 
 
-class Whole:
+class FullStructure:
     """A structure with sparse matrices, the reference for its reductions."""
 
     def __init__(self, mass: Any, stiffness: Any, contact: np.ndarray, forces: np.ndarray) -> None:
@@ -156,7 +156,7 @@ def _held(contact: np.ndarray) -> Any:
 class Comparison:
     """Reduced structures against a whole one, from one frequency to another; the whole is solved once."""
 
-    def __init__(self, whole: Whole, low: float, high: float) -> None:
+    def __init__(self, whole: FullStructure, low: float, high: float) -> None:
         self._whole = whole
         self._range = low, high
         self._frequencies: tuple[np.ndarray, ...] = ()

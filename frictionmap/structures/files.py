@@ -34,7 +34,7 @@ _ENDINGS = (".mtx", *_BOEING, *_SEVERAL)
 _ONE_EACH = '{ M = "m.mtx", K = "k.mtx" }'
 
 
-class Found(NamedTuple):
+class GivenMatrices(NamedTuple):
     """Given matrices; only names and labels are checked."""
 
     arrays: dict[str, Any]  # M, K and perhaps C: whatever it is, or sparse
@@ -44,7 +44,7 @@ class Found(NamedTuple):
     source: str  # names of the files, or ""
 
 
-def read_files(given: object) -> Found:
+def read_files(given: object) -> GivenMatrices:
     """The arrays from the path of a file, or from a mapping of arrays or of paths.
 
     Raises
@@ -74,7 +74,7 @@ def _known_names(names: Iterable[Any]) -> None:
             )
 
 
-def _from_path(path: Path) -> Found:
+def _from_path(path: Path) -> GivenMatrices:
     ending = path.suffix.lower()
     if ending == ".mtx" or ending in _BOEING:
         raise InputError(
@@ -84,19 +84,19 @@ def _from_path(path: Path) -> Found:
         matrices = _opened(path, _SEVERAL[ending])
         _known_names(matrices)
         arrays, labels = in_one_order(matrices)
-        return Found(arrays, None, labels, None, path.name)
+        return GivenMatrices(arrays, None, labels, None, path.name)
     read = read_mat_arrays if ending == ".mat" else read_npz
     arrays = _opened(path, read)
     _known_names(arrays)
-    return Found(arrays, arrays.pop(DOFS, None), None, None, path.name)
+    return GivenMatrices(arrays, arrays.pop(DOFS, None), None, None, path.name)
 
 
-def _from_mapping(given: Mapping[Any, Any]) -> Found:
+def _from_mapping(given: Mapping[Any, Any]) -> GivenMatrices:
     _known_names(given)
     arrays = {name: given[name] for name in NAMES if name in given}
     paths = {name: Path(one) for name, one in arrays.items() if isinstance(one, (str, os.PathLike))}
     if not paths:
-        return Found(arrays, given.get(DOFS), None, None, "")
+        return GivenMatrices(arrays, given.get(DOFS), None, None, "")
     if len(paths) < len(arrays) or DOFS in given:
         raise InputError(
             f"matrices must all be files, such as {_ONE_EACH}, or arrays; got a file of {', '.join(paths)}"
@@ -105,7 +105,9 @@ def _from_mapping(given: Mapping[Any, Any]) -> Found:
     whole, labels = in_one_order(matrices)
     abaqus = paths["K"].suffix.lower() == ".mtx" and not _is_market(paths["K"])
     fixed = held(whole["K"]) if abaqus else None
-    return Found(whole, None, labels, fixed, ", ".join(dict.fromkeys(path.name for path in paths.values())))
+    return GivenMatrices(
+        whole, None, labels, fixed, ", ".join(dict.fromkeys(path.name for path in paths.values()))
+    )
 
 
 def _one(path: Path, name: str) -> Matrix:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from .accuracy import Accuracy, Comparison, Ranges, Whole
+from .accuracy import Accuracy, Comparison, FullStructure, Ranges
 from .craig_bampton import FixedInterface, Reduce, Reduced, fixed_interface, project, slowest
 from .structure import Structure
 
@@ -77,14 +77,14 @@ class Reduction:
             self._refuse(comparison, accuracy)
         return accuracy
 
-    def _whole(self) -> Whole:
+    def _whole(self) -> FullStructure:
         arrays = _sparse(self.structure)
         rows = self.structure.dofs.rows(self.kept)
         forces = np.zeros((self.structure.n, len(rows)))
         forces[rows, np.arange(len(rows))] = 1.0
         if self.base:  # what a base shakes
             forces = np.column_stack((forces, arrays["M"].sum(axis=1)))
-        return Whole(arrays["M"], arrays["K"], self.contact, forces)
+        return FullStructure(arrays["M"], arrays["K"], self.contact, forces)
 
     def _refuse(self, comparison: Comparison, accuracy: Accuracy) -> None:
         whole = _with_sparse(self.structure)

@@ -8,7 +8,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from .dofs import Dofs
-from .files import Found, read_files
+from .files import GivenMatrices, read_files
 
 #: Of the largest entry: a matrix is symmetric up to this.  Assembly leaves some units of rounding; a slip
 #: leaves more.
@@ -66,7 +66,7 @@ def read_structure(given: object) -> Structure:
     return Structure(arrays, dofs.at(free), found.source, n - free.size)
 
 
-def _dofs(found: Found, n: int) -> Dofs:
+def _dofs(found: GivenMatrices, n: int) -> Dofs:
     if found.dofs is None:
         return Dofs.counted(n, found.labels)
     numbers = np.atleast_1d(checks.array(found.dofs, "matrices: dofs"))

@@ -375,14 +375,14 @@ def _print(text: str) -> None:
     """Print and flush."""
     try:
         print(text, flush=True)
-    except BrokenPipeError:  # whoever reads it has had enough
+    except BrokenPipeError:  # the reader has closed the pipe
         raise
     except OSError as error:
         raise OSError(f"cannot print: {error.strerror}; lost output: {text}") from error
 
 
 def _complain(error: Exception) -> None:
-    with contextlib.suppress(OSError):  # nobody to hear it
+    with contextlib.suppress(OSError):  # stderr is closed
         print(f"frictionmap: {one_line(error) or type(error).__name__}", file=sys.stderr)
 
 
@@ -421,7 +421,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         _complain(error)
         return 2
-    except BrokenPipeError:  # whoever reads what we print has had enough
+    except BrokenPipeError:  # the reader has closed the pipe
         return 0
     except (NoSteadyState, OSError, MemoryError) as error:
         _complain(error)

@@ -30,20 +30,20 @@ TRUTHS: Mapping[str, Mapping[str, float]] = {
     "record": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.7, "mu": 1.2, "offset_x": -0.1},
 }
 
-#: Samples of a decay: so many a second, for so many seconds, with this error [mm].
+#: Samples of a decay: rate [1/s], length [s], error [mm].
 _RATE, _LENGTH, _DECAY_ERROR = 200, 4, 0.03
 
 #: Amplitude of the base [mm], which makes beta of x_F; errors of lags [deg], and of amplitudes, relative.
 _BASE, _LAG_ERROR, _AMPLITUDE_ERROR = 1.75, 0.7, 0.01
 
-#: Frequency [Hz] and harmonics [mm] of the base of a record, and its samples: so many a second, for so many
-#: seconds, with these errors of mass and base [mm].
+#: Frequency [Hz] and harmonics [mm] of the base of a record; rate [1/s] and length [s] of its samples, and
+#: errors of mass and base [mm].
 _SHAKEN_AT, _HARMONICS = 1.0, (0.0, 1.75, 0.018j)
 _RECORD_RATE, _RECORD_LENGTH, _RECORD_ERRORS = 100, 8, (0.01, 0.003)
 
 _HEAD = """\
-# Above each key: what it means, and what is legal.  A line that begins with # and a key shows the default,
-# where there is one, else an example.
+# Above each key: its meaning and its valid values.  A line that begins with # and a key shows the default,
+# if there is one, else an example.
 """
 
 _SYNTHETIC = "# Synthetic: made by frictionmap.examples, not measured."

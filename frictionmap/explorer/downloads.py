@@ -17,7 +17,7 @@ from ..units.scales import scales_of
 from .scene import Scene
 from .views import CellQuantity, Follower, Piece, View
 
-#: Matrices of so many degrees of freedom are put into a configuration; of larger ones only the file is named.
+#: Largest number of degrees of freedom whose matrices are written to a configuration, not only their file.
 _WRITTEN = 64
 
 #: Outputs of every saved map.

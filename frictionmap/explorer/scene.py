@@ -85,7 +85,7 @@ class Scene:
         return (own, *(other for other in _others(self.system) if other.key != own.key))
 
     def _changed(self, contact: str, numbers: tuple[tuple[str, float], ...]) -> System:
-        """The system with another contact, and with other numbers; "": as it is.
+        """Change the contact and numbers of the system; contact "": unchanged.
 
         Raises
         ------

@@ -29,7 +29,7 @@ from .scene import Scene
 if TYPE_CHECKING:
     from .queries import Query
 
-#: The port if nobody names one and it is free: a link to a view then outlives the program.
+#: Default port, if it is free, so that links to views remain valid.
 PORT = 8712
 
 _HOST = "127.0.0.1"
@@ -275,7 +275,7 @@ class _Handler(BaseHTTPRequestHandler):
     def _answer(self) -> Answer:
         try:
             return self.server.page.answer(self.path, self._gone)
-        except Exception as error:  # whatever it is, the page hears of it in a line
+        except Exception as error:  # the page shows any error in one line
             return _text(500, f"frictionmap failed: {type(error).__name__}: {error}")
 
     def _gone(self) -> bool:

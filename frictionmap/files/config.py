@@ -80,7 +80,7 @@ def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | No
     """Read a configuration file and apply overrides such as ``grid.r.step=0.01``.
 
     A path in it, also one of an override, is relative to the folder of the file.  `room` may refuse a grid
-    before any memory is taken for it; by default one of too many cells is.
+    before memory is allocated; by default it refuses too many cells.
 
     Raises
     ------

@@ -24,7 +24,7 @@ def estimates_form(ds: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     InputError
-        What every fit holds is missing, or a value is illegal; one line that names the variable.
+        A required variable is missing, or a value is invalid; the message names the variable.
     """
     variables = {}
     for name, label in ESTIMATES.items():

@@ -58,8 +58,8 @@ class Output:
     ) -> None:
         """Call `write` with a temporary path and move the file into place.
 
-        `progress` hears now and then how many bytes there are.  An interrupt waits for `write` to end: the
-        libraries that write files keep their locks for good if they are cut off.
+        `progress` is called now and then with the number of bytes.  An interrupt waits for `write` to end:
+        the libraries that write files never release their locks if interrupted.
 
         Raises
         ------

@@ -59,7 +59,7 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
     InputError
         There is none, it is protected or not ours, zarr is wanted and missing; or the file is damaged where
         it is read.
-        What else the body of the context raises comes through as it is.
+        Other exceptions of the body of the context are passed on.
     """
     store = _is_file(path / "zarr.json")
     if not store and not _is_file(path):
@@ -70,7 +70,7 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
             f"cannot read results from {path}: it is a configuration; compute it first, "
             f"e.g. frictionmap map {path}"
         )
-    # no value of ours is a time, whatever the units say
+    # no variable of the package is a time, even with such units
     options: dict = {"engine": "netcdf4"}
     if store:
         if importlib.util.find_spec("zarr") is None:
@@ -186,7 +186,7 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     InputError
-        What is left makes no sense, or a value is illegal; one line that names the variable.
+        The dataset is inconsistent, or a value is invalid; the message names the variable.
     """
     if not isinstance(ds, xr.Dataset):
         raise InputError(f"ds must be an xarray.Dataset; got {type(ds).__name__}")

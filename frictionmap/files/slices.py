@@ -101,7 +101,7 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
 
 
 def _further(ds: xr.Dataset, name: str, further: Sequence[str]) -> bool:
-    """Whether a coordinate tells a number along one further axis."""
+    """Whether a coordinate holds numbers along one further axis."""
     return ds[name].ndim == 1 and ds[name].dims[0] in further
 
 

@@ -11,7 +11,7 @@ from .robust import root_mean_square, usual_size
 #: Errors from residuals are found again and again until they change by less than this share.
 _SETTLED, _ROUNDS = 1e-3, 20
 
-#: Other answers whose sums are so many times the least are not followed.
+#: Solutions whose sums exceed the least one by this factor are not followed.
 _HOPELESS = 3.0
 
 

@@ -18,7 +18,7 @@ from .least_squares import Problem, Solution, minimise
 from .robust import softened
 from .turning_points import turns
 
-#: Mass and stiffness ratios are within this factor of one; so are frequencies of what the peaks tell.
+#: Mass and stiffness ratios are within this factor of one, as are frequencies relative to the peaks.
 _RATIO_RANGE = 1e3
 
 #: Damping ratios with which a search begins, that it may reach, and at which the model ends.
@@ -33,7 +33,7 @@ _SPREAD = 1.2
 #: Evaluations of one search.
 _MOST_STEPS = 60
 
-#: Searches, at most; fewer once the least sum has been found so many times with errors that can be.
+#: Maximum number of searches; fewer once the least sum has been found this often with plausible errors.
 SEARCHES, _FOUND_AGAIN = 24, 3
 
 #: Sums of squares that differ by less than this share are the same minimum.
@@ -42,7 +42,7 @@ _SAME_SUM = 1e-4
 #: Relative errors that no measurement has: sums of smaller ones are zero.
 _ROUNDING = 1e-8
 
-#: A search that ends so many times above the least sum, with more unknowns free, is not followed.
+#: A search whose sum, with more unknowns free, exceeds the least one by this factor is not followed.
 _HOPELESS = 3.0
 
 #: A peak stands out by this factor, by its logarithm: more than noise makes.

@@ -5,10 +5,10 @@ from scipy.fft import irfft, next_fast_len, rfft
 
 from .least_squares import inflation
 
-#: The sum over lags ends at so many correlation times (Sokal 1997, section 3).
+#: Lag at which the sum ends, in correlation times (Sokal 1997, section 3).
 _WINDOW = 5.0
 
-#: A correlation time beyond so many of its standard errors above 1 is not chance.
+#: Standard errors above 1 from which a correlation time is significant.
 _SIGNIFICANT = 3.0
 
 

@@ -15,19 +15,19 @@ from .turning_points import (
     without_spikes,
 )
 
-#: Samples in a row at an extreme value are clipped if the next one is far from it: by so many steps of the
-#: resolution, of which a smooth turning point makes few.
+#: Consecutive samples at an extreme value are clipped if the next one is far from it: by this many steps of
+#: the resolution, of which a smooth turning point makes few.
 _CLIPPED_ROW = 3
 _CLIPPED_STEPS = 4.0
 
-#: Residuals so many times as large as the noise between samples, and beyond this share of the motion, are not
-#: those of a free decay.  Higher harmonics, and friction that is not constant, leave far less of a real one.
+#: Residuals larger than the noise between samples by this factor, and beyond this share of the motion, are
+#: not those of a free decay.  Higher harmonics, and friction that is not constant, leave far less of a real one.
 _MISFIT, _MISFIT_SHARE = 10.0, 0.1
 
 #: Spikes make turning points that are not half a period apart; noise and a mass that is held make few.
 _REGULAR = 0.5
 
-#: A gap is longer than so many usual steps.
+#: Length of a gap, in usual steps.
 _GAP = 3.0
 
 

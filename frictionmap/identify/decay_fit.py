@@ -15,7 +15,7 @@ from .turning_points import TurningPoints
 #: Sums of squares that differ by less variances of a sample are alike: three standard errors.
 _AS_GOOD = 9.0
 
-#: A start is not followed if its sum, of some of the samples, is larger by so many: five standard errors.
+#: A start is not followed if its sum over some samples is larger by this: five standard errors.
 _HOPELESS = 25.0
 
 #: Fits at most, of starts that some of the samples cannot distinguish.

@@ -16,7 +16,7 @@ from .turning_points import TurningPoints, hides_turning_points, regular_run
 _DAMPINGS = (0.0, 0.01, 0.03, 0.1, 0.2, 0.35, 0.6)
 
 #: Half cycles can hide in the noise after the last turning point that was found: the search for more ends
-#: where so many in a row fit no better.
+#: where this many in a row fit no better.
 _HIDDEN = 8
 
 #: So many of the last turning points that were found may be noise.

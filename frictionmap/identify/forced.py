@@ -18,7 +18,7 @@ from .forced_model import F_N, MU, ZETA
 from .forced_told import fit_warnings
 from .robust import LOSSES
 
-#: Estimates so many standard errors above zero are found.
+#: Standard errors above zero from which an estimate is significant.
 _FOUND = 3.0
 
 #: An error of all rows, or one of each.

@@ -10,10 +10,10 @@ from ..errors import InputError
 from ..model.system import System
 from .forced_model import Rows, Samples
 
-#: Errors that the data have until their residuals tell better: radian, and relative.
+#: Initial errors of the data, until the residuals give better ones: radian, and relative.
 _PHASE, _AMPLITUDE = np.radians(1.0), 0.02
 
-#: A lag may be out of its range by so many of its errors, and by so much, in degrees, if they are not known.
+#: Tolerance of lags beyond their range, in their errors, and in degrees if these are unknown.
 _ERRORS, _DEGREES = 5.0, 5.0
 
 #: Values by mass, or those of the only mass.

@@ -36,7 +36,7 @@ _CLOSER_LOOKS = 2
 #: Errors from residuals are found again and again until they change by less than this share.
 _SETTLED, _ROUNDS = 1e-3, 20
 
-#: Residuals beyond so many of their errors have little weight in a robust fit.
+#: Residuals beyond this many of their errors have little weight in a robust fit.
 _OUTLIER = 1.0
 
 #: Singular values of slopes below this share of the largest are zero, as are changes of lags [rad] and of

@@ -50,7 +50,7 @@ def friction_ratios(fit: Fit) -> dict[str, xr.Variable]:
     status = np.full(samples.row.size, _NO_LAG, dtype=np.int8)
     status[lags] = [one.code for one in inversions]
     flags = {
-        "long_name": "what the lag tells of friction",
+        "long_name": "friction ratios that follow from the lag",
         "flag_values": np.arange(_NO_LAG + 1, dtype=np.int8),
         "flag_meanings": " ".join((*MEANINGS, "no_lag")),
     }

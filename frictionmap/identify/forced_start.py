@@ -18,7 +18,7 @@ _MOST = 5.0
 #: What a mass at rest, or no steady state, counts: as much as no motion does.
 _AT_REST = 1e3
 
-#: Friction ratios: so many below that at which everything sticks, down to a share of it.
+#: Friction ratios: number of values below the one at which everything sticks, down to a share of it.
 _BETAS, _LEAST_SHARE = 16, 0.02
 
 #: Natural frequencies: from this share of the lowest frequency to this multiple of the highest, by this step.
@@ -30,7 +30,7 @@ _DAMPINGS = (0.003, 0.03)
 _TRIED, _APART = 3, 0.06
 _MU = (1.05, 1.4)
 
-#: A closer look: errors so many times as large, and values beside those that were found.
+#: A closer search: factor of the errors, and values near those that were found.
 _CLOSER = 3.0
 _F_BESIDE = np.array([0.97, 0.985, 1.0, 1.015, 1.03])
 _MU_BESIDE = np.arange(-0.2, 0.25, 0.05)

@@ -9,10 +9,10 @@ from .forced_data import ForcedTable
 from .forced_fit import Fit, parameter_names
 from .forced_model import MU, ZETA, points_of
 
-#: Sums of squares that chance makes larger more rarely are beyond the errors that are given.
+#: Probability of a sum of squares below which it contradicts the given errors.
 _CHANCE = 1e-3
 
-#: From this share of beta_stick on structures got stuck in tests, T 4.4.
+#: Share of beta_stick above which structures stuck in tests, T 4.4.
 _NEAR_STICKING = 0.7
 
 

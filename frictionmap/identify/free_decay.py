@@ -20,7 +20,7 @@ from .least_squares import Errors
 from .robust import LOSSES
 from .turning_points import TurningPoints, linear_decrement, noise_level, without_spikes
 
-#: Estimates so many standard errors above zero are found.
+#: Standard errors above zero from which an estimate is significant.
 _FOUND = 3.0
 
 #: Codes of what was found, in order.

@@ -22,7 +22,7 @@ _PART = 1e-4
 #: Ends of profiles are found to this share of the standard error.
 _PROFILE = 1e-3
 
-#: Lag-1 correlations beyond so many standard errors are no chance.
+#: Standard errors from which a lag-1 correlation is significant.
 _COLOURED = 3.0
 
 
@@ -73,7 +73,7 @@ class Errors(NamedTuple):
 def minimise(problem: Problem, start: np.ndarray) -> Solution:
     """The least sum with no parameter below its bound.
 
-    A parameter that a fit puts below its bound is held there, and the rest fitted anew; of several ways to
+    A parameter below its bound is held there, and the others are fitted again; of several ways to
     hold some of them the least sum wins.
     """
     free_fit = _fit(problem, start, problem.free)

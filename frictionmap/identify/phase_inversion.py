@@ -18,14 +18,14 @@ from .lag_extremes import Extremes, extremes_near_zero
 #: the lag of one mass comes back from beyond 90 deg.
 _SHARES = np.concatenate((np.linspace(0.0, 0.9, 31), 1.0 - 0.1 * 0.6 ** np.arange(1.0, 16.0)))
 
-#: Intervals next to a lag are looked at in so many parts: where motions with one more stop begin, the lag
+#: Intervals next to a lag are divided into these parts: where motions with one more stop begin, the lag
 #: bends so sharply that a rise and a fall may lie between two of the samples above.
 _PARTS = np.linspace(0.0, 1.0, 11)
 
-#: Lags that change less than this [rad] per unit of beta tell no friction.
+#: Lags that change less than this [rad] per unit of beta do not determine friction.
 _LEAST_SLOPE = np.radians(10.0)
 
-#: Step of beta by which the slope is told.
+#: Step of beta for the slope.
 _STEP = 1e-5
 
 #: Lags nearer to each other than this [rad] are one: steady states are exact to some 1e-12.
@@ -40,7 +40,7 @@ _MOST_DECIMALS = 6
 
 ONE, SEVERAL, NONE, FLAT = 0, 1, 2, 3
 
-#: Codes of what a lag tells, in order.
+#: Codes of the result for a lag, in order.
 MEANINGS = ("one_friction_ratio", "several_friction_ratios", "no_friction_ratio_gives_it", "cannot_tell")
 
 
@@ -223,7 +223,7 @@ def _lag(system: System, r: np.ndarray, beta: np.ndarray, mass: np.ndarray) -> n
 def _look(system: System, r: np.ndarray, mass: np.ndarray) -> _Lags:
     """Lags over all friction; where a closed form gives beta in continuous motion, at 0 and beyond it."""
     stick = np.abs(system.contact_load(r))
-    # a load that feeds a resonance of the held structure moves it whatever the friction
+    # a load at a resonance of the held structure moves it for any friction
     stick = np.where(np.isfinite(stick), stick, 1.0 / np.finfo(float).eps)
     low = np.zeros_like(r)
     if _has_closed_form(system):

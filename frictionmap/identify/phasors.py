@@ -26,17 +26,17 @@ _LEAST_CYCLES = 2.0
 #: Samples a cycle that are needed.
 _LEAST_SAMPLES = 8
 
-#: The spectrum is refined by so many values over its main lobe, the first of which may be the frequency.
+#: Number of values over the main lobe by which the spectrum is refined.
 _REFINED = 17
 
 #: Samples in all, and in a cycle, of which the search makes use.
 _SAMPLES = 4000
 _SAMPLES_A_CYCLE = 16
 
-#: Samples so many deviations off are outliers; fits in which they are drawn in.
+#: Deviations from which a sample is an outlier; number of fits in which outliers are limited.
 _OUTLIER, _TAMED = 3.0, 5
 
-#: A normal deviate is below so many deviations in half of all cases.
+#: Median of the modulus of a normal deviate, in standard deviations.
 _MEDIAN = 0.6744897501960817
 
 #: The frequency is found where it moves by less than this share of 1/length.

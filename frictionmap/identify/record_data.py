@@ -11,16 +11,16 @@ from .plateaus import unclipped_mass
 from .record_fit import Fit, Samples, places_at, samples_of
 from .turning_points import resolution
 
-#: Leads so many standard errors beyond zero are no chance.
+#: Standard errors from which a lead is significant.
 _FOUND = 3.0
 
-#: Errors of the base's first harmonic so many times those of samples at all phases.
+#: Largest error of the base's first harmonic, over that of samples at all phases.
 _WORSE = 4.0
 
-#: A lead of so many degrees may come from higher harmonics of the base.
+#: Lead [deg] that higher harmonics of the base may cause.
 _LEAD = 1.0
 
-#: A first harmonic of the mass below so many standard errors is no motion.
+#: Standard errors of the first harmonic below which the mass does not move.
 _MOVES = 5.0
 
 

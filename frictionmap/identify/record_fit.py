@@ -33,7 +33,7 @@ from .record_starts import starts
 from .robust import effective_variance, softened
 from .static_friction import FITTED, IDLE, KNOWN, ONE, is_asked_for
 
-#: Starts that are followed, on so many samples; the best one goes on with all.
+#: Number of starts that are followed, and of samples used; the best one continues with all samples.
 _FOLLOWED = 4
 _SAMPLES = 600
 
@@ -76,7 +76,7 @@ class Fit(NamedTuple):
 
     mass: Shaken
     samples: Samples
-    problem: Problem  # mu is not free where it is not told
+    problem: Problem  # mu is not free where the data do not determine it
     with_mu: Problem  # with mu free, if it is not known
     solution: Solution
     noise: Noise

@@ -11,7 +11,7 @@ from .estimates import number
 from .phasors import changes
 from .record_data import MeasuredRecord
 
-#: Drifts of so many standard errors are no chance.
+#: Standard errors from which a drift is significant.
 _FOUND = 3.0
 
 #: Harmonics of the base beyond this share of the first one are much.

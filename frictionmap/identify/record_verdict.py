@@ -6,7 +6,7 @@ from .least_squares import Errors
 from .record_fit import Fit
 from .record_motion import F_N, MU, PARAMETERS, X_F, ZETA
 
-#: Estimates so many standard errors above zero are found.
+#: Standard errors above zero from which an estimate is significant.
 _FOUND = 3.0
 
 #: Correlation above which two estimates are not identifiable separately.

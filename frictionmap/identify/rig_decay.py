@@ -12,7 +12,7 @@ from .free_decay import free_decay
 from .rig import Kind, Rig, check_columns, with_remarks
 from .tables import Table
 
-#: What is given in mm, whatever the unit of the data.
+#: Keys given in mm, for any unit of the data.
 _LENGTHS = ("x_F", "X0", "centre", "base_mm")
 
 

@@ -22,7 +22,7 @@ _WANTED = {"time": "time", "base": "motion", "x": "motion"}
 #: Noise of displacements beyond this share of the motion is much.
 _NOISY = 0.05
 
-#: What is given in mm, whatever the unit of the data.
+#: Keys given in mm, for any unit of the data.
 _LENGTHS = ("x_F", "offset_x")
 
 SYSTEM_KEYS = ("contact", "damping_reference", "excitation", "contact_masses")

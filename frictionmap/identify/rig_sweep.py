@@ -53,7 +53,7 @@ def _wanted(rig: Rig, table: Table, masses: int) -> dict[str, str]:
         if int(role[-1]) > masses:
             raise InputError(f"system.masses must be at least {role[-1]}, as there is {role}; got {masses}")
     if not any(role.startswith("amplitude_ratio") for role in there):
-        there["amplitude_ratio_1"] = "ratio"  # that it is missing is told where columns are looked for
+        there["amplitude_ratio_1"] = "ratio"  # the search for columns reports that it is missing
     return {"frequency": "frequency", **there}
 
 

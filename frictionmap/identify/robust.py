@@ -11,7 +11,7 @@ from .least_squares import Problem, Solution
 
 LOSSES = ("linear", "soft_l1")
 
-#: Half of all normal deviates are within so many standard deviations.
+#: Median of the modulus of a normal deviate, in standard deviations.
 _NORMAL_MEDIAN = 0.6745
 
 

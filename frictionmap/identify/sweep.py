@@ -21,13 +21,13 @@ from .sweep_data import MOST_MASSES, WORDS, Values, check_enough, checked_sweep
 DAMPINGS = ("ground", "base")
 COSTS = ("logarithmic", "relative")
 
-#: Scatter that chance makes more rarely is beyond the errors that are given.
+#: Probability of the scatter below which it contradicts the given errors.
 _CHANCE = 1e-3
 
-#: Answers whose sums of squares differ by less variances of a sample are as good.
+#: Solutions whose sums of squares differ by fewer variances of a sample fit as well.
 _AS_GOOD = 4.0
 
-#: Answers are others if a parameter differs by so many standard errors.
+#: Standard errors of a parameter from which solutions differ.
 _ELSEWHERE = 3.0
 
 #: Residuals beyond this many given errors have little weight in a robust fit.

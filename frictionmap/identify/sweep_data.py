@@ -11,7 +11,7 @@ from .chain_fit import Measured, peaks
 #: Values of the only mass measured, or by mass, counted from 1.
 Values = Sequence[float] | np.ndarray | Mapping[int, Sequence[float] | np.ndarray]
 
-#: Chains with more masses have more unknowns than sweeps usually tell.
+#: Chains with more masses have more unknowns than sweeps usually determine.
 MOST_MASSES = 5
 
 WORDS = ("one", "two", "three", "four", "five")

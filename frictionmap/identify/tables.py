@@ -92,7 +92,7 @@ def _read_csv(path: Path) -> Table:
 def _check_rows(path: Path, names: list[str], rows: list[list[str]], line: int) -> None:
     """Refuse names that stand twice, and rows of another length."""
     twice = next((name for name in names if names.count(name) > 1), None)
-    # numbers twice: the file has no names at all, which is told when a column is looked for
+    # numbers twice: the file has no names at all, which the search for columns reports
     if twice is not None and not np.isfinite(_number(twice, comma=False)):
         raise InputError(f"cannot read {path}, line {line}: column names must differ; got {twice!r} twice")
     for offset, row in enumerate(rows[1:], start=1):

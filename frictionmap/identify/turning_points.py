@@ -14,7 +14,7 @@ _LARGE = 0.2
 #: Samples a cycle; with fewer, a turning point is not seen between two of them.
 _LEAST_SAMPLES = 8
 
-#: A step between two samples is a gap if it is longer than so many usual ones.
+#: Length of a gap between two samples, in usual steps.
 _GAP = 3.0
 
 #: A gap of this share of half a cycle, or less, hides one turning point at most, and a parabola through both

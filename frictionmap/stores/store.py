@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 #: The group of the matrices of a structure that has any.
 _MATRICES = "matrices"
 
-#: What a file is called while it is written.
+#: Names of files that are being written.
 _PARTIAL = "*.partial"
 
 _SOURCE = f"frictionmap {__version__}"
@@ -84,7 +84,7 @@ class Store:
             return np.asarray(self._group[MARKS][...]) != 0
         except OSError:
             raise
-        except Exception as error:  # the library raises anything over files that are not its own
+        except Exception as error:  # the library raises any exception on foreign files
             raise _damaged(self.path, name, error) from None
 
     def done(self) -> np.ndarray:
@@ -216,7 +216,7 @@ def cut_of(path: Path) -> Cut:
     Raises
     ------
     InputError
-        An array that tells it is missing or damaged.
+        A required array is missing or damaged.
     """
     name = MARKS
     try:
@@ -226,7 +226,7 @@ def cut_of(path: Path) -> Cut:
         return Cut(group[name].chunks[-2], together)
     except OSError:
         raise
-    except Exception as error:  # the library raises anything over files that are not its own
+    except Exception as error:  # the library raises any exception on foreign files
         raise _damaged(path, name, error) from None
 
 
@@ -251,7 +251,7 @@ def _config(path: Path) -> Config:
         raise InputError(
             f"cannot resume {path}: {error.filename} is read-protected; make it readable or use another -o"
         ) from None
-    except Exception:  # whatever the library makes of files that are not its own
+    except Exception:  # any exception of the library on foreign files
         pass
     raise InputError(
         f"cannot resume {path}: written by {source}, this is {_SOURCE}; use --overwrite or another -o"

@@ -20,11 +20,11 @@ from ..steady.refinement import reduction_check
 from ..steady.sweep import regime_map, study_coordinates
 from ..units.scales import Scales, Units, scales_of
 
-#: Cells of a block at most, whatever they cost: memory, and few files.
+#: Maximum number of cells of a block, for any computing time: limits memory and number of files.
 BLOCK_CELLS = 2**20
 
 
-#: Small blocks that are computed and written together: so many at most, with one in so many of those cells.
+#: Maximum number of small blocks computed and written together, and the inverse of their share of the cells.
 TOGETHER = 64
 
 

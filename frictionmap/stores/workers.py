@@ -25,7 +25,7 @@ from .study import Batch
 if TYPE_CHECKING:
     from distributed import Client, Future, LocalCluster
 
-#: Blocks that wait at a worker, beside the one it computes: it is never idle, and a stop leaves few behind.
+#: Blocks queued at a worker: it is never idle, and few are lost if the run stops.
 _WAITING = 2
 
 #: Attempts to start local workers: if one is lost while it starts, all end.

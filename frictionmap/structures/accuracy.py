@@ -20,10 +20,10 @@ from .craig_bampton import Reduced, factor, slowest
 
 T = TypeVar("T")
 
-#: Held while the whole structure is looked at; no part of what travels to other processes.
+#: Held while the whole structure is analysed; not sent to other processes.
 _LOOKING = threading.Lock()
 
-#: Compliances are compared at so many frequencies at most, none nearer to a resonance than this share of it:
+#: Number of frequencies at which compliances are compared, none nearer to a resonance than this share:
 #: there the error is that of the resonance's frequency.
 _SAMPLES = 60
 _NEAR = 0.05
@@ -31,7 +31,7 @@ _NEAR = 0.05
 #: Frequencies, evenly spaced, beside those between resonances.
 _EVEN = 9
 
-#: Frequencies of the whole structure that are asked for beyond those that the reduced one has in the range.
+#: Number of frequencies of the whole structure computed beyond those of the reduced one in the range.
 _FURTHER = 3
 
 

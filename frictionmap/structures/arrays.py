@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import InputError
 from ..mat_files import read_mat
 
-#: What a file that is not an .npz, or a damaged one, makes numpy raise.
+#: Exceptions of numpy for files that are not .npz, or damaged.
 _NOT_NPZ = (ValueError, EOFError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
 
 

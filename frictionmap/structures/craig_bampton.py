@@ -18,16 +18,16 @@ from ..errors import InputError
 from .dofs import Dofs
 from .structure import Structure
 
-#: Error of natural frequencies and compliances, relative, that is taken without a word.
+#: Default of the allowed relative error of natural frequencies and compliances.
 _ALLOWED = 1e-3
 
-#: So few degrees of freedom are solved for all their modes.
+#: Number of degrees of freedom up to which all modes are computed.
 _FEW = 400
 
-#: A motion of all by one that the modes leave less of than this needs no column of its own.
+#: Remainder of the rigid motion below which it needs no column of its own.
 _SPANNED = 1e-7
 
-#: Of the largest entry of a shape: what is left of it is rounding.
+#: Share of the largest entry of a shape below which entries are rounding.
 _ROUNDING = 1e-10
 
 _KEYS = ("keep", "modes", "allow")
@@ -145,7 +145,7 @@ def fixed_interface(structure: Structure, kept: Sequence[int], modes: int) -> Fi
     Raises
     ------
     InputError
-        K is not positive definite, M has a negative diagonal, or there are not so many modes.
+        K is not positive definite, M has a negative diagonal, or there are fewer modes.
     """
     mass, stiffness = structure.arrays["M"], structure.arrays["K"]
     diagonal = np.asarray(mass.diagonal())

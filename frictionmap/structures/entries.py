@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import InputError
 
-#: More rows than any model that could be solved here has: a slip in a file.
+#: Largest number of rows; more indicate an error in the file.
 _MOST = 10**7
 
 #: Node and degree of freedom at it.
@@ -69,7 +69,7 @@ def as_number(text: str) -> float:
 
 
 def _check_digits(text: str) -> None:
-    """Refuse what Python takes for a number and no other program: 1_000, and digits of other alphabets."""
+    """Refuse numbers that only Python accepts: 1_000, and digits of other alphabets."""
     if "_" in text or not text.isascii():
         raise ValueError(text)
 

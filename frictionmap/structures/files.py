@@ -37,7 +37,7 @@ _ONE_EACH = '{ M = "m.mtx", K = "k.mtx" }'
 class GivenMatrices(NamedTuple):
     """Given matrices; only names and labels are checked."""
 
-    arrays: dict[str, Any]  # M, K and perhaps C: whatever it is, or sparse
+    arrays: dict[str, Any]  # M, K and perhaps C, unchecked or sparse
     dofs: Any  # their numbers, if they were given, else None
     labels: tuple[Label, ...] | None
     held: np.ndarray | None  # rows that a boundary condition holds, bool (n,)

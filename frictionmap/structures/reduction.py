@@ -12,11 +12,11 @@ from .accuracy import Accuracy, Comparison, FullStructure, Ranges
 from .craig_bampton import FixedInterface, Reduce, Reduced, fixed_interface, project, slowest
 from .structure import Structure
 
-#: Of the modes asked for: so many times as many are tried for a number that would do, in such steps.
+#: Largest number of modes tried for a sufficient one, over the requested number, and the factor of the steps.
 _MORE = 8
 _STEP = 1.25
 
-#: Modes that a reduction is compared with at least, where it has hardly any itself.
+#: Smallest number of modes of the reduction used for comparison.
 _LEAST_REFINED = 8
 
 

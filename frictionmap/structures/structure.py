@@ -10,7 +10,7 @@ from ..errors import InputError
 from .dofs import Dofs
 from .files import GivenMatrices, read_files
 
-#: Of the largest entry: a matrix is symmetric up to this.  Assembly leaves some units of rounding; a slip
+#: Tolerance of symmetry, over the largest entry.  Assembly leaves some units of rounding; a mistake
 #: leaves more.
 TOLERANCE = 1e-12
 
@@ -108,7 +108,7 @@ def _square(given: Any, name: str) -> Any:
 
 
 def _is_sparse(given: object) -> bool:
-    """Whether it is a sparse matrix or array, told without loading what they come from."""
+    """Whether it is a sparse matrix or array, determined without importing scipy."""
     return hasattr(given, "tocsr") and hasattr(given, "nnz")
 
 

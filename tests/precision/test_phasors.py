@@ -67,7 +67,7 @@ def test_a_steady_record_does_not_change_and_another_one_does():
     ("time", "message"),
     [
         (np.arange(400) / 250.0, "time must span at least 2 cycles of the base; got 1.6"),
-        (np.arange(100) / 5.0, "5 samples a cycle; 8 are needed"),
+        (np.arange(100) / 5.0, "5 samples per cycle, 8 needed"),
     ],
 )
 def test_too_little_is_refused(time, message):

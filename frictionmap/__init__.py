@@ -4,7 +4,7 @@
 room           what is in it, in the order in which data flows
 =============  =========================================================================
 regimes        the table of regime, origin and status codes
-checks         checks of input, whose messages name what is legal; `errors`
+checks         checks of input, whose messages name what is valid; `errors`
 structures     matrices from the files of finite-element programs; `packages`, `mat_files`
 _kernels       the only home of jitted code: numbers and arrays in, numbers and codes out
 model          what is simulated: system, matrices, modes, the structure held at its

@@ -25,9 +25,9 @@ _LONGEST_REPR = 160
 T = TypeVar("T")
 
 
-def nearest(word: str, legal: Iterable[str]) -> str:
+def nearest(word: str, valid: Iterable[str]) -> str:
     """Return ' (did you mean ...?)' if a valid word is similar, else ''."""
-    found = difflib.get_close_matches(word, list(legal), n=1, cutoff=0.5)
+    found = difflib.get_close_matches(word, list(valid), n=1, cutoff=0.5)
     return f" (did you mean {found[0]}?)" if found else ""
 
 
@@ -45,11 +45,11 @@ def instance(value: object, name: str, kind: type[T]) -> T:
     return value
 
 
-def choice(value: object, name: str, legal: tuple[str, ...]) -> str:
+def choice(value: object, name: str, valid: tuple[str, ...]) -> str:
     """Check that `value` is one of the valid words."""
-    if not isinstance(value, str) or value not in legal:
-        hint = nearest(value, legal) if isinstance(value, str) else ""
-        raise InputError(f"{name} must be one of {', '.join(legal)}; got {one_line(value)}{hint}")
+    if not isinstance(value, str) or value not in valid:
+        hint = nearest(value, valid) if isinstance(value, str) else ""
+        raise InputError(f"{name} must be one of {', '.join(valid)}; got {one_line(value)}{hint}")
     return value
 
 
@@ -132,10 +132,10 @@ def axis(values: object, name: str, *, least: float, most: float = math.inf) -> 
     if result.size == 0:
         raise InputError(f"{name} must have at least one value; got none")
 
-    def refuse(wrong: np.ndarray, legal: str) -> None:
+    def refuse(wrong: np.ndarray, valid: str) -> None:
         if wrong.any():
             index = int(np.argmax(wrong))
-            raise InputError(f"{name} must be {legal}; got {result[index]} at index {index}")
+            raise InputError(f"{name} must be {valid}; got {result[index]} at index {index}")
 
     refuse(~np.isfinite(result), "finite")
     refuse(result < least, f">= {least:g}")

@@ -75,14 +75,14 @@ def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
         "estimates": {"fit": plot_fit},
         "shares": {"shares": plot_shares},
     }
-    legal = drawn_of[what]
+    valid = drawn_of[what]
     if log:
         raise InputError(f"cannot draw {what} with log: it applies to response curves only; omit log")
     if quantity is None:
-        quantity = next(iter(legal))
-    if quantity not in legal:
-        raise InputError(f"unknown quantity {quantity!r} in a file of kind {what}; valid: {', '.join(legal)}")
-    return legal[quantity](ds)
+        quantity = next(iter(valid))
+    if quantity not in valid:
+        raise InputError(f"unknown quantity {quantity!r} in a file of kind {what}; valid: {', '.join(valid)}")
+    return valid[quantity](ds)
 
 
 def save_picture(ds: xr.Dataset, path: Path, quantity: str | None = None, *, log: bool = False) -> None:

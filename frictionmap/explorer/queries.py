@@ -56,7 +56,7 @@ def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
     return Query(view, given)
 
 
-def _read(text: str, legal: Sequence[str]) -> dict[str, str]:
+def _read(text: str, valid: Sequence[str]) -> dict[str, str]:
     try:
         pairs = parse_qsl(text, keep_blank_values=True, strict_parsing=bool(text), max_num_fields=_MOST_KEYS,
                           errors="strict")  # fmt: skip
@@ -64,9 +64,9 @@ def _read(text: str, legal: Sequence[str]) -> dict[str, str]:
         raise InputError(f"the query must be KEY=VALUE&...; got {checks.one_line(text)} ({error})") from None
     given: dict[str, str] = {}
     for key, value in pairs:
-        if key not in legal:
-            hint = checks.nearest(key, legal)
-            raise InputError(f"unknown key {key!r}{hint}; valid: {', '.join(legal)}")
+        if key not in valid:
+            hint = checks.nearest(key, valid)
+            raise InputError(f"unknown key {key!r}{hint}; valid: {', '.join(valid)}")
         if key in given:
             raise InputError(f"{key} must be given once; got {given[key]!r} and {value!r}")
         given[key] = value
@@ -148,8 +148,8 @@ def cell_of(query: Query) -> tuple[float, float]:
 
 def cut_of(query: Query) -> tuple[Along, float, int]:
     """Axis of a cut, value of the other axis, number of points."""
-    legal: tuple[Along, ...] = get_args(Along)
-    along: Any = checks.choice(needed(query.given, "along"), "along", legal)
+    valid: tuple[Along, ...] = get_args(Along)
+    along: Any = checks.choice(needed(query.given, "along"), "along", valid)
     place = checks.number(number(needed(query.given, "place"), "place"), "place", least=0.0)
     count = _whole(query.given, "count")
     return along, place, checks.whole(count, "count", least=2, most=_MOST_POINTS)

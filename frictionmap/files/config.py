@@ -216,20 +216,20 @@ def _override(tree: dict, parts: list[str], value: object, override: str) -> Non
     branch[parts[-1]] = value
 
 
-def unknown_key(key: str, section: str, legal: Sequence[str]) -> InputError:
+def unknown_key(key: str, section: str, valid: Sequence[str]) -> InputError:
     """Return an error that names an unknown key and the valid ones."""
     name = f"{section}.{key}" if section else key
-    return InputError(f"unknown key {name!r}{checks.nearest(key, legal)}; valid: {', '.join(legal)}")
+    return InputError(f"unknown key {name!r}{checks.nearest(key, valid)}; valid: {', '.join(valid)}")
 
 
 def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
     table = tree.get(name, {})
     if not isinstance(table, Mapping):
         raise InputError(f"{name} must be a table [{name}]; got {table!r}")
-    legal = _SECTIONS[name]
+    valid = _SECTIONS[name]
     for key in table:
-        if legal is not None and key not in legal:
-            raise unknown_key(key, name, legal)
+        if valid is not None and key not in valid:
+            raise unknown_key(key, name, valid)
     return table
 
 
@@ -384,10 +384,10 @@ def _check_form(axis: Mapping[str, object], name: str) -> None:
     for key in axis:
         if key not in _AXIS_KEYS:
             raise unknown_key(key, name, _AXIS_KEYS)
-    legal = "{ start, stop, step }, { start, stop, num } or { values }"
+    valid = "{ start, stop, step }, { start, stop, num } or { values }"
     keys = set(axis)
     if keys not in ({"values"}, {"start", "stop", "step"}, {"start", "stop", "num"}):
-        raise InputError(f"{name} must be {legal}; got {', '.join(axis) or 'nothing'}")
+        raise InputError(f"{name} must be {valid}; got {', '.join(axis) or 'nothing'}")
 
 
 def _check_range(axis: Mapping[str, object], name: str) -> None:

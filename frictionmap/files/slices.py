@@ -65,14 +65,14 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
         There is no such axis or value, or more than one point.
     """
     further = further_axes(ds)
-    legal = [*further, *(str(n) for n in ds.coords if n not in further and _further(ds, str(n), further))]
-    legal += [name for name in ("mu", "r", "beta") if ds.sizes.get(name, 0) > 0]
+    valid = [*further, *(str(n) for n in ds.coords if n not in further and _further(ds, str(n), further))]
+    valid += [name for name in ("mu", "r", "beta") if ds.sizes.get(name, 0) > 0]
     places: dict[str, np.ndarray] = {}
     for name, value in choices.items():
-        if name not in legal:
+        if name not in valid:
             raise InputError(
-                f"unknown axis of --at {name!r}{checks.nearest(name, legal)}; "
-                f"valid: {', '.join(legal) or 'none'}"
+                f"unknown axis of --at {name!r}{checks.nearest(name, valid)}; "
+                f"valid: {', '.join(valid) or 'none'}"
             )
         dim, found = _found(ds, name, value)
         places[dim] = np.intersect1d(found, places[dim]) if dim in places else found

@@ -111,10 +111,10 @@ def check_positive(table: Table, column: Column, rows: np.ndarray) -> None:
 
 def _find(table: Table, role: str, names: Mapping[str, str], measures: str) -> Column:
     """Find a column by name, or by its role and a unit."""
-    legal, name = suffixes(measures), names.get(role)
+    valid, name = suffixes(measures), names.get(role)
     has = f"the file has {', '.join(table.columns) or 'none'}"
-    known = f" (suffixes: {', '.join(legal)})" if legal else ""
-    wanted = f"column {name or role + next(iter(legal), '')}{known}"
+    known = f" (suffixes: {', '.join(valid)})" if valid else ""
+    wanted = f"column {name or role + next(iter(valid), '')}{known}"
     if name is not None and name not in table.columns:
         raise InputError(
             f"cannot read {table.file}: {wanted} is missing, named by data.columns.{role}; {has}"
@@ -131,34 +131,34 @@ def _find(table: Table, role: str, names: Mapping[str, str], measures: str) -> C
             f"choose one with data.columns.{role}"
         )
     column = candidates[0]
-    unit = _unit(table, column, legal) if legal else "1"
+    unit = _unit(table, column, valid) if valid else "1"
     return Column(column, unit, table.columns[column])
 
 
-def _unit(table: Table, column: str, legal: Sequence[str]) -> str:
+def _unit(table: Table, column: str, valid: Sequence[str]) -> str:
     """The unit that the name of a column ends in."""
     unit = ending(column)
-    if f"_{unit}" not in legal:
+    if f"_{unit}" not in valid:
         what = repr(unit) if unit else "none"
         raise InputError(
-            f"file {table.file}, column {column}: its name must end in a unit, {', '.join(legal)}; got {what}"
+            f"file {table.file}, column {column}: its name must end in a unit, {', '.join(valid)}; got {what}"
         )
     return unit
 
 
-def _named_like(columns: Sequence[str], role: str, legal: Sequence[str], sure: bool = False) -> list[str]:
+def _named_like(columns: Sequence[str], role: str, valid: Sequence[str], sure: bool = False) -> list[str]:
     """Columns of a role, by exact name with a unit, or by a name that begins with the role.
 
     The latter has a unit of what is measured at its end, or, unless it must be sure, nothing but one word or
     another unit behind it: base_frequency_rad_s is no base.
     """
-    if not legal:
+    if not valid:
         return [name for name in columns if name == role]
-    exact = [name for name in columns if name in {f"{role}{unit}" for unit in legal}]
+    exact = [name for name in columns if name in {f"{role}{unit}" for unit in valid}]
     if exact:
         return exact
     like = [name for name in columns if name == role or name.startswith(f"{role}_")]
-    measured = [name for name in like if f"_{ending(name)}" in legal]
+    measured = [name for name in like if f"_{ending(name)}" in valid]
     if measured or sure:
         return measured
     rests = {name: name.removeprefix(role).removeprefix("_") for name in like}

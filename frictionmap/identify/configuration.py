@@ -148,19 +148,19 @@ def _check_keys(tree: Mapping[str, object], name: str, kind: Kind) -> None:
         "known": (*kind.parameters, *kind.known),
         "fit": ("free", *kind.fit),
     }
-    legal = ("title", *sections, *(("system",) if kind.system else ()))
+    valid = ("title", *sections, *(("system",) if kind.system else ()))
     for key in tree:
-        if key not in legal:
-            raise _unknown(key, "", legal, name)
+        if key not in valid:
+            raise _unknown(key, "", valid, name)
     for section, keys in sections.items():
         for key in _table(tree, section):
             if key not in keys:
                 raise _unknown(key, section, keys, name)
 
 
-def _unknown(key: str, section: str, legal: Sequence[str], kind: str) -> InputError:
+def _unknown(key: str, section: str, valid: Sequence[str], kind: str) -> InputError:
     """Return the error of a key that is unknown for this kind of data."""
-    return InputError(f"data.kind = {kind!r}: {unknown_key(key, section, legal)}")
+    return InputError(f"data.kind = {kind!r}: {unknown_key(key, section, valid)}")
 
 
 def _checked_free(

@@ -21,7 +21,7 @@ _CLIPPED_ROW = 3
 _CLIPPED_STEPS = 4.0
 
 #: Residuals larger than the noise between samples by this factor, and beyond this share of the motion, are
-#: not those of a free decay.  Higher harmonics, and friction that is not constant, leave far less of a real one.
+#: not those of a free decay.  Higher harmonics and varying friction leave far smaller ones.
 _MISFIT, _MISFIT_SHARE = 10.0, 0.1
 
 #: Spikes make turning points that are not half a period apart; noise and a mass that is held make few.

@@ -110,9 +110,9 @@ def derivative_order(unit: str) -> int:
 
 def _check_unit(unit: str, name: str, *kinds: str) -> None:
     """Refuse a unit that is of none of the kinds."""
-    legal = tuple(one for kind in kinds for one in units_of(kind))
-    if unit not in legal:
-        raise InputError(f"{name} must be one of {', '.join(legal)}; got {checks.one_line(unit)}")
+    valid = tuple(one for kind in kinds for one in units_of(kind))
+    if unit not in valid:
+        raise InputError(f"{name} must be one of {', '.join(valid)}; got {checks.one_line(unit)}")
 
 
 def _check_unclipped(name: str, values: np.ndarray) -> None:

@@ -83,9 +83,9 @@ def minimise(problem: Problem, start: np.ndarray) -> Solution:
     inside = np.maximum(free_fit.values, problem.floor)
     while True:
         held_fits = [_hold(problem, inside, held) for held in _subsets(candidates)]
-        legal = [fit for fit in held_fits if not _below(problem, fit).any()]
-        if legal:
-            return min(legal, key=lambda fit: fit.sum)
+        valid = [fit for fit in held_fits if not _below(problem, fit).any()]
+        if valid:
+            return min(valid, key=lambda fit: fit.sum)
         candidates = np.logical_or.reduce([candidates, *(_below(problem, fit) for fit in held_fits)])
 
 

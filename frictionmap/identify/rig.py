@@ -47,11 +47,11 @@ class Kind(NamedTuple):
     system: bool = False  # whether there is a table [system]
 
 
-def check_columns(rig: Rig, legal: Sequence[str]) -> None:
+def check_columns(rig: Rig, valid: Sequence[str]) -> None:
     """Refuse unknown roles in data.columns."""
     for key in rig.columns:
-        if key not in legal:
-            raise unknown_key(key, "data.columns", tuple(legal))
+        if key not in valid:
+            raise unknown_key(key, "data.columns", tuple(valid))
 
 
 def with_remarks(ds: xr.Dataset, table: Table, picked: Columns, known_of: Collection[str] = ()) -> xr.Dataset:

@@ -74,8 +74,8 @@ _REFERENCE = Key(
 _SYSTEMS = {
     "forced": KEYS["system"],
     "record": (
-        _CONTACT._replace(legal=word(*CONTACTS)),
-        _MASSES._replace(legal=several({"const": 1}, maxItems=1), words="[1]"),
+        _CONTACT._replace(valid=word(*CONTACTS)),
+        _MASSES._replace(valid=several({"const": 1}, maxItems=1), words="[1]"),
         _BASE,
         _REFERENCE,
     ),

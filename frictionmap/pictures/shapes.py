@@ -29,13 +29,13 @@ _DRAWN_BY = {
 }
 
 
-def to_draw(ds: object, function: str, *legal: str) -> xr.Dataset:
+def to_draw(ds: object, function: str, *valid: str) -> xr.Dataset:
     """Convert a dataset to its standard form, if it is of a kind that a function draws."""
-    wanted = f"ds of {function} must be a dataset such as {_MAKERS[legal[0]]}"
+    wanted = f"ds of {function} must be a dataset such as {_MAKERS[valid[0]]}"
     if not isinstance(ds, xr.Dataset):
         raise InputError(f"{wanted}; got {type(ds).__name__}")
     found = kind(ds)
-    if found not in legal:
+    if found not in valid:
         raise InputError(f"{wanted}; got one such as {_MAKERS[found]} (use {_DRAWN_BY[found]})")
     return standard_form(ds)
 

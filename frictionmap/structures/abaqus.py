@@ -43,7 +43,7 @@ def read_abaqus(path: Path) -> Matrix:
             places = [as_whole(field) for field in fields[:-1]]
             values.append(as_number(fields[-1]))
         except ValueError:
-            refuse(path, number, _legal(count), line)
+            refuse(path, number, _expected(count), line)
         if count == _COUNTED and min(places) < 1:
             refuse(path, number, "rows and columns counted from 1", line)
         half = len(places) // 2
@@ -54,7 +54,7 @@ def read_abaqus(path: Path) -> Matrix:
     return _matrix(path, rows, columns, values)
 
 
-def _legal(count: int) -> str:
+def _expected(count: int) -> str:
     forms = {_LABELLED: "node, dof, node, dof, entry", _COUNTED: "row column entry"}
     return forms.get(count, " or ".join(forms.values()))
 

@@ -24,9 +24,9 @@ class Matrix(NamedTuple):
     labels: tuple[Label, ...] | None = None
 
 
-def refuse(path: Path, line: int, legal: str, got: str) -> NoReturn:
+def refuse(path: Path, line: int, valid: str, got: str) -> NoReturn:
     """Refuse a line of a file."""
-    raise InputError(f"cannot read {path}, line {line}: expected {legal}; got {' '.join(got.split())[:60]!r}")
+    raise InputError(f"cannot read {path}, line {line}: expected {valid}; got {' '.join(got.split())[:60]!r}")
 
 
 def text_of(path: Path) -> str:

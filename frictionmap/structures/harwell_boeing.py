@@ -67,8 +67,8 @@ def read_harwell_boeing(path: Path) -> Matrix:
         parts.append(_numbers(path, lines, begin, count, card, size))
         begin += count
     pointers, rows = (part.astype(np.int64) - 1 for part in parts[:2])
-    legal = pointers[0] == 0 and pointers[-1] == sizes[2] and (np.diff(pointers) >= 0).all()
-    if not legal or rows.min() < 0 or rows.max() >= sizes[0]:
+    valid = pointers[0] == 0 and pointers[-1] == sizes[2] and (np.diff(pointers) >= 0).all()
+    if not valid or rows.min() < 0 or rows.max() >= sizes[0]:
         raise InputError(
             f"cannot read {path}: pointers and rows do not fit a matrix of size {sizes[0]}; write it again"
         )

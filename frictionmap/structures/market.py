@@ -32,8 +32,8 @@ def read_market(path: Path) -> Matrix:
     text = text_of(path)
     banner = text.split("\n", 1)[0]
     words = banner.lower().split()
-    legal = len(words) == 5 and words[1] == "matrix" and words[2] in _FORMS
-    if not legal or words[3] not in _FIELDS or words[4] not in _SYMMETRIES:
+    valid = len(words) == 5 and words[1] == "matrix" and words[2] in _FORMS
+    if not valid or words[3] not in _FIELDS or words[4] not in _SYMMETRIES:
         refuse(path, 1, f"{BANNER} matrix coordinate|array real general|symmetric", banner)
     lines = numbered(text, "%")
     coordinates, symmetric = words[2] == "coordinate", words[4] == "symmetric"

@@ -144,19 +144,19 @@ def _is_text_of_number(text: str) -> bool:
 
 def _meant(unit: str, kind: str) -> str:
     """Suggest a unit for an unknown one."""
-    legal = [*units_of(kind), *(name for name, known in UNITS.items() if known.measures != kind)]
-    same = [name for name in legal if name.lower() == unit.lower()]
-    hint = f" (did you mean {same[0]}?)" if same else checks.nearest(unit, legal)
+    valid = [*units_of(kind), *(name for name, known in UNITS.items() if known.measures != kind)]
+    same = [name for name in valid if name.lower() == unit.lower()]
+    hint = f" (did you mean {same[0]}?)" if same else checks.nearest(unit, valid)
     return f"unknown unit {unit}{hint}"
 
 
 def _refusal(name: str, kind: str, value: object, why: str) -> InputError:
-    legal = ", ".join(units_of(kind))
+    valid = ", ".join(units_of(kind))
     got = (
         repr(value) if isinstance(value, str) and len(value) < 80 else checks.one_line(value)
     )  # spaces count
     return InputError(
-        f"{name} must be a number with a unit of {kind} ({legal}), such as '{EXAMPLES[kind]}'; "
+        f"{name} must be a number with a unit of {kind} ({valid}), such as '{EXAMPLES[kind]}'; "
         f"got {got}{why and f': {why}'}"
     )
 
@@ -177,9 +177,9 @@ def _unit_of_array(values: Any, name: str, kind: str) -> str | None:
         return None
     unit = known_unit(_CF.get(str(said), str(said)))
     if unit is None:
-        legal = ", ".join(units_of(kind))
+        valid = ", ".join(units_of(kind))
         raise InputError(
-            f"{name} must have a unit of {kind} ({legal}), or 1 for ratios; got {checks.one_line(said)}: "
+            f"{name} must have a unit of {kind} ({valid}), or 1 for ratios; got {checks.one_line(said)}: "
             f"{_meant(str(said), kind)}"
         )
     return unit

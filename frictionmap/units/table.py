@@ -80,8 +80,8 @@ def units_of(measures: str) -> tuple[str, ...]:
 
 def spellings(measures: str) -> tuple[str, ...]:
     """All ways to write the units of a kind."""
-    legal = units_of(measures)
-    return (*legal, *(other for other, name in _ALIASES.items() if name in legal))
+    valid = units_of(measures)
+    return (*valid, *(other for other, name in _ALIASES.items() if name in valid))
 
 
 def known_unit(text: str) -> str | None:
@@ -112,9 +112,9 @@ def conversion(unit: str, into: str) -> float:
 
 def checked_unit(unit: str, measures: str, name: str) -> str:
     """`unit`, if columns of time, length or frequency may have it."""
-    legal = tuple(suffix[1:] for suffix in suffixes(measures))
-    if unit not in legal:
-        raise InputError(f"{name} must be one of {', '.join(legal)}; got {checks.one_line(unit)}")
+    valid = tuple(suffix[1:] for suffix in suffixes(measures))
+    if unit not in valid:
+        raise InputError(f"{name} must be one of {', '.join(valid)}; got {checks.one_line(unit)}")
     return unit
 
 

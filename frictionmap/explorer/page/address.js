@@ -90,35 +90,35 @@ function numbersOf(text, count, right) {
  * Parser and valid values of a key of an address.
  * @typedef {object} Key
  * @property {(text: string) => any} read  the value, or undefined
- * @property {string} legal                valid values, in words
+ * @property {string} valid                valid values, in words
  */
 
 /** @returns {Key} */
 function range() {
   const read = (text) => numbersOf(text, 2, (low, high) => low >= 0 && low < high);
-  return { read, legal: "two increasing numbers >= 0 separated by a comma" };
+  return { read, valid: "two increasing numbers >= 0 separated by a comma" };
 }
 
 /** @returns {Key} */
 function cell() {
-  return { read: (text) => numbersOf(text, 2, (r, beta) => r > 0 && beta >= 0), legal: "r > 0 and beta >= 0 separated by a comma" };
+  return { read: (text) => numbersOf(text, 2, (r, beta) => r > 0 && beta >= 0), valid: "r > 0 and beta >= 0 separated by a comma" };
 }
 
 /** @returns {Key} */
 function choice(words) {
-  return { read: (text) => (words.includes(text) ? text : undefined), legal: `one of ${words.join(", ")}` };
+  return { read: (text) => (words.includes(text) ? text : undefined), valid: `one of ${words.join(", ")}` };
 }
 
 /** A number as a slider has it: only mass and stiffness ratios may lie below the slider's least. @returns {Key} */
 function number({ least, scale }) {
   const ratio = scale === "log";
   const right = (value) => (ratio ? value > 0 : value >= least);
-  return { read: (text) => numbersOf(text, 1, right)?.[0], legal: `a number ${ratio ? "> 0" : `>= ${least}`}` };
+  return { read: (text) => numbersOf(text, 1, right)?.[0], valid: `a number ${ratio ? "> 0" : `>= ${least}`}` };
 }
 
 /** One of the places of a slider that has no others. @returns {Key} */
 function place(places) {
-  return { read: (text) => numbersOf(text, 1, (value) => places.includes(value))?.[0], legal: `one of ${places.join(", ")}` };
+  return { read: (text) => numbersOf(text, 1, (value) => places.includes(value))?.[0], valid: `one of ${places.join(", ")}` };
 }
 
 /** The keys of an address; a page that keeps maps for some places of its sliders has no others to offer. @returns {Map<string, Key>} */
@@ -145,7 +145,7 @@ function valueIn(view, key, scene) {
 function fault(view, scene, keys, key, text) {
   const got = text.length > LONGEST ? `${text.slice(0, LONGEST)}…` : text;
   if (!keys.has(key)) return `unknown key '${key.slice(0, LONGEST)}', ignored; valid: ${[...keys.keys()].join(", ")}`;
-  return `${key} must be ${keys.get(key).legal}; got ${got || "nothing"}; used: ${valueIn(view, key, scene)}`;
+  return `${key} must be ${keys.get(key).valid}; got ${got || "nothing"}; used: ${valueIn(view, key, scene)}`;
 }
 
 /**

@@ -1,7 +1,7 @@
-"""Synthetic measurements of rigs whose truth is known: `python -m frictionmap.examples FOLDER` writes them.
+"""Synthetic measurements with known parameters: `python -m frictionmap.examples FOLDER` writes them.
 
-They are computed by the models of the package and blurred by normal deviates from a seeded generator; nothing
-in them was measured.  `configs/rigs` holds what this module writes.
+They are computed by the models of the package, with normal noise from a seeded generator; nothing in them was
+measured.  `configs/rigs` holds what this module writes.
 """
 
 import sys
@@ -165,7 +165,7 @@ def _configuration(kind: str) -> str:
 
 
 def _decay(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
-    """A record that ends at rest."""
+    """Simulate a record that ends at rest."""
     time = np.arange(_RATE * _LENGTH) / _RATE
     decay = Decay(**truth)
     halves = _half_cycles(decay)
@@ -183,7 +183,7 @@ def _half_cycles(decay: Decay) -> int:
 
 
 def _forced(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
-    """First harmonics at the same frequencies for two friction forces."""
+    """Simulate first harmonics at the same frequencies for two friction forces."""
     system = System(excitation="base", damping_reference="base", damping_ratios=truth["zeta"])
     r = np.array([0.55, 0.65, 0.75, 0.85, 0.92, 0.97, 1.03, 1.08, 1.15, 1.25, 1.4, 1.6, 1.8, 2.0])
     beta = [truth["beta_1"], truth["beta_2"]]
@@ -199,7 +199,7 @@ def _forced(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
 
 
 def _sweep(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
-    """Amplitudes of the first of two masses, beside both peaks and the zero between them."""
+    """Simulate amplitudes of the first of two masses around both peaks and the zero between them."""
     f = np.concatenate((np.linspace(0.6, 1.7, 7), np.linspace(2.0, 4.6, 14), np.linspace(5.2, 7.6, 6)))
     logarithm = log_amplitude(np.array([truth[name] for name in ("f0", "f1", "f2")]), f)
     return _table(
@@ -209,7 +209,7 @@ def _sweep(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
 
 
 def _record(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
-    """Base and mass in steady motion."""
+    """Simulate base and mass in steady motion."""
     time = np.arange(_RECORD_RATE * _RECORD_LENGTH) / _RECORD_RATE
     phases = np.mod(2.0 * np.pi * _SHAKEN_AT * time, 2.0 * np.pi)
     order = np.argsort(phases, kind="stable")

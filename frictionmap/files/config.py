@@ -43,7 +43,8 @@ _RIVALS = {
 _NOT_TOML = (ValueError, RecursionError)
 
 
-#: How errors begin that do not begin with a key.
+#: Beginnings of errors that do not begin with a key; after the first one a key follows.
+_KEY_FOLLOWS = "cannot use "
 _NO_KEY = ("cannot ", "unknown ")
 
 T = TypeVar("T")
@@ -236,6 +237,8 @@ def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
 def within(section: str, error: InputError) -> InputError:
     """Return an error about a key of a table, with the table named."""
     text = str(error)
+    if text.startswith(_KEY_FOLLOWS):
+        return InputError(f"{_KEY_FOLLOWS}{section}.{text.removeprefix(_KEY_FOLLOWS)}")
     return InputError(f"[{section}]: {text}" if text.startswith(_NO_KEY) else f"{section}.{text}")
 
 

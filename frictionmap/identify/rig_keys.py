@@ -48,11 +48,11 @@ _DATA = (
     Key("sigma_phase_deg", "error of lags; default: from the residuals", _POSITIVE, example="1.0"),
     Key("sigma_amplitude", "relative error of amplitudes; default: from the residuals", _POSITIVE,
         example="0.02"),
-    Key("unreachable", "lags that no friction force gives: refuse or ignore", word("refuse", "drop"), "refuse"),
+    Key("unreachable", "lags that no friction force gives", word("refuse", "drop"), "refuse"),
 )  # fmt: skip
 
 #: Key of each of several measurements.
-_LABEL = Key("label", "name in the results; default: number of the measurement", {"type": "string", "minLength": 1},
+_LABEL = Key("label", "name in the results; default: its number", {"type": "string", "minLength": 1},
              example='"10 N"')  # fmt: skip
 
 _FIT = (

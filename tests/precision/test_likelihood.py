@@ -107,5 +107,5 @@ def test_datasets_without_a_likelihood():
         fm.identify.log_likelihood(ds.drop_vars("half_cycles"))
     with pytest.raises(fm.InputError, match=r"ds must be a dataset of estimates; got 3"):
         fm.identify.log_likelihood(3)
-    with pytest.raises(fm.InputError, match="sigma must be > 0"):
+    with pytest.raises(fm.InputError, match="sigma is not > 0"):
         fm.identify.log_likelihood(ds.assign(sigma=0.0 * ds.sigma))

@@ -201,8 +201,8 @@ def test_too_few_modes_are_refused_and_enough_are_told(tmp_path, capsys):
     assert main(["map", str(tmp_path / "c.toml")]) == 2
     message = capsys.readouterr().err
     found = re.fullmatch(
-        r"frictionmap: system\.reduce\.modes must leave errors <= 0\.001 in the range of r .*; got 3, with "
-        r"natural frequencies within .*, compliances within .*; (\d+) would do\n",
+        r"frictionmap: system\.reduce: cannot keep the error below 0\.001 in the range of r with 3 modes: "
+        r"natural frequencies within .*, compliances within .*; (\d+) modes suffice\n",
         message,
     )
     assert found, message

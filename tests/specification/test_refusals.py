@@ -100,11 +100,11 @@ map good.toml --set 'units.load="1"'
 map good.toml --set 'units.load="-1 N"'
     units.load must be > 0; got '-1 N'
 map good.toml --set 'units={load="1 N",base_amplitude="1 mm"}'
-    [units]: cannot use base_amplitude with load: one follows from the other; give one of them
+    cannot use units.base_amplitude with load: one follows from the other; give one of them
 map good.toml --set 'units={mass="1 kg"}'
-    [units]: cannot use mass without natural_frequency: the stiffness follows from k1 = m1 omega_1^2; give both
+    cannot use units.mass without natural_frequency: the stiffness follows from k1 = m1 omega_1^2; give both
 map good.toml --set 'units={base_acceleration="0.5 g"}'
-    [units]: cannot use base_acceleration without acceleration_frequency: the base amplitude Y = a/omega^2, equal at all frequencies, needs the frequency of a; give both
+    cannot use units.base_acceleration without acceleration_frequency: the base amplitude Y = a/omega^2, equal at all frequencies, needs the frequency of a; give both
 map good.toml --set 'units.base_amplitude="1 mm"'
     cannot use units.base_amplitude: it needs base excitation; for a force-excited system use units.load
 map good.toml --set 'units.stiffness=model'
@@ -150,7 +150,7 @@ map good.toml --set system.contact_masses=1
 map good.toml --set system.load_mass=2
     system.load_mass must be <= 1; got 2
 map good.toml --set system.load=[1] --set system.load_mass=1
-    [system]: cannot use load with load_mass: both define the load; omit one of them
+    cannot use system.load with load_mass: both define the load; omit one of them
 map good.toml --set system.load=[0]
     system.load must have a value that is not zero; got none
 map good.toml --set system.load=[1,1]
@@ -180,13 +180,13 @@ map good.toml --set system.damping_reference=base
 map good.toml --set system.contact=joined-base-wall --set system.excitation=force
     system.excitation must be base for a joined-base-wall, whose base loads the structure; got 'force'
 map good.toml --set system.rayleigh=[0,0.1]
-    [system]: cannot use rayleigh without matrices: a chain needs no such key; omit it
+    cannot use system.rayleigh without matrices: a chain needs no such key; omit it
 map good.toml --set system.frequency_scale=2
-    [system]: cannot use frequency_scale without matrices: its units are those of the first mass and spring; omit it
+    cannot use system.frequency_scale without matrices: its units are those of the first mass and spring; omit it
 map good.toml --set system.stiffness_scale=2
-    [system]: cannot use stiffness_scale without matrices: its units are those of the first mass and spring; omit it
+    cannot use system.stiffness_scale without matrices: its units are those of the first mass and spring; omit it
 map good.toml --set system.decouple=0.1
-    [system]: cannot use decouple without matrices: a chain needs no such key; omit it
+    cannot use system.decouple without matrices: a chain needs no such key; omit it
 map good.toml --set system.matrices=none.npz
     system.matrices must be an .npz file with arrays M, K and optionally C; got none.npz: No such file or directory
 map good.toml --set system.matrices=frame.mtx
@@ -216,13 +216,13 @@ map good.toml --set system.matrices={M=[[1,0],[0,1]],K=[[-2,0],[0,1]]}
 map good.toml --set system.matrices={M=[[1,0],[0,1]],K=[[2,-1],[1,1]]}
     system.matrices: K must be symmetric; got -1.0 at [0, 1] and 1.0 at [1, 0]
 map good.toml --set system.matrices={M=[[1]],K=[[1]]} --set system.mass_ratios=[1]
-    [system]: cannot use mass_ratios with matrices: both define the structure; omit one
+    cannot use system.mass_ratios with matrices: both define the structure; omit one
 map good.toml --set system.matrices={M=[[1]],K=[[1]],C=[[0.1]]} --set system.damping_ratios=0.1
-    [system]: cannot use damping_ratios with matrices: C defines the damping; omit one
+    cannot use system.damping_ratios with matrices: C defines the damping; omit one
 map good.toml --set system.matrices={M=[[1]],K=[[1]]} --set system.rayleigh=[1]
     system.rayleigh must be two numbers [a, b], C = a M + b K; got [1]
 map good.toml --set system.matrices={M=[[1]],K=[[1]]} --set system.rayleigh=[0,0.1] --set system.damping_ratios=0.1
-    [system]: cannot use damping_ratios with rayleigh: both define the damping; omit one
+    cannot use system.damping_ratios with rayleigh: both define the damping; omit one
 map good.toml --set system.matrices={M=[[1]],K=[[1]]} --set 'units={natural_frequency="1 Hz",mass="1 kg"}'
     cannot use units.mass with matrices: only a chain has a first mass; use units.stiffness for stiffness_scale
 map good.toml --set system.matrices={M=[[1,0],[0,1]],K=[[2,-1],[-1,1]]} --set system.reduce={mods=1}

@@ -79,7 +79,7 @@ def test_matrices_are_part_of_a_store(tmp_path):
     fill_store(tmp_path / "m.zarr", study(system, 300), "m", in_this_process(1))
     assert opened(tmp_path / "m.zarr").study.system == system
     other = fm.System(matrices={"M": mass, "K": 2.0 * stiffness})
-    with pytest.raises(InputError, match=r"it differs in system\.matrices"):
+    with pytest.raises(InputError, match=r"its configuration differs, system\.matrices"):
         fill_store(tmp_path / "m.zarr", study(other, 300), "m", in_this_process(1))
 
 
@@ -286,8 +286,8 @@ OBEYING = ["setpriv", "--bounding-set=-dac_override,-dac_read_search"] if ROOT e
 @pytest.mark.parametrize(
     ("where", "mode", "words"),
     [
-        (".", 0o500, "output m.zarr is protected from writing"),
-        ("status", 0o500, "output m.zarr/status is protected from writing"),
+        (".", 0o500, "cannot write m.zarr: it is write-protected"),
+        ("status", 0o500, "cannot write m.zarr/status: it is write-protected"),
         (".", 0o000, "m.zarr/zarr.json is read-protected"),
     ],
 )
@@ -520,8 +520,8 @@ def test_a_worker_that_lacks_the_package_is_named(tmp_path, scheduler):
 
     try:
         with pytest.raises(OSError, match=(
-            rf"worker tcp://[0-9.:]+ must have frictionmap\[dask\] {fm.__version__}: No module named "
-            rf"'frictionmap'; install it for {re.escape(sys.executable)} .*; 0 of 2 blocks are in"
+            rf"worker tcp://[0-9.:]+: it needs frictionmap\[dask\] {fm.__version__} \(No module named "
+            rf"'frictionmap'\); install it for {re.escape(sys.executable)} .*; 0 of 2 blocks are in"
         )):  # fmt: skip
             fill_store(tmp_path / "map.zarr", study(ONE, 10**6), "map", workers.running(scheduler, say))
     finally:
@@ -536,7 +536,7 @@ def test_workers_that_never_come(tmp_path, scheduler, monkeypatch):
 
     monkeypatch.setattr(workers, "_PATIENCE", 0.36)
     fill = workers.running(scheduler, lambda text: None)
-    with pytest.raises(OSError, match=f"{scheduler} had no worker for 0.0001 hours"):
+    with pytest.raises(OSError, match=f"{scheduler}: it had no worker for 0.0001 hours"):
         fill_store(tmp_path / "map.zarr", study(ONE, 10**6), "map", fill)
 
 

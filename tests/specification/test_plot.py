@@ -425,7 +425,9 @@ def test_datasets_the_wrong_way_round(tiny_map, tiny_boundaries, tiny_response):
             draw(ds)
     for draw in (fm.plot_regimes, fm.plot_boundaries, fm.plot_response):
         for wrong in (tiny_map.beta_lim, "map.nc", None):
-            with pytest.raises(InputError, match=rf"^{draw.__name__} takes .*; got {type(wrong).__name__}$"):
+            with pytest.raises(
+                InputError, match=rf"^ds of {draw.__name__} must be .*; got {type(wrong).__name__}$"
+            ):
                 draw(wrong)
 
 

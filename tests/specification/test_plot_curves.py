@@ -74,7 +74,7 @@ def test_orbits_that_cannot_be_drawn(orbit):
         fm.plot_orbit(orbit.drop_vars("v"))
     with pytest.raises(InputError, match=r"^a response must have two tau or more to be drawn; got 1$"):
         fm.plot_orbit(orbit.isel(tau=[0]))
-    with pytest.raises(InputError, match=r"^plot_orbit takes .*use plot_boundaries$"):
+    with pytest.raises(InputError, match=r"^ds of plot_orbit must be .*use plot_boundaries\)$"):
         fm.plot_orbit(fm.boundaries(fm.System(), [0.5]))
 
 

@@ -389,7 +389,10 @@ def test_fits_are_drawn_into_given_axes(datasets):
         (lambda ds: ds.assign(estimate=-ds.estimate), "must have f_n > 0 and zeta < 1 to be drawn; got -3"),
         (lambda ds: ds.assign(half_cycles=10**9), "must have at most 400 half cycles to be drawn; got 1e"),
         (lambda ds: ds.assign(time=1e4 * ds.time), "must have at most 400 half cycles to be drawn; got"),
-        (lambda ds: fm.boundaries(fm.System(), [0.5]), "^plot_fit takes .* use plot_boundaries$"),
+        (
+            lambda ds: fm.boundaries(fm.System(), [0.5]),
+            r"^ds of plot_fit must be .* \(use plot_boundaries\)$",
+        ),
     ],
 )
 def test_what_cannot_be_drawn(datasets, change, message):
@@ -426,7 +429,7 @@ def test_mutants_are_drawn_or_refused(datasets, tmp_path):
 
 
 def test_other_pictures_send_fits_here(datasets):
-    with pytest.raises(InputError, match=r"^plot_regimes takes .* use plot_fit$"):
+    with pytest.raises(InputError, match=r"^ds of plot_regimes must be .* \(use plot_fit\)$"):
         fm.plot_regimes(datasets["decay"])
     with pytest.raises(
         InputError, match=r"^unknown quantity 'history' in a file of kind estimates; valid: fit$"

@@ -86,7 +86,7 @@ class Accuracy(NamedTuple):
     def words(self) -> str:
         """Describe the errors in the range."""
         if not np.isfinite(self.frequencies):
-            return "natural frequencies of the whole structure's missing"
+            return "natural frequencies of the whole structure are missing"
         return (
             f"natural frequencies within {self.frequencies:.1e} of the whole structure's, compliances within "
             f"{self.compliances:.1e}"

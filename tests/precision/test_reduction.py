@@ -220,7 +220,7 @@ def test_too_few_modes_are_refused_and_enough_are_told(tmp_path, capsys):
         with pytest.raises(fm.InputError, match=rf"with {fewer} modes: .*; {enough} modes suffice"):
             short.accuracy(np.array([0.5, 6.0]))
     with pytest.raises(
-        fm.InputError, match=r"got 0, with natural frequencies of the whole .* missing; 38 would"
+        fm.InputError, match=r"with 0 modes: natural frequencies of the whole .* are missing; 38 modes"
     ):
         fm.System(matrices=CHAIN, reduce={"modes": 0}, **SYSTEM).accuracy(np.array([0.5, 50.0]))
     coarse = fm.System(matrices=CHAIN, reduce={"modes": 3, "allow": 1.0}, frequency_scale=1.0, **SYSTEM)

@@ -360,10 +360,10 @@ def test_bad_files_of_nastran(tmp_path, capsys):
     good = (tmp_path / "frame.pch").read_text()
     entry = f"*       {3:>16}{2:>16}{-2.5:>16.9E}\n"
     (tmp_path / "twice.pch").write_text(good + entry)  # in the column of 17.1; that of 3.2 has it
-    refused(capsys, tmp_path, "twice.pch", ["an entry of KAAX is given twice", "3.2, 17.1 twice"])
+    refused(capsys, tmp_path, "twice.pch", ["an entry of KAAX is given twice", "3.2, 17.1"])
     real = f"KAAX    {0:>8}{6:>8}{2:>8}"
     (tmp_path / "complex.pch").write_text(good.replace(real, f"{real[:-1]}4"))
-    refused(capsys, tmp_path, "complex.pch", ["real matrices", "KAAX is complex"])
+    refused(capsys, tmp_path, "complex.pch", ["KAAX is complex", "write real matrices"])
 
 
 def test_without_the_extra(tmp_path, monkeypatch, capsys):

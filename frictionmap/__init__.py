@@ -8,14 +8,14 @@ module         what is in it
 errors         the exceptions of the package
 version        the number of this version
 regimes        codes of regime, origin and status, their names and meanings
-checks         checks of input, whose messages name what is legal
+checks         checks of input, whose messages name the valid range
 packages       packages of the extras, and what is said where one is missing
 mat_files      arrays of MAT files, of all versions
 structures     matrices from the files of finite-element programs, and their reduction
 _kernels       all compiled code: numbers and arrays in, numbers and codes out
 model          what is simulated: system, matrices, modes, settings of the solver
 units          units of measurement: hertz and newtons for the ratios r and beta
-datasets       what a dataset holds: names, types, units, legal values; how it was made
+datasets       what a dataset holds: names, types, units, valid values; how it was made
 roots          the search for all roots of functions with known poles
 features       limits, peak thresholds, invariant points: what needs no map
 theory         closed forms over frequency: boundaries of the regimes, continuous motion

@@ -9,7 +9,7 @@ from .command_line import interrupts
 
 
 def _open_streams() -> None:
-    """Descriptors 0 to 2 are open: else a file of ours would get one, and messages would land in it."""
+    """Open descriptors 0-2 if closed, so that no output file is assigned one."""
     with contextlib.suppress(OSError):
         while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
             pass
@@ -17,25 +17,25 @@ def _open_streams() -> None:
 
 
 def _flush() -> int:
-    """What was printed has arrived; the exit status."""
+    """Flush stdout; return the exit status."""
     try:
         if sys.stdout is not None:
             sys.stdout.flush()
         return 0
     except OSError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # or Python tries again when it ends
-        if isinstance(error, BrokenPipeError):  # whoever reads it has had enough
+        if isinstance(error, BrokenPipeError):  # the reader has closed the pipe
             return 0
-        print(f"frictionmap: what was to be printed is lost ({error.strerror})", file=sys.stderr)
+        print(f"frictionmap: cannot print: {error.strerror}; output is lost", file=sys.stderr)
         return 1
 
 
 def run() -> int:
-    """Run the program as a process of its own; the exit status."""
+    """Run the program as a process; return the exit status."""
     _open_streams()
     interrupts.obey()
     if not sys.warnoptions:
-        warnings.simplefilter("ignore")  # messages of ours are errors; others' are for developers
+        warnings.simplefilter("ignore")  # our own messages are errors; those of libraries are for developers
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
@@ -43,7 +43,7 @@ def run() -> int:
 
     try:
         status = main()
-    except SystemExit as ending:  # of help and of arguments that are wrong
+    except SystemExit as ending:  # after --help, and after invalid arguments
         status = int(ending.code or 0)
     status = _flush() or status
     interrupts.ignore()

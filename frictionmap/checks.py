@@ -1,4 +1,4 @@
-"""Checks of input; every message names the argument, the value and what is legal."""
+"""Checks of input; every message names the argument, its value and the valid range."""
 
 import difflib
 import math
@@ -12,10 +12,10 @@ from .errors import InputError
 #: Cells of one map; 10^9 need at least 13 GB for the default outputs.
 MOST_CELLS = 10**9
 
-#: Beyond this the displacement in the contact is nothing beside the load in double precision.
+#: Beyond this the displacement in the contact is below the rounding of the load.
 LARGEST_RATIO = 1e8
 
-#: Scan steps follow the fastest decay, 2 zeta/r: beyond this a cell takes more of them than is sensible.
+#: Scan steps resolve the fastest decay, 2 zeta/r: beyond this limit a cell takes too many of them.
 LARGEST_DAMPING = 100.0
 
 
@@ -25,47 +25,47 @@ _LONGEST_REPR = 160
 T = TypeVar("T")
 
 
-def nearest(word: str, legal: Iterable[str]) -> str:
-    """' (did you mean ...?)' if a legal word is near, else ''."""
-    found = difflib.get_close_matches(word, list(legal), n=1, cutoff=0.5)
+def nearest(word: str, valid: Iterable[str]) -> str:
+    """Return ' (did you mean ...?)' if a valid word is similar, else ''."""
+    found = difflib.get_close_matches(word, list(valid), n=1, cutoff=0.5)
     return f" (did you mean {found[0]}?)" if found else ""
 
 
 def one_line(value: object) -> str:
-    """repr, short, and without the line breaks that arrays have in theirs."""
+    """Short repr on one line."""
     text = " ".join(repr(value).split())
     half = _LONGEST_REPR // 2
     return text if len(text) <= _LONGEST_REPR else f"{text[:half]} ... {text[-half:]}"
 
 
 def instance(value: object, name: str, kind: type[T]) -> T:
-    """`value`, if it is one of ours of that kind."""
+    """Check that `value` is an instance of a class of the package."""
     if not isinstance(value, kind):
         raise InputError(f"{name} must be a frictionmap.{kind.__name__}; got {one_line(value)}")
     return value
 
 
-def choice(value: object, name: str, legal: tuple[str, ...]) -> str:
-    """`value`, if it is one of the legal words."""
-    if not isinstance(value, str) or value not in legal:
-        hint = nearest(value, legal) if isinstance(value, str) else ""
-        raise InputError(f"{name} must be one of {', '.join(legal)}; got {one_line(value)}{hint}")
+def choice(value: object, name: str, valid: tuple[str, ...]) -> str:
+    """Check that `value` is one of the valid words."""
+    if not isinstance(value, str) or value not in valid:
+        hint = nearest(value, valid) if isinstance(value, str) else ""
+        raise InputError(f"{name} must be one of {', '.join(valid)}; got {one_line(value)}{hint}")
     return value
 
 
 def unmasked(values: object, name: str) -> None:
-    """Refuse an array with masked values: under a mask there is a number, but nobody means it."""
+    """Refuse an array with masked values, whose hidden numbers are meaningless."""
     if np.ma.is_masked(values):
         raise InputError(f"{name} must have no masked values; got {one_line(values)}")
 
 
 def is_array(value: object) -> bool:
-    """Whether it is an array, also one of xarray or pandas, of any size."""
+    """Whether a value is an array, also of xarray or pandas, of any size."""
     return hasattr(value, "__array__") and not isinstance(value, type)
 
 
 def array(values: Any, name: str) -> np.ndarray:
-    """`values` as an array; one of no known type if they are none."""
+    """Convert to an array; of type object if that fails."""
     unmasked(values, name)
     try:
         return np.asarray(values)
@@ -74,7 +74,7 @@ def array(values: Any, name: str) -> np.ndarray:
 
 
 def _single(value: Any, name: str) -> Any:
-    """The number in an array without dimensions, such as one of an axis of a dataset; else `value`."""
+    """Extract the number of an array without dimensions; return other values unchanged."""
     if isinstance(value, (int, float, np.generic)) or not is_array(value):
         return value
     given = array(value, name)
@@ -96,7 +96,7 @@ def number(
     above: float = -math.inf,
     most: float = math.inf,
 ) -> float:
-    """`value` as a float, if it is a finite number with least <= value <= most and value > above."""
+    """Convert to float; refuse unless finite, least <= value <= most and value > above."""
     value = _single(value, name)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
         raise InputError(f"{name} must be a number; got {one_line(value)}")
@@ -113,7 +113,7 @@ def number(
 
 
 def whole(value: object, name: str, *, least: int, most: int | None = None) -> int:
-    """`value` as an int, if it is a whole number in range."""
+    """Convert to int; refuse unless a whole number in range."""
     value = _single(value, name)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
         raise InputError(f"{name} must be a whole number; got {one_line(value)}")
@@ -122,7 +122,7 @@ def whole(value: object, name: str, *, least: int, most: int | None = None) -> i
 
 
 def axis(values: object, name: str, *, least: float, most: float = math.inf) -> np.ndarray:
-    """`values` as a 1-D float64 array, if it is not empty, finite, increasing and in range."""
+    """Convert to a 1-D float64 array; refuse unless non-empty, finite, increasing and in range."""
     given = np.atleast_1d(array(values, name))
     if given.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false
         raise InputError(f"{name} must be numbers; got {one_line(values)}")
@@ -132,10 +132,10 @@ def axis(values: object, name: str, *, least: float, most: float = math.inf) -> 
     if result.size == 0:
         raise InputError(f"{name} must have at least one value; got none")
 
-    def refuse(wrong: np.ndarray, legal: str) -> None:
+    def refuse(wrong: np.ndarray, valid: str) -> None:
         if wrong.any():
             index = int(np.argmax(wrong))
-            raise InputError(f"{name} must be {legal}; got {result[index]} at index {index}")
+            raise InputError(f"{name} must be {valid}; got {result[index]} at index {index}")
 
     refuse(~np.isfinite(result), "finite")
     refuse(result < least, f">= {least:g}")
@@ -145,7 +145,7 @@ def axis(values: object, name: str, *, least: float, most: float = math.inf) -> 
 
 
 def cells(n_mu: int, n_r: int, n_beta: int, name: str = "grid", points: int = 1) -> None:
-    """Refuse a map too large to hold, or maps of so many points."""
+    """Refuse maps that are too large, of one or several points of further axes."""
     total = n_mu * n_r * n_beta * points
     if total > MOST_CELLS:
         further = f" x {points} points" if points > 1 else ""

@@ -2,8 +2,8 @@
 
 
 class InputError(ValueError):
-    """Input is at fault; the message names the argument or key, its value and what is legal."""
+    """Invalid input; the message names the argument or key, its value and the valid range."""
 
 
 class NoSteadyState(RuntimeError):
-    """A steady state was asked for where there is none, or none was found."""
+    """A requested steady state does not exist, or was not found."""

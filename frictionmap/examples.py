@@ -1,7 +1,7 @@
-"""Synthetic measurements of rigs whose truth is known: `python -m frictionmap.examples FOLDER` writes them.
+"""Synthetic measurements with known parameters: `python -m frictionmap.examples FOLDER` writes them.
 
-They are computed by the models of the package and blurred by normal deviates from a seeded generator; nothing
-in them was measured.  `configs/rigs` holds what this module writes.
+They are computed by the models of the package, with normal noise from a seeded generator; nothing in them was
+measured.  `configs/rigs` holds what this module writes.
 """
 
 import sys
@@ -22,7 +22,7 @@ from .identify.time_series.motion import PARAMETERS, Shaken, motion
 from .model.system import System
 from .steady.curves import curves
 
-#: What the estimates are to come near to, by the kind of data; in Hz, mm and s.
+#: True parameters by the kind of data, in Hz, mm and s.
 TRUTHS: Mapping[str, Mapping[str, float]] = {
     "free-decay": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.2, "X0": 9.5, "t0": -0.03, "centre": 0.25},
     "forced": {"beta_1": 0.2, "beta_2": 0.4, "f_n": 3.12, "zeta": 0.008},
@@ -30,20 +30,20 @@ TRUTHS: Mapping[str, Mapping[str, float]] = {
     "record": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.7, "mu": 1.2, "offset_x": -0.1},
 }
 
-#: Samples of a decay: so many a second, for so many seconds, with this error [mm].
+#: Samples of a decay: rate [1/s], length [s], error [mm].
 _RATE, _LENGTH, _DECAY_ERROR = 200, 4, 0.03
 
 #: Amplitude of the base [mm], which makes beta of x_F; errors of lags [deg], and of amplitudes, relative.
 _BASE, _LAG_ERROR, _AMPLITUDE_ERROR = 1.75, 0.7, 0.01
 
-#: Frequency [Hz] and harmonics [mm] of the base of a record, and its samples: so many a second, for so many
-#: seconds, with these errors of mass and base [mm].
+#: Frequency [Hz] and harmonics [mm] of the base of a record; rate [1/s] and length [s] of its samples, and
+#: errors of mass and base [mm].
 _SHAKEN_AT, _HARMONICS = 1.0, (0.0, 1.75, 0.018j)
 _RECORD_RATE, _RECORD_LENGTH, _RECORD_ERRORS = 100, 8, (0.01, 0.003)
 
 _HEAD = """\
-# Above each key: what it means, and what is legal.  A line that begins with # and a key shows the default,
-# where there is one, else an example.
+# Above each key: its meaning and its valid values.  A line that begins with # and a key shows the default,
+# if there is one, else an example.
 """
 
 _SYNTHETIC = "# Synthetic: made by frictionmap.examples, not measured."
@@ -74,7 +74,7 @@ stiffness = 1191.0        # N/m: the friction forces in N
 
 
 def rig_files(seed: int = 1) -> dict[str, str]:
-    """Texts of all files by their names: a configuration and a table for each kind of data."""
+    """Return the texts of all files by name: a configuration and a table for each kind of data."""
     files = {}
     for kind in _TABLES:
         files[f"{kind}.csv"] = rig_table(kind, seed)
@@ -165,7 +165,7 @@ def _configuration(kind: str) -> str:
 
 
 def _decay(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
-    """A record that ends at rest."""
+    """Simulate a record that ends at rest."""
     time = np.arange(_RATE * _LENGTH) / _RATE
     decay = Decay(**truth)
     halves = _half_cycles(decay)
@@ -174,7 +174,7 @@ def _decay(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
 
 
 def _half_cycles(decay: Decay) -> int:
-    """Until it rests, with mu = 1: A_{j+1} = q A_j - (1 + q) x_F."""
+    """Number of half cycles before rest, with mu = 1: A_{j+1} = q A_j - (1 + q) x_F."""
     q = np.exp(-np.pi * decay.zeta / np.sqrt(1.0 - decay.zeta**2))
     height, count = abs(decay.X0), 0
     while height > decay.x_F:
@@ -183,7 +183,7 @@ def _half_cycles(decay: Decay) -> int:
 
 
 def _forced(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
-    """First harmonics at the same frequencies for two friction forces."""
+    """Simulate first harmonics at the same frequencies for two friction forces."""
     system = System(excitation="base", damping_reference="base", damping_ratios=truth["zeta"])
     r = np.array([0.55, 0.65, 0.75, 0.85, 0.92, 0.97, 1.03, 1.08, 1.15, 1.25, 1.4, 1.6, 1.8, 2.0])
     beta = [truth["beta_1"], truth["beta_2"]]
@@ -199,7 +199,7 @@ def _forced(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
 
 
 def _sweep(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
-    """Amplitudes of the first of two masses, beside both peaks and the zero between them."""
+    """Simulate amplitudes of the first of two masses around both peaks and the zero between them."""
     f = np.concatenate((np.linspace(0.6, 1.7, 7), np.linspace(2.0, 4.6, 14), np.linspace(5.2, 7.6, 6)))
     logarithm = log_amplitude(np.array([truth[name] for name in ("f0", "f1", "f2")]), f)
     return _table(
@@ -209,7 +209,7 @@ def _sweep(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
 
 
 def _record(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
-    """Base and mass in steady motion."""
+    """Simulate base and mass in steady motion."""
     time = np.arange(_RECORD_RATE * _RECORD_LENGTH) / _RECORD_RATE
     phases = np.mod(2.0 * np.pi * _SHAKEN_AT * time, 2.0 * np.pi)
     order = np.argsort(phases, kind="stable")

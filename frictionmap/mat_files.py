@@ -9,7 +9,7 @@ from .packages import package, read_by
 
 
 def read_mat(path: Path) -> tuple[dict[str, Any], str]:
-    """The numbers in a MAT file by their names, arrays or sparse arrays; and its form, in words.
+    """Read the numbers of a MAT file as arrays or sparse arrays by name; return them and the file format.
 
     Version 7.3, which is HDF5, is read through h5py of the extra `lab`; its texts and structures are left
     out.  Logical ones are bool.

@@ -1,4 +1,4 @@
-"""Packages of extras, and files read by packages: what is said where one is missing or a file is damaged."""
+"""Packages of extras, and files read by them: errors for missing packages and damaged files."""
 
 import importlib
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from .errors import InputError
 
 
 def package(name: str, path: Path, extra: str) -> Any:
-    """A package of an extra that a file needs.
+    """Import a package of an extra that a file needs.
 
     Raises
     ------
@@ -21,17 +21,17 @@ def package(name: str, path: Path, extra: str) -> Any:
     except ImportError:
         missing = name.partition(".")[0]
         raise InputError(
-            f"file {path} needs the package {missing}; install it with: pip install 'frictionmap[{extra}]'"
+            f"cannot read {path}: {missing} is not installed; run pip install 'frictionmap[{extra}]'"
         ) from None
 
 
 def read_by(path: Path, form: str, read: Callable[[], Any]) -> Any:
-    """What `read` makes of a file.
+    """Read a file through a package.
 
     Raises
     ------
     InputError
-        Anything but trouble of the disk: of a file that is not of its form packages raise whatever comes.
+        Any error of the package except a missing file: packages raise various exceptions for invalid files.
     """
     try:
         return read()
@@ -39,4 +39,4 @@ def read_by(path: Path, form: str, read: Callable[[], Any]) -> Any:
         raise
     except Exception as error:
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(f"file {path} must be a {form}; it cannot be read ({reason})") from None
+        raise InputError(f"cannot read {path}: it is not a valid {form} ({reason}); write it again") from None

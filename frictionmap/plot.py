@@ -57,13 +57,13 @@ _DPI = 160
 
 
 def check_picture(path: Path) -> None:
-    """Refuse a name whose ending is not that of a picture."""
+    """Refuse a file name with an unknown suffix of pictures."""
     if path.suffix.lower() not in FORMATS:
         raise InputError(f"-o must end in {', '.join(FORMATS)}; got {path}")
 
 
 def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
-    """A picture of a dataset of any kind; the first of what is drawn of its kind if no quantity is given."""
+    """Draw a dataset of any kind; without a quantity, the first one available."""
     what = kind(ds)
     if what == "curves":
         return plot_curves(ds, quantity, log=log)
@@ -74,14 +74,14 @@ def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
         "estimates": {"fit": plot_fit},
         "shares": {"shares": plot_shares},
     }
-    legal = drawn_of[what]
+    valid = drawn_of[what]
     if log:
-        raise InputError(f"log is for response curves; got a dataset of kind {what}")
+        raise InputError(f"cannot draw {what} with log: it applies to response curves only; omit log")
     if quantity is None:
-        quantity = next(iter(legal))
-    if quantity not in legal:
-        raise InputError(f"quantity must be one of {', '.join(legal)} of a {what}; got {quantity}")
-    return legal[quantity](ds)
+        quantity = next(iter(valid))
+    if quantity not in valid:
+        raise InputError(f"unknown quantity {quantity!r} in a file of kind {what}; valid: {', '.join(valid)}")
+    return valid[quantity](ds)
 
 
 def save_picture(ds: xr.Dataset, path: Path, quantity: str | None = None, *, log: bool = False) -> None:

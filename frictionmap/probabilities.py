@@ -1,4 +1,4 @@
-"""Many samples of an uncertain structure as probabilities: shares of each regime, quantiles of boundaries."""
+"""Probabilities over samples of an uncertain structure: shares of each regime, quantiles of boundaries."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -51,17 +51,18 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     further = further_axes(ds)
     if kind(ds) != "map" or over not in further:
         raise InputError(
-            f"over must name a further axis of maps; they have {', '.join(further) or 'none'}; "
-            f"got {checks.one_line(over)}"
+            f"unknown further axis of maps {checks.one_line(over)}; valid: {', '.join(further) or 'none'}"
         )
     if len(further) > 1:
         others = ", ".join(name for name in further if name != over)
-        raise InputError(f"ds must have no further axis but {over}: choose one point of {others}")
+        raise InputError(
+            f"cannot compute shares over {over}: ds has the further axis {others}; choose one point of it"
+        )
     if "regime" not in ds:
-        raise InputError("ds must hold regime; it does not")
+        raise InputError("cannot compute shares: ds has no variable regime; compute the map with it")
     for name in CELL:
         if name not in ds.coords:
-            raise InputError(f"ds must hold the coordinate {name}; it does not")
+            raise InputError(f"cannot compute shares: ds has no coordinate {name}; keep it when slicing")
     if MARKS in ds:
         ds = _finished(ds, over)
     levels = checks.axis(quantiles, "quantiles", least=0.0, most=1.0)
@@ -85,18 +86,20 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
 
 
 def read_shares(path: Path, over: str, choices: Mapping[str, float]) -> xr.Dataset:
-    """`shares` of a file or a store over one of its axes, `choices` of the others."""
+    """Compute `shares` of a file or store over one axis, with `choices` on the others."""
     with opened(path) as ds:
         check_structure(ds, in_parts=True)
         return shares(choose(ds, choices, over), over)
 
 
 def _finished(ds: xr.Dataset, over: str) -> xr.Dataset:
-    """The samples of a store all of whose blocks are computed."""
+    """Select the samples of a store whose blocks are all computed."""
     others = [dim for dim in ds[MARKS].dims if dim != over]
     done = np.flatnonzero((ds[MARKS] != 0).all(others).values)
     if not done.size:
-        raise InputError(f"a store must have at least one point of {over} finished; it has none")
+        raise InputError(
+            f"cannot compute shares over {over}: no point of it is finished; resume the map first"
+        )
     return ds.isel({over: done})
 
 
@@ -121,13 +124,13 @@ def _quantiles(ds: xr.Dataset, name: str, over: str, levels: np.ndarray) -> xr.V
 
 
 def _along(variable: xr.Variable, dims: tuple[str, ...]) -> np.ndarray:
-    """Values along these dimensions; of those that were chosen there is one."""
+    """Values along some dimensions, of size 1 where one value was selected."""
     missing = [dim for dim in dims if dim not in variable.dims]
     return variable.set_dims([*missing, *map(str, variable.dims)]).transpose(*dims).values
 
 
 def _parts(ds: xr.Dataset, size: int) -> Iterator[tuple[int, slice]]:
-    """Values of mu, and rows in r, so few that all samples of them can be held."""
+    """Iterate over values of mu and rows in r, so few that all their samples fit in memory."""
     step = max(1, _AT_ONCE * ds["mu"].size * ds["r"].size // max(1, size))
     for m in range(ds["mu"].size):
         for first in range(0, ds["r"].size, step):

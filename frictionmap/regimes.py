@@ -62,7 +62,7 @@ NOT_PERIODIC = 6
 
 
 class Code(NamedTuple):
-    """One value of a coded variable."""
+    """A value of a coded variable."""
 
     value: int
     name: str  # as in the file's flag_meanings
@@ -79,15 +79,15 @@ REGIMES = (
 
 #: Bits of `also_reachable`.
 REACHABLE = (
-    Code(1, "permanent_sticking", "the contact may stick for good"),
+    Code(1, "permanent_sticking", "the contact may stick permanently"),
     Code(2, "stick_slip", "the contact may slide and stop"),
     Code(4, "continuous", "the contact may slide without stopping"),
 )
 
 ORIGINS = (
-    Code(CLOSED_FORM, "closed_form", "decided by a formula"),
-    Code(INTEGRATED, "integrated", "followed from the starting state to the steady state"),
-    Code(PERIODIC_ORBIT, "periodic_orbit", "followed for a while, then solved as a periodic orbit"),
+    Code(CLOSED_FORM, "closed_form", "decided by a closed form"),
+    Code(INTEGRATED, "integrated", "integrated from the initial state to the steady state"),
+    Code(PERIODIC_ORBIT, "periodic_orbit", "integrated for some cycles, then solved as a periodic orbit"),
 )
 
 STATUSES = (
@@ -101,31 +101,36 @@ STATUSES = (
     Code(
         TOO_MANY_EVENTS,
         "too_many_events",
-        "more starts and stops than the solver follows: the motion chatters; change r or beta a little",
-        "the motion chatters; change r or beta a little",
+        "more slides and stops than the solver follows, as the motion chatters: change r or beta slightly",
+        "the motion chatters; change r or beta slightly",
     ),
     Code(
         MARGINAL,
         "marginal",
         "undamped at an even sub-multiple of a natural frequency (r = 1/(2n)), of the sum or difference of "
-        "two, or at a frequency of the held structure that the load does not drive: a continuum of steady "
-        "states, chosen by the start; where the regime is continuous the amplitude given is the symmetric "
-        "one's; add a little damping",
-        "no damping at a special frequency: the start decides; add a little damping",
+        "two, or at a frequency of the held structure that the load does not excite: a continuum of steady "
+        "states exists and the result depends on the initial state; where the regime is continuous, the "
+        "amplitude is that of the symmetric motion; add a little damping",
+        "without damping at this frequency the result depends on the initial state; add a little damping",
     ),
     Code(
         QUASI_STATIC,
         "quasi_static",
-        "r = 0: the regime is certain, but the number of stops has no limit there; ask for r > 0",
-        "r = 0 has a regime but no number of stops; ask for r > 0",
+        "r = 0: the regime is known, but the number of stops has no limit for r -> 0; use r > 0",
+        "at r = 0 there is a regime but no number of stops; use r > 0",
     ),
-    Code(NOT_COMPUTED, "not_computed", "the run ended before this cell: run it again", "run it again"),
+    Code(
+        NOT_COMPUTED,
+        "not_computed",
+        "the run ended before this cell: repeat the command to resume",
+        "repeat the command to resume",
+    ),
     Code(
         NOT_PERIODIC,
         "not_periodic",
-        "stick-slip that repeats in no 8 periods, as far as it was followed (`cycles`): stops, amplitude and "
-        "share stuck are those of the last 100 periods; if it is only slow, raise solver.cycles",
-        "averaged over 100 periods; if the motion is only slow, raise solver.cycles",
+        "stick-slip that does not repeat within 8 periods in the `cycles` followed: stops, amplitude and "
+        "stuck fraction are averages over the last 100 periods; if it converges slowly, raise solver.cycles",
+        "averages over 100 periods; if the motion converges slowly, raise solver.cycles",
     ),
 )
 

@@ -1,4 +1,4 @@
-"""The command line: parses, calls, writes; no logic of its own."""
+"""The command line: parses arguments, calls the package, writes files."""
 
 import contextlib
 import functools
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 #: Beginnings of --at that a shell completes: the further axes in most frequent use.
 _FURTHER_AXES = ("damping_ratios=", "mass_ratios_2=", "stiffness_ratios_2=", "sample=")
 
-#: Cells of a map from which on its cost is told before it is taken.
+#: Number of cells from which the expected cost of a map is printed.
 _MANY = 3_000_000
 
 
 def _finish(ds: "xr.Dataset", config: "Config", options: Options) -> Callable[[Path], None]:
-    """What writes the dataset, once it is told where."""
+    """Return a function that writes the dataset to a path."""
     from ..files.storage import write_netcdf
 
     ds.attrs["title"] = config.title
@@ -52,7 +52,7 @@ def _map(options: Options, config: "Config", output: "Output") -> None:
 
     def run(progress: "Progress") -> "xr.Dataset":
         if cells >= _MANY and not options.quiet:
-            progress.say(f"{cells:,} cells take about {_cost(options, config)}", always=True)
+            progress.say(f"{cells:,} cells need about {_cost(options, config)}", always=True)
         return sweep(config.system, config.r, config.beta, config.mu, solver=config.solver,
                      axes=config.variations, threads=options.threads, progress=progress,
                      units=config.units)  # fmt: skip
@@ -77,7 +77,7 @@ def _curves(options: Options, config: "Config", output: "Output") -> None:
 def _fill_cells(
     options: Options, config: "Config", output: "Output", what: str, run: Callable[["Progress"], "xr.Dataset"]
 ) -> None:
-    """Compute a grid of cells with progress shown, write it, and tell what came out."""
+    """Compute a grid of cells with progress, write it, and print a summary."""
     from .._kernels.compiler.notices import listeners
     from ..files.summary import describe_causes, describe_map, describe_reduction
     from .progress import Progress
@@ -126,10 +126,10 @@ def _response(options: Options, config: "Config", output: "Output") -> None:
 
 
 def _one_mu(config: "Config") -> float:
-    """The mu of a configuration that has one."""
+    """Return the mu of a configuration with a single value."""
     if config.mu.size > 1:
         values = ", ".join(f"{mu:g}" for mu in config.mu[:5])
-        raise InputError(f"--mu must be given where grid.mu has {config.mu.size} values; they are {values}")
+        raise InputError(f"cannot choose mu: grid.mu has {config.mu.size} values, {values}; give --mu")
     return float(config.mu[0])
 
 
@@ -147,7 +147,9 @@ def _compute(options: Options) -> None:
     config = load_config(options.config, options.overrides, None if room and options.yes else room)
     ending = "" if options.command == "map" else f"-{options.command}"
     if config.variations is not None and options.command != "map":
-        raise InputError(f"[axes] must be left out for {options.command}: further axes are of maps")
+        raise InputError(
+            f"cannot run {options.command} with [axes]: [axes] is supported by `map` only; remove it"
+        )
     path = options.output or Path(f"{config.name}{ending}.nc")
     commands = {"map": _map, "curves": _curves, "boundaries": _boundaries, "response": _response}
     command = commands[options.command]
@@ -159,19 +161,19 @@ def _is_store(options: Options) -> bool:
     """Whether a map goes into a store, block by block."""
     stored = options.output is not None and options.output.suffix == ".zarr"
     if not stored and (options.workers or options.scheduler):
-        raise InputError("--workers and --scheduler must come with a store, -o OUT.zarr")
+        raise InputError("cannot use --workers or --scheduler: they compute stores only; give -o OUT.zarr")
     if options.threads and (options.workers or options.scheduler):
-        raise InputError("--threads must be left out with --workers and --scheduler: a worker has one thread")
+        raise InputError("cannot use --threads with workers: every worker has one thread; omit --threads")
     return stored
 
 
 def _refuse_store(options: Options) -> None:
     if options.output is not None and options.output.suffix == ".zarr":
-        raise InputError(f"-o must be a file for {options.command}: stores are of maps; got {options.output}")
+        raise InputError(f"cannot write {options.output}: only `map` can write a .zarr store; use another -o")
 
 
 def _store(options: Options) -> None:
-    """Compute a map into a store, or go on with one."""
+    """Compute a map into a store, or resume one."""
     from .._kernels.compiler.notices import listeners
     from ..files.config import load_config
     from ..files.studies import describe_cells
@@ -195,7 +197,7 @@ def _store(options: Options) -> None:
 
 
 def _fill(options: Options, progress: "Progress") -> "Fill":
-    """What computes the blocks of a store."""
+    """Return the function that computes the blocks of a store."""
     from ..stores.run import in_this_process
 
     if not options.workers and not options.scheduler:
@@ -208,7 +210,7 @@ def _fill(options: Options, progress: "Progress") -> "Fill":
 
 
 def _explore(options: Options) -> None:
-    """Serve the page until an interrupt, or write it as a file."""
+    """Serve the page until interrupted, or save it as a file."""
     from ..explorer.scene import scene_of
     from ..files.config import load_config
 
@@ -221,8 +223,8 @@ def _explore(options: Options) -> None:
 
     server = open_server(scene, options.port)
     begin(server)
-    before_exit(lambda: "the page is closed")
-    _print(f"{scene.title} at {server.url} until Ctrl-C")
+    before_exit(lambda: "page closed")
+    _print(f"{scene.title}: {server.url} (end with Ctrl-C)")
     if not options.no_browser:
         show(server.url)
     server.serve_forever()
@@ -265,7 +267,7 @@ def _identify(options: Options) -> None:
 
 
 def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None) -> "xr.Dataset":
-    """The point of a file, or its shares over an axis, that the arguments choose; `only`: see `read`."""
+    """Read the point of a file, or its shares over an axis, selected by the arguments; `only`: see `read`."""
     from ..files.reading import read
     from ..files.slices import parse_choices
     from ..probabilities import read_shares
@@ -315,7 +317,7 @@ def _info(options: Options) -> None:
 
 
 def _init(options: Options) -> None:
-    """Write a configuration to begin with; that of a rig with the data that it reads beside it."""
+    """Write a starting configuration; for a rig also its synthetic data file."""
     from ..files.places import claimed
 
     path = options.config or Path("rig.toml" if options.rig else "map.toml")
@@ -370,22 +372,22 @@ def _completion(options: Options) -> None:
 
 
 def _print(text: str) -> None:
-    """Print, so that it has arrived."""
+    """Print and flush."""
     try:
         print(text, flush=True)
-    except BrokenPipeError:  # whoever reads it has had enough
+    except BrokenPipeError:  # the reader has closed the pipe
         raise
     except OSError as error:
-        raise OSError(f"what was to be printed is lost ({error.strerror}): {text}") from error
+        raise OSError(f"cannot print: {error.strerror}; lost output: {text}") from error
 
 
 def _complain(error: Exception) -> None:
-    with contextlib.suppress(OSError):  # nobody to hear it
+    with contextlib.suppress(OSError):  # stderr is closed
         print(f"frictionmap: {one_line(error) or type(error).__name__}", file=sys.stderr)
 
 
 def _check_text(arguments: Sequence[str]) -> None:
-    """Refuse what no file could record, before any work is done."""
+    """Refuse arguments that no file can record, before any work is done."""
     for argument in arguments:
         try:
             argument.encode()
@@ -394,7 +396,7 @@ def _check_text(arguments: Sequence[str]) -> None:
             raise InputError(f"arguments must be text in {encoding}; got {argument!r}") from None
 
 
-#: What runs a command; others compute what a configuration says.
+#: Functions of the commands; other commands compute a configuration.
 _COMMANDS: dict[str, Callable[[Options], None]] = {
     "plot": _plot,
     "info": _info,
@@ -408,7 +410,7 @@ _COMMANDS: dict[str, Callable[[Options], None]] = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the program; the exit status."""
+    """Run the program and return the exit status."""
     given = sys.argv[1:] if arguments is None else list(arguments)
     options = parse(given)
     from ..files.places import abandon
@@ -422,7 +424,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         _complain(error)
         return 2
-    except BrokenPipeError:  # whoever reads what we print has had enough
+    except BrokenPipeError:  # the reader has closed the pipe
         return 0
     except (NoSteadyState, OSError, MemoryError) as error:
         _complain(error)

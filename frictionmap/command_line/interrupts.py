@@ -1,4 +1,4 @@
-"""Ctrl-C and termination: the program ends at once, whatever it is in the middle of.
+"""Ctrl-C and termination: the program ends at once, whatever it is doing.
 
 Python runs a signal's handler in the main thread, between two of its own instructions: not while a kernel is
 compiled or a large file compressed, which may take many seconds.  So a thread of its own waits for signals.
@@ -23,13 +23,13 @@ _caught = threading.Event()
 
 
 def before_exit(tidy: Callable[[], str]) -> None:
-    """Have `tidy` called when an interrupt ends the program; it says in words what was written."""
+    """Register a function that is called on an interrupt and returns what was written, in words."""
     global _tidy
     _tidy = tidy
 
 
 def obey() -> None:
-    """From here on an interrupt ends the process with status 130; for programs, not for libraries."""
+    """End the process with status 130 on any interrupt from now on; for programs, not for libraries."""
     reading, writing = os.pipe()
     os.set_blocking(writing, False)
     signal.set_wakeup_fd(writing, warn_on_full_buffer=False)
@@ -42,7 +42,7 @@ def obey() -> None:
 
 
 def ignore() -> None:
-    """The work is done: no interrupt may spoil the exit status any more; one that came before ends us yet."""
+    """Ignore further signals; one already received still terminates the process."""
     for number in _watched:
         signal.signal(number, signal.SIG_IGN)
     while _caught.is_set():
@@ -60,7 +60,7 @@ def _watch(reading: int) -> None:
 
 
 def _say(text: str) -> None:
-    """A line on standard error, if there is anybody to take it: a full pipe must not keep us."""
+    """Write a line to standard error, unless its pipe is full."""
     wipe = "\r" + " " * 78 + "\r" if os.isatty(2) else ""  # the line of progress
     with contextlib.suppress(OSError, ValueError):
         if select.select([], [2], [], 0.5)[1]:

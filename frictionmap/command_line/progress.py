@@ -1,4 +1,4 @@
-"""What a long run is at, on standard error: a line that is renewed on a terminal, some lines elsewhere."""
+"""Progress of long runs on standard error: one updated line on a terminal, several lines elsewhere."""
 
 import sys
 import time
@@ -11,13 +11,13 @@ from ..steady.cost import in_bytes, in_time
 #: Seconds after which work counts as long, and between two looks at it.
 _LONG, _BETWEEN = 0.5, 0.1
 
-_COMPILING = "compiling kernels, once: up to a minute"
+_COMPILING = "first use: compiling, about 40 s, once only"
 
 
 class Progress:
-    """Of one piece of work, named by `what`, as a context.
+    """Progress of one task, named by `what`, as a context manager.
 
-    parts : what is counted, such as "maps", if the work is done one by one; each is told when it is done
+    parts : what is counted, such as "maps", if each part is reported when it is done
     """
 
     def __init__(self, what: str, quiet: bool, parts: str = "") -> None:
@@ -42,19 +42,19 @@ class Progress:
             self.say(f"{self._what} done in {in_time(time.monotonic() - self._began)}")
 
     def say(self, text: str, always: bool = False) -> None:
-        """A line of its own; on a terminal only if it is to stay there."""
+        """Print a line; on a terminal only if it is to remain."""
         if self._active and (always or not self._terminal):
             self._show("")
             print(f"frictionmap: {text}", file=sys.stderr, flush=True)
 
     def _begin(self) -> None:
-        """Work has begun: what was asked for is not refused any more."""
+        """Report once that work has begun, after all checks of input."""
         if not self._begun:
             self._begun = True
-            self.say(f"{self._what} begun")
+            self.say(f"{self._what} started")
 
     def compiling(self) -> None:
-        """A kernel is not on disk yet."""
+        """Report once that kernels are being compiled."""
         self._begin()
         if not self._compiles:
             self._compiles = True
@@ -62,7 +62,7 @@ class Progress:
             self.say(_COMPILING)
 
     def __call__(self, done: float, total: float) -> None:
-        """So much of the work is done."""
+        """Report how much of the work is done."""
         self._begin()
         now, share = time.monotonic(), done / max(total, 1)
         if self._first is None:
@@ -76,7 +76,7 @@ class Progress:
             self._show(f"{f'{counted}  ' if self._parts else ''}{100.0 * share:5.1f} %{left}")
 
     def _left(self, now: float, share: float) -> str:
-        """The time left if the rest goes as what was seen of it; compiling came before."""
+        """Estimate the remaining time from the progress since compilation."""
         assert self._first is not None
         since, before = self._first
         if share <= before:
@@ -84,11 +84,11 @@ class Progress:
         return f"  about {in_time((1.0 - share) * (now - since) / (share - before))} left"
 
     def writing(self, path: Path, size: int) -> None:
-        """A file is being written, so many bytes so far."""
+        """Report how many bytes of a file are written."""
         self._show(f"writing {path}: {in_bytes(size)}")
 
     def _show(self, text: str) -> None:
-        """`text` in the place of what stands on the terminal."""
+        """Replace the line on the terminal."""
         if self._terminal and (text or self._shown):
             wipe = "\r" if text else "\r" + " " * self._shown + "\r"
             print(f"{wipe}{text:<{self._shown if text else 0}}", end="", file=sys.stderr, flush=True)

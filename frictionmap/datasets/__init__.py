@@ -1,4 +1,4 @@
-"""Datasets: names, units and legal values of variables; checks; provenance.
+"""Datasets: names, units and valid values of variables; checks; provenance.
 
 ===============  ===================================================================
 module           what is in it

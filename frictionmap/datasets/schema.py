@@ -94,7 +94,9 @@ def check_structure(ds: xr.Dataset, in_parts: bool = False) -> None:
     known = _labels_by_name(what)
     if not any(name in LABELS or name == "estimate" for name in ds.variables):
         names = ", ".join(map(str, ds.variables)) or "none"
-        raise InputError(f"no frictionmap variable found (expected, e.g., regime or beta_lim); got {names}")
+        raise InputError(
+            f"cannot use the dataset: no frictionmap variable found, such as regime or beta_lim; got {names}"
+        )
     for name, variable in ds.variables.items():
         if name in known:
             _check_type(str(name), variable, known[str(name)])
@@ -138,11 +140,11 @@ def _check_attributes(name: str, variable: xr.Variable, label: Label) -> None:
     elif label.flags in variable.attrs and "flag_meanings" in variable.attrs:
         values: list = np.atleast_1d(variable.attrs[label.flags]).tolist()
         meanings = str(variable.attrs["flag_meanings"]).split()
-        legal = {code.value: code.name for code in label.codes}
+        valid = {code.value: code.name for code in label.codes}
         if len(values) != len(meanings) or any(
-            legal.get(value) != meaning for value, meaning in zip(values, meanings, strict=False)
+            valid.get(value) != meaning for value, meaning in zip(values, meanings, strict=False)
         ):
-            words = ", ".join(f"{value} {meaning}" for value, meaning in legal.items())
+            words = ", ".join(f"{value} {meaning}" for value, meaning in valid.items())
             raise InputError(f"{name} must have the codes {words}; got {values} {' '.join(meanings)}")
 
 
@@ -171,10 +173,10 @@ def placed(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
     """Values of a variable over exactly these dimensions, in this order."""
     variable = ds.variables[name]
     if not set(variable.dims) <= set(dims):
-        legal = (
+        valid = (
             f"have the dimensions {in_brackets(dims)}, or fewer" if dims else "be one number in a response"
         )
-        raise InputError(f"{name} must {legal}; got {in_brackets(variable.dims)}")
+        raise InputError(f"{name} must {valid}; got {in_brackets(variable.dims)}")
     missing = [dim for dim in dims if dim not in variable.dims]
     for dim in missing:
         given = ds[dim].size if dim in ds.coords else ds.sizes.get(dim, int(dim not in COORDINATES))

@@ -1,4 +1,4 @@
-"""One cell of a view: its motion in numbers, words and curves, and what other starts give."""
+"""One cell of a view: its motion in numbers, words and curves, and that from another initial state."""
 
 import math
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from ..model.system import System
 from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
 from ..steady.maps import solve_map
-from ..steady.motion import Motion, Question, find_motion
+from ..steady.motion import MotionRequest, SteadyMotion, find_motion
 from ..theory.boundary_curves import find_curves
 from .views import Follower, View, name_of_mass
 
@@ -24,10 +24,10 @@ _SAMPLES = 400
 #: Masses whose numbers are listed one by one.
 _LISTED = 12
 
-#: Relative difference of two amplitudes from which on two starts are said to end differently.
+#: Relative difference of amplitudes above which two initial states lead to different motions.
 _OTHER = 1e-6
 
-#: Share of the range of r at which motions are rehearsed: at rounder ones, as the middle, much resonates.
+#: Position in the range of r at which motions are rehearsed; rounder ones, like the middle, often resonate.
 _ASIDE = 0.382
 
 Packet = tuple[dict[str, Any], dict[str, np.ndarray]]
@@ -39,7 +39,7 @@ class Entry(NamedTuple):
     name: str
     label: str
     unit: str  # "length" and "energy" are named by the page, as the load is a force or a base's motion
-    why: str = ""  # there is no number
+    why: str = ""  # reason why there is no number
 
 
 _ENTRIES = (
@@ -47,11 +47,11 @@ _ENTRIES = (
     Entry("stuck_fraction", "share of time stuck", "%"),
     Entry("contact_amplitude", "amplitude in the contact", "length"),
     Entry("contact_first_harmonic_amplitude", "its first harmonic", "length"),
-    Entry("contact_first_harmonic_phase", "lag of that behind the load", "rad"),
+    Entry("contact_first_harmonic_phase", "phase lag of its first harmonic", "rad"),
     Entry("amplitude", "amplitude of", "length"),
     Entry("phase_lag", "lag of", "rad"),
-    Entry("work_friction", "energy that friction takes per cycle", "energy"),
-    Entry("work_damping", "energy that damping takes per cycle", "energy"),
+    Entry("work_friction", "energy dissipated by friction per cycle", "energy"),
+    Entry("work_damping", "energy dissipated by damping per cycle", "energy"),
     Entry("equivalent_damping", "equivalent damping of the contact, cω/k₁", ""),
     Entry("period", "period, in cycles of the excitation", ""),
     Entry("beta_lim", "β_lim here", ""),
@@ -77,18 +77,18 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
     # what a map is asked for beside the motion would take as long again
     solver = replace(view.solver, outputs=("regime",))
     try:
-        found = find_motion(Question(view.system, r, beta, view.mu, solver, _SAMPLES))
+        found = find_motion(MotionRequest(view.system, r, beta, view.mu, solver, _SAMPLES))
     except NoSteadyState as error:
         return {"r": r, "beta": beta, "class": UNRESOLVED, "none": str(error)}, {}
-    told = _numbers(found)
-    regime, stops = (np.array([told[name]]) for name in ("regime", "stops_per_cycle"))
-    entries, numbers = _listed(view.system, told)
+    values = _numbers(found)
+    regime, stops = (np.array([values[name]]) for name in ("regime", "stops_per_cycle"))
+    entries, numbers = _listed(view.system, values)
     header = {
         "r": r,
         "beta": beta,
         "class": int(of_cells(regime, stops)[0]),
         "regime": next(code.name for code in regimes.REGIMES if code.value == regime[0]),
-        "told": in_words(beta, told),
+        "summary": describe_motion(beta, values),
         "entries": [entry._asdict() for entry in entries],
         "comment": found.comment,
         "dofs": view.system.dofs.numbers,
@@ -96,43 +96,43 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
     return header, {**curves_of(view, found), "numbers": np.array(numbers)}
 
 
-def _numbers(found: Motion) -> dict[str, Any]:
+def _numbers(found: SteadyMotion) -> dict[str, Any]:
     """The numbers of a cell, as a dataset would have them."""
     limits = {name: float(getattr(found.curves, name)[0, 0]) for name in ("beta_lim", "beta_stick")}
     return {**found.cycle, **found.summary, **limits}
 
 
-def _listed(system: System, told: Mapping[str, Any]) -> tuple[list[Entry], list[float]]:
-    """What there is to list of a cell, and the numbers; of masses one by one."""
+def _listed(system: System, values: Mapping[str, Any]) -> tuple[list[Entry], list[float]]:
+    """Entries of the list of a cell and their numbers, those of masses one by one."""
     entries: list[Entry] = []
     numbers: list[float] = []
-    stuck = told["regime"] == regimes.PERMANENT_STICKING
+    stuck = values["regime"] == regimes.PERMANENT_STICKING
     for entry in _ENTRIES:
         if stuck and entry.name in _MOVING:
             continue
-        of_masses = np.ndim(told[entry.name]) == 1
-        for row, value in enumerate(np.atleast_1d(told[entry.name])[:_LISTED].tolist()):
+        of_masses = np.ndim(values[entry.name]) == 1
+        for row, value in enumerate(np.atleast_1d(values[entry.name])[:_LISTED].tolist()):
             mass = f" {name_of_mass(system, system.dofs.numbers[row])}" if of_masses else ""
             none = entry.name == "phase_lag" and np.isnan(value)
-            why = _why_no_lag(told, row) if none else ""
+            why = _reason_for_no_lag(values, row) if none else ""
             entries.append(entry._replace(label=entry.label + mass, why=why))
             numbers.append(100.0 * value if entry.unit == "%" else float(value))
     return entries, numbers
 
 
-def _why_no_lag(told: Mapping[str, Any], k: int) -> str:
-    """Why mass k, counted from 0, has no lag: its maximum is at no one time of every cycle."""
-    period = int(told["period"])
+def _reason_for_no_lag(values: Mapping[str, Any], k: int) -> str:
+    """Explain why mass k, counted from 0, has no lag: its maximum has no single phase in the cycle."""
+    period = int(values["period"])
     if period != 1:
         return f"its period is {period} cycles" if period else "it has no period"
-    if told["amplitude"][k] == 0.0:
+    if values["amplitude"][k] == 0.0:
         return "it rests"
-    begin, end = (f"{told[name][k]:.3f}".replace("-", "−") for name in ("phase_begin", "phase_end"))
+    begin, end = (f"{values[name][k]:.3f}".replace("-", "−") for name in ("phase_begin", "phase_end"))
     return f"held at its maximum from {begin} to {end} rad"
 
 
-def curves_of(view: View, found: Motion) -> dict[str, np.ndarray]:
-    """What is drawn of a motion, float32."""
+def curves_of(view: View, found: SteadyMotion) -> dict[str, np.ndarray]:
+    """Curves of a motion for the page, float32."""
     system, history = view.system, found.history
     rate = system.contact_vector @ history.v + system.base_motion * np.sin(history.tau)
     drawn = {
@@ -152,12 +152,12 @@ def _moduli(harmonics: np.ndarray) -> np.ndarray:
     return np.hypot(harmonics[..., 0], harmonics[..., 1])
 
 
-def in_words(beta: float, numbers: Mapping[str, Any]) -> list[str]:
-    """What the contact does in a cell, and why, in sentences."""
-    told = [_deed(numbers)]
+def describe_motion(beta: float, numbers: Mapping[str, Any]) -> list[str]:
+    """Describe in sentences what the contact does in a cell, and why."""
+    sentences = [_describe_regime(numbers)]
     lim, stick = numbers["beta_lim"], numbers["beta_stick"]
     if beta >= stick:
-        why = f"β = {beta:.4g} reaches β_stick = {stick:.4g}: friction can hold the contact for good."
+        why = f"β = {beta:.4g} reaches β_stick = {stick:.4g}: friction can hold the contact permanently."
     elif beta < lim:
         why = f"β = {beta:.4g} lies below β_lim = {lim:.4g}: the contact can slide without stopping."
     else:
@@ -165,18 +165,18 @@ def in_words(beta: float, numbers: Mapping[str, Any]) -> list[str]:
             f"β = {beta:.4g} lies between β_lim = {lim:.4g} and β_stick = {stick:.4g}: friction stops the "
             "contact, but cannot hold it."
         )
-    told.append(why)
+    sentences.append(why)
     status = int(numbers["status"])
     if status != regimes.RESOLVED:
         meaning = regimes.status_meaning(status)
-        told.append(f"{meaning[0].upper()}{meaning[1:]}.")
-    return told
+        sentences.append(f"{meaning[0].upper()}{meaning[1:]}.")
+    return sentences
 
 
-def _deed(numbers: Mapping[str, Any]) -> str:
+def _describe_regime(numbers: Mapping[str, Any]) -> str:
     regime = numbers["regime"]
     if regime == regimes.PERMANENT_STICKING:
-        return "The contact never slides: friction holds it for good."
+        return "The contact never slides: friction holds it permanently."
     if regime == regimes.CONTINUOUS:
         return "The contact slides to and fro without stopping."
     if regime == regimes.UNRESOLVED:
@@ -190,10 +190,10 @@ _STARTS: dict[str, Start] = {"rest": "moving", "moving": "rest"}
 
 
 def others(view: View, r: float, beta: float, follower: Follower) -> Packet:
-    """What else is known of a cell: stability, every regime it can end in, the motion from the other start.
+    """Stability of a cell, its reachable regimes, and the motion from the other initial state.
 
-    The header has `start`, the other one, `same`, `told` and the `reachable` regimes; the arrays `multiplier`
-    and, of another motion, what `motion` has of it.
+    The header has `start`, the other one, `same`, `summary` and the `reachable` regimes; the arrays
+    `multiplier` and, of another motion, what `motion` has of it.
     """
     view.check(r)
     start = _STARTS[view.solver.start]
@@ -206,19 +206,19 @@ def others(view: View, r: float, beta: float, follower: Follower) -> Packet:
         "beta": beta,
         "start": start,
         "same": _alike(own, other_end),
-        "told": [],
+        "summary": [],
         "reachable": [code.name for code in regimes.REACHABLE if flags & code.value],
     }
     arrays = {"multiplier": np.array([float(own["multiplier"])])}
     if not header["same"]:
         other, curves = motion(there, r, beta, follower)
-        header["told"] = [other["none"]] if "none" in other else other["told"][:1]
+        header["summary"] = [other["none"]] if "none" in other else other["summary"][:1]
         arrays |= curves
     return header, arrays
 
 
 def _one(view: View, r: float, beta: float, follower: Follower, *outputs: Output) -> dict[str, Any]:
-    """What a map of this one cell has."""
+    """Compute a map of one cell."""
     axes = {"mu": np.array([view.mu]), "r": np.array([r]), "beta": np.array([beta])}
     solver = replace(view.solver, outputs=("regime", *outputs))
     found, _ = solve_map(view.system, axes, solver, 1, None, follower.watch)
@@ -226,7 +226,7 @@ def _one(view: View, r: float, beta: float, follower: Follower, *outputs: Output
 
 
 def _alike(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
-    """Whether two starts end in the same regime with the same amplitude."""
+    """Whether two initial states lead to the same regime with the same amplitude."""
     if one["regime"] != other["regime"]:
         return False
     sizes = float(one["contact_amplitude"]), float(other["contact_amplitude"])
@@ -234,7 +234,7 @@ def _alike(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
 
 
 def rehearse(view: View, follower: Follower) -> None:
-    """A motion of each kind, and what else is known of one that stops: kernels are compiled or loaded.
+    """Compute a motion of each regime, and `others` of one, so that kernels are compiled or loaded.
 
     With mu = 1, where every motion is found at once.
     """

@@ -1,4 +1,4 @@
-"""A line through a view, along r or beta, as response curves."""
+"""Response curves through a view, along r or beta."""
 
 from typing import Any, Literal
 
@@ -10,7 +10,7 @@ from .views import Follower, View, middles
 
 Along = Literal["r", "beta"]
 
-#: Cells that are computed at once: nobody looks at whether anybody waits while their boundaries are found.
+#: Cells computed at once: a request cannot be cancelled while their boundaries are determined.
 _AT_ONCE = 96
 
 _QUANTITIES: tuple[Quantity, ...] = ("amplitude", "first_harmonic", "energy")

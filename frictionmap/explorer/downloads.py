@@ -1,4 +1,4 @@
-"""A view as a configuration, and its map as NetCDF or CSV."""
+"""Downloads: a view as a configuration, its map as NetCDF or CSV."""
 
 import tempfile
 from dataclasses import replace
@@ -15,12 +15,12 @@ from ..model.settings import Output, Solver
 from ..steady.sweep import swept
 from ..units.scales import scales_of
 from .scene import Scene
-from .views import Follower, Piece, Quantity, View
+from .views import CellQuantity, Follower, Piece, View
 
-#: Matrices of so many degrees of freedom are put into a configuration; of larger ones only the file is named.
+#: Largest number of degrees of freedom whose matrices are written to a configuration, not only their file.
 _WRITTEN = 64
 
-#: What every map that is saved has.
+#: Outputs of every saved map.
 _ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "contact_amplitude")
 
 #: Outputs that NetCDF packs into next to nothing.
@@ -30,19 +30,19 @@ _CODES = ("regime", "stops_per_cycle")
 _PER_NUMBER, _PER_FLOAT, _PER_FILE = 13.0, 5.0, 60e3
 
 
-def _solver(view: View, quantity: Quantity) -> Solver:
+def _solver(view: View, quantity: CellQuantity) -> Solver:
     wanted = dict.fromkeys((*_ALWAYS, *filter(None, (quantity.output,))))
     return replace(view.solver, outputs=cast(tuple[Output, ...], tuple(wanted)))
 
 
-def _described(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> str:
-    """The configuration of a view; matrices that are too large for text are a comment."""
+def _described(scene: Scene, view: View, quantity: CellQuantity, piece: Piece) -> str:
+    """Configuration of a view; matrices too large for text become a comment."""
     axes = view.axes(piece.columns, piece.rows)
     of_grid = {name: axes[name] for name in ("r", "beta", "mu")}
     return configuration(scene.title, view.system, of_grid, _solver(view, quantity), units=scene.units)
 
 
-def configuration_text(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> str:
+def configuration_text(scene: Scene, view: View, quantity: CellQuantity, piece: Piece) -> str:
     """A configuration whose map is that of the view, cell by cell to the bit.
 
     Raises
@@ -57,12 +57,14 @@ def configuration_text(scene: Scene, view: View, quantity: Quantity, piece: Piec
     again = {"r": loaded.r, "beta": loaded.beta, "mu": loaded.mu}
     found = configuration(scene.title, loaded.system, again, loaded.solver, units=loaded.units)
     if _uncommented(found) != _uncommented(text):
-        raise InputError("this view has no configuration that gives it again")
+        raise InputError(
+            "cannot save this view: no configuration reproduces it exactly; save its map instead"
+        )
     return text
 
 
 def _uncommented(text: str) -> str:
-    """A configuration without the lines that tell, as how a structure was reduced, but change nothing."""
+    """Remove comments from a configuration, such as those on the reduction of a structure."""
     return "\n".join(line for line in text.splitlines() if not line.startswith("#"))
 
 
@@ -71,9 +73,12 @@ def _is_large(view: View) -> bool:
 
 
 def _with_files(scene: Scene, view: View, text: str) -> str:
-    """The view that `text` describes, with matrices by the names of their files."""
+    """Configuration of the view that `text` describes, with matrices by the names of their files."""
     if scene.config is None:
-        raise InputError(f"a system of {scene.system.n} degrees of freedom is too large to be put into text")
+        raise InputError(
+            f"cannot save this view: its matrices ({scene.system.n} degrees of freedom) are too large for "
+            "a configuration; save its map instead"
+        )
     given = parse(scene.config.text)
     of_view = parse(_uncommented(text))
     of_files = {key: given["system"][key] for key in ("matrices", "reduce") if key in given["system"]}
@@ -83,18 +88,20 @@ def _with_files(scene: Scene, view: View, text: str) -> str:
     tree.pop("axes", None)
     written = to_toml(tree)
     if read_system(parse(written)["system"], scene.config.files[0].parent) != view.system:
-        raise InputError("this view has no configuration that gives it again: its files have changed")
+        raise InputError(
+            "cannot save this view: the files of its matrices have changed; restart frictionmap explore"
+        )
     return written
 
 
-def sizes(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> dict[str, float]:
-    """About how many bytes the files of `saved_map` take, by their formats; less where much of it sticks."""
+def sizes(scene: Scene, view: View, quantity: CellQuantity, piece: Piece) -> dict[str, float]:
+    """Estimate the bytes of the files of `saved_map` by format; fewer where many cells stick."""
     scales = scales_of(scene.units, view.system)
     outputs = _solver(view, quantity).outputs
     masses = view.system.n if "amplitude" in outputs else 1
 
     def copies(name: str) -> int:
-        """A ratio, and beside it the same in SI units where they are known."""
+        """Number of variables: the ratio, and its value in SI units if known."""
         return 1 + (name in MEASURE_OF and scales.of(MEASURE_OF[name]) is not None)
 
     axes = sum(1 + (scales.of(measure) is not None) for measure in ("frequency", "force"))
@@ -107,7 +114,7 @@ def sizes(scene: Scene, view: View, quantity: Quantity, piece: Piece) -> dict[st
 
 
 def saved_map(
-    scene: Scene, view: View, quantity: Quantity, piece: Piece, ending: str, follower: Follower
+    scene: Scene, view: View, quantity: CellQuantity, piece: Piece, ending: str, follower: Follower
 ) -> bytes:
     """The map of a view as a file: `ending` is .nc or .csv."""
     axes = view.axes(piece.columns, piece.rows)

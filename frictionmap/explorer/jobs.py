@@ -1,6 +1,6 @@
-"""What is being computed, what is outdated, whether kernels are being compiled.
+"""Running requests: which are cancelled, and whether kernels are being compiled.
 
-Every page has a lane for each kind of work: whoever enters it makes what is still in it outdated.
+Every page has a lane for each kind of work; a new job in a lane cancels the previous one.
 """
 
 import threading
@@ -14,11 +14,11 @@ _MOST_LANES = 256
 
 
 class Outdated(Exception):
-    """Nobody waits for the answer any more."""
+    """The request is cancelled: nobody waits for the answer."""
 
 
 class Job:
-    """A piece of work that somebody waits for."""
+    """Work for a request."""
 
     def __init__(self, gone: Callable[[], bool], turn: int) -> None:
         self._gone = gone
@@ -28,7 +28,7 @@ class Job:
         self.kernels = 0
 
     def watch(self) -> None:
-        """Called while cells are worked on.
+        """Check, while cells are computed, whether the request still stands.
 
         Raises
         ------
@@ -39,13 +39,13 @@ class Job:
             raise Outdated
 
     def progress(self, done: float, total: float) -> None:
-        """Cells come in: what they need has been compiled."""
+        """Note that cells are finished, so that compilation is over."""
         self.compiles_since = None
         self.watch()
 
 
 class Jobs:
-    """All work that is under way."""
+    """All running jobs."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -53,13 +53,13 @@ class Jobs:
         self._running: set[Job] = set()
 
     def listen(self) -> None:
-        """Hear of kernels that are compiled, from now on; it takes the import of the compiler."""
+        """Listen to compilation from now on; this imports the compiler."""
         from .._kernels.compiler.notices import listeners
 
         listeners.append(self._compiling)
 
     def close(self) -> None:
-        """No more is heard of compiling; everything is outdated."""
+        """Stop listening to compilation and cancel all jobs."""
         from .._kernels.compiler.notices import listeners
 
         if self._compiling in listeners:
@@ -70,7 +70,7 @@ class Jobs:
 
     @contextmanager
     def enter(self, lane: str, gone: Callable[[], bool] = lambda: False, turn: int = 0) -> Iterator[Job]:
-        """A job in a lane: of it and the one before it there, that of the earlier turn is outdated."""
+        """Run a job in a lane; of it and its predecessor, the one with the earlier turn is cancelled."""
         job = Job(gone, turn)
         with self._lock:
             before = self._lanes.pop(lane, job)
@@ -87,7 +87,7 @@ class Jobs:
                 self._running.discard(job)
 
     def _compiling(self) -> None:
-        """A kernel is about to be compiled, for one of the jobs that are under way."""
+        """Note that a kernel is about to be compiled for one of the running jobs."""
         now = time.monotonic()
         with self._lock:
             for job in self._running:
@@ -95,7 +95,7 @@ class Jobs:
                 job.kernels += 1
 
     def state(self) -> dict[str, float]:
-        """Whether kernels are being compiled: for how long [s], and how many so far; empty if not."""
+        """State of compilation: duration [s] and number of kernels so far; empty if none is running."""
         with self._lock:
             compiling = [job for job in self._running if job.compiles_since is not None]
             if not compiling:

@@ -1,4 +1,4 @@
-"""The page in a notebook, or beside any other work in Python."""
+"""The page in a notebook or in a Python script."""
 
 import html
 import threading
@@ -17,7 +17,7 @@ _HEIGHT = 860
 
 
 class Explorer:
-    """A page that is served until it is closed, or Python ends; a notebook shows it."""
+    """A page served until it is closed or Python ends; a notebook displays it."""
 
     def __init__(self, server: Server) -> None:
         self._server = server
@@ -31,7 +31,7 @@ class Explorer:
         return self._server.url
 
     def close(self) -> None:
-        """End the page; once is enough."""
+        """Stop serving the page; calling it again has no effect."""
         if self._thread.is_alive():
             self._server.shutdown()
             self._thread.join()
@@ -49,7 +49,7 @@ class Explorer:
         )
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """HTML representation in a notebook."""
         if not self._thread.is_alive():
             return html.escape(repr(self))
         size = f'width="100%" height="{_HEIGHT}" style="border:0"'
@@ -67,7 +67,7 @@ def explore(
     title: str = "Regimes of motion",
     port: int | None = None,
 ) -> Explorer:
-    """The map of a system as a page in a browser, or in a notebook, to be moved about in.
+    """Show an interactive map of a system in a browser or notebook.
 
     The page is served from this process and ends with it: a script that shows one ends with a line such as
     ``input(page.url)``, or the page is gone before it is seen.
@@ -81,14 +81,14 @@ def explore(
     mu : float
         Static over kinetic friction [-], >= 1, that it begins with.
     start : {"rest", "moving"}
-        The starting state that it begins with, see `Solver`.
+        Initial state, see `Solver`.
     units : Units, optional
-        What r = 1 and beta = 1 are: the page has second axes in hertz and newtons then, and r and beta may
+        Reference values in Hz and N: the page then has second axes in these units, and r and beta may
         have units as of `sweep`, such as ``("1 Hz", "10 Hz")``.
     title : str
-        What stands above it.
+        Title of the page.
     port : int, optional
-        Where it is served on this machine; default 8712 if that is free, or another.
+        Local port of the page; default 8712, or any free port.
 
     Returns
     -------

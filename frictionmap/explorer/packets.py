@@ -1,7 +1,7 @@
-"""Numbers on their way to the page: a header in JSON, and arrays behind it as they lie in memory.
+"""Binary packets for the page: a header in JSON, followed by arrays.
 
-Four bytes tell the length of the header; arrays begin at multiples of eight bytes behind it.  Infinities and
-NaN, which JSON has no word for, travel in arrays.
+Four bytes contain the length of the header; arrays begin at multiples of eight bytes after it.  Infinities
+and NaN, which JSON lacks, are sent in arrays.
 """
 
 import json
@@ -12,7 +12,7 @@ import numpy as np
 
 _ALIGNED = 8
 
-#: What the page calls the types of arrays.
+#: Types of arrays in JavaScript.
 _TYPES = {"uint8": "Uint8Array", "int8": "Int8Array", "float32": "Float32Array", "float64": "Float64Array"}
 
 
@@ -33,7 +33,7 @@ def pack(header: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> bytes:
 
 
 def unpack(packet: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """Header and arrays of a packet; what the page does, for tests and benchmarks."""
+    """Unpack header and arrays of a packet as the page does, for tests and benchmarks."""
     length = int.from_bytes(packet[:4], "little")
     header = json.loads(packet[4 : 4 + length])
     numpy_types = {theirs: np.dtype(ours) for ours, theirs in _TYPES.items()}

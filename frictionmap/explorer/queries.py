@@ -1,4 +1,4 @@
-"""What the page asks for, checked as a configuration is: every key known, once, and of the right kind."""
+"""Queries of the page, checked like a configuration: every key valid, given once and of the right type."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..model.settings import Start
 from .cut import Along
 from .scene import Scene, checked_range
-from .views import MOST_PIXELS, Piece, Quantity, View, quantities
+from .views import MOST_PIXELS, CellQuantity, Piece, View, quantities
 
 #: Keys of a query; a page of many masses has some tens.
 _MOST_KEYS = 100
@@ -29,17 +29,17 @@ class Query(NamedTuple):
 
 
 def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
-    """The view that a query asks for; what it leaves out is as the page begins.
+    """Return the requested view; missing keys have the values with which the page begins.
 
     Parameters
     ----------
     text : the query of an address, such as "r=0.5,1.5&mu=1.2&damping_ratios=0.01"
-    further : keys that are legal beside those of a view
+    further : valid keys other than those of a view
 
     Raises
     ------
     InputError
-        A key is unknown or given twice, or a value is illegal.
+        A key is unknown or given twice, or a value is invalid.
     """
     numbers = tuple(slider.key for slider in scene.sliders if slider.key != "mu")
     given = _read(text, (*_VIEW, *numbers, *further))
@@ -56,7 +56,7 @@ def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
     return Query(view, given)
 
 
-def _read(text: str, legal: Sequence[str]) -> dict[str, str]:
+def _read(text: str, valid: Sequence[str]) -> dict[str, str]:
     try:
         pairs = parse_qsl(text, keep_blank_values=True, strict_parsing=bool(text), max_num_fields=_MOST_KEYS,
                           errors="strict")  # fmt: skip
@@ -64,9 +64,9 @@ def _read(text: str, legal: Sequence[str]) -> dict[str, str]:
         raise InputError(f"the query must be KEY=VALUE&...; got {checks.one_line(text)} ({error})") from None
     given: dict[str, str] = {}
     for key, value in pairs:
-        if key not in legal:
-            hint = checks.nearest(key, legal)
-            raise InputError(f"unknown key {key}{hint}; the keys are {', '.join(legal)}")
+        if key not in valid:
+            hint = checks.nearest(key, valid)
+            raise InputError(f"unknown key {key!r}{hint}; valid: {', '.join(valid)}")
         if key in given:
             raise InputError(f"{key} must be given once; got {given[key]!r} and {value!r}")
         given[key] = value
@@ -74,7 +74,7 @@ def _read(text: str, legal: Sequence[str]) -> dict[str, str]:
 
 
 def number(text: str, name: str) -> float:
-    """A number as a query has it."""
+    """Convert a number of a query."""
     try:
         if "_" in text:
             raise ValueError
@@ -95,9 +95,9 @@ def _whole(given: Mapping[str, str], name: str, default: int | None = None) -> i
 
 
 def needed(given: Mapping[str, str], name: str) -> str:
-    """What was given under a key that must be there."""
+    """Return the value of a required key."""
     if name not in given:
-        raise InputError(f"{name} must be given; it is missing")
+        raise InputError(f"{name} must be given; got nothing")
     return given[name]
 
 
@@ -106,7 +106,9 @@ def _range(given: Mapping[str, str], name: str, default: tuple[float, float]) ->
         return default
     parts = given[name].split(",")
     if len(parts) != 2:
-        raise InputError(f"{name} must be two numbers with a comma; got {checks.one_line(given[name])}")
+        raise InputError(
+            f"{name} must be two numbers separated by a comma; got {checks.one_line(given[name])}"
+        )
     return checked_range([number(part, name) for part in parts], name)
 
 
@@ -116,8 +118,8 @@ CELL = ("at", "page", "turn")
 CUT = ("along", "place", "count", "page", "turn")
 
 
-def piece_of(query: Query) -> tuple[Quantity, Piece]:
-    """Which part of a picture, and coloured by what."""
+def piece_of(query: Query) -> tuple[CellQuantity, Piece]:
+    """Requested piece of a map, and the quantity that colours it."""
     given = query.given
     columns, rows = _whole(given, "columns"), _whole(given, "rows")
     piece = Piece(columns, rows, _whole(given, "first", 0), _whole(given, "last", columns))
@@ -128,7 +130,7 @@ def piece_of(query: Query) -> tuple[Quantity, Piece]:
 
 
 def lines_of(query: Query) -> int:
-    """Points of boundaries that are wanted beside a piece of a map; 0: none."""
+    """Number of requested points of the boundaries; 0: none."""
     return checks.whole(_whole(query.given, "lines", 0), "lines", least=0, most=MOST_PIXELS)
 
 
@@ -136,24 +138,26 @@ def cell_of(query: Query) -> tuple[float, float]:
     """r and beta of a cell."""
     parts = needed(query.given, "at").split(",")
     if len(parts) != 2:
-        raise InputError(f"at must be r and beta with a comma; got {checks.one_line(query.given['at'])}")
+        raise InputError(
+            f"at must be r and beta separated by a comma; got {checks.one_line(query.given['at'])}"
+        )
     r, beta = (number(part, name) for part, name in zip(parts, ("r", "beta"), strict=True))
     r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
     return r, checks.number(beta, "beta", least=0.0)
 
 
 def cut_of(query: Query) -> tuple[Along, float, int]:
-    """Along what a cut goes, at which value of the other axis, with how many points."""
-    legal: tuple[Along, ...] = get_args(Along)
-    along: Any = checks.choice(needed(query.given, "along"), "along", legal)
+    """Axis of a cut, value of the other axis, number of points."""
+    valid: tuple[Along, ...] = get_args(Along)
+    along: Any = checks.choice(needed(query.given, "along"), "along", valid)
     place = checks.number(number(needed(query.given, "place"), "place"), "place", least=0.0)
     count = _whole(query.given, "count")
     return along, place, checks.whole(count, "count", least=2, most=_MOST_POINTS)
 
 
 def page_of(query: Query) -> tuple[str, int]:
-    """The page that asks, and which of its requests it is: a later one makes this one outdated."""
+    """Page that asks, and the number of its request; a later request cancels this one."""
     page = query.given.get("page", "")
     if len(page) > 64 or not page.isascii():
-        raise InputError(f"page must be a short word; got {checks.one_line(page)}")
+        raise InputError(f"page must be at most 64 ASCII characters; got {checks.one_line(page)}")
     return page, checks.whole(_whole(query.given, "turn", 0), "turn", least=0)

@@ -1,4 +1,4 @@
-"""What is explored: the system, where the view begins, what can be changed."""
+"""Subject of a page: system, initial view, parameters that can be changed."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -53,7 +53,7 @@ class Contact(NamedTuple):
 
 @dataclass(frozen=True)
 class Scene:
-    """What a page is about."""
+    """Subject of a page: system, initial view, settings."""
 
     title: str
     system: System
@@ -69,23 +69,23 @@ class Scene:
 
     @property
     def files(self) -> Sequence[Path]:
-        """What it was read from."""
+        """Files from which it was read."""
         return () if self.config is None else self.config.files
 
     @property
     def sliders(self) -> tuple[Slider, ...]:
-        """What can be changed as a number."""
+        """Parameters that can be changed by sliders."""
         mu = Slider("mu", "μ", 1.0, max(_MOST_MU, 2.0 * self.mu), self.mu, "linear")
         return (mu, *_of_damping(self.system), *_of_ratios(self.system))
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
-        """The contact as it is, and what others the system can have."""
+        """Contacts that the system can have, its own first."""
         own = _contact(self.system.contact, tuple(self.system.contact_masses), self.system.n)
         return (own, *(other for other in _others(self.system) if other.key != own.key))
 
     def _changed(self, contact: str, numbers: tuple[tuple[str, float], ...]) -> System:
-        """The system with another contact, and with other numbers; "": as it is.
+        """Change the contact and numbers of the system; contact "": unchanged.
 
         Raises
         ------
@@ -189,13 +189,13 @@ def _with_contact(system: System, contact: Contact) -> System:
 
 
 def _ends(values: Any) -> tuple[float, float]:
-    """The range of an axis; about its only value."""
+    """Range of an axis; around the value if there is only one."""
     first, last = float(values[0]), float(values[-1])
     return (first, last) if last > first else (0.5 * first, 1.5 * first or 1.0)
 
 
 def scene_of(config: "Config") -> Scene:
-    """What a configuration asks to explore: of further axes the first point, of several mu the first."""
+    """Make the scene of a configuration, with the first point of further axes and the first mu."""
     system = config.system
     if config.variations is not None:
         system = config.variations.at([0] * len(config.variations.axes))
@@ -215,7 +215,7 @@ def checked_range(values: object, name: str) -> tuple[float, float]:
 def scene_of_system(
     system: System, r: object, beta: object, mu: object, start: object, title: object, units: Units | None
 ) -> Scene:
-    """What a system is explored with from Python, checked."""
+    """Make the scene of a system, from checked arguments."""
     checks.instance(system, "system", System)
     if not isinstance(title, str):
         raise InputError(f"title must be text; got {checks.one_line(title)}")

@@ -1,8 +1,8 @@
-"""The page's server: the standard library's, for this machine only.
+"""HTTP server of the page, for this machine only.
 
-It listens on 127.0.0.1 and answers whoever names it so: a page of another host that has its name point
-here, and pages that ask from elsewhere, are refused (403).  What it is asked is checked (400, one line), and
-nothing that it does changes anything.
+It listens on 127.0.0.1 and answers requests to that name only: a page of another host that has its name point
+here, and requests from pages of other hosts, are refused (403).  Queries are checked (400, one line), and
+no request changes anything.
 """
 
 import contextlib
@@ -29,7 +29,7 @@ from .scene import Scene
 if TYPE_CHECKING:
     from .queries import Query
 
-#: The port if nobody names one and it is free: a link to a view then outlives the program.
+#: Default port, if it is free, so that links to views remain valid.
 PORT = 8712
 
 _HOST = "127.0.0.1"
@@ -59,7 +59,7 @@ _HEADERS = {
 
 
 class Answer(NamedTuple):
-    """What is sent back."""
+    """An HTTP response."""
 
     status: int
     kind: str
@@ -68,7 +68,7 @@ class Answer(NamedTuple):
 
 
 def page_files() -> dict[str, bytes]:
-    """The page as it is written, by the names of its files."""
+    """Contents of the files of the page by name."""
     folder = files(__package__) / "page"
     return {
         entry.name: entry.read_bytes()
@@ -82,7 +82,7 @@ def _text(status: int, message: object) -> Answer:
 
 
 class Page:
-    """What is behind the addresses; it computes, and knows nothing of connections."""
+    """Answers to the addresses of the page, independent of connections."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
@@ -103,7 +103,7 @@ class Page:
         }
 
     def warm(self) -> None:
-        """Import what computes: it takes longer than the browser needs to ask for the page."""
+        """Import the computing modules, which takes longer than the browser needs to load the page."""
         try:
             from . import cell, cut, queries, told, views  # noqa: F401
 
@@ -112,7 +112,7 @@ class Page:
             self._warm.set()
 
     def rehearse(self) -> None:
-        """Have a small map and motions computed: their kernels are at hand before the page asks for more."""
+        """Compute a small map and motions, so that their kernels are compiled before the page needs them."""
         from . import cell, queries, views
 
         self._warm.wait()
@@ -122,7 +122,7 @@ class Page:
             cell.rehearse(view, job)
 
     def answer(self, target: str, gone: Callable[[], bool]) -> Answer:
-        """The answer to an address; `gone` tells whether anybody still waits for it."""
+        """Answer a request; `gone` returns whether the client has disconnected."""
         try:
             parts = urlsplit(target)
         except ValueError as error:
@@ -131,7 +131,7 @@ class Page:
         if name in self._files:
             return Answer(200, _KINDS["." + name.rpartition(".")[2]], self._files[name])
         if parts.path not in self._work:
-            return _text(404, f"there is nothing at {parts.path[:80]!r}")
+            return _text(404, f"unknown address {parts.path[:80]!r}")
         self._warm.wait()
         try:
             return self._work[parts.path](parts.query, gone)
@@ -140,19 +140,19 @@ class Page:
         except Outdated:
             return Answer(204, _TEXT, b"")
         except MemoryError:
-            return _text(500, "too little memory for this view")
+            return _text(500, "cannot compute this view: too little memory; use a coarser map")
 
     def _scene(self, query: str, gone: Callable[[], bool]) -> Answer:
         from .queries import read_query
-        from .told import told
+        from .told import describe_scene
 
-        return _json(told(self.scene, read_query(self.scene, query).view))
+        return _json(describe_scene(self.scene, read_query(self.scene, query).view))
 
     def _state(self, query: str, gone: Callable[[], bool]) -> Answer:
         return _json({"compiling": self.jobs.state()})
 
     def _enter(self, kind: str, query: "Query", gone: Callable[[], bool]) -> Any:
-        """A job in the lane of the page for work of a kind; pages without a name have none in common."""
+        """Start a job in the lane of the page for a kind of work, or in a lane of its own without a page."""
         from .queries import page_of
 
         page, turn = page_of(query)
@@ -243,7 +243,7 @@ def _packet(found: tuple[dict, dict]) -> Answer:
 
 
 class _Handler(BaseHTTPRequestHandler):
-    """One connection."""
+    """Handler of one connection."""
 
     protocol_version = "HTTP/1.1"
     server_version, sys_version = "frictionmap", ""
@@ -258,28 +258,28 @@ class _Handler(BaseHTTPRequestHandler):
         self.do_GET()
 
     def _refusal(self) -> Answer | None:
-        """Why somebody else than our own page must not be answered."""
+        """Refusal of requests that do not come from the page itself."""
         port = self.server.server_address[1]
         own = {f"{name}:{port}" for name in _NAMES} | ({*_NAMES} if port == 80 else set())
         host, origins = (self.headers.get_all(name) or [] for name in ("Host", "Origin"))
         if len(host) != 1 or host[0].lower() not in own:
-            return _text(403, f"this page is for this machine only, at http://{_HOST}:{port}")
+            return _text(403, f"this page is served to this machine only, at http://{_HOST}:{port}")
         if not {origin.lower() for origin in origins} <= {f"http://{name}" for name in own}:
-            return _text(403, "pages of other hosts are not answered")
+            return _text(403, "requests from other hosts are refused")
         # a link in a letter may lead to the page, but to no work
         linked = self.headers.get("Sec-Fetch-Mode") == "navigate" and self.path.partition("?")[0] in _DOORS
         if not linked and self.headers.get("Sec-Fetch-Site", "none") not in ("same-origin", "none"):
-            return _text(403, "pages of other hosts are not answered")
+            return _text(403, "requests from other hosts are refused")
         return None
 
     def _answer(self) -> Answer:
         try:
             return self.server.page.answer(self.path, self._gone)
-        except Exception as error:  # whatever it is, the page hears of it in a line
+        except Exception as error:  # the page shows any error in one line
             return _text(500, f"frictionmap failed: {type(error).__name__}: {error}")
 
     def _gone(self) -> bool:
-        """Whether whoever asked has closed the connection."""
+        """Whether the client has closed the connection."""
         try:
             readable, _, _ = select.select([self.connection], [], [], 0.0)
             return bool(readable) and not self.connection.recv(1, socket.MSG_PEEK)
@@ -300,17 +300,17 @@ class _Handler(BaseHTTPRequestHandler):
                 self.wfile.write(answer.body)
 
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
-        """One line for what the library itself refuses: other methods, lines too long."""
+        """Send one line for requests that the library refuses: other methods, lines too long."""
         self.close_connection = True
         refusal = self._refusal() if code == HTTPStatus.NOT_IMPLEMENTED else None
         self._reply(refusal or _text(code, message or HTTPStatus(code).phrase))
 
     def log_message(self, format: str, *args: object) -> None:
-        """Nothing: the terminal is the user's."""
+        """Log nothing to the terminal."""
 
 
 class Server(ThreadingHTTPServer):
-    """The page of a scene at an address of this machine."""
+    """Server of the page of a scene on this machine."""
 
     daemon_threads = True
     allow_reuse_address = sys.platform != "win32"  # there it would let two programs have one port
@@ -327,16 +327,16 @@ class Server(ThreadingHTTPServer):
         return f"http://{_HOST}:{self.server_address[1]}/"
 
     def handle_error(self, request: object, client_address: object) -> None:
-        """A connection that broke is no concern of the terminal."""
+        """Ignore broken connections."""
 
     def close(self) -> None:
-        """Stop listening, and whatever is under way."""
+        """Stop listening, and cancel running jobs."""
         self.page.jobs.close()
         self.server_close()
 
 
 def open_server(scene: Scene, port: int | None = None) -> Server:
-    """A server that listens; without a port on the usual one, or any that is free.
+    """Open a server; without a port on the default one, or any free one.
 
     Raises
     ------
@@ -351,12 +351,12 @@ def open_server(scene: Scene, port: int | None = None) -> Server:
             reason = getattr(error, "strerror", None) or str(error)
             free = getattr(error, "errno", None) in (errno.EADDRINUSE, errno.EACCES)
             if number == tried[-1] or not free:
-                raise InputError(f"--port must be one that is free; got {number} ({reason})") from None
+                raise InputError(f"--port must be a free port; got {number} ({reason})") from None
     raise AssertionError("there is always a last one")
 
 
 def begin(server: Server) -> None:
-    """Answer in the background what will be asked first."""
+    """Compute the first answers in the background."""
     threading.Thread(target=server.page.rehearse, daemon=True).start()
 
 

@@ -1,7 +1,7 @@
-"""The page as one file, with maps that are computed beforehand for places of its sliders.
+"""The page as one file, with precomputed maps for positions of its sliders.
 
 The file asks nothing of any host: style, modules and maps are in it, and it opens without a server.  Maps are
-coloured classes, and quantities in 255 steps, as fine as colours are told apart; deflated, as text.
+coloured classes, and quantities in 255 steps, the resolution of the colours; compressed, as text.
 """
 
 import base64
@@ -19,8 +19,8 @@ from ..errors import InputError
 from .queries import read_query
 from .scene import Scene, Slider
 from .server import page_files
-from .told import description, told
-from .views import Follower, Piece, Quantity, View, classes_of, quantities, solve_piece, values_of
+from .told import describe_scene, description
+from .views import CellQuantity, Follower, Piece, View, classes_of, quantities, solve_piece, values_of
 
 #: Cells of every map, each way: of one mass, and of structures, whose cells take some hundred times as long
 #: where mu is above 1.
@@ -41,16 +41,16 @@ _POLICY = (
 )
 
 
-class Progress(Protocol):
-    """Who is told how many maps are done, with the share of the one that is not."""
+class MapProgress(Protocol):
+    """Receiver of the number of finished maps, including the share of the current one."""
 
     def __call__(self, done: float, total: float) -> None: ...
 
 
 class _OneOf(NamedTuple):
-    """Of a map that is written, how far all of them are; nobody ends its computation."""
+    """Progress of all maps while one is computed; it is never cancelled."""
 
-    progress_of_all: Progress
+    progress_of_all: MapProgress
     before: int  # maps that are done
     total: int
 
@@ -63,20 +63,20 @@ class _OneOf(NamedTuple):
 
 
 class _Kept(NamedTuple):
-    """What a file has maps of."""
+    """Slider positions for which a file contains maps."""
 
     values: dict[str, list[float]]  # places of sliders
     points: list[tuple[float, ...]]  # of all those sliders
 
 
 def check_page(path: Path) -> None:
-    """Refuse a name that browsers would not take for a page."""
+    """Refuse a file name that browsers would not open as a page."""
     if path.suffix.lower() not in (".html", ".htm"):
         raise InputError(f"--export must end in .html; got {path}")
 
 
 def places_of(slider: Slider) -> list[float]:
-    """Values of a slider that maps are computed for, its own among them."""
+    """Values of a slider for which maps are computed, including its initial one."""
     shares = np.linspace(0.0, 1.0, _PLACES)
     if slider.scale == "log":
         found = slider.least * (slider.most / slider.least) ** shares
@@ -103,7 +103,7 @@ def _deflated(values: np.ndarray) -> str:
 
 
 def _stepped(values: np.ndarray, log: bool) -> dict[str, Any]:
-    """A quantity in steps between its ends, evenly or by equal factors; what is infinite is at the last."""
+    """Quantise a quantity in linear or logarithmic steps; infinite values get the last one."""
     known = values[np.isfinite(values) & ((values > 0.0) | (not log))]
     low, high = (float(known.min()), float(known.max())) if known.size else (1.0, 1.0)
     high = high if high > low else low + 1.0
@@ -113,7 +113,7 @@ def _stepped(values: np.ndarray, log: bool) -> dict[str, Any]:
     return {"low": low, "high": high, "log": log, "steps": _deflated(steps.astype(np.uint8))}
 
 
-def _map(view: View, offered: tuple[Quantity, ...], follower: Follower) -> dict[str, Any]:
+def _map(view: View, offered: tuple[CellQuantity, ...], follower: Follower) -> dict[str, Any]:
     """The map of a view, with all quantities."""
     columns, rows = _CELLS[view.system.n > 1]
     found = solve_piece(view, offered, Piece(columns, rows, 0, columns), follower)
@@ -129,13 +129,13 @@ def _map(view: View, offered: tuple[Quantity, ...], follower: Follower) -> dict[
 
 
 def _name(kept: _Kept, point: tuple[float, ...]) -> str:
-    """The name of a map: the places of its sliders, counted from 0."""
+    """Name of a map: the positions of its sliders, counted from 0."""
     places = (values.index(value) for values, value in zip(kept.values.values(), point, strict=True))
     return ",".join(map(str, places))
 
 
-def _content(scene: Scene, progress: Progress) -> dict[str, Any]:
-    """What the page finds in its file."""
+def _content(scene: Scene, progress: MapProgress) -> dict[str, Any]:
+    """Content of a saved page."""
     kept = _kept(scene.sliders)
     first = read_query(scene, "")
     offered = quantities(scene.system)
@@ -153,13 +153,14 @@ def _content(scene: Scene, progress: Progress) -> dict[str, Any]:
     columns, rows = _CELLS[scene.system.n > 1]
     own = tuple(slider.value for slider in scene.sliders)
     return {
-        "scene": told(scene, first.view), "r": scene.r, "beta": scene.beta, "columns": columns, "rows": rows,
+        "scene": describe_scene(scene, first.view),
+        "r": scene.r, "beta": scene.beta, "columns": columns, "rows": rows,
         "values": kept.values, "first": _name(kept, own), "maps": maps, "systems": systems,
     }  # fmt: skip
 
 
 def _modules(files: dict[str, bytes]) -> Iterator[tuple[str, str]]:
-    """Modules by bare names: what is imported by a file's name has none in a page that is one file."""
+    """Modules by bare names, as a page in one file has no file names to import from."""
     for name, body in files.items():
         if name.endswith(".js"):
             text = re.sub(r'from "\./([a-z]+)\.js"', r'from "\1"', body.decode())
@@ -189,7 +190,7 @@ def _page(content: dict[str, Any]) -> str:
     return links.sub(lambda _: head, files["index.html"].decode(), count=1)
 
 
-def write_page(scene: Scene, progress: Progress) -> bytes:
+def write_page(scene: Scene, progress: MapProgress) -> bytes:
     """The page of a scene as one file.
 
     Places of sliders: all of mu together with all of the next slider; of further ones each by itself, with

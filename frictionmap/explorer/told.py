@@ -1,4 +1,4 @@
-"""What the page is told at first: names, ranges, what can be changed, colours."""
+"""Description of a scene for the page: names, ranges, parameters that can be changed, colours."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ from .views import View, marks, quantities
 #: Frequencies of the range shown at which boundaries of a reduced structure are compared with finer ones.
 _COMPARED = 60
 
-#: What friction and lengths are over.
+#: Reference quantities of friction and lengths.
 _UNITS = {
     "force": {"length": "P/k₁", "force": "P", "energy": "P²/k₁", "beta": "F/P"},
     "base": {"length": "Y", "force": "k₁Y", "energy": "k₁Y²", "beta": "F/(k₁Y)"},
@@ -24,7 +24,7 @@ _UNITS = {
 
 
 def _physical(scene: Scene, view: View) -> dict[str, dict[str, Any]]:
-    """Of r, beta, lengths and works, if the scene has units: the unit, and how many of it 1 is."""
+    """Unit and scale factor of r, beta, lengths and work, if the scene has units."""
     try:
         scales = scales_of(scene.units, view.system)
     except InputError:  # a contact was chosen that the units do not go with
@@ -52,9 +52,9 @@ def units_of(scene: Scene, view: View) -> dict[str, Any]:
 
 
 def description(scene: Scene, view: View) -> dict[str, Any]:
-    """What results of a view belong to: the system in words, its units, frequencies and quantities.
+    """Describe what results of a view belong to: system, units, marked frequencies and quantities.
 
-    The page shows and saves it with the cells that come with it, whatever its controls say by then.
+    The page shows and saves it with the cells of the same answer, even if controls have changed meanwhile.
     """
     system = view.system
     return {
@@ -67,8 +67,8 @@ def description(scene: Scene, view: View) -> dict[str, Any]:
     }
 
 
-def told(scene: Scene, view: View) -> dict[str, Any]:
-    """The scene, and the system as a view changes it."""
+def describe_scene(scene: Scene, view: View) -> dict[str, Any]:
+    """Describe the scene, with the system as changed in a view."""
     return {
         "title": scene.title,
         "version": __version__,

@@ -1,4 +1,4 @@
-"""One view: a system as changed, ranges of r and beta, mu; its map, piece by piece."""
+"""One view: the changed system, ranges of r and beta, mu; its map, computed in pieces."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..model.settings import Output, Solver
 from ..model.system import System
 from ..pictures.classes import of_cells, stops_range
-from ..pictures.palette import BROKEN, MORE
+from ..pictures.palette import MORE, NON_INTEGER
 from ..steady.maps import solve_map
 from ..theory.boundary_curves import find_curves
 
@@ -26,8 +26,8 @@ _MOST_MARKS = 200
 _OFFERED_MASSES = 12
 
 
-class Quantity(NamedTuple):
-    """What the cells of a map can be coloured by."""
+class CellQuantity(NamedTuple):
+    """A quantity that colours the cells of a map."""
 
     key: str
     label: str
@@ -37,18 +37,18 @@ class Quantity(NamedTuple):
 
 
 _QUANTITIES = (
-    Quantity("regime", "regime and stops", "", "classes"),
-    Quantity("contact_amplitude", "amplitude in the contact", "contact_amplitude", "log"),
-    Quantity("multiplier", "Floquet multiplier", "multiplier", "linear"),
-    Quantity("stuck_fraction", "share of time stuck", "stuck_fraction", "linear"),
-    Quantity("work_friction", "energy that friction takes", "work_friction", "log"),
+    CellQuantity("regime", "regime and stops", "", "classes"),
+    CellQuantity("contact_amplitude", "amplitude in the contact", "contact_amplitude", "log"),
+    CellQuantity("multiplier", "Floquet multiplier", "multiplier", "linear"),
+    CellQuantity("stuck_fraction", "share of time stuck", "stuck_fraction", "linear"),
+    CellQuantity("work_friction", "energy dissipated by friction", "work_friction", "log"),
 )
 
 
-def quantities(system: System) -> tuple[Quantity, ...]:
-    """What the cells of maps of a system can be coloured by."""
+def quantities(system: System) -> tuple[CellQuantity, ...]:
+    """Quantities that can colour the cells of maps of a system."""
     amplitudes = tuple(
-        Quantity(
+        CellQuantity(
             f"amplitude_{number}", f"amplitude of {name_of_mass(system, number)}", "amplitude", "log", row
         )
         for row, number in enumerate(system.dofs.numbers[:_OFFERED_MASSES])
@@ -57,13 +57,13 @@ def quantities(system: System) -> tuple[Quantity, ...]:
 
 
 def name_of_mass(system: System, number: int) -> str:
-    """What a mass is called: by its number, and its label if there is one, unless it is the only one."""
+    """Name of a mass: its number and label; without a number if it is the only one."""
     return f"mass {system.dofs.word(number)}" if system.n > 1 else "the mass"
 
 
 @dataclass(frozen=True)
 class View:
-    """What a page shows."""
+    """Ranges and system shown on a page."""
 
     system: System
     r: tuple[float, float]
@@ -72,12 +72,12 @@ class View:
     solver: Solver
 
     def check(self, r: float | None = None) -> None:
-        """Refuse a range, or a frequency of it or beyond, in which a reduced structure errs too much."""
+        """Refuse a range, or a frequency, at which the error of a reduced structure exceeds its limit."""
         inside = r is None or self.r[0] <= r <= self.r[1]
         self.system.costs(np.array(self.r if inside else (r, r)))
 
     def axes(self, columns: int, rows: int) -> dict[str, np.ndarray]:
-        """The middles of a picture's pixels: axes r and beta, and mu, of a map."""
+        """Axes of a map at the centres of the pixels."""
         return {
             "mu": np.array([self.mu]),
             "r": middles(self.r, columns, "columns"),
@@ -86,16 +86,18 @@ class View:
 
 
 def middles(ends: tuple[float, float], count: int, name: str) -> np.ndarray:
-    """The middles of so many equal parts of a range, as `start`, `stop` and `num` of an axis give them."""
+    """Centres of equal parts of a range, as `start`, `stop` and `num` of an axis give them."""
     half = 0.5 * (ends[1] - ends[0]) / count
     found = np.linspace(ends[0] + half, ends[1] - half, count)
     if count > 1 and not (np.diff(found) > 0.0).all():
-        raise InputError(f"{name} must be fewer in so narrow a range, {ends[0]!r} to {ends[1]!r}")
+        raise InputError(
+            f"cannot place distinct {name} between {ends[0]!r} and {ends[1]!r}: range too narrow; widen it"
+        )
     return found
 
 
 class Piece(NamedTuple):
-    """Columns of a picture of a view."""
+    """Columns of a map of a view."""
 
     columns: int
     rows: int
@@ -103,7 +105,7 @@ class Piece(NamedTuple):
     last: int  # the one after the last
 
     def check(self) -> None:
-        """Refuse what is no piece of a picture."""
+        """Refuse an invalid piece of a map."""
         checks.whole(self.columns, "columns", least=1, most=MOST_PIXELS)
         checks.whole(self.rows, "rows", least=1, most=MOST_PIXELS)
         checks.whole(self.first, "first", least=0, most=self.columns - 1)
@@ -114,7 +116,7 @@ class Piece(NamedTuple):
 
 
 class Follower(Protocol):
-    """Who waits for a map, and may wait no more: then `watch` raises."""
+    """Receiver of a map; `watch` raises if it no longer waits."""
 
     def watch(self) -> None: ...
 
@@ -122,7 +124,7 @@ class Follower(Protocol):
 
 
 def solve_piece(
-    view: View, wanted: Sequence[Quantity], piece: Piece, follower: Follower
+    view: View, wanted: Sequence[CellQuantity], piece: Piece, follower: Follower
 ) -> dict[str, np.ndarray]:
     """The cells of a piece as `sweep` gives them, (columns, rows): regime, stops per cycle, the quantities.
 
@@ -143,29 +145,29 @@ def solve_piece(
 def classes_of(found: Mapping[str, np.ndarray]) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Classes of the cells of a piece and the boundaries over it, for the page.
 
-    `stops` are the least and the most stops of classes whose colours do not tell them.  Arrays: `classes`
+    `stops` are the smallest and largest numbers of stops of classes that comprise several.  Arrays: `classes`
     (columns, rows), indices into the palette; `beta_lim` and `beta_stick` (columns,).
     """
     stops = found["stops_per_cycle"]
     classes = of_cells(found["regime"], stops)
     limits = {name: found[name] for name in ("beta_lim", "beta_stick")}
-    ranges = {index: stops_range(classes, stops, index) for index in (MORE, BROKEN)}
+    ranges = {index: stops_range(classes, stops, index) for index in (MORE, NON_INTEGER)}
     counted = {str(index): ends for index, ends in ranges.items() if ends[0] <= ends[1]}
     return {"stops": counted}, {"classes": classes, **limits}
 
 
-def values_of(found: Mapping[str, np.ndarray], quantity: Quantity) -> np.ndarray:
+def values_of(found: Mapping[str, np.ndarray], quantity: CellQuantity) -> np.ndarray:
     """A quantity of the cells of a piece, float32 (columns, rows)."""
     values = found[quantity.output]
     return (values if quantity.row is None else values[..., quantity.row]).astype(np.float32)
 
 
 def piece_of_map(
-    view: View, quantity: Quantity, piece: Piece, follower: Follower, lines: int = 0
+    view: View, quantity: CellQuantity, piece: Piece, follower: Follower, lines: int = 0
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """A piece of a picture for the page: `classes_of`, and `values` of the quantity if it has some.
 
-    The header tells the `seconds` that its cells took, by which the page foresees finer pictures.
+    The header contains the `seconds` of the computation, from which the page estimates that of finer maps.
 
     lines : points of the boundaries over the whole view, finer than coarse cells: `line_lim`, `line_stick`
     """
@@ -182,7 +184,7 @@ def piece_of_map(
 
 
 def marks(system: System) -> dict[str, list[float]]:
-    """Frequencies of a system that are marked."""
+    """Marked frequencies of a system."""
     modes = system.modes
     known = {"natural frequency": modes.w}
     if system.n > 1:

@@ -3,7 +3,7 @@
 ===========  ==================================================================
 module       what is in it
 ===========  ==================================================================
-keys         the keys of a configuration: meaning, default, legal values
+keys         the keys of a configuration: meaning, default, valid values
 variants     CSV files of numbers that change together, for further axes
 config       configurations (TOML): read, overridden, checked key by key
 json_schema  the keys as JSON Schema, for editors

@@ -43,6 +43,10 @@ _RIVALS = {
 _NOT_TOML = (ValueError, RecursionError)
 
 
+#: Beginnings of errors that do not begin with a key; after the first one a key follows.
+_KEY_FOLLOWS = "cannot use "
+_NO_KEY = ("cannot ", "unknown ")
+
 T = TypeVar("T")
 
 
@@ -77,7 +81,7 @@ def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | No
     """Read a configuration file and apply overrides such as ``grid.r.step=0.01``.
 
     A path in it, also one of an override, is relative to the folder of the file.  `room` may refuse a grid
-    before any memory is taken for it; by default one of too many cells is.
+    before memory is allocated; by default it refuses too many cells.
 
     Raises
     ------
@@ -92,7 +96,7 @@ def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | No
 
 
 def config_of(text: str, system: Mapping[str, object]) -> Config:
-    """A configuration that is at hand as text; `system` takes the place of keys of its table.
+    """Check a configuration given as text; `system` replaces keys of its table.
 
     Raises
     ------
@@ -103,7 +107,9 @@ def config_of(text: str, system: Mapping[str, object]) -> Config:
     tree["system"] = {**tree.get("system", {}), **system}
     in_files = _matrix_files(_system_table(tree, Path()))
     if in_files:
-        raise InputError(f"system.matrices must be at hand; they are in a file, {in_files[0]}")
+        raise InputError(
+            f"cannot use system.matrices: they are in a file, {in_files[0]}; give them as arrays"
+        )
     return _check(tree, text, Path("config"), lambda *_: None)
 
 
@@ -125,27 +131,28 @@ def read_tree(path: str | Path, overrides: Sequence[str] = ()) -> tuple[dict, st
     try:
         text = path.read_bytes().decode("utf-8-sig")  # some editors put a mark at the beginning
     except UnicodeDecodeError:
-        hint = "; results are read by frictionmap plot, info and export" if path.suffix == ".nc" else ""
-        raise InputError(f"configuration {path} must be text in UTF-8; it is not{hint}") from None
+        results = "results are read by frictionmap plot, info and export"
+        advice = results if path.suffix == ".nc" else "save it as UTF-8"
+        raise InputError(f"cannot read configuration {path}: it is not text in UTF-8; {advice}") from None
     except (OSError, ValueError) as error:  # a name with a null character is a ValueError
         reason = getattr(error, "strerror", None) or error
         raise InputError(
-            f"configuration {path} cannot be read ({reason}); give the path of a TOML file"
+            f"cannot read configuration {path}: {reason}; give the path of a TOML file"
         ) from None
     try:
         tree = parse(text)
     except InputError as error:
-        raise InputError(f"configuration {path} {error}") from None
+        raise InputError(f"configuration {path}: {error}") from None
     _override_all(tree, overrides)
     return tree, to_toml(tree) if overrides else text
 
 
 def parse(text: str) -> dict:
-    """The tables of a configuration's text, not checked further."""
+    """Parse the text of a configuration; its keys are not checked."""
     try:
         return tomllib.loads(text)
     except _NOT_TOML as error:
-        raise InputError(f"must be TOML; got: {error}") from None
+        raise InputError(f"cannot parse as TOML: {error}; correct the syntax") from None
 
 
 def _override_all(tree: dict, overrides: Sequence[str]) -> None:
@@ -159,13 +166,15 @@ def _override_all(tree: dict, overrides: Sequence[str]) -> None:
         key, value = _key_and_value(override)
         for before, text in done.items():
             if _undoes(key, before):
-                raise InputError(f"--set {override} must not undo --set {text}; give one of the two")
+                raise InputError(
+                    f"cannot apply --set {override}: it undoes --set {text}; give one of the two"
+                )
         done[key] = override
         _override(tree, key.split("."), value, override)
 
 
 def _key_and_value(override: str) -> tuple[str, object]:
-    """A dotted key and a TOML value; a bare word counts as a string."""
+    """Split an override into dotted key and TOML value; a bare word counts as a string."""
     key, equals, text = override.partition("=")
     parts = [part.strip().strip("\"'") for part in key.split(".")]  # quoted as in the file, or not
     text = text.strip()
@@ -199,36 +208,45 @@ def _override(tree: dict, parts: list[str], value: object, override: str) -> Non
         branch = branch.setdefault(part, {})
         if not isinstance(branch, dict):
             name = ".".join(parts[:depth])
-            raise InputError(f"--set {override}: {name} must be a table to have keys; it is {branch!r}")
+            raise InputError(
+                f"cannot apply --set {override}: {name} is not a table; set {name} itself, now {branch!r}"
+            )
     if parts[0] in ("grid", "axes") and len(parts) == 3:
         for rival in _RIVALS.get(parts[-1], ()):
             branch.pop(rival, None)
     branch[parts[-1]] = value
 
 
-def unknown_key(key: str, section: str, legal: Sequence[str]) -> InputError:
-    """An error that names the key and those that are legal."""
+def unknown_key(key: str, section: str, valid: Sequence[str]) -> InputError:
+    """Return an error that names an unknown key and the valid ones."""
     name = f"{section}.{key}" if section else key
-    where = f"the keys of [{section}]" if section else "the keys"
-    return InputError(f"unknown key {name}{checks.nearest(key, legal)}; {where} are {', '.join(legal)}")
+    return InputError(f"unknown key {name!r}{checks.nearest(key, valid)}; valid: {', '.join(valid)}")
 
 
 def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
     table = tree.get(name, {})
     if not isinstance(table, Mapping):
         raise InputError(f"{name} must be a table [{name}]; got {table!r}")
-    legal = _SECTIONS[name]
+    valid = _SECTIONS[name]
     for key in table:
-        if legal is not None and key not in legal:
-            raise unknown_key(key, name, legal)
+        if valid is not None and key not in valid:
+            raise unknown_key(key, name, valid)
     return table
+
+
+def within(section: str, error: InputError) -> InputError:
+    """Return an error about a key of a table, with the table named."""
+    text = str(error)
+    if text.startswith(_KEY_FOLLOWS):
+        return InputError(f"{_KEY_FOLLOWS}{section}.{text.removeprefix(_KEY_FOLLOWS)}")
+    return InputError(f"[{section}]: {text}" if text.startswith(_NO_KEY) else f"{section}.{text}")
 
 
 def _build(kind: Callable[..., T], table: Mapping[str, object], section: str) -> T:
     try:
         return kind(**table)
     except InputError as error:
-        raise InputError(f"{section}.{error}") from None
+        raise within(section, error) from None
 
 
 def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]:
@@ -259,7 +277,7 @@ def _matrix_files(table: Mapping[str, Any]) -> list[Path]:
 
 
 def _load(value: object, name: str) -> object:
-    """One load: a number, or [real part, imaginary part]."""
+    """Convert one load: a number, or [real part, imaginary part]."""
     if not isinstance(value, list):
         return value
     if len(value) != 2:
@@ -273,7 +291,7 @@ def read_system(table: Mapping[str, object], folder: Path) -> System:
 
 
 def system_in(text: str) -> System | None:
-    """The system of a configuration that is at hand as text only; None if the text does not hold all of it.
+    """System of a configuration given as text; None if the text does not define all of it.
 
     Matrices in a file of their own are not looked for.
     """
@@ -291,7 +309,8 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     name = path.stem
     if "data" in tree and "grid" not in tree:
         raise InputError(
-            "the configuration must have [system] and [grid]; it is of a rig, for frictionmap identify"
+            "cannot compute from a configuration with [data]: it describes measured data; "
+            "use frictionmap identify"
         )
     for key in tree:
         if key not in _SECTIONS:
@@ -300,7 +319,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     if not isinstance(title, str):
         raise InputError(f"title must be text; got {title!r}")
     if "system" not in tree:
-        raise InputError("the configuration must have a table [system]; it has none")
+        raise InputError("the configuration must have a table [system]; got none")
     described = _system_table(tree, path.parent)
     system = _build(System, described, "system")
     solver = _build(Solver, _table(tree, "solver"), "solver")
@@ -320,7 +339,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     try:
         (variations or system).costs(axes["r"])
     except InputError as error:
-        raise InputError(f"system.{error}") from None
+        raise within("system", error) from None
     files = (path, *_matrix_files(described))
     return Config(
         title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, name, variations, files,
@@ -333,7 +352,7 @@ def _grid(tree: Mapping[str, object], scales: Scales) -> dict[str, Any]:
     grid: dict[str, Any] = {"mu": [1.0], **_table(tree, "grid")}
     for key, kind in KINDS.items():
         if key not in grid:
-            raise InputError(f"grid.{key} must be given; it is missing")
+            raise InputError(f"grid.{key} must be a number, a list of numbers or a range; got nothing")
         if isinstance(grid[key], Mapping):
             _check_form(grid[key], f"grid.{key}")
         grid[key] = grid_ratios(grid[key], f"grid.{key}", kind, scales)
@@ -364,18 +383,18 @@ def _is_number(value: object) -> bool:
 
 
 def _check_form(axis: Mapping[str, object], name: str) -> None:
-    """Refuse an axis table that does not say one thing."""
+    """Refuse an axis table with missing or contradictory keys."""
     for key in axis:
         if key not in _AXIS_KEYS:
             raise unknown_key(key, name, _AXIS_KEYS)
-    legal = "{ start, stop, step }, { start, stop, num } or { values }"
+    valid = "{ start, stop, step }, { start, stop, num } or { values }"
     keys = set(axis)
     if keys not in ({"values"}, {"start", "stop", "step"}, {"start", "stop", "num"}):
-        raise InputError(f"{name} must be {legal}; got {', '.join(axis) or 'nothing'}")
+        raise InputError(f"{name} must be {valid}; got {', '.join(axis) or 'nothing'}")
 
 
 def _check_range(axis: Mapping[str, object], name: str) -> None:
-    """Refuse a range whose numbers make no sense."""
+    """Refuse an invalid range."""
     start = checks.number(axis["start"], f"{name}.start")
     stop = checks.number(axis["stop"], f"{name}.stop")
     if stop < start:
@@ -399,7 +418,7 @@ def _steps(axis: Mapping[str, object], name: str) -> int:
 
 
 def _count(axis: object, name: str) -> int:
-    """How many values an axis will have, before any memory is taken for them."""
+    """Number of values of an axis, before memory is allocated."""
     if isinstance(axis, Ladder):
         return axis.count
     if isinstance(axis, Mapping):

@@ -1,4 +1,4 @@
-"""Datasets of estimates that are read: checked, in the form that they were made in, and in words."""
+"""Checks, standard form and summaries of datasets of estimates."""
 
 from collections.abc import Hashable
 
@@ -24,7 +24,7 @@ def estimates_form(ds: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     InputError
-        What every fit holds is missing, or a value is illegal; one line that names the variable.
+        A required variable is missing, or a value is invalid; the message names the variable.
     """
     variables = {}
     for name, label in ESTIMATES.items():
@@ -35,7 +35,9 @@ def estimates_form(ds: xr.Dataset) -> xr.Dataset:
             )
     for name in ("parameter", *OF_PARAMETERS):
         if name not in variables:
-            raise InputError(f"a dataset of estimates must hold {name}; it does not")
+            raise InputError(
+                f"cannot use the estimates: variable {name!r} is missing; give a file of frictionmap identify"
+            )
     _check_parameters(variables["parameter"].values)
     kept = {name: ds.variables[name] for name in ds.variables if _is_further(ds, name)}
     coords = {
@@ -54,11 +56,11 @@ def _is_further(ds: xr.Dataset, name: Hashable) -> bool:
 def _check_parameters(names: np.ndarray) -> None:
     if not names.size or np.unique(names).size < names.size:
         words = ", ".join(names.tolist()) or "none"
-        raise InputError(f"parameter must be different names, one or more; got {words}")
+        raise InputError(f"parameter must be a list of different names; got {words}")
 
 
 def describe_estimates(ds: xr.Dataset) -> list[str]:
-    """A table of the estimates with their errors and intervals, and what else was found, line by line."""
+    """Describe the estimates as a table with standard errors and intervals, then other results."""
     rows = [("", "estimate", "std. error", "95 % interval", "unit")]
     rows += [_row(ds.sel(parameter=name)) for name in ds["parameter"].values]
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
@@ -93,12 +95,12 @@ def _is_number(variable: xr.DataArray) -> bool:
 
 
 def unit_in_words(unit: object) -> str:
-    """A unit; nothing of a pure number."""
+    """Unit as text; empty for a pure number."""
     return "" if unit == "1" else str(unit)
 
 
 def estimates_in_short(ds: xr.Dataset) -> str:
-    """What was fitted, each with its standard error, on one line that breaks between them only."""
+    """List the fitted parameters with standard errors on one line that breaks only between them."""
     words = []
     for name in ds["parameter"].values:
         one = ds.sel(parameter=name)
@@ -114,7 +116,7 @@ def _in_short(one: xr.Dataset) -> str:
 
 
 def _with_error(value: float, error: float) -> str:
-    """A value as far as its error reaches, two digits of which are told."""
+    """Format a value to the second digit of its standard error."""
     if error == 0.0:
         return f"{value:.6g}"
     decimals = max(1 - int(np.floor(np.log10(error))), 0)
@@ -126,7 +128,7 @@ def _with_error(value: float, error: float) -> str:
 
 
 def verdict_in_words(ds: xr.Dataset) -> str:
-    """What the data show; empty if the file does not say."""
+    """Verdict of a fit in words; empty if the file has none."""
     if "verdict" not in ds:
         return ""
     meanings = [part.partition(": ")[2] for part in str(ds["verdict"].attrs.get("comment", "")).split("; ")]
@@ -135,12 +137,12 @@ def verdict_in_words(ds: xr.Dataset) -> str:
 
 
 def warnings_of(ds: xr.Dataset) -> list[str]:
-    """What to mind, in words."""
+    """Warnings about a fit."""
     return [words for words in str(ds.attrs.get("warnings", "")).split("; ") if words]
 
 
 def source_of_data(ds: xr.Dataset) -> str:
-    """Which file the data were read from, and how many samples were fitted."""
+    """Name of the data file and number of samples fitted."""
     file, form = (str(ds.attrs.get(name, "")) for name in ("data_file", "data_form"))
     samples = f"{ds.sizes['sample']:,} samples fitted" if "sample" in ds.sizes else ""
     return ", ".join(filter(None, (f"{file} ({form})" if file and form else file or form, samples)))

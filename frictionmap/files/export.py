@@ -1,4 +1,4 @@
-"""Slices of files and stores, written as NetCDF or as a table."""
+"""Export of slices of files and stores as NetCDF or CSV."""
 
 import math
 from pathlib import Path
@@ -16,7 +16,7 @@ FORMATS = (".nc", ".csv")
 
 
 def check_export(path: Path) -> None:
-    """Refuse a name whose ending is no format."""
+    """Refuse a file name with an unknown suffix."""
     if path.suffix.lower() not in FORMATS:
         raise InputError(f"-o must end in {' or '.join(FORMATS)}; got {path}")
 
@@ -45,7 +45,7 @@ def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
 
 
 def _in_columns(ds: xr.Dataset, dim: str) -> xr.Dataset:
-    """A variable for every value along a dimension, in the place of one that has it."""
+    """Replace variables along a dimension by one variable per value."""
     columns: dict[str, xr.DataArray] = {}
     for name, variable in ds.data_vars.items():
         if dim not in variable.dims:
@@ -57,7 +57,7 @@ def _in_columns(ds: xr.Dataset, dim: str) -> xr.Dataset:
 
 
 def _in_words(variable: xr.DataArray) -> xr.DataArray:
-    """Codes by their names."""
+    """Replace codes by their names."""
     label = LABELS.get(str(variable.name))
     if label is None or not label.codes or label.flags == "flag_masks":
         return variable

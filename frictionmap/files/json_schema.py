@@ -1,4 +1,4 @@
-"""A configuration as JSON Schema, by which editors complete, explain and check it.
+"""JSON Schema of configurations, with which editors complete, explain and check them.
 
 It refuses nothing that the program takes.  What needs arithmetic is left to the program: increasing values,
 one number a mass, stop after start, files that are there; and JSON has no difference between 9 and 9.0.
@@ -7,12 +7,12 @@ one number a mass, stop after start, files that are there; and JSON has no diffe
 from typing import Any
 
 from ..model.variations import LISTS, NUMBERS
-from .keys import KEYS, TABLES, Key, Legal, axis, in_words, number, several
+from .keys import KEYS, TABLES, Key, Schema, axis, in_words, number, several
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 #: What keys of [system] say of each other, in the words of the errors of `System`.
-_TOGETHER: list[Legal] = [
+_TOGETHER: list[Schema] = [
     {"dependentSchemas": {"matrices": {"properties": {"mass_ratios": False, "stiffness_ratios": False}}}},
     {"dependentSchemas": {"load": {"properties": {"load_mass": False, "excitation": {"const": "force"}}}}},
     {
@@ -74,8 +74,8 @@ def described(keys: tuple[Key, ...]) -> dict[str, Any]:
 def _described(key: Key) -> dict[str, Any]:
     text = f"{key.meaning}; {in_words(key)}"
     if key.default is None:
-        return {"description": text, **key.legal}
-    return {"description": text, "default": key.default, **key.legal}
+        return {"description": text, **key.valid}
+    return {"description": text, "default": key.default, **key.valid}
 
 
 def _further_axes() -> dict[str, Any]:

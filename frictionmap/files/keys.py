@@ -17,7 +17,7 @@ from ..units.quantities import EXAMPLES, NUMBER
 from ..units.scales import MODEL_HAS, OF_MODEL, UNIT_KINDS
 from ..units.table import spellings, units_of
 
-Legal = Mapping[str, Any]
+Schema = Mapping[str, Any]
 
 #: Smallest and largest valid value of each axis of the grid.
 AXES: dict[str, dict[str, float]] = {
@@ -32,39 +32,39 @@ class Key(NamedTuple):
 
     name: str
     meaning: str
-    legal: Legal  # JSON Schema
+    valid: Schema  # JSON Schema
     default: Any = None  # None: no default that a file could state
     example: str = ""  # TOML, where there is no default
     words: str = ""  # the valid values in words, where the schema alone is hard to read
 
 
-def number(*, least: float | None = None, most: float | None = None, above: float | None = None) -> Legal:
+def number(*, least: float | None = None, most: float | None = None, above: float | None = None) -> Schema:
     """Schema of a number in a range."""
     ends = {"minimum": least, "maximum": most, "exclusiveMinimum": above}
     return {"type": "number", **{name: end for name, end in ends.items() if end is not None}}
 
 
-def whole(**ends: float) -> Legal:
+def whole(**ends: float) -> Schema:
     """Schema of an integer in a range."""
     return {**number(**ends), "type": "integer"}
 
 
-def word(*legal: str) -> Legal:
+def word(*valid: str) -> Schema:
     """Schema of one of several words."""
-    return {"enum": list(legal)}
+    return {"enum": list(valid)}
 
 
-def several(item: Legal, least: int = 1, **more: Any) -> Legal:
+def several(item: Schema, least: int = 1, **more: Any) -> Schema:
     """Schema of a list."""
     return {"type": "array", "items": item, "minItems": least, **more}
 
 
-def either(*kinds: Legal) -> Legal:
+def either(*kinds: Schema) -> Schema:
     """Schema of a value that matches any of several schemas."""
     return {"anyOf": list(kinds)}
 
 
-def table(keys: Mapping[str, Legal], required: tuple[str, ...] = ()) -> Legal:
+def table(keys: Mapping[str, Schema], required: tuple[str, ...] = ()) -> Schema:
     """Schema of a table without further keys."""
     return {
         "type": "object", "properties": dict(keys), "required": list(required),
@@ -72,13 +72,13 @@ def table(keys: Mapping[str, Legal], required: tuple[str, ...] = ()) -> Legal:
     }  # fmt: skip
 
 
-def with_unit(kind: str) -> Legal:
+def with_unit(kind: str) -> Schema:
     """Schema of a number with a unit of the given kind."""
     units = "|".join(re.escape(unit) for unit in spellings(kind))
     return {"type": "string", "pattern": rf"^{NUMBER} ?({units})$"}
 
 
-def axis(kind: str, **ends: float) -> Legal:
+def axis(kind: str, **ends: float) -> Schema:
     """Schema of an axis: values or a range; `kind` is the kind of unit that values may have, or ""."""
     value, step = number(**ends), number(above=0.0)
     if kind:
@@ -93,8 +93,8 @@ def axis(kind: str, **ends: float) -> Legal:
     )
 
 
-_TEXT: Legal = {"type": "string"}
-_NAME: Legal = {"type": "string", "minLength": 1}
+_TEXT: Schema = {"type": "string"}
+_NAME: Schema = {"type": "string", "minLength": 1}
 _RATIOS = several(number(above=0.0), prefixItems=[{"type": "number", "const": 1}])
 _ZETA = number(least=0.0, most=checks.LARGEST_DAMPING)
 _MATRIX = several(several(number()))
@@ -111,13 +111,13 @@ _RANGE = "a number, a list, { start, stop, step } or { start, stop, num }, ends 
 _ONE_MASS, _SOLVER, _CURVES = System(), Solver(), curve_settings()
 
 
-def _setting(name: str, meaning: str, legal: Legal) -> Key:
-    return Key(name, meaning, legal, getattr(_SOLVER, name))
+def _setting(name: str, meaning: str, valid: Schema) -> Key:
+    return Key(name, meaning, valid, getattr(_SOLVER, name))
 
 
-def _of_system(name: str, meaning: str, legal: Legal, **more: Any) -> Key:
+def _of_system(name: str, meaning: str, valid: Schema, **more: Any) -> Key:
     default = getattr(_ONE_MASS, name)
-    return Key(name, meaning, legal, list(default) if isinstance(default, tuple) else default, **more)
+    return Key(name, meaning, valid, list(default) if isinstance(default, tuple) else default, **more)
 
 
 def _of_grid(name: str, meaning: str, **more: Any) -> Key:
@@ -128,10 +128,10 @@ def _unit(name: str, meaning: str) -> Key:
     """A number with its unit."""
     kind = UNIT_KINDS[name]
     words = f"a number and one of {', '.join(units_of(kind))}"
-    legal = with_unit(kind)
+    valid = with_unit(kind)
     if name in MODEL_HAS:
-        words, legal = f'{words}, or "{OF_MODEL}" of matrices in SI units', either(legal, word(OF_MODEL))
-    return Key(name, meaning, legal, example=f'"{EXAMPLES[kind]}"', words=words)
+        words, valid = f'{words}, or "{OF_MODEL}" of matrices in SI units', either(valid, word(OF_MODEL))
+    return Key(name, meaning, valid, example=f'"{EXAMPLES[kind]}"', words=words)
 
 
 #: Keys by table; "" is no table.
@@ -316,22 +316,22 @@ def names(section: str) -> tuple[str, ...]:
 
 def in_words(key: Key) -> str:
     """Describe the valid values of a key in a few words."""
-    return key.words or _in_words(key.legal)
+    return key.words or _in_words(key.valid)
 
 
-def _in_words(legal: Legal) -> str:
-    if "enum" in legal:
-        *others, last = (f'"{one}"' for one in legal["enum"])
+def _in_words(valid: Schema) -> str:
+    if "enum" in valid:
+        *others, last = (f'"{one}"' for one in valid["enum"])
         return f"{', '.join(others)} or {last}" if others else last
-    if "anyOf" in legal:
-        return " or ".join(_in_words(one) for one in legal["anyOf"])
-    if legal["type"] == "array":
-        some = "some of " if "enum" in legal["items"] else ""
-        return f"a list of {some}{_in_words(legal['items'])}"
-    words = {"integer": "a whole number", "number": "a number", "string": "text"}[legal["type"]]
+    if "anyOf" in valid:
+        return " or ".join(_in_words(one) for one in valid["anyOf"])
+    if valid["type"] == "array":
+        some = "some of " if "enum" in valid["items"] else ""
+        return f"a list of {some}{_in_words(valid['items'])}"
+    words = {"integer": "a whole number", "number": "a number", "string": "text"}[valid["type"]]
     ends = [
-        f"{sign} {legal[name]:g}"
+        f"{sign} {valid[name]:g}"
         for name, sign in (("exclusiveMinimum", ">"), ("minimum", ">="), ("maximum", "<="))
-        if name in legal
+        if name in valid
     ]
     return " ".join((words, " and ".join(ends))).strip()

@@ -1,4 +1,4 @@
-"""Output files: claimed before the work begins, written beside their place, put there whole or not at all.
+"""Output files: claimed before the work begins, written elsewhere, put in place in one step.
 
 A claim is a hidden folder beside the file, one for each name and user.  A lock in it lasts as long as the
 process: who finds the folder without its lock may clear it away.  What is written in it appears under the
@@ -39,7 +39,7 @@ class _Taken(Exception):
 
 
 class Output:
-    """A place for one file, claimed."""
+    """A claimed output path."""
 
     def __init__(self, path: Path, overwrite: bool) -> None:
         self.path = path  # as the user named it
@@ -55,10 +55,10 @@ class Output:
     def fill(
         self, write: Callable[[Path], None], progress: Callable[[int], None] = lambda size: None
     ) -> None:
-        """Call `write` with a path to write to, and put what it wrote in its place.
+        """Call `write` with a temporary path and move the file into place.
 
-        `progress` hears now and then how many bytes there are.  An interrupt waits for `write` to end: the
-        libraries that write files keep their locks for good if they are cut off.
+        `progress` is called now and then with the number of bytes.  An interrupt waits for `write` to end:
+        the libraries that write files never release their locks if interrupted.
 
         Raises
         ------
@@ -73,9 +73,11 @@ class Output:
         except FileExistsError:
             raise OSError(self._keep_elsewhere()) from None
         except OSError as error:
-            raise OSError(f"{self.path} cannot be written ({error.strerror or error})") from error
+            raise OSError(
+                f"cannot write {self.path}: {error.strerror or error}; check disk space and permissions"
+            ) from error
         except RuntimeError as error:  # netCDF's word for any trouble, a full disk above all
-            raise OSError(f"{self.path} cannot be written ({error}); is there room on the disk?") from error
+            raise OSError(f"cannot write {self.path}: {error}; check disk space") from error
 
     def _place(self) -> None:
         if self._overwrite and self._target.exists():
@@ -86,32 +88,33 @@ class Output:
         _written.append(self.path)
 
     def _keep_elsewhere(self) -> str:
-        """Put the result beside a file that appeared during the work; what happened, in words."""
+        """Save the result under another name, as a file has appeared meanwhile; return the message."""
         number = 1
         while True:
             beside = self.path.with_name(f"{self.path.stem}-{number}{self.path.suffix}")
             with contextlib.suppress(FileExistsError), _guard:
                 _create(self._scratch, self._target.with_name(beside.name))
                 _written.append(beside)
-                return f"{self.path} appeared during the work and was left alone; the result is in {beside}"
+                return (
+                    f"cannot write {self.path}: a file of this name has appeared meanwhile; "
+                    f"the result is in {beside}"
+                )
             number += 1
 
     def claim(self) -> None:
-        """Take the name, clear away what killed runs have left in the folder."""
+        """Claim the name, and remove leftovers of killed runs from the folder."""
         try:
             _sweep(self._target.parent)
             with _guard:
                 _claims.add(self)
                 self._lock = _enter(self._folder)
         except _Taken:
-            raise InputError(f"output {self.path} is being written by another run; use another -o") from None
+            raise InputError(f"cannot write {self.path}: another run is writing it; use another -o") from None
         except OSError as error:
-            raise InputError(
-                f"-o must be a place that can be written to; got {self.path} ({error.strerror})"
-            ) from None
+            raise InputError(f"cannot write {self.path}: {error.strerror}; use another -o") from None
 
     def release(self) -> None:
-        """Give the name back; nothing is left but the file itself, if it was put in its place."""
+        """Release the name; only the finished file is left, if there is one."""
         with _guard:
             if self._lock >= 0:
                 _remove(self._folder, self._lock, self._scratch.name)
@@ -123,7 +126,7 @@ class Output:
 def claimed(
     path: Path, overwrite: bool = False, inputs: Sequence[Path] = (), name: str = "-o"
 ) -> Iterator[Output]:
-    """A place for a file, refused now if it cannot be had, and kept until the end of the context.
+    """Claim an output path, or refuse it at once, until the end of the context.
 
     name : of the argument that gave it, for messages
 
@@ -145,7 +148,7 @@ def claimed(
 
 @contextlib.contextmanager
 def claimed_folder(path: Path) -> Iterator[Output]:
-    """A folder that is filled little by little, whose name is kept until the end of the context.
+    """Claim a folder, filled gradually, until the end of the context.
 
     Raises
     ------
@@ -154,7 +157,7 @@ def claimed_folder(path: Path) -> Iterator[Output]:
     """
     target = Path(os.path.realpath(path))
     if not target.parent.is_dir():
-        raise InputError(f"-o must lie in a folder that exists; got {path}")
+        raise InputError(f"-o must be in an existing folder; got {path}")
     if target.exists() and not target.is_dir():
         raise InputError(f"-o must be a store, which is a folder; got the file {path}")
     output = Output(path, True)
@@ -169,7 +172,7 @@ def _check(path: Path, overwrite: bool, inputs: Sequence[Path], name: str) -> No
     try:
         target = Path(os.path.realpath(path))
         if not target.parent.is_dir():
-            raise InputError(f"{name} must lie in a folder that exists; got {path}")
+            raise InputError(f"{name} must be in an existing folder; got {path}")
         try:
             mode = os.lstat(target).st_mode
         except FileNotFoundError:
@@ -180,22 +183,17 @@ def _check(path: Path, overwrite: bool, inputs: Sequence[Path], name: str) -> No
             raise InputError(f"{name} must be an ordinary file; got {path}")
         for given in inputs:
             if os.path.samefile(given, target):
-                raise InputError(f"{name} must not be a file that is read; got {path}, which is {given}")
+                raise InputError(f"cannot write {path}: it is the input file {given}; use another {name}")
         if not overwrite:
-            raise InputError(f"output {path} exists already; use --overwrite or another {name}")
+            raise InputError(f"cannot write {path}: it already exists; use --overwrite or another {name}")
         if not os.access(target, os.W_OK):
-            raise InputError(f"output {path} is protected from writing; use another {name}")
+            raise InputError(f"cannot write {path}: it is write-protected; use another {name}")
     except OSError as error:
-        raise InputError(
-            f"{name} must be a place that can be written to; got {path} ({error.strerror})"
-        ) from None
+        raise InputError(f"cannot write {path}: {error.strerror}; use another {name}") from None
 
 
 def abandon() -> str:
-    """Clear away every claim, for good: nothing can be claimed or put in its place after it.
-
-    For the end of a program that is interrupted; returned is in words what was written all the same.
-    """
+    """Remove all claims for good; nothing can be claimed or moved into place afterwards."""
     known = _guard.acquire(timeout=1.0)
     kept = "".join(output.kept() for output in _claims)
     for output in list(_claims):
@@ -207,7 +205,7 @@ def abandon() -> str:
 
 
 def _enter(folder: Path) -> int:
-    """The lock of a folder, taken; the folder is made if need be."""
+    """Take the lock of a folder, which is made if necessary."""
     while True:
         with contextlib.suppress(FileExistsError):
             folder.mkdir()
@@ -222,7 +220,7 @@ def _flock(handle: int) -> None:
 
 
 def _lock(folder: Path, flags: int) -> int:
-    """The lock of a folder as an open file: taken until that is closed or the process ends."""
+    """Take the lock of a folder; it is held until the returned file is closed or the process ends."""
     path = folder / _LOCK
     handle = os.open(path, flags, 0o600)
     try:
@@ -250,7 +248,7 @@ def _sweep(parent: Path) -> None:
 
 
 def _remove(folder: Path, lock: int, files: str = f"{_FILE}*") -> None:
-    """Remove what a claim may have left, and nothing else."""
+    """Remove leftovers of a claim, and nothing else."""
     folder = _moved_away(folder, lock)
     for _ in range(3):  # a library may make its file just now
         for file in (*folder.glob(files), folder / _LOCK):
@@ -262,7 +260,7 @@ def _remove(folder: Path, lock: int, files: str = f"{_FILE}*") -> None:
 
 
 def _moved_away(folder: Path, lock: int) -> Path:
-    """Where the folder is now: whoever claims its name from here on makes another, which we do not touch."""
+    """Rename a folder, so that another run may claim its name, and return the new path."""
     away = folder.with_name(_PREFIX + secrets.token_hex(8))
     try:
         _flock(lock)  # ours already; an error where there are no locks, as then others may be in the folder
@@ -275,7 +273,7 @@ def _moved_away(folder: Path, lock: int) -> Path:
 
 
 def _aside(work: Callable[[], None], waiting: Callable[[], None]) -> None:
-    """Do the work in a thread of its own, where no interrupt is raised, and wait for its end."""
+    """Run work in a separate thread, where no interrupt is raised, and wait for it."""
     failures: list[BaseException] = []
     wanted, begin, done = threading.Event(), threading.Event(), threading.Event()
 
@@ -308,7 +306,7 @@ def _size(path: Path) -> int:
 
 
 def _flush(path: Path) -> None:
-    """What was written is on the disk, or there is an error now: some file systems tell it no earlier."""
+    """Flush a file to disk; some file systems report errors only then."""
     handle = os.open(path, os.O_RDWR)
     try:
         os.fsync(handle)
@@ -317,7 +315,7 @@ def _flush(path: Path) -> None:
 
 
 def _take_after(new: Path, old: Path) -> None:
-    """Owner, group and permissions of the file that is replaced, as far as we may."""
+    """Copy owner, group and permissions of the replaced file, as far as permitted."""
     before = old.stat()
     if hasattr(os, "chown"):
         for owner, group in ((before.st_uid, -1), (-1, before.st_gid)):
@@ -328,7 +326,7 @@ def _take_after(new: Path, old: Path) -> None:
 
 
 def _create(new: Path, target: Path) -> None:
-    """`new` becomes `target`, which must not exist, in one step."""
+    """Rename `new` to `target`, which must not exist, in one step."""
     try:
         os.link(new, target)
     except FileExistsError:

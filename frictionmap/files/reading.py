@@ -1,4 +1,4 @@
-"""Files that are read: checked against the schema, and brought into the form that they were written in."""
+"""Reading of files: checks against the schema, standard form."""
 
 import contextlib
 import importlib.util
@@ -52,29 +52,31 @@ def read(
 
 @contextlib.contextmanager
 def opened(path: Path) -> Iterator[xr.Dataset]:
-    """A file, or a store, as long as the context lasts; no values are read before they are used.
+    """Open a file or store for the length of the context; values are read when used.
 
     Raises
     ------
     InputError
         There is none, it is protected or not ours, zarr is wanted and missing; or the file is damaged where
         it is read.
-        What else the body of the context raises comes through as it is.
+        Other exceptions of the body of the context are passed on.
     """
     store = _is_file(path / "zarr.json")
     if not store and not _is_file(path):
         wrong = "is not a file" if path.exists() else "does not exist"
-        raise InputError(f"file {path} {wrong}; give a file written by frictionmap")
+        raise InputError(f"cannot read {path}: it {wrong}; give a file written by frictionmap")
     if path.suffix == ".toml":
         raise InputError(
-            f"file {path} must be NetCDF written by frictionmap; a configuration is computed first, "
-            f"as by frictionmap map {path}"
+            f"cannot read results from {path}: it is a configuration; compute it first, "
+            f"e.g. frictionmap map {path}"
         )
-    # no value of ours is a time, whatever the units say
+    # no variable of the package is a time, even with such units
     options: dict = {"engine": "netcdf4"}
     if store:
         if importlib.util.find_spec("zarr") is None:
-            raise InputError(f"store {path} can be read where zarr is: pip install 'frictionmap[zarr]'")
+            raise InputError(
+                f"cannot read {path}: zarr is not installed; run pip install 'frictionmap[zarr]'"
+            )
         options = {"engine": "zarr", "consolidated": False, "chunks": None}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a malformed file; what is wrong with it is said below
@@ -102,16 +104,16 @@ def _is_file(path: Path) -> bool:
 
 
 def _protected(path: Path) -> InputError:
-    return InputError(f"file {path} must be readable; it is protected from reading")
+    return InputError(f"cannot read {path}: it is read-protected; change its permissions")
 
 
 def _damaged(path: Path, error: Exception) -> InputError:
-    """What is wrong with a file over which a library has raised this."""
+    """Return the error for a file that a library could not read."""
     if isinstance(error, PermissionError):
         return _protected(Path(error.filename or path))
     return InputError(
-        f"file {path} must be NetCDF written by frictionmap; it cannot be opened "
-        f"({checks.one_line(error) if not str(error) else error})"
+        f"cannot read {path}: it is damaged or not NetCDF "
+        f"({checks.one_line(error) if not str(error) else error}); give a file written by frictionmap"
     )
 
 
@@ -127,12 +129,12 @@ def _check_ours(path: Path, ds: xr.Dataset) -> None:
     source = ds.attrs.get("source", "not given")
     ours = LABELS.keys() & ds.variables.keys() or kind(ds) == "estimates"
     if not str(source).startswith("frictionmap") or not ours:
-        raise InputError(f"file {path} must be written by frictionmap; its source is {source!r}")
+        raise InputError(f"cannot read {path}: its source is {source!r}; give a file written by frictionmap")
 
 
 @contextlib.contextmanager
 def naming(path: Path) -> Iterator[None]:
-    """The name of the file, put before what is wrong with it."""
+    """Put the name of the file before error messages."""
     try:
         yield
     except InputError as error:
@@ -142,7 +144,7 @@ def naming(path: Path) -> Iterator[None]:
 def _load(
     path: Path, ds: xr.Dataset, only: Mapping[str, Collection[str]] | None, at: Mapping[str, float]
 ) -> xr.Dataset:
-    """The wanted variables of a file; their values are read once all else about them is known to be well."""
+    """Load the wanted variables of a file, after all other checks."""
     in_store = MARKS in ds
     with naming(path):
         if at or further_axes(ds):
@@ -159,7 +161,7 @@ def _load(
 
 
 def _ours(ds: xr.Dataset) -> xr.Dataset:
-    """What has a label."""
+    """Select the variables that have a label."""
     known = {*LABELS, *COORDINATES, *BESIDE}
     return ds.drop_vars([name for name in ds.variables if name not in known])
 
@@ -184,7 +186,7 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     InputError
-        What is left makes no sense, or a value is illegal; one line that names the variable.
+        The dataset is inconsistent, or a value is invalid; the message names the variable.
     """
     if not isinstance(ds, xr.Dataset):
         raise InputError(f"ds must be an xarray.Dataset; got {type(ds).__name__}")
@@ -217,9 +219,7 @@ def _increasing(ds: xr.Dataset) -> xr.Dataset:
         if name not in ds.coords or ds[name].ndim == 0:
             continue
         if ds[name].dims != (name,):
-            raise InputError(
-                f"{name} must be an axis of its own; got the dimensions {in_brackets(ds[name].dims)}"
-            )
+            raise InputError(f"{name} must have the dimensions ({name}); got {in_brackets(ds[name].dims)}")
         values = checked_values(name, ds[name].values)
         if values.size == 0:
             raise InputError(f"{name} must have at least one value; got none")
@@ -240,7 +240,7 @@ def _check_increasing(name: str, values: np.ndarray) -> None:
 
 
 def _beside(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:
-    """Axes in SI units, beside those that are used."""
+    """Axes in SI units that accompany the axes in use."""
     beside = {}
     for name in BESIDE:
         dims = standard_dims(name, what)
@@ -260,5 +260,5 @@ def _axes(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:
                 raise InputError(f"a response must have one {name}; got {values.size}")
             axes[name] = coordinate(name, np.atleast_1d(values) if name in used else values)
         elif name in used or of_the_cell:
-            raise InputError(f"{name} must be given as a coordinate; it is missing")
+            raise InputError(f"{name} must be a coordinate; got no such coordinate")
     return axes

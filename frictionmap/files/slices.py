@@ -1,4 +1,4 @@
-"""One point of further axes, chosen from a dataset that has them."""
+"""Selection of one point of the further axes of a dataset."""
 
 import string
 from collections.abc import Mapping, Sequence
@@ -22,7 +22,7 @@ _LISTED = 8
 
 
 def parse_choices(texts: Sequence[str]) -> dict[str, float]:
-    """What was chosen on the command line, such as ``damping_ratios=0.01``."""
+    """Parse selections of the command line, such as ``damping_ratios=0.01``."""
     choices: dict[str, float] = {}
     for text in texts:
         name, equals, value = text.partition("=")
@@ -40,7 +40,7 @@ def parse_choices(texts: Sequence[str]) -> dict[str, float]:
 
 
 def further_axes(ds: xr.Dataset) -> list[str]:
-    """Dimensions of our variables beside those that their labels have; estimates have none."""
+    """Dimensions of known variables beyond those of their labels; none for estimates."""
     if kind(ds) == "estimates":
         return []
     labels = labels_of(kind(ds))
@@ -65,23 +65,23 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
         There is no such axis or value, or more than one point.
     """
     further = further_axes(ds)
-    legal = [*further, *(str(n) for n in ds.coords if n not in further and _further(ds, str(n), further))]
-    legal += [name for name in ("mu", "r", "beta") if ds.sizes.get(name, 0) > 0]
+    valid = [*further, *(str(n) for n in ds.coords if n not in further and _further(ds, str(n), further))]
+    valid += [name for name in ("mu", "r", "beta") if ds.sizes.get(name, 0) > 0]
     places: dict[str, np.ndarray] = {}
     for name, value in choices.items():
-        if name not in legal:
+        if name not in valid:
             raise InputError(
-                f"--at must name an axis of the file: {', '.join(legal) or 'it has none'}; "
-                f"got {name}{checks.nearest(name, legal)}"
+                f"unknown axis of --at {name!r}{checks.nearest(name, valid)}; "
+                f"valid: {', '.join(valid) or 'none'}"
             )
         dim, found = _found(ds, name, value)
         places[dim] = np.intersect1d(found, places[dim]) if dim in places else found
     if over is not None and over not in further:
-        raise InputError(
-            f"--over must name a further axis of the file: {', '.join(further) or 'it has none'}; got {over}"
-        )
+        raise InputError(f"unknown further axis of --over {over!r}; valid: {', '.join(further) or 'none'}")
     if over in places:
-        raise InputError(f"--at must choose on other axes than --over {over}, which takes all points of it")
+        raise InputError(
+            f"cannot use --at {over} with --over {over}: --over takes all its points; use --at for other axes"
+        )
     point: dict[str, int] = {}
     rows: dict[str, list[int]] = {}
     chosen = [dim for dim in further if dim != over]
@@ -89,8 +89,8 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
         found = places.get(dim, np.arange(ds.sizes[dim]))
         if found.size != 1:
             raise InputError(
-                f"--at {dim}=VALUE must choose one point of {_values(ds, dim)}; "
-                f"plot --over {dim} draws the shares of regimes over it"
+                f"cannot choose a point along {dim}: the file has {_values(ds, dim)}; give --at {dim}=VALUE, "
+                f"or draw the shares of regimes over it with plot --over {dim}"
             )
         if dim in further:
             point[dim] = int(found[0])
@@ -101,7 +101,7 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
 
 
 def _further(ds: xr.Dataset, name: str, further: Sequence[str]) -> bool:
-    """Whether a coordinate tells a number along one further axis."""
+    """Whether a coordinate holds numbers along one further axis."""
     return ds[name].ndim == 1 and ds[name].dims[0] in further
 
 
@@ -121,7 +121,7 @@ def _numbers(ds: xr.Dataset, name: str) -> np.ndarray:
 
 
 def _values(ds: xr.Dataset, name: str) -> str:
-    """The values of an axis in words."""
+    """Describe the values of an axis."""
     values = _numbers(ds, name)
     if values.size > _LISTED and values.dtype.kind != "U":
         return f"{name} = {values.min():g} to {values.max():g} ({values.size} values)"
@@ -130,12 +130,12 @@ def _values(ds: xr.Dataset, name: str) -> str:
 
 
 def _word(value: object) -> str:
-    """A value of an axis; what is not ours may have texts."""
+    """Format a value of an axis; foreign files may have string axes."""
     return checks.one_line(value) if isinstance(value, str) else f"{value:g}"
 
 
 def _of_point(ds: xr.Dataset, point: Mapping[str, int]) -> dict[str, str]:
-    """Title, system and configuration of a point; the latter two are empty where the file does not tell."""
+    """Title, system and configuration of a point; the latter two are empty if unknown."""
     words = ", ".join(f"{name} = {_word(_numbers(ds, name)[place])}" for name, place in point.items())
     title = f"{ds.attrs.get('title', '')}, {words}".removeprefix(", ")
     system = text = ""

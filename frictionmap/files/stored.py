@@ -1,4 +1,4 @@
-"""What a dataset remembers of how it was made: system, excitation and start, from its attributes."""
+"""System and initial state of a dataset, from the configuration stored in it."""
 
 import xarray as xr
 

@@ -1,4 +1,4 @@
-"""Files with further axes, and stores, in words; read part by part, finished or not."""
+"""Summaries of files with further axes and of stores, finished or not, read part by part."""
 
 import math
 from collections import Counter
@@ -28,7 +28,7 @@ def is_study(path: Path) -> bool:
 
 
 def describe_study(path: Path) -> str:
-    """One screen: title, system, axes, variables, blocks that are done, regimes of the cells in them.
+    """Describe on one screen: title, system, axes, variables, finished blocks, regimes of their cells.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def _in_order(ds: xr.Dataset) -> xr.Dataset:
 
 
 def _check_sizes(ds: xr.Dataset) -> None:
-    """Refuse what has no cells, and marks that are not those of its blocks."""
+    """Refuse files without cells, and marks that do not match the blocks."""
     for dim in (*further_axes(ds), *CELL):
         if ds.sizes.get(dim, 1) == 0:
             raise InputError(f"{dim} must have at least one value; got none")
@@ -70,13 +70,13 @@ def _check_sizes(ds: xr.Dataset) -> None:
 
 
 def describe_cells(path: Path) -> list[str]:
-    """How many cells a store has of each regime, and why some are unresolved."""
+    """Count the cells of a store by regime and by cause of unresolved cells."""
     with opened(path) as ds:
         return [*cell_lines(ds), *describe_reduction(ds)]
 
 
 def cell_lines(ds: xr.Dataset) -> list[str]:
-    """How many cells of each regime, and why some are unresolved."""
+    """Count cells by regime and by cause of unresolved cells."""
     codes = {"regime": regimes.REGIMES, "status": regimes.STATUSES}
     found = {}
     for name, known in codes.items():
@@ -91,12 +91,12 @@ def _blocks(ds: xr.Dataset) -> Iterator[str]:
     if MARKS in ds:
         marks = ds[MARKS].values
         done = int(np.count_nonzero(marks))
-        words = "all are computed" if done == marks.size else "run the command again to go on"
+        words = "all computed" if done == marks.size else "repeat the command to resume"
         yield f"{done:,} of {marks.size:,} blocks; {words}"
 
 
 def count_codes(ds: xr.Dataset, name: str) -> Counter[int]:
-    """How many cells have each code; read part by part, and not where no block is computed."""
+    """Count cells by code, reading part by part and only where blocks are computed."""
     counter: Counter[int] = Counter()
     if name not in ds:
         return counter

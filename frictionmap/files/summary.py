@@ -1,4 +1,4 @@
-"""What a dataset holds, in words: plain ASCII but for what the file itself says."""
+"""Summaries of datasets, in plain ASCII except for texts of the file itself."""
 
 import textwrap
 from collections.abc import Hashable, Iterator, Sequence
@@ -25,14 +25,14 @@ _LISTS = frozenset(("mu", "mode", "held_mode", "invariant", "dof", "mass_invaria
 
 
 def describe_map(ds: xr.Dataset) -> str:
-    """One line: how many cells of each regime."""
+    """Describe a map in one line: number of cells by regime."""
     further = [name for name in ds["regime"].dims if name not in CELL] if "regime" in ds else []
     cells = int(np.prod([ds.sizes[name] for name in (*further, *CELL)]))
     return in_cells(cells, _counts(ds["regime"], regimes.REGIMES) if "regime" in ds else [])
 
 
 def in_cells(cells: int, counts: Sequence[tuple[regimes.Code, int]]) -> str:
-    """How many cells, and of each regime."""
+    """Describe the number of cells, in total and by regime."""
     words = f"{cells:,} cells"
     if counts:
         words += f" ({', '.join(f'{count:,} {_plain(code)}' for code, count in counts)})"
@@ -40,20 +40,20 @@ def in_cells(cells: int, counts: Sequence[tuple[regimes.Code, int]]) -> str:
 
 
 def describe_causes(ds: xr.Dataset) -> list[str]:
-    """A line for every cause why cells are unresolved or not all that they seem, and what to do about it."""
+    """Describe every cause of unresolved or doubtful cells, and the remedy, one per line."""
     if "status" not in ds:
         return []
     return in_causes(_counts(ds["status"], regimes.STATUSES))
 
 
 def describe_reduction(ds: xr.Dataset) -> list[str]:
-    """A line on what twice as many modes change, of a structure that is reduced."""
+    """Describe the effect of twice as many modes of a reduced structure."""
     found = ds.attrs.get("reduction_check")
     return [] if found is None else [f"reduction: {found}"]
 
 
 def in_causes(counts: Sequence[tuple[regimes.Code, int]]) -> list[str]:
-    """A line for every status but that of cells that are well."""
+    """Describe every status except resolved, one per line."""
     return [
         f"{count:,} cell{'s' * (count != 1)} {code.name}: {code.advice}"
         for code, count in counts
@@ -62,7 +62,7 @@ def in_causes(counts: Sequence[tuple[regimes.Code, int]]) -> list[str]:
 
 
 def _counts(variable: xr.DataArray, codes: tuple[regimes.Code, ...]) -> list[tuple[regimes.Code, int]]:
-    """Codes that occur, and how often."""
+    """Codes that occur, and their numbers of cells."""
     counts = ((code, int(np.count_nonzero(variable.values == code.value))) for code in codes)
     return [(code, count) for code, count in counts if count]
 
@@ -72,7 +72,7 @@ def _plain(code: regimes.Code) -> str:
 
 
 def describe_response(ds: xr.Dataset) -> str:
-    """One line: regime, stops, amplitude, period; a slice may lack some."""
+    """Describe a response in one line: regime, stops, amplitude, period, as far as available."""
     regime = next(
         (code for code in regimes.REGIMES if "regime" in ds and code.value == int(ds["regime"])), None
     )
@@ -88,12 +88,12 @@ def describe_response(ds: xr.Dataset) -> str:
     if "period" in ds and int(ds["period"]) > 1:
         words.append(f"period {int(ds['period'])}")
     if "status" in ds and int(ds["status"]) == regimes.NOT_PERIODIC:
-        words.append("not periodic: a part of the motion is shown, and its averages")
+        words.append("not periodic: an excerpt of the motion, and averages")
     return ", ".join(words)
 
 
 def describe_shares(ds: xr.Dataset) -> str:
-    """One line: how many samples, and the share of each regime over all cells."""
+    """Describe shares in one line: number of samples, share of each regime over all cells."""
     words = f"{ds.attrs.get('samples', 'unknown')} samples"
     if "regime_share" in ds:
         means = ds["regime_share"].mean(CELL)
@@ -106,7 +106,7 @@ def describe_shares(ds: xr.Dataset) -> str:
 
 
 def describe_file(ds: xr.Dataset) -> str:
-    """One screen: title, system, axes, variables, values, regimes and causes of unresolved cells.
+    """Describe a file on one screen: title, system, axes, variables, values, regimes, unresolved cells.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def header_lines(ds: xr.Dataset, what: str) -> list[str]:
 
 
 def axis_lines(ds: xr.Dataset) -> list[str]:
-    """Every axis, and what goes with one."""
+    """Describe every axis and its further coordinates."""
     return ["axes", *(line for name in ds.coords for line in _entry(str(name), _axis(ds[name])))]
 
 
@@ -165,7 +165,7 @@ def _variables(ds: xr.Dataset, names: Sequence[str], further: Sequence[str] = ()
 
 
 def _estimates(ds: xr.Dataset) -> Iterator[str]:
-    """Where the data are from, and the table of what they tell."""
+    """Describe the origin of the data and the estimates."""
     yield from _entry("data", _printable(source_of_data(ds)))
     yield "estimates"
     for line in describe_estimates(ds):
@@ -174,19 +174,19 @@ def _estimates(ds: xr.Dataset) -> Iterator[str]:
 
 
 def _numbers_in_lines(ds: xr.Dataset, names: Sequence[Hashable]) -> list[str]:
-    """Single numbers, or one a mass, with their names, as many on a line as there is room for."""
+    """Format scalars, or one number per mass, with their names, several per line."""
     words = [f"{name} {_values(ds[name])}".replace(" ", "\0") for name in names]  # none is torn apart
     lines = textwrap.wrap("; ".join(words), _WIDTH, initial_indent="  ", subsequent_indent="  ")
     return [line.replace("\0", " ") for line in lines]
 
 
 def _printable(text: str) -> str:
-    """Text on one line, without characters that would do something to a terminal."""
+    """Text on one line, without control characters."""
     return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
 
 
 def _entry(name: str, text: str) -> list[str]:
-    """A name and what belongs to it, wrapped; never more than three lines."""
+    """Format a name and its text, wrapped to at most three lines."""
     return textwrap.wrap(
         f"  {name:<{_INDENT - 3}} {text}",
         _WIDTH,
@@ -241,7 +241,7 @@ def _values(variable: xr.DataArray) -> str:
 
 
 def _in_short(ds: xr.Dataset, what: str) -> Iterator[str]:
-    """The last lines: what came out, and what to mind."""
+    """Describe the results and unresolved cells in the last lines."""
     if what in ("map", "curves"):
         yield describe_map(ds)
     elif what == "shares":
@@ -264,15 +264,16 @@ def _motion(ds: xr.Dataset) -> Iterator[str]:
 
 
 def _stops(stops: np.ndarray) -> Iterator[str]:
-    """How many cells stop how often: whole numbers one by one, broken ones together."""
+    """Count cells by stops per cycle: integers one by one, non-integer numbers together."""
     found = stops[stops > 0]
     whole = found == np.rint(found)
     values, counts = np.unique(found[whole], return_counts=True)
-    told = [f"{v:.0f}: {c:,}" for v, c in zip(values[:12], counts[:12], strict=True)]
+    entries = [f"{v:.0f}: {c:,}" for v, c in zip(values[:12], counts[:12], strict=True)]
     if values.size > 12:
-        told.append(f"more, to {values[-1]:.0f}: {counts[12:].sum():,}")
+        entries.append(f"more, to {values[-1]:.0f}: {counts[12:].sum():,}")
     if not whole.all():
-        broken = found[~whole]
-        told.append(f"not whole, {broken.min():.4g} to {broken.max():.4g}: {broken.size:,}")
-    if told:
-        yield f"cells by stops per cycle  {', '.join(told)}"
+        non_integer = found[~whole]
+        ends = f"{non_integer.min():.4g} to {non_integer.max():.4g}"
+        entries.append(f"non-integer, {ends}: {non_integer.size:,}")
+    if entries:
+        yield f"cells by stops per cycle  {', '.join(entries)}"

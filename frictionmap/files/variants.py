@@ -1,4 +1,4 @@
-"""CSV files of numbers that change together: the first row names them, every other row is a point."""
+"""CSV files of parameters that vary together: names in the first row, one point per further row."""
 
 import csv
 import math
@@ -8,14 +8,14 @@ from pathlib import Path
 from .. import checks
 from ..errors import InputError
 
-#: What is most often meant by a row of another length.
-_HINT = "commas stand between numbers, points in them"
+#: Most frequent cause of a row of another length.
+_HINT = "separate numbers by commas, use decimal points"
 
 
 def put_variants(axes: object, folder: Path) -> tuple[Path, ...]:
-    """Put the numbers of files in the place of their names in a table [axes]; the files.
+    """Replace names of CSV files in a table [axes] by their numbers; return the files.
 
-    So a configuration tells its systems wherever it is read, whatever becomes of the files.
+    The stored configuration then defines its systems even if the files are lost.
 
     Raises
     ------
@@ -41,14 +41,16 @@ def _columns(path: Path, name: str) -> dict[str, list[float]]:
             reader = csv.reader(opened)
             (_, header), *rows = [(reader.line_num, row) for row in reader if any(map(str.strip, row))]
     except (OSError, ValueError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or "no rows of text with commas"
-        raise InputError(f"{name}, {path}, cannot be read ({reason})") from None
+        reason = getattr(error, "strerror", None) or "it has no rows of text"
+        raise InputError(
+            f"cannot read {name}, {path}: {reason}; give a CSV file with names in its first row"
+        ) from None
     columns: dict[str, list[float]] = {key.strip(): [] for key in header}
     if len(columns) < len(header):
         raise InputError(f"{name} must name every number once in its first row; got {','.join(header)}")
     for line, row in rows:
         if len(row) != len(columns):
-            raise InputError(f"{name}, row {line} must have {len(columns)} numbers; got {len(row)}: {_HINT}")
+            raise InputError(f"{name}, row {line} must have {len(columns)} numbers; got {len(row)} ({_HINT})")
         for key, text in zip(columns, row, strict=True):
             columns[key].append(_number(text, f"{name}, row {line}, {key}"))
     return columns

@@ -71,25 +71,29 @@ def log_likelihood(ds: xr.Dataset) -> LogLikelihood:
     Raises
     ------
     InputError
-        The dataset is of another kind, or lacks something.
+        The dataset is of another kind, or lacks a variable.
     """
     if not isinstance(ds, xr.Dataset):
         raise InputError(f"ds must be a dataset of estimates; got {checks.one_line(ds)}")
     for needed in ("estimate", "known", "data", "sigma"):
         if needed not in ds:
-            raise InputError(f"a dataset of estimates must hold {needed}; it does not")
+            raise InputError(
+                f"cannot evaluate the likelihood: ds has no variable {needed}; give a dataset of identify"
+            )
     if {"time", "half_cycles", "at_rest"} <= set(ds.variables):
         return _of_decay(ds)
     if {"frequency", "mass", "quantity"} <= set(ds.variables) and "f_k1m1" in ds["parameter"]:
         return _of_chain(ds)
-    raise InputError("a likelihood must be that of a free decay or of a sweep; this dataset is of neither")
+    raise InputError(
+        "cannot evaluate the likelihood: ds is neither of a free decay nor of a sweep; use one of these"
+    )
 
 
 def _function(
     names: tuple[str, ...], problem: Problem, start: np.ndarray, logarithmic: np.ndarray, sigma: np.ndarray
 ) -> LogLikelihood:
     if not (sigma > 0.0).all():
-        raise InputError("sigma must be > 0 for a likelihood: data without errors have none")
+        raise InputError("cannot evaluate the likelihood: sigma is not > 0; give the errors of the data")
     level = -float(np.sum(np.log(sigma))) - 0.5 * sigma.size * np.log(2.0 * np.pi)
     fitted = tuple(name for name, free in zip(names, problem.free, strict=True) if free)
     return LogLikelihood(fitted, problem, start, logarithmic, level)

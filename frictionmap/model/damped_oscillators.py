@@ -163,8 +163,8 @@ def damped_oscillators(
     k = int(np.argmin(conditions))
     if not conditions[k] < _WORST_BASIS:
         raise InputError(
-            f"cannot separate two nearly equal damped modes of the {what}, condition number "
-            f"{conditions[k]:.1e}: change the damping of one of them slightly"
+            f"cannot separate two nearly equal damped modes of the {what}: condition number "
+            f"{conditions[k]:.1e}; change the damping of one of them slightly"
         )
     pairs = choices[k]
     omega = np.sqrt(np.array([(a * b).real for a, b in pairs]))

@@ -35,7 +35,7 @@ class Decoupling:
             The change exceeds the allowed one.
         """
         ends = float(r[0]), float(r[-1])
-        return self._found.told(*ends, lambda: self._checked(self._error(modes, *ends)))
+        return self._found.lookup(*ends, lambda: self._checked(self._error(modes, *ends)))
 
     def _checked(self, error: float) -> float:
         if not error <= self.allowed:

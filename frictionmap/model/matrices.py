@@ -90,7 +90,7 @@ def full_matrices(structure: Structure) -> Matrices:
     if massless:
         largest = np.linalg.eigvalsh(dense["M"])[-1]
         raise InputError(
-            f"matrices: M must be positive definite; it is singular, with eigenvalues from 0 to "
+            f"matrices: M must be positive definite; got a singular matrix, with eigenvalues from 0 to "
             f"{largest:.3g}: degree of freedom {structure.dofs.word(massless[0])} has no mass; "
             f"eliminate it with reduce"
         )
@@ -122,9 +122,9 @@ def _definite(array: np.ndarray, name: str) -> None:
     eigenvalues = np.linalg.eigvalsh(array)
     rounding = len(array) * np.finfo(float).eps * np.abs(eigenvalues).max()
     if eigenvalues[0] <= rounding:
-        word = "singular" if eigenvalues[0] >= -rounding else "indefinite"
+        word = "a singular" if eigenvalues[0] >= -rounding else "an indefinite"
         raise InputError(
-            f"matrices: {name} must be positive definite; it is {word}, with eigenvalues from "
+            f"matrices: {name} must be positive definite; got {word} matrix, with eigenvalues from "
             f"{eigenvalues[0]:.3g} to {eigenvalues[-1]:.3g}"
         )
 
@@ -133,6 +133,6 @@ def _semidefinite(damping: np.ndarray) -> None:
     eigenvalues = np.linalg.eigvalsh(damping)
     if eigenvalues[0] < -TOLERANCE * np.abs(eigenvalues).max():
         raise InputError(
-            f"matrices: C must be positive semi-definite; it is indefinite and would feed energy into the "
-            f"motion, with eigenvalues from {eigenvalues[0]:.3g} to {eigenvalues[-1]:.3g}"
+            f"matrices: C must be positive semi-definite; got an indefinite matrix, which feeds energy into "
+            f"the motion, with eigenvalues from {eigenvalues[0]:.3g} to {eigenvalues[-1]:.3g}"
         )

@@ -157,15 +157,15 @@ def curve_settings(
         A quantity is unknown, or none is given, or the number is not an integer in range.
     """
     given = QUANTITIES if quantities is None else quantities
-    legal: tuple[Quantity, ...] = get_args(Quantity)
+    valid: tuple[Quantity, ...] = get_args(Quantity)
     if isinstance(given, str) or not isinstance(given, Sequence):
         raise InputError(f"quantities must be a list of names; got {checks.one_line(given)}")
     for name in given:
-        checks.choice(name, "quantities", legal)
+        checks.choice(name, "quantities", valid)
     if not given:
-        raise InputError(f"quantities must name at least one of {', '.join(legal)}; got none")
+        raise InputError(f"quantities must name at least one of {', '.join(valid)}; got none")
     if harmonics is None:
         harmonics = HARMONICS if "harmonics" in given else 0
     harmonics = checks.whole(harmonics, "harmonics", **RANGES["harmonics"])
     kept = {*given, "harmonics"} if harmonics else {*given} - {"harmonics"}
-    return CurveSettings(harmonics, tuple(name for name in legal if name in kept))
+    return CurveSettings(harmonics, tuple(name for name in valid if name in kept))

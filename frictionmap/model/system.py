@@ -236,14 +236,13 @@ class System:
     def _check_chain(self) -> None:
         for name in ("reduce", "rayleigh", "decouple"):
             if getattr(self, name) is not None:
-                given = checks.one_line(getattr(self, name))
-                raise InputError(f"{name} must be left out without matrices; got {given}")
+                raise InputError(f"cannot use {name} without matrices: a chain needs no such key; omit it")
         for name, default in (("frequency_scale", None), ("stiffness_scale", 1.0)):
             given = getattr(self, name)
             if isinstance(given, bool) or given != default:  # True == 1.0
                 raise InputError(
-                    f"{name} must be left out without matrices: a chain has the units of its first mass and "
-                    f"spring; got {checks.one_line(given)}"
+                    f"cannot use {name} without matrices: its units are those of the first mass and spring; "
+                    f"omit it"
                 )
         masses = _ratios((1.0,) if self.mass_ratios is None else self.mass_ratios, "mass_ratios")
         springs = _ratios(
@@ -261,9 +260,7 @@ class System:
         for name in ("mass_ratios", "stiffness_ratios"):
             given = getattr(self, name)
             if given is not None:
-                raise InputError(
-                    f"{name} must be left out if matrices are given; got {checks.one_line(given)}"
-                )
+                raise InputError(f"cannot use {name} with matrices: both define the structure; omit one")
         given = self.matrices
         if isinstance(given, Matrices):
             if given.reduction is not None:
@@ -301,8 +298,7 @@ class System:
         if len(values) != 2:
             raise InputError(f"rayleigh must be two numbers [a, b], C = a M + b K; got {list(values)}")
         if self.damping_ratios is not None:
-            given = checks.one_line(self.damping_ratios)
-            raise InputError(f"damping_ratios must be left out if rayleigh is given; got {given}")
+            raise InputError("cannot use damping_ratios with rayleigh: both define the damping; omit one")
         pair = tuple(checks.number(one, f"rayleigh[{k}]", least=0.0) for k, one in enumerate(values))
         self._set("rayleigh", pair)
 
@@ -314,9 +310,7 @@ class System:
         if isinstance(self.matrices, Matrices) and self.matrices.damping is not None:
             for name, ratios in (("damping_ratios", given), ("rayleigh", self.rayleigh)):
                 if ratios is not None:
-                    raise InputError(
-                        f"{name} must be left out if matrices has C; got {checks.one_line(ratios)}"
-                    )
+                    raise InputError(f"cannot use {name} with matrices: C defines the damping; omit one")
         elif self.rayleigh is None:
             self._set("damping_ratios", _damping(0.0 if given is None else given, self.n))
 
@@ -335,22 +329,19 @@ class System:
         checks.choice(self.damping_reference, "damping_reference", DAMPING_REFERENCES)
         if self.base_motion and self.excitation != "base":
             raise InputError(
-                "excitation must be base, or left out, for a joined-base-wall: the wall moves with the base "
-                f"that loads the structure; got {self.excitation!r}"
+                "excitation must be base for a joined-base-wall, whose base loads the structure; "
+                f"got {self.excitation!r}"
             )
         base = self.excitation == "base"
         if self.damping_reference == "base" and not base:
-            raise InputError(
-                "damping_reference must be ground unless the base moves (excitation base or a joined "
-                "base-wall); got 'base'"
-            )
+            raise InputError("damping_reference must be ground for a force-excited structure; got 'base'")
         if self.load is not None:
-            for wrong, reason in (
-                (base, "with base excitation or a joined base-wall: the base loads all masses"),
-                (self.load_mass is not None, f"if load_mass is given, which is {self.load_mass!r}"),
+            for wrong, (other, why) in (
+                (base, ("base excitation", "the base loads all masses")),
+                (self.load_mass is not None, ("load_mass", "both define the load")),
             ):
                 if wrong:
-                    raise InputError(f"load must be left out {reason}; got {checks.one_line(self.load)}")
+                    raise InputError(f"cannot use load with {other}: {why}; omit one of them")
             self._set("load", _load(self.load, self.n))
             return
         first = self.dofs.numbers[0]

@@ -64,7 +64,7 @@ class Number:
         values = list(before or ())
         if self.place > len(values):
             raise InputError(
-                f"axes.{self.text} must be one of the {len(values)} numbers of {self.key}, counted from 1"
+                f"axes.{self.text} must have an index <= {len(values)}, as {self.key}; got {self.place}"
             )
         values[self.place - 1] = given
         return values
@@ -228,8 +228,8 @@ def _number(key: object, where: str) -> Number:
     matched = _INDEXED.fullmatch(key) if isinstance(key, str) else None
     if matched and matched[1] in LISTS:
         return Number(matched[1], int(matched[2]))
-    legal = (*NUMBERS, *(f"{name}[i]" for name in LISTS))
+    valid = (*NUMBERS, *(f"{name}[i]" for name in LISTS))
     raise InputError(
-        f"{where} must name a number of the system, i counted from 1: {', '.join(legal)}; "
-        f"got {checks.one_line(key)}{checks.nearest(str(key), legal)}"
+        f"{where} must name a number of the system, i counted from 1: {', '.join(valid)}; "
+        f"got {checks.one_line(key)}{checks.nearest(str(key), valid)}"
     )

@@ -7,12 +7,12 @@ import numpy as np
 
 from .. import regimes
 from .palette import (  # fmt: skip
-    BROKEN,
     CLASSES,
     CONTINUOUS,
     COUNT,
     MORE,
     NO_STOPS,
+    NON_INTEGER,
     NOT_YET,
     ONE,
     STUCK,
@@ -38,7 +38,7 @@ def _of_stops(stops: np.ndarray) -> np.ndarray:
     """Class of stick-slip cells by number of stops; NaN for a motion without such a number, as at r = 0."""
     nearest = np.rint(np.nan_to_num(stops))
     found = np.clip(ONE - 1 + nearest, ONE, MORE).astype(np.uint8)
-    found[stops != nearest] = BROKEN
+    found[stops != nearest] = NON_INTEGER
     found[np.isnan(stops)] = UNCOUNTED
     return found
 
@@ -101,5 +101,5 @@ def legend_label(index: int, cells: int, low: float, high: float) -> str:
     number of cells.
     """
     ends = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
-    name = {MORE: f"{ends} stops", BROKEN: f"not whole, {ends} stops"}.get(index, CLASSES[index].label)
+    name = {MORE: f"{ends} stops", NON_INTEGER: f"non-integer, {ends} stops"}.get(index, CLASSES[index].label)
     return f"{name} ({cells:,})"

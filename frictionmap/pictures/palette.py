@@ -44,11 +44,11 @@ CLASSES = (
     Look("3 stops", "#2880b8"),
     Look("4 stops", "#2b4fa6"),
     Look("more stops", "#00162c"),
-    Look("stops per cycle not whole", "#55285e"),
+    Look("non-integer stops per cycle", "#55285e"),
     Look("stick-slip, stops not counted", "#bd7f50"),
     Look("stuck or unresolved", "#c4c4c4"),  # never together with permanent sticking, hence the same colour
 )
-UNRESOLVED, STUCK, CONTINUOUS, ONE, MORE, BROKEN, UNCOUNTED, NO_STOPS = 0, 1, 2, 3, 7, 8, 9, 10
+UNRESOLVED, STUCK, CONTINUOUS, ONE, MORE, NON_INTEGER, UNCOUNTED, NO_STOPS = 0, 1, 2, 3, 7, 8, 9, 10
 
 #: Cells of blocks that are not yet in a store: not painted; the background is dotted.
 NOT_YET = len(CLASSES)

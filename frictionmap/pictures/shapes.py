@@ -29,14 +29,14 @@ _DRAWN_BY = {
 }
 
 
-def to_draw(ds: object, function: str, *legal: str) -> xr.Dataset:
+def to_draw(ds: object, function: str, *valid: str) -> xr.Dataset:
     """Convert a dataset to its standard form, if it is of a kind that a function draws."""
-    wanted = f"{function} takes a dataset such as {_MAKERS[legal[0]]}"
+    wanted = f"ds of {function} must be a dataset such as {_MAKERS[valid[0]]}"
     if not isinstance(ds, xr.Dataset):
         raise InputError(f"{wanted}; got {type(ds).__name__}")
     found = kind(ds)
-    if found not in legal:
-        raise InputError(f"{wanted}; got one such as {_MAKERS[found]}: use {_DRAWN_BY[found]}")
+    if found not in valid:
+        raise InputError(f"{wanted}; got one such as {_MAKERS[found]} (use {_DRAWN_BY[found]})")
     return standard_form(ds)
 
 
@@ -44,7 +44,7 @@ def check_holds(ds: xr.Dataset, names: Iterable[str], what: str) -> None:
     """Refuse a dataset without a variable that a picture requires."""
     for name in names:
         if name not in ds:
-            raise InputError(f"a dataset must hold {name} for {what} to be drawn; it does not")
+            raise InputError(f"a dataset must hold {name} for {what} to be drawn; got no such variable")
 
 
 def check_range(ds: xr.Dataset, names: Iterable[str]) -> None:

@@ -45,7 +45,7 @@ CYCLE = tuple(name for names in VARIABLES.values() for name in names)
 
 
 @dataclass(frozen=True)
-class Question:
+class MotionRequest:
     """One requested steady state."""
 
     system: System
@@ -87,7 +87,7 @@ class FoundMotion:
     recurrence: np.ndarray | None = None
 
 
-class Motion(NamedTuple):
+class SteadyMotion(NamedTuple):
     """A steady state in time, and its scalars.
 
     summary : regime, stops per cycle, contact amplitude, share stuck, period, status
@@ -114,17 +114,17 @@ def _since(tau: np.ndarray, start: float, total: float) -> np.ndarray:
     return since
 
 
-def _no_steady_state(question: Question, why: str) -> NoSteadyState:
-    return NoSteadyState(f"r = {question.r:g}, beta = {question.beta:g}, mu = {question.mu:g}: {why}")
+def _no_steady_state(request: MotionRequest, why: str) -> NoSteadyState:
+    return NoSteadyState(f"r = {request.r:g}, beta = {request.beta:g}, mu = {request.mu:g}: {why}")
 
 
 _UNBOUNDED = "an undamped resonance; the motion grows without bound"
 
 
-def _decided(cells: Cells, question: Question) -> int:
+def _decided(cells: Cells, request: MotionRequest) -> int:
     """Regime given by a closed form; unresolved where the cell is open."""
-    beta, mu = np.array([question.beta]), np.array([question.mu])
-    work = plan(cells, np.array([question.r]), mu, beta, question.solver)
+    beta, mu = np.array([request.beta]), np.array([request.mu])
+    work = plan(cells, np.array([request.r]), mu, beta, request.solver)
     if work.cells:
         return regimes.UNRESOLVED
     return regimes.CONTINUOUS if work.low[0] else regimes.PERMANENT_STICKING
@@ -141,63 +141,63 @@ def _with_mirror_image(table: np.ndarray) -> np.ndarray:
     return np.concatenate((table, mirrored))
 
 
-def _continuous_table(question: Question, cells: Cells) -> np.ndarray:
+def _continuous_table(request: MotionRequest, cells: Cells) -> np.ndarray:
     """Segment table of the continuous orbit, one segment."""
     found = cells.structure_arrays
     orbit, n = found.orbit, found.participating.size
-    st = make_structure(found.model, found.loads, 0, question.r, float(question.solver.steps))
+    st = make_structure(found.model, found.loads, 0, request.r, float(request.solver.steps))
     table = np.empty((1, segment_table.segment_columns(n)))
-    phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], question.beta)
-    segment_table.continuous_segment(st, orbit, 0, question.beta, phase, table[0], make_workspace(n))
+    phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], request.beta)
+    segment_table.continuous_segment(st, orbit, 0, request.beta, phase, table[0], make_workspace(n))
     return table
 
 
-def _window(question: Question, cells: Cells, cell: Cell) -> FoundMotion:
+def _window(request: MotionRequest, cells: Cells, cell: Cell) -> FoundMotion:
     """Segment table of the last periods of a motion that does not repeat."""
-    before = _TURN * max(0.0, question.solver.cycles - WINDOW - 2.0)
-    moving = question.solver.start == "moving"
+    before = _TURN * max(0.0, request.solver.cycles - WINDOW - 2.0)
+    moving = request.solver.start == "moving"
     table = window_table(
-        cells.motion, question.beta, question.mu, moving, before, _TURN * (WINDOW + 2.0)
+        cells.motion, request.beta, request.mu, moving, before, _TURN * (WINDOW + 2.0)
     )  # fmt: skip
     averages = cell._replace(amplitude=cells.unit * cell.amplitude)
     return FoundMotion(table, cell.status, averages=averages)
 
 
-def _find(question: Question, cells: Cells) -> FoundMotion:
+def _find(request: MotionRequest, cells: Cells) -> FoundMotion:
     """Find the steady state, or raise NoSteadyState."""
-    regime, stuck_at = _decided(cells, question), 0.0
+    regime, stuck_at = _decided(cells, request), 0.0
     status = regimes.RESOLVED
     table = np.empty((0, 0))
     if regime == regimes.UNRESOLVED:
-        solver = question.solver
+        solver = request.solver
         moving = solver.start == "moving"
-        cell, table = one_cell(cells.motion, question.beta, question.mu, limits(solver), moving)
+        cell, table = one_cell(cells.motion, request.beta, request.mu, limits(solver), moving)
         status = cell.status
         if status == regimes.NOT_PERIODIC:
-            return _window(question, cells, cell)
+            return _window(request, cells, cell)
         if cell.period == 0:
-            raise _no_steady_state(question, regimes.status_meaning(status))
+            raise _no_steady_state(request, regimes.status_meaning(status))
         regime, stuck_at = cell.regime, cells.unit * cell.sign * cell.contact_state.z
     if regime == regimes.PERMANENT_STICKING:
         return FoundMotion(None, status, stuck_at)
     recurrence = table if table.shape[0] else None
     if recurrence is None:
         if math.isinf(cells.structure_arrays.orbit.v_abs[0]):
-            raise _no_steady_state(question, _UNBOUNDED)
-        table = _continuous_table(question, cells)
-        marginal = bool(cells.structure_arrays.marginal[0]) and question.beta > 0.0
+            raise _no_steady_state(request, _UNBOUNDED)
+        table = _continuous_table(request, cells)
+        marginal = bool(cells.structure_arrays.marginal[0]) and request.beta > 0.0
         status = regimes.MARGINAL if marginal else status
     return FoundMotion(_with_mirror_image(table), status, recurrence=recurrence)
 
 
-def _stuck_history(question: Question, cells: Cells, stuck_at: float) -> History:
+def _stuck_history(request: MotionRequest, cells: Cells, stuck_at: float) -> History:
     """Time history with the contact held at `stuck_at` permanently."""
     found = cells.structure_arrays
-    tau = _times(1, question.points)
+    tau = _times(1, request.points)
     turn = np.exp(1j * tau)
     held = found.held[0][:, np.newaxis] * turn
     offset = found.outputs.static_shape[:, np.newaxis] * stuck_at
-    force = question.system.modes.held_load(np.array([question.r]))[0] * turn
+    force = request.system.modes.held_load(np.array([request.r]))[0] * turn
     return History(
         1, tau, held.real + offset, -held.imag, np.full(tau.size, stuck_at),
         force.real - found.model.stiffness * stuck_at, np.zeros(tau.size, np.int8),
@@ -235,18 +235,18 @@ def _align_times(
 
 
 def _displacements(
-    question: Question,
+    request: MotionRequest,
     numbers: StructureArrays,
     coordinates: np.ndarray,
     velocities: np.ndarray,
     tau: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """x and x' in tau (n_dof, tau.size), from coordinates and velocities of the oscillators (n, tau.size)."""
-    modes, n = question.system.modes, len(coordinates)
+    modes, n = request.system.modes, len(coordinates)
     if not modes.free.coupled:
         outputs = numbers.outputs.free[:, :n]
         return outputs @ coordinates, outputs @ velocities
-    r, loads = question.r, numbers.loads
+    r, loads = request.r, numbers.loads
     feedthrough = np.outer(loads.free_feedthrough_cos[0], np.cos(tau)) + np.outer(
         loads.free_feedthrough_sin[0], np.sin(tau)
     )
@@ -255,28 +255,28 @@ def _displacements(
     return phi @ motion[:n], phi @ motion[n:] / r
 
 
-def _moving_history(question: Question, cells: Cells, found: FoundMotion) -> History:
+def _moving_history(request: MotionRequest, cells: Cells, found: FoundMotion) -> History:
     """Time history of a sliding motion, sampled from its segment table."""
     numbers, table = cells.structure_arrays, found.table
     assert table is not None
     if numbers.resonant.any():
-        raise _no_steady_state(question, _UNBOUNDED)
+        raise _no_steady_state(request, _UNBOUNDED)
     n = numbers.participating.size
     lengths = table[:, segment_table.LENGTH]
     period = WINDOW if found.averages else max(1, round(float(lengths.sum()) / _TURN))
-    tau = _times(period, question.points)
+    tau = _times(period, request.points)
     since, shown, times = _align_times(found, tau, table[:, segment_table.BEGIN])
     order = np.argsort(since, kind="stable")
-    st = make_structure(numbers.model, numbers.loads, 0, question.r, float(question.solver.steps))
+    st = make_structure(numbers.model, numbers.loads, 0, request.r, float(request.solver.steps))
     coordinates, velocities = np.empty((2, n, tau.size))
     z, friction = np.empty((2, tau.size))
     sense = np.empty(tau.size, dtype=np.int8)
     samples = Samples(coordinates, velocities, z, friction, sense)
-    sample_segments(st, question.beta, table, since[order], samples, make_workspace(n), make_scratch(n))
+    sample_segments(st, request.beta, table, since[order], samples, make_workspace(n), make_scratch(n))
     back = np.empty_like(order)
     back[order] = np.arange(order.size)
     uncoupled = numbers.uncoupled[0][:, np.newaxis] * np.exp(1j * tau)
-    x, v = _displacements(question, numbers, coordinates[:, back], velocities[:, back], tau)
+    x, v = _displacements(request, numbers, coordinates[:, back], velocities[:, back], tau)
     begins, places = _segment_starts(table)
     return History(
         period, tau, x + uncoupled.real, v - uncoupled.imag, z[back], friction[back], sense[back],
@@ -309,15 +309,15 @@ def _summary(history: History, found: FoundMotion) -> dict[str, float]:
     }
 
 
-def _cycle(question: Question, cells: Cells, found: FoundMotion) -> dict[str, np.ndarray]:
+def _cycle(request: MotionRequest, cells: Cells, found: FoundMotion) -> dict[str, np.ndarray]:
     """Quantities of response curves of the cell; NaN for a motion that does not repeat."""
     if found.averages is None:
         if found.table is None:
             stuck_cell_quantities(cells.quantities)
         elif found.recurrence is None:
-            continuous_cell_quantities(cells.quantities, question.beta)
+            continuous_cell_quantities(cells.quantities, request.beta)
         else:
-            table_cell_quantities(cells.quantities, question.beta, found.recurrence)
+            table_cell_quantities(cells.quantities, request.beta, found.recurrence)
     values = {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
     if found.table is None:  # here the static offset of the stuck contact is included
         values["amplitude"] += np.abs(cells.structure_arrays.outputs.static_shape * found.stuck_at)
@@ -325,13 +325,13 @@ def _cycle(question: Question, cells: Cells, found: FoundMotion) -> dict[str, np
     return values
 
 
-def _history(question: Question, cells: Cells, found: FoundMotion) -> History:
+def _history(request: MotionRequest, cells: Cells, found: FoundMotion) -> History:
     if found.table is None:
-        return _stuck_history(question, cells, found.stuck_at)
-    return _moving_history(question, cells, found)
+        return _stuck_history(request, cells, found.stuck_at)
+    return _moving_history(request, cells, found)
 
 
-def find_motion(question: Question) -> Motion:
+def find_motion(request: MotionRequest) -> SteadyMotion:
     """Find the steady state of a cell in time, and its scalars.
 
     Raises
@@ -339,10 +339,12 @@ def find_motion(question: Question) -> Motion:
     NoSteadyState
         None exists, or none was found.
     """
-    system, solver = question.system, question.solver
-    r, beta, mu = (np.array([value]) for value in (question.r, question.beta, question.mu))
+    system, solver = request.system, request.solver
+    r, beta, mu = (np.array([value]) for value in (request.r, request.beta, request.mu))
     cells = Cells(system, r, beta, mu, solver, quantity_request(CYCLE, HARMONICS))
-    found = _find(question, cells)
-    history = _history(question, cells, found)
+    found = _find(request, cells)
+    history = _history(request, cells, found)
     comment = _WINDOWED.format(solver.cycles) if found.averages is not None else ""
-    return Motion(history, _summary(history, found), _cycle(question, cells, found), cells.curves, comment)
+    return SteadyMotion(
+        history, _summary(history, found), _cycle(request, cells, found), cells.curves, comment
+    )

@@ -17,7 +17,7 @@ from ..theory.boundaries import boundary_variables
 from ..theory.refinement import boundary_check
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales, Units, scales_of
-from .motion import Question, find_motion
+from .motion import MotionRequest, find_motion
 from .quantity_data import PARTS
 from .sweep import sweep
 
@@ -26,12 +26,12 @@ POINTS = 2000
 _MOST_POINTS = 10**6
 
 
-def _further(question: Question, names: list[Output]) -> dict[str, xr.Variable]:
+def _further(request: MotionRequest, names: list[Output]) -> dict[str, xr.Variable]:
     """Compute outputs of the cell of a map that do not follow from the motion in time."""
     if not names:
         return {}
-    solver = replace(question.solver, outputs=names)
-    ds = sweep(question.system, question.r, question.beta, question.mu, solver=solver, threads=1)
+    solver = replace(request.solver, outputs=names)
+    ds = sweep(request.system, request.r, request.beta, request.mu, solver=solver, threads=1)
     cell = ds.isel(mu=0, r=0, beta=0, missing_dims="ignore")
     return {name: cell[name].variable for name in names}
 
@@ -112,8 +112,8 @@ def response(
     scales = scales_of(units, system)
     r, beta, mu = _checked_cell(r, beta, mu, scales)
     points = checks.whole(points, "points", least=2, most=_MOST_POINTS)
-    question = Question(system, r, beta, mu, solver, points)
-    found = find_motion(question)
+    request = MotionRequest(system, r, beta, mu, solver, points)
+    found = find_motion(request)
     history, cycle = found.history, found.cycle
     times, begins, places = history.events
     variables = {
@@ -140,7 +140,7 @@ def response(
     labelled |= {
         name: label_variable(name, CELL_VARIABLES[name].dtype(value)) for name, value in found.summary.items()
     }
-    labelled |= _further(question, [name for name in solver.outputs if name not in labelled])
+    labelled |= _further(request, [name for name in solver.outputs if name not in labelled])
     coords = {name: coordinate(name, values) for name, values in {**own, **cell}.items()}
     ds = xr.Dataset(labelled, coords=coords)  # all at once: piece by piece took a third of the time
     ds = stamp(ds, "response", "Steady state in time", system, cell, solver, units=units)

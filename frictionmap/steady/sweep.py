@@ -184,7 +184,9 @@ def study_coordinates(variations: Variations) -> dict[str, xr.Variable]:
     coords = {}
     for axis in variations.axes:
         if axis.name in NAMES:
-            raise InputError(f"axes must not name {axis.name}, which a map has already; give it another name")
+            raise InputError(
+                f"cannot name a further axis {axis.name}: a map has this name already; use another one"
+            )
         if axis.zipped:
             counted = np.arange(axis.size)
             coords[axis.name] = coordinate_of_study(axis.name, "points of several numbers", counted)

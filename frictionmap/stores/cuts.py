@@ -1,4 +1,4 @@
-"""Where a study is cut into blocks: by what its cells cost.  Workers share the blocks, and a stop loses few.
+"""Division of a study into blocks by computing time, so that workers share them and a stop loses few.
 
 The cost is counted, not timed (`seconds_of_cells`): a study is cut alike whenever it is begun, for any number
 of workers up to `_WORKERS`.  A store keeps the cut that it was made with.

@@ -13,7 +13,7 @@ from .study import Batch, Study
 
 
 class Array(NamedTuple):
-    """One array of a store."""
+    """Layout of an array of a store."""
 
     dims: tuple[str, ...]
     shape: tuple[int, ...]
@@ -66,7 +66,7 @@ def _physical(study: Study) -> dict[str, xr.Variable]:
 
 
 def plain(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Attributes as JSON can hold them."""
+    """Convert attributes to types of JSON."""
     return {
         str(name): value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
         for name, value in attributes.items()
@@ -74,12 +74,12 @@ def plain(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def region(study: Study, batch: Batch, array: Array) -> tuple[slice, ...]:
-    """Where a batch lies in an array."""
+    """Slices of an array that a batch fills."""
     axes = (*(axis.name for axis in study.variations.axes), "mu", "row_block")
     where = dict(zip(axes, batch.places, strict=True)) | {"r": study.frequencies(batch)}
     return tuple(where.get(dim, slice(None)) for dim in array.dims)
 
 
 def chunk(where: tuple[slice, ...], array: Array) -> tuple[int, ...]:
-    """Which chunk of an array lies there."""
+    """Index of the chunk of an array at some slices."""
     return tuple((part.start or 0) // size for part, size in zip(where, array.chunks, strict=True))

@@ -1,4 +1,4 @@
-"""Filling a store: what is missing is computed block by block, wherever a run was stopped."""
+"""Computation of the missing blocks of a store, wherever a run was stopped."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -21,7 +21,7 @@ FindCut = Callable[[Study], Cut]
 
 
 def in_this_process(threads: int | None) -> Fill:
-    """One batch after the other, each on threads."""
+    """Compute one batch after the other, each on threads."""
 
     def fill(store: Store, batches: Iterable[Batch]) -> Iterator[Batch]:
         for batch in batches:
@@ -40,9 +40,9 @@ def fill_store(
     progress: Progress | None = None,
     find_cut: FindCut | None = None,
 ) -> Store:
-    """Make the store of a study, or go on with it, until all its blocks are done.
+    """Make the store of a study, or resume it, until all its blocks are done.
 
-    A store keeps the cut that it was made with; `find_cut` is asked for that of a new one.
+    A store keeps the cut that it was made with; `find_cut` gives that of a new one.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def fill_store(
         if not done.all():
             _check_writable(path)
         claim.kept = lambda: (
-            f"{np.count_nonzero(done):,} of {done.size:,} blocks are in {path}; the same command goes on"
+            f"{np.count_nonzero(done):,} of {done.size:,} blocks are in {path}; repeat the command to resume"
         )
         missing = [batch for batch in study.batches() if not done[batch.places].all()]
         try:
@@ -77,22 +77,24 @@ def fill_store(
                 if progress is not None:
                     progress(int(np.count_nonzero(done)), done.size)
         except OSError as error:
-            why = f"cannot be written ({error.strerror})" if error.strerror else f"is not finished ({error})"
-            raise OSError(f"{path} {why}; {claim.kept()}") from error
+            failed = f"write {path}: {error.strerror}" if error.strerror else f"finish {path}: {error}"
+            raise OSError(f"cannot {failed}; {claim.kept()}") from error
         return store
 
 
 def _check_replaceable(path: Path) -> None:
-    """Refuse to replace a folder that is no store, or one that is protected from writing."""
+    """Refuse to replace a folder that is not a store or is write-protected."""
     if not path.exists():
         return
     _check_writable(path)
     if not (path / "zarr.json").is_file():
-        raise InputError(f"-o must be a store to be overwritten; the folder {path} holds something else")
+        raise InputError(f"cannot overwrite {path}: the folder is not a store; use another -o")
 
 
 def _check_writable(path: Path) -> None:
-    """Refuse a store that is protected from writing, or one of whose arrays is."""
+    """Refuse a store that is write-protected, or has a write-protected array."""
     for place in (path, *path.glob("*/")):
         if not os.access(place, os.W_OK):
-            raise InputError(f"output {place} is protected from writing; make it writable or use another -o")
+            raise InputError(
+                f"cannot write {place}: it is write-protected; make it writable or use another -o"
+            )

@@ -1,4 +1,4 @@
-"""A store on disk: made whole, recognised as that of a study, tidied; blocks written, and marked as done."""
+"""Stores on disk: creation, identification, removal of leftovers; writing and marking of blocks."""
 
 import contextlib
 import glob
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 #: The group of the matrices of a structure that has any.
 _MATRICES = "matrices"
 
-#: What a file is called while it is written.
+#: Names of files that are being written.
 _PARTIAL = "*.partial"
 
 _SOURCE = f"frictionmap {__version__}"
@@ -45,7 +45,7 @@ def _zarr() -> Any:
         import zarr
     except ImportError:
         raise InputError(
-            "-o must be a .nc file unless zarr is installed: pip install 'frictionmap[zarr]'"
+            "cannot use a .zarr store: zarr is not installed; run pip install 'frictionmap[zarr]'"
         ) from None
     return zarr
 
@@ -63,14 +63,14 @@ class Store:
 
     @property
     def digest(self) -> str:
-        """What tells a store from one of another study."""
+        """Hash of configuration and matrices, by which stores are distinguished."""
         text = str(self._group.attrs["config"])
         matrices = _matrices(self.study.system.matrices)
         content = [text.encode(), *(array.tobytes() for array in matrices.values())]
         return hashlib.sha256(b"".join(content)).hexdigest()
 
     def marks(self) -> np.ndarray:
-        """Which blocks are marked as done; bool, in the shape of `study.shape`.
+        """Blocks marked as done, bool of `study.shape`.
 
         Raises
         ------
@@ -84,18 +84,18 @@ class Store:
             return np.asarray(self._group[MARKS][...]) != 0
         except OSError:
             raise
-        except Exception as error:  # the library raises anything over files that are not its own
+        except Exception as error:  # the library raises any exception on foreign files
             raise _damaged(self.path, name, error) from None
 
     def done(self) -> np.ndarray:
-        """Which blocks are done: `marks`, but for blocks of which a chunk is missing, by whose hand ever."""
+        """Blocks marked as done whose chunks all exist."""
         done = self.marks()
         for batch in self.study.batches():
             done[batch.places] &= not done[batch.places].any() or self._is_whole(batch)
         return done
 
     def _is_whole(self, batch: Batch) -> bool:
-        """Whether all chunks of a batch are there, whatever is in them."""
+        """Whether all chunks of a batch exist."""
         for name, array in self._arrays.items():
             place = chunk(region(self.study, batch, array), array)
             if not (self.path / name / self._writable[name].metadata.encode_chunk_key(place)).exists():
@@ -121,9 +121,9 @@ class Store:
 
 
 def make_store(path: Path, study: Study, title: str) -> None:
-    """Make the store of a study, without any block; it appears whole or not at all.
+    """Make the store of a study without any block; it appears in one step.
 
-    One that is there is put away, in one step as well: a stray.
+    An existing store is set aside in one step as well, to be removed.
 
     Raises
     ------
@@ -163,7 +163,9 @@ def make_store(path: Path, study: Study, title: str) -> None:
             path.rename(_away(path))
         away.rename(path)
     except OSError as error:
-        raise OSError(f"{path} cannot be written ({error.strerror or error})") from error
+        raise OSError(
+            f"cannot write {path}: {error.strerror or error}; check disk space and permissions"
+        ) from error
     finally:
         shutil.rmtree(away, ignore_errors=True)
 
@@ -179,14 +181,14 @@ def _make_array(group: "zarr.Group", name: str, array: Array) -> "zarr.Array":
 
 
 def _matrices(matrices: object) -> dict[str, np.ndarray]:
-    """Those of a structure, if it is given by matrices, by their names."""
+    """Matrices of a structure by their names; none of a chain."""
     if not isinstance(matrices, Matrices):
         return {}
     return matrices.arrays
 
 
 def _configuration(study: Study, title: str) -> str:
-    """A configuration that makes the study again, beside its matrices."""
+    """Configuration that reproduces the study; matrices are stored as arrays."""
     grid = {"r": study.r, "beta": study.beta, "mu": study.mu}
     further = study.variations.described or None
     return configuration(
@@ -209,12 +211,12 @@ def opened(path: Path) -> Store:
 
 
 def cut_of(path: Path) -> Cut:
-    """How the store at a path is cut, by the chunks of its arrays.
+    """Read the division of a store into blocks from the chunks of its arrays.
 
     Raises
     ------
     InputError
-        An array that tells it is missing or damaged.
+        A required array is missing or damaged.
     """
     name = MARKS
     try:
@@ -224,19 +226,19 @@ def cut_of(path: Path) -> Cut:
         return Cut(group[name].chunks[-2], together)
     except OSError:
         raise
-    except Exception as error:  # the library raises anything over files that are not its own
+    except Exception as error:  # the library raises any exception on foreign files
         raise _damaged(path, name, error) from None
 
 
 def _damaged(path: Path, name: str, error: Exception) -> InputError:
     return InputError(
-        f"store {path} must be whole to go on with; its {name} cannot be read "
-        f"({checks.one_line(error)}); use --overwrite or another -o"
+        f"cannot resume {path}: array {name!r} is damaged ({checks.one_line(error)}); "
+        "use --overwrite or another -o"
     )
 
 
 def _config(path: Path) -> Config:
-    """The configuration of a store; refused is what is no store of ours, or of another version."""
+    """Read the configuration of a store; refuse other folders, and stores of another version."""
     zarr = _zarr()
     source: object = "something else"
     try:
@@ -247,14 +249,12 @@ def _config(path: Path) -> Config:
             return config_of(str(group.attrs["config"]), {"matrices": found} if found else {})
     except PermissionError as error:
         raise InputError(
-            f"store {path} must be readable to go on with; {error.filename} is protected from reading; "
-            "use another -o"
+            f"cannot resume {path}: {error.filename} is read-protected; make it readable or use another -o"
         ) from None
-    except Exception:  # whatever the library makes of files that are not its own
+    except Exception:  # any exception of the library on foreign files
         pass
     raise InputError(
-        f"store {path} must be of this version, {_SOURCE}, to go on with; it is of {source}; "
-        "use --overwrite or another -o"
+        f"cannot resume {path}: written by {source}, this is {_SOURCE}; use --overwrite or another -o"
     )
 
 
@@ -263,7 +263,7 @@ def _arrays_in(group: "zarr.Group", name: str) -> list[tuple[str, "zarr.Array"]]
 
 
 def check_same(path: Path, study: Study, title: str) -> None:
-    """Refuse a store of another study, by name of what differs."""
+    """Refuse a store of another study; the message names the differing keys."""
     config = _config(path)
     there = _flat(parse(config.text))
     here = _flat(parse(_configuration(study, title)))
@@ -274,17 +274,16 @@ def check_same(path: Path, study: Study, title: str) -> None:
         differing = ["system.matrices"]
     if differing:
         words = "; ".join(
-            f"{key}: {checks.one_line(there.get(key))} there, {checks.one_line(here.get(key))} here"
+            f"{key}: {checks.one_line(there.get(key))} there, {checks.one_line(here.get(key))} now"
             for key in differing[:3]
         )
         raise InputError(
-            f"store {path} must be of this configuration to go on with; it differs in {words}; "
-            "use --overwrite or another -o"
+            f"cannot resume {path}: its configuration differs, {words}; use --overwrite or another -o"
         )
 
 
 def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """A tree by dotted keys."""
+    """Flatten nested tables to dotted keys."""
     flat: dict[str, Any] = {}
     for key, value in tree.items():
         flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, Mapping) else {f"{prefix}{key}": value}
@@ -292,7 +291,7 @@ def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def _being_made(path: Path) -> str:
-    """How the name of a store begins before and after it is one."""
+    """Prefix of the names of a store that is being made, or was replaced."""
     return f".{path.name}-"
 
 
@@ -302,7 +301,7 @@ def _away(path: Path) -> Path:
 
 
 def remove_strays(path: Path) -> None:
-    """Remove what was being made, written or replaced when a run was stopped; no other may be at it."""
+    """Remove leftovers of stopped runs; no other run may be writing the store."""
     for folder in path.parent.glob(glob.escape(_being_made(path)) + 16 * "[0-9a-f]"):
         shutil.rmtree(folder, ignore_errors=True)
     for stray in path.rglob(_PARTIAL):

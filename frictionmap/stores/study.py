@@ -1,4 +1,4 @@
-"""What a store holds: systems along further axes, a grid, settings; and the blocks it is computed in.
+"""Contents of a store: systems along further axes, a grid, settings; and the blocks it is computed in.
 
 A block is whole rows in r of one point of the further axes and one mu.
 """
@@ -20,16 +20,16 @@ from ..steady.refinement import reduction_check
 from ..steady.sweep import regime_map, study_coordinates
 from ..units.scales import Scales, Units, scales_of
 
-#: Cells of a block at most, whatever they cost: memory, and few files.
+#: Maximum number of cells of a block, for any computing time: limits memory and number of files.
 BLOCK_CELLS = 2**20
 
 
-#: Small blocks that are computed and written together: so many at most, with one in so many of those cells.
+#: Maximum number of small blocks computed and written together, and the inverse of their share of the cells.
 TOGETHER = 64
 
 
 class Batch(NamedTuple):
-    """Blocks that are computed and written together: one of many cells, or small ones that are neighbours."""
+    """Blocks that are computed and written together: one large block, or small neighbouring ones."""
 
     first: tuple[int, ...]  # place of the first of them among the marks
     sizes: tuple[int, ...]  # how many along every axis of the marks
@@ -46,7 +46,7 @@ class Batch(NamedTuple):
 
 
 class Cut(NamedTuple):
-    """Where the cells of a study are cut: into blocks, and into batches of blocks."""
+    """Division of the cells of a study into blocks, and of blocks into batches."""
 
     rows: int  # of a block; the last one of a map may have fewer
     #: blocks of a batch along every axis of the marks; those at the ends may have fewer
@@ -68,12 +68,12 @@ class Study:
 
     @property
     def system(self) -> System:
-        """The one that the others are variations of."""
+        """System of which the others are variations."""
         return self.variations.system
 
     @property
     def scales(self) -> Scales:
-        """What the ratios are in SI units."""
+        """Reference values of the ratios in SI units."""
         return scales_of(self.units, self.system, self.variations)
 
     @cached_property
@@ -82,7 +82,7 @@ class Study:
 
     @property
     def reduction_check(self) -> dict[str, str]:
-        """What twice as many modes of a reduced structure change, see `steady.refinement`."""
+        """Effect of twice as many modes of a reduced structure, see `steady.refinement`."""
         return reduction_check(self.system, {"mu": self.mu, "r": self.r, "beta": self.beta}, self.solver)
 
     @property
@@ -97,7 +97,7 @@ class Study:
 
     @property
     def _row(self) -> int:
-        """What is in a row, as a number of cells."""
+        """Size of a row, as a number of cells."""
         return self.beta.size * (self.system.n if "amplitude" in self.solver.outputs else 1)
 
     @property
@@ -119,7 +119,7 @@ class Study:
         return self.variations.count * self.mu.size * self.r.size * self.beta.size
 
     def cut_at(self, cells: int) -> Cut:
-        """Blocks, and batches of blocks, of so many cells at most; a block has one row at least.
+        """Divide the study into blocks and batches of at most `cells` cells; a block has at least one row.
 
         Large blocks are alone; small ones share files, and what it costs to write them.
         """
@@ -138,7 +138,7 @@ class Study:
         return Batch(first, tuple(min(most, size - k) for k, size, most in ends))
 
     def batches(self) -> Iterator[Batch]:
-        """All of them."""
+        """Iterate over all batches."""
         steps = zip(self.shape, self.together, strict=True)
         return map(self.batch, product(*(range(0, size, step) for size, step in steps)))
 
@@ -160,7 +160,7 @@ class Study:
 
     @cached_property
     def sample(self) -> xr.Dataset:
-        """One cell of the study, computed once: which variables there are, and all kernels compiled."""
+        """Compute one cell of the study, once: it shows the variables, and compiles all kernels."""
         grid = {"mu": self.mu[-1:], "r": self.r[-1:], "beta": self.beta[-1:]}
         return regime_map(self.system, grid, self.solver, 1, None)
 
@@ -175,7 +175,7 @@ def study_of(
 ) -> Study:  # fmt: skip
     """The study of one system, or of its variations, on axes mu, r and beta.
 
-    Every cell has a `status` in a store: which cells want one is not known before all are computed.
+    Every cell has a `status` in a store, as it is unknown beforehand which cells need one.
     """
     solver = replace(solver, outputs=tuple(dict.fromkeys((*solver.outputs, "status"))))
     return Study(

@@ -1,7 +1,7 @@
-"""Blocks on processes of dask: of this machine, or of a cluster that is running.
+"""Computation of blocks by dask workers, on this machine or on a running cluster.
 
-Workers are sent the path of the store and the place of a block, no data; they do the batch that it begins.
-What was done by a worker that is lost is done again, to the same bytes.
+Workers receive the path of the store and the index of a block, no data, and compute the batch it begins.
+Blocks of a lost worker are computed again, with identical bytes.
 """
 
 import contextlib
@@ -25,16 +25,16 @@ from .study import Batch
 if TYPE_CHECKING:
     from distributed import Client, Future, LocalCluster
 
-#: Blocks that wait at a worker, beside the one it computes: it is never idle, and a stop leaves few behind.
+#: Blocks queued at a worker: it is never idle, and few are lost if the run stops.
 _WAITING = 2
 
-#: Starts of the workers of this machine: one that is lost while it starts makes an end of all.
+#: Attempts to start local workers: if one is lost while it starts, all end.
 _STARTS = 3
 
-#: A block whose workers are lost so many times is what kills them.
+#: Number of lost workers after which a block is considered the cause.
 _LOSSES = 20
 
-#: Seconds to wait for the first worker of a scheduler that is running: a queue may take a night.
+#: Seconds to wait for the first worker of a running scheduler: a queue may take a night.
 _PATIENCE = 86400
 
 
@@ -43,18 +43,18 @@ def _distributed() -> Any:
         import distributed
     except ImportError:
         raise InputError(
-            "--workers and --scheduler must be left out unless dask is installed: "
-            "pip install 'frictionmap[dask]'"
+            "cannot use --workers or --scheduler: dask is not installed; run pip install 'frictionmap[dask]'"
         ) from None
     return distributed
 
 
 @lru_cache(maxsize=4)
 def _store(path: str, digest: str) -> Store:
-    """The store of a study, opened once a process; of a host one process compiles, the others wait for it."""
+    """Open the store of a study, once per process; one process per host compiles while others wait."""
     if not Path(path).exists():
         raise OSError(
-            f"{path} must be where all workers see it under this path; one on {gethostname()} does not"
+            f"cannot open {path} on {gethostname()}: workers must see the store under the same path; "
+            "use a shared folder"
         )
     store = opened(Path(path))
     _check_same(store, digest)
@@ -65,12 +65,14 @@ def _store(path: str, digest: str) -> Store:
 
 def _check_same(store: Store, digest: str) -> None:
     if store.digest != digest:
-        raise OSError(f"{store.path} must be the same store for all workers; a worker found another there")
+        raise OSError(
+            f"cannot write {store.path}: a worker found another store there; use a folder that all share"
+        )
 
 
 @contextlib.contextmanager
 def _alone() -> Iterator[None]:
-    """As long as no other process of this host is there, if kernels are kept and files can be locked."""
+    """Exclude other processes of this host, if kernels are cached on disk and files can be locked."""
     places = folders()
     if sys.platform == "win32" or not places:
         yield
@@ -94,7 +96,7 @@ def compute(path: str, digest: str, first: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def task(version: str) -> Callable[[str, str, tuple[int, ...]], tuple[int, ...]]:
-    """`compute` as workers are sent it: one without this version of the package says so.
+    """Return `compute` in the form sent to workers; a worker without this version of the package says so.
 
     It is in no module, and so sent as code: what is sent as the name of a module ends a worker that lacks it.
     """
@@ -109,12 +111,12 @@ def task(version: str) -> Callable[[str, str, tuple[int, ...]], tuple[int, ...]]
             found = import_module("frictionmap.version").__version__
             import_module("zarr")
             compute = import_module("frictionmap.stores.workers").compute
-            lacks = "" if found == version else f"frictionmap is of version {found} there"
+            lacks = "" if found == version else f"frictionmap has version {found} there"
         except ImportError as error:
             lacks = str(error)
         if lacks:
             raise OSError(
-                f"worker {get_worker().address} must have frictionmap[dask] {version}: {lacks}; "
+                f"cannot use worker {get_worker().address}: it needs frictionmap[dask] {version} ({lacks}); "
                 f"install it for {sys.executable} on that machine"
             )
         return compute(path, digest, first)
@@ -123,7 +125,7 @@ def task(version: str) -> Callable[[str, str, tuple[int, ...]], tuple[int, ...]]
 
 
 def local(workers: int) -> Fill:
-    """On so many processes of this machine, started for it."""
+    """Compute on local worker processes, started for this run."""
     distributed = _distributed()
     import dask
 
@@ -159,7 +161,7 @@ def _tidy_in_silence() -> None:
 
 
 def _cluster(workers: int) -> "LocalCluster":
-    """So many processes with one thread each."""
+    """Start worker processes with one thread each."""
     starts = 0
     while True:
         starts += 1
@@ -170,13 +172,15 @@ def _cluster(workers: int) -> "LocalCluster":
             )  # fmt: skip
         except RuntimeError as error:
             if starts == _STARTS:
-                raise OSError(f"the {workers} workers of --workers cannot be started ({error})") from error
+                raise OSError(
+                    f"cannot start {workers} worker processes: {error}; use fewer --workers"
+                ) from error
 
 
 def running(address: str, say: Callable[[str], None]) -> Fill:
-    """On the workers of a scheduler that is running; they see the store under the same path.
+    """Compute on the workers of a running scheduler, which see the store under the same path.
 
-    say : is told if there are none yet
+    say : called with a message while there are none
     """
     distributed = _distributed()
     for name in ("distributed", "distributed.client"):
@@ -187,7 +191,7 @@ def running(address: str, say: Callable[[str], None]) -> Fill:
             client = distributed.Client(address, timeout="30s")
         except (OSError, ValueError) as error:
             raise InputError(
-                f"--scheduler must be the address of a running one; got {address} ({error})"
+                f"--scheduler must be the address of a running scheduler; got {address} ({error})"
             ) from None
         with client:
             _wait(client, address, say)
@@ -197,18 +201,20 @@ def running(address: str, say: Callable[[str], None]) -> Fill:
 
 
 def _wait(client: "Client", address: str, say: Callable[[str], None]) -> None:
-    """Until there is a worker."""
+    """Wait for the first worker."""
     if client.nthreads():
         return
     say(f"waiting for workers of {address}")
     try:
         client.wait_for_workers(1, timeout=_PATIENCE)
     except TimeoutError:
-        raise OSError(f"{address} had no worker for {_PATIENCE / 3600:g} hours") from None
+        raise OSError(
+            f"cannot compute on {address}: it had no worker for {_PATIENCE / 3600:g} hours; start some"
+        ) from None
 
 
 def _on(client: "Client", store: Store, batches: Iterable[Batch]) -> Iterator[Batch]:
-    """Batches as they are done; a few more are under way than there are workers."""
+    """Yield batches as they are finished; a few more are submitted than there are workers."""
     path, digest, sent = str(store.path.resolve()), store.digest, task(__version__)
     waiting = deque(batch.first for batch in batches)
     places: dict[str, tuple[int, ...]] = {}
@@ -216,7 +222,7 @@ def _on(client: "Client", store: Store, batches: Iterable[Batch]) -> Iterator[Ba
     under_way = _distributed().as_completed(raise_errors=False)
 
     def top_up() -> None:
-        """As many as the workers there are now take; they may come and go."""
+        """Submit as many batches as the present workers take; workers may come and go."""
         threads = max(1, sum(client.nthreads().values()))
         while waiting and len(places) < (1 + _WAITING) * threads:
             place = waiting.popleft()
@@ -237,14 +243,16 @@ def _on(client: "Client", store: Store, batches: Iterable[Batch]) -> Iterator[Ba
 
 
 def _check_lost(future: "Future", times: int) -> None:
-    """Raise what stopped a block, unless it is the loss of workers, and of few."""
+    """Raise the error of a block, unless it is the loss of a few workers."""
     if future.status != "error":
-        raise OSError("the scheduler of dask was lost")
+        raise OSError(
+            "cannot go on: the connection to the dask scheduler is lost; run the command again to resume"
+        )
     error = future.exception()
     if "deserialization" in str(error):  # dask's word where what is sent cannot be read
         raise OSError(
-            "Python and dask must be of the same versions here and where the scheduler runs; "
-            f"dask says: {str(error).splitlines()[0]}"
+            "cannot run on the workers: their versions of Python or dask differ from those here "
+            f"({str(error).splitlines()[0]}); install the same versions"
         ) from error
     if not isinstance(error, _distributed().KilledWorker) or times > _LOSSES:
         raise error

@@ -3,17 +3,17 @@
 ==============  ====================================================================
 module          what is in it
 ==============  ====================================================================
-entries         a matrix as a file has it, entry by entry, and the labels of its rows
+entries         matrices in files: entries, and labels of the rows
 market          Matrix Market
 abaqus          text of Abaqus
 harwell_boeing  Harwell-Boeing, and Rutherford-Boeing
 nastran         OP4 and punch (DMIG), through the extra `fe`
-arrays          several arrays in a file: NPZ and MAT
-files           the door: M, K and C of whatever was given, their rows in one order
-dofs            degrees of freedom by the numbers and labels of a file
-structure       what was given, checked
+arrays          files with several arrays: NPZ and MAT
+files           M, K and C from files or arrays, with equal rows
+dofs            degrees of freedom by number and label
+structure       checked matrices
 craig_bampton   reduction to a few degrees of freedom
-accuracy        what it costs
-reduction       both together: a reduction held to its promise
+accuracy        error of a reduction
+reduction       reduction, checked against the allowed error
 ==============  ====================================================================
 """

@@ -1,4 +1,4 @@
-"""Text that Abaqus writes with *MATRIX GENERATE and *MATRIX OUTPUT.
+"""Matrices as text that Abaqus writes with *MATRIX GENERATE and *MATRIX OUTPUT.
 
 Lines of ``node, dof, node, dof, entry`` (FORMAT=MATRIX INPUT or LABELS) or of ``row column entry``
 (FORMAT=COORDINATE).  Of a symmetric matrix either triangle is there, or all of it.
@@ -43,18 +43,18 @@ def read_abaqus(path: Path) -> Matrix:
             places = [as_whole(field) for field in fields[:-1]]
             values.append(as_number(fields[-1]))
         except ValueError:
-            refuse(path, number, _legal(count), line)
+            refuse(path, number, _expected(count), line)
         if count == _COUNTED and min(places) < 1:
             refuse(path, number, "rows and columns counted from 1", line)
         half = len(places) // 2
         rows.append((places[0], places[1]) if count == _LABELLED else places[0] - 1)
         columns.append((places[half], places[half + 1]) if count == _LABELLED else places[half] - 1)
     if not values:
-        raise InputError(f"file {path} must have a line for every entry of a matrix; it has none")
+        raise InputError(f"cannot read {path}: it has no entries; write one line per entry of the matrix")
     return _matrix(path, rows, columns, values)
 
 
-def _legal(count: int) -> str:
+def _expected(count: int) -> str:
     forms = {_LABELLED: "node, dof, node, dof, entry", _COUNTED: "row column entry"}
     return forms.get(count, " or ".join(forms.values()))
 
@@ -63,7 +63,7 @@ def _keyword(path: Path, number: int, line: str) -> None:
     """Refuse a keyword other than that of a symmetric matrix."""
     words = re.sub(r"\s", "", line).upper().split(",")
     if not words[0].startswith("*MATRIX") or "TYPE=UNSYMMETRIC" in words:
-        refuse(path, number, "no other keyword than that of a symmetric matrix", line)
+        refuse(path, number, "no keyword but *MATRIX of a symmetric matrix", line)
 
 
 def _matrix(path: Path, rows: list[Any], columns: list[Any], values: list[float]) -> Matrix:

@@ -1,12 +1,12 @@
-"""What a reduction costs: natural frequencies and compliances against those of the whole structure.
+"""Accuracy of a reduction: natural frequencies and compliances against those of the whole structure.
 
 Both without damping, which would hide errors, and both with the contact free and held.  Compliances are those
 between all kept degrees of freedom, away from resonances, each in the unit of its static ones; their error is
 that of all together, over the larger of those free and held.
 
 Friction that reverses at once has harmonics far above the range, and sticking depends on the mass that the
-contact feels in that instant, theory.md 3; of the masses around it a reduction keeps few to themselves.  So
-the contact's effective mass is told beside the errors, and not held to what is allowed.
+contact feels in that instant, theory.md 3, and a reduction keeps few of the masses around it separate.  So
+the contact's effective mass is reported with the errors, but has no limit.
 """
 
 import threading
@@ -20,10 +20,10 @@ from .craig_bampton import Reduced, factor, slowest
 
 T = TypeVar("T")
 
-#: Held while the whole structure is looked at; no part of what travels to other processes.
+#: Held while the whole structure is analysed; not sent to other processes.
 _LOOKING = threading.Lock()
 
-#: Compliances are compared at so many frequencies at most, none nearer to a resonance than this share of it:
+#: Number of frequencies at which compliances are compared, none nearer to a resonance than this share:
 #: there the error is that of the resonance's frequency.
 _SAMPLES = 60
 _NEAR = 0.05
@@ -31,17 +31,17 @@ _NEAR = 0.05
 #: Frequencies, evenly spaced, beside those between resonances.
 _EVEN = 9
 
-#: Frequencies of the whole structure that are asked for beyond those that the reduced one has in the range.
+#: Number of frequencies of the whole structure computed beyond those of the reduced one in the range.
 _FURTHER = 3
 
 
 class Ranges(dict[tuple[float, float], T | InputError]):
-    """What was found of ranges of frequency, or why they are refused."""
+    """Cache of results, or of refusals, by range of frequency."""
 
-    def told(self, low: float, high: float, find: Callable[[], T]) -> T:
-        """What is found of a range; of a part of one that is known, at once, what was found of that.
+    def lookup(self, low: float, high: float, find: Callable[[], T]) -> T:
+        """Return the result for a range; that of a known range which contains it is returned at once.
 
-        Several threads that ask for one range have it looked at once.
+        If several threads request one range, it is computed once.
         """
         with _LOOKING:
             found = self.get((low, high))
@@ -54,7 +54,7 @@ class Ranges(dict[tuple[float, float], T | InputError]):
         return found
 
     def _around(self, low: float, high: float) -> T | None:
-        """What was found of a range that holds this one; a part of one that is refused may be legal."""
+        """Result for a known range that contains this one; part of a refused range may be valid."""
         for (least, most), found in self.items():
             if least <= low and high <= most and not isinstance(found, InputError):
                 return found
@@ -69,7 +69,7 @@ def _found(find: Callable[[], T]) -> T | InputError:
 
 
 class Accuracy(NamedTuple):
-    """Largest relative errors in a range of frequency, and what is felt beyond it.
+    """Largest relative errors in a range of frequency, and the effect on higher frequencies.
 
     contact_mass : 1/(c M^-1 c) of the reduced structure, over that of the whole one; 1 or more
     """
@@ -84,21 +84,21 @@ class Accuracy(NamedTuple):
         return max(self.frequencies, self.compliances)
 
     def words(self) -> str:
-        """In words."""
+        """Describe the errors in the range."""
         if not np.isfinite(self.frequencies):
-            return "natural frequencies of the whole structure's missing"
+            return "natural frequencies of the whole structure are missing"
         return (
             f"natural frequencies within {self.frequencies:.1e} of the whole structure's, compliances within "
             f"{self.compliances:.1e}"
         )
 
     def beyond(self) -> str:
-        """In words, what is felt beyond the range."""
+        """Describe the effect on frequencies above the range."""
         return f"the contact's effective mass is {self.contact_mass:.4g} times that of the whole structure"
 
 
-class Whole:
-    """A structure with sparse matrices, as far as reduced ones are compared with it."""
+class FullStructure:
+    """A structure with sparse matrices, the reference for its reductions."""
 
     def __init__(self, mass: Any, stiffness: Any, contact: np.ndarray, forces: np.ndarray) -> None:
         """contact: c (n,); forces (n, k): the loads whose works on each other are the compliances."""
@@ -156,7 +156,7 @@ def _held(contact: np.ndarray) -> Any:
 class Comparison:
     """Reduced structures against a whole one, from one frequency to another; the whole is solved once."""
 
-    def __init__(self, whole: Whole, low: float, high: float) -> None:
+    def __init__(self, whole: FullStructure, low: float, high: float) -> None:
         self._whole = whole
         self._range = low, high
         self._frequencies: tuple[np.ndarray, ...] = ()

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import InputError
 from ..mat_files import read_mat
 
-#: What a file that is not an .npz, or a damaged one, makes numpy raise.
+#: Exceptions of numpy for files that are not .npz, or damaged.
 _NOT_NPZ = (ValueError, EOFError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
 
 
@@ -26,7 +26,7 @@ def read_npz(path: Path) -> dict[str, Any]:
         reason = "it is not an .npz file of plain arrays"
     except (AttributeError, TypeError):  # one array, as numpy.save writes it, has no names
         reason = "it is not an .npz file but one array"
-    raise InputError(f"matrices must be an .npz file with arrays M, K and optionally C; {path}: {reason}")
+    raise InputError(f"matrices must be an .npz file with arrays M, K and optionally C; got {path}: {reason}")
 
 
 def read_mat_arrays(path: Path) -> dict[str, Any]:

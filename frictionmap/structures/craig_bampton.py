@@ -18,23 +18,23 @@ from ..errors import InputError
 from .dofs import Dofs
 from .structure import Structure
 
-#: Error of natural frequencies and compliances, relative, that is taken without a word.
+#: Default of the allowed relative error of natural frequencies and compliances.
 _ALLOWED = 1e-3
 
-#: So few degrees of freedom are solved for all their modes.
+#: Number of degrees of freedom up to which all modes are computed.
 _FEW = 400
 
-#: A motion of all by one that the modes leave less of than this needs no column of its own.
+#: Remainder of the rigid motion below which it needs no column of its own.
 _SPANNED = 1e-7
 
-#: Of the largest entry of a shape: what is left of it is rounding.
+#: Share of the largest entry of a shape below which entries are rounding.
 _ROUNDING = 1e-10
 
 _KEYS = ("keep", "modes", "allow")
 
 
 class Reduce(NamedTuple):
-    """What is asked for."""
+    """Settings of a reduction."""
 
     keep: tuple[int, ...]  # numbers of degrees of freedom, beside contact and load
     modes: int
@@ -49,7 +49,7 @@ def checked_reduce(given: object, dofs: Dofs) -> Reduce:
         raise InputError(f"reduce must be {{ keep = [...], modes = 16 }}; got {checks.one_line(given)}")
     for key in given:
         if key not in _KEYS:
-            raise InputError(f"reduce must have the keys {', '.join(_KEYS)}; got {checks.one_line(key)}")
+            raise InputError(f"unknown key of reduce {checks.one_line(key)}; valid: {', '.join(_KEYS)}")
     keep = given.get("keep", ())
     if isinstance(keep, str) or not isinstance(keep, (Sequence, np.ndarray)):
         raise InputError(f"reduce.keep must be a list of degrees of freedom; got {checks.one_line(keep)}")
@@ -83,7 +83,7 @@ class FixedInterface:
         return columns
 
     def rows(self, columns: np.ndarray) -> np.ndarray:
-        """Rows whose displacements are the coordinates: the kept ones, and others that tell best."""
+        """Rows whose displacements are the coordinates: the kept ones, and those that separate modes best."""
         from scipy.linalg import qr
 
         inner = columns[self.others, self.kept.size :]
@@ -111,7 +111,7 @@ def factor(matrix: Any) -> Any:
         found = None
     # without row exchanges the pivots have the signs of the eigenvalues
     if found is None or not (found.U.diagonal() > 0.0).all():
-        raise InputError("matrices: K must be positive definite; it is singular or indefinite")
+        raise InputError("matrices: K must be positive definite; got a singular or indefinite matrix")
     return found
 
 
@@ -140,17 +140,17 @@ def slowest(mass: Any, stiffness: Any, count: int) -> tuple[np.ndarray, np.ndarr
 
 
 def fixed_interface(structure: Structure, kept: Sequence[int], modes: int) -> FixedInterface:
-    """Hold these rows of a structure with sparse matrices, and find so many modes of the others.
+    """Hold some rows of a structure with sparse matrices and find modes of the others.
 
     Raises
     ------
     InputError
-        K is not positive definite, M has a negative diagonal, or there are not so many modes.
+        K is not positive definite, M has a negative diagonal, or there are fewer modes.
     """
     mass, stiffness = structure.arrays["M"], structure.arrays["K"]
     diagonal = np.asarray(mass.diagonal())
-    _refuse_where(structure, "M", "has a negative number", diagonal < 0.0)
-    _refuse_where(structure, "K", "has no positive number", np.asarray(stiffness.diagonal()) <= 0.0)
+    _refuse_where(structure, "M", "a negative mass", diagonal < 0.0)
+    _refuse_where(structure, "K", "no positive stiffness", np.asarray(stiffness.diagonal()) <= 0.0)
     rows = np.array(sorted(kept))
     others = np.setdiff1d(np.arange(structure.n), rows)
     most = int(np.count_nonzero(diagonal[others]))
@@ -169,9 +169,8 @@ def _refuse_where(structure: Structure, name: str, what: str, wrong: np.ndarray)
     """Refuse a matrix by the first degree of freedom whose entry on the diagonal is wrong."""
     if wrong.any():
         where = structure.dofs.word(structure.dofs.numbers[int(np.argmax(wrong))])
-        word = {"M": "mass", "K": "stiffness"}[name]
         raise InputError(
-            f"matrices: {name} must be positive definite; degree of freedom {where} {what} as {word}"
+            f"matrices: {name} must be positive definite; got {what} of degree of freedom {where}"
         )
 
 
@@ -184,7 +183,7 @@ class Reduced(NamedTuple):
 
 
 def project(structure: Structure, fixed: FixedInterface, modes: int, base: bool) -> Reduced:
-    """The structure in so many modes and the kept degrees of freedom."""
+    """Project the structure onto the kept degrees of freedom and some modes."""
     columns = fixed.spanned(modes, base)
     rows = fixed.rows(columns)
     motions = np.linalg.solve(columns[rows].T, columns.T).T

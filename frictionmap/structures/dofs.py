@@ -24,12 +24,12 @@ class Dofs:
 
     @classmethod
     def counted(cls, n: int, labels: tuple[Label, ...] | None = None) -> "Dofs":
-        """All of them, 1 to n."""
+        """Number the degrees of freedom from 1 to n."""
         return cls(tuple(range(1, n + 1)), labels)
 
     @property
     def n(self) -> int:
-        """How many there are."""
+        """Number of degrees of freedom."""
         return len(self.numbers)
 
     @property
@@ -38,7 +38,7 @@ class Dofs:
         return self.numbers[-1] == self.n
 
     def at(self, rows: Sequence[int] | np.ndarray) -> "Dofs":
-        """Those of these rows, which increase."""
+        """Select the degrees of freedom of some rows, increasing."""
         labels = None if self.labels is None else tuple(self.labels[row] for row in rows)
         return Dofs(tuple(self.numbers[row] for row in rows), labels)
 

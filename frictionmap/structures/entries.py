@@ -1,4 +1,4 @@
-"""A matrix as a file has it: its entries, and the labels of its rows where the file has any."""
+"""Matrices in files: entries, and labels of the rows where the file has any."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import InputError
 
-#: More rows than any model that could be solved here has: a slip in a file.
+#: Largest number of rows; more indicate an error in the file.
 _MOST = 10**7
 
 #: Node and degree of freedom at it.
@@ -24,9 +24,9 @@ class Matrix(NamedTuple):
     labels: tuple[Label, ...] | None = None
 
 
-def refuse(path: Path, line: int, legal: str, got: str) -> NoReturn:
+def refuse(path: Path, line: int, valid: str, got: str) -> NoReturn:
     """Refuse a line of a file."""
-    raise InputError(f"file {path}, line {line} must have {legal}; got {' '.join(got.split())[:60]!r}")
+    raise InputError(f"cannot read {path}, line {line}: expected {valid}; got {' '.join(got.split())[:60]!r}")
 
 
 def text_of(path: Path) -> str:
@@ -43,24 +43,24 @@ def text_of(path: Path) -> str:
             raise ValueError
         return content.decode("utf-8-sig")
     except ValueError:
-        raise InputError(f"file {path} must be text; it is not") from None
+        raise InputError(f"cannot read {path}: it is not text; write the matrix as text") from None
 
 
 def numbered(text: str, comment: str) -> Iterator[tuple[int, str]]:
-    """Lines with their numbers, those left out that are empty or begin with the mark of comments."""
+    """Lines with their numbers, without empty lines and comments."""
     for number, line in enumerate(text.splitlines(), start=1):
         if line.strip() and not line.lstrip().startswith(comment):
             yield number, line
 
 
 def as_whole(text: str) -> int:
-    """A whole number in digits.  ValueError if it is none."""
+    """Convert an integer in digits; ValueError if it is none."""
     _check_digits(text)
     return int(text)
 
 
 def as_number(text: str) -> float:
-    """A number as Fortran or C writes it; also 1.5D+03 and 1.5+03.  ValueError if it is none."""
+    """Convert a number as Fortran or C writes it, also 1.5D+03 and 1.5+03; ValueError if it is none."""
     _check_digits(text)
     try:
         return float(text)
@@ -69,23 +69,23 @@ def as_number(text: str) -> float:
 
 
 def _check_digits(text: str) -> None:
-    """Refuse what Python takes for a number and no other program: 1_000, and digits of other alphabets."""
+    """Refuse numbers that only Python accepts: 1_000, and digits of other alphabets."""
     if "_" in text or not text.isascii():
         raise ValueError(text)
 
 
 def assembled(path: Path, size: int, rows: ArrayLike, columns: ArrayLike, values: ArrayLike) -> Any:
-    """The sparse matrix of such entries, counted from 0; none may come twice."""
+    """Assemble a sparse matrix from entries, counted from 0, each given once."""
     from scipy.sparse import coo_array
 
     if size > _MOST:
-        raise InputError(f"file {path} must have at most {_MOST} rows; got {size}")
+        raise InputError(f"cannot read {path}: a matrix may have at most {_MOST} rows; got {size}")
     at = np.asarray(rows, dtype=np.int64), np.asarray(columns, dtype=np.int64)
     places, counts = np.unique(at[0] * size + at[1], return_counts=True)
     if (counts > 1).any():
         row, column = divmod(int(places[np.argmax(counts > 1)]), size)
         raise InputError(
-            f"file {path} must have every entry once; got row {row + 1}, column {column + 1} twice"
+            f"cannot read {path}: an entry is given twice; got row {row + 1}, column {column + 1}"
         )
     return coo_array((np.asarray(values, dtype=float), at), shape=(size, size)).tocsr()
 
@@ -98,7 +98,7 @@ def mirrored(matrix: Any) -> Any:
 
 
 def half_or_whole(matrix: Any) -> Any:
-    """The matrix of a format that gives either triangle of a symmetric one, or all of it."""
+    """Complete a symmetric matrix that may be given by one triangle or in full."""
     pattern = matrix.copy()
     pattern.data = np.ones_like(pattern.data)
     pattern.setdiag(0.0)
@@ -108,7 +108,7 @@ def half_or_whole(matrix: Any) -> Any:
 
 
 def in_one_order(matrices: dict[str, Matrix]) -> tuple[dict[str, Any], tuple[Label, ...] | None]:
-    """The matrices with the same rows: those of all labels, increasing; and these labels.
+    """Give all matrices the same rows, one per label, increasing; return them and the labels.
 
     Raises
     ------
@@ -121,7 +121,8 @@ def in_one_order(matrices: dict[str, Matrix]) -> tuple[dict[str, Any], tuple[Lab
     bare = [name for name in matrices if name not in labelled]
     if bare:
         raise InputError(
-            f"matrices must all have labels of nodes or none; {bare[0]} has none beside {min(labelled)}"
+            f"matrices: cannot match the rows: {min(labelled)} has labels of nodes, {bare[0]} has none; "
+            f"give all files with labels, or none"
         )
     every = tuple(sorted({label for one in matrices.values() for label in one.labels or ()}))
     return {name: _placed(one, every) for name, one in matrices.items()}, every

@@ -1,4 +1,4 @@
-"""The matrices of a structure from whatever they were given as: a file with all, one file each, or arrays."""
+"""Matrices of a structure from one file, from one file each, or from arrays."""
 
 import os
 from collections.abc import Callable, Iterable, Mapping
@@ -31,20 +31,20 @@ _BOEING = (".hb", ".rb", ".rsa", ".rua")
 #: Endings of files with one matrix, or with several by names.
 _ENDINGS = (".mtx", *_BOEING, *_SEVERAL)
 
-_ONE_EACH = 'matrices = { M = "m.mtx", K = "k.mtx" }'
+_ONE_EACH = '{ M = "m.mtx", K = "k.mtx" }'
 
 
-class Found(NamedTuple):
-    """What was given, not checked but for names and labels."""
+class GivenMatrices(NamedTuple):
+    """Given matrices; only names and labels are checked."""
 
-    arrays: dict[str, Any]  # M, K and perhaps C: whatever it is, or sparse
+    arrays: dict[str, Any]  # M, K and perhaps C, unchecked or sparse
     dofs: Any  # their numbers, if they were given, else None
     labels: tuple[Label, ...] | None
     held: np.ndarray | None  # rows that a boundary condition holds, bool (n,)
     source: str  # names of the files, or ""
 
 
-def read_files(given: object) -> Found:
+def read_files(given: object) -> GivenMatrices:
     """The arrays from the path of a file, or from a mapping of arrays or of paths.
 
     Raises
@@ -66,45 +66,48 @@ def _known_names(names: Iterable[Any]) -> None:
     listed = [name for name in names if name != DOFS]
     for name in listed:
         if name not in NAMES:
-            raise InputError(f"matrices must have arrays M, K and optionally C, no others; got {name!r}")
+            raise InputError(f"matrices: unknown array {name!r}; valid: {', '.join((*NAMES, DOFS))}")
     for name in ("M", "K"):
         if name not in listed:
             raise InputError(
-                f"matrices must have arrays M, K and optionally C; {name} is missing, "
-                f"got {', '.join(listed) or 'none'}"
+                f"matrices must have arrays M, K and optionally C; got {', '.join(listed) or 'none'}"
             )
 
 
-def _from_path(path: Path) -> Found:
+def _from_path(path: Path) -> GivenMatrices:
     ending = path.suffix.lower()
     if ending == ".mtx" or ending in _BOEING:
         raise InputError(
-            f"matrices must be given one by one, {_ONE_EACH}: a file {ending} has one; got {path.name}"
+            f"matrices must be given one by one for {ending} files, such as {_ONE_EACH}; got {path.name}"
         )
     if ending in _SEVERAL:
         matrices = _opened(path, _SEVERAL[ending])
         _known_names(matrices)
         arrays, labels = in_one_order(matrices)
-        return Found(arrays, None, labels, None, path.name)
+        return GivenMatrices(arrays, None, labels, None, path.name)
     read = read_mat_arrays if ending == ".mat" else read_npz
     arrays = _opened(path, read)
     _known_names(arrays)
-    return Found(arrays, arrays.pop(DOFS, None), None, None, path.name)
+    return GivenMatrices(arrays, arrays.pop(DOFS, None), None, None, path.name)
 
 
-def _from_mapping(given: Mapping[Any, Any]) -> Found:
+def _from_mapping(given: Mapping[Any, Any]) -> GivenMatrices:
     _known_names(given)
     arrays = {name: given[name] for name in NAMES if name in given}
     paths = {name: Path(one) for name, one in arrays.items() if isinstance(one, (str, os.PathLike))}
     if not paths:
-        return Found(arrays, given.get(DOFS), None, None, "")
+        return GivenMatrices(arrays, given.get(DOFS), None, None, "")
     if len(paths) < len(arrays) or DOFS in given:
-        raise InputError(f"matrices must be files, such as {_ONE_EACH}, or arrays, all of them")
+        raise InputError(
+            f"matrices must all be files, such as {_ONE_EACH}, or arrays; got a file of {', '.join(paths)}"
+        )
     matrices = {name: _one(path, name) for name, path in paths.items()}
     whole, labels = in_one_order(matrices)
     abaqus = paths["K"].suffix.lower() == ".mtx" and not _is_market(paths["K"])
     fixed = held(whole["K"]) if abaqus else None
-    return Found(whole, None, labels, fixed, ", ".join(dict.fromkeys(path.name for path in paths.values())))
+    return GivenMatrices(
+        whole, None, labels, fixed, ", ".join(dict.fromkeys(path.name for path in paths.values()))
+    )
 
 
 def _one(path: Path, name: str) -> Matrix:
@@ -113,7 +116,7 @@ def _one(path: Path, name: str) -> Matrix:
     if ending in _SEVERAL:
         found = _opened(path, _SEVERAL[ending])
         if name not in found:
-            raise InputError(f"matrices: file {path} must have a matrix {name}; it has {', '.join(found)}")
+            raise InputError(f"matrices: {name} must be in file {path}; got {', '.join(found)}")
         return found[name]
     if ending in _BOEING:
         return _opened(path, read_harwell_boeing)
@@ -128,13 +131,13 @@ def _is_market(path: Path) -> bool:
 
 
 def _opened(path: Path, read: Callable[[Path], Any]) -> Any:
-    """What a file holds; what is said of one that is refused begins with the key."""
+    """Read a file; refusals begin with the key."""
     try:
         return read(path)
     except InputError as error:
         key = "" if str(error).startswith("matrices") else "matrices: "
         raise InputError(f"{key}{error}") from None
     except OSError as error:
-        raise InputError(f"matrices: file {path} cannot be read ({error.strerror or error})") from None
+        raise InputError(f"matrices: cannot read {path}: {error.strerror or error}; check the path") from None
     except ValueError as error:  # a null character in the name
-        raise InputError(f"matrices: file {path} cannot be read ({error})") from None
+        raise InputError(f"matrices: cannot read {path}: {error}; check the path") from None

@@ -19,7 +19,7 @@ _REAL = re.compile(r"\s*([+-]?\d*)(\.\d*)?(?:[ED]?([+-]?\d+))?\s*", re.IGNORECAS
 
 
 class _Card(NamedTuple):
-    """How numbers stand on a line."""
+    """Fortran format of the numbers on a line."""
 
     most: int
     kind: str
@@ -50,7 +50,7 @@ def read_harwell_boeing(path: Path) -> Matrix:
     lines = text_of(path).splitlines()
     if len(lines) < 4:
         raise InputError(
-            f"file {path} must begin with four lines of a Harwell-Boeing header; it has {len(lines)}"
+            f"cannot read {path}: a Harwell-Boeing header has four lines or more; got {len(lines)}"
         )
     cards = _whole(path, lines, 1)[:5]
     kind, sizes = lines[2][:3].upper(), _whole(path, lines, 2, 3)
@@ -67,18 +67,22 @@ def read_harwell_boeing(path: Path) -> Matrix:
         parts.append(_numbers(path, lines, begin, count, card, size))
         begin += count
     pointers, rows = (part.astype(np.int64) - 1 for part in parts[:2])
-    legal = pointers[0] == 0 and pointers[-1] == sizes[2] and (np.diff(pointers) >= 0).all()
-    if not legal or rows.min() < 0 or rows.max() >= sizes[0]:
-        raise InputError(f"file {path} must have pointers and rows of a {sizes[0]} by {sizes[0]} matrix")
+    valid = pointers[0] == 0 and pointers[-1] == sizes[2] and (np.diff(pointers) >= 0).all()
+    if not valid or rows.min() < 0 or rows.max() >= sizes[0]:
+        raise InputError(
+            f"cannot read {path}: pointers and rows do not fit a matrix of size {sizes[0]}; write it again"
+        )
     columns = np.repeat(np.arange(sizes[1]), np.diff(pointers))
     if kind[1] == "S" and (rows < columns).any():
-        raise InputError(f"file {path} must have only the lower triangle of a symmetric matrix; it has more")
+        raise InputError(
+            f"cannot read {path}: a symmetric matrix is given by its lower triangle; got entries above it"
+        )
     matrix = assembled(path, sizes[0], rows, columns, parts[2])
     return Matrix(mirrored(matrix) if kind[1] == "S" else matrix)
 
 
 def _whole(path: Path, lines: list[str], index: int, begin: int = 0) -> list[int]:
-    """Whole numbers of a line of the header."""
+    """Read the integers of a header line."""
     try:
         return [as_whole(word) for word in lines[index][begin:].split()]
     except ValueError:
@@ -94,7 +98,7 @@ def _card(path: Path, line: str, word: str) -> _Card:
 
 
 def _numbers(path: Path, lines: list[str], begin: int, count: int, card: _Card, size: int) -> np.ndarray:
-    """So many numbers from so many lines; by blanks, or by the format's width where numbers touch.
+    """Read numbers from several lines, separated by blanks or, where they touch, by the width of the format.
 
     Some programs keep the blanks and not the width.
     """
@@ -114,6 +118,6 @@ def _numbers(path: Path, lines: list[str], begin: int, count: int, card: _Card, 
             refuse(path, begin + index + 1, f"{card.most} numbers of {card.width} characters", part[index])
     if len(found) != size:
         raise InputError(
-            f"file {path} must have {size} numbers from line {begin + 1} on; it has {len(found)}"
+            f"cannot read {path}: expected {size} numbers from line {begin + 1} on; got {len(found)}"
         )
     return np.array(found, dtype=float)

@@ -32,8 +32,8 @@ def read_market(path: Path) -> Matrix:
     text = text_of(path)
     banner = text.split("\n", 1)[0]
     words = banner.lower().split()
-    legal = len(words) == 5 and words[1] == "matrix" and words[2] in _FORMS
-    if not legal or words[3] not in _FIELDS or words[4] not in _SYMMETRIES:
+    valid = len(words) == 5 and words[1] == "matrix" and words[2] in _FORMS
+    if not valid or words[3] not in _FIELDS or words[4] not in _SYMMETRIES:
         refuse(path, 1, f"{BANNER} matrix coordinate|array real general|symmetric", banner)
     lines = numbered(text, "%")
     coordinates, symmetric = words[2] == "coordinate", words[4] == "symmetric"
@@ -45,16 +45,16 @@ def read_market(path: Path) -> Matrix:
 
 
 def _sizes(path: Path, lines: Iterator[tuple[int, str]], count: int) -> list[int]:
-    """Whole numbers of the line with the sizes; refused is a matrix that is not square."""
+    """Read the size of the matrix; refuse one that is not square."""
     number, line = next(lines, (2, ""))
     try:
         sizes = [as_whole(word) for word in line.split()]
         if len(sizes) != count or min(sizes) < 0 or sizes[0] < 1:
             raise ValueError(line)
     except ValueError:
-        refuse(path, number, f"{count} whole numbers, the sizes of the matrix", line)
+        refuse(path, number, f"{count} whole numbers, the size of the matrix", line)
     if sizes[0] != sizes[1]:
-        raise InputError(f"file {path} must have a square matrix; got {sizes[0]} by {sizes[1]}")
+        raise InputError(f"cannot read {path}: the matrix must be square; got {sizes[0]} by {sizes[1]}")
     return sizes
 
 
@@ -96,4 +96,4 @@ def _array(path: Path, lines: Iterator[tuple[int, str]], size: int, symmetric: b
 
 def _complete(path: Path, found: int, count: int) -> None:
     if found != count:
-        raise InputError(f"file {path} must have {count} entries, as its header says; it has {found}")
+        raise InputError(f"cannot read {path}: its header announces {count} entries; got {found}")

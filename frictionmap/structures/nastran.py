@@ -48,7 +48,7 @@ def read_punch(path: Path) -> dict[str, Matrix]:
     """
     bulk = package("pyyeti.nastran.bulk", path, "fe")
     if not re.search(r"^DMIG", text_of(path), re.MULTILINE | re.IGNORECASE):
-        raise InputError(f"file {path} must have DMIG cards; it has none")
+        raise InputError(f"cannot read {path}: it has no DMIG cards; write the matrices as DMIG")
 
     def read() -> dict[str, Any]:
         cards = bulk.rdcards(str(path), name="dmig", return_var="list", blank="", follow_includes=False)
@@ -59,7 +59,7 @@ def read_punch(path: Path) -> dict[str, Matrix]:
     found = {}
     for name, table in _called(path, list(tables), list(tables.values())).items():
         if table.index.nlevels != table.columns.nlevels or not table.index.equals(table.columns):
-            raise InputError(f"file {path} must have a square matrix {name}; got {table.shape}")
+            raise InputError(f"cannot read {path}: matrix {name} must be square; got {table.shape}")
         labels = tuple((int(node), int(dof)) for node, dof in table.index)
         found[name] = Matrix(table.to_numpy(), labels)
     return found
@@ -77,7 +77,7 @@ def _check_entries(path: Path, cards: list[list[Any]]) -> None:
             continue
         if first == 0:
             if fields[0] in _COMPLEX:
-                raise InputError(f"file {path} must have real matrices; {name} is complex")
+                raise InputError(f"cannot read {path}: {name} is complex; write real matrices")
             symmetric, seen = second == _SYMMETRIC, set()
             continue
         column = (first, second)
@@ -85,7 +85,7 @@ def _check_entries(path: Path, cards: list[list[Any]]) -> None:
             place = (min(row, column), max(row, column)) if symmetric else (row, column)
             if place in seen:
                 words = ", ".join(f"{node}.{dof}" for node, dof in (row, column))
-                raise InputError(f"file {path} must have every entry of {name} once; got {words} twice")
+                raise InputError(f"cannot read {path}: an entry of {name} is given twice; got {words}")
             seen.add(place)
 
 
@@ -96,12 +96,12 @@ def _called(path: Path, names: list[str], matrices: list[Any]) -> dict[str, Any]
         those = [k for k, one in enumerate(names) if pattern.fullmatch(one)]
         if len(those) > 1:
             listed = ", ".join(names[k].upper() for k in those)
-            raise InputError(f"file {path} must have one matrix {name}; it has {listed}")
+            raise InputError(f"cannot read {path}: more than one matrix may be {name}; got {listed}")
         if those:
             found[name] = matrices[those[0]]
     if not found:
         raise InputError(
-            f"file {path} must have matrices called M, K and C, or such as MAAX; it has "
+            f"cannot read {path}: matrices must be called M, K and C, or such as MAAX; got "
             f"{', '.join(name.upper() for name in names) or 'none'}"
         )
     return found

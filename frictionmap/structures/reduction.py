@@ -1,4 +1,4 @@
-"""A structure and its reduction: made, and held to its promise in the range of frequency."""
+"""Reduction of a structure, checked against the allowed error in the range of frequency."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -8,21 +8,21 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from .accuracy import Accuracy, Comparison, Ranges, Whole
+from .accuracy import Accuracy, Comparison, FullStructure, Ranges
 from .craig_bampton import FixedInterface, Reduce, Reduced, fixed_interface, project, slowest
 from .structure import Structure
 
-#: Of the modes asked for: so many times as many are tried for a number that would do, in such steps.
+#: Largest number of modes tried for a sufficient one, over the requested number, and the factor of the steps.
 _MORE = 8
 _STEP = 1.25
 
-#: Modes that a reduction is compared with at least, where it has hardly any itself.
+#: Smallest number of modes of the reduction used for comparison.
 _LEAST_REFINED = 8
 
 
 @dataclass(frozen=True, eq=False)
 class Reduction:
-    """How a structure was reduced."""
+    """A structure, its reduction and the accuracy of the reduction."""
 
     asked: Reduce
     structure: Structure  # the whole one
@@ -33,7 +33,7 @@ class Reduction:
     _found: Ranges[Accuracy] = field(default_factory=Ranges)
 
     def like(self, asked: Reduce, kept: tuple[int, ...], contact: np.ndarray, base: bool) -> bool:
-        """Whether this is the reduction that is asked for."""
+        """Whether this reduction has the given settings."""
         same = self.asked == asked and self.kept == kept and self.base == base
         return same and bool(np.array_equal(self.contact, contact))
 
@@ -45,12 +45,12 @@ class Reduction:
 
     @property
     def most_modes(self) -> int:
-        """How many modes there are with the kept degrees of freedom held."""
+        """Number of modes with the kept degrees of freedom held."""
         return int(np.count_nonzero(self.structure.arrays["M"].diagonal())) - len(self.kept)
 
     @cached_property
     def refined(self) -> "Reduction | None":
-        """The same structure reduced to twice as many modes, or to all; None if it has all of them."""
+        """Reduction of the structure to twice as many modes, or to all; None if it has all already."""
         modes = min(max(2 * self.asked.modes, _LEAST_REFINED), self.most_modes)
         if modes <= self.asked.modes:
             return None
@@ -60,15 +60,15 @@ class Reduction:
     def checked(self, low: float, high: float) -> Accuracy:
         """Its accuracy from one angular frequency to another, in the units of sqrt(K/M).
 
-        Within a range that was asked for before it is that of this range: a motion at one of its
-        frequencies is told at once.
+        Within a range requested before, the accuracy of that range is returned at once, e.g. for a motion at
+        one of its frequencies.
 
         Raises
         ------
         InputError
-            It is worse than allowed; how many modes would do is told.
+            The error exceeds the limit; the message states how many modes suffice.
         """
-        return self._found.told(low, high, lambda: self._accuracy(low, high))
+        return self._found.lookup(low, high, lambda: self._accuracy(low, high))
 
     def _accuracy(self, low: float, high: float) -> Accuracy:
         comparison = Comparison(self._whole(), low, high)
@@ -77,14 +77,14 @@ class Reduction:
             self._refuse(comparison, accuracy)
         return accuracy
 
-    def _whole(self) -> Whole:
+    def _whole(self) -> FullStructure:
         arrays = _sparse(self.structure)
         rows = self.structure.dofs.rows(self.kept)
         forces = np.zeros((self.structure.n, len(rows)))
         forces[rows, np.arange(len(rows))] = 1.0
         if self.base:  # what a base shakes
             forces = np.column_stack((forces, arrays["M"].sum(axis=1)))
-        return Whole(arrays["M"], arrays["K"], self.contact, forces)
+        return FullStructure(arrays["M"], arrays["K"], self.contact, forces)
 
     def _refuse(self, comparison: Comparison, accuracy: Accuracy) -> None:
         whole = _with_sparse(self.structure)
@@ -95,15 +95,19 @@ class Reduction:
             return comparison.accuracy(project(whole, fixed, modes, self.base)).worst <= self.asked.allow
 
         enough = _enough(do, self.asked.modes, tried)
-        advice = f"{tried} would not do either" if enough is None else f"{enough} would do"
+        advice = (
+            f"{tried} modes do not suffice either, increase reduce.allow"
+            if enough is None
+            else f"{enough} mode{'s' * (enough > 1)} suffice{'s' * (enough == 1)}"
+        )
         raise InputError(
-            f"reduce.modes must leave errors <= {self.asked.allow:g} in the range of r (or give reduce.allow)"
-            f"; got {self.asked.modes}, with {accuracy.words()}; {advice}"
+            f"reduce: cannot keep the error below {self.asked.allow:g} in the range of r with "
+            f"{self.asked.modes} modes: {accuracy.words()}; {advice}"
         )
 
 
 def _enough(do: Callable[[int], bool], too_few: int, most: int) -> int | None:
-    """A number of modes that does, where one fewer does not: the same, mostly, whatever was tried first.
+    """Smallest sufficient number of modes, found by bisection.
 
     None if `most` does not.
     """
@@ -146,8 +150,8 @@ def reduce_structure(
     for number in kept:
         if number in massless:
             raise InputError(
-                f"matrices: M must give mass to every degree of freedom in contact, loaded or kept; "
-                f"{structure.dofs.word(number)} has none"
+                f"matrices: cannot keep degree of freedom {structure.dofs.word(number)}: no mass in M; "
+                f"contact, load and reduce.keep need degrees of freedom with mass"
             )
     whole = _with_sparse(structure)
     fixed: FixedInterface = fixed_interface(whole, whole.dofs.rows(kept), asked.modes)

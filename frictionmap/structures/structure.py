@@ -1,4 +1,4 @@
-"""The matrices of a structure, checked: square, real, finite, symmetric, of one size, dense or sparse."""
+"""Checked matrices of a structure: square, real, finite, symmetric, of one size, dense or sparse."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -8,9 +8,9 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from .dofs import Dofs
-from .files import Found, read_files
+from .files import GivenMatrices, read_files
 
-#: Of the largest entry: a matrix is symmetric up to this.  Assembly leaves some units of rounding; a slip
+#: Tolerance of symmetry, over the largest entry.  Assembly leaves some units of rounding; a mistake
 #: leaves more.
 TOLERANCE = 1e-12
 
@@ -57,14 +57,16 @@ def read_structure(given: object) -> Structure:
     if found.held is not None and found.held.any():
         free = np.flatnonzero(~found.held)
         if not free.size:
-            raise InputError("matrices: K must leave a degree of freedom free; boundary conditions hold all")
+            raise InputError(
+                "matrices: cannot use K: boundary conditions hold all degrees of freedom; leave one free"
+            )
         arrays = {name: one[free][:, free] for name, one in arrays.items()}
     # only now: beside the stiffness of a row that is held any difference would be rounding
     arrays = {name: _symmetric(one, name, free) for name, one in arrays.items()}
     return Structure(arrays, dofs.at(free), found.source, n - free.size)
 
 
-def _dofs(found: Found, n: int) -> Dofs:
+def _dofs(found: GivenMatrices, n: int) -> Dofs:
     if found.dofs is None:
         return Dofs.counted(n, found.labels)
     numbers = np.atleast_1d(checks.array(found.dofs, "matrices: dofs"))
@@ -106,7 +108,7 @@ def _square(given: Any, name: str) -> Any:
 
 
 def _is_sparse(given: object) -> bool:
-    """Whether it is a sparse matrix or array, told without loading what they come from."""
+    """Whether it is a sparse matrix or array, determined without importing scipy."""
     return hasattr(given, "tocsr") and hasattr(given, "nnz")
 
 

@@ -219,7 +219,7 @@ class ContinuousMotion:
         except (TypeError, ValueError):
             raise InputError(f"tau must be numbers; got {tau!r}") from None
         if tau.ndim != 1 or not np.isfinite(tau).all():
-            raise InputError("tau must be one-dimensional and finite")
+            raise InputError(f"tau must be one-dimensional and finite; got {tau!r}")
         since = np.mod(tau - self.contact_phase, 2.0 * math.pi)
         second = since >= math.pi
         values = self._half(np.where(second, since - math.pi, since), harmonic, compliance, velocity)

@@ -3,9 +3,9 @@
 ==========  ============================================================================
 module      what is in it
 ==========  ============================================================================
-table       every unit that is understood, and its exact size
-quantities  a number with its unit, from text or from another package, as an exact number
-scales      `Units`: what r = 1 and beta = 1 are; lengths and forces that follow from it
-axes        values and ranges with units as ratios
+table       known units and their exact sizes
+quantities  numbers with units, from text or from another package, as exact numbers
+scales      `Units`: reference values that convert ratios to Hz and N
+axes        conversion of values and ranges with units to ratios
 ==========  ============================================================================
 """

@@ -1,4 +1,4 @@
-"""Values and ranges with units as ratios, and ratios as what somebody would have typed."""
+"""Conversion of values and ranges with units to ratios, and back to short decimal numbers."""
 
 import math
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from ..errors import InputError
 from .quantities import quantities, quantity
 from .scales import NO_SCALES, Scales
 
-#: What the ratios of a grid are over.
+#: Quantities that the ratios of a grid refer to.
 KINDS = {"r": "frequency", "beta": "force"}
 
 
@@ -28,7 +28,7 @@ class Ladder:
     count: int
 
     def values(self) -> np.ndarray:
-        """All of them, each rounded once."""
+        """All values, each rounded once."""
         below = math.lcm(self.first.denominator, self.step.denominator)
         first, step = int(self.first * below), int(self.step * below)
         values = np.array([(first + k * step) / below for k in range(self.count)])
@@ -37,7 +37,7 @@ class Ladder:
 
 
 def ratios(values: Any, name: str, kind: str, scales: Scales) -> Any:
-    """Values of an axis as ratios, each rounded once; what has no unit is left as it is.
+    """Convert values of an axis to ratios, each rounded once; numbers without units are returned unchanged.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def rounded(value: Fraction) -> float:
 
 
 def grid_ratios(axis: Any, name: str, kind: str, scales: Scales) -> Any:
-    """An axis of a configuration whose form is known to be legal, as ratios; see `ratios`.
+    """Convert a valid axis of a configuration to ratios; see `ratios`.
 
     A range with units becomes a `Ladder`.
     """
@@ -122,7 +122,7 @@ def _ladder(axis: Mapping[str, Any], name: str, kind: str, scales: Scales) -> La
 
 
 def _of_number(start: Fraction, stop: Fraction, axis: Mapping[str, Any], name: str) -> Ladder:
-    """So many values from start to stop."""
+    """Make a range with a given number of values."""
     num = checks.whole(axis["num"], f"{name}.num", least=1, most=checks.MOST_CELLS)
     if num == 1 and stop > start:
         raise InputError(f"{name}.num must be >= 2 to hold both {axis['start']} and {axis['stop']}; got 1")
@@ -130,7 +130,7 @@ def _of_number(start: Fraction, stop: Fraction, axis: Mapping[str, Any], name: s
 
 
 def typed(ratios: np.ndarray, one: Fraction) -> np.ndarray:
-    """Frequencies or forces that ratios stand for, with no more digits than it takes to tell them.
+    """Frequencies or forces of ratios, with the fewest digits that distinguish them.
 
     So 1.05 Hz over 4.2 Hz, a ratio that was rounded, is 1.05 Hz again.
     """

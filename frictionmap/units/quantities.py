@@ -1,6 +1,6 @@
 """A number with its unit as an exact number: text such as "4.2 Hz", or a quantity of pint, astropy or unyt.
 
-Of text nothing is guessed and nothing repaired.  Quantities of other packages are converted by their own
+Text is neither guessed nor repaired.  Quantities of other packages are converted by their own
 `to` and `to_value`, into a unit that is chosen here: pint takes 1 Hz for 1 rad/s.
 """
 
@@ -50,7 +50,7 @@ _CF = {"rad s-1": "rad/s"}
 
 
 class Quantity(NamedTuple):
-    """A number in the SI unit of what it measures (Hz of a frequency), and the text that says it."""
+    """An exact number in SI units (Hz for a frequency), and its text."""
 
     value: Fraction
     text: str
@@ -66,7 +66,7 @@ def is_foreign(value: object) -> bool:
 
 
 def quantity(value: object, name: str, kind: str) -> Quantity:
-    """One number with a unit of frequency, force, length, mass, stiffness or acceleration.
+    """Convert a number with a unit of frequency, force, length, mass, stiffness or acceleration.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def quantity(value: object, name: str, kind: str) -> Quantity:
         raise _refusal(name, kind, value, "it has no unit" if _is_number(value) else "")
     found, unit = _converted(value, name, kind)
     if found.ndim:
-        raise _refusal(name, kind, value, "one number is due")
+        raise _refusal(name, kind, value, "expected one number")
     return _from_text(f"{float(found)!r} {unit}", name, kind)
 
 
@@ -120,17 +120,17 @@ def _from_text(text: str, name: str, kind: str) -> Quantity:
         raise _refusal(name, kind, text, f"{unit} is a unit of {UNITS[unit].measures}")
     size = float(matched[1])  # beyond all doubles no exact number is made: it could fill the memory
     if math.isinf(size) or (size == 0.0 and re.search("[1-9]", re.split("[eE]", matched[1])[0])):
-        raise _refusal(name, kind, text, "it is beyond all doubles")
+        raise _refusal(name, kind, text, "it exceeds the range of double precision")
     return Quantity(Fraction(Decimal(matched[1])) * UNITS[unit].size, text)
 
 
 def _slip(text: str) -> str:
-    """What is wrong with text that is no number and unit."""
+    """Describe the error in text that is not a number with a unit."""
     if _COMMA.match(text):
-        return "a decimal point, no comma"
+        return "use a decimal point, not a comma"
     if _NO_NUMBER.match(text):
         return "it is not finite"
-    return "it has no unit" if _is_text_of_number(text) else "one number, one space and one unit are due"
+    return "it has no unit" if _is_text_of_number(text) else "expected one number, one space and one unit"
 
 
 def _is_text_of_number(text: str) -> bool:
@@ -143,20 +143,20 @@ def _is_text_of_number(text: str) -> bool:
 
 
 def _meant(unit: str, kind: str) -> str:
-    """Which unit an unknown one may be a slip of."""
-    legal = [*units_of(kind), *(name for name, known in UNITS.items() if known.measures != kind)]
-    same = [name for name in legal if name.lower() == unit.lower()]
-    hint = f" (did you mean {same[0]}?)" if same else checks.nearest(unit, legal)
-    return f"{unit} is no unit that is known{hint}"
+    """Suggest a unit for an unknown one."""
+    valid = [*units_of(kind), *(name for name, known in UNITS.items() if known.measures != kind)]
+    same = [name for name in valid if name.lower() == unit.lower()]
+    hint = f" (did you mean {same[0]}?)" if same else checks.nearest(unit, valid)
+    return f"unknown unit {unit}{hint}"
 
 
 def _refusal(name: str, kind: str, value: object, why: str) -> InputError:
-    legal = ", ".join(units_of(kind))
+    valid = ", ".join(units_of(kind))
     got = (
         repr(value) if isinstance(value, str) and len(value) < 80 else checks.one_line(value)
     )  # spaces count
     return InputError(
-        f"{name} must be a number with a unit of {kind} ({legal}), such as '{EXAMPLES[kind]}'; "
+        f"{name} must be a number with a unit of {kind} ({valid}), such as '{EXAMPLES[kind]}'; "
         f"got {got}{why and f': {why}'}"
     )
 
@@ -166,7 +166,7 @@ def _is_number(value: object) -> bool:
 
 
 def _own_unit(value: Any) -> str:
-    """How another package writes the unit of a quantity."""
+    """Unit of a quantity as its package writes it."""
     return str(getattr(value, "units", None) if hasattr(value, "units") else getattr(value, "unit", ""))
 
 
@@ -177,9 +177,9 @@ def _unit_of_array(values: Any, name: str, kind: str) -> str | None:
         return None
     unit = known_unit(_CF.get(str(said), str(said)))
     if unit is None:
-        legal = ", ".join(units_of(kind))
+        valid = ", ".join(units_of(kind))
         raise InputError(
-            f"{name} must say units of {kind} ({legal}), or 1 of ratios; got {checks.one_line(said)}: "
+            f"{name} must have a unit of {kind} ({valid}), or 1 for ratios; got {checks.one_line(said)}: "
             f"{_meant(str(said), kind)}"
         )
     return unit
@@ -195,12 +195,12 @@ def _converted(value: Any, name: str, kind: str) -> tuple[np.ndarray, str]:
         found = value.to(asked).magnitude if hasattr(value, "magnitude") else value.to_value(asked)
     except Exception:  # each package has its own errors for what it cannot convert
         why = "1/s is neither Hz nor rad/s" if own in ("1 / second", "1 / s", "1/s") else ""
-        raise _refusal(name, kind, value, why or f"{own} is none of them") from None
+        raise _refusal(name, kind, value, why or f"{own} is not one of them") from None
     return np.asarray(found, dtype=float), unit
 
 
 def _asked(own: str, kind: str) -> tuple[str, str]:
-    """Our unit, and the word for it that a package is asked with; none of what is no frequency."""
+    """Unit, and its spelling for the other package; empty if it is no frequency."""
     if kind != "frequency":
         return units_in_si(kind), _ASKED[kind]
     if _CYCLES.fullmatch(own):

@@ -1,4 +1,4 @@
-"""What r = 1 and beta = 1 are in hertz and newtons, and the lengths and forces that follow from them."""
+"""Reference values that convert ratios to Hz and N, and the lengths and forces that follow from them."""
 
 from dataclasses import dataclass, fields
 from decimal import Decimal
@@ -32,13 +32,13 @@ _RIVALS = (("load", "base_amplitude", "base_acceleration"), ("stiffness", "mass"
 
 #: The one that needs the other, and why.
 _NEEDS = (
-    ("mass", "natural_frequency", "k1 = m1 omega_1^2"),
+    ("mass", "natural_frequency", "the stiffness follows from k1 = m1 omega_1^2"),
     (
         "base_acceleration",
         "acceleration_frequency",
-        "the base moves by the same Y = a/omega^2 at all frequencies, and a is that of one of them",
+        "the base amplitude Y = a/omega^2, equal at all frequencies, needs the frequency of a",
     ),
-    ("acceleration_frequency", "base_acceleration", "it is the frequency at which that holds"),
+    ("acceleration_frequency", "base_acceleration", "it is the frequency of that acceleration"),
 )
 
 
@@ -57,13 +57,15 @@ _ONES = {
 
 @dataclass(frozen=True)
 class Units:
-    """What r = 1 and beta = 1 are: each a text such as "4.2 Hz", or a quantity of pint, astropy or unyt.
+    """Reference values that convert ratios to Hz and N.
+
+    Each is a text such as "4.2 Hz", or a quantity of pint, astropy or unyt.
 
     Parameters
     ----------
     natural_frequency : str, optional
-        What r = 1 is: sqrt(k_1/m_1)/(2 pi) of a chain, frequency_scale/(2 pi) of matrices.  Hz, kHz, rad/s,
-        rpm.  "model": matrices are in SI units, and so is their frequency_scale, in rad/s.
+        Frequency at r = 1: sqrt(k_1/m_1)/(2 pi) of a chain, frequency_scale/(2 pi) of matrices.  Hz, kHz,
+        rad/s, rpm.  "model": matrices are in SI units, and so is their frequency_scale, in rad/s.
     load : str, optional
         Amplitude P of the load, with a base that moves P = k_1 Y.  N, mN, kN, lbf.
     base_amplitude : str, optional
@@ -104,23 +106,21 @@ class Units:
     def __post_init__(self) -> None:
         given = [name for name in UNIT_KINDS if getattr(self, name) is not None]
         if not given:
-            first, *others = UNIT_KINDS
-            raise InputError(f"{first}, or another of {', '.join(others)}, must be given; got none")
+            raise InputError(f"units must have at least one of {', '.join(UNIT_KINDS)}; got none")
         for names in _RIVALS:
             both = [name for name in names if name in given]
             if len(both) > 1:
                 raise InputError(
-                    f"{both[1]} must be left out where {both[0]} is given: one follows from the other; "
-                    f"got {checks.one_line(getattr(self, both[1]))}"
+                    f"cannot use {both[1]} with {both[0]}: one follows from the other; give one of them"
                 )
         for name, needed, why in _NEEDS:
             if name in given and needed not in given:
-                raise InputError(f"{needed} must be given with {name}: {why}; got none")
+                raise InputError(f"cannot use {name} without {needed}: {why}; give both")
         for name in given:
             self._check(name)
 
     def _check(self, name: str) -> None:
-        """Keep a number as text, once it is known to be one."""
+        """Check a number with a unit and keep its text."""
         value = getattr(self, name)
         if isinstance(value, str) and value == OF_MODEL and name in MODEL_HAS:
             return
@@ -130,22 +130,22 @@ class Units:
         object.__setattr__(self, name, found.text)
 
     def value(self, name: str) -> Fraction | None:
-        """One of the numbers in the SI unit, Hz of a frequency; None if it is not given, or the model's."""
+        """Value in SI units, Hz for a frequency; None if not given or taken from the model."""
         text = getattr(self, name)
         return None if text in (None, OF_MODEL) else quantity(text, name, UNIT_KINDS[name]).value
 
     @property
     def given(self) -> dict[str, str]:
-        """What is given, as a configuration has it."""
+        """Given values, as in a configuration."""
         return {field.name: text for field in fields(self) if (text := getattr(self, field.name)) is not None}
 
 
 @dataclass(frozen=True)
 class Scales:
-    """What the ratios of a system are in SI units; exact, None where it does not follow from what is given.
+    """Exact reference values of the ratios in SI units; None if they do not follow from the given ones.
 
-    frequency : what r = 1 is [Hz]
-    force : P, what beta = 1 is [N]
+    frequency : at r = 1 [Hz]
+    force : P, at beta = 1 [N]
     length : P/k_1, or Y [m]
     """
 
@@ -159,28 +159,31 @@ class Scales:
         return None if self.force is None or self.length is None else self.force * self.length
 
     def of(self, kind: str) -> float | None:
-        """What 1 is of a kind of numbers in a dataset: frequency, force, length or work."""
+        """Reference value of a kind of numbers: frequency, force, length or work."""
         found: Fraction | None = getattr(self, kind)
         return None if found is None else float(found)
 
     def needed(self, kind: str, name: str, given: object) -> Fraction:
-        """What 1 of an axis is; refused by name of what is missing."""
+        """Reference value of an axis; the error names what is missing."""
         found: Fraction | None = getattr(self, kind)
         if found is None:
             missing = {
-                "frequency": "units.natural_frequency must be given",
-                "force": "units.load must be given, or units.base_amplitude and units.stiffness,",
+                "frequency": "units.natural_frequency",
+                "force": "units.load, or units.base_amplitude with units.stiffness",
             }
-            raise InputError(f"{missing[kind]} for {name} with units; got {checks.one_line(given)}")
+            raise InputError(
+                f"cannot convert {name} = {checks.one_line(given)} to ratios: a reference value is missing; "
+                f"give {missing[kind]}"
+            )
         return found
 
 
-#: Where no units are given.
+#: No units are given.
 NO_SCALES = Scales(None, None, None)
 
 
 def scales_of(units: Units | None, system: System, variations: Variations | None = None) -> Scales:
-    """What the ratios of a system are in SI units.
+    """Reference values of the ratios of a system in SI units.
 
     Raises
     ------
@@ -208,7 +211,7 @@ def scales_of(units: Units | None, system: System, variations: Variations | None
 
 
 def _check_sizes(scales: Scales, units: Units) -> None:
-    """Refuse numbers that each may be well, but make too much or too little of 1."""
+    """Refuse numbers that together give an extreme reference value."""
     for kind, (one, unit) in _ONES.items():
         found: Fraction | None = getattr(scales, kind)
         if found is not None and not Fraction(1, _LARGEST) <= found <= _LARGEST:
@@ -221,17 +224,17 @@ def _check_sizes(scales: Scales, units: Units) -> None:
 
 
 def _check_system(units: Units, system: System) -> None:
-    """Refuse what a system has not: a base that moves, a first mass, numbers of matrices."""
+    """Refuse units that the system does not have: of the base, of the first mass, of matrices."""
     for name in ("base_amplitude", "base_acceleration"):
         if getattr(units, name) is not None and system.excitation != "base":
             raise InputError(
-                f"units.{name} must be left out unless the base moves (excitation base or a joined "
-                f"base-wall): give units.load; got {getattr(units, name)!r}"
+                f"cannot use units.{name}: it needs base excitation; "
+                f"for a force-excited system use units.load"
             )
     if units.mass is not None and system.matrices is not None:
         raise InputError(
-            f"units.mass must be left out with matrices: give units.stiffness, what stiffness_scale is; "
-            f"got {units.mass!r}"
+            "cannot use units.mass with matrices: only a chain has a first mass; "
+            "use units.stiffness for stiffness_scale"
         )
     for name in MODEL_HAS:
         if getattr(units, name) == OF_MODEL and system.matrices is None:
@@ -242,13 +245,13 @@ def _check_system(units: Units, system: System) -> None:
 
 
 def _check_variations(variations: Variations | None) -> None:
-    """Refuse axes along which r = 1 or an amplitude of 1 is not the same."""
+    """Refuse axes along which a reference value changes."""
     for axis in () if variations is None else variations.axes:
         for number in axis.numbers:
             if number.key in ("frequency_scale", "stiffness_scale"):
                 raise InputError(
-                    f"units must be left out where {number.key} changes along an axis: one unit is due for "
-                    f"all points; got axes.{axis.name}"
+                    f"cannot use units with axes.{axis.name}: {number.key} changes along it, so one unit "
+                    f"cannot hold for all points; remove one of the two"
                 )
 
 

@@ -1,4 +1,4 @@
-"""Every unit that is understood, with its exact size; no other package is asked.
+"""Table of known units with their exact sizes.
 
 Sizes are exact fractions of the SI unit, Hz for frequencies; only pi is rounded, to 50 digits, and cancels
 where a ratio is of two angular frequencies.  1 in = 0.0254 m, 1 lb = 0.45359237 kg (1959); standard gravity
@@ -19,14 +19,14 @@ _POUND_FORCE = _POUND * _GRAVITY
 
 
 class Unit(NamedTuple):
-    """What a unit measures, its size in the SI unit of that, and how it ends names of measured columns."""
+    """A unit: quantity, size in SI units, suffix of measured columns."""
 
     measures: str
     size: Fraction
     column: str = ""  # nothing: columns of measured data are not in it
 
 
-#: By the one way each is written; the first of its kind is what a number of that kind is told in.
+#: Units by their spelling; the first of its kind is used to report values of that kind.
 UNITS = {
     "Hz": Unit("frequency", Fraction(1), "Hz"),
     "kHz": Unit("frequency", Fraction(1000)),
@@ -80,8 +80,8 @@ def units_of(measures: str) -> tuple[str, ...]:
 
 def spellings(measures: str) -> tuple[str, ...]:
     """All ways to write the units of a kind."""
-    legal = units_of(measures)
-    return (*legal, *(other for other, name in _ALIASES.items() if name in legal))
+    valid = units_of(measures)
+    return (*valid, *(other for other, name in _ALIASES.items() if name in valid))
 
 
 def known_unit(text: str) -> str | None:
@@ -91,7 +91,7 @@ def known_unit(text: str) -> str | None:
 
 
 def suffixes(measures: str) -> tuple[str, ...]:
-    """How columns of time, length, frequency, angle or force may end; one of a ratio has no unit.
+    """Suffixes of columns of time, length, frequency, angle or force; none for a ratio.
 
     A column of "motion" is one of `MOTIONS`.
     """
@@ -106,15 +106,15 @@ def ending(name: str) -> str:
 
 
 def conversion(unit: str, into: str) -> float:
-    """What a number in one unit of columns is multiplied by to be in another."""
+    """Conversion factor from one unit of columns to another."""
     return float(COLUMN_UNITS[unit].size / COLUMN_UNITS[into].size)
 
 
 def checked_unit(unit: str, measures: str, name: str) -> str:
     """`unit`, if columns of time, length or frequency may have it."""
-    legal = tuple(suffix[1:] for suffix in suffixes(measures))
-    if unit not in legal:
-        raise InputError(f"{name} must be one of {', '.join(legal)}; got {checks.one_line(unit)}")
+    valid = tuple(suffix[1:] for suffix in suffixes(measures))
+    if unit not in valid:
+        raise InputError(f"{name} must be one of {', '.join(valid)}; got {checks.one_line(unit)}")
     return unit
 
 

@@ -136,7 +136,7 @@ def test_classes_of_whole_numbers_of_stops():
 
 def test_classes_of_fractions_of_stops():
     stops = np.array([0.25, 0.5, 1.5, 7 / 3, 100.02], dtype=np.float32)
-    expected = ["stops per cycle not whole"] * 5
+    expected = ["non-integer stops per cycle"] * 5
     assert labels(one_mu([regimes.STICK_SLIP] * 5, stops)) == expected
     assert labels(one_mu(stops=stops)) == expected
 
@@ -163,8 +163,8 @@ def test_classes_and_counts_do_not_depend_on_how_much_is_looked_at_at_once(monke
     np.testing.assert_array_equal(classes.classes(ds), found)
     np.testing.assert_array_equal(classes.count(found), counts)
     np.testing.assert_array_equal(counts, [(found == index).sum() for index in range(palette.COUNT)])
-    inside = stops[found == palette.BROKEN]
-    assert classes.stops_range(found, stops, palette.BROKEN) == (inside.min(), inside.max())
+    inside = stops[found == palette.NON_INTEGER]
+    assert classes.stops_range(found, stops, palette.NON_INTEGER) == (inside.min(), inside.max())
     assert classes.stops_range(found, stops, palette.NO_STOPS) == (np.inf, -np.inf)
 
 
@@ -172,7 +172,7 @@ def test_legends_say_how_many():
     assert classes.legend_label(palette.STUCK, 12345, np.inf, -np.inf) == "permanent sticking (12,345)"
     assert classes.legend_label(palette.MORE, 3, 5.0, 12.0) == "5 to 12 stops (3)"
     assert classes.legend_label(palette.MORE, 1, 7.0, 7.0) == "7 stops (1)"
-    assert classes.legend_label(palette.BROKEN, 2, 2 / 3, 1.5) == "not whole, 0.6667 to 1.5 stops (2)"
+    assert classes.legend_label(palette.NON_INTEGER, 2, 2 / 3, 1.5) == "non-integer, 0.6667 to 1.5 stops (2)"
 
 
 # Grids

@@ -66,8 +66,8 @@ def test_a_steady_record_does_not_change_and_another_one_does():
 @pytest.mark.parametrize(
     ("time", "message"),
     [
-        (np.arange(400) / 250.0, "time must span at least 2 cycles of the base; it spans 1.6"),
-        (np.arange(100) / 5.0, "5 samples a cycle; 8 are needed"),
+        (np.arange(400) / 250.0, "time must span at least 2 cycles of the base; got 1.6"),
+        (np.arange(100) / 5.0, "5 samples per cycle, 8 needed"),
     ],
 )
 def test_too_little_is_refused(time, message):
@@ -76,5 +76,5 @@ def test_too_little_is_refused(time, message):
 
 
 def test_a_gap_leaves_too_few_samples():
-    with pytest.raises(fm.InputError, match="time must have more samples than there are unknowns, 21; got 9"):
+    with pytest.raises(fm.InputError, match="time must have more samples than unknowns, 21; got 9"):
         _checked_harmonics(np.append(np.arange(8), 125) / 50.0, 1.0)

@@ -139,7 +139,7 @@ def test_mu_of_a_mass_that_never_sticks_is_an_interval():
     assert (float(mu.estimate), float(mu.lower), int(mu.at_bound), int(mu.known)) == (1.0, 1.0, 1, 0)
     assert (np.abs(off(ds, truth)[[0, 1, 2, 4]]) < 4.0).all()
     assert float(ds.stops_per_cycle) == 0.0
-    assert "mu cannot be told" in ds.warnings
+    assert "mu cannot be determined" in ds.warnings
     assert ds.verdict.flag_meanings.split()[int(ds.verdict)] == "continuous"
     time = np.linspace(0.0, 1.0 / truth.f, 50)
     first, below, above = (

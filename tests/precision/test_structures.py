@@ -21,7 +21,7 @@ from frictionmap._kernels.structure.oscillators import COLUMNS, WW, WZ, ZW, ZZ, 
 from frictionmap._kernels.structure.state import make_structure
 from frictionmap.model.held_structure import held_structure
 from frictionmap.steady.cells import Cells
-from frictionmap.steady.motion import Question, _find
+from frictionmap.steady.motion import MotionRequest, _find
 
 decay = callable_kernel(closed_form.decay)
 fill_steps = callable_kernel(oscillators.fill_steps)
@@ -268,8 +268,8 @@ def gauss_samples(system, r, beta, mu):
     """Weights, times, velocities of the masses and of the contact, friction: Gauss points in every phase."""
     solver = fm.Solver()
     cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), solver)
-    question = Question(system, r, beta, mu, solver, 2)
-    rows = _find(question, cells).table
+    request = MotionRequest(system, r, beta, mu, solver, 2)
+    rows = _find(request, cells).table
     found = cells.structure_arrays
     x, weight = np.polynomial.legendre.leggauss(12)
     begins = np.concatenate(([0.0], np.cumsum(rows[:, segment_table.LENGTH])))

@@ -69,7 +69,7 @@ except frictionmap.InputError as error:
 print([name for name in {HEAVY!r} if name in sys.modules])
 """
     message, heavy = run(code).splitlines()
-    assert message.startswith("unknown key sistem (did you mean system?)")
+    assert message.startswith("unknown key 'sistem' (did you mean system?)")
     assert heavy == "[]"
 
 

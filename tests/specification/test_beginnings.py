@@ -108,10 +108,10 @@ def test_nothing_is_overwritten_unasked(tmp_path, monkeypatch, capsys):
     assert main(["init", "nowhere/map.toml"]) == 2
     errors = capsys.readouterr().err.splitlines()
     assert errors == [
-        "frictionmap: output mine.toml exists already; use --overwrite or another NAME.toml",
-        "frictionmap: output free-decay.csv exists already; use --overwrite or another NAME.toml",
+        "frictionmap: cannot write mine.toml: it already exists; use --overwrite or another NAME.toml",
+        "frictionmap: cannot write free-decay.csv: it already exists; use --overwrite or another NAME.toml",
         "frictionmap: NAME.toml must end in .toml; got mine.txt",
-        "frictionmap: NAME.toml must lie in a folder that exists; got nowhere/map.toml",
+        "frictionmap: NAME.toml must be in an existing folder; got nowhere/map.toml",
     ]
     assert listing(tmp_path) == before
     assert main(["init", "mine.toml", "--overwrite", "--quiet"]) == 0

@@ -159,7 +159,7 @@ def test_overrides_and_the_name_of_the_file(config, tmp_path, monkeypatch):
     [
         ("curves.harmonics=-1", "curves.harmonics must be >= 0; got -1"),
         ('curves.quantities=["phases"]', "curves.quantities must be one of"),
-        ("curves.harmonic=1", "unknown key curves.harmonic (did you mean harmonics?)"),
+        ("curves.harmonic=1", "unknown key 'curves.harmonic' (did you mean harmonics?)"),
         ("curves=1", "curves must be a table [curves]; got 1"),
     ],
 )

@@ -96,7 +96,7 @@ def test_other_commands_take_them_or_say_why_not(files, tmp_path, monkeypatch, c
     xr.testing.assert_equal(read(tmp_path / "copy.nc"), read(files["free-decay"]))
     for command in (["plot", path, "--at", "sample=1"], ["plot", path, "--over", "sample"]):
         assert main(command) == 2
-        assert "it has none; got sample" in capsys.readouterr().err
+        assert re.search(r"unknown (further )?axis of --\w+ 'sample'; valid: none", capsys.readouterr().err)
 
 
 # Slices
@@ -124,15 +124,12 @@ def test_slices_come_in_standard_form(datasets, tmp_path):
 
 
 REFUSED = [
-    (lambda ds: ds.drop_vars("lower"), "a dataset of estimates must hold lower; it does not"),
-    (lambda ds: ds.drop_vars("parameter"), "a dataset of estimates must hold parameter; it does not"),
-    (lambda ds: ds.isel(parameter=[0, 0, 1]), "parameter must be different names, .*; got f_n, f_n, zeta"),
-    (lambda ds: ds.isel(parameter=[]), "parameter must be different names, one or more; got none"),
+    (lambda ds: ds.drop_vars("lower"), "cannot use the estimates: variable 'lower' is missing"),
+    (lambda ds: ds.drop_vars("parameter"), "cannot use the estimates: variable 'parameter' is missing"),
+    (lambda ds: ds.isel(parameter=[0, 0, 1]), "must be a list of different names; got f_n, f_n, zeta"),
+    (lambda ds: ds.isel(parameter=[]), "parameter must be a list of different names; got none"),
     (lambda ds: ds.assign(estimate=ds.estimate * np.nan), r"estimate must be finite; got nan at \[0\]"),
-    (
-        lambda ds: ds.assign(standard_error=-ds.standard_error),
-        "standard_error must be finite, >= 0 or NaN; got -",
-    ),
+    (lambda ds: ds.assign(standard_error=-ds.standard_error), "standard_error must be finite, >= 0 or NaN"),
     (lambda ds: ds.assign(upper=ds.upper * np.nan), r"upper must be a number; got nan at \[0\]"),
     (lambda ds: ds.assign(at_bound=ds.at_bound + 2), r"at_bound must be whole, >= 0, <= 1; got 2 at \[0\]"),
     (lambda ds: ds.assign(unit=ds.estimate), "unit must be text; got "),

@@ -235,14 +235,14 @@ def test_a_late_answer_about_compiling_changes_nothing(browser, one):
                 page.wait_for_timeout(1500)  # until the page would say that it waits
             page.wait_for_selector(DONE)
         page.wait_for_timeout(1000)
-        assert page.is_hidden("#told")
+        assert page.is_hidden("#message")
 
 
 def test_a_view_that_is_refused_is_not_saved(browser, one):
     with page_of(browser, one.url) as page:
         page.fill("input[type=number][name=mu]", "0.5")
         page.keyboard.press("Enter")
-        page.wait_for_selector("#told.wrong")
+        page.wait_for_selector("#message.wrong")
         page.click("#save summary")
         page.click("[data-save=csv]")
         page.wait_for_selector("#toast:not([hidden])")
@@ -280,6 +280,6 @@ def test_a_page_as_a_file_shows_the_map_that_its_sliders_say(browser, tmp_path):
         check(3.0, 0.5)
         repainted(page, lambda: page.evaluate(MOVE, ["mass_ratios[2]", 2]))
         check(1.0, 5.0)
-        assert page.inner_text("#notice") == ("μ is back at 1: this file has no map with all these values.")
+        assert page.inner_text("#notice") == ("μ is reset to 1: this file has no map with all these values.")
         repainted(page, lambda: page.click("[data-zoom=in]"))
         assert page.is_hidden("#notice")

@@ -270,7 +270,7 @@ def test_pointing_at_a_cell_shows_its_motion(browser, one):
         words = page.inner_text("#motion .words")
         assert "2 stops per cycle" in words
         assert "lies between βlim" in re.sub(r"\s", " ", words).replace("β lim", "βlim")
-        assert "it ends in the same motion" in page.inner_text("#motion .others")
+        assert "the same motion results" in page.inner_text("#motion .others")
         where = page.inner_text("#motion .where")
         r, beta = (float(value) for value in re.findall(r"= ([0-9.]+)", where))
         ds = fm.response(fm.System(), r, beta)
@@ -304,7 +304,7 @@ def test_a_cell_is_kept_in_the_address(browser, one):
         repainted(page, lambda: page.mouse.click(*point(page, (r - 0.2) / 0.3, (beta - 0.5) / 0.5)))
         page.wait_for_selector("#motion .others:not([hidden])")
         assert page.inner_text("#motion .regime") == "Permanent sticking"
-        assert "it ends otherwise" in page.inner_text("#motion .others")
+        assert "another motion results" in page.inner_text("#motion .others")
         assert "2 stops per cycle" in page.inner_text("#motion .others")
         cell = ends(of_address(page)["cell"])
         assert cell == pytest.approx([r, beta], abs=2e-3)
@@ -388,25 +388,25 @@ def test_what_is_wrong_is_told_in_a_line(browser, one):
     with page_of(browser, one.url + address) as page:
         keys = "r, beta, quantity, cell, start, contact, cut, mu, damping_ratios"
         assert page.inner_text("#notice") == (
-            "mu must be a number >= 1; got abc; shown is 1\n"
-            "r must be two increasing numbers >= 0 with a comma; got 3,1; shown is 0,2\n"
-            "damping_ratios must be a number >= 0; got -1; shown is 0\n"
-            f"unknown key zeta is left out; the keys are {keys}\n"
-            "cell must be r > 0 and beta >= 0 with a comma; got 1; shown is none"
+            "mu must be a number >= 1; got abc; used: 1\n"
+            "r must be two increasing numbers >= 0 separated by a comma; got 3,1; used: 0,2\n"
+            "damping_ratios must be a number >= 0; got -1; used: 0\n"
+            f"unknown key 'zeta', ignored; valid: {keys}\n"
+            "cell must be r > 0 and beta >= 0 separated by a comma; got 1; used: none"
         )
         right = {"r": "0,2", "beta": "0,0.9", "mu": "1", "quantity": "stuck_fraction"}
         assert of_address(page) == right
         page.fill("input[type=number][name=mu]", "0.5")
         page.keyboard.press("Enter")
-        page.wait_for_selector("#told.wrong")
-        assert page.inner_text("#told") == "mu must be >= 1; got 0.5"
+        page.wait_for_selector("#message.wrong")
+        assert page.inner_text("#message") == "mu must be >= 1; got 0.5"
         page.fill("input[type=number][name=mu]", "")
         page.keyboard.press("Enter")
         assert page.input_value("input[type=number][name=mu]") == "0.5"
         assert page.is_hidden("#notice")  # the view is another one now
         page.fill("input[type=number][name=mu]", "1.2")
         repainted(page, lambda: page.keyboard.press("Enter"))
-        assert page.is_hidden("#told")
+        assert page.is_hidden("#message")
         page.wrong = [
             text for text in page.wrong if "400 (Bad Request)" not in text
         ]  # the browser's own note
@@ -419,8 +419,8 @@ def test_a_server_that_has_ended_is_told(browser, tmp_path):
             stack.close()
             page.context.set_offline(True)
             page.click("[data-zoom=in]")
-            page.wait_for_selector("#told.wrong")
-            assert "does not answer: has it been ended?" in page.inner_text("#told")
+            page.wait_for_selector("#message.wrong")
+            assert "it does not respond. Start it again" in page.inner_text("#message")
             page.wrong = [text for text in page.wrong if "net::ERR" not in text]
 
 
@@ -432,12 +432,12 @@ def test_compiling_is_said(browser, one):
             "**/state?**", lambda route: route.fulfill(json={"compiling": {"seconds": 12.4, "kernels": 3}})
         )
         page.click("[data-zoom=in]")
-        page.wait_for_function("() => document.querySelector('#told').innerText.includes('compiling')")
-        assert page.inner_text("#told") == "compiling kernels, once on this machine: 12 s so far"
+        page.wait_for_function("() => document.querySelector('#message').innerText.includes('compiling')")
+        assert page.inner_text("#message") == "First use: compiling, about 40 s, once only (12 s so far)"
         page.unroute("**/state?**")
         page.unroute("**/map?**")
         page.wait_for_selector(DONE)  # what was kept waiting goes on
-        page.wait_for_selector("#told", state="hidden")
+        page.wait_for_selector("#message", state="hidden")
 
 
 # What is taken along
@@ -488,7 +488,7 @@ def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
         (tmp_path / "page.html").write_bytes(stored.write_page(scene, lambda *_: None))
     url = f"{(tmp_path / 'page.html').as_uri()}#mu=1.7"
     with page_of(browser, url, offline=True) as page:
-        assert page.inner_text("#notice") == "mu must be one of 1, 2, 3; got 1.7; shown is 1"
+        assert page.inner_text("#notice") == "mu must be one of 1, 2, 3; got 1.7; used: 1"
         maps = lambda mu, zeta: wanted(fm.System(damping_ratios=zeta), (0.0, 2.0), (0.0, 1.2), mu, (40, 30))  # noqa: E731
 
         def middles():

@@ -77,7 +77,9 @@ def test_three_masses_with_lags(rig):
 def test_what_cannot_be_told_is_named(rig, capsys):
     message = refusal(capsys, "identify", rig(LINES, head="frequency_Hz,amplitude_ratio_2"))
     assert "amplitude_ratio_2" in message
-    assert "cannot tell f_k1m1, gamma, kappa apart: 1 of them must be known" in message
+    assert (
+        "cannot identify f_k1m1, gamma, kappa separately: mass 2 does not determine them; hold 1" in message
+    )
 
 
 @pytest.mark.parametrize("folder", ["visible-1", "visible-2"])
@@ -100,7 +102,7 @@ def test_one_peak(measured, rig, capsys):
     message = refusal(
         capsys, "identify", "rig.toml", "--set", f"data.file={measured / 'bad' / 'sweep-one-peak.csv'}"
     )
-    assert "one peak: two frequencies wanted" in message
+    assert "two peaks for two frequencies; got one peak" in message
     assert "sweep-one-peak.csv" in message
 
 
@@ -110,7 +112,7 @@ def test_one_peak(measured, rig, capsys):
         (["-1.0,2.0", *LINES], "column frequency_Hz, line 2 must be > 0; got -1"),
         ([*LINES[:5], "1.7,0", *LINES[6:]], "column amplitude_ratio_1, line 7 must be > 0; got 0"),
         ([*LINES[:5], "1.7,x", *LINES[6:]], "column amplitude_ratio_1, line 7 must be a finite number"),
-        (LINES[:3], "frequency must have more values than there are unknowns, 3; got 3"),
+        (LINES[:3], "frequency must have more values than unknowns, 3; got 3"),
     ],
 )
 def test_bad_rows(rig, capsys, lines, message):
@@ -126,37 +128,17 @@ def test_bad_rows(rig, capsys, lines, message):
         ),
         (
             "frequency_Hz,ratio",
-            "must have a column amplitude_ratio_1, or data.columns.amplitude_ratio_1 names",
+            "column amplitude_ratio_1 is missing; the file has",
         ),
-        ("frequency_rpm,amplitude_ratio_1", "column frequency_rpm must end in its unit, one of _Hz"),
+        ("frequency_rpm,amplitude_ratio_1", "column frequency_rpm: its name must end in a unit, _Hz"),
     ],
 )
 def test_bad_names(rig, capsys, head, message):
     assert message in refusal(capsys, "identify", rig(LINES, head=head))
 
 
-@pytest.mark.parametrize(
-    ("override", "message"),
-    [
-        ("system.masses=0", "system.masses must be >= 1; got 0"),
-        ("system.masses=6", "system.masses must be <= 5; got 6"),
-        ("system.damping_reference=wall", "system.damping_reference must be one of ground, base; got 'wall'"),
-        ("data.sigma_phase_deg=1", "sigma_phase must be left out without phase_lag; got 1.0"),
-        ("fit.cost=linear", "fit.cost must be one of logarithmic, relative; got 'linear'"),
-        ("fit.free=['gamma']", "fit.free must be left out for this kind"),
-        ("known.gamma=-1", "known.gamma must be > 0; got -1"),
-        ("known.mass_ratio_2=1", "known must be one of f_k1m1, gamma, kappa; got 'mass_ratio_2'"),
-        ("system.stiffness=3", "unknown key system.stiffness"),
-        ("system.excitation=shaker", "system.excitation must be one of base; got 'shaker'"),
-        ("data.sigma_amplitude=0", "data.sigma_amplitude must be > 0; got 0"),
-        ("data.window=[1, 2]", "unknown key data.window"),
-        ("known.mu=1", "unknown key known.mu"),
-    ],
-)
-def test_bad_configurations(rig, capsys, override, message):
-    assert message in refusal(capsys, "identify", rig(LINES), "--set", override)
-
-
 def test_masses_are_asked_for(rig, capsys):
     text = SWEEP.replace("masses = 2", "")
-    assert "system.masses must be given for a sweep" in refusal(capsys, "identify", rig(LINES, text))
+    assert "system.masses must be a whole number from 1 to 5; got nothing" in refusal(
+        capsys, "identify", rig(LINES, text)
+    )

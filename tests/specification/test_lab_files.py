@@ -60,7 +60,7 @@ def test_a_record_without_a_unit_is_refused(rig, capsys):
     time, x = synthetic(TRUTH, 1)
     pyuff.UFF("decay.unv").write_sets(set_58(time, x, 1, "NONE", name="x"), "overwrite")
     assert main(["identify", rig("decay.unv")]) == 2
-    assert "column x must end in its unit, one of _mm, _m, _um; it has none" in capsys.readouterr().err
+    assert "column x: its name must end in a unit, _mm, _m, _um; got none" in capsys.readouterr().err
 
 
 def test_responses_in_a_universal_file(rig):
@@ -112,7 +112,7 @@ def test_without_the_package_it_is_named(rig, capsys, monkeypatch, tmp_path, pac
     (tmp_path / file).write_bytes(b"anything")
     assert main(["identify", rig(file)]) == 2
     err = capsys.readouterr().err
-    assert f"file {file} needs the package {package}; install it with: pip install 'frictionmap[lab]'" in err
+    assert f"cannot read {file}: {package} is not installed; run pip install 'frictionmap[lab]'" in err
     assert err.count("\n") == 1
 
 

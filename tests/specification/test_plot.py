@@ -419,11 +419,15 @@ def test_datasets_the_wrong_way_round(tiny_map, tiny_boundaries, tiny_response):
         (fm.plot_response, tiny_boundaries, "plot_boundaries"),
         (fm.plot_boundaries, tiny_response, "plot_response"),
     ):
-        with pytest.raises(InputError, match=rf"^{draw.__name__} takes a dataset such as .*: use {name}$"):
+        with pytest.raises(
+            InputError, match=rf"^ds of {draw.__name__} must be a dataset such as .* \(use {name}\)$"
+        ):
             draw(ds)
     for draw in (fm.plot_regimes, fm.plot_boundaries, fm.plot_response):
         for wrong in (tiny_map.beta_lim, "map.nc", None):
-            with pytest.raises(InputError, match=rf"^{draw.__name__} takes .*; got {type(wrong).__name__}$"):
+            with pytest.raises(
+                InputError, match=rf"^ds of {draw.__name__} must be .*; got {type(wrong).__name__}$"
+            ):
                 draw(wrong)
 
 

@@ -382,12 +382,18 @@ def test_fits_are_drawn_into_given_axes(datasets):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda ds: ds.drop_vars("model"), "a dataset must hold model for its fit to be drawn; it does not"),
+        (
+            lambda ds: ds.drop_vars("model"),
+            "a dataset must hold model for its fit to be drawn; got no such variable",
+        ),
         (lambda ds: ds.assign(data=1e301 * ds.data), r"data must be at most 1e\+300 to be drawn; got"),
         (lambda ds: ds.assign(estimate=-ds.estimate), "must have f_n > 0 and zeta < 1 to be drawn; got -3"),
         (lambda ds: ds.assign(half_cycles=10**9), "must have at most 400 half cycles to be drawn; got 1e"),
         (lambda ds: ds.assign(time=1e4 * ds.time), "must have at most 400 half cycles to be drawn; got"),
-        (lambda ds: fm.boundaries(fm.System(), [0.5]), "^plot_fit takes .* use plot_boundaries$"),
+        (
+            lambda ds: fm.boundaries(fm.System(), [0.5]),
+            r"^ds of plot_fit must be .* \(use plot_boundaries\)$",
+        ),
     ],
 )
 def test_what_cannot_be_drawn(datasets, change, message):
@@ -400,7 +406,7 @@ def test_what_cannot_be_drawn(datasets, change, message):
     [
         (lambda ds: ds.assign(data=1e3 * ds.data), r"data must be logarithms of at most 600 .*; got \d+"),
         (lambda ds: ds.assign(estimate=0.0 * ds.estimate), "f0, f1 and f2 must be > 0 to be drawn; got 0"),
-        (lambda ds: ds.isel(sample=[]), "must have at least one sample for its fit to be drawn; it has none"),
+        (lambda ds: ds.isel(sample=[]), "must have at least one sample for its fit to be drawn; got none"),
     ],
 )
 def test_sweeps_that_cannot_be_drawn(datasets, change, message):
@@ -424,9 +430,11 @@ def test_mutants_are_drawn_or_refused(datasets, tmp_path):
 
 
 def test_other_pictures_send_fits_here(datasets):
-    with pytest.raises(InputError, match=r"^plot_regimes takes .* use plot_fit$"):
+    with pytest.raises(InputError, match=r"^ds of plot_regimes must be .* \(use plot_fit\)$"):
         fm.plot_regimes(datasets["decay"])
-    with pytest.raises(InputError, match=r"^quantity must be one of fit of a estimates; got history$"):
+    with pytest.raises(
+        InputError, match=r"^unknown quantity 'history' in a file of kind estimates; valid: fit$"
+    ):
         plot.save_picture(datasets["decay"], Path("no.png"), "history")
 
 

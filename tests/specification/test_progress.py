@@ -54,7 +54,7 @@ def test_on_a_terminal(monkeypatch):
     assert "\n" not in text
     shown = [line.rstrip() for line in text.split("\r") if line.strip()]
     assert shown == [
-        "compiling kernels, once: up to a minute",
+        "first use: compiling, about 40 s, once only",
         " 20.0 %",
         " 40.0 %  about 30 s left",
         " 60.0 %  about 20 s left",
@@ -70,8 +70,8 @@ def test_on_a_terminal(monkeypatch):
 
 def test_elsewhere_there_is_a_line_at_the_start_and_one_at_the_end(monkeypatch):
     assert work(monkeypatch, io.StringIO()).splitlines() == [
-        "frictionmap: a map begun",
-        "frictionmap: compiling kernels, once: up to a minute",
+        "frictionmap: a map started",
+        "frictionmap: first use: compiling, about 40 s, once only",
         "frictionmap: a map done in 35 s",
     ]
 
@@ -81,7 +81,7 @@ def test_elsewhere_there_is_a_line_at_the_start_and_one_at_the_end(monkeypatch):
     [
         (Terminal(), ["0 of 3 maps    5.6 %", "1 of 3 maps   33.3 %  about 48 s left",
                       "2 of 3 maps   72.2 %  about 21 s left"]),
-        (io.StringIO(), ["frictionmap: a page begun", "frictionmap: 1 of 3 maps  about 48 s left",
+        (io.StringIO(), ["frictionmap: a page started", "frictionmap: 1 of 3 maps  about 48 s left",
                          "frictionmap: 2 of 3 maps  about 21 s left", "frictionmap: a page done in 60 s"]),
     ],
 )  # fmt: skip
@@ -119,7 +119,7 @@ def test_work_that_fails_is_not_done(monkeypatch):
     with contextlib.suppress(OSError), Progress("a map", quiet=False) as shown:
         shown(1, 2)
         raise OSError("disk")
-    assert sys.stderr.getvalue() == "frictionmap: a map begun\n"
+    assert sys.stderr.getvalue() == "frictionmap: a map started\n"
 
 
 def test_progress_counts_what_else_a_cell_could_end_in():
@@ -238,7 +238,7 @@ def test_the_cost_of_many_cells_is_told_before_the_work(tmp_path, monkeypatch, c
     (tmp_path / "small.toml").write_text("[system]\n[grid]\nr = [0.3, 0.8]\nbeta = 1\n")
     main(["map", "small.toml"])
     lines = capsys.readouterr().err.splitlines()
-    assert "frictionmap: 2 cells take about 400 MB of memory and 1 s" in lines
+    assert "frictionmap: 2 cells need about 400 MB of memory and 1 s" in lines
     main(["map", "small.toml", "--quiet", "--overwrite"])
     assert capsys.readouterr().err == ""
 

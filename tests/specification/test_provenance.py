@@ -159,11 +159,11 @@ def test_no_system_in_the_text(text):
         ("load = 3", r"system.load must be a list of numbers; got 3"),
         (
             "matrices = { M = [[1.0]] }",
-            "system.matrices must have arrays M, K and optionally C; K is missing",
+            "system.matrices must have arrays M, K and optionally C; got",
         ),
         (
             'matrices = { M = "m.mtx", K = [[1.0]] }',
-            "system.matrices must be files, such as .*, or arrays, all of them",
+            "system.matrices must all be files, .*, or arrays; got a file of",
         ),
         ("matrices = 3", "system.matrices must be the path of an .npz file, or a table of arrays"),
     ],

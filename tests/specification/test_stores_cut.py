@@ -41,7 +41,7 @@ beta = { start = 0.0, stop = 1.2, num = 80 }
 mu = [1.5]
 """
 ONE_LINE = re.compile(
-    r"frictionmap: interrupted; ([0-9]+) of ([0-9]+) blocks are in out\.zarr; the same command goes on\n"
+    r"frictionmap: interrupted; ([0-9]+) of ([0-9]+) blocks are in out\.zarr; repeat the command to resume\n"
 )
 
 

@@ -224,7 +224,7 @@ BAD_FILES = {
     ),
     "a pattern": (f"{BANNER} pattern general\n1 1 1\n1 1\n", ["line 1", "real general|symmetric", "pattern"]),
     "not square": (f"{BANNER} real general\n1 2 1\n1 1 1.0\n", ["square", "1 by 2"]),
-    "an entry twice": (f"{BANNER} real general\n1 1 2\n1 1 1.0\n1 1 1.0\n", ["once", "row 1, column 1"]),
+    "an entry twice": (f"{BANNER} real general\n1 1 2\n1 1 1.0\n1 1 1.0\n", ["twice", "row 1, column 1"]),
     "symmetric, both triangles": (
         f"{BANNER} real symmetric\n2 2 2\n1 1 1.0\n1 2 0.5\n", ["line 4", "an entry of the lower triangle"]
     ),
@@ -233,29 +233,29 @@ BAD_FILES = {
     "no sizes": (f"{BANNER} real general\n", ["line 2", "3 whole numbers"]),
     "another object": ("%%MatrixMarket vector coordinate real general\n1 1\n", ["line 1", "matrix"]),
     "an array cut short": (
-        "%%MatrixMarket matrix array real symmetric\n2 2\n1.0\n0.5\n", ["3 entries", "it has 2"]
+        "%%MatrixMarket matrix array real symmetric\n2 2\n1.0\n0.5\n", ["3 entries", "got 2"]
     ),
     "an array with words": ("%%MatrixMarket matrix array real general\n1 1\none\n", ["line 3", "one entry"]),
-    "cut short": (f"{BANNER} real general\n2 2 4\n1 1 1.0\n", ["4 entries", "it has 1"]),
+    "cut short": (f"{BANNER} real general\n2 2 4\n1 1 1.0\n", ["4 entries", "got 1"]),
     "no number": (f"{BANNER} real general\n1 1 1\n1 1 one\n", ["line 3", "row column entry", "'1 1 one'"]),
     "not a number": (f"{BANNER} real general\n1 1 1\n1 1 nan\n", ["M must be finite", "[0, 0]"]),
     "words": ("mass\n", ["line 1", "node, dof, node, dof, entry or row column entry", "'mass'"]),
     "Abaqus, no number": ("1,1, 1,1, 2.0\n1,2, 1,1, x\n", ["line 2", "node, dof, node, dof, entry"]),
     "Abaqus, a field too few": ("1,1, 1,1, 2.0\n1,2, 1, 2.0\n", ["line 2", "node, dof, node, dof, entry"]),
     "Abaqus, unsymmetric": ("*MATRIX INPUT, TYPE=UNSYMMETRIC\n1 1 1 1 1.\n", ["line 1", "symmetric"]),
-    "Abaqus, another keyword": ("*NODE\n1, 1., 1.\n", ["line 1", "no other keyword", "*NODE"]),
+    "Abaqus, another keyword": ("*NODE\n1, 1., 1.\n", ["line 1", "no keyword but *MATRIX", "*NODE"]),
     "Abaqus, row 0": ("0 0 1.0\n", ["line 1", "counted from 1"]),
-    "Abaqus, an entry twice": ("1 1 1.0\n1 1 1.0\n", ["every entry once", "row 1, column 1"]),
+    "Abaqus, an entry twice": ("1 1 1.0\n1 1 1.0\n", ["an entry is given twice", "row 1, column 1"]),
     "Abaqus, half of some": (
         "1 1 4.\n2 2 4.\n3 3 4.\n1 2 1.\n2 1 1.\n1 3 1.\n", ["must be symmetric", "[0, 2]"]
     ),
     "Abaqus, a row far off": ("1 1 1.0\n99999999 1 1.0\n", ["at most 10000000 rows", "99999999"]),
-    "Abaqus, nothing": ("** nothing\n", ["a line for every entry", "none"]),
+    "Abaqus, nothing": ("** nothing\n", ["it has no entries"]),
     "digits of another alphabet": (
         f"{BANNER} real general\n1 1 1\n1 1 \u0662\n", ["line 3", "row column entry", "'1 1 \u0662'"]
     ),
     "a row in digits of another alphabet": ("\u0661 1 1.0\n", ["line 1", "row column entry"]),
-    "zero bytes": ("1 1\0 1.0", ["must be text"]),
+    "zero bytes": ("1 1\0 1.0", ["it is not text"]),
 }  # fmt: skip
 
 
@@ -278,7 +278,7 @@ def test_bad_texts(text, words, tmp_path, capsys):
 
 
 BAD_BOEING = {
-    "empty": ("", ["four lines", "it has 0"]),
+    "empty": ("", ["four lines", "got 0"]),
     "complex": (f"{HEADER}CUA{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (3E25.16)\n", ["line 3", "real"]),
     "elements": (f"{HEADER}RUE{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (3E25.16)\n", ["line 3"]),
     "a format": (f"{HEADER}RUA{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (list)\n", ["line 4", "Fortran"]),
@@ -289,7 +289,7 @@ BAD_BOEING = {
     "pointers": (
         f"{HEADER}RUA{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (3E25.16)\n{1:10d}{9:10d}\n{1:10d}\n"
         f"{2.0:25e}\n",
-        ["pointers and rows of a 1 by 1 matrix"],
+        ["pointers and rows do not fit a matrix of size 1"],
     ),
     "too few": (
         f"{HEADER}RUA{1:25d}{1:14d}{1:14d}{0:14d}\n(8I10) (8I10) (3E25.16)\n{1:10d}\n{1:10d}\n{2.0:25e}\n",
@@ -311,12 +311,12 @@ def test_bad_files_of_harwell_boeing(text, words, tmp_path, capsys):
         ("K.rsa", ["one by one", ".rsa"]),
         ({"M": "K.mtx", "K": "missing.mtx"}, ["missing.mtx", "No such file"]),
         ({"M": "K.mtx", "K": "K.txt"}, ["K must be a file that ends in .mtx", "K.txt"]),
-        ({"M": "K.mtx", "K": [[1.0]]}, ["files", "or arrays, all of them"]),
-        ({"M": "K.mtx"}, ["K is missing"]),
-        ({"M": "K.mtx", "K": "L.mtx"}, ["labels of nodes or none", "M has none beside K"]),
-        ("broken.mat", ["must be a MAT file"]),
+        ({"M": "K.mtx", "K": [[1.0]]}, ["must all be files", "or arrays; got a file of M"]),
+        ({"M": "K.mtx"}, ["must have arrays M, K", "got M"]),
+        ({"M": "K.mtx", "K": "L.mtx"}, ["K has labels of nodes, M has none"]),
+        ("broken.mat", ["it is not a valid MAT file"]),
         ("missing.mat", ["missing.mat", "No such file"]),
-        ("more.mat", ["M, K and optionally C, no others", "'D'"]),
+        ("more.mat", ["unknown array 'D'; valid: M, K, C, dofs"]),
         ({"M": [[1.0]], "K": [[1.0]], "dofs": [0]}, ["dofs must be 1 whole numbers", "[0]"]),
         ({"M": [[1.0]], "K": [[1.0]], "dofs": [1.5]}, ["dofs must be 1 whole numbers"]),
         ({"M": [[1.0]], "K": [[1.0]], "dofs": [1, 2]}, ["dofs must be 1 whole numbers"]),
@@ -346,30 +346,30 @@ def test_bad_files_of_nastran(tmp_path, capsys):
     from pyyeti.nastran import op4 as writer
 
     writer.write(str(tmp_path / "two.op4"), {"MAA": M, "MGG": M, "KAA": K})
-    refused(capsys, tmp_path, "two.op4", ["one matrix M", "MAA, MGG"])
+    refused(capsys, tmp_path, "two.op4", ["more than one matrix may be M", "MAA, MGG"])
     writer.write(str(tmp_path / "none.op4"), {"PHIX": M})
-    refused(capsys, tmp_path, "none.op4", ["called M, K and C", "it has PHIX"])
+    refused(capsys, tmp_path, "none.op4", ["called M, K and C", "got PHIX"])
     writer.write(str(tmp_path / "half.op4"), {"MAA": M})
-    refused(capsys, tmp_path, "half.op4", ["K is missing", "got M"])
-    refused(capsys, tmp_path, {"M": "half.op4", "K": "half.op4"}, ["must have a matrix K", "it has M"])
+    refused(capsys, tmp_path, "half.op4", ["must have arrays M, K", "got M"])
+    refused(capsys, tmp_path, {"M": "half.op4", "K": "half.op4"}, ["K must be in file", "got M"])
     (tmp_path / "text.op4").write_text("no matrix at all, but words\n" * 4)
     refused(capsys, tmp_path, "text.op4", ["OP4 file of Nastran"])
     (tmp_path / "text.pch").write_text("GRID,1\n")
-    refused(capsys, tmp_path, "text.pch", ["DMIG cards", "none"])
+    refused(capsys, tmp_path, "text.pch", ["it has no DMIG cards"])
     written.punch(tmp_path / "frame.pch", {"PHIX": M, "MAAX": M, "KAAX": K}, LABELS)
     good = (tmp_path / "frame.pch").read_text()
     entry = f"*       {3:>16}{2:>16}{-2.5:>16.9E}\n"
     (tmp_path / "twice.pch").write_text(good + entry)  # in the column of 17.1; that of 3.2 has it
-    refused(capsys, tmp_path, "twice.pch", ["every entry of KAAX once", "3.2, 17.1 twice"])
+    refused(capsys, tmp_path, "twice.pch", ["an entry of KAAX is given twice", "3.2, 17.1"])
     real = f"KAAX    {0:>8}{6:>8}{2:>8}"
     (tmp_path / "complex.pch").write_text(good.replace(real, f"{real[:-1]}4"))
-    refused(capsys, tmp_path, "complex.pch", ["real matrices", "KAAX is complex"])
+    refused(capsys, tmp_path, "complex.pch", ["KAAX is complex", "write real matrices"])
 
 
 def test_without_the_extra(tmp_path, monkeypatch, capsys):
     (tmp_path / "frame.op4").write_bytes(b"anything")
     monkeypatch.setitem(sys.modules, "pyyeti.nastran.op4", None)
-    refused(capsys, tmp_path, "frame.op4", ["frame.op4 needs the package pyyeti", "frictionmap[fe]"])
+    refused(capsys, tmp_path, "frame.op4", ["frame.op4: pyyeti is not installed", "frictionmap[fe]"])
 
 
 @pytest.mark.parametrize(

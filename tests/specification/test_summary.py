@@ -161,9 +161,9 @@ def test_cells_by_stops_are_all_counted(datasets):
     ds["stops_per_cycle"] = ds["stops_per_cycle"].copy(data=np.full(ds["stops_per_cycle"].shape, np.nan))
     stops = ds["stops_per_cycle"].values.reshape(-1)
     stops[:5] = [0.0, 2.0, 0.8, 2.0, 1.25]
-    assert stops_line(ds) == "2: 2, not whole, 0.8 to 1.25: 2"
+    assert stops_line(ds) == "2: 2, non-integer, 0.8 to 1.25: 2"
     stops[10:24] = 2.0 * np.arange(1, 15)
     told = ", ".join(f"{2 * k}: {1 + 2 * (k == 1)}" for k in range(1, 13))
-    assert stops_line(ds) == f"{told}, more, to 28: 2, not whole, 0.8 to 1.25: 2"
+    assert stops_line(ds) == f"{told}, more, to 28: 2, non-integer, 0.8 to 1.25: 2"
     stops[:] = 1.5
-    assert stops_line(ds) == "not whole, 1.5 to 1.5: 80"
+    assert stops_line(ds) == "non-integer, 1.5 to 1.5: 80"

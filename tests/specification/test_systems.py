@@ -4,6 +4,7 @@ import dataclasses
 import io
 import math
 import pickle
+import re
 import zipfile
 
 import numpy as np
@@ -151,7 +152,7 @@ BAD_SYSTEMS = {
     ),
     "C and ratios": (
         {"matrices": {**CHAIN, "C": 0.1 * CHAIN["M"]}, "damping_ratios": 0.1},
-        ["damping_ratios must be left out if matrices has C", "0.1"],
+        ["cannot use damping_ratios with matrices: C defines the damping"],
     ),
     "rows": ({"matrices": {**CHAIN, "M": np.ones((2, 3))}}, ["matrices: M must be square", "(2, 3)"]),
     "a vector": ({"matrices": {**CHAIN, "M": np.ones(3)}}, ["matrices: M must be square", "(3,)"]),
@@ -186,19 +187,19 @@ BAD_SYSTEMS = {
         {"mass_ratios": [1, 1], "stiffness_ratios": [1, 1e20]},
         ["change mass_ratios and stiffness_ratios", "1.41e+10"],
     ),
-    "no K": ({"matrices": {"M": np.eye(2)}}, ["matrices must have arrays M, K", "K is missing", "got M"]),
-    "no arrays": ({"matrices": {}}, ["matrices must have arrays M, K", "M is missing", "got none"]),
+    "no K": ({"matrices": {"M": np.eye(2)}}, ["matrices must have arrays M, K", "got M"]),
+    "no arrays": ({"matrices": {}}, ["matrices must have arrays M, K", "got none"]),
     "an unknown array": (
         {"matrices": {**CHAIN, "D": np.eye(3)}},
-        ["matrices must have arrays M, K and optionally C", "'D'"],
+        ["matrices: unknown array 'D'; valid: M, K, C"],
     ),
     "matrices and masses": (
         {**FRAME, "mass_ratios": [1.0]},
-        ["mass_ratios must be left out if matrices are given", "[1.0]"],
+        ["cannot use mass_ratios with matrices"],
     ),
     "matrices and springs": (
         {**FRAME, "stiffness_ratios": [1.0, 1.0]},
-        ["stiffness_ratios must be left out if matrices are given", "[1.0, 1.0]"],
+        ["cannot use stiffness_ratios with matrices"],
     ),
     "a frequency of zero": ({**FRAME, "frequency_scale": 0.0}, ["frequency_scale must be > 0", "got 0"]),
     "a frequency below zero": ({**FRAME, "frequency_scale": -1.0}, ["frequency_scale must be > 0", "-1"]),
@@ -214,11 +215,11 @@ BAD_SYSTEMS = {
     ),
     "a frequency scale of a chain": (
         {"frequency_scale": 2.0},
-        ["frequency_scale must be left out without matrices", "2.0"],
+        ["cannot use frequency_scale without matrices"],
     ),
     "a stiffness scale of a chain": (
         {"stiffness_scale": 2.0},
-        ["stiffness_scale must be left out without matrices", "2.0"],
+        ["cannot use stiffness_scale without matrices"],
     ),
     "a damping ratio too few": (
         {**FRAME, "damping_ratios": [0.1, 0.2]},
@@ -258,7 +259,7 @@ BAD_SYSTEMS = {
     ),
     "dashpots to a base at rest": (
         {"damping_reference": "base"},
-        ["damping_reference must be ground unless the base moves", "got 'base'"],
+        ["damping_reference must be ground for a force-excited structure", "got 'base'"],
     ),
     "a load on mass 2 of a moving base": (
         {"excitation": "base", "load_mass": 2, **RATIOS},
@@ -317,7 +318,7 @@ def test_bad_systems_from_the_command_line(tmp_path, capsys, settings, words):
         settings = {**settings, "matrices": "frame.npz"}
     status, message = status_and_message(tmp_path, capsys, settings)
     assert status == 2
-    assert message.startswith("frictionmap: system.")
+    assert re.match(r"frictionmap: (cannot use )?(system\.|\[system\]: cannot )", message)
     for word in words:
         assert word in message, message
 
@@ -334,14 +335,14 @@ def test_bad_systems_from_the_command_line(tmp_path, capsys, settings, words):
         ({"load": ["1"]}, ["load[0] must be a number", "'1'"]),
         ({"load": [True]}, ["load[0] must be a number", "True"]),
         ({"load": 1.0}, ["load must be a list of numbers", "1.0"]),
-        ({"load": [1.0], "load_mass": 1}, ["load must be left out if load_mass is given", "1"]),
-        ({"load": [1.0], "excitation": "base"}, ["load must be left out with base excitation", "[1.0]"]),
-        ({"load": [1.0], "contact": "joined-base-wall"}, ["load must be left out with base excitation"]),
+        ({"load": [1.0], "load_mass": 1}, ["cannot use load with load_mass"]),
+        ({"load": [1.0], "excitation": "base"}, ["cannot use load with base excitation"]),
+        ({"load": [1.0], "contact": "joined-base-wall"}, ["cannot use load with base excitation"]),
         ({"matrices": 5}, ["matrices must be the path of an .npz file or a mapping", "got 5"]),
         ({"matrices": np.eye(2)}, ["matrices must be the path of an .npz file or a mapping", "array("]),
         ({"matrices": {**CHAIN, "K": [[1.0], [1.0, 2.0]]}}, ["matrices: K must be an array of real numbers"]),
         ({"matrices": {**CHAIN, "C": None}}, ["matrices: C must be an array of real numbers", "object"]),
-        ({"matrices": {1: np.eye(2)}}, ["matrices must have arrays M, K and optionally C", "got 1"]),
+        ({"matrices": {1: np.eye(2)}}, ["matrices: unknown array 1; valid: M, K, C"]),
     ],
 )
 def test_bad_systems_that_a_configuration_cannot_have(settings, words):
@@ -391,7 +392,7 @@ BAD_FILES = {
     "damaged": (GOOD.replace(b"\x00\x00\xf0\x3f", b"\x00\x00\xf1\x3f"), "not an .npz file of plain arrays"),
     "an archive of something else": (archive(M_npy=b"M", K_npy=b"K"), "real numbers"),
     "an archive of text": (archive(a_txt=b"M"), "'a.txt'"),
-    "an empty archive": (archive(), "M is missing, got none"),
+    "an empty archive": (archive(), "got none"),
     "a header that promises too much": (
         archive(M_npy=EYE.replace(b"(2, 2)", b"(9, 9)"), K_npy=EYE),
         "not an .npz file of plain arrays",
@@ -406,7 +407,7 @@ def test_bad_files(tmp_path, capsys, content, word):
     status, message = status_and_message(tmp_path, capsys, {"matrices": "frame.npz"})
     assert status == 2
     assert message.startswith("frictionmap: system.matrices")
-    assert "arrays M, K and optionally C" in message or "must be an array" in message
+    assert any(words in message for words in ("M, K and optionally C", "unknown array", "must be an array"))
     assert word in message
     assert "a program has run" not in message
 
@@ -452,7 +453,7 @@ def test_a_good_file(tmp_path, capsys, monkeypatch):
     [
         (
             {"contact": "joined-base-wall", "excitation": "force"},
-            "excitation must be base, or left out, for a",
+            "excitation must be base for a",
         ),
         ({"mass_ratios": np.ma.masked_array([1.0], [True])}, "mass_ratios must have no masked values"),
         ({"damping_ratios": np.ma.masked_array([0.1], [True])}, "damping_ratios must have no masked values"),
@@ -482,9 +483,7 @@ def test_arrays_of_any_kind_are_lists():
 
 @pytest.mark.filterwarnings("error")
 def test_scales_that_are_none():
-    with pytest.raises(
-        fm.InputError, match=r"^stiffness_scale must be left out without matrices.*; got True$"
-    ):
+    with pytest.raises(fm.InputError, match=r"^cannot use stiffness_scale without matrices"):
         fm.System(stiffness_scale=True)
     with pytest.raises(
         fm.InputError, match=r"^frequency_scale and stiffness_scale must leave M with entries"

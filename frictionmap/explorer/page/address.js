@@ -38,7 +38,7 @@ function joined(pairs) {
   return pairs.map(([key, value]) => `${escaped(key)}=${escaped(String(value))}`).join("&");
 }
 
-/** What of a view decides its cells, as the server is asked. */
+/** Keys of a view that determine its cells, as sent to the server. */
 function pairsOf(view, scene) {
   const pairs = [["r", view.r.join(",")], ["beta", view.beta.join(",")], ["mu", view.mu]];
   if (view.start !== scene.start) pairs.push(["start", view.start]);
@@ -46,17 +46,17 @@ function pairsOf(view, scene) {
   return [...pairs, ...Object.entries(view.numbers)];
 }
 
-/** What decides the motion in a cell: views that agree in it have the same motion in the same cell. @param {View} view */
+/** Key of the system of a view: equal keys give the same motion in a cell. @param {View} view */
 export function systemKey({ mu, start, contact, numbers }) {
   return JSON.stringify([mu, start, contact, Object.entries(numbers).sort()]);
 }
 
-/** What decides the colour of a cell. @param {View} view */
+/** Key of the colours of cells: system and quantity. @param {View} view */
 export function cellsKey(view) {
   return `${systemKey(view)} ${view.quantity}`;
 }
 
-/** What decides a picture: its cells and its ranges. @param {View} view */
+/** Key of a picture: cells and ranges. @param {View} view */
 export function pictureKey(view) {
   return `${cellsKey(view)} ${view.r} ${view.beta}`;
 }
@@ -75,8 +75,8 @@ export function hashOf(view, scene) {
   return `#${joined(pairs)}`;
 }
 
-/** Characters of a wrong value that are told. */
-const TOLD = 40;
+/** Longest invalid value that a message quotes. */
+const LONGEST = 40;
 
 /** Numbers with commas between them, if they are so many, finite and right; else undefined. */
 function numbersOf(text, count, right) {
@@ -87,38 +87,38 @@ function numbersOf(text, count, right) {
 }
 
 /**
- * What may stand under a key of an address.
+ * Parser and valid values of a key of an address.
  * @typedef {object} Key
  * @property {(text: string) => any} read  the value, or undefined
- * @property {string} legal                what is legal, in words
+ * @property {string} valid                valid values, in words
  */
 
 /** @returns {Key} */
 function range() {
   const read = (text) => numbersOf(text, 2, (low, high) => low >= 0 && low < high);
-  return { read, legal: "two increasing numbers >= 0 with a comma" };
+  return { read, valid: "two increasing numbers >= 0 separated by a comma" };
 }
 
 /** @returns {Key} */
 function cell() {
-  return { read: (text) => numbersOf(text, 2, (r, beta) => r > 0 && beta >= 0), legal: "r > 0 and beta >= 0 with a comma" };
+  return { read: (text) => numbersOf(text, 2, (r, beta) => r > 0 && beta >= 0), valid: "r > 0 and beta >= 0 separated by a comma" };
 }
 
 /** @returns {Key} */
 function choice(words) {
-  return { read: (text) => (words.includes(text) ? text : undefined), legal: `one of ${words.join(", ")}` };
+  return { read: (text) => (words.includes(text) ? text : undefined), valid: `one of ${words.join(", ")}` };
 }
 
 /** A number as a slider has it: only mass and stiffness ratios may lie below the slider's least. @returns {Key} */
 function number({ least, scale }) {
   const ratio = scale === "log";
   const right = (value) => (ratio ? value > 0 : value >= least);
-  return { read: (text) => numbersOf(text, 1, right)?.[0], legal: `a number ${ratio ? "> 0" : `>= ${least}`}` };
+  return { read: (text) => numbersOf(text, 1, right)?.[0], valid: `a number ${ratio ? "> 0" : `>= ${least}`}` };
 }
 
 /** One of the places of a slider that has no others. @returns {Key} */
 function place(places) {
-  return { read: (text) => numbersOf(text, 1, (value) => places.includes(value))?.[0], legal: `one of ${places.join(", ")}` };
+  return { read: (text) => numbersOf(text, 1, (value) => places.includes(value))?.[0], valid: `one of ${places.join(", ")}` };
 }
 
 /** The keys of an address; a page that keeps maps for some places of its sliders has no others to offer. @returns {Map<string, Key>} */
@@ -141,17 +141,17 @@ function valueIn(view, key, scene) {
   return String(value ?? "") || "none";
 }
 
-/** What is wrong with a key of an address, and what the view has instead, in a line. */
+/** Message about an invalid key of an address, and the value used instead. */
 function fault(view, scene, keys, key, text) {
-  const got = text.length > TOLD ? `${text.slice(0, TOLD)}…` : text;
-  if (!keys.has(key)) return `unknown key ${key.slice(0, TOLD)} is left out; the keys are ${[...keys.keys()].join(", ")}`;
-  return `${key} must be ${keys.get(key).legal}; got ${got || "nothing"}; shown is ${valueIn(view, key, scene)}`;
+  const got = text.length > LONGEST ? `${text.slice(0, LONGEST)}…` : text;
+  if (!keys.has(key)) return `unknown key '${key.slice(0, LONGEST)}', ignored; valid: ${[...keys.keys()].join(", ")}`;
+  return `${key} must be ${keys.get(key).valid}; got ${got || "nothing"}; used: ${valueIn(view, key, scene)}`;
 }
 
 /**
- * The view of an address; what it leaves out or what is wrong in it is as the scene begins.
+ * The view of an address; missing and invalid keys have the values with which the scene begins.
  * @param {Object<string, number[]> | null} [places]  those of the sliders, if maps are kept for them only
- * @returns {{view: View, wrong: string[]}}  a line for everything that is wrong
+ * @returns {{view: View, wrong: string[]}}  one message for each invalid key
  */
 export function viewOf(hash, scene, places = null) {
   const view = firstView(scene);

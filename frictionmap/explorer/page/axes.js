@@ -1,6 +1,6 @@
 // Axes: places and numbers of ticks, and numbers in words.
 
-/** Steps that people count in. */
+/** Round steps. */
 const STEPS = [1, 2, 5, 10];
 
 /** Evenly spaced round numbers within a range, about `count` of them and two at least. */
@@ -51,7 +51,7 @@ export function short(value, digits = 4) {
   return `${factor}10${raised}`.replace(/^-/, "−");
 }
 
-/** Colours of the style sheet that were asked for: to ask it takes as long as to draw a line. */
+/** Cache of colours of the style sheet, as a look-up takes as long as drawing a line. */
 const known = new Map();
 
 /** The colour that the style sheet gives a name. */
@@ -60,12 +60,12 @@ export function colour(name) {
   return known.get(name);
 }
 
-/** The desktop has other colours now. */
+/** Clear the cache after a change of the colour scheme. */
 export function forgetColours() {
   known.clear();
 }
 
-/** Masses that are drawn in one chart; more only cover each other. */
+/** Masses drawn in one chart; more would cover each other. */
 export const DRAWN = 6;
 
 /** The colour of a mass, counted from 0. */

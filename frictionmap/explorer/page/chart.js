@@ -1,4 +1,4 @@
-// Small charts: lines over two axes, bars, and what lies behind them.
+// Small charts: lines over two axes, bars, background bands.
 
 import { colour, keepTo, logTicks, sharp, short, ticks } from "./axes.js";
 

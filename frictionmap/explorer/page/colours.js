@@ -1,14 +1,14 @@
 // Colours of cells: those of the package for classes, an even ramp for quantities.
 
-/** Steps of the colour map viridis: even in lightness, and the same to eyes that do not see red or green. */
+/** Steps of the colour map viridis: uniform in lightness, and suited to colour-blind eyes. */
 const VIRIDIS = [
   "#440154", "#481467", "#482576", "#453781", "#404688", "#39558c", "#33638d", "#2d718e", "#287d8e",
   "#238a8d", "#1f968b", "#20a386", "#29af7f", "#3dbc74", "#56c667", "#75d054", "#95d840", "#bade28", "#dde318", "#fde725",
 ];
 const STEPS = 256;
 
-/** Indices into the package's palette. */
-export const CLASS = { unresolved: 0, stuck: 1, continuous: 2, one: 3, more: 7, broken: 8, uncounted: 9 };
+/** Indices into the palette of the package. */
+export const CLASS = { unresolved: 0, stuck: 1, continuous: 2, one: 3, more: 7, nonInteger: 8, uncounted: 9 };
 
 function parts(hex) {
   return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));

@@ -1,4 +1,4 @@
-// Choices and sliders: what is shown, and with which numbers.
+// Menus and sliders for the quantity shown and the parameters.
 
 import { short } from "./axes.js";
 
@@ -62,7 +62,7 @@ export class Controls {
     select.replaceChildren(...options.map((option) => new Option(option.label, option.key)));
   }
 
-  /** Other options of a choice: the masses of a structure that is reduced may be others for another contact. */
+  /** Replace the options of a menu: a reduced structure may have other masses for another contact. */
   offer(key, options, view) {
     const select = this.form.querySelector(`#${key}`);
     const known = [...select.options].map((option) => option.label).join();
@@ -72,9 +72,9 @@ export class Controls {
   }
 
   #starts() {
-    const made = this.#add(this.form, `<span id="start-name">start</span><div class="row" role="group" aria-labelledby="start-name">
-      <button type="button" data-start="rest" title="z = z′ = 0 at the beginning">at rest</button>
-      <button type="button" data-start="moving" title="a large sliding motion at the beginning">moving</button></div>`);
+    const made = this.#add(this.form, `<span id="start-name">initial state</span><div class="row" role="group" aria-labelledby="start-name">
+      <button type="button" data-start="rest" title="z = z′ = 0 initially">at rest</button>
+      <button type="button" data-start="moving" title="a large sliding motion initially">moving</button></div>`);
     for (const button of made.querySelectorAll("button")) {
       button.addEventListener("click", () => this.onChange({ start: button.dataset.start }));
     }
@@ -82,8 +82,8 @@ export class Controls {
 
   #cuts() {
     const made = this.#add(this.form, `<span id="cut-name">response curve</span><div class="row" role="group" aria-labelledby="cut-name">
-      <button type="button" data-cut="r" title="through the kept cell, over frequency (r)">along r</button>
-      <button type="button" data-cut="beta" title="through the kept cell, over friction (b)">along β</button></div>`);
+      <button type="button" data-cut="r" title="through the selected cell, over frequency (r)">along r</button>
+      <button type="button" data-cut="beta" title="through the selected cell, over friction (b)">along β</button></div>`);
     for (const button of made.querySelectorAll("button")) {
       button.addEventListener("click", () => this.onChange({ cut: button.ariaPressed === "true" ? "" : button.dataset.cut }));
     }
@@ -105,10 +105,10 @@ export class Controls {
     const [label, number, range] = made.children;
     [label.textContent, label.htmlFor, range.id, number.ariaLabel] = [slider.label, id, id, `${slider.label}, as a number`];
     [range.name, number.name, number.readOnly] = [slider.key, slider.key, Boolean(places)];
-    const tell = (value) => this.onChange({ number: [slider.key, value] });
-    range.addEventListener("input", () => tell(places ? places[range.value] : valueAt(slider, range.value / STEPS)));
-    range.addEventListener("dblclick", () => tell(slider.value));
-    number.addEventListener("change", () => (Number.isFinite(number.valueAsNumber) ? tell(number.valueAsNumber) : this.set(this.view)));
+    const change = (value) => this.onChange({ number: [slider.key, value] });
+    range.addEventListener("input", () => change(places ? places[range.value] : valueAt(slider, range.value / STEPS)));
+    range.addEventListener("dblclick", () => change(slider.value));
+    number.addEventListener("change", () => (Number.isFinite(number.valueAsNumber) ? change(number.valueAsNumber) : this.set(this.view)));
     this.sliders.set(slider.key, { slider, number, range, places });
   }
 

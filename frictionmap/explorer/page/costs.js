@@ -1,6 +1,6 @@
-// What pictures cost, foreseen from those that were seen.
+// Computing times of pictures, estimated from earlier ones.
 
-/** What pictures are taken to cost before one was seen: of one mass; of structures where proofs decide most cells
+/** Assumed computing times before the first picture: of one mass; of structures where proofs decide most cells
  *  (mu = 1); of others, for every mass. */
 const GUESS = {
   one: { cells: 30000, milliseconds: 30 },
@@ -40,7 +40,7 @@ export class Costs {
   }
 }
 
-/** What the cost of a cell depends on. */
+/** Key of everything that the computing time of a cell depends on. */
 function kindOf({ view }) {
   return [view.mu > 1, view.quantity, view.start, view.contact].join();
 }

@@ -1,4 +1,4 @@
-// A response curve under the map: a line through it along r or beta.
+// A response curve under the map, along r or beta.
 
 import { DRAWN, colour, massColour, short } from "./axes.js";
 import { around, draw } from "./chart.js";
@@ -7,11 +7,11 @@ import { row } from "./packet.js";
 
 const SHOWN = {
   amplitude: "amplitude",
-  work: "energy of friction",
-  phase: "lag of z, first harmonic",
+  work: "energy dissipated by friction",
+  phase: "phase lag of z, first harmonic",
 };
 
-/** Share of values that an axis of amplitudes holds: a resonance goes beyond it. */
+/** Share of values within the range of the amplitude axis: a resonance exceeds it. */
 const HELD = 0.97;
 
 export class CutPanel {
@@ -30,7 +30,7 @@ export class CutPanel {
   }
 
   /** @param {object} curves  as the server sends them, in the units of their system  @param {{left: number, right: number}} room  of the map
-   *  @param {string} asked  what decides the curve: the system, and where it lies */
+   *  @param {string} asked  key of the curve: the system and its position */
   show(curves, room, asked) {
     [this.curves, this.room, this.asked] = [curves, room, asked];
     this.panel.hidden = false;

@@ -13,7 +13,7 @@ export function make(tag, properties = {}, ...children) {
   return made;
 }
 
-/** A line and what it means. */
+/** A line of the legend with its meaning. */
 export function keyLine(ink, text, dash = "solid", width = 2) {
   return make("span", {}, make("span", { className: "key-line", style: { borderTop: `${width}px ${dash} ${ink}` } }), text);
 }
@@ -23,7 +23,7 @@ export function paragraph(text) {
   return make("p", {}, ...lowered(text));
 }
 
-/** Text whose β_lim and β_stick are set as they should be. */
+/** Text with subscripts for β_lim and β_stick. */
 export function lowered(text) {
   return text.split(/_(lim|stick)\b/).map((piece, k) => (k % 2 ? make("sub", {}, piece) : piece));
 }

@@ -1,6 +1,6 @@
-// Pointer, wheel, touch and keys: what they ask of the map.
+// Pointer, wheel, touch and keys on the map.
 
-/** Pixels that a pointer may stray in a click. */
+/** Pixels that a pointer may move during a click. */
 const STILL = 4;
 
 /** Factor of a zoom by a key or a button, and by a step of a wheel. */
@@ -10,14 +10,14 @@ const WHEEL = 1.0015;
 /** Share of the map that an arrow moves it by. */
 const SHIFT = 0.12;
 
-/** What has letters, signs and arrows of its own. */
+/** Elements that use letters, signs and arrows themselves. */
 const TYPED = "input, select, dialog, textarea";
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /**
  * @param {import("./map.js").RegimeMap} map
- * @param {object} does  what is done: zoom(factors, point), pan(shares), frame(box), hover(x, y), leave(),
+ * @param {object} does  callbacks: zoom(factors, point), pan(shares), frame(box), hover(x, y), leave(),
  *                       pick(x, y), step(columns, rows), release(), home(), key(letter)
  */
 export function listen(map, does) {
@@ -92,7 +92,7 @@ function drag(map, began, before, now, does) {
   does.pan([(before.x - now.x) / width, (now.y - before.y) / height]);
 }
 
-/** Two pointers: what lies under them stays under them. */
+/** Two pointers: the points of the map under them stay under them. */
 function pinch(map, pointers, moved, now, does) {
   const [still] = [...pointers].filter(([id]) => id !== moved).map(([, at]) => at);
   const before = pointers.get(moved);
@@ -126,7 +126,7 @@ export function zoomed(view, [across, up], point) {
   return { r: about(view.r, r, across), beta: about(view.beta, beta, up) };
 }
 
-/** A view that is moved by shares of its ranges. */
+/** Move a view by shares of its ranges. */
 export function moved(view, [across, up]) {
   const by = ([low, high], share) => {
     const shift = Math.max(-low, share * (high - low));

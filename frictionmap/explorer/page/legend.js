@@ -1,16 +1,16 @@
-// What the colours and lines of the map mean.
+// Legend: meanings of the colours and lines of the map.
 
 import { short } from "./axes.js";
 import { CLASS, rampColour } from "./colours.js";
 import { keyLine, make } from "./dom.js";
 import { LINES } from "./plate.js";
 
-/** Name of a class, with the numbers of stops that its colour does not tell. */
+/** Name of a class, with the range of stops if it comprises several numbers. */
 function nameOf(picture, index, look) {
   const ends = picture.stops[index];
   if (!ends) return look.label;
   const range = ends[0] === ends[1] ? short(ends[0]) : `${short(ends[0])} to ${short(ends[1])}`;
-  return index === CLASS.more ? `${range} stops` : `not whole, ${range} stops`;
+  return index === CLASS.more ? `${range} stops` : `non-integer, ${range} stops`;
 }
 
 function swatch(ink) {

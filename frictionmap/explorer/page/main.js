@@ -1,4 +1,4 @@
-// The page: what it shows is one view; whatever changes that, here it is followed up.
+// The page: it shows one view, and updates everything when the view changes.
 
 import { cellsKey, firstView, hashOf, pictureKey, queryOf, systemKey, tidy, viewOf } from "./address.js";
 import { forgetColours, short } from "./axes.js";
@@ -16,21 +16,21 @@ import { Stored } from "./stored.js";
 
 const part = (id) => document.getElementById(id);
 
-/** Milliseconds after which what waits is said to wait, and between two looks at it. */
+/** Milliseconds after which a message says that work is running, and between two checks. */
 const PATIENCE = 350;
 
-/** Milliseconds from which on a picture is slow. */
+/** Milliseconds above which a picture is slow. */
 const SLOW = 1000;
 
-/** Milliseconds that a motion is still shown after though another is asked for. */
+/** Milliseconds after which a request for a motion is cancelled by the next one. */
 const GRACE = 50;
 
-/** Milliseconds that a view stands still before what is less urgent follows: address, words, other starts. */
+/** Milliseconds without changes before less urgent work follows: address, description, other initial states. */
 const STILL = 180;
 
 /**
- * Work of which only the newest counts: one at a time, and what comes meanwhile waits, the last of it.
- * What is outdated may go on for some milliseconds: motions follow the pointer then.
+ * Work of which only the latest request counts: one runs at a time, and the last request made meanwhile waits.
+ * A running request may continue for some milliseconds, so that motions follow the pointer.
  */
 class Newest {
   #control = null;
@@ -60,7 +60,7 @@ class Newest {
     if (next) this.ask(...next);
   }
 
-  /** Nobody wants any of it now. */
+  /** Cancel all requests. */
   stop() {
     this.#waiting = null;
     this.#control?.abort();
@@ -73,7 +73,7 @@ class Newest {
   }
 }
 
-/** Do something once nobody has asked for it for a while. */
+/** Delay work until it has not been requested for a while. */
 function later(work, milliseconds) {
   let timer = 0;
   return (...asked) => {
@@ -91,7 +91,7 @@ class Page {
     this.map = new RegimeMap(part("stage"), scene);
     this.hint = part("motion").innerText;
     this.motion = new MotionPanel(part("motion"));
-    this.pointed = null; // the cell that was pointed at last, whose motion is shown while none is kept
+    this.pointed = null; // the last cell under the pointer, whose motion is shown while none is selected
     this.cut = new CutPanel(part("cut"), scene.classes, () => this.change({ cut: "" }));
     this.refiner = new Refiner(source, (found) => this.#onPicture(found), (state) => this.#onState(state));
     this.controls = new Controls(part("controls"), scene, (change) => this.#onControl(change), source.fixed);
@@ -101,7 +101,7 @@ class Page {
     this.settle = later(() => this.#settled(), STILL);
     this.rest = later((...asked) => this.others.ask(...asked), STILL);
     this.pending = new Map();
-    this.told = part("told");
+    this.message = part("message");
     for (const button of document.querySelectorAll("[data-save]")) {
       button.hidden = !source.live && !["link", "picture"].includes(button.dataset.save);
     }
@@ -124,7 +124,7 @@ class Page {
       key: (letter) => this.#key(letter),
     });
     part("zoom").addEventListener("click", (event) => this.#zoomButton(event.target.dataset.zoom));
-    part("save").addEventListener("toggle", () => part("save").open && this.#tellSizes());
+    part("save").addEventListener("toggle", () => part("save").open && this.#showSizes());
     part("save").addEventListener("click", (event) => {
       const chosen = event.target.closest("[data-save]");
       if (chosen) this.#save(chosen.dataset.save);
@@ -148,7 +148,7 @@ class Page {
     this.update(cells || "cell" in change);
   }
 
-  /** Follow up what the view has become; `motion`: whether the cell that is kept may move otherwise now. */
+  /** Update the page for the changed view; `motion`: whether the motion in the selected cell may have changed. */
   update(motion = false) {
     const { map, view, scene } = this;
     map.view = view;
@@ -172,7 +172,7 @@ class Page {
     this.settle();
   }
 
-  /** Fade what is not of the view any more: until its successor is there, it must not be read as such. */
+  /** Fade outdated parts of the page until they are replaced. */
   #markOutdated() {
     const { view, map: { whole }, motion, cut } = this;
     const fade = (name, outdated) => part(name).classList.toggle("outdated", outdated);
@@ -183,7 +183,7 @@ class Page {
     fade("cut", cut.curves !== null && cut.asked !== this.#cutKey(view));
   }
 
-  /** What decides the motion that is shown, and the response curve. */
+  /** Keys of the motion shown, and of the response curve. */
   #motionKey(view, cell) {
     return `${systemKey(view)} ${cell}`;
   }
@@ -221,15 +221,15 @@ class Page {
     this.#note(note);
   }
 
-  /** A view that a page that is a file has a map of, and what had to be changed for that; any other page has all. */
+  /** The nearest view for which a saved page has a map, and a note on what was changed; a live page has all maps. */
   #inFile(view, moved) {
     if (this.source.live) return { view, note: "" };
     const { view: kept, back } = this.source.kept(view, this.scene, moved);
-    const names = back.map(({ label, value }) => `${label} is back at ${short(value)}`).join(", ");
+    const names = back.map(({ label, value }) => `${label} is reset to ${short(value)}`).join(", ");
     return { view: kept, note: names && `${names}: this file has no map with all these values.` };
   }
 
-  /** The view has stood still: the address follows, and what its system can be coloured by. */
+  /** Update the address and the quantities once the view has not changed for a while. */
   async #settled() {
     const hash = hashOf(this.view, this.scene);
     if (hash !== location.hash) history.replaceState(null, "", hash);
@@ -240,11 +240,11 @@ class Page {
       const { quantities } = await this.source.scene(asked);
       if (asked === queryOf(this.view, this.scene)) this.#offer(quantities); // else another answer is to come
     } catch {
-      // what is wrong with the view the map says
+      // the map shows the error of the view
     }
   }
 
-  /** What cells can be coloured by: a structure that is reduced has other masses for another contact. */
+  /** Offer the quantities of the cells: a reduced structure has other masses for another contact. */
   #offer(quantities) {
     this.quantities = quantities;
     this.controls.offer("quantity", quantities, this.view);
@@ -257,7 +257,7 @@ class Page {
     this.update(true);
   }
 
-  /** The view that the address names; what is wrong in it is told until the view is changed. */
+  /** Read the view from the address; messages about errors in it are shown until the view changes. */
   #readAddress() {
     const known = { ...this.scene, quantities: this.quantities };
     const { view: asked, wrong } = viewOf(location.hash, known, this.source.fixed?.values);
@@ -281,7 +281,7 @@ class Page {
       if (this.#resized) this.update(); // second axes take room
     }
     const cell = found.view.cell ?? this.pointed;
-    if (cell && !this.source.live) this.#tellStored(found.cellAt(cell), found); // another system may do something else there
+    if (cell && !this.source.live) this.#showStored(found.cellAt(cell), found); // another system may do something else there
     this.#markOutdated();
     const detail = { columns: found.columns, rows: found.rows, whole: found.whole };
     this.map.stage.dataset.cells = `${found.columns} ${found.rows}`;
@@ -295,27 +295,27 @@ class Page {
     if (state.error) {
       this.#wrong(state.error);
     } else if (state.held) {
-      this.#tell(`finer would take about ${this.#duration(state.held)}`, "compute it", () => this.#finer());
+      this.#say(`a finer map would take about ${this.#duration(state.held)}`, "compute it", () => this.#finer());
       this.map.stage.dataset.state = "done";
     } else if (state.done !== undefined) {
-      this.#tell("");
+      this.#say("");
       this.map.stage.dataset.state = "done";
     } else if (state.share < 1) {
       const spent = performance.now() - state.since;
-      if (spent > PATIENCE) this.#tell(`${Math.round(100 * state.share)} %, about ${this.#duration((spent * (1 - state.share)) / state.share)} left`);
+      if (spent > PATIENCE) this.#say(`${Math.round(100 * state.share)} %, about ${this.#duration((spent * (1 - state.share)) / state.share)} left`);
     }
   }
 
-  /** What was wrong in the address, over the map: whatever else is told does not replace it. */
+  /** Show errors of the address over the map; other messages do not replace them. */
   #note(text) {
     [part("notice").textContent, part("notice").hidden] = [text, !text];
   }
 
-  /** Whoever waits has asked for it. */
+  /** Compute finer maps on request. */
   #finer() {
     this.map.stage.dataset.state = "refining";
     this.asked = performance.now();
-    this.#tell("computing");
+    this.#say("computing");
     this.refiner.more();
   }
 
@@ -325,22 +325,22 @@ class Page {
   }
 
   #wrong(error) {
-    this.#tell(error.message, "", null, true);
+    this.#say(error.message, "", null, true);
     this.map.stage.dataset.state = "wrong";
   }
 
-  #tell(text, action = "", does = null, wrong = false) {
-    this.told.hidden = !text;
-    this.told.classList.toggle("wrong", wrong);
-    this.told.textContent = text;
+  #say(text, action = "", does = null, wrong = false) {
+    this.message.hidden = !text;
+    this.message.classList.toggle("wrong", wrong);
+    this.message.textContent = text;
     if (!action) return;
     const button = document.createElement("button");
     [button.type, button.textContent] = ["button", action];
     button.addEventListener("click", does);
-    this.told.append(button);
+    this.message.append(button);
   }
 
-  /** Keep track of what is waited for. */
+  /** Register a pending request. */
   async #waiting(promise) {
     this.pending.set(promise, performance.now());
     try {
@@ -350,24 +350,24 @@ class Page {
     }
   }
 
-  /** If something is waited for, say what: kernels are compiled once on a machine, and that takes a while. */
+  /** Show whether kernels are being compiled while a request is pending. */
   async #lookAtWaiting() {
     if (!this.#waits || !this.source.live || this.looking) return;
     this.looking = true;
     try {
       const { compiling } = await this.source.state();
       if (!this.#waits) {
-        this.#compiled(); // what was waited for has come meanwhile
+        this.#compiled(); // the pending answer has arrived
       } else if (compiling.seconds) {
         this.compiled = true;
-        this.#tell(`compiling kernels, once on this machine: ${Math.round(compiling.seconds)} s so far`);
+        this.#say(`First use: compiling, about 40 s, once only (${Math.round(compiling.seconds)} s so far)`);
       } else if (this.compiled) {
         this.#compiled();
-      } else if (this.told.hidden && performance.now() - this.asked > SLOW) {
-        this.#tell("computing");
+      } else if (this.message.hidden && performance.now() - this.asked > SLOW) {
+        this.#say("computing");
       }
     } catch {
-      // the request that waits will say so
+      // the pending request will show the error
     }
     this.looking = false;
   }
@@ -376,13 +376,13 @@ class Page {
     return this.map.stage.dataset.state === "refining" || this.pending.size > 0;
   }
 
-  /** Nothing is being compiled any more. */
+  /** Remove the message about compilation. */
   #compiled() {
-    if (this.compiled) this.#tell("");
+    if (this.compiled) this.#say("");
     this.compiled = false;
   }
 
-  // the cell that is pointed at
+  // the cell under the pointer
 
   #point(cell) {
     this.map.hovered = cell;
@@ -397,24 +397,24 @@ class Page {
     if (!cell || this.view.cell) return;
     this.pointed = [cell.r, cell.beta];
     if (this.source.live) this.motions.ask(this.pointed, false);
-    else this.#tellStored(cell, cell.picture);
+    else this.#showStored(cell, cell.picture);
     this.#markOutdated();
   }
 
   #pick(cell) {
-    if (cell && !this.source.live) this.#tellStored(cell, cell.picture);
+    if (cell && !this.source.live) this.#showStored(cell, cell.picture);
     if (!cell) this.#release();
     this.change({ cell: cell && [cell.r, cell.beta], cut: cell ? this.view.cut : "" });
   }
 
-  /** No cell is shown any more. */
+  /** Deselect the cell. */
   #release() {
     this.pointed = null;
     this.motions.stop();
     this.motion.tell(this.hint);
   }
 
-  /** The next cell by keys: some pixels on from the one that is kept, or from the middle. */
+  /** Select the next cell by keys: some pixels from the selected one, or from the centre. */
   #step(across, up) {
     const { map, view } = this;
     const size = { r: (view.r[1] - view.r[0]) / map.area.width, beta: (view.beta[1] - view.beta[0]) / map.area.height };
@@ -433,7 +433,7 @@ class Page {
     this.rest(motion, view, cell);
   }
 
-  /** A motion that takes long: no other cell's stands beside the map until it is there. */
+  /** Wait for a motion; if it takes long, remove the one of another cell meanwhile. */
   async #slowly(motion, [r, beta], kept) {
     const place = `r = ${short(r)}, β = ${short(beta)}`;
     const slow = setTimeout(() => kept === Boolean(this.view.cell) && this.motion.tell(`Computing the motion at ${place}.`), SLOW);
@@ -447,15 +447,15 @@ class Page {
     }
   }
 
-  /** What else is known of a cell whose motion, in that view, is shown. */
+  /** Fetch stability and the motion from the other initial state for the cell shown. */
   async #fetchOthers(signal, motion, view, cell) {
     if (this.motion.motion !== motion) return;
     const others = await this.#waiting(this.source.others(view, this.scene, cell, signal));
     if (this.motion.motion === motion) this.motion.add(others);
   }
 
-  /** What a page that is a file knows of a cell of a picture. */
-  #tellStored(cell, { quantity }) {
+  /** Show what a saved page contains about a cell. */
+  #showStored(cell, { quantity }) {
     if (!cell) return;
     const value = cell.value === null ? "" : ` Value of ${quantity.label}: about ${short(cell.value, 3)}.`;
     this.motion.tell(`r = ${short(cell.r)}, β = ${short(cell.beta)}: ${this.scene.classes[cell.class].label}.${value} ` +
@@ -472,7 +472,7 @@ class Page {
     this.#markOutdated();
   }
 
-  /** Where the response curve of a view lies on the other axis: at the cell that is kept, or in the middle. */
+  /** Position of the response curve on the other axis: at the selected cell, or in the middle. */
   #placeOfCut(view) {
     return (view.cell ?? [(view.r[0] + view.r[1]) / 2, (view.beta[0] + view.beta[1]) / 2])[view.cut === "r" ? 1 : 0];
   }
@@ -504,8 +504,8 @@ class Page {
     }
   }
 
-  /** Before cells are saved: how large their files will be, and how long they will take if that is long. */
-  async #tellSizes() {
+  /** Show the sizes of the files before cells are saved, and the computing time if it is long. */
+  async #showSizes() {
     if (!this.source.live) return;
     const { view } = this;
     const write = (words) => part("save").querySelectorAll("[data-size]").forEach((place) => (place.textContent = words(place)));
@@ -515,11 +515,11 @@ class Page {
       const wait = this.refiner.whole > SLOW ? `, ${this.#duration(this.refiner.whole)}` : "";
       if (view === this.view) write(({ dataset }) => `, about ${sizes[dataset.size]}${wait}`);
     } catch {
-      // what is wrong with the view the map says, and who saves it all the same
+      // the map shows the error of the view; saving shows it too
     }
   }
 
-  /** The menu is closed, and the keyboard goes on from there. */
+  /** Close the menu and return the keyboard focus to it. */
   #closeMenu(event) {
     if (!part("save").open) return;
     part("save").open = false;
@@ -540,7 +540,7 @@ class Page {
       } else if (what === "picture") {
         await this.#savePicture(map.whole);
       } else {
-        await source.sizes(view, scene, map.size); // what is wrong with the view is said here, not in the file
+        await source.sizes(view, scene, map.size); // shows errors of the view here instead of in the file
         save(source.file(view, scene, map.size, what), `map.${what}`);
         if (this.#ahead(view)) this.#toast(`The file holds the cells of this view.${this.#ahead(view)}`);
       }
@@ -549,13 +549,13 @@ class Page {
     }
   }
 
-  /** Where a view is saved whose cells the map does not show yet, that it is so. */
+  /** Note that the saved view is not shown on the map yet; empty if it is. */
   #ahead(view) {
     const { whole } = this.map;
     return whole && pictureKey(whole.view) === pictureKey(view) ? "" : ` It is for μ = ${short(view.mu)} and the other settings chosen, which the map does not show yet.`;
   }
 
-  /** Save the newest picture that is whole, and say so where it is not what the controls ask for. */
+  /** Save the latest complete picture, with a note if the controls have changed since. */
   async #savePicture(whole) {
     if (!whole) throw new Error("Cannot save a picture: the first map is not complete yet. Wait until it is.");
     save(await pngOf(whole, this.scene, this.map.stage.getBoundingClientRect()), "map.png");
@@ -582,8 +582,8 @@ async function begin() {
     const scene = await source.scene();
     new Page(source, scene).begin();
   } catch (error) {
-    [part("told").textContent, part("told").hidden] = [error.message, false];
-    part("told").classList.add("wrong");
+    [part("message").textContent, part("message").hidden] = [error.message, false];
+    part("message").classList.add("wrong");
   }
 }
 

@@ -1,10 +1,10 @@
-// The map: pictures of cells under axes, boundaries and the cells that are pointed at.
+// The map: pictures of cells, axes, boundaries, and the cells under the pointer or selected.
 
 import { keepTo, sharp } from "./axes.js";
 import { Plate, areaOf } from "./plate.js";
 
 export class RegimeMap {
-  /** @param {object} about  what its axes belong to until there are cells */
+  /** @param {object} about  description of the axes until there are cells */
   constructor(stage, about) {
     this.stage = stage;
     this.cells = stage.querySelector("#cells");
@@ -31,12 +31,12 @@ export class RegimeMap {
     return { columns: Math.round(width * ratio), rows: Math.round(height * ratio) };
   }
 
-  /** The newest picture that is whole: axes, legend and words are its own, and it is the one that is saved. */
+  /** The latest complete picture: axes, legend and description belong to it, and it is the one that is saved. */
   get whole() {
     return this.pictures.findLast((picture) => picture.whole) ?? null;
   }
 
-  /** A picture has come, or more of it. */
+  /** Show a picture, or more of it. */
   show(picture) {
     if (!this.pictures.includes(picture)) this.pictures.push(picture);
     if (picture.whole) {
@@ -88,7 +88,7 @@ export class RegimeMap {
     this.drawOver();
   }
 
-  /** Axes, boundaries, marks, the cells that are pointed at. */
+  /** Draw axes, boundaries, marks, and the cells under the pointer or selected. */
   drawOver() {
     const { pen } = sharp(this.over);
     this.#plate.drawLines(pen);

@@ -1,4 +1,4 @@
-// The motion in a cell: in words, over time, as portrait, loop and spectrum, in numbers; and from other starts.
+// The motion in a cell: description, time histories, phase portrait, loop, spectrum, numbers; other initial states.
 
 import { DRAWN, colour, massColour, short } from "./axes.js";
 import { around, draw } from "./chart.js";
@@ -12,7 +12,7 @@ const REGIMES = {
   continuous: "Continuous sliding",
 };
 
-/** Decades that a spectrum shows. */
+/** Decades of the spectrum. */
 const DECADES = 5;
 
 const TEMPLATE = `
@@ -34,7 +34,7 @@ const TEMPLATE = `
   <div class="others" hidden></div>
   <table><tbody></tbody></table>`;
 
-/** A ratio in its unit, in brackets, where that is known. */
+/** Format a ratio in its unit, in brackets, if that is known. */
 function inUnits(value, one) {
   return one && Number.isFinite(value) ? ` (${short(value * one.factor)} ${one.unit})` : "";
 }
@@ -51,7 +51,7 @@ export class MotionPanel {
     return this.panel.querySelector(name);
   }
 
-  /** Say why there is no motion to be seen. */
+  /** Show a text instead of a motion. */
   tell(text) {
     this.motion = null;
     this.panel.replaceChildren(make("p", { className: "hint" }, text));
@@ -60,8 +60,8 @@ export class MotionPanel {
   /**
    * @param {object} motion  as the server sends it, in the units of its system
    * @param {{colour: string}} look  of the cell's class
-   * @param {boolean} kept   whether the cell is kept
-   * @param {string} asked   what decides the motion: the system and the cell
+   * @param {boolean} kept   whether the cell is selected
+   * @param {string} asked   key of the motion: the system and the cell
    */
   show(motion, look, kept, asked) {
     if (!this.#part("h2")) this.panel.innerHTML = TEMPLATE;
@@ -72,7 +72,7 @@ export class MotionPanel {
     const { frequency, force } = motion.physical;
     const place = `r = ${short(motion.r)}${inUnits(motion.r, frequency)}, β = ${short(motion.beta)}${inUnits(motion.beta, force)}`;
     this.#part(".where").textContent = `${kept ? "kept: " : ""}${place}`;
-    this.#part(".words").replaceChildren(...(none ? [motion.none] : [...motion.told, motion.comment]).filter(Boolean).map(paragraph));
+    this.#part(".words").replaceChildren(...(none ? [motion.none] : [...motion.summary, motion.comment]).filter(Boolean).map(paragraph));
     for (const figure of this.panel.querySelectorAll(".moves")) figure.hidden = none;
     this.#part(".others").hidden = true;
     this.#part("tbody").replaceChildren(...(none ? [] : motion.entries.map((entry, k) => this.#entry(entry, motion.numbers[k]))));
@@ -87,34 +87,34 @@ export class MotionPanel {
     return tableRow(entry.label, `${short(value, 6)}${Number.isFinite(value) && unit ? ` ${unit}` : ""}${inUnits(value, physical)}`);
   }
 
-  /** What else is known of the cell that is shown. */
+  /** Add stability and the motion from the other initial state. */
   add(others) {
     const words = this.#part(".others");
     const start = others.start === "moving" ? "a large sliding motion" : "rest";
-    const told = others.same
-      ? [`From ${start} it ends in the same motion.`]
-      : [`From ${start} it ends otherwise (dashed): ${others.told.map(uncapped).join(" ")}`];
+    const sentences = others.same
+      ? [`From ${start} the same motion results.`]
+      : [`From ${start} another motion results (dashed): ${others.summary.map(uncapped).join(" ")}`];
     if (others.reachable.length > 1) {
-      told.push(`Found stable here: ${others.reachable.map((name) => REGIMES[name].toLowerCase()).join(", ")}.`);
+      sentences.push(`Stable regimes in this cell: ${others.reachable.map((name) => REGIMES[name].toLowerCase()).join(", ")}.`);
     }
-    words.replaceChildren(...told.map(paragraph));
+    words.replaceChildren(...sentences.map(paragraph));
     words.hidden = false;
     if (Number.isFinite(others.multiplier[0])) {
       const rate = others.multiplier[0];
-      const told = `${short(rate, 4)} (${rate < 1 ? "stable" : "not attracting"})`;
-      this.#part("tbody").append(tableRow("largest Floquet multiplier", told));
+      const value = `${short(rate, 4)} (${rate < 1 ? "stable" : "not stable"})`;
+      this.#part("tbody").append(tableRow("largest Floquet multiplier", value));
     }
     this.other = others.tau ? others : null;
     if (this.other) this.draw();
   }
 
-  /** Draw again, in the colours and the size that the page has now. */
+  /** Draw again, in the current colours and size. */
   draw() {
     if (!this.motion?.tau) return;
     const names = this.#drawTime();
     this.#drawLoops();
     const harmonics = this.#drawSpectrum();
-    this.#part(".names").replaceChildren(...names); // last: what changes the page has it laid out anew
+    this.#part(".names").replaceChildren(...names); // last, as it changes the layout of the page
     this.#part(".spectrum-names").replaceChildren(...harmonics);
   }
 
@@ -135,7 +135,7 @@ export class MotionPanel {
     return { time, bands };
   }
 
-  /** The other start's motion, as long as this one is. */
+  /** The motion from the other initial state, over the same time. */
   #otherLine(name, time) {
     const { other } = this;
     const x = Float32Array.from(other.tau, (value) => value / (2 * Math.PI));

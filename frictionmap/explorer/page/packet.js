@@ -1,4 +1,4 @@
-// Numbers from the server: a header in JSON and arrays behind it, as frictionmap/explorer/packets.py packs them.
+// Packets from the server: a header in JSON followed by arrays, as frictionmap/explorer/packets.py packs them.
 
 const TYPES = { Uint8Array, Int8Array, Float32Array, Float64Array };
 

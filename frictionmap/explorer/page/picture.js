@@ -1,13 +1,13 @@
 // A picture: cells that come in piece by piece, on a canvas of their own, with the view that they were computed for
-// and what the server says they belong to.  Whatever is shown or saved beside cells is taken from their picture.
+// and their description by the server.  Everything shown or saved with cells is taken from their picture.
 
 import { short } from "./axes.js";
 import { painter, scaleOf } from "./colours.js";
 
 export class Picture {
   /**
-   * @param {import("./address.js").View} view  what it was asked for
-   * @param {{r: [number, number], beta: [number, number]}} ranges  what it covers
+   * @param {import("./address.js").View} view  requested view
+   * @param {{r: [number, number], beta: [number, number]}} ranges  covered ranges
    * @param {number} columns
    * @param {number} rows
    * @param {Uint32Array} table  colours of classes
@@ -104,12 +104,12 @@ export class Picture {
     return places.map((place) => Math.min(count, Math.max(0, place)));
   }
 
-  /** What the cells are coloured by: {key, label, scale}. */
+  /** Quantity that colours the cells: {key, label, scale}. */
   get quantity() {
     return this.about.quantities.find(({ key }) => key === this.view.quantity);
   }
 
-  /** What the cells were computed for, in words. */
+  /** Description of the parameters of the cells. */
   get words() {
     const start = this.view.start === "rest" ? "start at rest" : "start in motion";
     const cells = `${this.columns} × ${this.rows} cells`;

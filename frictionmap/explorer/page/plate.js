@@ -1,4 +1,4 @@
-// Cells under their axes, with boundaries and marks, in an area of a canvas: the map of the page, or one that is saved.
+// Cells with axes, boundaries and marks in an area of a canvas: the map of the page, or a saved one.
 
 import { colour, keepTo, ticks } from "./axes.js";
 
@@ -6,10 +6,10 @@ import { colour, keepTo, ticks } from "./axes.js";
 const ROOM = { left: 64, right: 16, top: 18, bottom: 50 };
 const SECOND = { right: 44, top: 26 };
 
-/** Boundaries: how they are drawn. */
+/** Styles and meanings of the boundaries. */
 export const LINES = {
-  beta_lim: { label: "β", index: "lim", dash: [], meaning: "slides without stopping below it" },
-  beta_stick: { label: "β", index: "stick", dash: [7, 4], meaning: "can stick for good from it on" },
+  beta_lim: { label: "β", index: "lim", dash: [], meaning: "below: continuous sliding is possible" },
+  beta_stick: { label: "β", index: "stick", dash: [7, 4], meaning: "at or above: the contact can stay stuck" },
 };
 
 const FONT = "12px system-ui, sans-serif";
@@ -25,7 +25,7 @@ function namesOf(units) {
   return { r: "frequency ratio r = ω/ω₁", beta: `friction ratio β = ${units.beta}` };
 }
 
-/** Where the cells lie on a canvas, in pixels of the style sheet. @param {object} about  what the cells belong to */
+/** Where the cells lie on a canvas, in pixels of the style sheet. @param {object} about  description of the cells */
 export function areaOf({ width, height }, about) {
   const seconds = secondsOf(about.physical);
   const right = seconds.beta ? ROOM.right + SECOND.right : ROOM.right;
@@ -43,7 +43,7 @@ export class Plate {
    * @param {object} area     where the cells lie
    * @param {{r: [number, number], beta: [number, number]}} ranges  of the axes
    * @param {import("./picture.js").Picture[]} pictures  from the oldest to the newest; the newer cover the older
-   * @param {object} about    what the cells belong to: its names, units and marks are those of the axes
+   * @param {object} about    description of the cells: its names, units and marks are those of the axes
    */
   constructor(area, ranges, pictures, about) {
     [this.area, this.ranges, this.pictures, this.about] = [area, ranges, pictures, about];
@@ -83,7 +83,7 @@ export class Plate {
     this.#drawAxes(pen);
   }
 
-  /** The boundaries as fine as there are any. */
+  /** The boundaries at the finest resolution available. */
   #drawBoundaries(pen) {
     const known = this.pictures.filter((picture) => picture.whole || picture.lines);
     const picture = known.at(-1) ?? this.pictures.at(-1);

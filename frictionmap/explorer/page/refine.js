@@ -1,4 +1,4 @@
-// A coarse picture first, then finer ones; what is outdated is given up at once.
+// A coarse picture first, then finer ones; outdated requests are cancelled at once.
 
 import { Costs } from "./costs.js";
 import { Picture } from "./picture.js";
@@ -8,7 +8,7 @@ const FIRST = 70;
 const PIECE = 160;
 const LONGEST = 30000;
 
-/** Milliseconds after which a first picture that is outdated is given up: until then it is worth seeing. */
+/** Milliseconds after which an outdated first picture is cancelled: until then it is worth showing. */
 const PATIENCE = 400;
 
 /** Pixels that a cell of the first picture has at most, each way. */
@@ -23,14 +23,14 @@ export class Refiner {
   /**
    * @param {object} source        where maps come from
    * @param {(picture: Picture) => void} onPicture  called when cells have come in
-   * @param {(state: object) => void} onState      called with what is under way
+   * @param {(state: object) => void} onState      called with the state of the work
    */
   constructor(source, onPicture, onState) {
     [this.source, this.onPicture, this.onState] = [source, onPicture, onState];
   }
 
   /**
-   * Ask for pictures of a view; what was asked for before is outdated.
+   * Request pictures of a view; earlier requests are cancelled.
    * @param {object} asked  {view, scene, columns, rows, table, kind, scale}; boundaries as fine as the screen, once
    *   they are there, are its `lines`
    */
@@ -44,7 +44,7 @@ export class Refiner {
     }
   }
 
-  /** Go on with finer pictures, however long they take. */
+  /** Continue with finer pictures, however long they take. */
   more() {
     if (this.#last) this.ask({ ...this.#last, patient: true });
   }

@@ -1,4 +1,4 @@
-// What can be taken along: a link, a configuration, a picture, the cells.
+// Saving: a link, a configuration, a picture, the cells.
 
 import { colour, keepTo, short } from "./axes.js";
 import { rampColour } from "./colours.js";
@@ -62,7 +62,7 @@ function wrapped(pen, text, width) {
   return lines;
 }
 
-/** What the legend of a picture lists. */
+/** Entries of the legend of a picture. */
 function entriesOf(found, classes) {
   const boundaries = Object.values(LINES).map(({ index, dash, meaning }) => ({ dash, text: `β ${index}: ${meaning}` }));
   if (!found.scale) return [...boundaries, ...classesOf(found, classes)];

@@ -3,7 +3,7 @@
 import { queryOf } from "./address.js";
 import { unpack } from "./packet.js";
 
-/** What the server refused, in its one line. */
+/** A refusal by the server, in one line. */
 export class Refused extends Error {}
 
 /** The server of this page. */
@@ -11,7 +11,7 @@ export class Server {
   /** @type {null} Maps come at any resolution. */
   fixed = null;
   live = true;
-  /** Whatever this page asks for makes what it asked for before outdated. */
+  /** Every request of this page cancels the previous one of its kind. */
   #page = Math.random().toString(36).slice(2);
   /** Requests are counted: they may arrive in another order than they were made in. */
   #turn = 0;
@@ -22,7 +22,7 @@ export class Server {
       response = await fetch(`${path}?${query}`, { signal });
     } catch (error) {
       if (error.name === "AbortError") throw error;
-      throw new Refused("frictionmap does not answer: has it been ended? Start it again and reload this page.");
+      throw new Refused("Cannot reach frictionmap: it does not respond. Start it again and reload this page.");
     }
     if (response.status === 204) throw new DOMException("outdated", "AbortError");
     if (!response.ok) throw new Refused((await response.text()).trim());
@@ -34,7 +34,7 @@ export class Server {
     return (await this.#get("scene", query, signal)).json();
   }
 
-  /** What is being compiled. */
+  /** State of compilation. */
   async state() {
     return (await this.#get("state", "")).json();
   }
@@ -55,7 +55,7 @@ export class Server {
     return this.#packet("motion", view, scene, { at: cell.join(",") }, signal);
   }
 
-  /** What else is known of a cell. */
+  /** Stability of a cell, and the motion from the other initial state. */
   others(view, scene, cell, signal) {
     return this.#packet("others", view, scene, { at: cell.join(",") }, signal);
   }

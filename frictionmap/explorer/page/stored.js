@@ -18,7 +18,7 @@ function valuesOf(steps, { low, high, log }) {
 export class Stored {
   live = false;
 
-  /** @param {string} text  what the page holds */
+  /** @param {string} text  content of the page */
   static async open(text) {
     return new Stored(JSON.parse(text));
   }

@@ -11,7 +11,7 @@ from .fit import Measured, peaks
 #: Values of the only mass measured, or by mass, counted from 1.
 Values = Sequence[float] | np.ndarray | Mapping[int, Sequence[float] | np.ndarray]
 
-#: Chains with more masses have more unknowns than sweeps usually tell.
+#: Chains with more masses have more unknowns than sweeps usually determine.
 MOST_MASSES = 5
 
 WORDS = ("one", "two", "three", "four", "five")
@@ -44,9 +44,7 @@ def check_enough(data: Measured, known: np.ndarray) -> None:
     """Refuse fewer data than unknowns, and fewer peaks than frequencies that are wanted."""
     unknowns = int(np.isnan(known).sum())
     if data.value.size <= unknowns:
-        raise InputError(
-            f"frequency must have more values than there are unknowns, {unknowns}; got {data.value.size}"
-        )
+        raise InputError(f"frequency must have more values than unknowns, {unknowns}; got {data.value.size}")
     wanted = min(data.n, int(np.isnan(known[: 2 * data.n - 1]).sum()))
     found = peaks(data)
     undamped = bool((known[2 * data.n - 1 :] == 0.0).all())
@@ -54,8 +52,8 @@ def check_enough(data: Measured, known: np.ndarray) -> None:
         number = WORDS[wanted - 1]
         some = f"{WORDS[found - 1]} peak{'s' * (found > 1)}" if found else "no peak"
         raise InputError(
-            f"amplitude_ratio must have {number} peak{'s' * (wanted > 1)}; it has {some}: "
-            f"{number} frequenc{'ies' if wanted > 1 else 'y'} wanted"
+            f"amplitude_ratio must have {number} peak{'s' * (wanted > 1)} for {number} "
+            f"frequenc{'ies' if wanted > 1 else 'y'}; got {some}"
         )
 
 
@@ -74,9 +72,11 @@ def _errors(
     """Errors of logarithms and of lags [rad]."""
     amplitude, phase = sigmas
     if quantities[1] is None and phase is not None:
-        raise InputError(f"sigma_phase must be left out without phase_lag; got {phase}")
+        raise InputError("cannot use sigma_phase without phase_lag: there are no lags; omit it")
     if quantities[1] is not None and (amplitude is None) != (phase is None):
-        raise InputError("sigma_amplitude and sigma_phase must both be given, or none; got one of them")
+        raise InputError(
+            "sigma_amplitude and sigma_phase must both be given or both omitted; got one of them"
+        )
     return (
         1.0 if amplitude is None else checks.number(amplitude, "sigma_amplitude", above=0.0),
         1.0 if phase is None else float(np.radians(checks.number(phase, "sigma_phase", above=0.0))),
@@ -101,7 +101,7 @@ def _numbers(values: object, size: int, mass: int, is_phase: bool) -> np.ndarray
     given = np.atleast_1d(checks.array(values, name))
     if given.dtype.kind not in "iuf" or given.shape != (size,):
         raise InputError(
-            f"{name} of mass {mass} must be {size} numbers, one a frequency; got {checks.one_line(values)}"
+            f"{name} of mass {mass} must be {size} numbers, one per frequency; got {checks.one_line(values)}"
         )
     if is_phase:
         _check(given, np.isfinite(given), f"{name} of mass {mass} must be finite")

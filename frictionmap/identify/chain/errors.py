@@ -1,4 +1,4 @@
-"""Fits of chains whose errors are not known: the residuals tell those of amplitudes and of lags apart."""
+"""Fits of chains with unknown errors: those of amplitudes and of lags follow from their residuals."""
 
 from collections.abc import Callable
 
@@ -31,7 +31,7 @@ def fit_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, Problem,
 
 
 def fit_robust_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, Problem, Measured]:
-    """The same with little weight of residuals beyond those that are usual."""
+    """Fit with errors from the residuals, giving little weight to outliers."""
     found, task = fit_chain(data, known)
     for round_ in range(ROUNDS):
         weighed = _weighed(data, task, found.best, usual_size) if _of_both_kinds(data) else data

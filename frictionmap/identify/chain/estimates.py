@@ -46,12 +46,16 @@ def chain_estimates(
         natural = np.concatenate((three, natural))
         logarithmic = np.concatenate((np.ones(3, dtype=bool), logarithmic))
         meanings = _FREQUENCIES | meanings
-    told, wider = _transformed(best, found, rows, natural, logarithmic, best.residual.size - int(free.sum()))
+    natural_solution, wider = _transformed(
+        best, found, rows, natural, logarithmic, best.residual.size - int(free.sum())
+    )
     units = tuple("Hz" if name.startswith("f") else "1" for name in meanings)
     residual = data.sigma * best.residual
     sigma = data.sigma if given else data.sigma * np.sqrt(found.variance)
     fitted = (rows[:, free] != 0.0).any(axis=1)
-    ds = estimates(meanings, units, told._replace(residual=residual), wider, fitted, data.value, "1", sigma)
+    ds = estimates(
+        meanings, units, natural_solution._replace(residual=residual), wider, fitted, data.value, "1", sigma
+    )
     return ds.assign(_of_samples(data))
 
 
@@ -78,9 +82,11 @@ def _transformed(
     lower = np.where(is_own, found.lower[place], centre - reach)
     upper = np.where(is_own, found.upper[place], centre + reach)
     lower, upper = (np.where(logarithmic, np.exp(ends), ends) for ends in (lower, upper))
-    told = best._replace(values=natural, at_bound=is_own & best.at_bound[place])
+    natural_solution = best._replace(values=natural, at_bound=is_own & best.at_bound[place])
     deviation = np.where(logarithmic, natural, 1.0) * deviation
-    return told, found._replace(standard_error=deviation, lower=lower, upper=upper, correlation=correlation)
+    return natural_solution, found._replace(
+        standard_error=deviation, lower=lower, upper=upper, correlation=correlation
+    )
 
 
 def _of_samples(data: Measured) -> dict[str, xr.Variable]:

@@ -18,7 +18,7 @@ from .inverse import chain_of
 from .response import modes, response_and_slopes
 from .sides import other_sides
 
-#: Mass and stiffness ratios are within this factor of one; so are frequencies of what the peaks tell.
+#: Mass and stiffness ratios are within this factor of one, as are frequencies relative to the peaks.
 _RATIO_RANGE = 1e3
 
 #: Damping ratios with which a search begins, that it may reach, and at which the model ends.
@@ -33,7 +33,7 @@ _SPREAD = 1.2
 #: Evaluations of one search.
 _MOST_STEPS = 60
 
-#: Searches, at most; fewer once the least sum has been found so many times with errors that can be.
+#: Maximum number of searches; fewer once the least sum has been found this often with plausible errors.
 SEARCHES, _FOUND_AGAIN = 24, 3
 
 #: Sums of squares that differ by less than this share are the same minimum.
@@ -42,8 +42,8 @@ _SAME_SUM = 1e-4
 #: Relative errors that no measurement has: sums of smaller ones are zero.
 _ROUNDING = 1e-8
 
-#: Other answers, and searches with more unknowns free, are not followed if their sums are so many times the
-#: least.
+#: Solutions, and searches with more unknowns free, whose sums exceed the least one by this factor are not
+#: followed.
 HOPELESS = 3.0
 
 #: A peak stands out by this factor, by its logarithm: more than noise makes.
@@ -51,7 +51,7 @@ _PEAK = 0.3
 
 
 class Measured(NamedTuple):
-    """What was measured of a chain, s numbers: lags [rad] and natural logarithms of amplitude ratios."""
+    """Measured data of a chain, s numbers: lags [rad] and natural logarithms of amplitude ratios."""
 
     frequency: np.ndarray  # (s,) Hz
     mass: np.ndarray  # (s,) from 0
@@ -149,7 +149,7 @@ def _usual_error(data: Measured, found: Solution) -> float:
 
 
 def _search(data: Measured, known: np.ndarray, task: Problem, start: np.ndarray) -> np.ndarray:
-    """Where a fit with all damping ratios free leads, first with little weight of what is far off."""
+    """Result of a fit with all damping ratios free, first with little weight of outliers."""
     data = data._replace(relative=False)
     free = np.isnan(known)
     free[2 * data.n - 1 :] = True
@@ -192,7 +192,7 @@ def _starts(data: Measured, known: np.ndarray) -> Iterator[np.ndarray]:
 
 
 def peaks(data: Measured) -> int:
-    """How many peaks the mass with the most of them has."""
+    """Largest number of peaks of any mass."""
     return max((p.size for _, p, _ in _extremes(data)), default=0)
 
 
@@ -208,7 +208,7 @@ def _extremes(data: Measured) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]
 
 
 def _alternating(data: Measured) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Between what f_1, z_1, f_2, ... of the first mass lie, if all are seen: likely, and for certain."""
+    """Likely and certain bounds of f_1, z_1, f_2, ... of the first mass, if all are seen."""
     if 0 not in data.mass:
         return []
     f, peak, dip = _extremes(data)[0]

@@ -1,4 +1,4 @@
-"""Which side of a sample a resonance or a standstill is on; without damping no fit passes across the sample.
+"""Search on both sides of samples for resonances and standstills, which a fit without damping cannot cross.
 
 A place near a sample has nearly the same amplitude there as its mirror image on the other side.
 """

@@ -9,7 +9,7 @@ from scipy.special import gammaincc
 
 from ... import checks
 from ...errors import InputError
-from ..statistics.cautions import bounded, coloured, trading
+from ..statistics.cautions import autocorrelation_warnings, bound_warnings, correlation_warnings
 from ..statistics.estimates import verdict
 from ..statistics.least_squares import Errors, Problem, Solution, errors, undetermined
 from ..statistics.levels import CHANCE
@@ -22,10 +22,10 @@ from .fit import SEARCHES, Found, Measured, fit_chain
 DAMPINGS = ("ground", "base")
 COSTS = ("logarithmic", "relative")
 
-#: Answers whose sums of squares differ by less variances of a sample are as good.
+#: Solutions whose sums of squares differ by fewer variances of a sample fit as well.
 _AS_GOOD = 4.0
 
-#: Answers are others if a parameter differs by so many standard errors.
+#: Standard errors of a parameter from which solutions differ.
 _ELSEWHERE = 3.0
 
 #: Residuals beyond this many given errors have little weight in a robust fit.
@@ -59,7 +59,7 @@ def sweep(
 ) -> xr.Dataset:
     """Fit a chain of masses on a shaken base, without friction, to amplitudes and lags over frequency.
 
-    Of its eleven arguments the first three are the data; the others say what is known and wanted.
+    The first three arguments are the data; the others state known parameters and options.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def sweep(
     amplitude_ratio : array, shape (samples,), or mapping of such
         X_k/Y > 0 of mass 1, or by mass, counted from 1, such as {1: ..., 3: ...}.
     phase_lag : array, shape (samples,), or mapping of such
-        Lags [deg] behind the base, the same way; they tell damping.
+        Lags [deg] behind the base, in the same form; they determine the damping.
     masses : int
         Of the chain, 1 to 5.
     damping : "ground" or "base"
@@ -96,8 +96,8 @@ def sweep(
     Raises
     ------
     InputError
-        An argument is illegal, data or peaks are fewer than unknowns ask for, or data cannot tell unknowns
-        apart: they are named.
+        An argument is invalid, data or peaks are fewer than unknowns, or unknowns are not identifiable
+        separately: they are named.
 
     Notes
     -----
@@ -124,10 +124,10 @@ def sweep(
 
 def _held(known: Mapping[str, float], names: tuple[str, ...], n: int, damped: bool) -> np.ndarray:
     """Unknowns that are held, shape (3 n - 1,), NaN of the others."""
-    legal = names if damped else names[: 2 * n - 1]
+    valid = names if damped else names[: 2 * n - 1]
     held = np.full(len(names), np.nan)
     for name, value in known.items():
-        place = names.index(checks.choice(name, "known", legal))
+        place = names.index(checks.choice(name, "known", valid))
         if place < 2 * n - 1:
             held[place] = np.log(checks.number(value, f"known.{name}", above=0.0))
         else:
@@ -135,7 +135,7 @@ def _held(known: Mapping[str, float], names: tuple[str, ...], n: int, damped: bo
     if not damped:
         held[2 * n - 1 :] = 0.0
     if not np.isnan(held).any():
-        raise InputError(f"known must leave something to fit; got all of {', '.join(legal)}")
+        raise InputError(f"known must leave at least one parameter free; got all of {', '.join(valid)}")
     return held
 
 
@@ -149,8 +149,8 @@ def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool, 
         unknown = ", ".join(names[index] for index in unseen)
         measured = ", ".join(str(mass + 1) for mass in np.unique(data.mass))
         raise InputError(
-            f"amplitude_ratio of mass {measured} cannot tell {unknown} apart: {too_many} of them must be "
-            "known, or another mass measured"
+            f"cannot identify {unknown} separately: mass {measured} does not determine them; "
+            f"hold {too_many} of them in [known], or measure another mass"
         )
     if found.outliers is None:
         return _Fit(data, found, problem, errors(problem, found.best, 1.0 if given else None), names, given)
@@ -178,16 +178,16 @@ def _verdict(fit: _Fit) -> xr.Variable:
 
 
 def _warnings(fit: _Fit) -> list[str]:
-    """What to mind, in words."""
-    words = coloured(fit.errors) + trading(fit.names, fit.errors.correlation)
-    words += bounded(fit.names, fit.problem.floor, fit.found.best.at_bound)
+    """Warnings about a fit."""
+    words = autocorrelation_warnings(fit.errors) + correlation_warnings(fit.names, fit.errors.correlation)
+    words += bound_warnings(fit.names, fit.problem.floor, fit.found.best.at_bound)
     if fit.found.times == 1:
-        words.append(f"the least sum of squares was found in one of {SEARCHES} searches only")
+        words.append(f"the least sum of squares was found in only one of {SEARCHES} searches")
     return words + _other_answers(fit)
 
 
 def _other_answers(fit: _Fit) -> list[str]:
-    """Chains elsewhere that the data cannot tell from the one that was found."""
+    """Warn of other chains that fit the data as well."""
     best, ratios = fit.found.best, 2 * fit.data.n - 1
     variance = 1.0 if fit.given else fit.errors.variance
     words: list[str] = []
@@ -200,7 +200,7 @@ def _other_answers(fit: _Fit) -> list[str]:
             values = ", ".join(
                 f"{fit.names[k]} {np.exp(other.values[k]):.5g}" for k in range(ratios) if fit.problem.free[k]
             )
-            words.append(f"the data cannot tell this from {values}")
+            words.append(f"the data fit {values} as well")
     return words
 
 

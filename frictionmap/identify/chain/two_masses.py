@@ -14,7 +14,7 @@ import numpy as np
 
 
 class Ratios(NamedTuple):
-    """What three frequencies say of two masses."""
+    """Ratios of two masses that follow from three frequencies."""
 
     f_k1m1: float  # Hz
     gamma: float
@@ -22,7 +22,7 @@ class Ratios(NamedTuple):
 
 
 def ratios(f0: float, f1: float, f2: float) -> Ratios:
-    """Of two masses with natural frequencies f1 < f2, the first one at rest at f0 between them."""
+    """Ratios of two masses with natural frequencies f1 < f2, the first at rest at f0 between them."""
     split = (f0**2 - f1**2) * (f2**2 - f0**2)
     return Ratios(f1 * f2 / f0, split / f0**4, split / (f1 * f2) ** 2)
 

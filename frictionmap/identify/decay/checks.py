@@ -32,21 +32,24 @@ def checked_turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
         Nothing moves, samples are too few a cycle, there are fewer than 3 extrema, or the amplitude grows.
     """
     if float(np.ptp(x)) <= 2.0 * resolution(x):
-        raise InputError(f"x must move; there is no motion above its own resolution ({resolution(x):g})")
+        raise InputError(
+            f"cannot fit x: it does not move by more than its resolution ({resolution(x):g}); check the data"
+        )
     if wrong := undersampled(x):
-        raise InputError(f"time must have more samples: {wrong}")
+        raise InputError(f"cannot fit x: sampling rate too low, {wrong}; sample faster")
     points = _turning_points(time, x)
     if points.time.size < 2:  # the last extremum is where it rests, or where the record ends
         gap = largest_gap(time)
         outside = f" outside a gap of {gap:.4g} s" if gap else ""
         raise InputError(
-            f"x must be a longer decay: fewer than 3 extrema in {x.size} samples{outside}, "
-            "no damping can be told"
+            f"cannot estimate damping: record too short, fewer than 3 extrema in {x.size} samples"
+            f"{outside}; measure more cycles"
         )
     if grows(points, noise_level(x)):
         raise InputError(
-            f"x must decay; its amplitude grows: no free decay (its swings grow from "
-            f"{abs(points.place[1] - points.place[0]):.4g} to {abs(points.place[-1] - points.place[-2]):.4g})"
+            f"cannot fit x as a free decay: its amplitude grows (swings grow from "
+            f"{abs(points.place[1] - points.place[0]):.4g} to {abs(points.place[-1] - points.place[-2]):.4g}"
+            "); choose a window of one decay"
         )
     return points
 

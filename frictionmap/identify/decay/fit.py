@@ -15,7 +15,7 @@ from .starts import improving, starts
 #: Sums of squares that differ by less variances of a sample are alike: three standard errors.
 _AS_GOOD = 9.0
 
-#: A start is not followed if its sum, of some of the samples, is larger by so many: five standard errors.
+#: A start is not followed if its sum over some samples is larger by this: five standard errors.
 _HOPELESS = 25.0
 
 #: Fits at most, of starts that some of the samples cannot distinguish.
@@ -26,7 +26,7 @@ _ROUNDING = 1e-9
 
 
 class Fit(NamedTuple):
-    """A decay, and whether the mass came to rest within the record."""
+    """A fitted decay, and whether the mass came to rest within the record."""
 
     n: int  # the turning point with which the model ends
     solution: Solution
@@ -83,7 +83,7 @@ def refitted(record: Record, fit: Fit) -> Fit:
 
 
 def noise_variance(record: Record, fit: Fit) -> float:
-    """The variance of a sample that tells chance from a worse fit: larger where residuals are correlated."""
+    """Variance of a sample for comparing fits: larger where residuals are correlated."""
     variance = sample_variance(record, fit) * long_inflation(fit.solution.residual) ** 2
     return max(variance, rounding_variance(record))
 

@@ -15,7 +15,7 @@ from ..signals.samples import (
     within,
 )
 from ..signals.turning_points import TurningPoints, linear_decrement, noise_level, without_spikes
-from ..statistics.cautions import bounded, coloured, trading
+from ..statistics.cautions import autocorrelation_warnings, bound_warnings, correlation_warnings
 from ..statistics.estimates import estimates, number, verdict
 from ..statistics.least_squares import Errors
 from ..statistics.levels import FOUND
@@ -104,8 +104,8 @@ def free_decay(
     Raises
     ------
     InputError
-        An argument is illegal, or the record is no free decay: no motion, fewer than 3 extrema, an amplitude
-        that grows, fewer than 8 samples a cycle, residuals far above the noise between samples.
+        An argument is invalid, or the record is no free decay: no motion, fewer than 3 extrema, an amplitude
+        that grows, fewer than 8 samples per cycle, residuals far above the noise between samples.
 
     Notes
     -----
@@ -168,9 +168,9 @@ def checked_known(known: Mapping[str, float], names: tuple[str, ...] = PARAMETER
         checks.choice(name, "known", names)
         result[name] = checks.number(value, f"known.{name}", **ranges.get(name, {}))
     if result.get("zeta", 0.0) >= 1.0:
-        raise InputError(f"known.zeta must be < 1, or there are no extrema; got {known['zeta']}")
+        raise InputError(f"known.zeta must be < 1 for a decay with turning points; got {known['zeta']}")
     if len(result) == len(names):
-        raise InputError(f"known must leave something to fit; got all of {', '.join(names)}")
+        raise InputError(f"known must leave at least one parameter free; got all of {', '.join(names)}")
     return result
 
 
@@ -192,7 +192,7 @@ def _losses(record: Record, points: TurningPoints, fit: Fit) -> dict[str, float]
 
 
 def _verdict(fit: Fit, found: Errors, losses: Mapping[str, float]) -> int:
-    """What was found: beyond three standard errors, and the fit is as much worse without it."""
+    """Verdict: friction and damping beyond three standard errors, by estimate and by likelihood ratio."""
     friction, damping = (
         losses[PARAMETERS[index]] > FOUND**2
         and fit.solution.values[index] > FOUND * found.standard_error[index]
@@ -202,7 +202,7 @@ def _verdict(fit: Fit, found: Errors, losses: Mapping[str, float]) -> int:
 
 
 def _motion(fits: list[Fit], unit: str) -> dict[str, xr.Variable]:
-    """How many half cycles there were, where it came to rest, and what that says of mu."""
+    """Number of half cycles, place of rest, and the bounds of mu that follow."""
     fit = fits[0]
     bounds = np.array([_bounds_of_mu(one) for one in fits])
     lower, upper = bounds[:, 0].min(), bounds[:, 1].max()
@@ -264,22 +264,22 @@ def _scaled(
 
 
 def _warnings(time: np.ndarray, good: np.ndarray, searched: Search, found: Errors) -> list[str]:
-    """What to mind, in words."""
+    """Warnings about a fit."""
     words = []
     if not good.all():
         words.append(f"clipped: {1.0 - good.mean():.1%} of the samples are at the extremes and were left out")
     if gap := largest_gap(time):
         words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
     pair = np.ix_((ZETA, X_F), (ZETA, X_F))
-    words += coloured(found) + trading(("zeta", "x_F"), found.correlation[pair])
+    words += autocorrelation_warnings(found) + correlation_warnings(("zeta", "x_F"), found.correlation[pair])
     words += _wandering(searched) + _other_counts(searched.fits)
     names = searched.record.names
     at_bound = searched.fits[0].solution.at_bound[: len(names)]
-    return words + bounded(names, np.zeros(len(names)), at_bound)
+    return words + bound_warnings(names, np.zeros(len(names)), at_bound)
 
 
 def _wandering(searched: Search) -> list[str]:
-    """A slow part of the residuals, in words."""
+    """Warn of a slow part of the residuals."""
     if searched.doubted is not None:
         return [
             "the residuals may have a low-frequency part, as if the zero of the measurement wandered: "
@@ -294,7 +294,7 @@ def _wandering(searched: Search) -> list[str]:
 
 
 def _other_counts(fits: list[Fit]) -> list[str]:
-    """Other numbers of half cycles before rest that fit as well, in words."""
+    """Warn of other numbers of half cycles before rest that fit as well."""
     words = [] if fits[0].possible else [_IMPOSSIBLE]
     others = sorted({_count(fit) for fit in fits[1:]} - {_count(fits[0])})
     if others:

@@ -29,7 +29,7 @@ _ZETA_RANGE = (-0.5, 0.99)
 
 
 class Record(NamedTuple):
-    """What was measured, and what is fitted to it."""
+    """Measured decay, and the parameters to be fitted."""
 
     time: np.ndarray  # s
     x: np.ndarray
@@ -53,7 +53,7 @@ class Record(NamedTuple):
 
     @property
     def free(self) -> np.ndarray:
-        """Which unknowns are fitted, bool (unknowns,)."""
+        """Unknowns that are fitted, bool (unknowns,)."""
         named = [name not in self.known for name in self.names]
         return np.array(named + [True] * self.terms)
 

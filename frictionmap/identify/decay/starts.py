@@ -1,4 +1,4 @@
-"""Where the fit of a decay starts: each number of half cycles before rest, at a least sum of its own.
+"""Starting values for a decay: each number of half cycles before rest has a minimum of its own.
 
 A decay is linear in x_F, X0, the centre and the drift.  Frequency and t0 are taken from the turning points,
 zeta from a list, the linear unknowns are solved for, and steps of Levenberg and Marquardt improve the result.
@@ -16,7 +16,7 @@ from .problem import X_F, Record, model, problem
 _DAMPINGS = (0.0, 0.01, 0.03, 0.1, 0.2, 0.35, 0.6)
 
 #: Half cycles can hide in the noise after the last turning point that was found: the search for more ends
-#: where so many in a row fit no better.
+#: where this many in a row fit no better.
 _HIDDEN = 8
 
 #: So many of the last turning points that were found may be noise.
@@ -33,7 +33,7 @@ _SETTLED, _STEPS = 1e-5, 25
 
 
 class Start(NamedTuple):
-    """Where a fit may start."""
+    """Starting values of a fit."""
 
     n: int  # half cycles before rest
     values: np.ndarray  # shape (unknowns,)

@@ -34,7 +34,7 @@ _FOUND = 1e-3
 #: It is not excluded if chance makes one as large in no more than this share.
 _NOT_EXCLUDED = 0.05
 
-#: Another number of half cycles can change the number of terms; so many fits with such terms at most.
+#: Maximum number of fits with terms: another number of half cycles can change the number of terms.
 _PASSES = 2
 
 
@@ -48,7 +48,7 @@ class Search(NamedTuple):
 
 
 class _Wander(NamedTuple):
-    """What the residuals show of a wander."""
+    """Slow wander seen in the residuals."""
 
     basis: np.ndarray  # shape (samples, terms)
     chance: float  # the probability that white noise shows as much

@@ -1,4 +1,4 @@
-"""Several decays and records fitted at once: shared f_n, zeta and mu, a friction of its own for each."""
+"""Joint fit of several decays and records: shared f_n, zeta and mu, and one friction force for each."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -50,7 +50,7 @@ def fit_jointly(parts: list[Part], known: Mapping[str, float]) -> JointFit:
 
 
 def places_of(parts: list[Part]) -> list[np.ndarray]:
-    """Where the parameters of each part stand among all."""
+    """Indices of the parameters of each part among all parameters."""
     found, following = [], len(SHARED)
     for part in parts:
         at = np.empty(part.start.size, dtype=int)

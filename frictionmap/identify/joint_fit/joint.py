@@ -11,7 +11,7 @@ from ...datasets.provenance import system_text
 from ...errors import InputError
 from ...model.system import DAMPING_REFERENCES
 from ...units.table import checked_unit, conversion
-from ..statistics.cautions import only_interval
+from ..statistics.cautions import interval_warnings
 from ..statistics.estimates import estimates, number, usable_errors, verdict
 from ..statistics.least_squares import Errors, Solution, errors, growth, two_sided
 from ..statistics.robust import LOSSES
@@ -95,7 +95,7 @@ def joint(
     Raises
     ------
     InputError
-        An argument is illegal, there are fewer than two data, or one of them cannot be used; its label is
+        An argument is invalid, there are fewer than two data, or one of them cannot be used; its label is
         named.
 
     Notes
@@ -162,7 +162,7 @@ def _part(
 
 
 def _names(fit: JointFit) -> list[str]:
-    """Of all values, but for the parts of drift and wander, which are empty."""
+    """Names of all values; those of drift and wander are empty."""
     names = [*SHARED, *[""] * (fit.solution.values.size - len(SHARED))]
     for part, at in zip(fit.parts, places_of(fit.parts), strict=True):
         for name, place in zip(part.names, at, strict=False):
@@ -252,7 +252,7 @@ def _residual(fit: JointFit, k: int) -> np.ndarray:
 def _of_parts(
     fit: JointFit, found: Errors, unit: str, stiffness: float | None, loss: str
 ) -> dict[str, xr.Variable]:
-    """What is told of each part beside its parameters."""
+    """Further results of each part."""
     result: dict[str, xr.Variable] = {}
     for k, part in enumerate(fit.parts):
         values, friction = fit.of_part(k), int(places_of(fit.parts)[k][part.names.index("x_F")])
@@ -300,7 +300,7 @@ def _verdict(fit: JointFit, found: Errors, names: list[str]) -> tuple[int, dict[
 
 
 def _inseparable(fit: JointFit, found: Errors, names: list[str]) -> list[str]:
-    """Shared parameters and frictions of records that the data do not tell from each other."""
+    """Shared parameters and frictions of records that are not identifiable separately."""
     of_records = {f"x_F_{part.label}" for part in fit.parts if part.fit is not None}
     frictions = [k for k, name in enumerate(names) if name in of_records]
     vague = [
@@ -320,7 +320,7 @@ def _inseparable(fit: JointFit, found: Errors, names: list[str]) -> list[str]:
 
 
 def _of_data(fit: JointFit, unit: str, loss: str) -> list[str]:
-    """What to mind of each part, in words."""
+    """Warnings about each part."""
     words = []
     for part in fit.parts:
         if part.decay is not None:
@@ -334,7 +334,7 @@ def _of_data(fit: JointFit, unit: str, loss: str) -> list[str]:
 
 
 def _of_fit(fit: JointFit, found: Errors) -> list[str]:
-    """What to mind of the estimates, in words."""
+    """Warnings about the estimates."""
     words = [
         f"{part.label}: the model does not explain the record down to its noise: at the harmonics of the "
         f"base it leaves {part.model_error:.3g} times the noise, and the record counts by that"
@@ -348,7 +348,7 @@ def _of_fit(fit: JointFit, found: Errors) -> list[str]:
             "mu = 1 explains the data as well as a larger mu does: the other estimates are those for mu = 1, "
             "and their intervals allow for the whole interval of mu"
         )
-    words += only_interval("mu", 1.0, not fit.with_mu.free[MU] or bool(found.lower[MU] > 1.0))
+    words += interval_warnings("mu", 1.0, not fit.with_mu.free[MU] or bool(found.lower[MU] > 1.0))
     names = _names(fit)
     bound = [names[k] for k in np.flatnonzero(fit.solution.at_bound) if names[k]]
-    return words + ([f"{listed(bound)} on the bound: the interval is one-sided"] if bound else [])
+    return words + ([f"{listed(bound)} at the bound: the interval is one-sided"] if bound else [])

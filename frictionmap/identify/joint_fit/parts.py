@@ -30,7 +30,7 @@ _RANGE = 1.5
 
 
 class Part(NamedTuple):
-    """One decay or one record."""
+    """A decay or a record, as a part of a joint fit."""
 
     label: str
     names: tuple[str, ...]  # of its parameters; further ones belong to drift and wander
@@ -99,7 +99,7 @@ def record_part(
 
 
 def with_shared(part: Part, shared: Mapping[str, float], known: Mapping[str, float]) -> Part:
-    """A record begun anew with other values of f_n and zeta; a decay as it is."""
+    """Fit a record again with other values of f_n and zeta; return a decay unchanged."""
     if part.record is None or part.fit is None:
         return part
     mass = part.fit.mass

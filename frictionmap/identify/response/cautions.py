@@ -1,28 +1,33 @@
-"""What to mind of a fit of forced responses, in words."""
+"""Warnings about a fit of forced responses."""
 
 import numpy as np
 from scipy.special import gammaincc
 
 from ... import regimes
-from ..statistics.cautions import bounded, coloured, only_interval, trading
+from ..statistics.cautions import (
+    autocorrelation_warnings,
+    bound_warnings,
+    correlation_warnings,
+    interval_warnings,
+)
 from ..statistics.levels import CHANCE
 from .data import ForcedTable
 from .fit import Fit, parameter_names
 from .model import MU, ZETA, points_of
 
-#: From this share of beta_stick on structures got stuck in tests, T 4.4.
+#: Share of beta_stick above which structures stuck in tests, T 4.4.
 _NEAR_STICKING = 0.7
 
 
-def told(table: ForcedTable, fit: Fit) -> list[str]:
+def fit_warnings(table: ForcedTable, fit: Fit) -> list[str]:
     """Warnings."""
     names = parameter_names(table)
     return [
         *_scatter(table, fit),
-        *coloured(fit.errors),
-        *trading(names, fit.errors.correlation),
-        *only_interval("mu", 1.0, not fit.problem.free[MU] or bool(fit.errors.lower[MU] > 1.0)),
-        *bounded(names, fit.problem.floor, fit.solution.at_bound),
+        *autocorrelation_warnings(fit.errors),
+        *correlation_warnings(names, fit.errors.correlation),
+        *interval_warnings("mu", 1.0, not fit.problem.free[MU] or bool(fit.errors.lower[MU] > 1.0)),
+        *bound_warnings(names, fit.problem.floor, fit.solution.at_bound),
         *_near_sticking(fit),
         *_several(fit),
         *_idle(fit),
@@ -44,7 +49,7 @@ def _near_sticking(fit: Fit) -> list[str]:
     near = int((beta * values[MU] > _NEAR_STICKING * held).sum())
     if not near:
         return []
-    return [f"{near} of {r.size} rows have beta above {_NEAR_STICKING:g} beta_stick, where tests got stuck"]
+    return [f"{near} of {r.size} rows have beta above {_NEAR_STICKING:g} beta_stick, where tests may stick"]
 
 
 def _several(fit: Fit) -> list[str]:
@@ -56,10 +61,10 @@ def _several(fit: Fit) -> list[str]:
     if not other.any():
         return []
     count = f"{int(other.sum())} of {other.size} rows"
-    return [f"{count} have several steady states; those nearest to the data are fitted"]
+    return [f"{count} have several steady states: the nearest ones to the data are fitted"]
 
 
 def _idle(fit: Fit) -> list[str]:
     if not fit.mu_idle:
         return []
-    return ["no motion that was fitted stops: the data do not tell mu, which is held at 1"]
+    return ["no fitted motion sticks: the data do not determine mu, which is held at 1"]

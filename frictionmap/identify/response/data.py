@@ -10,10 +10,10 @@ from ...errors import InputError
 from ...model.system import System
 from .model import Rows, Samples
 
-#: Errors that the data have until their residuals tell better: radian, and relative.
+#: Initial errors of the data, until the residuals give better ones: radian, and relative.
 _PHASE, _AMPLITUDE = np.radians(1.0), 0.02
 
-#: A lag may be out of its range by so many of its errors, and by so much, in degrees, if they are not known.
+#: Tolerance of lags beyond their range, in their errors, and in degrees if these are unknown.
 _ERRORS, _DEGREES = 5.0, 5.0
 
 #: Values by mass, or those of the only mass.
@@ -61,20 +61,20 @@ def checked_table(
 
 
 def _numbers(values: object, name: str, size: int | None, above: float = -np.inf) -> np.ndarray:
-    """Finite numbers > above, so many of them."""
+    """Check a given number of finite numbers > above."""
     given = np.atleast_1d(checks.array(values, name))
     if given.dtype.kind not in "iuf" or given.ndim != 1 or given.size == 0 or size not in (None, given.size):
-        wanted = "numbers" if size is None else f"{size} numbers, one a frequency"
+        wanted = "numbers" if size is None else f"{size} numbers, one per frequency"
         raise InputError(f"{name} must be {wanted}; got {checks.one_line(values)}")
     wrong = np.flatnonzero(~(np.isfinite(given) & (given > above)))
     if wrong.size:
-        legal = "finite" if above == -np.inf else f"finite and > {above:g}"
-        raise InputError(f"{name} must be {legal}; got {given[wrong[0]]:g} at index {wrong[0]}")
+        valid = "finite" if above == -np.inf else f"finite and > {above:g}"
+        raise InputError(f"{name} must be {valid}; got {given[wrong[0]]:g} at index {wrong[0]}")
     return given.astype(float)
 
 
 def _errors(values: object, name: str, size: int) -> np.ndarray:
-    """Errors > 0, one for all or one a frequency."""
+    """Check errors > 0, one for all or one per frequency."""
     if np.ndim(checks.array(values, name)) == 0:
         return np.full(size, checks.number(values, name, above=0.0))
     return _numbers(values, name, size, above=0.0)
@@ -86,7 +86,7 @@ def _members(sets: Sequence[object] | None, size: int) -> tuple[np.ndarray, tupl
         return np.zeros(size, dtype=int), ("1",)
     labels = [_label(one) for one in checks.array(sets, "sets").tolist()]
     if len(labels) != size:
-        raise InputError(f"sets must be {size} labels, one a frequency; got {len(labels)}")
+        raise InputError(f"sets must be {size} labels, one per frequency; got {len(labels)}")
     known = list(dict.fromkeys(labels))
     if all(label.isdecimal() for label in known):
         known.sort(key=int)
@@ -107,7 +107,7 @@ def _by_mass(values: Values | None, name: str, system: System) -> dict[int, tupl
     if not isinstance(values, Mapping):
         if system.n > 1:
             raise InputError(
-                f"{name} must say of which masses it is, such as {{1: [...]}}, for {system.n} masses; "
+                f"{name} must be a mapping by mass, such as {{1: [...]}}, for {system.n} masses; "
                 f"got {checks.one_line(values)}"
             )
         return {0: (values, name)}
@@ -131,13 +131,13 @@ def check_lag(
     wrong = np.flatnonzero((lag < -slack) | (lag > 180.0 + slack))
     if wrong.size:
         raise InputError(
-            f"{places[wrong[0]]} must be in 0 to 180 deg; got {lag[wrong[0]]:g}: lags of the loaded mass "
-            "are in 0..180; is it a lead, or another mass?"
+            f"{places[wrong[0]]} must be 0 to 180 deg for the loaded mass; got {lag[wrong[0]]:g} "
+            "(is it a lead, or another mass?)"
         )
 
 
 def most_beyond(table: ForcedTable) -> np.ndarray:
-    """How far lags may be out of range [rad], sample by sample."""
+    """Tolerance of lags beyond their range [rad], sample by sample."""
     given, sigma = table.given[0], table.samples.sigma
     return _ERRORS * sigma if given else np.full(sigma.size, np.radians(_DEGREES))
 

@@ -1,4 +1,4 @@
-"""The exact steady states nearest to forced responses, and the errors of what they tell."""
+"""Fit of the exact steady states to forced responses, with standard errors."""
 
 from typing import NamedTuple
 
@@ -35,7 +35,7 @@ _CHANCE = 1e-2
 #: Looks around the least sum, where chance does not explain it and motions come and go with friction.
 _CLOSER_LOOKS = 2
 
-#: Residuals beyond so many of their errors have little weight in a robust fit.
+#: Residuals beyond this many of their errors have little weight in a robust fit.
 _OUTLIER = 1.0
 
 #: Singular values of slopes below this share of the largest are zero, as are changes of lags [rad] and of
@@ -74,19 +74,21 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bo
         model, solution, task = _with_errors(model, known, table.given, robust)
         here = evaluate(model, solution.values, task.free)
     flat = _is_flat(model, solution, task)
-    told = _without_mu(task) if flat else task
-    _check_told(table, model, solution, told)
+    determined = _without_mu(task) if flat else task
+    _check_identifiable(table, model, solution, determined)
     variance = 1.0 if any(table.given) else None
     plain = problem(model, task.free, float(solution.values[F_N])) if robust else None
     larger: np.ndarray | float = 1.0
     if plain is not None:
         variance = effective_variance(plain, solution, _OUTLIER)
-        larger = jackknife_growth(plain._replace(free=told.free), solution, _OUTLIER)
-    found = errors(told, solution._replace(at_bound=solution.at_bound & told.free), variance, larger=larger)
+        larger = jackknife_growth(plain._replace(free=determined.free), solution, _OUTLIER)
+    found = errors(
+        determined, solution._replace(at_bound=solution.at_bound & determined.free), variance, larger=larger
+    )
     interval = _on_bound if flat else _near_bound
     found = interval(found, task, solution, variance)
     if flat:
-        solution = solution._replace(at_bound=solution.at_bound | (task.free & ~told.free))
+        solution = solution._replace(at_bound=solution.at_bound | (task.free & ~determined.free))
     if plain is not None:
         solution = solution._replace(residual=plain.residuals(solution.values)[0])
         found = found._replace(variance=solution.sum / _freedom(solution, task))
@@ -163,7 +165,7 @@ def problem(model: ForcedModel, free: np.ndarray, f_n: float, robust: bool = Fal
 def _with_errors(
     model: ForcedModel, known: np.ndarray, given: tuple[bool, bool], robust: bool
 ) -> tuple[ForcedModel, Solution, Problem]:
-    """The least sum with errors as given, or as the residuals tell them of lags and of amplitudes apart."""
+    """Minimise with given errors, or with errors of lags and amplitudes from their own residuals."""
     free = np.isnan(known)
     solution, task = _best(model, known, all(given), robust)
     for _ in range(0 if all(given) else ROUNDS):
@@ -213,20 +215,25 @@ def _best(model: ForcedModel, known: np.ndarray, sure: bool, robust: bool) -> tu
     assert best is not None  # there is a start at least
     if not np.isfinite(best[0].sum):
         raise InputError(
-            "the data must be of masses that move; one that was measured is held, whatever the friction"
+            "cannot fit the data: a measured mass never moves in this model, for any friction ratio; "
+            "check contact_masses and the columns"
         )
     return best
 
 
-def _check_told(table: ForcedTable, model: ForcedModel, solution: Solution, task: Problem) -> None:
-    """Refuse data that leave parameters, or some together, untold."""
+def _check_identifiable(table: ForcedTable, model: ForcedModel, solution: Solution, task: Problem) -> None:
+    """Refuse data that do not identify a parameter, or several of them separately."""
     names = parameter_names(table)
     for index in np.flatnonzero(task.free & (_effects(model, solution) < _RANK)):
-        raise InputError(f"the data do not tell {names[index]}, on which nothing that was measured depends")
+        raise InputError(
+            f"cannot identify {names[index]}: no measured quantity depends on it; fix it in [known]"
+        )
     together, _ = undetermined(task, solution, _RANK)
     if together.size:
         words = " and ".join(names[index] for index in together)
-        raise InputError(f"the data do not tell {words} apart; known may hold one, or measure more")
+        raise InputError(
+            f"cannot identify {words} separately: not determined by the data; fix one in [known] or add data"
+        )
 
 
 def parameter_names(table: ForcedTable) -> tuple[str, ...]:

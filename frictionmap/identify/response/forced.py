@@ -12,7 +12,7 @@ from ...model.system import System
 from ..statistics.estimates import verdict
 from ..statistics.levels import FOUND
 from ..statistics.robust import LOSSES
-from .cautions import told
+from .cautions import fit_warnings
 from .data import ForcedTable, Values, checked_table
 from .fit import Fit, fit_forced
 from .labels import friction_forces, labelled
@@ -50,7 +50,7 @@ def forced(
 ) -> xr.Dataset:
     """Fit the exact steady states to first harmonics of forced responses, all friction forces at once.
 
-    Thirteen arguments: the columns of a table, and what is known.
+    The arguments are the columns of a table and known parameters.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def forced(
     load : array, shape (rows,)
         Amplitude of the base or of the force, > 0, in `unit`; by default the same in every row.
     unit : str
-        Of `load`, and of the friction that is then told as a length F/k1, or as a force: "mm", say, or "N".
+        Of `load`, and of the friction, which is then given as a length F/k1 or as a force: "mm", say, or "N".
     sets : sequence, shape (rows,)
         Labels of tests; those of one label have one friction force.
     known : mapping
@@ -87,20 +87,21 @@ def forced(
         On parameter (beta, or beta_<label> of every set; f_n, zeta, mu) and on sample as `free_decay`, see
         `quantity`: data and model are lags [deg] and amplitude ratios, residuals degrees and logarithms of
         ratios.  beta is the friction force over the mean load of its set.  Also on sample: frequency,
-        mass, set, sigma, frequency_ratio, friction_ratio, `regime`, and `reached`, the starts from which the
-        motion is reached; `lag_status`, what a lag alone tells of friction, see `friction_ratio`.  On
+        mass, set, sigma, frequency_ratio, friction_ratio, `regime`, and `reached`, the initial
+        states that lead to the motion; `lag_status`, what follows from a lag alone, see `friction_ratio`.  On
         answer: `lag_friction_ratio` with its error, and `lag_sample`, the sample that it is of.  Attribute
         `warnings`.
 
     Raises
     ------
     InputError
-        An argument is illegal, there are fewer data than unknowns, or the data cannot tell a parameter.
+        An argument is invalid, there are fewer data than unknowns, or a parameter is not identifiable.
 
     Notes
     -----
     Motions are continuous, theory.md 2 and 9, or stick-slip, as they come; of several with mu > 1 that
-    nearest to the data counts.  Lags alone do not tell f_n: it is then held where they pass 90 deg.
+    nearest to the data counts.  Phase data alone cannot determine f_n: it is then held where lags pass 90
+    deg.
     """
     system = _default_system() if system is None else checks.instance(system, "system", System)
     table = checked_table(
@@ -111,7 +112,7 @@ def forced(
     if not (~table.samples.is_phase).any() and np.isnan(held[F_N]):
         held[F_N] = _passing(table)
         warnings.append(
-            f"lags alone do not tell f_n: it is held at {held[F_N]:.6g} Hz, where they pass 90 deg"
+            f"phase data alone cannot determine f_n: it is held at {held[F_N]:.6g} Hz, where lags pass 90 deg"
         )
     robust = checks.choice(loss, "loss", LOSSES) == "soft_l1"
     drop = checks.choice(unreachable, "unreachable", ("refuse", "drop")) == "drop"
@@ -130,10 +131,8 @@ def forced(
     ds.attrs["system"] = fit.model.with_zeta(float(fit.solution.values[ZETA])).describe()
     ds.attrs["config"] = system_text(system)
     if stiffness is not None and load is None:
-        warnings.append(
-            "no friction force in N: there are no amplitudes of the base, over which beta is taken"
-        )
-    ds.attrs["warnings"] = "; ".join(warnings + told(table, fit))
+        warnings.append("no friction force in N: it needs the amplitudes of the base")
+    ds.attrs["warnings"] = "; ".join(warnings + fit_warnings(table, fit))
     return ds
 
 
@@ -156,10 +155,10 @@ def _checked_known(known: Mapping[str, float], system: System, sets: int) -> np.
             held[MU] = checks.number(value, "known.mu", least=1.0)
     if system.modes.zeta.any():
         if not np.isnan(held[ZETA]):
-            raise InputError(f"known.zeta must be left out for a system with damping; got {held[ZETA]:g}")
+            raise InputError("cannot use known.zeta: the system defines its damping; omit one of the two")
         held[ZETA] = system.zeta
     if not np.isnan(held).any():
-        raise InputError("known must leave something to fit; got all of beta, f_n, zeta, mu")
+        raise InputError("known must leave at least one parameter free; got all of beta, f_n, zeta, mu")
     return held
 
 
@@ -174,18 +173,20 @@ def _reachable(
         return table
     if not drop:
         refuse_impossible(table, system, f_n, int(wrong[0]))
-    warnings.append(f"{wrong.size} lags that no friction ratio gives were left out")
+    warnings.append(f"{wrong.size} lags that no friction ratio gives were ignored")
     return without(table, wrong)
 
 
 def _check_count(table: ForcedTable, held: np.ndarray) -> None:
     unknowns, count = int(np.isnan(held).sum()), table.samples.row.size
     if count <= unknowns:
-        raise InputError(f"there must be more data than unknowns; got {count} data for {unknowns} unknowns")
+        raise InputError(
+            f"cannot fit {unknowns} unknowns to {count} data: more data than unknowns are needed; add data"
+        )
 
 
 def _passing(table: ForcedTable) -> float:
-    """Where lags of the first mass pass 90 deg, the median over the sets [Hz]."""
+    """Frequency at which lags of the first mass pass 90 deg, the median over the sets [Hz]."""
     samples, rows = table.samples, table.rows
     found = []
     for one in range(len(table.labels)):
@@ -197,8 +198,8 @@ def _passing(table: ForcedTable) -> float:
             found.append(f[k] - lag[k] * (f[k + 1] - f[k]) / (lag[k + 1] - lag[k]))
     if not found:
         raise InputError(
-            "known.f_n must be given: lags alone do not tell f_n, and those of the first mass "
-            "do not pass 90 deg"
+            "cannot determine f_n: phase data alone do not determine it, and the lags of mass 1 do not "
+            "pass 90 deg; give known.f_n or amplitudes"
         )
     return float(np.median(found))
 

@@ -45,7 +45,7 @@ def labelled(table: ForcedTable, fit: Fit, unit: str | None) -> xr.Dataset:
 
 
 def _of_samples(table: ForcedTable, fit: Fit) -> dict[str, xr.Variable]:
-    """What is told of every sample: data and model as measured, residuals in degrees or relative."""
+    """Variables on the samples: data and model as measured, residuals in degrees or relative."""
     samples, rows = fit.model.samples, table.rows
     phase = samples.is_phase
     residual = fit.here.residual * samples.sigma
@@ -101,7 +101,7 @@ def _is_one(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 def friction_forces(table: ForcedTable, fit: Fit, unit: str, stiffness: float) -> dict[str, xr.Variable]:
     """Friction force k1 x_F [N] of every set on a shaken base, with its error; `stiffness` k1 [N/m].
 
-    Under a force it is told in the unit of the force already: nothing is added.
+    Under a force it is already given in the unit of the force: nothing is added.
     """
     if fit.model.system.excitation != "base":
         return {}

@@ -1,4 +1,4 @@
-"""What the lags of a table tell of friction one by one, and which of them no friction gives."""
+"""Friction ratios from single lags of a table, and lags that no friction gives."""
 
 import numpy as np
 import xarray as xr
@@ -28,9 +28,10 @@ def refuse_impossible(table: ForcedTable, system: System, f_n: float, sample: in
     """Name a lag that no friction gives."""
     row = table.samples.row[sample : sample + 1]
     lag = table.samples.value[sample : sample + 1]
-    told = invert(system, table.rows.frequency[row] / f_n, lag, np.zeros(1, dtype=int))[0]
+    inverted = invert(system, table.rows.frequency[row] / f_n, lag, np.zeros(1, dtype=int))[0]
     raise InputError(
-        f'{told.reason} (row {int(row[0]) + 1} of the table; unreachable = "drop" leaves such lags out)'
+        f"cannot fit the lag in row {int(row[0]) + 1}: {inverted.reason}; "
+        'use unreachable = "drop" to ignore such lags'
     )
 
 
@@ -45,18 +46,20 @@ def friction_ratios(fit: Fit) -> dict[str, xr.Variable]:
     samples, values = fit.model.samples, fit.solution.values
     lags = np.flatnonzero(samples.is_phase)
     r = fit.model.rows.frequency[samples.row[lags]] / values[F_N]
-    told = invert(fit.model.with_zeta(float(values[ZETA])), r, samples.value[lags], samples.mass[lags])
+    inversions = invert(fit.model.with_zeta(float(values[ZETA])), r, samples.value[lags], samples.mass[lags])
     status = np.full(samples.row.size, _NO_LAG, dtype=np.int8)
-    status[lags] = [one.code for one in told]
+    status[lags] = [one.code for one in inversions]
     flags = {
-        "long_name": "what the lag tells of friction",
+        "long_name": "friction ratios that follow from the lag",
         "flag_values": np.arange(_NO_LAG + 1, dtype=np.int8),
         "flag_meanings": " ".join((*MEANINGS, "no_lag")),
     }
     found = {"lag_status": xr.Variable("sample", status, flags)}
-    counts = [len(one.beta) for one in told]
+    counts = [len(one.beta) for one in inversions]
     if sum(counts):
-        beta, slope = (np.concatenate([getattr(one, name) for one in told]) for name in ("beta", "slope"))
+        beta, slope = (
+            np.concatenate([getattr(one, name) for one in inversions]) for name in ("beta", "slope")
+        )
         sample = np.repeat(lags, counts)
         error = np.degrees(samples.sigma[sample]) / np.abs(slope)
         found |= {

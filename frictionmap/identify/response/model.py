@@ -31,7 +31,7 @@ class Rows(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """What was measured, s numbers."""
+    """Measured lags and amplitudes, s numbers."""
 
     row: np.ndarray  # (s,)
     mass: np.ndarray  # (s,) from 0
@@ -50,7 +50,7 @@ class ForcedModel(NamedTuple):
 
     @property
     def sets(self) -> int:
-        """How many friction forces there are."""
+        """Number of friction forces."""
         return int(self.rows.member.max()) + 1
 
     def with_zeta(self, zeta: float) -> System:
@@ -161,7 +161,7 @@ def _slope(
 
 
 def _same_motion(states: list[States], phasors: np.ndarray) -> np.ndarray:
-    """Of several motions at every point the one nearest to phasors, (k, n)."""
+    """Select the motion nearest to given phasors at every point, (k, n)."""
     found = np.array([state.phasors for state in states])
     off = np.abs(found - phasors).sum(axis=2)
     chosen = np.where(np.isnan(off), np.inf, off).argmin(axis=0)

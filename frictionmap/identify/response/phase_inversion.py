@@ -18,14 +18,14 @@ from .extremes import Extremes, extremes_near_zero
 #: the lag of one mass comes back from beyond 90 deg.
 _SHARES = np.concatenate((np.linspace(0.0, 0.9, 31), 1.0 - 0.1 * 0.6 ** np.arange(1.0, 16.0)))
 
-#: Intervals next to a lag are looked at in so many parts: where motions with one more stop begin, the lag
+#: Intervals next to a lag are divided into these parts: where motions with one more stop begin, the lag
 #: bends so sharply that a rise and a fall may lie between two of the samples above.
 _PARTS = np.linspace(0.0, 1.0, 11)
 
-#: Lags that change less than this [rad] per unit of beta tell no friction.
+#: Lags that change less than this [rad] per unit of beta do not determine friction.
 _LEAST_SLOPE = np.radians(10.0)
 
-#: Step of beta by which the slope is told.
+#: Step of beta for the slope.
 _STEP = 1e-5
 
 #: Lags nearer to each other than this [rad] are one: steady states are exact to some 1e-12.
@@ -40,12 +40,12 @@ _MOST_DECIMALS = 6
 
 ONE, SEVERAL, NONE, FLAT = 0, 1, 2, 3
 
-#: Codes of what a lag tells, in order.
+#: Codes of the result for a lag, in order.
 MEANINGS = ("one_friction_ratio", "several_friction_ratios", "no_friction_ratio_gives_it", "cannot_tell")
 
 
 class FrictionRatios(NamedTuple):
-    """What one lag tells of friction."""
+    """Friction ratios that follow from one lag."""
 
     beta: tuple[float, ...]  # friction ratios that give it, increasing: none, one or more
     slope: tuple[float, ...]  # change of the lag with each of them [deg per unit]
@@ -113,13 +113,13 @@ def friction_ratio(
         One a point: `beta`, none, one or more, and the `slope` of the lag [deg per unit of beta] at each;
         `code`, which `MEANINGS` has in words; `reason`.  Two from 90 deg on below resonance, where the lag
         of one mass on a fixed wall rises beyond 90 deg with friction and comes back as the mass sticks.  For
-        other structures none if the lag does not tell it: less than 10 deg per unit of beta, or rising and
+        other structures none if the lag does not determine it: below 10 deg per unit of beta, or rising and
         falling.
 
     Raises
     ------
     InputError
-        An argument is illegal.
+        An argument is invalid.
 
     Notes
     -----
@@ -139,14 +139,14 @@ def friction_ratio(
         if values.dtype.kind not in "iuf" or values.ndim != 1 or not np.isfinite(values).all():
             raise InputError(f"{name} must be finite numbers; got {checks.one_line(values)}")
     if at.size != lag.size:
-        raise InputError(f"phase_lag must be {at.size} numbers, one a frequency; got {lag.size}")
+        raise InputError(f"phase_lag must be {at.size} numbers, one per frequency; got {lag.size}")
     if not (at > 0.0).all():
         raise InputError(f"r must be > 0; got {at[at <= 0.0][0]:g}")
     return invert(system, at.astype(float), np.radians(lag), np.full(at.size, system.dofs.row(mass)))
 
 
 def invert(system: System, r: np.ndarray, lag: np.ndarray, mass: np.ndarray) -> list[FrictionRatios]:
-    """What lags [rad] of masses, from 0, tell of friction, as `friction_ratio`; all (points,)."""
+    """Determine friction ratios from lags [rad] of masses, from 0, as `friction_ratio`; all (points,)."""
     measured = _Measured(system, r, lag, mass)
     seen = _look(system, r, mass)
     beta, which = _roots(measured, seen)
@@ -173,13 +173,13 @@ def is_one_on_wall(system: System) -> bool:
 
 
 def reach(system: System, r: np.ndarray, lag: np.ndarray) -> np.ndarray:
-    """How far lags [rad] of the first mass are off all that any friction gives, (points,)."""
+    """Distance of lags [rad] of the first mass from the range that friction can give, (points,)."""
     mass = np.zeros(r.size, dtype=int)
     return _reach(_Measured(system, r, lag, mass), _look(system, r, mass))
 
 
 def _reach(measured: _Measured, seen: _Lags) -> np.ndarray:
-    """How far the lags are off all that friction gives, (points,): 0 of those within."""
+    """Distance of lags from the range that friction can give, (points,); 0 within it."""
     low, high = np.nanmin(seen.lag, axis=0), np.nanmax(seen.lag, axis=0)
     off = np.maximum(np.maximum(low - measured.lag, measured.lag - high), 0.0)
     beyond = np.flatnonzero(off)
@@ -221,9 +221,9 @@ def _lag(system: System, r: np.ndarray, beta: np.ndarray, mass: np.ndarray) -> n
 
 
 def _look(system: System, r: np.ndarray, mass: np.ndarray) -> _Lags:
-    """Lags over all friction; where a closed form tells beta in continuous motion, at 0 and beyond it."""
+    """Lags over all friction; where a closed form gives beta in continuous motion, at 0 and beyond it."""
     stick = np.abs(system.contact_load(r))
-    # a load that feeds a resonance of the held structure moves it whatever the friction
+    # a load at a resonance of the held structure moves it for any friction
     stick = np.where(np.isfinite(stick), stick, 1.0 / np.finfo(float).eps)
     low = np.zeros_like(r)
     if _has_closed_form(system):
@@ -323,7 +323,7 @@ def _has_closed_form(system: System) -> bool:
 
 
 def _none_reason(measured: _Measured, k: int, seen: _Lags) -> str:
-    """Which lags friction gives at the frequency of a point, none of which is the one measured."""
+    """State the range of lags that friction can give at a point, which excludes the measured one."""
     r, lag = float(measured.r[k]), float(np.degrees(measured.lag[k]))
     point = np.array([k])
     off = np.degrees(_reach(measured.at(point), _Lags(seen.beta[:, point], seen.lag[:, point]))[0])
@@ -343,4 +343,4 @@ def _none_reason(measured: _Measured, k: int, seen: _Lags) -> str:
 
 def _flat_reason(r: float, unsure: bool) -> str:
     why = "rises and falls with friction" if unsure else "changes by less than 10 deg per unit of beta"
-    return f"the lag at r = {r:.4g} {why}: it does not tell beta"
+    return f"the lag at r = {r:.4g} {why}: it does not determine beta"

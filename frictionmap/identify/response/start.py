@@ -1,4 +1,4 @@
-"""Where the fit of forced responses begins: a coarse look at all friction ratios and natural frequencies.
+"""Starting values for forced responses: a coarse search over friction ratios and natural frequencies.
 
 Sums of squares have many least values over f_n, and some over beta: the look takes residuals with errors
 so large that it cannot pass between its samples.
@@ -18,7 +18,7 @@ _MOST = 5.0
 #: What a mass at rest, or no steady state, counts: as much as no motion does.
 _AT_REST = 1e3
 
-#: Friction ratios: so many below that at which everything sticks, down to a share of it.
+#: Friction ratios: number of values below the one at which everything sticks, down to a share of it.
 _BETAS, _LEAST_SHARE = 16, 0.02
 
 #: Natural frequencies: from this share of the lowest frequency to this multiple of the highest, by this step.
@@ -30,7 +30,7 @@ _DAMPINGS = (0.003, 0.03)
 _TRIED, _APART = 3, 0.06
 _MU = (1.05, 1.4)
 
-#: A closer look: errors so many times as large, and values beside those that were found.
+#: A closer search: factor of the errors, and values near those that were found.
 _CLOSER = 3.0
 _F_BESIDE = np.array([0.97, 0.985, 1.0, 1.015, 1.03])
 _MU_BESIDE = np.arange(-0.2, 0.25, 0.05)
@@ -80,9 +80,9 @@ def _candidates(model: ForcedModel) -> np.ndarray:
 
 
 def closer(model: ForcedModel, near: np.ndarray, known: np.ndarray) -> list[np.ndarray]:
-    """Values around others to begin with anew, the most promising first.
+    """Starting values around a solution, the most promising first.
 
-    Motions come and go with friction where mu > 1, and the sum has steps that no slope tells of.
+    Motions appear and disappear with friction where mu > 1, and the sum has steps that slopes do not show.
     """
     samples = model.samples._replace(sigma=_CLOSER * model.samples.sigma)
     frequencies = near[F_N] * _F_BESIDE if np.isnan(known[F_N]) else known[F_N:ZETA]
@@ -113,7 +113,7 @@ def _everywhere(model: ForcedModel, values: np.ndarray, known: np.ndarray) -> np
 def _best_frictions(
     model: ForcedModel, several: list[np.ndarray], tried: list[np.ndarray]
 ) -> list[tuple[float, np.ndarray]]:
-    """Of several values of one zeta and mu: the sum with the best friction ratio of every set, and with it.
+    """Find the best friction ratio of every set for several values of one zeta and mu; return their sums.
 
     tried : (tried, sets) for each of the values
     """

@@ -1,6 +1,6 @@
-"""Configurations of rigs: which file is read, what is known, what is fitted.
+"""Configurations of measured data: files, known parameters, options of the fit.
 
-A kind of data is a `Kind`: what may be said of it, and the function that fits it.  To build another, write
+A kind of data is a `Kind`: its keys, and the function that fits it.  To add another, write
 one like `FREE_DECAY` in `decay` and add it to `KINDS`.
 """
 
@@ -58,8 +58,8 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     _check_keys(tree, name, kind)
     file = data.get("file")
     if not isinstance(file, str) or not file:
-        given = f"got {checks.one_line(file)}" if "file" in data else "there is none"
-        raise InputError(f"data.file must be the path of a file of measured data; {given}")
+        given = checks.one_line(file) if "file" in data else "nothing"
+        raise InputError(f"data.file must be the path of a file of measured data; got {given}")
     missing = checks.choice(data.get("missing", MISSING[0]), "data.missing", MISSING)
     values = {key: _known_number(value, key) for key, value in known.items()}
     free = _checked_free(fit.get("free"), values, kind.parameters)
@@ -94,12 +94,12 @@ def _title(tree: Mapping[str, object], default: str) -> str:
 
 
 def identify(rig: Rig) -> xr.Dataset:
-    """Fit what the data of a rig tell; see the function of its kind, such as `free_decay`.
+    """Fit the data of a rig; see the function of its kind, such as `free_decay`.
 
     Raises
     ------
     InputError
-        The data cannot be read or fitted; one line with the file.
+        The data cannot be read or fitted; the message names the file.
     """
     if rig.kind == JOINT_NAME:
         ds = fit_together(rig)
@@ -121,11 +121,11 @@ def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
 
 
 def _refuse_data(path: object) -> None:
-    """Refuse measured data where their configuration is due."""
+    """Refuse a data file in place of its configuration."""
     if isinstance(path, (str, Path)) and Path(path).suffix.lower() in _DATA:
         raise InputError(
-            f"RIG.toml must be a configuration, which says with [data] kind and file what {path} holds; "
-            "got the file of data itself"
+            f"cannot read a configuration from {path}: it is a data file; give a RIG.toml that names it "
+            "under data.file"
         )
 
 
@@ -135,55 +135,60 @@ def _checked_kind(tree: Mapping[str, object], data: Mapping[str, object]) -> str
         return checks.choice(data["kind"], "data.kind", tuple(KINDS))
     if "grid" in tree:
         raise InputError(
-            f"the configuration must have data.kind, one of {kinds}; it is that of a map, for frictionmap map"
+            "cannot identify from a configuration with [grid]: it describes a map; use frictionmap map, "
+            f"or give [data] with kind, one of {kinds}"
         )
-    raise InputError(f"the configuration must have a table [data] with kind, one of {kinds}; it has none")
+    raise InputError(f"the configuration must have a table [data] with kind, one of {kinds}; got none")
 
 
 def _check_keys(tree: Mapping[str, object], name: str, kind: Kind) -> None:
-    """Refuse what no key of the kind is; [system] is checked as in maps, where it is used."""
+    """Refuse unknown keys of the kind; [system] is checked as in maps, where it is used."""
     sections = {
         "data": ("kind", "file", "columns", "missing", *kind.data),
         "known": (*kind.parameters, *kind.known),
         "fit": ("free", *kind.fit),
     }
-    legal = ("title", *sections, *(("system",) if kind.system else ()))
+    valid = ("title", *sections, *(("system",) if kind.system else ()))
     for key in tree:
-        if key not in legal:
-            raise _unknown(key, "", legal, name)
+        if key not in valid:
+            raise _unknown(key, "", valid, name)
     for section, keys in sections.items():
         for key in _table(tree, section):
             if key not in keys:
                 raise _unknown(key, section, keys, name)
 
 
-def _unknown(key: str, section: str, legal: Sequence[str], kind: str) -> InputError:
-    """What is no key of a kind may well be one of another."""
-    return InputError(f"{unknown_key(key, section, legal)}, for data.kind = {kind!r}")
+def _unknown(key: str, section: str, valid: Sequence[str], kind: str) -> InputError:
+    """Return the error of a key that is unknown for this kind of data."""
+    return InputError(f"data.kind = {kind!r}: {unknown_key(key, section, valid)}")
 
 
 def _checked_free(
     free: object, known: Mapping[str, float], parameters: Sequence[str]
 ) -> tuple[str, ...] | None:
-    """What is fitted is what is not known: a list of it must say the same."""
+    """Check fit.free, which must list exactly the parameters that are not known."""
     if free is None:
         return None
     if not parameters:
-        raise InputError("fit.free must be left out for this kind: what [known] does not hold is fitted")
+        raise InputError(
+            "cannot use fit.free for this kind of data: all parameters not in [known] are fitted; omit it"
+        )
     if not isinstance(free, list) or not free:
         raise InputError(f"fit.free must be a list of parameters; got {checks.one_line(free)}")
     for index, name in enumerate(free):
         checks.choice(name, f"fit.free[{index}]", tuple(parameters))
     for name in parameters:
         if name in free and name in known:
-            raise InputError(f"fit.free must not name what [known] holds; got {name}")
+            raise InputError(f"cannot fit {name}: [known] holds it; remove it from fit.free or from [known]")
         if name not in free and name not in known:
-            raise InputError(f"fit.free must name {name}, or known.{name} give its value; got {free}")
+            raise InputError(
+                f"cannot hold {name}: its value is missing; add {name} to fit.free or known.{name} to [known]"
+            )
     return tuple(free)
 
 
 def _known_number(value: object, key: str) -> float:
-    """A number of [known]; one with its unit in that of the key."""
+    """Convert a number of [known], with a unit to that of the key."""
     unit = KNOWN_UNITS.get(key, "")
     if unit and isinstance(value, str):
         found = quantity(value, f"known.{key}", UNITS[unit].measures)
@@ -197,7 +202,7 @@ def _known_number(value: object, key: str) -> float:
 def _names(columns: object) -> dict[str, str]:
     if not isinstance(columns, Mapping) or not all(isinstance(name, str) for name in columns.values()):
         raise InputError(
-            f'data.columns must be names of columns, such as {{ time = "time_s", x = "x_mm" }}; '
+            f'data.columns must be a table of column names, such as {{ time = "time_s", x = "x_mm" }}; '
             f"got {checks.one_line(columns)}"
         )
     return dict(columns)

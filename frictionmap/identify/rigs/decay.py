@@ -12,7 +12,7 @@ from ..tables.columns import check_increasing, pick_columns
 from ..tables.files import Table
 from .rig import Kind, Rig, check_columns, with_remarks
 
-#: What is given in mm, whatever the unit of the data.
+#: Keys given in mm, for any unit of the data.
 _LENGTHS = ("x_F", "X0", "centre", "base_mm")
 
 

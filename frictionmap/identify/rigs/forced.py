@@ -32,7 +32,7 @@ _ERRORS = {"sigma_phase": "angle", "sigma_amplitude": "ratio"}
 
 def _forced(rig: Rig, table: Table) -> xr.Dataset:
     if not rig.system:
-        raise InputError("the configuration must have a table [system] for forced responses; it has none")
+        raise InputError("the configuration must have a table [system] for forced responses; got none")
     system = read_system(rig.system, rig.files[0].parent)
     _check_load(system, rig, table)
     wanted = _wanted(system, rig, table)
@@ -78,7 +78,7 @@ def _check_load(system: System, rig: Rig, table: Table) -> None:
 
 
 def _wanted(system: System, rig: Rig, table: Table) -> dict[str, str]:
-    """What every column that is made use of measures."""
+    """Quantities of the columns that are used."""
     roles = _roles_by_use(system)
     load = _LOADS[system.excitation or "force"]
     motions = _roles(system, *_MOTION)
@@ -137,7 +137,7 @@ def _role(system: System, role: str, mass: int) -> str:
 
 
 def _checked_use(rig: Rig, there: list[str]) -> list[str]:
-    """What is fitted: what the configuration says, or all that is there."""
+    """Quantities to be fitted: as configured, or all available."""
     use = rig.data.get("use", there or list(_USE))
     if not isinstance(use, list) or not use:
         raise InputError(f"data.use must be a list of {', '.join(_USE)}; got {checks.one_line(use)}")
@@ -190,13 +190,13 @@ def _unit_response(rig: Rig, picked: Columns, frequency: np.ndarray, name: str) 
         return _displaced(picked.columns["base"], "m", frequency)
     if "force" not in picked.columns:
         raise InputError(
-            f"file {rig.file} must have a column base_mm or force_N, over which the amplitudes {name} are "
-            "taken; it has none (a column amplitude_ratio needs neither)"
+            f"cannot normalise the amplitudes {name}: file {rig.file} has no column base_mm or force_N; "
+            "add one, or give amplitude_ratio"
         )
     if "stiffness" not in rig.known:
         raise InputError(
-            f"known.stiffness must be given for a force and amplitudes {name}: what is fitted is their "
-            "ratio times the stiffness"
+            f"cannot normalise the amplitudes {name} by a force: the stiffness is missing; "
+            "give known.stiffness"
         )
     force = picked.columns["force"]
     return force.values * conversion(force.unit, "N") / rig.known["stiffness"]
@@ -208,7 +208,9 @@ def _errors(rig: Rig, picked: Columns) -> list[np.ndarray | None]:
     for role, key in (("sigma_phase", "sigma_phase_deg"), ("sigma_amplitude", "sigma_amplitude")):
         column = picked.columns.get(role)
         if column is not None and key in rig.data:
-            raise InputError(f"data.{key} must be left out for a file with a column {column.name}")
+            raise InputError(
+                f"cannot use data.{key}: the file has the column {column.name}; omit one of the two"
+            )
         if column is not None:
             scale = conversion(column.unit, "deg") if column.unit != "1" else 1.0
             found.append(column.values * scale)
@@ -221,10 +223,10 @@ def _errors(rig: Rig, picked: Columns) -> list[np.ndarray | None]:
 
 
 def _frequency(rig: Rig, picked: Columns) -> np.ndarray:
-    """In Hz."""
+    """Frequencies [Hz]."""
     if "frequency_ratio" in picked.columns:
         if "f_n" not in rig.known:
-            raise InputError("known.f_n must be given for a file with a column frequency_ratio")
+            raise InputError("cannot convert the column frequency_ratio: f_n is missing; give known.f_n")
         return picked.columns["frequency_ratio"].values * rig.known["f_n"]
     column = picked.columns["frequency"]
     return column.values * conversion(column.unit, "Hz")
@@ -235,7 +237,9 @@ def _sets(rig: Rig, table: Table, rows: np.ndarray) -> list[object] | None:
     name = rig.columns.get("set", "set")
     if name not in table.columns:
         if "set" in rig.columns:
-            raise InputError(f"file {rig.file} must have a column {name}, named by data.columns.set")
+            raise InputError(
+                f"cannot assign rows to sets: there is no column {name!r}; correct data.columns.set"
+            )
         return None
     labels = table.texts[name] if name in table.texts else table.columns[name].tolist()
     return [labels[row] for row in rows]

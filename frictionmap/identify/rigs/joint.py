@@ -48,7 +48,7 @@ def checked_data(tables: list[object]) -> list[dict[str, object]]:
     labels = [str(one["label"]) for one in found]
     for label in labels:
         if labels.count(label) > 1:
-            raise InputError(f"label must differ between tables [[data]]; got {label!r} twice")
+            raise InputError(f"label must be different in every table [[data]]; got {label!r} twice")
     return found
 
 
@@ -65,7 +65,7 @@ def _checked(table: object, name: str, label: str) -> dict[str, object]:
             raise InputError(f"{name}.{key} must be text; got {checks.one_line(result.get(key))}")
     columns = result["columns"]
     if not isinstance(columns, Mapping) or not all(isinstance(one, str) for one in columns.values()):
-        raise InputError(f"{name}.columns must be names of columns; got {checks.one_line(columns)}")
+        raise InputError(f"{name}.columns must be a table of column names; got {checks.one_line(columns)}")
     for role in columns:
         if role not in JOINED[kind]:
             raise unknown_key(role, f"{name}.columns", tuple(JOINED[kind]))
@@ -100,7 +100,7 @@ def _arrays(table: Table, part: Mapping[str, Any], remarks: list[str]) -> list[n
     picked = pick_columns(table, wanted, part["columns"], part["missing"])
     check_increasing(table, picked.columns["time"], picked.rows)
     if picked.dropped:
-        remarks.append(f"{part['label']}: {picked.dropped} rows have no number and were left out")
+        remarks.append(f"{part['label']}: {picked.dropped} rows have no number and were ignored")
     units = {"time": "s", "length": _UNIT}
     arrays = [
         picked.columns[role].values * conversion(picked.columns[role].unit, units[measures])
@@ -119,8 +119,8 @@ def data_paths(parts: list[dict[str, object]], folder: Path) -> tuple[Path, ...]
 
 
 def _refused(rig: Rig, table: Table) -> xr.Dataset:
-    """What no single table is fitted by."""
-    raise InputError("several measurements must be tables [[data]]")
+    """Refuse to fit a single table."""
+    raise InputError("data must be tables [[data]] for several measurements; got one")
 
 
 JOINT = Kind(_refused, KNOWN, known=("stiffness",), fit=("loss",), system=True)

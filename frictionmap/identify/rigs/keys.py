@@ -1,6 +1,6 @@
-"""The keys of the configuration of a rig, by the kind of data: meanings and what is legal.
+"""Keys of the configuration of a rig, by the kind of data: meanings and valid values.
 
-Which keys a kind has, its `Kind` says; what they mean stands here.
+`Kind` lists the keys of a kind of data; this module describes them.
 """
 
 from typing import Any
@@ -18,70 +18,70 @@ from .configuration import JOINT_NAME, KINDS
 from .joint import DATA_KEYS, JOINED, JOINT
 from .rig import KNOWN_UNITS
 
-#: What is said of a table as a whole.
+#: Descriptions of the tables.
 TABLES = {
-    "data": "What was measured.",
+    "data": "The measurement.",
     "system": "The structure, as in maps.",
-    "known": "What is held, and what scales the result, in Hz, mm, s, N/m; the rest is fitted.",
-    "fit": "How it is fitted.",
+    "known": "Known parameters, which are held, and scales of the results, in Hz, mm, s, N/m.",
+    "fit": "Options of the fit.",
 }
 
 _POSITIVE = number(above=0.0)
 _TIMES = several(number(), 2, maxItems=2)
 
-_TITLE = KEYS[""][0]._replace(meaning="what pictures are called; default: the name of the file of data")
+_TITLE = KEYS[""][0]._replace(meaning="title of plots; default: name of the data file")
 
 _DATA = (
-    Key("kind", "what was measured", word(*KINDS)),
-    Key("file", "the file, relative to this one", {"type": "string", "minLength": 1}, example='"data.csv"'),
+    Key("kind", "kind of measurement", word(*KINDS)),
+    Key("file", "data file, relative to this file", {"type": "string", "minLength": 1}, example='"data.csv"'),
     Key(
         "columns",
-        "names of columns; default: these names, whose endings are units",
+        "names of columns; default: these names, whose suffixes are units",
         {"type": "object", "additionalProperties": {"type": "string"}},
         example='{ time = "time_s", x = "x_mm" }',
-        words="a table of names",
+        words="a table of column names",
     ),
-    Key("missing", "rows without a number: refused, or up to 1 % of them left out", word(*MISSING),
+    Key("missing", "rows without a number: refuse, or ignore up to 1 % of the rows", word(*MISSING),
         MISSING[0]),
-    Key("window", "the part to be fitted, s", _TIMES, example="[0.5, 4.0]", words="[begin, end]"),
-    Key("use", "what is fitted; all that is there if left out", several(word("phase", "amplitude")),
+    Key("window", "time window to be fitted, s", _TIMES, example="[0.5, 4.0]", words="[begin, end]"),
+    Key("use", "quantities to fit; default: all available", several(word("phase", "amplitude")),
         example='["phase", "amplitude"]'),
-    Key("sigma_phase_deg", "error of lags; from the residuals if left out", _POSITIVE, example="1.0"),
-    Key("sigma_amplitude", "relative error of amplitudes; from the residuals if left out", _POSITIVE,
+    Key("sigma_phase_deg", "error of lags; default: from the residuals", _POSITIVE, example="1.0"),
+    Key("sigma_amplitude", "relative error of amplitudes; default: from the residuals", _POSITIVE,
         example="0.02"),
-    Key("unreachable", "lags that no friction gives", word("refuse", "drop"), "refuse"),
+    Key("unreachable", "lags that no friction force gives", word("refuse", "drop"), "refuse"),
 )  # fmt: skip
 
-#: Of each of several measurements.
+#: Key of each of several measurements.
 _LABEL = Key("label", "name in the results; default: its number", {"type": "string", "minLength": 1},
              example='"10 N"')  # fmt: skip
 
 _FIT = (
-    Key("free", "what is fitted, which is what [known] does not hold", several({"type": "string"}),
+    Key("free", "parameters to be fitted: all that are not in [known]", several({"type": "string"}),
         example='["zeta", "x_F"]'),
-    Key("drift", "whether the zero of the measurement drifts", {"type": "boolean"}, False,
+    Key("drift", "whether to fit a linear drift of the zero", {"type": "boolean"}, False,
         words="true or false"),
-    Key("loss", "what residuals cost: soft_l1 gives little weight to outliers", word(*LOSSES), LOSSES[0]),
-    Key("cost", "whether the logarithms of amplitudes are fitted, or relative differences", word(*COSTS),
+    Key("loss", "loss function: soft_l1 gives little weight to outliers", word(*LOSSES), LOSSES[0]),
+    Key("cost", "residuals of amplitudes: logarithmic or relative differences", word(*COSTS),
         COSTS[0]),
 )  # fmt: skip
 
 _CONTACT, _MASSES, *_ = KEYS["system"]
-_BASE = Key("excitation", "what shakes it", word("base"), "base")
+_BASE = Key("excitation", "excitation", word("base"), "base")
 _REFERENCE = Key(
-    "damping_reference", "whether damping acts on velocities in space or relative to the base",
+    "damping_reference", "whether damping acts on absolute velocities or on those relative to the base",
     word(*DAMPING_REFERENCES), DAMPING_REFERENCES[0],
 )  # fmt: skip
 _SYSTEMS = {
     "forced": KEYS["system"],
     "record": (
-        _CONTACT._replace(legal=word(*CONTACTS)),
-        _MASSES._replace(legal=several({"const": 1}, maxItems=1), words="[1]"),
+        _CONTACT._replace(valid=word(*CONTACTS)),
+        _MASSES._replace(valid=several({"const": 1}, maxItems=1), words="[1]"),
         _BASE,
         _REFERENCE,
     ),
     "sweep": (
-        Key("masses", "how many masses the chain has", whole(least=1, most=MOST_MASSES), example="2"),
+        Key("masses", "number of masses of the chain", whole(least=1, most=MOST_MASSES), example="2"),
         _BASE,
         _REFERENCE._replace(default=None, example='"ground"'),
     ),
@@ -90,15 +90,15 @@ _SYSTEMS = {
 _KNOWN = {
     "f_n": ("natural frequency, Hz", "3.12"),
     "zeta": ("viscous damping ratio", "0.01"),
-    "beta": ("friction ratio, of all sets", "0.2"),
+    "beta": ("friction ratio of all sets", "0.2"),
     "mu": ("static over kinetic friction force, >= 1", "1.0"),
     "x_F": ("kinetic friction force over stiffness, mm", "0.2"),
     "X0": ("amplitude at t0, mm", "9.5"),
     "t0": ("time of the first turning point, s", "0.0"),
-    "centre": ("place of the unloaded mass, mm", "0.0"),
-    "offset_x": ("place of the unloaded mass where the base is at its zero, mm", "0.0"),
-    "base_mm": ("amplitude of the base for which beta = x_F/Y is wanted, mm", "1.75"),
-    "stiffness": ("of the spring, N/m: gives the friction force in N", "1191.0"),
+    "centre": ("position of the unloaded mass, mm", "0.0"),
+    "offset_x": ("position of the unloaded mass for zero base displacement, mm", "0.0"),
+    "base_mm": ("base amplitude Y for which beta = x_F/Y is reported, mm", "1.75"),
+    "stiffness": ("spring stiffness, N/m: gives the friction force in N", "1191.0"),
     "f_k1m1": ("natural frequency of mass 1 on its spring alone, Hz", "3.0"),
     "gamma": ("mass ratio m_2/m_1, of two masses", "1.0"),
     "kappa": ("stiffness ratio k_2/k_1, of two masses", "1.0"),
@@ -165,7 +165,7 @@ def _of_several() -> dict[str, Any]:
     known = tuple(_known(name) for name in (*JOINT.parameters, *JOINT.known))
     fit = tuple(key for key in _FIT if key.name in (*JOINT.fit, "free"))
     tables = {
-        "data": {"description": "Measurements that are fitted together.", **several(data, least=2)},
+        "data": {"description": "Measurements fitted together.", **several(data, least=2)},
         "system": keyed_table("system", _SYSTEMS["record"], TABLES["system"]),
         "known": keyed_table("known", known, TABLES["known"]),
         "fit": keyed_table("fit", fit, TABLES["fit"]),

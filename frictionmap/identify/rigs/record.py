@@ -23,7 +23,7 @@ _WANTED = {"time": "time", "base": "motion", "x": "motion"}
 #: Noise of displacements beyond this share of the motion is much.
 _NOISY = 0.05
 
-#: What is given in mm, whatever the unit of the data.
+#: Keys given in mm, for any unit of the data.
 _LENGTHS = ("x_F", "offset_x")
 
 SYSTEM_KEYS = ("contact", "damping_reference", "excitation", "contact_masses")
@@ -68,13 +68,13 @@ def _displaced(
 
 
 def _of_integration(columns: tuple[Column, Column], found: Displacements) -> list[str]:
-    """What to mind of displacements that were not measured, in words."""
+    """Warnings about displacements obtained by integration."""
     words = []
     for column, noise in zip(columns, found.noise, strict=True):
         if noise > _NOISY:
             words.append(
                 f"{column.name} as a displacement has noise of {noise:.0%} of its motion: integration "
-                "amplifies what is slow"
+                "amplifies low frequencies"
             )
     if any(derivative_order(COLUMN_NAMES[column.unit]) for column in columns):
         words.append("offset_x has no meaning: velocities and accelerations do not show where the mass rests")
@@ -88,7 +88,7 @@ def one_mass_on_base(rig: Rig) -> tuple[str, str]:
             raise unknown_key(key, "system", SYSTEM_KEYS)
     if rig.system.get("contact_masses", [1]) != [1]:
         masses = checks.one_line(rig.system["contact_masses"])
-        raise InputError(f"system.contact_masses must be [1], a record is of one mass; got {masses}")
+        raise InputError(f"system.contact_masses must be [1] for a record of one mass; got {masses}")
     checks.choice(rig.system.get("excitation", "base"), "system.excitation", ("base",))
     return (
         checks.choice(rig.system.get("contact", CONTACTS[0]), "system.contact", CONTACTS),

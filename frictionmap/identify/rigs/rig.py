@@ -1,4 +1,4 @@
-"""A rig: what a configuration says of measured data, and what a kind of data has to tell of itself."""
+"""Configuration of measured data, and the properties of a kind of data."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
@@ -12,7 +12,7 @@ from ..tables.files import Table
 
 
 class Rig(NamedTuple):
-    """A checked configuration; what its kind says of single values is checked where they are used."""
+    """A checked configuration; values that depend on the kind of data are checked where they are used."""
 
     title: str
     kind: str
@@ -37,7 +37,7 @@ KNOWN_UNITS = {
 
 
 class Kind(NamedTuple):
-    """What may be said of a kind of data, and the function that fits them."""
+    """A kind of data: its keys, and the function that fits it."""
 
     identify: Callable[[Rig, Table], xr.Dataset]
     parameters: tuple[str, ...]  # that [known] may hold and fit.free may name
@@ -47,15 +47,15 @@ class Kind(NamedTuple):
     system: bool = False  # whether there is a table [system]
 
 
-def check_columns(rig: Rig, legal: Sequence[str]) -> None:
-    """Refuse a name in data.columns for what no column of the kind is."""
+def check_columns(rig: Rig, valid: Sequence[str]) -> None:
+    """Refuse unknown roles in data.columns."""
     for key in rig.columns:
-        if key not in legal:
-            raise unknown_key(key, "data.columns", tuple(legal))
+        if key not in valid:
+            raise unknown_key(key, "data.columns", tuple(valid))
 
 
 def with_remarks(ds: xr.Dataset, table: Table, picked: Columns, known_of: Collection[str] = ()) -> xr.Dataset:
-    """The dataset with what is to be minded of the table before its own warnings.
+    """Put remarks about the table before the warnings of the dataset.
 
     known_of : columns that the configuration leaves out itself, or that are no numbers; they are not named
     """
@@ -66,8 +66,8 @@ def with_remarks(ds: xr.Dataset, table: Table, picked: Columns, known_of: Collec
 
 
 def _dropped_rows(table: Table, picked: Columns) -> str:
-    """A warning of rows that were left out, or nothing."""
+    """Warning of ignored rows, or empty."""
     if not picked.dropped:
         return ""
     total = picked.dropped + picked.rows.size
-    return f"{picked.dropped} of {total} rows of {table.file.name} have no number and were left out"
+    return f"{picked.dropped} of {total} rows of {table.file.name} have no number and were ignored"

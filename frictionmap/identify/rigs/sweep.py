@@ -43,7 +43,7 @@ def _sweep(rig: Rig, table: Table) -> xr.Dataset:
 
 
 def _wanted(rig: Rig, table: Table, masses: int) -> dict[str, str]:
-    """What every column measures that the file has; amplitudes of one mass must be there."""
+    """Quantities of the columns in the file; amplitudes of one mass are required."""
     measures = {
         f"{role}_{mass}": what for mass in range(1, MOST_MASSES + 1) for role, what in _MEASURES.items()
     }
@@ -53,12 +53,12 @@ def _wanted(rig: Rig, table: Table, masses: int) -> dict[str, str]:
         if int(role[-1]) > masses:
             raise InputError(f"system.masses must be at least {role[-1]}, as there is {role}; got {masses}")
     if not any(role.startswith("amplitude_ratio") for role in there):
-        there["amplitude_ratio_1"] = "ratio"  # that it is missing is told where columns are looked for
+        there["amplitude_ratio_1"] = "ratio"  # the search for columns reports that it is missing
     return {"frequency": "frequency", **there}
 
 
 def _options(rig: Rig) -> dict[str, Any]:
-    """What the configuration says of errors, damping and cost, by the arguments of `sweep`."""
+    """Errors, damping and cost of the configuration as arguments of `sweep`."""
     keys = {"sigma_amplitude": "sigma_amplitude", "sigma_phase_deg": "sigma_phase"}
     options: dict[str, Any] = {
         name: checks.number(rig.data[key], f"data.{key}", above=0.0)
@@ -82,12 +82,12 @@ def _by_mass(picked: Columns, role: str, masses: int) -> Mapping[int, Column]:
 
 
 def _checked_system(rig: Rig) -> int:
-    """How many masses there are on the shaken base."""
+    """Number of masses on the shaken base."""
     for key in rig.system:
         if key not in SYSTEM_KEYS:
             raise unknown_key(key, "system", SYSTEM_KEYS)
     if "masses" not in rig.system:
-        raise InputError(f"system.masses must be given for a sweep, 1 to {MOST_MASSES}; got none")
+        raise InputError(f"system.masses must be a whole number from 1 to {MOST_MASSES}; got nothing")
     checks.choice(rig.system.get("excitation", "base"), "system.excitation", ("base",))
     return checks.whole(rig.system["masses"], "system.masses", least=1, most=MOST_MASSES)
 

@@ -66,7 +66,7 @@ def displacements(
     Raises
     ------
     InputError
-        An argument is illegal, a velocity or acceleration is clipped; fewer than 2 cycles or 8 samples a
+        An argument is invalid, a velocity or acceleration is clipped; fewer than 2 cycles or 8 samples per
         cycle.
     """
     times, places = checked_record(time, x)
@@ -93,7 +93,7 @@ def displacements(
 
 
 def amplitude_factors(unit: str, into: str, frequency: np.ndarray) -> np.ndarray:
-    """What amplitudes of one harmonic are multiplied by to be those of its displacement, (k,).
+    """Factors that convert amplitudes of one harmonic to amplitudes of its displacement, (k,).
 
     unit : of a displacement, velocity or acceleration
     into : a unit of length
@@ -104,19 +104,19 @@ def amplitude_factors(unit: str, into: str, frequency: np.ndarray) -> np.ndarray
 
 
 def derivative_order(unit: str) -> int:
-    """How often a displacement was differentiated to give what is in this unit: 0, 1 or 2."""
+    """Order of the derivative of a displacement that has this unit: 0, 1 or 2."""
     return MOTIONS.index(UNITS[unit].measures)
 
 
 def _check_unit(unit: str, name: str, *kinds: str) -> None:
     """Refuse a unit that is of none of the kinds."""
-    legal = tuple(one for kind in kinds for one in units_of(kind))
-    if unit not in legal:
-        raise InputError(f"{name} must be one of {', '.join(legal)}; got {checks.one_line(unit)}")
+    valid = tuple(one for kind in kinds for one in units_of(kind))
+    if unit not in valid:
+        raise InputError(f"{name} must be one of {', '.join(valid)}; got {checks.one_line(unit)}")
 
 
 def _check_unclipped(name: str, values: np.ndarray) -> None:
-    """Refuse what is cut off at the ends of its range: integration spreads the error over all samples."""
+    """Refuse clipped data: integration spreads the error over all samples."""
     clipped = 1.0 - np.mean(unclipped(values))
     if clipped > 0.0:
         raise InputError(
@@ -151,7 +151,7 @@ def _harmonics(
 
 
 def _integrated_noise(t: np.ndarray, rest: np.ndarray, lowest: float, order: int) -> np.ndarray:
-    """What is left beside the harmonics, integrated line by line from `lowest` [Hz] on."""
+    """Integrate the residual beside the harmonics line by line, at or above `lowest` [Hz]."""
     even = np.linspace(t[0], t[-1], t.size)
     step = float(even[1] - even[0])
     lines = np.fft.rfft(np.interp(even, t, rest))

@@ -109,7 +109,7 @@ def noise_of_fit(
     model_error = float(np.sqrt(square / freedom)) if wrong else 1.0
     growth = levels.of_harmonic * model_error
     few = [count for count in (levels.freedom, freedom if wrong else 0) if count]
-    if (growth == 1.0).all():  # white: all samples tell its variance
+    if (growth == 1.0).all():  # white: all samples determine its variance
         freedom = residual.size - unknowns - 2 - waves
         return Noise(float(residual @ residual) / freedom, columns[:, :0], freedom), 1.0
     excess = np.sqrt(growth**2 - 1.0)

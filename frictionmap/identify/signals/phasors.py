@@ -26,17 +26,17 @@ _LEAST_CYCLES = 2.0
 #: Samples a cycle that are needed.
 _LEAST_SAMPLES = 8
 
-#: The spectrum is refined by so many values over its main lobe, the first of which may be the frequency.
+#: Number of values over the main lobe by which the spectrum is refined.
 _REFINED = 17
 
 #: Samples in all, and in a cycle, of which the search makes use.
 _SAMPLES = 4000
 _SAMPLES_A_CYCLE = 16
 
-#: Samples so many deviations off are outliers; fits in which they are drawn in.
+#: Deviations from which a sample is an outlier; number of fits in which outliers are limited.
 _OUTLIER, _TAMED = 3.0, 5
 
-#: A normal deviate is below so many deviations in half of all cases.
+#: Median of the modulus of a normal deviate, in standard deviations.
 _MEDIAN = 0.6744897501960817
 
 #: The frequency is found where it moves by less than this share of 1/length.
@@ -77,7 +77,7 @@ class _Linear(NamedTuple):
 
 
 def phasors_of(time: np.ndarray, channels: np.ndarray) -> Phasors:
-    """Fit harmonics of one frequency to all channels, the first of which tells where to look for it.
+    """Fit harmonics of one frequency to all channels; the first channel gives the initial frequency.
 
     Zeros that wander are fitted with slow waves, if there is more in the residuals than white noise has.
 
@@ -87,7 +87,7 @@ def phasors_of(time: np.ndarray, channels: np.ndarray) -> Phasors:
     Raises
     ------
     InputError
-        There are too few samples a cycle, too few cycles, or too few samples at all.
+        There are too few samples per cycle, too few cycles, or too few samples in all.
     """
     middle = 0.5 * (time[0] + time[-1])
     t = time - middle
@@ -105,7 +105,7 @@ def phasors_of(time: np.ndarray, channels: np.ndarray) -> Phasors:
 
 
 def robust_phasors(time: np.ndarray, channels: np.ndarray) -> tuple[Phasors, np.ndarray]:
-    """The same for channels with outliers, and the channels with their outliers drawn in.
+    """Fit harmonics to channels with outliers; also return the channels with outliers limited.
 
     A sample farther from the harmonics than some deviations of the others counts as one at that distance.
     """
@@ -152,9 +152,9 @@ def ratio_error(phasors: Phasors) -> float:
 
 
 def changes(time: np.ndarray, channels: np.ndarray, whole: Phasors) -> np.ndarray:
-    """How far X_1 of every channel differs between the first and the last third, squared, over its variance.
+    """Squared change of X_1 from the first to the last third of the record, over its variance, by channel.
 
-    Two normal deviates of their own make it 2 on average.  None are told of thirds shorter than a cycle.
+    It is 2 on average for a steady motion.  Empty if a third is shorter than a cycle.
     """
     third = (time[-1] - time[0]) / 3.0
     if third * whole.frequency < 1.0:
@@ -204,28 +204,29 @@ def _coarse_frequency(t: np.ndarray, base: np.ndarray) -> float:
 
 
 def _checked_harmonics(t: np.ndarray, frequency: float) -> int:
-    """How many harmonics the samples can tell."""
+    """Number of harmonics that the samples resolve."""
     length = float(t[-1] - t[0])
     cycles = length * frequency
     if cycles < _LEAST_CYCLES:
         raise InputError(
             f"time must span at least {_LEAST_CYCLES:g} cycles of the base; "
-            f"it spans {cycles:.2g} ({length:.4g} s at {frequency:.4g} Hz)"
+            f"got {cycles:.2g} ({length:.4g} s at {frequency:.4g} Hz)"
         )
     samples = 1.0 / (float(np.median(np.diff(t))) * frequency)
     if samples < _LEAST_SAMPLES:
         raise InputError(
-            f"time must have more samples: {samples:.2g} samples a cycle; {_LEAST_SAMPLES} are needed"
+            f"cannot fit harmonics: sampling rate too low, {samples:.2g} samples per cycle, "
+            f"{_LEAST_SAMPLES} needed; sample faster"
         )
     harmonics = min(_HARMONICS, int(samples / SAMPLES_OF_HIGHEST))
     unknowns = 2 * harmonics + 3
     if t.size <= unknowns:
-        raise InputError(f"time must have more samples than there are unknowns, {unknowns}; got {t.size}")
+        raise InputError(f"time must have more samples than unknowns, {unknowns}; got {t.size}")
     return harmonics
 
 
 def _stride(t: np.ndarray, frequency: float) -> int:
-    """Every so many samples will do for a start: enough a cycle, and enough of them."""
+    """Stride of samples sufficient for initial values: enough per cycle, and enough in all."""
     a_cycle = 1.0 / (float(np.median(np.diff(t))) * frequency)
     return max(1, min(t.size // _SAMPLES, int(a_cycle / _SAMPLES_A_CYCLE)))
 

@@ -29,7 +29,7 @@ _AS_LARGE = 0.5
 
 
 def unclipped_mass(time: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Samples that are not cut off at the ends of a measuring range, of a mass that may stick there."""
+    """Samples that are not clipped, for a mass that may stick at the extremes."""
     good = np.ones(x.size, dtype=bool)
     runs = clipped_runs(x)
     noisy = bool(runs) and _shows_noise(x, runs)
@@ -68,7 +68,7 @@ def _cut_off(time: np.ndarray, x: np.ndarray, run: tuple[int, int]) -> list[floa
 
 
 def _times_of_distances(t: np.ndarray, d: np.ndarray, x: np.ndarray) -> tuple[float, float] | None:
-    """When two distances from the extreme are reached; nothing where the record ends before."""
+    """Times at which two distances from the extreme are reached; None where the record ends before."""
     near = max(_STEPS * resolution(x), _SHARE * float(np.ptp(x)))
     times = []
     for distance in (near, _FARTHER * near):

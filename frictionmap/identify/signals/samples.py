@@ -17,7 +17,7 @@ def checked_record(time: object, x: object, name: str = "x") -> tuple[np.ndarray
     times = checks.axis(time, "time", least=-np.inf)
     places = np.atleast_1d(checks.array(x, name))
     if places.dtype.kind not in "iuf" or places.shape != times.shape:
-        raise InputError(f"{name} must be {times.size} numbers, as many as times; got {checks.one_line(x)}")
+        raise InputError(f"{name} must be {times.size} numbers, one per time; got {checks.one_line(x)}")
     wrong = np.flatnonzero(~np.isfinite(places))
     if wrong.size:
         raise InputError(f"{name} must be finite; got {places[wrong[0]]} at index {wrong[0]}")
@@ -50,7 +50,7 @@ def unclipped(x: np.ndarray) -> np.ndarray:
 
 
 def clipped_runs(x: np.ndarray) -> list[tuple[int, int]]:
-    """Begin and end of every run of samples that lie at an extreme value, the samples beside far from it."""
+    """Begin and end of every run of clipped samples, at an extreme value far from its neighbours."""
     step = resolution(x)
     found = []
     for extreme in (x.min(), x.max()):

@@ -1,4 +1,4 @@
-"""Turning points of a measured decay, and what they tell without any model."""
+"""Turning points of a measured decay, and results that need no model."""
 
 import math
 from typing import NamedTuple
@@ -14,7 +14,7 @@ _LARGE = 0.2
 #: Samples a cycle; with fewer, a turning point is not seen between two of them.
 _LEAST_SAMPLES = 8
 
-#: A step between two samples is a gap if it is longer than so many usual ones.
+#: Length of a gap between two samples, in usual steps.
 GAP = 3.0
 
 #: A gap of this share of half a cycle, or less, hides one turning point at most, and a parabola through both
@@ -65,7 +65,7 @@ def resolution(x: np.ndarray) -> float:
 
 
 def turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
-    """Where the motion turns back by more than its noise, refined by parabolas."""
+    """Find turning points where the motion reverses by more than its noise, refined by parabolas."""
     # normal deviates span about 2 sqrt(2 ln n) deviations, give or take one
     noise = (2.0 * np.sqrt(2.0 * np.log(max(x.size, 2))) + 1.0) * noise_level(x)
     swing = max(noise, _SHARE * float(np.ptp(x)))
@@ -131,15 +131,15 @@ def regular_run(points: TurningPoints) -> slice:
 
 
 def samples_a_cycle(x: np.ndarray) -> float:
-    """Samples in a cycle of the large swings; infinite if there are not two turning points."""
+    """Samples per cycle of the large swings; infinite if there are not two turning points."""
     found = turns(x, _LARGE * float(np.ptp(x)))
     return 2.0 * float(np.median(np.diff(found))) if len(found) > 1 else np.inf
 
 
 def undersampled(x: np.ndarray) -> str:
-    """What is wrong with the rate of sampling, or nothing."""
+    """Describe a sampling rate that is too low; empty if it suffices."""
     found = samples_a_cycle(x)
-    return f"{found:g} samples a cycle; {_LEAST_SAMPLES} are needed" if found < _LEAST_SAMPLES else ""
+    return f"{found:g} samples per cycle, {_LEAST_SAMPLES} needed" if found < _LEAST_SAMPLES else ""
 
 
 def grows(points: TurningPoints, noise: float) -> bool:

@@ -1,19 +1,19 @@
-"""How much larger errors are because residuals are correlated over many samples."""
+"""Inflation of standard errors by residuals that are correlated over many samples."""
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
 from .least_squares import inflation
 
-#: The sum over lags ends at so many correlation times (Sokal 1997, section 3).
+#: Lag at which the sum ends, in correlation times (Sokal 1997, section 3).
 _WINDOW = 5.0
 
-#: A correlation time beyond so many of its standard errors above 1 is not chance.
+#: Standard errors above 1 from which a correlation time is significant.
 _SIGNIFICANT = 3.0
 
 
 def long_inflation(residual: np.ndarray) -> float:
-    """What errors are multiplied by: the root of the integrated autocorrelation time, in samples.
+    """Factor of standard errors: the root of the integrated autocorrelation time, in samples.
 
     It is the larger one of two estimates: by the lag-1 correlation alone, and by the sum of the correlations
     at all lags up to a window, which also sees a slow part below white noise.

@@ -20,7 +20,7 @@ def number(value: float, long_name: str, units: str = "1") -> xr.Variable:
 
 
 def verdict(code: int, meanings: Mapping[str, str]) -> xr.Variable:
-    """What was found, as a CF flag; codes count the meanings from 0."""
+    """Verdict as a CF flag; codes count the meanings from 0."""
     flags = {
         "long_name": "what the data show",
         "flag_values": np.arange(len(meanings), dtype=np.int8),
@@ -49,7 +49,7 @@ def _of_parameters(values: np.ndarray, words: str) -> xr.Variable:
 def _parameter_variables(
     units: Sequence[str], solution: Solution, errors: Errors, free: np.ndarray
 ) -> dict[str, xr.Variable]:
-    """What is told of every parameter."""
+    """Variables on the parameters."""
     held, bound = (~free).astype(np.int8), solution.at_bound.astype(np.int8)
     of_errors = {"long_name": "correlation of errors", "units": "1"}
     return {

@@ -22,12 +22,12 @@ _PART = 1e-4
 #: Ends of profiles are found to this share of the standard error.
 _PROFILE = 1e-3
 
-#: Lag-1 correlations beyond so many standard errors are no chance.
+#: Standard errors from which a lag-1 correlation is significant.
 _COLOURED = 3.0
 
 
 class Problem(NamedTuple):
-    """What is fitted."""
+    """A least-squares problem."""
 
     residuals: Residuals
     free: np.ndarray  # shape (parameters,), bool: others are held
@@ -51,7 +51,7 @@ class Solution(NamedTuple):
 
 
 class Noise(NamedTuple):
-    """What is known of the noise: its covariance is variance * (I + G G^T)."""
+    """Noise with covariance variance * (I + G G^T)."""
 
     variance: float
     excess: np.ndarray  # G, shape (samples, any number)
@@ -73,7 +73,7 @@ class Errors(NamedTuple):
 def minimise(problem: Problem, start: np.ndarray) -> Solution:
     """The least sum with no parameter below its bound.
 
-    A parameter that a fit puts below its bound is held there, and the rest fitted anew; of several ways to
+    A parameter below its bound is held there, and the others are fitted again; of several ways to
     hold some of them the least sum wins.
     """
     free_fit = _fit(problem, start, problem.free)
@@ -83,9 +83,9 @@ def minimise(problem: Problem, start: np.ndarray) -> Solution:
     inside = np.maximum(free_fit.values, problem.floor)
     while True:
         held_fits = [_hold(problem, inside, held) for held in _subsets(candidates)]
-        legal = [fit for fit in held_fits if not _below(problem, fit).any()]
-        if legal:
-            return min(legal, key=lambda fit: fit.sum)
+        valid = [fit for fit in held_fits if not _below(problem, fit).any()]
+        if valid:
+            return min(valid, key=lambda fit: fit.sum)
         candidates = np.logical_or.reduce([candidates, *(_below(problem, fit) for fit in held_fits)])
 
 
@@ -142,7 +142,7 @@ def leverage(slopes: np.ndarray) -> np.ndarray:
 
 
 def growth(problem: Problem, best: Solution, noise: Noise) -> np.ndarray:
-    """By what errors are larger than in white noise, shape (parameters,); 1 of what is held."""
+    """Factors by which errors exceed those of white noise, shape (parameters,); 1 for held parameters."""
     return _with_excess(unscaled_covariance(problem, best), best.slopes, noise.excess)[1]
 
 
@@ -175,7 +175,7 @@ def one_sided(freedom: int) -> float:
 
 
 def undetermined(problem: Problem, best: Solution, rank: float = _RANK) -> tuple[np.ndarray, int]:
-    """Indices of free parameters that the data cannot tell apart, and how many of them are too many.
+    """Indices of free parameters that are not identifiable separately, and the rank deficiency.
 
     The rank of the slopes, each over its length, is that of what the residuals see of the parameters.
 
@@ -228,7 +228,7 @@ def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:
 
 
 def _no_model(values: np.ndarray, samples: int) -> Solution:
-    """What stands for a fit that would begin where the model has no finite residuals: its sum is infinite."""
+    """Placeholder for a fit that starts where the model has no finite residuals; its sum is infinite."""
     return Solution(
         values.copy(), np.full(samples, np.inf), np.zeros((samples, values.size)), np.zeros(values.size, bool)
     )
@@ -278,7 +278,7 @@ def inflation(residual: np.ndarray) -> tuple[float, float]:
 def profile_end(
     problem: Problem, best: Solution, index: int, allowed: float, scale: float
 ) -> tuple[float, Solution]:
-    """How far a parameter can go up before the least sum has grown by what is allowed, and the fit there.
+    """Upper end of a profile: the value at which the least sum has grown by `allowed`, and the fit there.
 
     scale : its standard error, in which steps are counted
     """

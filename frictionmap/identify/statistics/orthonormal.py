@@ -16,8 +16,8 @@ def orthonormal(columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             triangle = np.linalg.cholesky(orthogonal.T @ orthogonal).T
         except np.linalg.LinAlgError:
             raise InputError(
-                "time must have no gap that harmonics of the base cannot bridge: at the times given, "
-                "some of them cannot be told from others"
+                "cannot determine harmonics of the base: a gap in time makes some of them "
+                "indistinguishable; choose a window without it"
             ) from None
         step = np.linalg.inv(triangle)
         orthogonal, inverse = orthogonal @ step, inverse @ step

@@ -12,7 +12,7 @@ from .least_squares import Problem, Solution
 
 LOSSES = ("linear", "soft_l1")
 
-#: Half of all normal deviates are within so many standard deviations.
+#: Median of the modulus of a normal deviate, in standard deviations.
 _NORMAL_MEDIAN = 0.6745
 
 #: Mean of t^2/(1 + t^2) of a normal deviate t: 1 - sqrt(pi/2) e^(1/2) erfc(1/sqrt(2)).

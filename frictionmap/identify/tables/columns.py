@@ -1,4 +1,4 @@
-"""Columns of a table by what they are, with their units: no unit is guessed, no value is repaired."""
+"""Columns of a table by role, with their units; no unit is guessed, no value is repaired."""
 
 from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from ...errors import InputError
 from ...units.table import COLUMN_UNITS, ending, suffixes
 from .files import Table
 
-#: What is done about values that are no numbers.
+#: Treatment of values that are not numbers.
 MISSING = ("refuse", "drop")
 
 #: Columns that are not used are named, no more than these.
@@ -21,7 +21,7 @@ _DROPPED = 0.01
 
 
 class Column(NamedTuple):
-    """One column."""
+    """A column of a table, with its unit."""
 
     name: str
     unit: str
@@ -29,7 +29,7 @@ class Column(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """Columns by what they are, all of one length."""
+    """Columns by role, all of one length."""
 
     columns: dict[str, Column]
     rows: np.ndarray  # of the table
@@ -39,7 +39,7 @@ class Columns(NamedTuple):
 def pick_columns(
     table: Table, wanted: Mapping[str, str], names: Mapping[str, str], missing: str = "refuse"
 ) -> Columns:
-    """The columns that a fit needs.
+    """Select the columns that a fit needs.
 
     wanted : what it measures ("time", "length", ..., or "ratio", which has no unit) of every column, such as
         {"time": "time", "x": "length"}
@@ -68,7 +68,7 @@ def pick_columns(
 def columns_like(
     table: Table, role: str, measures: str, names: Mapping[str, str], sure: bool = False
 ) -> list[str]:
-    """Columns that `pick_columns` would take for a role, or refuse for their unit.
+    """Columns that `pick_columns` would take for a role, or refuse because of their unit.
 
     sure : whether only columns count that have a unit of what is measured
     """
@@ -80,7 +80,7 @@ def columns_like(
 
 
 def unused_columns(table: Table, used: Collection[str]) -> str:
-    """A line that names the columns of a file that nothing was read from, or nothing."""
+    """Remark that names the unused columns of a file, or empty."""
     others = [name for name in table.columns if name not in used]
     if not others:
         return ""
@@ -95,8 +95,8 @@ def check_increasing(table: Table, time: Column, rows: np.ndarray) -> None:
     if wrong.size:
         before, after = time.values[wrong[0]], time.values[wrong[0] + 1]
         raise InputError(
-            f"{table.place(time.name, int(rows[wrong[0] + 1]))} must be later than the row before, "
-            f"{before:g}; got {after:g} (rows are not sorted: mend the file)"
+            f"{table.place(time.name, int(rows[wrong[0] + 1]))} must be > {before:g}, "
+            f"the time of the previous row; got {after:g} (sort the rows)"
         )
 
 
@@ -110,53 +110,55 @@ def check_positive(table: Table, column: Column, rows: np.ndarray) -> None:
 
 
 def _find(table: Table, role: str, names: Mapping[str, str], measures: str) -> Column:
-    """The column of a name, or the one whose name is what it is and a unit."""
-    legal, name = suffixes(measures), names.get(role)
-    has = f"it has {', '.join(table.columns) or 'none'}"
-    known = f" (suffixes: {', '.join(legal)})" if legal else ""
-    wanted = f"a column {name or role + next(iter(legal), '')}{known}"
+    """Find a column by name, or by its role and a unit."""
+    valid, name = suffixes(measures), names.get(role)
+    has = f"the file has {', '.join(table.columns) or 'none'}"
+    known = f" (suffixes: {', '.join(valid)})" if valid else ""
+    wanted = f"column {name or role + next(iter(valid), '')}{known}"
     if name is not None and name not in table.columns:
         raise InputError(
-            f"file {table.file} must have {wanted}, named by data.columns.{role}; {has}"
+            f"cannot read {table.file}: {wanted} is missing, named by data.columns.{role}; {has}"
             f"{checks.nearest(name, table.columns)}"
         )
     candidates = columns_like(table, role, measures, names)
     if not candidates:
-        raise InputError(f"file {table.file} must have {wanted}, or data.columns.{role} names another; {has}")
+        raise InputError(
+            f"cannot read {table.file}: {wanted} is missing; {has}; name it in data.columns.{role}"
+        )
     if len(candidates) > 1:
         raise InputError(
-            f"file {table.file} must have one column {role}, or data.columns.{role} names it; "
-            f"it has {', '.join(candidates)}"
+            f"cannot read {table.file}: several columns may be {role}, {', '.join(candidates)}; "
+            f"choose one with data.columns.{role}"
         )
     column = candidates[0]
-    unit = _unit(table, column, legal) if legal else "1"
+    unit = _unit(table, column, valid) if valid else "1"
     return Column(column, unit, table.columns[column])
 
 
-def _unit(table: Table, column: str, legal: Sequence[str]) -> str:
+def _unit(table: Table, column: str, valid: Sequence[str]) -> str:
     """The unit that the name of a column ends in."""
     unit = ending(column)
-    if f"_{unit}" not in legal:
-        what = f"it has {unit!r}" if unit else "it has none"
+    if f"_{unit}" not in valid:
+        what = repr(unit) if unit else "none"
         raise InputError(
-            f"file {table.file}, column {column} must end in its unit, one of {', '.join(legal)}; {what}"
+            f"file {table.file}, column {column}: its name must end in a unit, {', '.join(valid)}; got {what}"
         )
     return unit
 
 
-def _named_like(columns: Sequence[str], role: str, legal: Sequence[str], sure: bool = False) -> list[str]:
-    """Columns of a role: its name and a unit, or else a name that begins with it.
+def _named_like(columns: Sequence[str], role: str, valid: Sequence[str], sure: bool = False) -> list[str]:
+    """Columns of a role, by exact name with a unit, or by a name that begins with the role.
 
     The latter has a unit of what is measured at its end, or, unless it must be sure, nothing but one word or
     another unit behind it: base_frequency_rad_s is no base.
     """
-    if not legal:
+    if not valid:
         return [name for name in columns if name == role]
-    exact = [name for name in columns if name in {f"{role}{unit}" for unit in legal}]
+    exact = [name for name in columns if name in {f"{role}{unit}" for unit in valid}]
     if exact:
         return exact
     like = [name for name in columns if name == role or name.startswith(f"{role}_")]
-    measured = [name for name in like if f"_{ending(name)}" in legal]
+    measured = [name for name in like if f"_{ending(name)}" in valid]
     if measured or sure:
         return measured
     rests = {name: name.removeprefix(role).removeprefix("_") for name in like}
@@ -167,22 +169,22 @@ def _check_lengths(table: Table, found: Mapping[str, Column]) -> None:
     sizes = {column.name: column.values.size for column in found.values()}
     if len(set(sizes.values())) > 1:
         words = ", ".join(f"{name} {size}" for name, size in sizes.items())
-        raise InputError(f"file {table.file}: columns must have one length; got {words}")
+        raise InputError(f"cannot read {table.file}: columns must have the same length; got {words}")
     if 0 in sizes.values():
-        raise InputError(f"file {table.file} must have values below {', '.join(sizes)}; there are none")
+        raise InputError(f"cannot read {table.file}: no values below {', '.join(sizes)}; add rows")
 
 
 def _refuse(table: Table, found: Mapping[str, Column], bad: np.ndarray, missing: str) -> None:
-    """Name the first value that is no number, unless few are, and they may be dropped."""
+    """Refuse the first value that is not a number, unless there are few and they may be dropped."""
     if missing == "drop" and bad.mean() <= _DROPPED:
         return
     row = int(np.argmax(bad))
     column = next(column for column in found.values() if not np.isfinite(column.values[row]))
     few = bad.mean() <= _DROPPED
     remedy = (
-        'data.missing = "drop" leaves out such rows'
+        'data.missing = "drop" ignores such rows'
         if few
-        else f"{int(bad.sum())} of {bad.size} rows are such, and no more than {_DROPPED:.0%} may be left out"
+        else f"{int(bad.sum())} of {bad.size} rows have none; at most {_DROPPED:.0%} may be ignored"
     )
     raise InputError(
         f"{table.place(column.name, row)} must be a finite number; "

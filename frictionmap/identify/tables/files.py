@@ -30,7 +30,7 @@ class Table(NamedTuple):
     form: str  # of the file, in words
 
     def place(self, name: str, row: int) -> str:
-        """A value's place in words."""
+        """Describe the place of a value."""
         return f"file {self.file}, column {name}, {self.row_word} {self.first + row}"
 
     def text(self, name: str, row: int) -> str:
@@ -60,15 +60,13 @@ def read_table(path: Path) -> Table:
     try:
         return read(path)
     except OSError as error:
-        raise InputError(f"file {path} cannot be read ({error.strerror or error})") from None
+        raise InputError(f"cannot read {path}: {error.strerror or error}; check data.file") from None
 
 
 def _read_csv(path: Path) -> Table:
     content = path.read_bytes()
     if b"\0" in content:
-        raise InputError(
-            f"file {path} must be text; it holds zero bytes (from UTF-16 it can be saved as UTF-8)"
-        )
+        raise InputError(f"cannot read {path}: it contains zero bytes and is not text; save it as UTF-8")
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:  # what measuring programs of Windows write
@@ -76,7 +74,7 @@ def _read_csv(path: Path) -> Table:
     lines = text.splitlines()
     header = next((k for k, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
     if header is None:
-        raise InputError(f"file {path} must have a line with names of columns; it is empty")
+        raise InputError(f"cannot read {path}: it is empty; the first line must name the columns")
     delimiter = next((mark for mark in ";\t" if mark in lines[header]), ",")
     rows = list(csv.reader(lines[header:], delimiter=delimiter))
     while len(rows) > 1 and not "".join(rows[-1]).strip():
@@ -94,13 +92,13 @@ def _read_csv(path: Path) -> Table:
 def _check_rows(path: Path, names: list[str], rows: list[list[str]], line: int) -> None:
     """Refuse names that stand twice, and rows of another length."""
     twice = next((name for name in names if names.count(name) > 1), None)
-    # numbers twice: the file has no names at all, which is told when a column is looked for
+    # numbers twice: the file has no names at all, which the search for columns reports
     if twice is not None and not np.isfinite(_number(twice, comma=False)):
-        raise InputError(f"file {path}, line {line}: names of columns must differ; got {twice!r} twice")
+        raise InputError(f"cannot read {path}, line {line}: column names must differ; got {twice!r} twice")
     for offset, row in enumerate(rows[1:], start=1):
         if len(row) != len(names):
             raise InputError(
-                f"file {path}, line {line + offset} must have {len(names)} values, as its first line has; "
+                f"cannot read {path}, line {line + offset}: expected {len(names)} values, one per column; "
                 f"got {len(row)}"
             )
 
@@ -119,11 +117,13 @@ def _read_npz(path: Path) -> Table:
         with np.load(path, allow_pickle=False) as stored:
             return _from_arrays(path, {name: stored[name] for name in stored.files}, "NPZ")
     except (ValueError, EOFError, AttributeError, zipfile.BadZipFile) as error:
-        raise InputError(f"file {path} must be an NPZ file of NumPy; it cannot be read ({error})") from None
+        raise InputError(
+            f"cannot read {path}: it is not a valid NPZ file ({error}); save it with numpy.savez"
+        ) from None
 
 
 def _from_arrays(path: Path, arrays: Arrays, form: str) -> Table:
-    """What is a list of real numbers is a column; whatever else a file holds is not."""
+    """Make a table of all one-dimensional arrays of real numbers; others are ignored."""
     columns = {name: np.ravel(array).astype(float) for name, array in arrays.items() if _is_column(array)}
     return Table(path, columns, {}, 0, "index", form)
 

@@ -30,12 +30,14 @@ def read_uff(path: Path) -> Columns:
     sets = read_by(path, "universal file", lambda: pyuff.UFF(str(path)).read_sets())
     sets = [one for one in (sets if isinstance(sets, list) else [sets]) if one.get("type") == 58]
     if not sets:
-        raise InputError(f"file {path} must have a set 58, a record or a frequency response; it has none")
+        raise InputError(f"cannot read {path}: it has no set 58; export a record or a frequency response")
     columns: Columns = {}
     for one in sets:
         for name, values in _of_set(one):
             if name in columns and not np.array_equal(columns[name], values):
-                raise InputError(f"file {path} must have one column {name}; its sets 58 have different ones")
+                raise InputError(
+                    f"cannot read {path}: its sets 58 have different columns {name}; export one of them"
+                )
             columns[name] = values
     return columns
 

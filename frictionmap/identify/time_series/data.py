@@ -114,22 +114,22 @@ def _checked_phasors(time: np.ndarray, channels: np.ndarray, robust: bool) -> tu
     for name, places in zip(("base", "x"), channels.T, strict=True):
         if float(np.ptp(places)) <= 2.0 * resolution(places):
             raise InputError(
-                f"{name} must move; there is no motion above its own resolution ({resolution(places):g})"
+                f"cannot fit {name}: it does not move by more than its resolution ({resolution(places):g}); "
+                "check the data"
             )
     phasors, tamed = harmonics_of(time, channels, robust)
     ideal = phasors.inflation[0, 1] * phasors.rms[0] * np.sqrt(2.0 / time.size)
     if phasors.errors[0, 1] > _WORSE * ideal:
         raise InputError(
-            "time must reach all phases of the cycle: harmonics of the base cannot be told where there are "
-            "no samples, as in a long gap or where the base is clipped"
+            "cannot determine harmonics of the base: a part of the cycle has no samples, by a long gap or a "
+            "clipped base; choose another window"
         )
     for k, name in enumerate(("base", "x")):
         first, error = abs(phasors.values[k, 1]), float(phasors.errors[k, 1])
         if first <= _MOVES * error:
             raise InputError(
-                f"{name} must move with the base, at {phasors.frequency:.4g} Hz; its first harmonic there is "
-                f"{first:.3g}, of the size of its error, {error:.2g} (a mass that sticks for good tells "
-                "nothing of its motion)"
+                f"cannot fit {name}: its first harmonic at {phasors.frequency:.4g} Hz, the frequency of the "
+                f"base, is {first:.3g}, about its error, {error:.2g}; use a record in which the mass moves"
             )
     _check_lag(phasors)
     return phasors, tamed
@@ -140,6 +140,6 @@ def _check_lag(phasors: Phasors) -> None:
     lag = np.degrees(amplitude_and_lag(phasors)[1])
     if lag < -(_LEAD + FOUND * np.degrees(ratio_error(phasors))):
         raise InputError(
-            "x must lag behind the base by 0 to 180 degrees, as energy comes from it; "
-            f"it leads by {-lag:.4g} (are the columns exchanged, or is one of opposite sign?)"
+            "x must lag behind the base by 0 to 180 degrees; "
+            f"got a lead of {-lag:.4g} (are the columns exchanged, or is one of opposite sign?)"
         )

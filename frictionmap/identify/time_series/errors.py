@@ -1,4 +1,4 @@
-"""Errors of what a record tells, and of what follows from it.
+"""Standard errors of the estimates from a record, and of derived quantities.
 
 What is fitted, p, has the covariance s^2 (J^T V^-1 J)^-1, with V as in `fit`.  Errors b of the base's
 harmonics move it by -(J^T V^-1 J)^-1 J^T V^-1 J_b b, and the noise of the mass moves p and X_1 together.
@@ -37,7 +37,7 @@ class _Linear(NamedTuple):
 
 
 def derived_values(fit: Fit, phasors: Phasors) -> np.ndarray:
-    """beta, lag [deg], amplitude ratio and stops a cycle."""
+    """beta, lag [deg], amplitude ratio and stops per cycle."""
     base, mass = phasors.values[0, 1], phasors.values[1, 1]
     lag = -np.degrees(np.angle(mass / base))
     return np.array([fit.values[X_F] / abs(base), lag, abs(mass / base), float(fit.motion.stops)])
@@ -80,7 +80,7 @@ def record_errors(fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray
 
 
 def _mu_of_first_stop(fit: Fit) -> float:
-    """Up to where the mass would not stick, and nothing changes with mu."""
+    """Largest mu without an effect, as the mass does not stick."""
     friction = float(fit.values[X_F])
     return max(fit.motion.turn_load / friction, 1.0) if friction > 0.0 else np.inf
 
@@ -88,7 +88,7 @@ def _mu_of_first_stop(fit: Fit) -> float:
 def _in_what_is_fitted(
     fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray, found: Errors
 ) -> _Linear:
-    """What is fitted and `DERIVED`."""
+    """Linear dependence of the parameters and of `DERIVED`, and the covariance of its sources."""
     size, own = len(PARAMETERS), found.standard_error
     of_all = found.correlation * np.outer(own, own)  # the parts of slow waves among them
     of_fit = of_all[:size]

@@ -33,7 +33,7 @@ from .motion import (
 from .starts import starts
 from .static_friction import FITTED, IDLE, KNOWN, ONE, is_asked_for
 
-#: Starts that are followed, on so many samples; the best one goes on with all.
+#: Number of starts that are followed, and of samples used; the best one continues with all samples.
 _FOLLOWED = 4
 _SAMPLES = 600
 
@@ -76,7 +76,7 @@ class Fit(NamedTuple):
 
     mass: Shaken
     samples: Samples
-    problem: Problem  # mu is not free where it is not told
+    problem: Problem  # mu is not free where the data do not determine it
     with_mu: Problem  # with mu free, if it is not known
     solution: Solution
     noise: Noise
@@ -189,7 +189,7 @@ def noise_of_record(
 
 
 def _begin(near: Solution, samples: Samples) -> np.ndarray:
-    """Where the fit of all samples begins: the motion near them, and what of drift and wander there is."""
+    """Starting values of the fit of all samples: a nearby motion, drift and wander."""
     slow = np.linalg.lstsq(samples.slow, samples.x - samples.near, rcond=None)[0]
     return np.concatenate((near.values, slow))
 
@@ -215,7 +215,7 @@ def places_at(fit: Fit, phasors: Phasors, time: np.ndarray) -> np.ndarray:
 
 
 def _within(problem: Problem) -> Problem:
-    """The same with no straight line below the floors: a fit that ends near them will do for a start."""
+    """Bound the problem by its floors, without linear continuation; sufficient for starting values."""
     return problem._replace(lowest=np.maximum(problem.lowest, problem.floor))
 
 

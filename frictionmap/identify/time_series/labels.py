@@ -1,4 +1,4 @@
-"""What a record is without any model, and what to mind of it."""
+"""Results of a record without any model, and warnings about the data."""
 
 from typing import Any
 
@@ -26,7 +26,7 @@ def one_mass(contact: str, damping_reference: str) -> System:
 
 
 def of_record(given: MeasuredRecord, unit: str) -> dict[str, xr.Variable]:
-    """What the record is, without any model."""
+    """Results of the record without any model."""
     time, phasors = given.time, given.phasors
     first = np.abs(phasors.values[:, 1])
     parts = np.stack((phasors.values.real, phasors.values.imag), axis=-1)
@@ -70,14 +70,14 @@ def of_record(given: MeasuredRecord, unit: str) -> dict[str, xr.Variable]:
 
 
 def of_data(given: MeasuredRecord, ds: xr.Dataset) -> list[str]:
-    """What to mind of the data, in words."""
+    """Warnings about the data."""
     words = []
     phasors, time = given.phasors, given.every_time
     if not given.good.all() or given.time.size < time.size:
         cut_off = 1.0 - np.sum(~given.clipped) / time.size
         near = (np.sum(~given.clipped) - given.good.sum()) / time.size
         words.append(
-            f"clipped: {cut_off:.1%} of the samples are at the extremes and were left out"
+            f"clipped: {cut_off:.1%} of the samples are at the extremes and were ignored"
             + (f", with {near:.1%} so near to them that noise decides which are clipped" if near else "")
         )
     if gap := largest_gap(time):
@@ -86,8 +86,8 @@ def of_data(given: MeasuredRecord, ds: xr.Dataset) -> list[str]:
     if distortion > _DISTORTED:
         words.append(f"the base is distorted: its higher harmonics are {distortion:.1%} of the first one")
     if "change" in ds and float(ds["change"]) > _CHANGED:
-        words.append("not steady: first and last third of the record differ beyond their errors")
+        words.append("not steady: the first and last third of the record differ by more than their errors")
     for name, drift, error in zip(("base", "x"), phasors.drift, phasors.drift_errors, strict=True):
         if abs(drift) > FOUND * error:
-            words.append(f"{name} drifts by {drift:.3g} {ds['base_amplitude'].attrs['units']} a second")
+            words.append(f"{name} drifts by {drift:.3g} {ds['base_amplitude'].attrs['units']} per second")
     return words

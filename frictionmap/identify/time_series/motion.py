@@ -71,7 +71,7 @@ def shaken(contact: str, damping_reference: str, phasors: Phasors, time: np.ndar
 
 
 def moved(mass: Shaken, change: np.ndarray) -> Shaken:
-    """The same on a base that moves otherwise."""
+    """Change the motion of the base."""
     return mass._replace(base=mass.base + change)
 
 
@@ -110,7 +110,7 @@ def motion(mass: Shaken, values: np.ndarray) -> Motion:
 
 
 def inner(values: np.ndarray) -> np.ndarray:
-    """What is fitted: (mu - 1)^2 stands for mu.
+    """Convert parameters to fitted variables, with (mu - 1)^2 for mu.
 
     After a stop the mass leaves with an acceleration in proportion to mu - 1, but later by as much: at mu = 1
     the motion does not change with mu to first order.
@@ -121,7 +121,7 @@ def inner(values: np.ndarray) -> np.ndarray:
 
 
 def outer(values: np.ndarray) -> np.ndarray:
-    """The parameters of what is fitted."""
+    """Convert fitted variables to parameters."""
     result = values.copy()
     result[MU] = 1.0 + np.sqrt(max(float(values[MU]), 0.0))
     return result
@@ -132,19 +132,19 @@ def places_and_slopes(mass: Shaken, fitted: np.ndarray, free: np.ndarray) -> tup
 
     Below its floor a parameter has no motion: there the places go on as a straight line.
     """
-    legal = np.maximum(fitted, FLOOR)
-    places = motion(mass, outer(legal)).places
+    valid = np.maximum(fitted, FLOOR)
+    places = motion(mass, outer(valid)).places
     slopes = np.zeros((places.size, fitted.size))
     slopes[:, OFFSET] = 1.0  # the whole motion is moved
     unit = float(np.abs(mass.base[1:]).max())
-    steps = _STEP * np.array([legal[F_N], 1.0, unit, _STEP, unit])
+    steps = _STEP * np.array([valid[F_N], 1.0, unit, _STEP, unit])
     for index in np.flatnonzero(free[:OFFSET]):
         step = np.zeros(fitted.size)
         step[index] = steps[index]
-        middle = np.maximum(legal, FLOOR + step)
+        middle = np.maximum(valid, FLOOR + step)
         ahead, behind = (motion(mass, outer(at)).places for at in (middle + step, middle - step))
         slopes[:, index] = (ahead - behind) / (2.0 * steps[index])
-    return places + slopes @ (fitted - legal), slopes
+    return places + slopes @ (fitted - valid), slopes
 
 
 def base_slopes(mass: Shaken, values: np.ndarray) -> np.ndarray:

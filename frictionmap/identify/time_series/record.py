@@ -11,7 +11,7 @@ from ...errors import InputError
 from ...model.system import DAMPING_REFERENCES
 from ...units.table import checked_unit, conversion
 from ..signals.phasors import Phasors
-from ..statistics.cautions import bounded, only_interval, trading
+from ..statistics.cautions import bound_warnings, correlation_warnings, interval_warnings
 from ..statistics.estimates import estimates, number, usable_errors, verdict
 from ..statistics.least_squares import Errors
 from ..statistics.robust import LOSSES
@@ -92,7 +92,7 @@ def record(
     Raises
     ------
     InputError
-        An argument is illegal; base or mass do not move; fewer than 2 cycles or 8 samples a cycle.
+        An argument is invalid; base or mass do not move; fewer than 2 cycles or 8 samples per cycle.
 
     Notes
     -----
@@ -142,7 +142,7 @@ def checked_known(known: Mapping[str, float]) -> dict[str, float]:
         checks.choice(name, "known", PARAMETERS)
         result[name] = checks.number(value, f"known.{name}", **ranges.get(name, {}))
     if len(result) == len(PARAMETERS):
-        raise InputError(f"known must leave something to fit; got all of {', '.join(PARAMETERS)}")
+        raise InputError(f"known must leave at least one parameter free; got all of {', '.join(PARAMETERS)}")
     return result
 
 
@@ -169,7 +169,7 @@ def _dataset(fit: Fit, phasors: Phasors, found: Errors, unit: str) -> xr.Dataset
 
 
 def _of_motion(fit: Fit, found: Errors, unit: str, stiffness: float | None) -> dict[str, xr.Variable]:
-    """What else the fitted motion is."""
+    """Further results of the fitted motion."""
     result = {"stuck_fraction": number(fit.motion.stuck, "share of the cycle in which the fit sticks")}
     if stiffness is not None:
         newtons = checks.number(stiffness, "stiffness", above=0.0) * conversion(unit, "m")
@@ -181,31 +181,31 @@ def _of_motion(fit: Fit, found: Errors, unit: str, stiffness: float | None) -> d
 
 
 def _of_fit(fit: Fit, found: Errors) -> list[str]:
-    """What to mind of the estimates, in words."""
+    """Warnings about the estimates."""
     words = []
     if not fit.motion.repeats:
         words.append("the fitted motion does not repeat after one cycle of the base")
     if fit.static == IDLE:
         words.append(
-            f"mu cannot be told, as the fit never sticks: all from 1 to {found.upper[MU]:.4g} move alike"
+            f"mu cannot be determined: the fit never sticks for any mu from 1 to {found.upper[MU]:.4g}"
         )
     if fit.static == ONE:
         words.append(
             "mu = 1 explains the data as well as a larger mu does: the other estimates are those for mu = 1, "
             "and their intervals allow for the whole interval of mu"
         )
-    words += only_interval("mu", 1.0, not fit.free[MU] or bool(found.lower[MU] > 1.0))
+    words += interval_warnings("mu", 1.0, not fit.free[MU] or bool(found.lower[MU] > 1.0))
     if fit.model_error > 1.0:
         words.append(
             f"the model does not explain the record down to its noise: at the harmonics of the base it "
-            f"leaves {fit.model_error:.3g} times the noise, and standard errors are {found.inflation:.3g} "
-            f"times as large"
+            f"leaves {fit.model_error:.3g} times the noise, standard errors were multiplied by "
+            f"{found.inflation:.3g}"
         )
     elif found.inflation > 1.0:
         words.append(
-            f"the noise is not white: near the harmonics of the base it is larger, and standard errors are "
-            f"{found.inflation:.3g} times as large"
+            f"the noise is larger near the harmonics of the base: standard errors were multiplied by "
+            f"{found.inflation:.3g}"
         )
     pairs = found.correlation[np.ix_(_TRADING, _TRADING)]
-    words += trading([PARAMETERS[index] for index in _TRADING], pairs)
-    return words + bounded(PARAMETERS, outer(FLOOR), fit.solution.at_bound[: len(PARAMETERS)])
+    words += correlation_warnings([PARAMETERS[index] for index in _TRADING], pairs)
+    return words + bound_warnings(PARAMETERS, outer(FLOOR), fit.solution.at_bound[: len(PARAMETERS)])

@@ -1,4 +1,4 @@
-"""Where the fit of a record starts: natural frequency, damping and mu from lists, friction from the energy.
+"""Starting values for a record: natural frequency, damping and mu from lists, friction from the energy.
 
 Over a cycle the base's work is that of damping and friction, whatever the natural frequency does:
 

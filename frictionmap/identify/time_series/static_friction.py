@@ -15,7 +15,7 @@ from ..statistics.least_squares import (
     unscaled_covariance,
 )
 
-#: What is said of mu: it is known, it is 1 as nothing asks for more, it was fitted, or the mass never sticks.
+#: Status of mu: known, 1 as the data do not require more, fitted, or without effect as the mass never sticks.
 KNOWN, ONE, FITTED, IDLE = range(4)
 
 #: Growth of the sum, over the variance of a sample, that one more unknown makes up for in 95 of 100 cases.
@@ -49,7 +49,7 @@ def highest(problem: Problem, solution: Solution, noise: Noise, index: int) -> t
 
 
 def interval(square: float, reach: float) -> tuple[float, float]:
-    """Of mu, from that of (mu - 1)^2."""
+    """Interval of mu from that of (mu - 1)^2."""
     return 1.0 + float(np.sqrt(max(square - reach, 0.0))), 1.0 + float(np.sqrt(square + reach))
 
 

@@ -1,4 +1,4 @@
-"""What a record shows of friction, and whether its estimates can be told from each other."""
+"""Verdict on a record: friction, and whether its estimates are identifiable."""
 
 from itertools import combinations
 
@@ -7,8 +7,8 @@ from ..statistics.levels import CORRELATED, FOUND
 from .fit import Fit
 from .motion import F_N, MU, PARAMETERS, X_F, ZETA
 
-#: Estimates that correlate by more than `CORRELATED` cannot be told apart if the interval of the friction is
-#: wider than this share of it, to either side.
+#: Estimates that correlate by more than `CORRELATED` are not identifiable separately if the interval of the
+#: friction is wider than this share of it, to either side.
 _VAGUE = 0.1
 
 #: The same correlation where the model itself is wrong by more than the noise: a quarter of the variance of
@@ -20,7 +20,7 @@ _SHAPING = (F_N, ZETA, X_F, MU)
 
 _VERDICTS = {
     "no_friction_found": "no friction found",
-    "continuous": "friction found, and the mass never sticks: mu cannot be told beyond its interval",
+    "continuous": "friction found, the mass never sticks: mu is known only by its interval",
     "stick_slip": "friction found, and the mass sticks and slips",
 }
 
@@ -52,7 +52,7 @@ def friction_found(friction: float, error: float) -> bool:
 
 
 def inseparable(fit: Fit, found: Errors) -> list[str]:
-    """Fitted parameters that the record does not tell from each other, none or two and more."""
+    """Fitted parameters that the record does not identify separately: none, or two and more."""
     limit = limit_of_correlation(
         fit.model_error, float(fit.values[X_F]), float(found.lower[X_F]), float(found.upper[X_F])
     )
@@ -61,7 +61,7 @@ def inseparable(fit: Fit, found: Errors) -> list[str]:
 
 
 def limit_of_correlation(model_error: float, friction: float, lower: float, upper: float) -> float:
-    """The correlation beyond which estimates cannot be told apart; 1 where the friction is well known."""
+    """Correlation above which estimates are not identifiable; 1 where the friction is well known."""
     if model_error > 1.0:
         return _CORRELATED_BY_MODEL
     return CORRELATED if max(friction - lower, upper - friction) > _VAGUE * friction else 1.0

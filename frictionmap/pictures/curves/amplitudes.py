@@ -196,10 +196,10 @@ def _about_gaps(shown: list[MotionColumn]) -> list[str]:
     why = "no phase where the largest displacement lasts throughout a stop, or the period is not one"
     for motion in shown:
         moves = np.isfinite(motion.size) & (motion.size > _ROUNDING)
-        told = np.isfinite(motion.phase if motion.phase is not None else motion.size)
+        known = np.isfinite(motion.phase if motion.phase is not None else motion.size)
         if motion.stop is not None:
-            told |= np.isfinite(motion.stop[0])
-        if (moves & ~told).any():
+            known |= np.isfinite(motion.stop[0])
+        if (moves & ~known).any():
             return [why]
     return []
 

@@ -47,8 +47,8 @@ def _quantity(ds: xr.Dataset, asked: str | None) -> str:
         return there[0]
     if asked in there:
         return asked
-    legal = f"one of {', '.join(there)}" if there else "in the dataset, which has none that is drawn"
-    raise InputError(f"quantity must be {legal}; got {asked}")
+    valid = f"one of {', '.join(there)}" if there else "in the dataset, which has none that is drawn"
+    raise InputError(f"quantity must be {valid}; got {asked}")
 
 
 def _check_lines(family: Family) -> None:

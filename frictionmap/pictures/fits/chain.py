@@ -73,13 +73,13 @@ def _dense(ds: xr.Dataset) -> ResponseCurves:
 
 def _unknowns(ds: xr.Dataset) -> np.ndarray:
     """Logarithms of the frequency and of the ratios, then damping ratios."""
-    told = dict(zip(ds["parameter"].values.tolist(), ds["estimate"].values.tolist(), strict=True))
-    n = _masses(list(told))
+    estimate = dict(zip(ds["parameter"].values.tolist(), ds["estimate"].values.tolist(), strict=True))
+    n = _masses(list(estimate))
     names = chain_names(n)
-    positive = np.array([told[name] for name in names[: 2 * n - 1]])
+    positive = np.array([estimate[name] for name in names[: 2 * n - 1]])
     if positive.min() <= 0.0:
         raise InputError(f"frequency and ratios must be > 0 to be drawn; got {positive.min():g}")
-    return np.concatenate((np.log(positive), [told.get(name, 0.0) for name in names[2 * n - 1 :]]))
+    return np.concatenate((np.log(positive), [estimate.get(name, 0.0) for name in names[2 * n - 1 :]]))
 
 
 def _damped_by_base(ds: xr.Dataset, values: np.ndarray) -> bool:

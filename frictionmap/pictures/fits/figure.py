@@ -58,7 +58,7 @@ def plot_fit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> 
     check_holds(ds, names, "its fit")
     check_range(ds, names)
     if ds.sizes["sample"] < 1:
-        raise InputError("a dataset must have at least one sample for its fit to be drawn; it has none")
+        raise InputError("a dataset must have at least one sample for its fit to be drawn; got none")
     picture = _picture(ds)
     panels = picture.all
     axes = _new_axes(picture, ds) if ax is None else given_axes(ax, len(panels), "one for each panel")
@@ -66,8 +66,8 @@ def plot_fit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> 
     if ax is None:
         figure = axes[0].figure
         assert isinstance(figure, Figure)
-        told = (estimates_in_short(ds), verdict_in_words(ds), about_residuals(ds), *picture.remarks)
-        legend_below(figure, handles, "; ".join(filter(None, told)))
+        remarks = (estimates_in_short(ds), verdict_in_words(ds), about_residuals(ds), *picture.remarks)
+        legend_below(figure, handles, "; ".join(filter(None, remarks)))
     else:
         legend_under(axes[-1], handles)
     return axes

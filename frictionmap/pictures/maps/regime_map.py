@@ -19,7 +19,6 @@ from ..features import features_of, mark_features
 from ..grids import Grid
 from ..marks import COARSE, rare_classes, rings, room_for, trace
 from ..palette import (  # fmt: skip
-    BROKEN,
     CLASSES,
     CONTINUOUS,
     COUNT,
@@ -27,6 +26,7 @@ from ..palette import (  # fmt: skip
     HATCH_COLOUR,
     LIM,
     MORE,
+    NON_INTEGER,
     NOT_YET,
     NOT_YET_HATCH,
     NOT_YET_LABEL,
@@ -197,7 +197,7 @@ def _class_handles(panels: Sequence[xr.Dataset], cells: Sequence[Cells]) -> list
     handles: list[Handle] = []
     for index in np.flatnonzero(counts[:NOT_YET]):
         low, high = np.inf, -np.inf
-        if index in (MORE, BROKEN):
+        if index in (MORE, NON_INTEGER):
             ends = [
                 stops_range(part.found, panel["stops_per_cycle"].values, int(index))
                 for panel, part in zip(panels, cells, strict=True)
@@ -248,7 +248,7 @@ def plot_regimes(ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" 
     """
     ds = to_draw(ds, "plot_regimes", "map")
     if "regime" not in ds and "stops_per_cycle" not in ds:
-        raise InputError("a map must hold regime or stops_per_cycle to be drawn; it holds neither")
+        raise InputError("a map must hold regime or stops_per_cycle to be drawn; got neither")
     panels = panels_of(ds)
     title = str(ds.attrs.get("title", ""))
     axes = panel_grid(len(panels), title) if ax is None else given_axes(ax, len(panels), "one for each mu")

@@ -54,7 +54,8 @@ def _table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> Iterator[str
 def commands() -> Iterator[str]:
     """Page of all commands with their arguments, as in `--help`."""
     yield "# Commands\n"
-    yield "Exit status: 0 success; 1 internal error; 2 invalid input, with a message of one line; 130 interrupted."
+    yield "Exit status: 0 success; 1 internal error; 2 invalid input, with a message of one line;"
+    yield "130 interrupted."
     for command in described():
         yield from _command(command)
 
@@ -82,7 +83,7 @@ def _command(command: Command) -> Iterator[str]:
 def configuration() -> Iterator[str]:
     """Page of all keys, from the table that the checks use."""
     yield "# Keys of a configuration\n"
-    yield "`frictionmap init` writes a file with all keys. `frictionmap schema` prints a JSON schema for editors.\n"
+    yield "`frictionmap init` writes a file with all keys, `frictionmap schema` a schema for editors.\n"
     yield "## Maps, curves, boundaries, responses"
     for section, keys in KEYS.items():
         yield from _keys(section, keys, TABLES.get(section, ""))

@@ -51,7 +51,7 @@ _OF_CELLS = ("class", *_MAPPED, *_DRAWN)
 
 
 def computed(name: str) -> xr.Dataset:
-    """Compute the map, the curves or the motion of `configs/NAME.toml` and compare them with the saved numbers.
+    """Compute the map, curves or motion of `configs/NAME.toml` and compare it with the saved numbers.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def _different(name: str, now: np.ndarray, kept: np.ndarray, open_to_any: np.nda
 
 
 def write(name: str) -> None:
-    """Save the numbers that a figure shows now; cells that a change of 1e-13 moves to another class are `ANY`."""
+    """Save the numbers that a figure shows now; cells whose class changes with rounding become `ANY`."""
     ds = coarse(name)
     kept = shown(ds)
     config = fm.load_config(CONFIGS / f"{name}.toml")

@@ -15,7 +15,8 @@ fm.plot_curves(computed("fig-6-6"))
 fm.plot_curves(computed("fig-6-13"))
 
 # %%
-# Invariant points are marked: there all curves of a mass meet, because friction does not affect the amplitude.
+# Invariant points are marked.  All curves of a mass meet there, because friction does not affect the
+# amplitude.
 #
 # **T Fig. 6.23**, contact between the masses; **6.25**, a wall joined to the base.
 fm.plot_curves(computed("fig-6-23"))

@@ -92,8 +92,8 @@ for name, matrix in (("m", M), ("k", K)):
 # %%
 # The reduced structure
 # ---------------------
-# The reduction keeps both corners and twelve modes of the rest.  Its error is determined when a frequency range
-# is requested.  An error above 0.1 % is refused, and the message states how many modes suffice.
+# The reduction keeps both corners and twelve modes of the rest.  Its error is determined when a frequency
+# range is requested.  An error above 0.1 % is refused, and the message states how many modes suffice.
 
 plate = fm.System(
     contact="fixed-wall",
@@ -113,7 +113,8 @@ print(plate.costs(r)["reduction"])
 # -------
 # beta is the friction force over the force of the shaker.  With small friction the corner slides, with large
 # friction it sticks permanently.  Near the resonances of the plate with the corner held, sticking needs more
-# friction, because the load in the contact is larger.  The white peaks are at the resonances of the free plate.
+# friction, because the load in the contact is larger.  The white peaks are at the resonances of the free
+# plate.
 
 ds = fm.sweep(plate, r, np.geomspace(0.02, 4.0, 60), outputs=["regime", "stops_per_cycle", "status"])
 for ax in np.ravel(fm.plot_regimes(ds)):
@@ -121,8 +122,9 @@ for ax in np.ravel(fm.plot_regimes(ds)):
 plt.show()
 
 # %%
-# The stated error applies to responses to loads in the range.  With 24 modes the boundary to permanent sticking
-# is unchanged and the median change of the amplitudes is 0.4 %.  However, nine of a hundred cells change from
-# continuous motion to very short stops.  The reason is that a reversal of friction excites fast modes: with
-# twelve modes the effective mass of the corner is 363 times the true one.  On a finer mesh the true effective
-# mass of a point is smaller still, so the boundary of continuous motion depends on the model.
+# The stated error applies to responses to loads in the range.  With 24 modes the boundary to permanent
+# sticking is unchanged and the median change of the amplitudes is 0.4 %.  However, nine of a hundred cells
+# change from continuous motion to very short stops.  The reason is that a reversal of friction excites fast
+# modes: with twelve modes the effective mass of the corner is 363 times the true one.  On a finer mesh the
+# true effective mass of a point is smaller still, so the boundary of continuous motion depends on the
+# model.

@@ -72,7 +72,7 @@ def coverage_notes(kinds: dict) -> Iterator[str]:
         for name, case in cases.items():
             for reason, count in case["refusals"].items():
                 message = reason.replace("|", "/")
-                yield f'Refused: {count} of {case["seeds"]} of `{kind}`, {name}, with the message "{message}".'
+                yield f'Refused: {count} of {case["seeds"]} of `{kind}`, {name}, with "{message}".'
 
 
 def coverage_lines(coverage: dict) -> list[str]:

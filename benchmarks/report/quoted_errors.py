@@ -63,6 +63,7 @@ def _method_rows(accuracy: dict) -> Iterator[tuple[str, ...]]:
         if setting is None:
             continue
         unit = next(s["methods"][method]["setting"] for s in everything if method in s["methods"])
+        unit = unit.replace("steps a period", "steps per period")
         cells: list[str] = []
         for scenes in (one, three):
             points = _points(scenes, method).get(setting, [])

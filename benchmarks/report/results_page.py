@@ -393,7 +393,7 @@ def block(results: Path) -> str:
         lines += ["", "### Computing time and memory"]
     lines += markdown(("task", "time or memory"), growth)
     if "startup" in found:
-        lines += markdown(("new process", "time (minimum to maximum)"), _start_rows(found["startup"]))
+        lines += markdown(("fresh process", "time (minimum to maximum)"), _start_rows(found["startup"]))
     return "\n".join(lines)
 
 

@@ -1,7 +1,7 @@
 """Wording: texts of the program use the words of the field, not the phrases of a short list.
 
-The list is applied to README, manual, release notes, comments of configurations, help texts, error messages and
-docstrings.  Each phrase stands with its replacement.
+The list gives a replacement for each phrase.  It is applied to README, manual, release notes, comments of
+configurations, help texts, error messages and docstrings.
 """
 
 import ast
@@ -33,11 +33,11 @@ BANNED = (
     (
         r"(stops?|turns?|slides?|times|samples|steps|periods?|cycles|points|nodes?|bytes|digits|characters|cells"
         r"|blocks|threads?|files?|lines?|values?|modes?|ns|µs|ms|s)"
-        r" an? (cycle|period|cell|second|mode|host|worker|step|mass|frequency|process|machine|phase|point|fit)",
+        r" an? (cycle|period|cell|second|mode|host|worker|step|mass|frequency|process|machine|phase|fit)",
         "per: stops per cycle",
     ),
     (r"(stops?|slides?|turns?|times) in an? (cycle|period)", "per: stops per cycle"),
-    (r"so many (?!that|as)\w+", "the number; or: some"),
+    (r"so many (?!that|as)\w+(?! that)", "the number; or: some"),
     (r"as (they|it) comes?", "leave it out, or name the cases"),
     (r"(will|would|might) do(?! \w)", "suffices, is enough"),
     (r"for good", "permanently"),

@@ -67,7 +67,7 @@ def coverage_notes(kinds: dict) -> Iterator[str]:
         f"{below} of {len(counts)} parameters is below this range; {round(0.025 * len(counts))} are expected."
     )
     words = "; ".join(short) or "none"
-    yield f"Coverage that chance makes this low in fewer than one of 1,000 counts: {words}."
+    yield f"Coverage so low that chance explains it in fewer than one of 1,000 counts: {words}."
     for kind, cases in kinds.items():
         for name, case in cases.items():
             for reason, count in case["refusals"].items():

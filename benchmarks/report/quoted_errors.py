@@ -313,7 +313,7 @@ def steady_lines(steady: dict) -> list[str]:
         "cells in undamped maps.",
         *markdown(
             (
-                "cells of",
+                "set of cells",
                 "cells",
                 "both resolved",
                 "different results, by cause",

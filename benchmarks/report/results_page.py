@@ -224,8 +224,8 @@ def _scaling_rows(scaling: dict) -> Iterator[tuple[str, ...]]:
         yield "the same, with motions that do not become periodic within `cycles`", ", ".join(odd)
     phases = scaling["phases"].values()
     kernel = [entry["kernel"]["median"] for entry in phases]
-    ratios = [two_digits(entry["kernel over its closed forms"]) for entry in phases]
-    least, most = min(ratios, key=float), max(ratios, key=float)
+    ratios = [entry["kernel over its closed forms"] for entry in phases]
+    least, most = two_digits(min(ratios)), two_digits(max(ratios))
     yield (
         "a slide or stop of one mass",
         f"{min(kernel):.0f} to {max(kernel):.0f} ns, {least if least == most else f'{least} to {most}'} "

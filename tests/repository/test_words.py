@@ -118,7 +118,7 @@ def report(found):
 def prose(path):
     """Text of a Markdown page without code."""
     text = re.sub(r"^```.*?^```", "", path.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
-    yield Text(str(path.relative_to(ROOT)), re.sub(r"`[^`\n]*`", "`code`", text))
+    yield Text(str(path.relative_to(ROOT)), re.sub(r"`[^`\n]*\n?[^`\n]*`", "`code`", text))
 
 
 def comments(path):

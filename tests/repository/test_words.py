@@ -188,7 +188,11 @@ def made(path):
 
 PAGES = [
     *(ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")),
-    *(path for path in sorted((ROOT / "docs").rglob("*.md")) if not made(path)),
+    *(
+        path
+        for path in sorted((ROOT / "docs").rglob("*.[mr][ds]*"))
+        if not made(path) and path.suffix in (".md", ".rst")
+    ),
 ]
 
 

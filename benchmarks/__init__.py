@@ -1,37 +1,37 @@
-"""Benchmarks: what accuracy costs, what is faster than what, how cost grows, where numbers cease to be good,
-what bad input, interrupts and damaged files do.
+"""Benchmarks: accuracy, speed compared with other solvers, growth of the computing time, numerical limits,
+and the effect of invalid input, interrupts and damaged files.
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
-NAME is accuracy, peers, scaling, startup, stress, steady, structures, bound, faults, large, coupling or
-coverage: each one is a module of that name in `measures`.  It prints tables, and writes JSON and a figure.
-`python -m benchmarks page` puts the numbers of the committed results into docs/results.md.
+NAME is accuracy, peers, scaling, startup, stress, steady, structures, bound, faults, large, explore, coupling
+or coverage: each is a module of that name in `measures`.  It prints tables, and writes JSON and a figure.
+`python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
-`measures/`                    one module for each sub-command
-  accuracy                     error against run time, ours, time stepping and general-purpose solvers
-  methods                      every method of `accuracy` behind one form
+`measures/`                    one module per sub-command
+  accuracy                     error against run time: frictionmap, time stepping, general-purpose solvers
+  methods                      every method of `accuracy` with one interface
   search_of_s                  the search of S: by grid, by the kernel, in 40 digits
   peers                        one mass by every solver; solved against marched
   scaling                      cost against cells, threads, low frequency, share of open cells
   own_entry                    how functions here call kernels
-  floor                        nanoseconds per slide and stop, and what their closed forms take with no logic
-  startup                      import, --help, first run (compile), second run, in fresh processes
+  floor                        nanoseconds per slide and stop, and those of the closed forms alone
+  startup                      import, --help, first run (compile), second run, in new processes
   stress                       the numerical torture test against 40-digit arithmetic
-  steady                       solved against marched, one answer for mu = 1, what stays unresolved undamped
-  structures                   cost against the number of masses; five masses against the peers
+  steady                       solved against marched, uniqueness for mu = 1, unresolved undamped cells
+  structures                   time against the number of masses; five masses against other solvers
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
-  faults                       bad input, interrupts, malformed files, damaged caches: what a user sees
+  faults                       invalid input, interrupts, malformed files, damaged caches
   large                        stores: overhead, memory, workers, random variations, kills
-  explore                      the page in a browser: slider to picture, hover to motion; `browser` finds one
-  coupling                     what it costs to leave out the coupling of modes by damping
-  coverage                     how often the 95 % intervals of `identify` hold the truth
-`peers/`                       other ways to do the same job: each for one mass and for chains of masses
-  solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: one on many cells at a time
+  explore                      response times of the interactive page; `browser` finds a browser
+  coupling                     error if the coupling of modes by damping is neglected
+  coverage                     how often the 95 % intervals of `identify` contain the true value
+`peers/`                       other solvers: each for one mass and for chains of masses
+  solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: many cells at a time
   fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean
-  body, peer, one_mass, chain  what all of them solve, are asked for, and share
-  check                        they against a table of known steady states
-`references/`                  what is right, with nothing of the package in it; the tests use it too
+  body, peer, one_mass, chain  problem, interface, and common code of these solvers
+  check                        comparison with a table of known steady states
+`references/`                  reference results without code of the package; the tests use them, too
   closed_forms                 boundaries and continuous motions in 40 digits, condition numbers
   steady_states                steady states of one mass in 40 digits
   periodic_orbit               periodic orbits of any structure in 40 digits
@@ -39,14 +39,14 @@ coverage: each one is a module of that name in `measures`.  It prints tables, an
   shaken                       steady motions of one mass on a base with several harmonics, in doubles
   chains                       chains on a shaken base: without friction, and in continuous motion
   naive                        any structure from the equations of motion, in doubles
-`report/`                      what is made of the measurements
+`report/`                      reports of the measurements
   record                       machine, versions, medians, tables; results as JSON; one processor
-  figures                      drawn without a display, written beside the numbers they show
-  page                         the tables of docs/results.md, made from the committed results
-  quoted_errors                of these the ones about errors; `quoted_faults`: about bad input and bad days;
+  figures                      figures, drawn without a display
+  results_page                 the tables of docs/results.md, from the committed results
+  quoted_errors                tables about errors; `quoted_faults`: about invalid input and interrupts;
                                `quoted_coverage`: about the intervals of `identify`
-  quoting                      how numbers are quoted in them
-`results/`                     the committed results, and `results/local` of runs on this machine
+  quoting                      format of the numbers
+`results/`                     the committed results; `results/local` has those of local runs
 =============================  ========================================================================
 """
 

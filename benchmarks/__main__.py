@@ -1,4 +1,4 @@
-"""python -m benchmarks: one sub-command for each benchmark; see the package's docstring."""
+"""Command line of the benchmarks: one sub-command per benchmark; see the docstring of the package."""
 
 import argparse
 import os
@@ -32,7 +32,7 @@ BENCHMARKS = (
 
 
 def _run(name: str, quick: bool, results: Path, **more: Path) -> float:
-    """Run one benchmark; the seconds it took, imports and compilation included."""
+    """Run one benchmark; return the seconds it took, including imports and compilation."""
     print(f"\n{name}", flush=True)
     began = time.perf_counter()
     run: Callable[..., dict] = import_module(f".measures.{name}", __package__).run
@@ -41,7 +41,7 @@ def _run(name: str, quick: bool, results: Path, **more: Path) -> float:
 
 
 def main() -> None:
-    """Parse and run."""
+    """Parse the arguments and run."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("benchmark", choices=[*BENCHMARKS, "all", "page"])
     parser.add_argument("--quick", action="store_true", help="few cells and runs: does it work?")

@@ -6,7 +6,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
 
-import generated  # noqa: E402  # pages made of the program itself
+import generated  # noqa: E402  # pages generated from the program
 
 import frictionmap  # noqa: E402
 
@@ -21,10 +21,10 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphin
 exclude_patterns = ["_build", "gallery/*"]
 suppress_warnings = ["config.cache"]  # the settings of the gallery cannot be pickled
 myst_heading_anchors = 3
-smartquotes = False  # "--set" and quotes are to be copied
+smartquotes = False  # keep "--set" and quotes as they are, for copying
 
 autodoc_member_order = "bysource"
-autodoc_typehints = "none"  # the docstrings say it, with shapes, units and ranges
+autodoc_typehints = "none"  # the docstrings give them, with shapes, units and ranges
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 napoleon_use_ivar = True
@@ -39,11 +39,11 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "download_all_examples": False,
     "show_memory": False,
-    "capture_repr": (),  # the axes that a picture is in are no result
-    "write_computation_times": False,  # its pages fetch scripts from elsewhere
+    "capture_repr": (),  # do not print the axes of a picture as a result
+    "write_computation_times": False,  # its pages load scripts from other sites
     "min_reported_time": 1,
     "image_scrapers": ("matplotlib",),
-    "plot_gallery": not tags.has("quick"),  # noqa: F821  # what Sphinx gives to this file
+    "plot_gallery": not tags.has("quick"),  # noqa: F821  # defined by Sphinx
 }
 
 html_theme = "furo"

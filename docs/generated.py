@@ -1,4 +1,4 @@
-"""Pages of the manual that the program writes itself: commands, keys, variables of files, API."""
+"""Reference pages of the manual, generated from the program: commands, keys, variables of files, API."""
 
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping
@@ -14,7 +14,7 @@ from frictionmap.identify.rigs.configuration import KINDS
 from frictionmap.identify.rigs.keys import TABLES as RIG_TABLES
 from frictionmap.identify.rigs.keys import rig_keys
 
-#: The public names by what they are for; a name that is in none of these goes to the last.
+#: The public names, grouped by purpose; a name in none of these groups is added to the last one.
 _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Systems and settings": ("System", "Solver", "Units", "load_config"),
     "Maps, curves, motions": ("sweep", "boundaries", "curves", "response", "continuous_motion", "shares"),
@@ -27,7 +27,7 @@ _GROUPS: Mapping[str, tuple[str, ...]] = {
 
 
 def write(folder: Path) -> None:
-    """Write all pages, each only if it has changed: else all would be built anew."""
+    """Write the pages that have changed; unchanged files are not built again."""
     folder.mkdir(exist_ok=True)
     pages = {
         "commands.md": commands(),
@@ -52,9 +52,10 @@ def _table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> Iterator[str
 
 
 def commands() -> Iterator[str]:
-    """Every command with its arguments, as `--help` tells them."""
+    """Page of all commands with their arguments, as in `--help`."""
     yield "# Commands\n"
-    yield "Exit status: 0 done; 2 the input is at fault, told in one line; 130 interrupted; 1 anything else."
+    yield "Exit status: 0 success; 1 internal error; 2 invalid input, with a message of one line;"
+    yield "130 interrupted."
     for command in described():
         yield from _command(command)
 
@@ -80,9 +81,9 @@ def _command(command: Command) -> Iterator[str]:
 
 
 def configuration() -> Iterator[str]:
-    """Every key, from the table that the checks use."""
+    """Page of all keys, from the table that the checks use."""
     yield "# Keys of a configuration\n"
-    yield "`frictionmap init` writes a file with all of them, `frictionmap schema` the same for editors.\n"
+    yield "`frictionmap init` writes a file with all keys, `frictionmap schema` a schema for editors.\n"
     yield "## Maps, curves, boundaries, responses"
     for section, keys in KEYS.items():
         yield from _keys(section, keys, TABLES.get(section, ""))
@@ -105,16 +106,16 @@ def _keys(section: str, keys: Iterable[Key], what: str, level: str = "###") -> I
         )
         for key in keys
     )
-    yield from _table(("key", "meaning", "legal", "default"), rows)
+    yield from _table(("key", "meaning", "valid values", "default"), rows)
 
 
 # files
 
 
 def variables() -> Iterator[str]:
-    """Every variable that a file can hold."""
+    """Page of all variables that a file can contain."""
     yield "# Variables of files\n"
-    yield "All are dimensionless unless a unit is named. `frictionmap info` tells which a file holds.\n"
+    yield "Variables without a unit are dimensionless. `frictionmap info` lists those that a file contains.\n"
     rows = (
         (f"`{name}`", ", ".join(label.dims), label.dtype.__name__, _with_unit(label))
         for name, label in LABELS.items()
@@ -123,7 +124,7 @@ def variables() -> Iterator[str]:
 
 
 def _with_unit(label: Label) -> str:
-    """What a variable is, and its unit if it has one."""
+    """Meaning of a variable, with its unit if it has one."""
     return label.long_name if label.units == "1" else f"{label.long_name} [{label.units}]"
 
 
@@ -131,7 +132,7 @@ def _with_unit(label: Label) -> str:
 
 
 def api() -> Iterator[str]:
-    """The public names with their docstrings."""
+    """Page of the public names with their docstrings."""
     yield "Python API\n==========\n\n``import frictionmap as fm``"
     named = [name for names in _GROUPS.values() for name in names]
     public = [name for name in fm.__all__ if name not in ("__version__", "features", "identify", "regimes")]
@@ -151,7 +152,7 @@ def api() -> Iterator[str]:
 
 
 def _codes() -> Iterator[str]:
-    """The constants of `frictionmap.regimes`, a table for each coded variable."""
+    """Tables of the constants of `frictionmap.regimes`, one per coded variable."""
     title = "frictionmap.regimes"
     yield f"\n{title}\n{'-' * len(title)}\n"
     yield f".. automodule:: {title}\n   :no-members:\n"

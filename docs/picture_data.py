@@ -1,11 +1,11 @@
-"""The figures of the gallery as numbers: what each picture shows, on a coarse part of its grid.
+"""Expected content of the figures of the gallery as numbers, on a coarse part of each grid.
 
-`gallery/data` holds them.  A picture of the gallery is drawn only if what it shows is what is there, and a
-test computes the coarse grids anew.  After a change that is meant to change pictures,
+The numbers are in `gallery/data`.  A figure is drawn only if it agrees with them, and a test computes the
+coarse grids again.  After a change that is meant to change figures,
 
     python docs/picture_data.py
 
-writes them again.
+writes the numbers again.
 """
 
 from pathlib import Path
@@ -21,24 +21,24 @@ from frictionmap.pictures.classes import classes
 CONFIGS = Path(__file__).resolve().parent.parent / "configs"
 DATA = Path(__file__).resolve().parent / "gallery" / "data"
 
-#: Every figure of the thesis that has a configuration, the rig, and where the start decides.
+#: All configurations: figures of the thesis, the rig, and the map of coexistence.
 FIGURES = tuple(sorted(path.stem for path in CONFIGS.glob("*.toml")))
 
-#: About as many values of r and of beta are kept.
+#: Approximate number of values of r and of beta that are saved.
 _KEPT = 30
 
-#: The class of cells without one answer that every machine must find: motions that repeat in no 8 periods,
-#: that are too slow, one of a continuum; and cells that rounding decides, see `write`.
+#: Class of cells whose result may differ between machines: not periodic, not reached, marginal, or decided by
+#: rounding; see `write`.
 ANY = 255
 _SETTLED = (regimes.RESOLVED, regimes.QUASI_STATIC)
 
-#: Samples of a motion in a period, and every how many is kept.
+#: Samples per period of a motion, and the stride of the saved ones.
 _SAMPLES, _EVERY = 2000, 40
 
-#: Numbers are kept with 24 bits; the exact ones agree to 1e-10 on any machine.
+#: Numbers are saved with 24 bits; results agree to 1e-10 on any machine.
 _RELATIVE, _ABSOLUTE = 1e-6, 1e-7
 
-#: Far above rounding, far below what a picture shows.
+#: Relative change of r and beta that is far above rounding and far below the resolution of a figure.
 _PUSH = 1e-13
 
 _MAPPED = ("contact_amplitude", "also_reachable")
@@ -51,12 +51,12 @@ _OF_CELLS = ("class", *_MAPPED, *_DRAWN)
 
 
 def computed(name: str) -> xr.Dataset:
-    """The map, the curves or the motion of `configs/NAME.toml`, which show what they are known to show.
+    """Compute the map, curves or motion of `configs/NAME.toml` and compare it with the saved numbers.
 
     Raises
     ------
     ValueError
-        They do not; the message says where.
+        The result differs; the message says where.
     """
     config = fm.load_config(CONFIGS / f"{name}.toml")
     ds = compute(config, config.r, config.beta)
@@ -67,7 +67,7 @@ def computed(name: str) -> xr.Dataset:
 
 
 def compute(config: Config, r: np.ndarray, beta: np.ndarray) -> xr.Dataset:
-    """What a configuration asks for, on this grid; of a single cell its motion."""
+    """Compute the result of a configuration on a grid; for a single cell, its motion."""
     if r.size * beta.size == 1:
         cell = r.item(), beta.item(), config.mu.item()
         return fm.response(config.system, *cell, solver=config.solver, points=_SAMPLES)
@@ -80,19 +80,19 @@ def compute(config: Config, r: np.ndarray, beta: np.ndarray) -> xr.Dataset:
 
 
 def coarse(name: str) -> xr.Dataset:
-    """The same on the part of the grid that is kept."""
+    """Compute the result of `configs/NAME.toml` on the saved part of the grid."""
     config = fm.load_config(CONFIGS / f"{name}.toml")
     return compute(config, _some(config.r), _some(config.beta))
 
 
 def _some(values: np.ndarray) -> np.ndarray:
-    """Every so many, the first and the second half of a step apart, so that edges of all kinds are met."""
+    """Select about `_KEPT` values, starting half a step from the first, so that the ends are not special."""
     step = max(1, values.size // _KEPT)
     return values[step // 2 :: step]
 
 
 def shown(ds: xr.Dataset) -> dict[str, np.ndarray]:
-    """What a picture of a dataset shows: classes of cells, boundaries, heights of curves."""
+    """Numbers that a figure of a dataset shows: classes of cells, boundaries, values of curves."""
     if "tau" in ds:
         return _moving(ds)
     settled = np.ones([ds.sizes[name] for name in ("mu", "r", "beta")], dtype=bool)
@@ -110,7 +110,7 @@ def shown(ds: xr.Dataset) -> dict[str, np.ndarray]:
 
 
 def _moving(ds: xr.Dataset) -> dict[str, np.ndarray]:
-    """What a picture of a motion shows, at some times."""
+    """Numbers that a figure of a motion shows, at some times."""
     some = ds.isel(tau=slice(0, None, _EVERY))
     cell = ds.expand_dims("beta").expand_dims("r").expand_dims("mu")
     numbers = {name: np.atleast_1d(ds[name].values) for name in ("r", "beta")}
@@ -120,12 +120,12 @@ def _moving(ds: xr.Dataset) -> dict[str, np.ndarray]:
 
 
 def _spread(cells: np.ndarray, ndim: int) -> np.ndarray:
-    """Something of cells, for all numbers of each."""
+    """Extend an array over cells to `ndim` dimensions."""
     return cells.reshape(cells.shape + (1,) * (ndim - cells.ndim))
 
 
 def differences(name: str, ds: xr.Dataset) -> list[str]:
-    """What differs between a dataset and the figure of this name, a line for each quantity; none is good."""
+    """Compare a dataset with the saved figure of this name; one line per quantity that differs."""
     with np.load(DATA / f"{name}.npz") as known:
         kept = dict(known)
     missing = [axis for axis in ("r", "beta") if not np.isin(kept[axis], ds[axis].values).all()]
@@ -156,7 +156,7 @@ def _different(name: str, now: np.ndarray, kept: np.ndarray, open_to_any: np.nda
 
 
 def write(name: str) -> None:
-    """Write what a figure shows now; cells that a push by rounding moves elsewhere are left open."""
+    """Save the numbers that a figure shows now; cells whose class changes with rounding become `ANY`."""
     ds = coarse(name)
     kept = shown(ds)
     config = fm.load_config(CONFIGS / f"{name}.toml")

@@ -1,1 +1,1 @@
-"""What is measured: one module for each sub-command, with `run(quick, results)`; see the package above."""
+"""Measurements: one module per sub-command, with `run(quick, results)`; see the package `benchmarks`."""

@@ -1,19 +1,19 @@
 """Error against run time: the search of S, steady states by every method, and the number of scan steps.
 
-Steady states.  Random stick-slip cells in scenes of low and high frequency, both contacts, mu = 1 and more,
-one mass and three.  Every method marches `CYCLES` excitation periods from rest and reports the last, but
-for "frictionmap", the package as it is used, which ends when the steady state is found.  Kept are cells that
-repeat every excitation period and whose Floquet multipliers say that the transient is over by then: what is
-left is the method's error.  They are checked against 40-digit orbits (`references.periodic_orbit`).  Peers
-of one mass have the end of a stop in closed form (an arccos), which favours them; fixed-step methods search
-for it.
-Siconos is not among the peers; its kind of time stepping, Moreau-Jean, is a baseline of ours (`fixed_step`).
-Time is that of the cells alone: our curves at the frequency of a cell are given beside it.
+Steady states. Random stick-slip cells in scenes of low and high frequency, both contacts, mu = 1 and above,
+one mass and three. Every method marches `CYCLES` excitation periods from rest and reports the last one. The
+exception is "frictionmap", the package with its default method, which ends when the steady state is found.
+Only cells that repeat every excitation period are used, and only if their Floquet multipliers show that the
+transient has decayed by then. The remaining error is that of the method. It is measured against 40-digit
+orbits (`references.periodic_orbit`). Other solvers of one mass get the end of a stop in closed form (an
+arccos), which favours them; fixed-step methods search for it. Siconos is not included; its method,
+Moreau-Jean time stepping, is implemented in `fixed_step`. The times are those of the cells alone; the time of
+the curves at the frequency of a cell is given separately.
 
-Random cells.  20,000 cells of one mass by the public interface at the default settings, against an
-event-exact code of its own (`settled.settle`).
+Random cells. 20,000 cells of one mass through the public interface at the default settings, compared with an
+independent event-exact code (`settled.settle`).
 
-Scan steps.  Time for an open cell against `steps`.
+Scan steps. Time for an open cell against `steps`.
 """
 
 import math
@@ -68,7 +68,7 @@ WRONG = "cells with wrong stop counts"
 
 
 def _reference(problem: Problem) -> Orbit | None:
-    """The orbit of one excitation period that a march from rest comes to; None if it comes to none."""
+    """Periodic orbit of one excitation period that a march from rest reaches; None if there is none."""
     near = march_rk4(problem, APPROACH, CYCLES, True)
     if not near.velocity.any():
         return None
@@ -79,7 +79,7 @@ def _reference(problem: Problem) -> Orbit | None:
 
 
 def sample_scene(scene: Scene, count: int, rng: np.random.Generator) -> tuple[list, list[Orbit], dict]:
-    """Cells (r, beta) by r, their orbits, and how many more were left out for what reason."""
+    """Draw cells (r, beta), sorted by r, with their orbits; count the cells left out by reason."""
     system = scene.system
     found: list[tuple[tuple[float, float], Orbit]] = []
     left_out = {"no such orbit from rest, or a longer period": 0, "no stops": 0, "not settled in time": 0}
@@ -105,19 +105,19 @@ def sample_scene(scene: Scene, count: int, rng: np.random.Generator) -> tuple[li
 
 
 def time_error(begins: list[float], exact: list[float]) -> float:
-    """Largest distance on the circle of an exact event time from the nearest that was found."""
+    """Largest distance, on the circle, from an exact event time to the nearest one found."""
     return max(
         min(abs((mine - one + math.pi) % TWO_PI - math.pi) for mine in begins) for one in exact
     )  # fmt: skip
 
 
 def digits(error: float) -> float:
-    """An error to three digits: it has no more to say."""
+    """Round an error to three digits."""
     return float(f"{error:.3g}")
 
 
 def judge(answers: list[Answer], orbits: list[Orbit]) -> dict:
-    """Wrong stop counts; errors of Z (relative) and of event times where the count is right."""
+    """Count wrong stop counts; errors of Z (relative) and of event times where the count is right."""
     wrong = 0
     amplitudes, times = [], []
     for answer, orbit in zip(answers, orbits, strict=True):
@@ -138,7 +138,7 @@ def judge(answers: list[Answer], orbits: list[Orbit]) -> dict:
 
 
 def _prepare(scene: Scene, cells: list, quick: bool, content: dict) -> list[tuple[Method, float, tuple]]:
-    """Every method at every setting that can be had for a scene; the others are skipped by name."""
+    """Prepare every available method at every setting for a scene; record the others as skipped."""
     ready = []
     for method in METHODS:
         why = method.why_not(scene)
@@ -152,7 +152,7 @@ def _prepare(scene: Scene, cells: list, quick: bool, content: dict) -> list[tupl
 
 
 def compare_scene(scene: Scene, count: int, quick: bool, rng: np.random.Generator) -> dict:
-    """Seconds a cell and errors of all methods in one scene."""
+    """Measure seconds per cell and errors of all methods in one scene."""
     cells, orbits, left_out = sample_scene(scene, count, rng)
     content: dict = {
         "cells": [{"r": r, "beta": beta} for r, beta in cells],
@@ -189,7 +189,7 @@ def compare_scene(scene: Scene, count: int, quick: bool, rng: np.random.Generato
 
 
 def steady_states(quick: bool) -> dict:
-    """All scenes."""
+    """Compare all methods in all scenes."""
     rng = np.random.default_rng(5)
     found = {}
     for index, scene in enumerate(SCENES):
@@ -201,7 +201,7 @@ def steady_states(quick: bool) -> dict:
 
 
 def print_scene(name: str, content: dict) -> None:
-    """A table: the best and the default settings say enough."""
+    """Print a table of the best and the default settings."""
     print(f"\n{name}: {len(content['cells'])} cells, left out {content['cells left out']}")
     rows = []
     for method, entry in content["methods"].items():
@@ -231,7 +231,7 @@ REMAINS = 1e-12
 
 
 def random_cells(quick: bool) -> dict:
-    """Stop counts and amplitudes of random cells at the default settings, against an event-exact code."""
+    """Compare stop counts and amplitudes of random cells at default settings with the event-exact code."""
     rng = np.random.default_rng(20_000)
     wanted = 300 if quick else 20_000
     count = unsettled = unresolved = 0
@@ -301,7 +301,7 @@ KEPT = ("stops_per_cycle", "contact_amplitude", "status")
 
 
 def _open_sample(scene: Scene, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, int]:
-    """Random cells between the boundaries, by r; how many more have no steady state: some do not repeat."""
+    """Draw random cells between the boundaries, sorted by r; count those without a periodic steady state."""
     r = np.sort(rng.uniform(0.1, 2.0, 4 * count))
     ends = fm.boundaries(scene.system, np.unique(r), scene.mu)
     low, high = ends.beta_lim.values[0], ends.beta_stick.values[0]
@@ -316,7 +316,7 @@ def _open_sample(scene: Scene, count: int, rng: np.random.Generator) -> tuple[np
 
 
 def scan_steps(quick: bool) -> dict:
-    """Seconds for an open cell over `steps`, and how far the amplitudes are from those at the most steps."""
+    """Measure the seconds per open cell over `steps`, and the difference of Z from that with most steps."""
     rng = np.random.default_rng(24)
     settings = (2, 8, 12, 16, 24, 48, 200) if quick else STEPS
     found = {}
@@ -378,7 +378,7 @@ def _same(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _difference(a: np.ndarray, b: np.ndarray) -> float:
-    """Largest relative difference where both are positive and finite."""
+    """Largest relative difference where both values are positive and finite."""
     both = (a > 0.0) & (b > 0.0) & np.isfinite(a) & np.isfinite(b)
     return (np.abs(a - b)[both] / b[both]).max(initial=0.0)
 
@@ -400,14 +400,14 @@ FLOOR = 1e-16
 
 
 def _style(method: str) -> dict:
-    """Ours are points, as time and error hardly depend on the setting; the others are curves."""
+    """Line style: points for frictionmap, whose time and error hardly depend on the setting; else curves."""
     if method in (SOLVED, MARCHED):
         return {"marker": "D", "markersize": 6, "linestyle": "none", "zorder": 3}
     return {"marker": "o", "markersize": 4, "linewidth": 1.2, "zorder": 2}
 
 
 def pooled(scenes: list[dict], method: str, value: Callable[[dict], list[float]]) -> tuple[list, list]:
-    """Seconds a cell and the median of a value over all cells of some scenes, by setting."""
+    """Seconds per cell and the median of a value over all cells of some scenes, by setting."""
     points: dict[float, tuple[list, list]] = {}
     for scene in scenes:
         entry = scene["methods"].get(method)
@@ -492,7 +492,7 @@ def _steps_panel(axes: Axes, found: dict) -> None:
 
 
 def draw(content: dict, path: Path) -> None:
-    """Error against time for one mass and three; wrong counts; the search of S; scan steps."""
+    """Draw error against time for one mass and three, wrong stop counts, the search of S, and scan steps."""
     scenes = content["steady states"]
     one = [entry for name, entry in scenes.items() if not name.startswith("3 masses")]
     three = [entry for name, entry in scenes.items() if name.startswith("3 masses")]

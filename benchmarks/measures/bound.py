@@ -1,17 +1,18 @@
-"""The boundary of continuous motion, the sum of maxima T(5.55), and the simulation that settles it.
+"""Boundary of continuous motion compared with the sum of maxima T(5.55) and with a simulation.
 
-The chain of T Fig. 6.17: five masses, contact on mass 3, load on mass 1, mu = 1.  The thesis adds up the
-modes' maxima of S, each at its own time: a lower bound (`beta_lim_modal`).  `beta_lim` takes the maximum of
-the sum.  `references/naive.py` marches the equations of motion and knows neither: at some frequencies the
-least beta with stops is found by bisection, once without damping and once with a little.
+The structure is the chain of T Fig. 6.17: five masses, contact on mass 3, load on mass 1, mu = 1. The thesis
+adds the maxima of S of the modes, each at its own time, which gives a lower bound (`beta_lim_modal`).
+`beta_lim` takes the maximum of the sum. `references/naive.py` integrates the equations of motion and uses
+neither. At some frequencies the smallest beta with stops is found by bisection, without damping and with a
+little damping.
 
-- Without damping a march from rest takes thousands of periods.  With mu = 1 the regime of the steady state
-  does not depend on the start, so any motion that is seen to repeat itself decides.  A run starts from what
-  `frictionmap.response` says is the steady state; the simulation judges whether it is one, and has stops.
-  Where it finds none (undamped, next to the boundary) the run starts from the continuous motion at the
-  largest beta seen without stops, and has to stop in the last of 300 periods; if it does not, the bisection
-  ends there.
-- With 1 % of damping every run starts from rest and goes on until its state repeats: no formula takes part.
+- Without damping, a march from rest takes thousands of periods. With mu = 1 the regime does not depend on the
+  initial state, so any motion that repeats decides. A run starts from the steady state of
+  `frictionmap.response`; the simulation checks that it is steady and whether it has stops. Where
+  `frictionmap.response` finds none (next to the boundary), the run starts from the continuous motion at
+  the largest beta without stops so far. It must stop in the last of 300 periods; otherwise the bisection
+  ends.
+- With 1 % damping every run starts from rest and continues until its state repeats, without any formula.
 
 The full run draws docs/fig-5-55.png.
 """
@@ -40,13 +41,13 @@ DAMPED = (0.01, 4000, 2e-3)
 
 
 def chain(zeta: float) -> fm.System:
-    """The chain of T Fig. 6.17."""
+    """Chain of T Fig. 6.17."""
     ones = [1.0] * MASSES
     return fm.System(contact_masses=[CONTACT], mass_ratios=ones, stiffness_ratios=ones, damping_ratios=zeta)
 
 
 def _state(system: fm.System, r: float, beta: float, below: float) -> tuple[np.ndarray, np.ndarray]:
-    """Displacements and velocities at tau = 0: of what is said to be the steady state, or near it."""
+    """Displacements and velocities at tau = 0 of the computed steady state, or of a motion near it."""
     for start in ("rest", "moving"):
         try:
             ds = fm.response(system, r, beta, start=start, points=2)
@@ -58,7 +59,7 @@ def _state(system: fm.System, r: float, beta: float, below: float) -> tuple[np.n
 
 
 def stops(system: fm.System, r: float, beta: float, below: float, cycles: int) -> bool | None:
-    """Whether the simulated steady state has stops, None if left open; `below` is a beta seen without."""
+    """Whether the simulated steady state has stops, None if undecided; `below` is a beta without stops."""
     ones = [1.0] * MASSES
     start = "rest" if system.zeta else _state(system, r, beta, below)
     found = naive_steady_state(
@@ -72,7 +73,7 @@ def stops(system: fm.System, r: float, beta: float, below: float, cycles: int) -
 
 
 def bisect(system: fm.System, r: float, cycles: int, width: float) -> tuple[float, float]:
-    """(largest beta seen without stops, least beta seen with stops)."""
+    """Find (largest beta without stops, smallest beta with stops)."""
     high = fm.boundaries(system, [r]).beta_stick.item()  # sticks there
     low = 1e-3 * high
     if stops(system, r, low, low, cycles) is not False:
@@ -90,7 +91,7 @@ def bisect(system: fm.System, r: float, cycles: int, width: float) -> tuple[floa
 
 
 def _brackets(r: tuple[float, ...], zeta: float, cycles: int, width: float) -> list[dict]:
-    """Brackets of the boundary by simulation, with the formulas beside them."""
+    """Brackets of the boundary by simulation, with the values of the formulas."""
     system = chain(zeta)
     curves = fm.boundaries(system, r)
     found = []
@@ -117,7 +118,7 @@ def _brackets(r: tuple[float, ...], zeta: float, cycles: int, width: float) -> l
 
 
 def draw(undamped: list[dict], damped: list[dict], path: Path) -> None:
-    """The curves and the simulated points."""
+    """Draw the curves and the simulated points."""
     ends = 0.17, 0.85
     r = np.unique(np.concatenate((np.linspace(*ends, 2721), [row["r1"] for row in undamped])))
     curves = fm.boundaries(chain(0.0), r)

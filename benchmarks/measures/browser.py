@@ -1,8 +1,8 @@
-"""A headless Chromium, for what is measured and tested of the page that explores maps.
+"""Headless Chromium for measurements and tests of the interactive page.
 
-playwright drives the browser that the system has (Debian's `chromium`, or what CHROMIUM names): of the
-drivers it alone emulates touch, colour schemes and sharp screens, and needs no second program that fits the
-browser.
+playwright drives the browser of the system (Debian's `chromium`, or the one that CHROMIUM names). It is the
+only driver that emulates touch, colour schemes and high-resolution screens, and it needs no second program
+that matches the browser.
 """
 
 import contextlib
@@ -15,12 +15,12 @@ NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"
 
 
 class NoBrowser(Exception):
-    """There is none, or nothing that drives it."""
+    """No browser, or no driver for it, is available."""
 
 
 @contextlib.contextmanager
 def chromium() -> Iterator[Any]:
-    """A browser; NoBrowser says what is missing."""
+    """Start a browser; NoBrowser names the missing part."""
     try:
         from playwright.sync_api import sync_playwright
     except ImportError:

@@ -1,9 +1,9 @@
-"""What it costs to leave out the coupling of modes by damping: how wrong amplitudes and stops become.
+"""Errors of amplitudes and stops if the coupling of modes by damping is neglected.
 
-Why a damping matrix is taken whole.  Random chains whose springs have loss factors of their own, or that have
-one dashpot, are marched with their whole C1 by `references/naive.py`; the package is given the diagonal of C1
-in the modes, as damping ratios.  Cells lie between 5 and 95 % of the sticking boundary, mu = 1, at
-frequencies up to past the highest mode.
+This is why a damping matrix is not reduced to its diagonal. Random chains, whose springs have individual loss
+factors or which have one dashpot, are marched with the whole C1 by `references/naive.py`. The package
+computes them with the diagonal of C1 in modal coordinates, as damping ratios. Cells lie between 5 and 95 % of
+the sticking boundary, mu = 1, at frequencies from low to above the highest mode.
 """
 
 from pathlib import Path
@@ -47,7 +47,9 @@ def chain(rng: np.random.Generator, kind: str, level: float) -> tuple[dict, np.n
 
 
 def compare(rng: np.random.Generator, kind: str, level: float) -> dict | None:
-    """One random cell both ways; None where the march does not settle, or one of them sticks for good."""
+    """Compute one random cell in both ways; None if the march does not converge, or if one motion sticks
+    permanently.
+    """
     ratios, damping, zeta = chain(rng, kind, level)
     n = zeta.size
     contact, load = (int(mass) for mass in rng.integers(1, n + 1, 2))
@@ -96,7 +98,7 @@ def _draw(found: dict, results: Path) -> None:
 
 
 def run(quick: bool, results: Path) -> dict:
-    """Compare, print, draw, save."""
+    """Compare, print, draw and save."""
     found: dict = {}
     for kind in KINDS:
         for level in LEVELS:

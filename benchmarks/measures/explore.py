@@ -1,10 +1,10 @@
-"""The page that explores maps, in headless Chromium: from an input to the picture that answers it.
+"""Response times of the interactive page in headless Chromium.
 
-Times are of the page itself: from the input event, or from the beginning of its loading, to the task after
-the frame that shows the answer.  "loaded" is by a process just started, which imports and loads its kernels,
-"loaded again" by one at work.  The area of the map is 500 x 500 pixels.  "outdated": from the request that
-makes a slow one outdated to the end of that.  Kernels are warm; processes, servers and pages are new for
-every round.
+Times are measured in the page: from the input event, or from the start of loading, to the task after the
+frame that shows the result. "loaded" refers to a new server process, which imports and loads its kernels;
+"loaded again" to a server that is running. The map has 500 x 500 pixels. "outdated" is the time from the
+request that cancels a slow computation to its end. Kernels are compiled beforehand; processes, servers and
+pages are new in every round.
 """
 
 import contextlib
@@ -90,7 +90,7 @@ _TOOLS = """() => {
 
 @contextlib.contextmanager
 def _served(config: str) -> Iterator[str]:
-    """The address of a server in a process of its own."""
+    """Start a server in a new process and return its address."""
     search = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     command = [sys.executable, "-m", "frictionmap", "explore", str(ROOT / "configs" / config)]
     process = subprocess.Popen(
@@ -108,7 +108,7 @@ def _served(config: str) -> Iterator[str]:
 
 
 def _opened(browser: Any, url: str) -> tuple[Any, float]:
-    """A page, and the milliseconds from the beginning of its loading to its finest picture."""
+    """Open a page; return it with the milliseconds from the start of loading to its finest map."""
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.set_default_timeout(600_000)
     page.goto(url)
@@ -117,7 +117,7 @@ def _opened(browser: Any, url: str) -> tuple[Any, float]:
 
 
 def _page(browser: Any, url: str) -> tuple[Any, float]:
-    """A page with a map of the size that is measured, and the milliseconds of its loading."""
+    """Open a page with a map of the measured size; return it with the milliseconds of loading."""
     page, loaded = _opened(browser, url)
     page.evaluate(_TOOLS)
     page.evaluate("(pixels) => window.measured.size(pixels)", PIXELS)
@@ -126,14 +126,14 @@ def _page(browser: Any, url: str) -> tuple[Any, float]:
 
 
 def _loaded_again(browser: Any, url: str) -> float:
-    """Milliseconds of loading a page whose server has its kernels at hand."""
+    """Milliseconds of loading a page whose server has loaded its kernels."""
     page, loaded = _opened(browser, url)
     page.close()
     return loaded
 
 
 def _slides(page: Any, count: int) -> list[list[float]]:
-    """Times to the first and to the full picture, of a slider that is moved step by step."""
+    """Times to the first and to the finest map of a slider that is moved step by step."""
     found = []
     for k in range(count):
         found.append(
@@ -171,7 +171,7 @@ def _outdated(page: Any, count: int) -> list[float]:
 
 
 def _warm(browser: Any, config: str) -> None:
-    """Compile whatever the scene needs, and let the disk remember the rest."""
+    """Compile everything that the scene needs."""
     with _served(config) as url:
         page, _ = _page(browser, url)
         _slides(page, 1)
@@ -180,7 +180,7 @@ def _warm(browser: Any, config: str) -> None:
 
 
 def _scene(browser: Any, name: str, rounds: int, inputs: int) -> dict[str, list[float]]:
-    """Milliseconds of everything that is measured of a scene."""
+    """Milliseconds of all measurements of a scene."""
     taken: dict[str, list[float]] = {
         "started to address": [],
         "loaded to painted": [],
@@ -208,7 +208,7 @@ def _scene(browser: Any, name: str, rounds: int, inputs: int) -> dict[str, list[
 
 
 def draw(scenes: dict, path: Path) -> None:
-    """One bar a measurement, and what it should take at most."""
+    """Draw one bar per measurement, with its limit."""
     rows = [(scene, what, entry) for scene, found in scenes.items() for what, entry in found.items()]
     figure = new_figure(8.0, 0.4 * len(rows) + 1.3)
     axes = figure.subplots()

@@ -1,15 +1,15 @@
-"""The physical floor: nanoseconds a phase (a slide or a stop) against the same closed forms with no logic.
+"""Lower bound of the run time: nanoseconds per segment (a slide or a stop) against the closed forms alone.
 
-The kernel follows some motions, and what it found out on the way is written down: how many scan steps each
-slide took, where in the next one it ended, what followed.  Two probes then go the same way with all this
-handed to them, so that nothing is searched, bounded or decided:
+The kernel follows some motions and records its findings: the number of scan steps of each slide, where the
+slide ended in the next step, and what followed. Two probes then repeat the motions with this information, so
+that nothing is searched, bounded or decided:
 
 - `walk` evaluates what the kernel evaluates: the affine scan steps, the Taylor series of the last one, one
   polishing step of fourth order at the event, and the release of a stop;
-- `jump` takes each slide at once, by sine, cosine and exponential of its whole length: the least that the
-  state at the end of a phase costs, were its time known.
+- `jump` takes each slide at once, with sine, cosine and exponential of its whole length: the minimum cost
+  of the state at the end of a segment if its time is known.
 
-All three have to arrive at the same displacement.
+All three must arrive at the same displacement.
 """
 
 import math
@@ -43,7 +43,7 @@ _SAME_WAY = 1e-6
 
 
 class Track(NamedTuple):
-    """What the kernel found out about each slide of a motion; arrays of shape (slides,)."""
+    """Findings of the kernel about each slide of a motion; arrays of shape (slides,)."""
 
     whole: np.ndarray  # scan steps passed
     rest: np.ndarray  # where in the next one the slide ended, 0 to 1
@@ -54,7 +54,7 @@ class Track(NamedTuple):
 
 @own_entry
 def follow(step, b, mu_b, slides, work):
-    """Follow a motion from rest by the kernel: (displacement at the end, stops)."""
+    """Follow a motion from rest with the kernel: (displacement at the end, stops)."""
     _, z, c, s, force, _ = after_slide(b, mu_b, 0.0, 1.0, 0.0)
     stops = 0
     for _ in range(slides):
@@ -66,7 +66,7 @@ def follow(step, b, mu_b, slides, work):
 
 @own_entry
 def write_down(step, b, mu_b, slides, work):
-    """The track of a motion from rest, in the order of `Track`."""
+    """Track of a motion from rest, in the order of `Track`."""
     whole = np.empty(slides, dtype=np.int64)
     rest, length, turn = np.empty(slides), np.empty(slides), np.empty(slides)
     stopped = np.empty(slides, dtype=np.bool_)
@@ -84,7 +84,7 @@ def write_down(step, b, mu_b, slides, work):
 
 @own_entry
 def _restart(b, mu_b, z, c, s, turn, stopped):
-    """State, force and wait at the start of the next slide, when it is known what comes."""
+    """State, force and wait at the start of the next slide, with known events."""
     if not stopped:
         return turn * z, turn * c, turn * s, turn * (c - z) - b, 0.0
     c_end = z + turn * mu_b
@@ -95,7 +95,9 @@ def _restart(b, mu_b, z, c, s, turn, stopped):
 
 @own_entry
 def walk(step, b, mu_b, track, work):
-    """The scan steps, series, polishing and releases of a track: (displacement at the end, time stuck)."""
+    """Follow the scan steps, series, polishing and releases of a track: (displacement at the end, time
+    stuck).
+    """
     _, z, c, s, force, _ = after_slide(b, mu_b, 0.0, 1.0, 0.0)
     stuck = 0.0
     for k in range(track.whole.size):
@@ -116,7 +118,7 @@ def walk(step, b, mu_b, track, work):
 
 @own_entry
 def _polish(step, b, z, c, s, x, work):
-    """(z, cos, sin) at the event next to x: the formulas of one polishing step, as in `events`."""
+    """Compute (z, cos, sin) at the event next to x: the formulas of one polishing step, as in `events`."""
     velocity, rise = _sum_at(work, step.terms, x)
     place = z + rise
     cosine, sine = math.cos(step.h * x), math.sin(step.h * x)
@@ -144,7 +146,7 @@ def _polish(step, b, z, c, s, x, work):
 
 @own_entry
 def jump(r, zeta, b, mu_b, track):
-    """Each slide of a track at once, by the closed form over its length (r != 1, zeta < 1).
+    """Follow each slide of a track at once, by the closed form over its length (r != 1, zeta < 1).
 
     Returns (displacement at the end, time stuck).
     """
@@ -170,7 +172,7 @@ def jump(r, zeta, b, mu_b, track):
 
 
 def _kernel_times(r: float, zeta: float, b: float, mu: float, repeats: int) -> dict:
-    """Nanoseconds a phase of the kernel, by the number of scan steps."""
+    """Nanoseconds per segment of the kernel, by number of scan steps."""
     work = np.empty(MAX_TERMS)
     found = {}
     for steps in STEPS:
@@ -215,7 +217,7 @@ def one_motion(r: float, zeta: float, b: float, mu: float, repeats: int) -> dict
 
 
 def phase_floor(quick: bool) -> dict:
-    """Measure and print the nanoseconds a phase, and what the closed forms alone take."""
+    """Measure and print nanoseconds per segment, of the kernel and of the closed forms alone."""
     repeats = 20 if quick else 200
     with pinned():
         found = {

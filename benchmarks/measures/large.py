@@ -1,11 +1,11 @@
-"""Maps that outgrow memory and patience: what a store costs, how it grows, what survives being killed.
+"""Large maps: overhead of a store, memory and time over the size of a map, killed runs.
 
-overhead        CPU of a store against the same map in memory, in one process, in turn
-size            memory and time of whole commands, in memory and as a store, on finer grids of T Fig. 3.12
-workers         the same study on one and on two processes of dask, warm, and the start of the processes
-study           so many random variations (5 % on masses and springs) of five masses, over a small map
-kills           runs that are killed with SIGKILL at random moments until one gets through: the same bytes?
-ahead           10^10 cells on 100 machines, computed from the above
+overhead        processor time of a store against the same map in memory, alternating, in one process
+size            memory and time of complete commands, in memory and as a store, on finer grids of T Fig. 3.12
+workers         the same study on one and on two dask processes, and the start of the processes
+study           random variations (5 % on masses and springs) of five masses, over a small map
+kills           runs that are killed with SIGKILL at random moments until one finishes; same bytes?
+ahead           10^10 cells on 100 machines, estimated from the above
 """
 
 import filecmp
@@ -61,7 +61,7 @@ sample = {{ file = "variants.csv" }}
 
 
 def run(quick: bool, results: Path) -> dict:
-    """Measure all of it."""
+    """Run all measurements."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         content = {
@@ -78,7 +78,7 @@ def run(quick: bool, results: Path) -> dict:
 
 
 def draw(rows: list[dict], path: Path) -> None:
-    """Memory and time of whole commands over the number of cells."""
+    """Draw memory and time of complete commands over the number of cells."""
     figure = new_figure(9.0, 3.6)
     for axes, key, unit in zip(figure.subplots(1, 2), ("MB", "seconds"), ("MB", "s"), strict=True):
         for kind, colour, marker in (("store", "#2c5aa0", "o"), ("file", "#d98032", "s")):
@@ -101,7 +101,7 @@ def _environment() -> dict[str, str]:
 
 
 def _whole(folder: Path, *arguments: object) -> dict:
-    """Seconds, CPU seconds and largest memory [MB] of a command with its children."""
+    """Seconds, processor seconds and peak memory [MB] of a command with its children."""
     began = time.perf_counter()
     process = subprocess.Popen(_command(folder, *arguments), cwd=folder, env=_environment())
     _, status, used = os.wait4(process.pid, 0)
@@ -115,7 +115,7 @@ def _whole(folder: Path, *arguments: object) -> dict:
 
 
 def overhead(folder: Path, quick: bool) -> dict:
-    """CPU seconds of the map in memory and as a store."""
+    """Processor seconds of the map in memory and as a store."""
     n = OVERHEAD[quick]
     system = fm.System(contact="joined-base-wall")
     axes = {
@@ -140,7 +140,7 @@ def overhead(folder: Path, quick: bool) -> dict:
 
 
 def size(folder: Path, quick: bool) -> list[dict]:
-    """Whole commands on finer and finer grids."""
+    """Complete commands on successively finer grids."""
     rows = []
     for n in SIZES[quick]:
         (folder / "grid.toml").write_text(GRID.format(n=n, r=LARGEST_R, beta=LARGEST_BETA))
@@ -168,7 +168,7 @@ def _write_study(folder: Path, samples: int, quick: bool) -> None:
 
 
 def workers(folder: Path, quick: bool) -> dict:
-    """The study on one and two processes; on none of its samples but one it is their start."""
+    """The study on one and on two processes; the study of a single sample measures their start."""
     samples = SAMPLES[quick] // 4
     _write_study(folder, samples, quick)
     seconds = {}
@@ -196,7 +196,7 @@ def study(folder: Path, quick: bool) -> dict:
 
 
 def kills(folder: Path, quick: bool) -> dict:
-    """Runs that are killed at random moments, over and over."""
+    """Runs that are killed repeatedly at random moments."""
     _write_study(folder, 24, quick)
     usual = _whole(folder, "map", "study.toml", "-o", "well.zarr")["seconds"]
     chance = random.Random(1)
@@ -234,7 +234,7 @@ def _same(one: Path, other: Path) -> bool:
 
 
 def ahead(content: dict, quick: bool) -> dict:
-    """Hours of 10^10 cells on 100 machines like this one: of Fig. 3.12, and of five masses."""
+    """Estimate the hours for 10^10 cells on 100 machines like this one: Fig. 3.12, and five masses."""
     finest = content["size"][-1]
     of_one = finest["store"]["seconds"] / finest["n"] ** 2
     of_five = content["study"]["seconds"] / content["study"]["cells"]

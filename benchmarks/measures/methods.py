@@ -1,8 +1,8 @@
-"""Every way to a steady state in one form: cells in; stops, amplitude and times of the stops out.
+"""All methods for steady states with one interface: cells in; stops, amplitude and stop times out.
 
-A method is prepared for a scene and a setting; what is timed is `solve` alone, and `read` makes answers of
-what it returned.  All but "frictionmap" march the same number of excitation periods from rest and report the
-last.  What "frictionmap" finds is timed without the times of its stops, which `response` gives.
+A method is prepared for a scene and a setting. Only `solve` is timed; `read` converts its return value to
+results. All except "frictionmap" march the same number of excitation periods from rest and report the last.
+"frictionmap" is timed without the stop times, which `response` provides.
 """
 
 import math
@@ -42,7 +42,7 @@ COPIES = 40
 
 
 class Scene(NamedTuple):
-    """Where random cells are drawn."""
+    """Ranges in which random cells are drawn."""
 
     name: str
     contact: str
@@ -53,12 +53,12 @@ class Scene(NamedTuple):
 
     @property
     def body(self) -> Body:
-        """The structure as peers know it: contact on mass 2 of several, load on mass 1."""
+        """The structure as other solvers define it: contact on mass 2 of several, load on mass 1."""
         return Body(self.masses, min(2, self.masses), 1, self.zeta, self.contact)
 
     @property
     def system(self) -> fm.System:
-        """The structure as the package knows it."""
+        """The structure as the package defines it."""
         if self.masses == 1:
             return fm.System(contact=self.contact, damping_ratios=self.zeta)
         ones = [1.0] * self.masses
@@ -68,12 +68,12 @@ class Scene(NamedTuple):
         )  # fmt: skip
 
     def problem(self, r: float, beta: float) -> Problem:
-        """One of its cells, as the baselines know it."""
+        """One of its cells, as the baselines define it."""
         return problem(self.body, Cell(r, beta, self.mu))
 
 
 class Answer(NamedTuple):
-    """Of the last period; `begins` are the tau in [0, 2 pi) at which stops begin."""
+    """Results of the last period; `begins` are the tau in [0, 2 pi) at which stops begin."""
 
     stops: float
     amplitude: float
@@ -87,7 +87,7 @@ Prepared = tuple[Callable[[], object], Callable[[object], list[Answer]], int]
 
 
 class Method(NamedTuple):
-    """A way to steady states, over a setting that trades time for accuracy."""
+    """A method for steady states, with a setting that trades time for accuracy."""
 
     name: str
     setting: str  # what is varied
@@ -110,7 +110,7 @@ def _sorted_copies(cells: list[tuple[float, float]]) -> tuple[np.ndarray, np.nda
 def open_cells(
     system: fm.System, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver
 ) -> tuple[Callable[[], object], Callable[[], list[np.ndarray]]]:
-    """(solve, read) of cells (r_k, beta_k) by the kernel of maps; read gives stops, Z and status if kept."""
+    """(solve, read) for cells (r_k, beta_k) by the kernel of maps; read gives stops, Z, perhaps status."""
     solve, out = cells_by_kernel(system, r, beta, mu, solver)
     each = np.arange(r.size)
 
@@ -122,13 +122,13 @@ def open_cells(
 
 
 def _stop_times(scene: Scene, r: float, beta: float, steps: int) -> list[float]:
-    """When the stops of the solved steady state begin; of a stop that is one of a longer period too."""
+    """Start times of the stops of the steady state, also of one with a longer period."""
     ds = fm.response(scene.system, r, beta, scene.mu, steps=steps, points=2)
     return sorted((ds.event_tau.values[ds.event_phase.values == 0] % TWO_PI).tolist())
 
 
 def prepare_solved(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
-    """The package as it is used, at a number of scan steps."""
+    """Prepare the package with its default method, for a number of scan steps."""
     solve, values = open_cells(scene.system, *_sorted_copies(cells), scene.mu, Solver(steps=int(setting)))
 
     def read(_result: object) -> list[Answer]:
@@ -143,7 +143,7 @@ def prepare_solved(scene: Scene, cells: list[tuple[float, float]], setting: floa
 
 @own_entry
 def _march_one_mass(r, beta, zeta, load, phase, mu, steps, cycles, out, begins):
-    """The integrator of one mass alone, from rest; out (cells, 2): stops, Z; begins (cells, MOST_STOPS)."""
+    """Integrator of one mass alone, from rest; out (cells, 2): stops, Z; begins (cells, MOST_STOPS)."""
     work = np.empty(MAX_TERMS)
     for k in range(r.size):
         step = step_constants(r[k], zeta, steps)
@@ -176,7 +176,7 @@ def _march_one_mass(r, beta, zeta, load, phase, mu, steps, cycles, out, begins):
 
 @own_entry
 def _march_structure(model, loads, r, beta, mu, steps, cycles, out, begins):
-    """The integrator of structures alone, from rest; as `_march_one_mass`."""
+    """Integrator of structures alone, from rest; arguments as in `_march_one_mass`."""
     n = model.modes.shape[1]
     state, held, scratch = np.zeros((2, n)), np.zeros((2, n - 1)), make_scratch(n)
     for k in range(r.size):
@@ -211,7 +211,7 @@ def _march_structure(model, loads, r, beta, mu, steps, cycles, out, begins):
 
 
 def prepare_marched(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
-    """The fixed-step exact integrator by itself, for the same number of periods as the peers."""
+    """Prepare the exact fixed-step integrator alone, for the same number of periods as the other solvers."""
     r, beta = np.array(cells).T
     found = Cells(scene.system, r, beta, np.array([scene.mu]), Solver())
     out, begins = np.empty((r.size, 2)), np.empty((r.size, MOST_STOPS))
@@ -240,12 +240,12 @@ def prepare_marched(scene: Scene, cells: list[tuple[float, float]], setting: flo
 
 
 def _within(times: np.ndarray) -> list[float]:
-    """Sorted, in [0, 2 pi)."""
+    """Sort angles and reduce them to [0, 2 pi)."""
     return sorted(np.mod(times, TWO_PI).tolist())
 
 
 def prepare_rk4(located: bool) -> Callable[..., Prepared]:
-    """RK4, with events located or not."""
+    """Prepare RK4, with or without located events."""
 
     def prepare(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
         problems = [scene.problem(*cell) for cell in cells]
@@ -260,7 +260,7 @@ def prepare_rk4(located: bool) -> Callable[..., Prepared]:
 
 
 def prepare_moreau(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
-    """Moreau-Jean time stepping."""
+    """Prepare Moreau-Jean time stepping."""
     problems = [scene.problem(*cell) for cell in cells]
     march_moreau(problems[0], moreau_inverse(problems[0], 16), 16, 1)  # compiles
     steps = int(setting)
@@ -288,7 +288,7 @@ def _run(peer: Peer, cell: Cell, cycles: int) -> Answer:
 
 
 def prepare_peer(make: Callable[..., Peer], settings: Callable[[float], dict]) -> Callable[..., Prepared]:
-    """A peer made for a body with what `settings` says of the method's setting."""
+    """Prepare another solver for a body; `settings` translates the setting of the method."""
 
     def prepare(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:
         peer = make(scene.body, **settings(setting))
@@ -303,7 +303,7 @@ def _tolerances(relative: float) -> dict:
 
 
 def absolute(tolerance: float) -> float:
-    """The absolute tolerance that goes with a relative one: displacements are about 1."""
+    """Absolute tolerance that belongs to a relative one: displacements are about 1."""
     return max(1e-3 * tolerance, 1e-14)
 
 

@@ -14,7 +14,7 @@ from frictionmap.steady.maps import Arrays, allocate
 def cells_by_kernel(
     system: fm.System, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver
 ) -> tuple[Callable[[], None], Arrays]:
-    """(solve, out): cells (r[k], beta[k]), constants made anew for each; cell k is out[0, k, k]."""
+    """(solve, out) for cells (r[k], beta[k]), with constants computed for each; cell k is out[0, k, k]."""
     out = allocate((1, r.size, r.size), system.n, solver.outputs)
     one_a_row = np.arange(r.size)
     cells = Cells(system, r, beta, np.array([mu]), solver)

@@ -1,23 +1,25 @@
-"""One mass by every solver: the same cells, alternating, one thread each, answers checked while timed.
+"""One mass by every solver: the same cells, alternating, one thread each; results are checked while timed.
 
-Cells.  Random moving cells of the open strip of T Fig. 3.12.  The peers integrate 200 excitation periods, the
-thesis's number; ours ends when the steady state is found, and makes all constants of a cell anew.  A round
-runs all cells by the peer and all by ours; what is given is the median of the rounds' means, and the answers
-compared are those of the timed calls.  Compilation and imports are done before (see `startup`).
+Cells. Random moving cells of the open strip of T Fig. 3.12. The other solvers integrate 200 excitation
+periods, as in the thesis. frictionmap ends when the steady state is found, and computes all constants of a
+cell again. A round runs all cells with the other solver and all with frictionmap. The reported time is the
+median of the means of the rounds, and the compared results are those of the timed calls. Compilation and
+imports are done before (see `startup`).
 
-Map.  The whole of T Fig. 3.12 by a peer is extrapolated from a random sample of its cells, stuck ones
-included; ours is run whole.
+Map. The time of another solver for the whole of T Fig. 3.12 is extrapolated from a random sample of its
+cells, including stuck ones. frictionmap computes the whole map.
 
-Solved and marched.  Our own kernels with Newton's method on the return map, and without it (`steady =
-"marched"`), for open cells and for continuous ones next to a resonance, which the default would not integrate
-at all.  One mass, and the chain of T Fig. 6.17.
+Solved and marched. The kernels with Newton's method on the return map, and without it (`steady = "marched"`),
+for open cells and for continuous ones next to a resonance, which the default settings do not integrate. One
+mass, and the chain of T Fig. 6.17.
 
-Settings of the peers.  heyoka runs at what its documentation recommends for speed and what was found fastest
-here (`peers.heyoka` has the list): one compiled program for all cells with their numbers as parameters,
-fast_math, machine precision, terminal events, propagate_until.  Its batch mode advances several cells in one
-SIMD program; it is a peer of its own here (`heyoka_batch`), with the logic of stops on whole arrays.  Its
-ensemble mode copies the integrator for each propagation and spreads them over processors: all comparisons
-here are on one, and a propagation ends with each slide.  Five masses against the peers: `structures`.
+Settings of the other solvers. heyoka runs with the settings that its documentation recommends for speed and
+that were the fastest here (`peers.heyoka` lists them): one compiled program for all cells with their numbers
+as parameters, fast_math, machine precision, terminal events, propagate_until. Its batch mode advances several
+cells in one SIMD program. It is a separate solver here (`heyoka_batch`), with the logic of stops on whole
+arrays. Its ensemble mode copies the integrator for each propagation and distributes them over processors. It
+is not used, because all comparisons use one processor, and a propagation ends with each slide. For five
+masses, see `structures`.
 """
 
 import math
@@ -71,7 +73,7 @@ COUNTS = {
 
 @own_entry
 def solve_cells(system, beta, mu, limits):
-    """Stops and amplitude of single cells, one a frequency, each with all its constants computed anew."""
+    """Compute stops and amplitude of single cells, one per frequency, with all constants computed again."""
     cancel = np.zeros(1, dtype=np.uint8)
     out = np.empty((beta.size, 2))
     for k in range(beta.size):
@@ -110,7 +112,7 @@ def sample_cells(count: int, moving: bool, rng: np.random.Generator, mu: float =
 
 
 def _compare(ours: np.ndarray, theirs: list[Outcome], cells: list[Cell]) -> dict:
-    """How the answers differ: cells with other stop counts, and the median error of the amplitude."""
+    """Compare results: cells with other stop counts, and the median difference of the amplitude."""
     other = [
         {"contact": BODY.wall, **cell._asdict(), "zeta": BODY.zeta}
         for (stops, _), (their_stops, _), cell in zip(ours, theirs, cells, strict=True)
@@ -132,7 +134,7 @@ def _compare(ours: np.ndarray, theirs: list[Outcome], cells: list[Cell]) -> dict
 
 
 def against(make: Callable[[Body], Peer], cells: list[Cell], rounds: int) -> dict:
-    """One peer on some cells, alternating with ours."""
+    """Time one solver on some cells, alternating with frictionmap."""
     began = perf_counter()
     peer = make(BODY)
     set_up = perf_counter() - began
@@ -158,7 +160,7 @@ def against(make: Callable[[Body], Peer], cells: list[Cell], rounds: int) -> dic
 
 
 class _Clocked:
-    """heyoka's integrator with a clock on `propagate_until`."""
+    """Integrator of heyoka with a clock on `propagate_until`."""
 
     def __init__(self, integrator: Any) -> None:
         self.integrator = integrator
@@ -166,7 +168,7 @@ class _Clocked:
 
     @property
     def time(self) -> float:
-        """The integrator's."""
+        """Time of the integrator."""
         return self.integrator.time
 
     @time.setter
@@ -174,7 +176,7 @@ class _Clocked:
         self.integrator.time = value
 
     def propagate_until(self, end: float) -> None:
-        """The integrator's, timed."""
+        """Propagate with the integrator, timed."""
         began = perf_counter()
         self.integrator.propagate_until(end)
         self.seconds += perf_counter() - began
@@ -190,7 +192,7 @@ def share_in_integrator(cells: list[Cell]) -> float:
 
 
 def single_cells(quick: bool, rng: np.random.Generator) -> dict:
-    """Measure and print moving cells by every peer."""
+    """Measure and print moving cells by every solver."""
     content: dict = {}
     rows = []
     for peer_class in PEERS:
@@ -290,7 +292,7 @@ def _open_cells(system: fm.System, count: int, rng: np.random.Generator) -> tupl
 
 
 def _near_cells(system: fm.System, quick: bool) -> tuple[np.ndarray, np.ndarray]:
-    """r next to the first natural frequency on both sides, beta a little below beta_lim."""
+    """r next to the first natural frequency on both sides, beta slightly below beta_lim."""
     nearness = NEARNESS[:1] if quick else NEARNESS
     off = np.sort([sign * near for near in nearness for sign in (-1.0, 1.0)])
     r = float(system.modes.w[0]) * (1.0 + off)
@@ -302,7 +304,7 @@ def _near_cells(system: fm.System, quick: bool) -> tuple[np.ndarray, np.ndarray]
 def _by_kernel(
     system: fm.System, r: np.ndarray, beta: np.ndarray, steady: str, cycles: int
 ) -> Callable[[], Arrays]:
-    """A function that solves cells (r[k], beta[k]), mu = 1, by the kernel of maps; k is out[0, k, k]."""
+    """Function that solves cells (r[k], beta[k]), mu = 1, with the kernel of maps; k is out[0, k, k]."""
     solver = Solver(
         steady=steady,
         cycles=cycles,
@@ -325,7 +327,7 @@ def _diagonal(values: np.ndarray) -> np.ndarray:
 def solved_and_marched(
     system: fm.System, r: np.ndarray, beta: np.ndarray, cycles: int, budget: float
 ) -> dict:
-    """Both ways on the cells that both resolve in so many cycles, alternating; `budget` in seconds."""
+    """Time both methods on the cells that both resolve within `cycles`, alternating; `budget` in seconds."""
     resolved = np.ones(r.size, dtype=bool)
     for steady in ("solved", "marched"):  # compiles, too
         resolved &= _diagonal(_by_kernel(system, r, beta, steady, cycles)().status) == regimes.RESOLVED
@@ -398,7 +400,7 @@ def ways_to_the_steady_state(quick: bool, rng: np.random.Generator) -> dict:
 
 
 def _bars(axes: Axes, rows: list[tuple[str, float, float]], labels: tuple[str, str], unit: str) -> None:
-    """Two bars a row, with how many times the first one is."""
+    """Two bars per row, with the ratio of the first to the second."""
     names = [name for name, _, _ in rows]
     places = np.arange(len(rows))
     for shift, values, colour, label in (
@@ -418,7 +420,7 @@ def _bars(axes: Axes, rows: list[tuple[str, float, float]], labels: tuple[str, s
 
 
 def draw(content: dict, path: Path) -> None:
-    """Against the peers on the left, solved against marched on the right."""
+    """Draw the other solvers on the left, solved against marched on the right."""
     figure = new_figure(12.5, 4.6)
     left, right = figure.subplots(1, 2)
     rows = [

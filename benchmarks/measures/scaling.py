@@ -1,17 +1,17 @@
-"""How cost grows: with cells, threads, low frequency, share of open cells; and the floor of a phase.
+"""Computing time against cells, threads, low frequency and share of open cells; lower bound per segment.
 
 The map is that of T Fig. 3.12 (joined base-wall, no damping, r to 2.5, beta to 4) unless said otherwise, with
 the three default outputs.  Every timing is of a whole `frictionmap.sweep`, labels and memory included.
 
-cells           the map on ever finer grids, each of which holds all points of the first: there regimes and
-                stops have to be the same, and amplitudes to rounding (for mu = 1 a cell starts from the orbit
-                of its neighbour).  Sizes that would not fit into memory are skipped, said so.
-threads         one map on 1 to all processors, alternating; the same bits are asked for.
+cells           the map on successively finer grids, which all contain the points of the first: there regimes
+                and stops must be the same, amplitudes to rounding (for mu = 1 a cell starts from the orbit
+                of its neighbour).  Sizes that would not fit into memory are skipped with a message.
+threads         one map on 1 to all processors, alternating; results must be equal to the bit.
 low frequency   cells of a fixed wall between beta_lim and beta_stick, down to r = 1e-4: one excitation period
                 holds 1/r natural ones.  Stops and amplitude must not depend on the scan step.
-open cells      a fixed wall at beta up to 1, where all cells are open, and ever further beyond 1, where the
-                contact sticks and a formula says so: the open cells are of the same kind in every map.
-phases          nanoseconds a slide or stop beside its closed forms with no logic: see `floor`.
+open cells      a fixed wall at beta up to 1, where all cells are open, and increasingly beyond 1, where a
+                formula gives permanent sticking: the open cells are of the same kind in every map.
+phases          nanoseconds per slide or stop, and those of its closed forms alone: see `floor`.
 
 Cost against the number of masses is in `structures`.
 """
@@ -60,7 +60,7 @@ SECONDS, LEAST_RUNS, MOST_RUNS = 4.0, 3, 30
 
 
 def repeated(function: Callable[[], object], quick: bool) -> tuple[list[float], list]:
-    """Seconds of repeated calls, and the answers of the first and the last."""
+    """Seconds of repeated calls, and the results of the first and the last."""
     seconds: list[float] = []
     answers: list = []
     budget = SECONDS / 50 if quick else SECONDS
@@ -72,7 +72,7 @@ def repeated(function: Callable[[], object], quick: bool) -> tuple[list[float], 
 
 
 def same_bits(one: xr.Dataset, other: xr.Dataset) -> bool:
-    """Whether two maps hold the same bits, cell by cell."""
+    """Whether two maps are equal to the bit, cell by cell."""
     return all(one[name].values.tobytes() == other[name].values.tobytes() for name in one.data_vars)
 
 
@@ -95,7 +95,7 @@ def grid(finer: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def free_memory() -> float:
-    """Bytes of memory that are free; infinite where the system does not say."""
+    """Bytes of free memory; infinite if the system does not report it."""
     try:
         lines = Path("/proc/meminfo").read_text().splitlines()
     except OSError:
@@ -104,7 +104,7 @@ def free_memory() -> float:
 
 
 def memory_of_a_cell(system: fm.System) -> float:
-    """Bytes at the peak of a sweep over its cells, measured on a map of 10^5."""
+    """Peak bytes of a sweep over its number of cells, measured on a map of 10^5."""
     r, beta = grid(10)
     tracemalloc.start()
     fm.sweep(system, r, beta, threads=1)
@@ -190,14 +190,14 @@ def threads_cost(quick: bool) -> dict:
 
 
 def _open_cells(system: fm.System, r: float, count: int) -> np.ndarray:
-    """beta evenly between beta_lim and beta_stick at one frequency."""
+    """Values of beta evenly between beta_lim and beta_stick at one frequency."""
     ends = fm.boundaries(system, [r])
     low, high = ends.beta_lim.item(), ends.beta_stick.item()
     return low + (high - low) * (np.arange(count) + 0.5) / count
 
 
 def _disagreement(one: xr.Dataset, other: xr.Dataset) -> tuple[int, float]:
-    """Resolved cells with other stop counts, and the largest relative difference of Z in the rest."""
+    """Resolved cells with other stop counts, and the largest relative difference of Z in the others."""
     resolved = (one.status == regimes.RESOLVED).values & (other.status == regimes.RESOLVED).values
     equal = (one.stops_per_cycle == other.stops_per_cycle).values
     z, other_z = one.contact_amplitude.values, other.contact_amplitude.values
@@ -206,7 +206,7 @@ def _disagreement(one: xr.Dataset, other: xr.Dataset) -> tuple[int, float]:
 
 
 def low_frequency_cost(quick: bool) -> dict:
-    """Microseconds an open cell of a fixed wall, from r = 1 down."""
+    """Microseconds per open cell of a fixed wall, from r = 1 down."""
     outputs = ("stops_per_cycle", "contact_amplitude", "status")
     content: dict = {"scan steps a period of the check": OTHER_STEPS}
     rows = []
@@ -249,7 +249,7 @@ def low_frequency_cost(quick: bool) -> dict:
 
 
 def open_cells_cost(quick: bool) -> dict:
-    """Nanoseconds a cell against the share of open cells, from none to all."""
+    """Nanoseconds per cell against the share of open cells, from none to all."""
     system = fm.System(contact="fixed-wall", damping_ratios=0.02)
     r = np.linspace(0.2, 2.0, 200)
     count = 1000
@@ -372,7 +372,7 @@ def _draw_floor(axes: Axes, found: dict) -> None:
 
 
 def draw(content: dict, path: Path) -> None:
-    """Five panels."""
+    """Draw five panels."""
     figure = new_figure(13.0, 8.0)
     figure.suptitle("How cost grows (one mass; one thread unless said otherwise)")
     panels = figure.subplot_mosaic([["cells", "threads", "open"], ["low", "floor", "floor"]])

@@ -30,7 +30,7 @@ ZETA = 0.01
 
 
 class Modes(NamedTuple):
-    """What the bracket is made of at one frequency; arrays over modes."""
+    """Terms of the bracket at one frequency; arrays over modes."""
 
     c: np.ndarray
     a: np.ndarray  # w/r
@@ -40,14 +40,14 @@ class Modes(NamedTuple):
 
 
 def modes_at(system: fm.System, r: float) -> Modes:
-    """The modes that the contact sees."""
+    """Participating modes."""
     modes = system.modes
     u, g = np.array([damping_functions(w, zeta, r) for w, zeta in zip(modes.w, modes.zeta, strict=True)]).T
     return Modes((modes.chi / modes.w) ** 2, modes.w / r, modes.zeta, u, g)
 
 
 def bracket(m: Modes, tau: np.ndarray) -> np.ndarray:
-    """The sum over modes at times tau in (0, pi), by numpy."""
+    """Sum over modes at times tau in (0, pi), by numpy."""
     a, zeta, u, g = (column[:, np.newaxis] for column in m[1:])
     s = np.sqrt(1.0 - zeta**2)
     swing = np.exp(-zeta * a * tau)
@@ -57,7 +57,7 @@ def bracket(m: Modes, tau: np.ndarray) -> np.ndarray:
 
 
 def grid(points: int) -> np.ndarray:
-    """So many times inside (0, pi), equally spaced."""
+    """Equally spaced points inside (0, pi)."""
     return np.pi * np.arange(1, points + 1) / (points + 1)
 
 
@@ -70,7 +70,7 @@ def references(body: closed_forms.Structure, r: float) -> tuple[float, float, fl
 
 
 def _systems() -> dict[str, tuple[fm.System, closed_forms.Structure]]:
-    """To the package, and in 40 digits."""
+    """The structures for the package, and in 40 digits."""
     ones = [1.0] * 5
     five = closed_forms.structure(
         *closed_forms.chain_matrices(ones, ones), [0, 0, 1, 0, 0], [1, 0, 0, 0, 0], 0, [ZETA] * 5
@@ -82,13 +82,13 @@ def _systems() -> dict[str, tuple[fm.System, closed_forms.Structure]]:
 
 
 def _worst(found: np.ndarray, exact: np.ndarray) -> dict:
-    """Relative errors over the frequencies."""
+    """Largest relative errors over the frequencies."""
     errors = np.abs(found - exact) / np.abs(exact)
     return {"median": float(np.median(errors)), "largest": float(errors.max())}
 
 
 def _by_kernel(system: fm.System, r: np.ndarray) -> np.ndarray:
-    """S at frequencies r, with V, U, G and H (five masses: U, G, H and the bound by modes) on the way."""
+    """S at frequencies r, computed together with V, U, G and H (five masses: U, G, H and the modal bound)."""
     if system.n == 1:
         out = np.empty((6, r.size))
         response_functions(r, system.zeta, *out)
@@ -103,7 +103,7 @@ def _by_kernel(system: fm.System, r: np.ndarray) -> np.ndarray:
 def _draw(
     body: closed_forms.Structure, count: int, limits: tuple[float, float], rng: np.random.Generator
 ) -> tuple:
-    """Random frequencies with S inside the interval, and what is exact there: S, beta_lim, beta_lim_modal."""
+    """Random frequencies with S inside the interval, and the exact S, beta_lim, beta_lim_modal there."""
     chosen: list[float] = []
     exact = []
     while len(chosen) < count:
@@ -160,7 +160,7 @@ def _one_system(
 
 
 def measure(quick: bool) -> dict:
-    """Error of S and seconds a frequency, by system."""
+    """Error of S and seconds per frequency, by system."""
     rng = np.random.default_rng(227)
     return {
         name: _one_system(system, body, FREQUENCIES[name], quick, rng)

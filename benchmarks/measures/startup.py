@@ -1,8 +1,8 @@
-"""Start-up in fresh processes: import, --help, first run (kernels compiled), second run, plot.
+"""Start-up in new processes: import, --help, first run (kernels compiled), second run, plot.
 
-Every round starts with an empty cache of kernels, and every line of it is a process of its own.  The map of
-T Fig. 3.12 stands for one mass.  A structure (T Fig. 7.7, two damped masses) has kernels of its own, which
-take longer to compile; the quick form leaves them out.  The file of a second run has to be that of the first.
+Every round starts with an empty cache of kernels, and every measurement is a new process. The map of T Fig.
+3.12 represents one mass. A structure (T Fig. 7.7, two damped masses) has kernels of its own, which take
+longer to compile; the quick form leaves them out. The second run must write the same file as the first.
 """
 
 import os
@@ -30,7 +30,7 @@ FIRST_STRUCTURE, SECOND_STRUCTURE = "map of two masses, first run", "map of two 
 
 
 def _process(arguments: list[str], cache: str, folder: str) -> float:
-    """Seconds of one fresh Python process."""
+    """Seconds of one new Python process."""
     search = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     environment = {**os.environ, "NUMBA_CACHE_DIR": cache, "PYTHONPATH": search}
     command = [sys.executable, *arguments]
@@ -41,7 +41,7 @@ def _process(arguments: list[str], cache: str, folder: str) -> float:
 
 
 def _both_runs(config: Path, cache: str, folder: str) -> tuple[float, float]:
-    """Seconds of the first and the second run of a map; what they wrote has to be the same."""
+    """Seconds of the first and the second run of a map, which must write the same file."""
     taken = [
         _process(["-m", "frictionmap", "map", str(config), "-o", name, "--threads", "1"], cache, folder)
         for name in ("first.nc", "second.nc")
@@ -56,7 +56,7 @@ def _both_runs(config: Path, cache: str, folder: str) -> tuple[float, float]:
 
 
 def _round(structure: bool) -> dict[str, float]:
-    """Seconds of each process, in the order of a user's first day."""
+    """Seconds of each process, in the order in which a new user starts them."""
     taken = {}
     with tempfile.TemporaryDirectory() as cache, tempfile.TemporaryDirectory() as folder:
         taken[NOTHING] = _process(["-c", "pass"], cache, folder)
@@ -72,7 +72,7 @@ def _round(structure: bool) -> dict[str, float]:
 
 
 def draw(seconds: dict, path: Path) -> None:
-    """One bar a process."""
+    """Draw one bar per process."""
     figure = new_figure(8.0, 0.45 * len(seconds) + 1.3)
     axes = figure.subplots()
     names = list(seconds)

@@ -1,8 +1,8 @@
-"""Steady states: solved against marched, one answer for mu = 1, what stays unresolved without damping.
+"""Steady states: solved against marched, uniqueness for mu = 1, unresolved cells without damping.
 
-Marching waits until the motion repeats by itself, to 1e-12 a return, and knows nothing of Newton's method,
-of neighbours or of closed forms (`skip = "none"`).  Its answers are compared cell by cell; every difference
-is listed with its cause.
+Marching continues until the motion repeats, to 1e-12 per recurrence. It does not use Newton's method,
+neighbouring cells or closed forms (`skip = "none"`). Its results are compared cell by cell, and every
+difference is listed with its cause.
 """
 
 import math
@@ -53,7 +53,7 @@ def _status(value: int) -> str:
 
 
 def _cause(cell: dict, other: dict, lim: float, stick: float) -> str:
-    """Why two answers to one cell differ."""
+    """Cause of the difference between two results of one cell."""
     beta = cell["beta"]
     if (
         min(abs(beta / lim - 1.0) if lim else math.inf, abs(beta / stick - 1.0) if stick else math.inf)
@@ -67,7 +67,7 @@ def _cause(cell: dict, other: dict, lim: float, stick: float) -> str:
 
 
 def compare(solved: xr.Dataset, marched: xr.Dataset) -> tuple[int, list[dict], np.ndarray]:
-    """Cells that both resolve, the ones that differ with their cause, and relative differences of Z."""
+    """Cells that both resolve, the different ones with their cause, and relative differences of Z."""
     regime = (solved.regime != marched.regime).values
     stops = (solved.stops_per_cycle != marched.stops_per_cycle).values & (
         solved.regime == regimes.STICK_SLIP
@@ -140,7 +140,7 @@ def random_cells(quick: bool) -> dict:
 
 
 def random_system(rng: np.random.Generator, zeta: float) -> fm.System:
-    """A chain of 1 to 4 random masses and springs, any contact, any load."""
+    """Chain of 1 to 4 random masses and springs, any contact, any load."""
     n = int(rng.integers(1, 5))
     mass, stiffness = (np.concatenate(([1.0], rng.uniform(0.3, 3.0, n - 1))) for _ in range(2))
     contact = str(rng.choice(["fixed-wall", "joined-base-wall", "between-masses"][: 2 + (n > 1)]))
@@ -154,7 +154,7 @@ def random_system(rng: np.random.Generator, zeta: float) -> fm.System:
 
 
 def one_answer(quick: bool) -> dict:
-    """mu = 1: marched from rest, marched from a moving start, and as a map has it; the same answer?"""
+    """mu = 1: compare marching from rest, marching from the moving start, and the result of a map."""
     rng = np.random.default_rng(10000)
     wanted = 250 if quick else 10000
     cells = resolved = 0
@@ -185,9 +185,10 @@ def one_answer(quick: bool) -> dict:
 
 
 def headings(quick: bool) -> dict:
-    """One mass, mu > 1, where steady states coexist: is the one solved for the one that marching reaches?
+    """One mass, mu > 1, with coexisting steady states: compare the solved one with the one that marching
+    reaches.
 
-    Alone and in maps of other outputs the answer must be the same, so no details are asked for.
+    The result of a cell must be the same alone and in a map with other outputs, so no details are requested.
     """
     rng = np.random.default_rng(100000)
     maps = 1 if quick else 25
@@ -230,7 +231,7 @@ def undamped(quick: bool) -> dict:
 
 
 def draw(off: dict[str, float], content: dict, path: Path) -> None:
-    """Statuses of the undamped maps, as shares of their cells."""
+    """Draw the statuses of the undamped maps as shares of their cells."""
     names = [code.name for code in regimes.STATUSES if any(code.name in row for row in content.values())][1:]
     figure = new_figure(7.4, 3.6)
     ax = figure.subplots()

@@ -1,16 +1,16 @@
-"""Structures: what they cost against the number of masses, and five masses against general-purpose solvers.
+"""Structures: computing time against the number of masses, and five masses against general-purpose solvers.
 
-Cost.  Equal chains, contact and load on mass 1, 2 % damping, mu = 1, beta = 0.5, which is half of what holds
-the contact for good.  The frequency is a third of the fastest one's, so that an excitation period has the
-same number of scan steps (75) whatever the number of masses.  The scan step follows the fastest mode: a phase
-(a slide or a stop) costs something by itself, and something per scan step.  The two are told apart by a line
-through its times with 24, 72 and 216 steps a period of the fastest mode.
+Cost. Equal chains, contact and load on mass 1, 2 % damping, mu = 1, beta = 0.5, which is half of what holds
+the contact permanently. The frequency is a third of the highest natural frequency, so an excitation period
+has the same number of scan steps (75) for any number of masses. The scan step follows the fastest mode. A
+segment (a slide or a stop) has a fixed cost and a cost per scan step. A line through its times with 24, 72
+and 216 steps per period of the fastest mode separates the two.
 
-Peers.  The chain of T Fig. 6.17, mu = 1, random cells between beta_lim and beta_stick, from rest.  Ours ends
-when the steady state is found.  The peers march for as many periods as our own `steady = "marched"` needs for
-1e-10, and are told this number and the period; cells in which it is above `MOST_CYCLES` are left out.  Both
-favour the peers: they need not find out whether they are done, and Newton's method gains most where marching
-is slow.
+Other solvers. The chain of T Fig. 6.17, mu = 1, random cells between beta_lim and beta_stick, from rest.
+frictionmap ends when the steady state is found. The other solvers march for as many periods as `steady =
+"marched"` needs for 1e-10, and are given this number and the period. Cells in which it is above `MOST_CYCLES`
+are left out. Both favour the other solvers: they need not detect convergence, and Newton's method gains most
+where marching is slow.
 """
 
 import math
@@ -63,7 +63,7 @@ ONE_MASS = "1, kernel for one mass"
 
 
 def equal_chain(masses: int, contact: int, load: int, zeta: float) -> fm.System:
-    """Equal masses and springs; friction between one mass and a wall."""
+    """Chain of equal masses and springs; friction between one mass and a wall."""
     ones = [1.0] * masses
     return fm.System(
         contact_masses=[contact], load_mass=load, mass_ratios=ones, stiffness_ratios=ones, damping_ratios=zeta
@@ -88,7 +88,7 @@ def follow_one(step, b, mu_b, slides, work):
 
 @own_entry
 def follow_structure(st, beta, mu_beta, slides, state, held, scratch):
-    """Follow a structure from rest: (slides, stops, scan steps); fewer slides if it sticks for good."""
+    """Follow a structure from rest: (slides, stops, scan steps); fewer slides if it sticks permanently."""
     state[:] = 0.0
     allowed = 1e4
     _, c, s, force, _, _, _ = after_slide(st, beta, mu_beta, state, held, 1.0, 0.0, allowed, scratch)
@@ -108,7 +108,7 @@ def follow_structure(st, beta, mu_beta, slides, state, held, scratch):
 
 
 def _fit(rows: list[dict]) -> tuple[float, float]:
-    """(ns a phase, ns a scan step) of the line through the least times a phase over steps a phase."""
+    """(ns per segment, ns per scan step) of the line through the shortest times."""
     step, phase = np.polyfit(
         [row["scan steps a phase"] for row in rows], [row["ns a phase"] for row in rows], 1
     )
@@ -116,7 +116,7 @@ def _fit(rows: list[dict]) -> tuple[float, float]:
 
 
 def _motion(system: fm.System, r: float, steps: int, special: bool) -> Callable[[int], tuple]:
-    """A function that follows the motion for so many slides: slides done, stops, scan steps."""
+    """Function that follows the motion for the given number of slides: slides done, stops, scan steps."""
     if special:
         step = phases.step_constants(r, system.zeta, float(steps))
         work = np.empty(MAX_TERMS)
@@ -129,7 +129,7 @@ def _motion(system: fm.System, r: float, steps: int, special: bool) -> Callable[
 
 
 def phase_cost(masses: int, special: bool, repeats: int) -> dict:
-    """Nanoseconds per phase and per scan step of a chain, or of one mass by its own kernel."""
+    """Nanoseconds per segment and per scan step of a chain, or of one mass by its own kernel."""
     system = equal_chain(masses, 1, 1, 0.02)
     r = float(system.modes.w[-1]) / 3.0
     slides = max(200, 4000 // masses)
@@ -176,7 +176,7 @@ def boundary_cost(masses: int, special: bool, count: int, repeats: int) -> dict:
 
 
 def cell_cost(masses: int, special: bool, side: int, repeats: int) -> dict:
-    """Microseconds per integrated cell of a map, with all else that a map needs; one thread."""
+    """Microseconds per integrated cell of a map, including everything that a map needs; one thread."""
     system, scale = equal_chain(masses, 1, 1, 0.02), 1.0
     if masses == 1 and not special:  # in other units one mass is a structure like any other
         scale = 2.0
@@ -201,7 +201,7 @@ def step_line(found: dict) -> tuple[float, float]:
 
 
 def cost(quick: bool) -> dict:
-    """Measure and print the cost against the number of masses."""
+    """Measure and print the computing time against the number of masses."""
     repeats = 10 if quick else 50
     content = {}
     print(
@@ -232,7 +232,7 @@ def cost(quick: bool) -> dict:
 
 
 class Sampled(NamedTuple):
-    """A random cell, and what `steady = "marched"` says of it."""
+    """A random cell, with the result of `steady = "marched"`."""
 
     r: float
     beta: float
@@ -243,7 +243,7 @@ class Sampled(NamedTuple):
 def sample_cells(
     system: fm.System, count: int, most_cycles: int, rng: np.random.Generator
 ) -> tuple[list[Sampled], int]:
-    """Random cells between beta_lim and beta_stick, by r; how many more did not repeat in `most_cycles`."""
+    """Random cells between beta_lim and beta_stick, sorted by r; number of those not periodic."""
     found: list[Sampled] = []
     left_out = 0
     outputs = ("cycles", "period", "status")
@@ -272,13 +272,13 @@ def sample_cells(
 
 
 def prepare(system: fm.System, sampled: list[Sampled]) -> tuple[Callable[[], None], Arrays]:
-    """(solve, out): the cells by the kernel of maps, constants made anew for each; cell k is out[0, k, k]."""
+    """(solve, out) for the cells by the kernel of maps, with constants for each; cell k is out[0, k, k]."""
     r, beta = (np.array([getattr(cell, name) for cell in sampled]) for name in ("r", "beta"))
     return cells_by_kernel(system, r, beta, 1.0, Solver())
 
 
 def _differences(ours: list[Outcome], theirs: list[Outcome], cells: list[Sampled]) -> dict:
-    """Cells with other stop counts; relative differences of Z elsewhere."""
+    """Cells with other stop counts; relative differences of Z in the others."""
     other, errors = [], []
     for a, b, cell in zip(ours, theirs, cells, strict=True):
         if a.stops != b.stops:
@@ -293,7 +293,7 @@ def _differences(ours: list[Outcome], theirs: list[Outcome], cells: list[Sampled
 
 
 def against(peer: Peer, system: fm.System, cells: list[Sampled], rounds: int) -> dict:
-    """One peer on the cells of one chain, alternating with ours; rounds of all cells."""
+    """Time one solver on the cells of one chain, alternating with frictionmap; rounds of all cells."""
     solve, out = prepare(system, cells)
     solve()  # compiles
     peer.run(Cell(*cells[0][:2]), 2)
@@ -330,7 +330,7 @@ def against(peer: Peer, system: fm.System, cells: list[Sampled], rounds: int) ->
 
 
 def peers(quick: bool) -> dict:
-    """Measure and print five masses against the peers."""
+    """Measure and print five masses against other solvers."""
     content: dict = {}
     rng = np.random.default_rng(617)
     for zeta in DAMPING:
@@ -366,7 +366,7 @@ def peers(quick: bool) -> dict:
 
 
 def draw(content: dict, path: Path) -> None:
-    """Cost against the number of masses, and time a cell against the peers."""
+    """Draw the time against the number of masses, and the time per cell against other solvers."""
     found = content["cost"]
     n = np.array(MASSES)
     figure = new_figure(10.0, 4.4)

@@ -1,4 +1,4 @@
-"""What every peer solves: bodies with one Coulomb contact, cells, and what a run reports.
+"""Problem of every solver: bodies with one Coulomb contact, cells, and the results of a run.
 
 Equal masses and springs, unit friction force in the contact, tau the phase of the load, ' = d/dtau:
 
@@ -46,7 +46,7 @@ class Cell(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What a run reports of its last periods; `stops` (a period) is nan where the contact sticks for good."""
+    """Results of the last periods of a run; `stops` (per period) is nan if the contact sticks permanently."""
 
     stops: float
     Z: float
@@ -56,7 +56,7 @@ STUCK = Outcome(math.nan, 0.0)
 
 
 def load_in_contact(wall: str, r: float, zeta: float) -> tuple[float, float]:
-    """Return the amplitude and the phase of the load F that the contact of one mass feels."""
+    """Return the amplitude and the phase of the load F in the contact of one mass."""
     if not r > 0:
         raise ValueError(f"r must be positive, not {r!r}")
     if wall == "fixed-wall":

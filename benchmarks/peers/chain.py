@@ -1,9 +1,9 @@
-"""Chains of masses by a general-purpose solver: what all such peers share.
+"""Chains of masses with a general-purpose solver: the common part of all such solvers.
 
-The end of a stop has no closed form here, as the other masses swing on: the linear equations with the mass
-in contact held are integrated too, to the event |f| = mu beta.  The peers are told how many periods to march,
-and how long the steady period is.  The velocity in the contact is made exactly zero where a slide ends; the
-offset of that event, -1e-13, is explained in `heyoka.OneMassHeyoka`.
+The end of a stop has no closed form here, because the other masses continue to move. The linear equations
+with the mass in contact held are also integrated, up to the event |f| = mu beta. The solvers are given the
+number of periods to march and the steady period. The velocity in the contact is made exactly zero where a
+slide ends; `heyoka.OneMassHeyoka` explains the offset of that event, -1e-13.
 """
 
 import math
@@ -16,9 +16,9 @@ from .peer import MAX_PHASES, Peer
 
 
 class _Phase(NamedTuple):
-    """What a chain is at: phase of the load, sign of the slide or 0, and when the last stop began.
+    """State of a chain: phase of the load, sign of the slide or 0, and start of the last stop.
 
-    A stop that began before the periods that count is not one of theirs.
+    Stops that began before the periods that count are not counted.
     """
 
     theta: float
@@ -27,10 +27,10 @@ class _Phase(NamedTuple):
 
 
 class ChainPeer(Peer):
-    """A solver under test.  A subclass integrates one slide and one stop.
+    """Solver for chains. A subclass integrates one slide and one stop.
 
-    `slide(theta, sign, end)` and `stop(theta, end)` change `self.state`; they return the phase of the load
-    and True, or the sign of the next slide, if it ended by itself; False, or 0, if `end` came first.
+    `slide(theta, sign, end)` and `stop(theta, end)` change `self.state`. They return the phase of the load
+    and True, or the sign of the next slide, if the segment ended; False, or 0, if `end` came first.
     """
 
     def __init__(self, body: Body) -> None:
@@ -43,7 +43,7 @@ class ChainPeer(Peer):
     def run(
         self, cell: Cell, cycles: int, periods: int = 1, begins: list[float] | None = None
     ) -> Outcome:  # fmt: skip
-        """Integrate one cell from rest, as `Peer` has it."""
+        """Integrate one cell from rest, as described in `Peer`."""
         self.prepare(*cell)
         push, limit = self.force(0.0), cell.mu * cell.beta
         state = _Phase(0.0, 0 if abs(push) <= limit else 1 if push > 0.0 else -1, 0.0)
@@ -58,7 +58,7 @@ class ChainPeer(Peer):
     def march(
         self, state: "_Phase", limit: float, first: float, end: float
     ) -> tuple["_Phase", list[float], float]:  # fmt: skip
-        """Go from phase to phase up to `end`; where it is, when stops began since `first`, and max |z|."""
+        """March by segments up to `end`; state, starts of the stops since `first`, and max |z|."""
         theta, sign, began = state
         counted, peak = [], abs(self.place())
         for _ in range(MAX_PHASES):

@@ -20,7 +20,7 @@ WALLS = {"sdof-wall": "fixed-wall", "sdof-base": "joined-base-wall"}
 
 
 def reference_rows(path: str) -> list[tuple[Body, Cell, dict]]:
-    """The rows of the table that these peers can run, as (Body, Cell, row)."""
+    """Rows of the table that these solvers can run, as (Body, Cell, row)."""
     with open(path, encoding="utf-8") as file:
         rows = json.load(file)["rows"]
     return [
@@ -35,9 +35,9 @@ def reference_rows(path: str) -> list[tuple[Body, Cell, dict]]:
 
 
 def check(kind: type[Peer], rows: Sequence[tuple[Body, Cell, dict]], cycles: int) -> tuple:
-    """Run the rows; return (wrong cells, errors of Z where settled, times).
+    """Run the rows; return (wrong cells, errors of Z where converged, times).
 
-    Where the reference itself needs more than `cycles` periods, or never settles, Z is not judged.
+    Z is not compared if the reference itself needs more than `cycles` periods, or never converges.
     """
     made = cache(kind)
     wrong, errors, times = [], [], []
@@ -57,7 +57,7 @@ def check(kind: type[Peer], rows: Sequence[tuple[Body, Cell, dict]], cycles: int
 
 
 def main() -> None:
-    """Check and time the peers."""
+    """Check and time the solvers."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("reference", help="JSON table of steady states")
     parser.add_argument("--rows", type=int, help="run the first so many rows only")

@@ -24,12 +24,12 @@ EVENT = 2
 
 
 def peer(body: Body, **settings) -> Peer:
-    """The peer for a body."""
+    """Solver for a body."""
     return (OneMassCvode if body.masses == 1 else ChainCvode)(body, **settings)
 
 
 def _cvode(rhs, events, count, directions, rtol, atol):
-    """A solver with terminal events."""
+    """Solver with terminal events."""
     events.terminal = [True] * count
     events.direction = directions
     return import_module("sksundae.cvode").CVODE(
@@ -49,7 +49,7 @@ def _to_event(solver, theta, state, end):
 
 
 class OneMassCvode(OneMassPeer):
-    """One mass."""
+    """CVODE for one mass."""
 
     name = "CVODE"
     package = "sksundae"
@@ -89,7 +89,7 @@ class OneMassCvode(OneMassPeer):
 
 
 class ChainCvode(ChainPeer):
-    """A chain of masses."""
+    """CVODE for a chain of masses."""
 
     name = "CVODE"
     package = "sksundae"
@@ -100,7 +100,7 @@ class ChainCvode(ChainPeer):
         self.tolerances = rtol, atol
 
     def rates(self, y, theta, rate):
-        """All rates but for friction."""
+        """All rates without friction."""
         n = self.n
         rate[:n] = y[n:]
         rate[n:] = -(self.stiffness @ y[:n] + self.r * (self.damping @ y[n:])) * self.square

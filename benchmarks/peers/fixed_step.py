@@ -1,16 +1,17 @@
-"""Fixed-step methods that are common for dry friction, compiled: what one would write by hand.
+"""Fixed-step methods that are common for dry friction, compiled.
 
-The structure has unit masses, in displacements of the masses (one mass: of the contact):
+The structure has unit masses. The coordinates are the displacements of the masses (for one mass, of the
+contact):
 
     r^2 x'' + C x' + K x + e_j f = e_l (load_cos cos(tau) + load_sin sin(tau))
 
 with f = beta sgn(x_j') while the contact slides and |f| <= mu beta while it sticks (x_j' = 0).
 
-`march_rk4` is the classical Runge-Kutta method of order 4 with the sticking test where x_j' has changed its
-sign: at the end of the step or, `located`, at the zero, found by regula falsi with shorter steps; a stop ends
-the same way.  The load at the nodes is tabulated over a period.  `march_moreau` is the time stepping of
-Moreau and Jean with theta = 1/2: velocity and impulse are the unknowns, friction is implicit, its impulse a
-projection on [-h beta, h beta].  It has no separate static coefficient: mu = 1.
+`march_rk4` is the classical Runge-Kutta method of order 4. It tests for sticking where x_j' has changed its
+sign: at the end of the step or, with `located`, at the zero, found by regula falsi with shorter steps. A stop
+ends in the same way. The load at the nodes is tabulated over a period. `march_moreau` is the time stepping of
+Moreau and Jean with theta = 1/2: velocity and impulse are the unknowns, friction is implicit, and its impulse
+is a projection on [-h beta, h beta]. It has no separate static coefficient: mu = 1.
 
 All march from rest, x = x' = 0 at tau = 0, and report the last excitation period.
 """
@@ -44,7 +45,7 @@ class Problem(NamedTuple):
 
 
 class Marched(NamedTuple):
-    """The last period: stops that begin in it, max |x_j|, and a state of it in the fastest slide."""
+    """Results of the last period: stops that begin in it, max |x_j|, and its state in the fastest slide."""
 
     stops: int
     peak: float
@@ -74,7 +75,7 @@ def _load(p, tau):
 
 @njit(cache=True, error_model="numpy")
 def _holding_force(p, x, v, load):
-    """The friction force that keeps the contact where it is."""
+    """Friction force that keeps the contact where it is."""
     j = p.contact
     force = load if p.load == j else 0.0
     for k in range(x.size):
@@ -99,7 +100,7 @@ def _accelerate(p, x, v, load, sign, a):
 
 @njit(cache=True, error_model="numpy")
 def _rk4_one_mass(p, x, v, loads, h, friction, x_new, v_new):
-    """The step of one mass, without loops; friction 0: it sticks."""
+    """Step of one mass, without loops; friction 0: it sticks."""
     if friction == 0.0:
         x_new[0], v_new[0] = x, v
         return
@@ -149,7 +150,9 @@ def _rk4_step(p, x, v, loads, h, sign, x_new, v_new, scratch):
 
 @njit(cache=True, error_model="numpy")
 def _left(p, x, v, load, sign):
-    """Positive while the phase lasts: velocity along the slide, or what the contact can still hold."""
+    """Positive while the segment lasts: velocity along the slide, or remaining capacity of the contact to
+    stick.
+    """
     if sign != 0:
         return sign * v[p.contact]
     return p.mu * p.beta - abs(_holding_force(p, x, v, load))
@@ -157,7 +160,7 @@ def _left(p, x, v, load, sign):
 
 @njit(cache=True, error_model="numpy")
 def _part_step(p, x, v, tau, h, sign, x_new, v_new, scratch):
-    """A step of any length from any time; what is left of the phase at its end."""
+    """Step of any length from any time; returns `_left` at its end."""
     loads = (_load(p, tau), _load(p, tau + 0.5 * h), _load(p, tau + h))
     _rk4_step(p, x, v, loads, h, sign, x_new, v_new, scratch)
     return _left(p, x_new, v_new, loads[2], sign)
@@ -165,7 +168,7 @@ def _part_step(p, x, v, tau, h, sign, x_new, v_new, scratch):
 
 @njit(cache=True, error_model="numpy")
 def _locate(p, x, v, tau, h, sign, x_new, v_new, scratch):
-    """Length of the step that ends where the phase ends, by regula falsi (Illinois); sets the state there."""
+    """Length of the step to the end of the segment, by regula falsi (Illinois); sets the state there."""
     high = h
     left_high = _part_step(p, x, v, tau, high, sign, x_new, v_new, scratch)
     low = 0.0
@@ -277,7 +280,7 @@ def march_rk4(p, steps, cycles, located):
 def march_moreau(p, inverse, steps, cycles):
     """March with the theta scheme; `inverse` is that of r^2 + h C/2 + h^2 K/4, shape (n, n).
 
-    A stop is a run of at least two sticking steps: one is what a reversal takes.
+    A stop is a run of at least two sticking steps, because a reversal takes one.
     """
     n = p.stiffness.shape[0]
     j = p.contact
@@ -333,7 +336,7 @@ def march_moreau(p, inverse, steps, cycles):
 
 
 def moreau_inverse(p: Problem, steps: int) -> np.ndarray:
-    """The inverse that `march_moreau` needs."""
+    """Inverse that `march_moreau` needs."""
     h = TWO_PI / steps
     inertia = p.inertia * np.eye(p.stiffness.shape[0])
     return np.linalg.inv(inertia + 0.5 * h * p.damping + 0.25 * h * h * p.stiffness)

@@ -11,7 +11,7 @@ from .peer import Peer
 
 
 def peer(body: Body, **settings) -> Peer:
-    """The peer for a body."""
+    """Solver for a body."""
     return (OneMassHeyoka if body.masses == 1 else ChainHeyoka)(body, **settings)
 
 
@@ -24,16 +24,16 @@ class OneMassHeyoka(OneMassPeer):
     random cells, half with mu = 1, an event at v = 0 answered one wrongly with the default
     cooldown, beside thousands of warnings of failed root searches; without a cooldown, four
     wrongly, and 178 did not end. At -1e-13 no root can lie at the start, none has to be kept away
-    by a cooldown, and the sign of v tells the event from the end of the run. The overshoot moves z
+    by a cooldown, and the sign of v distinguishes the event from the end of the run. The overshoot moves z
     by 1e-26/z'', or by some 1e-20 where z'' = 0.
 
     Tried over the 65 moving cells of the reference table, single thread, against the settings
     kept (run time 1): without fast_math 1.11; tolerance 1e-12 0.98 and 1e-10 0.98, so machine
     precision stays; high_accuracy 1.01; slp_vectorize 1.05; compact_mode 1.5; stepping from
     Python instead of propagate_until 1.6; cos and sin carried as states 1.1; friction removed by
-    a shift of z 1.02. Some 40 % of what is left is numerical work, about 2 steps a slide; the rest
-    is calls and the logic of stops. A callback of the event saves none of them, as it may not move
-    the time over a stop.
+    a shift of z 1.02. Some 40 % of the remaining time is numerical work, about 2 steps per slide; the
+    rest is calls and the logic of stops. A callback of the event saves none of them, because it may not
+    move the time over a stop.
 
     Many cells at a time gain next to nothing, because the lanes of a batch stop at different
     times and each stop must be handled outside. Speed of taylor_adaptive_batch against one cell
@@ -81,9 +81,9 @@ class OneMassHeyoka(OneMassPeer):
 class ChainHeyoka(ChainPeer):
     """heyoka's Taylor integrator: one program for slides, one for stops, compiled once a chain.
 
-    A slide is integrated as sign times the motion, so that one event serves both directions.  Of what was
-    tried the fastest is kept: tolerance 1e-10 (machine precision takes 1.04 times as long), displacements of
-    the masses (modes: 1.1), fast_math (without: 1.02).  A phase takes some 10 us.
+    A slide is integrated as sign times the motion, so that one event serves both directions.  The fastest
+    settings are used: tolerance 1e-10 (machine precision takes 1.04 times as long), displacements of
+    the masses (modes: 1.1), fast_math (without: 1.02).  A segment takes some 10 us.
     """
 
     name = "heyoka"
@@ -99,7 +99,7 @@ class ChainHeyoka(ChainPeer):
         cosine = drive * heyoka.cos(heyoka.time)
 
         def pull(i):
-            """Force on mass i but for friction."""
+            """Force on mass i without friction."""
             terms = [-self.stiffness[i, k] * q[k] for k in range(n) if self.stiffness[i, k]]
             if body.zeta:
                 terms.append(-(r * heyoka.sum([self.damping[i, k] * v[k] for k in range(n)])))

@@ -1,9 +1,9 @@
-"""heyoka's batch mode: many cells of one mass at a time, the logic of stops on whole arrays.
+"""heyoka's batch mode: many cells of one mass at a time, with the logic of stops on whole arrays.
 
-The offset of the event and what is closed form are as in `one_mass`.  Each cell has its events at its own
-times.  So the lanes of a batch go one Taylor step at a time, each with its own time; where a slide
-has ended they are restarted together, and a lane whose run is over takes the next cell.  `propagate_until`
-would leave all lanes at the first event of any.
+The offset of the event and the closed forms are as in `one_mass`. Each cell has its events at its own times.
+The lanes of a batch therefore advance one Taylor step at a time, each with its own time. Lanes whose slide
+has ended are restarted together, and a lane whose run is complete takes the next cell. `propagate_until`
+would stop all lanes at the first event of any.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,7 +23,7 @@ FEW_LANES = 64  # compiled in a second
 
 
 class Runs(NamedTuple):
-    """What each lane is at; arrays of shape (lanes,)."""
+    """State of each lane; arrays of shape (lanes,)."""
 
     cell: np.ndarray  # its index; -1: none, the lane idles
     amplitude: np.ndarray
@@ -59,7 +59,7 @@ def restart(
 
 
 class HeyokaBatch(Peer):
-    """heyoka's taylor_adaptive_batch, stepped; settings as of `heyoka.OneMassHeyoka`."""
+    """heyoka's taylor_adaptive_batch, stepped; settings as in `heyoka.OneMassHeyoka`."""
 
     name = "heyoka, batch"
     package = "heyoka"
@@ -81,7 +81,7 @@ class HeyokaBatch(Peer):
         self.lanes = lanes
 
     def run_all(self, cells: Sequence[Cell], cycles: int) -> list[Outcome]:
-        """Integrate cells from rest; the stops and max |z| of the last of so many periods, cell by cell."""
+        """Integrate cells from rest; stops and max |z| of the last `periods`, cell by cell."""
         lanes = self.lanes
         empty = np.zeros(lanes)
         runs = Runs(
@@ -124,7 +124,7 @@ class HeyokaBatch(Peer):
             return
 
     def _slide_on(self, where: np.ndarray, z: np.ndarray, runs: Runs) -> None:
-        """Start the slides that follow z' = 0 at z in some lanes; sign 0: the contact sticks for good."""
+        """Start the slides that follow z' = 0 at z in some lanes; sign 0: the contact sticks permanently."""
         theta, sign, wait = restart(runs.amplitude[where], runs.limit[where], self.theta[where], z)
         self.theta[where] = theta
         runs.sign[where] = sign

@@ -1,7 +1,7 @@
-"""One mass by a general-purpose solver: what all such peers share.
+"""One mass with a general-purpose solver: the common part of all such solvers.
 
-They only integrate the slides.  Everything else is closed form, which favours the peers: the sticking test at
-z' = 0, the release time of a stop (an arccos), and the return at once from a contact that can never slip
+They only integrate the slides. Everything else has a closed form, which favours them: the sticking test at z'
+= 0, the release time of a stop (an arccos), and the immediate return from a contact that can never slip
 again.
 """
 
@@ -15,7 +15,7 @@ LATE = TWO_PI - 1e-9  # a wait longer than this is a release that rounding put i
 
 
 class State(NamedTuple):
-    """A slide about to go on: phase of the load in the contact, motion, and sign of z'."""
+    """Start of a slide: phase of the load in the contact, motion, and sign of z'."""
 
     theta: float
     z: float
@@ -55,7 +55,7 @@ def march(slide, amplitude, limit, state, end, begins=None):
     The phases at which they began are added to the list `begins`, if there is one.
 
     `slide(theta, z, v, sign, end)` integrates one slide and returns theta, z, v: at its end with
-    v = 0, or at phase `end` with v as it is there. A sign of 0 in the state: stuck for good.
+    v = 0, or at phase `end` with v as it is there. A sign of 0 in the state: stuck permanently.
     """
     theta, z, v, sign = state
     stops, peak = 0, abs(z)
@@ -96,12 +96,12 @@ def from_rest(slide, amplitude, phase, limit, cycles, periods, begins=None):
 
 
 class OneMassPeer(Peer):
-    """A solver under test.  A subclass integrates one slide."""
+    """Solver for one mass. A subclass integrates one slide."""
 
     def run(
         self, cell: Cell, cycles: int, periods: int = 1, begins: list[float] | None = None
     ) -> Outcome:  # fmt: skip
-        """Integrate one cell from rest, as `Peer` has it."""
+        """Integrate one cell from rest, as described in `Peer`."""
         amplitude, phase = load_in_contact(self.body.wall, cell.r, self.body.zeta)
         limit = cell.mu * cell.beta
         if amplitude <= limit:
@@ -117,5 +117,5 @@ class OneMassPeer(Peer):
         raise NotImplementedError
 
     def slide(self, theta: float, z: float, v: float, sign: int, end: float) -> tuple[float, float, float]:
-        """Integrate one slide, as `march` wants it."""
+        """Integrate one slide, as described in `march`."""
         raise NotImplementedError

@@ -1,4 +1,4 @@
-"""What is asked of every peer, whatever it solves."""
+"""Interface of every solver that is compared."""
 
 from collections.abc import Sequence
 from importlib import import_module
@@ -11,9 +11,9 @@ MAX_PHASES = 1_000_000
 
 
 class Peer:
-    """A solver under test, made for one body.
+    """A solver, made for one body.
 
-    Set-up (imports, compilation) is done in `__init__`, so that a caller can time it apart from `run`.  A
+    Set-up (imports, compilation) is done in `__init__`, so that a caller can time it separately from `run`. A
     subclass names itself and its package.
     """
 
@@ -27,20 +27,20 @@ class Peer:
     def run(
         self, cell: Cell, cycles: int, periods: int = 1, begins: list[float] | None = None
     ) -> Outcome:  # fmt: skip
-        """March `cycles` excitation periods from rest; stops a period and max |z| of the last `periods`.
+        """March `cycles` excitation periods from rest; stops per period and max |z| of the last `periods`.
 
-        `begins`, a list, is filled with the tau at which the stops among these began.  Raises RuntimeError
-        where the solver gives up.
+        `begins`, a list, is filled with the tau at which the stops of these periods began. Raises
+        RuntimeError if the solver fails.
         """
         raise NotImplementedError
 
     def run_all(self, cells: Sequence[Cell], cycles: int) -> list[Outcome]:
-        """All cells, one by one but where a peer knows better."""
+        """Run all cells, one by one unless a solver has a faster way."""
         return [self.run(cell, cycles) for cell in cells]
 
     @classmethod
     def why_missing(cls) -> str:
-        """Return why this peer cannot run here, or "" if it can."""
+        """Return why this solver cannot run here, or "" if it can."""
         try:
             import_module(cls.package)
         except ImportError as error:

@@ -12,12 +12,12 @@ from .peer import Peer
 
 
 def peer(body: Body, **settings) -> Peer:
-    """The peer for a body."""
+    """Solver for a body."""
     return (OneMassSolveIvp if body.masses == 1 else ChainSolveIvp)(body, **settings)
 
 
 def slide_end(row, sign):
-    """Return the terminal event that ends a slide of this sign; `row`: place of z' in the state."""
+    """Return the terminal event that ends a slide of this sign; `row`: position of z' in the state."""
 
     def velocity(_theta, y):
         return sign * y[row] - SLIDE_END
@@ -30,9 +30,9 @@ def slide_end(row, sign):
 class OneMassSolveIvp(OneMassPeer):
     """scipy.integrate.solve_ivp, RK45: a slide ends at the terminal event z' = 0 with direction.
 
-    Its event search sees sign changes between step ends only. An event at exactly z' = 0 would
-    hold at the start too, and a first step that rounding sends the wrong way would end the slide
-    where it began, for ever: hence the same offset of 1e-13 as below.
+    Its event search only sees sign changes between the ends of steps. An event at exactly z' = 0 would also
+    be true at the start. If rounding sends the first step in the wrong direction, the slide would then end
+    where it began, in an infinite loop. The event therefore has the same offset of 1e-13 as below.
     """
 
     name = "solve_ivp RK45"
@@ -79,7 +79,7 @@ class OneMassSolveIvp(OneMassPeer):
 class ChainSolveIvp(ChainPeer):
     """scipy.integrate.solve_ivp with terminal events, in displacements and velocities of the masses.
 
-    DOP853: of the explicit pairs the faster one (RK45 takes three times as long at the same tolerance).
+    DOP853 is the faster of the explicit pairs (RK45 takes three times as long at the same tolerance).
     """
 
     name = "solve_ivp DOP853"

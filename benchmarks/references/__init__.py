@@ -1,1 +1,1 @@
-"""What is right, computed with nothing of the package: benchmarks and tests compare with it."""
+"""Reference results, computed without the package; benchmarks and tests compare with them."""

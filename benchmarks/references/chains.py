@@ -14,7 +14,7 @@ _PHASES = 400
 
 
 class Chain(NamedTuple):
-    """Matrices and the load of a base that moves by cos(tau)."""
+    """Matrices, and the load of a base that moves by cos(tau)."""
 
     M: np.ndarray
     K: np.ndarray
@@ -34,7 +34,7 @@ class Chain(NamedTuple):
 def chain(
     masses: Sequence[float], springs: Sequence[float], zeta: Sequence[float], base_damping: bool
 ) -> Chain:
-    """From the ratios to mass 1 and spring 1, and the damping ratios of the modes."""
+    """Build a chain from the ratios to mass 1 and spring 1, and the damping ratios of the modes."""
     n = len(masses)
     M = np.diag(np.asarray(masses, dtype=float))
     stretches = np.eye(n) - np.eye(n, k=-1)
@@ -46,13 +46,13 @@ def chain(
 
 
 def continuous(structure: Chain, contact: int, wall_moves: bool, r: float, beta: float) -> np.ndarray | None:
-    """First harmonics X/Y, shape (n,), of the motion that never stops; None where there is none.
+    """First harmonics X/Y, shape (n,), of the continuous motion; None if there is none.
 
-    From a maximum of z on, z falls for half a period: (x, x') = s_c + Re(H e^{i (tau + phi)}) + e^{A tau} y,
-    with s_c the rest under the constant friction force.  The second half is the image of the first one:
-    (e^{A pi} + 1) y = -2 s_c.  z'(0) = 0 gives phi.
+    From a maximum of z, z falls for half a period: (x, x') = s_c + Re(H e^{i (tau + phi)}) + e^{A tau} y,
+    with s_c the static displacement under the constant friction force. The second half is the mirror image of
+    the first: (e^{A pi} + 1) y = -2 s_c. z'(0) = 0 gives phi.
 
-    contact : the mass that rubs, from 0, on the ground or on a wall that moves with the base
+    contact : number of the mass that rubs, from 0, on the ground or on a wall that moves with the base
     """
     n = structure.K.shape[0]
     inverse = np.linalg.inv(structure.M)

@@ -1,8 +1,8 @@
 """Boundaries and continuous motions in 40-digit arithmetic, written from the equations; slow.
 
-Structures with modal damping, in closed form (theory.md 2 to 4); the maximum S is looked for by sampling,
-then polished.  Numbers carry twice the digits: 40 are left where half of them cancel.  Input is doubles,
-taken as they are.
+Structures with modal damping, in closed form (theory.md 2 to 4). The maximum S is found by sampling, then
+polished. Numbers have twice the digits, so that 40 remain where half of them cancel. Input numbers are
+doubles, taken as exact.
 """
 
 import math
@@ -39,7 +39,9 @@ _NEAR_ENDS = 18
 
 @dataclass(frozen=True)
 class Structure:
-    """Modes w, zeta and participations chi, lambda, (n,), all of 40 digits; matrices for the held answer."""
+    """Modes w, zeta and participation factors chi, lambda, (n,), in 40 digits; matrices for the held
+    response.
+    """
 
     mass: Number  # (n, n) M/r^2
     stiffness: Number
@@ -62,7 +64,7 @@ class Structure:
 
 
 def chain_matrices(masses: Sequence[float], springs: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """M/r^2 and K of a chain, as lists of sums that no double rounds."""
+    """M/r^2 and K of a chain, as lists of sums without rounding to doubles."""
     n = len(masses)
     mass, stiffness = mp.zeros(n), mp.zeros(n)
     for i in range(n):
@@ -77,7 +79,7 @@ def chain_matrices(masses: Sequence[float], springs: Sequence[float]) -> tuple[n
 def structure(
     mass: Number, stiffness: Number, contact: Sequence, load: Sequence, base_motion: int, zeta: Sequence
 ) -> Structure:
-    """Solve the eigenproblem; the mass is diagonal."""
+    """Solve the eigenproblem; the mass matrix is diagonal."""
     n = mass.rows
     root = [mp.sqrt(mass[i, i]) for i in range(n)]
     scaled = mp.matrix(n, n)
@@ -140,7 +142,7 @@ class Functions(NamedTuple):
 
 
 def _table(body: Structure, r: Number) -> list[tuple]:
-    """Seen modes: c = chi^2/w^2, a = 1/R, zeta, u, g."""
+    """Participating modes: c = chi^2/w^2, a = 1/R, zeta, u, g."""
     rows = []
     for w, zeta, chi in zip(body.w, body.zeta, body.chi, strict=True):
         if abs(chi) > mp.mpf(10) ** (-DIGITS):
@@ -150,7 +152,7 @@ def _table(body: Structure, r: Number) -> list[tuple]:
 
 
 def _bracket(rows: Sequence[tuple], big_u: Number, tau: Number) -> tuple:
-    """(f, m): the bracket whose maximum is S, and sin^2 of its slope."""
+    """(f, m): the bracket whose maximum is S, and sin^2 times its slope."""
     y = slope = mp.mpf(0)
     for c, a, zeta, u, g in rows:
         q, e = decay(a * tau, zeta)
@@ -231,7 +233,7 @@ def _largest(rows: Sequence[tuple], big_u: Number, floor: Number) -> tuple:
 
 
 def _end_brackets(rows: Sequence[tuple], big_u: Number, first: Number) -> list[tuple]:
-    """Brackets of maxima nearer to an end than the second sample, where doubles cancel."""
+    """Brackets of maxima closer to an end than the second sample, where doubles cancel."""
     found = []
     distances = [8 * first * mp.mpf(4) ** -k for k in range(_NEAR_ENDS)]
     for times in (distances, [mp.pi - t for t in distances]):
@@ -266,7 +268,7 @@ def functions(body: Structure, r: Number, at: Number = None) -> Functions:
 
 
 def sum_of_maxima(body: Structure, r: Number) -> Number:
-    """The modes' maxima of S, each at its own time, added up as T(5.55) has them: a bound of S from above."""
+    """Maxima of S of the modes, each at its own time, added up as in T(5.55): an upper bound of S."""
     r = mp.mpf(r)
     total = mp.mpf(0)
     for row in _table(body, r):

@@ -59,7 +59,7 @@ class NaiveResult(NamedTuple):
 
 
 class Segment(NamedTuple):
-    """A phase, or the part of it inside one excitation period."""
+    """A slide or a stop, or the part of it inside one excitation period."""
 
     mode: int  # sign of z'; 0 in a stop
     start: np.ndarray
@@ -178,7 +178,7 @@ class Flow:
         fresh: bool,
         slope: float | None = None,
     ) -> tuple[int, float, int] | None:
-        """First zero of offset + side q, for any of the sides, within so many steps of y.
+        """First zero of offset + side q, for any of the sides, within the given number of steps of y.
 
         fresh: it is zero at the start by construction; slope: its slope there (a step) if known.
         Returns (k, theta, side): the zero is k + theta steps after y.
@@ -282,7 +282,7 @@ def zero_in_step(a: list[float]) -> float | None:
 
 
 class Motion:
-    """The march of one cell, an excitation period at a time."""
+    """March of one cell, one excitation period at a time."""
 
     def __init__(self, structure: Structure, beta: float, mu: float, points: int):
         self.s, self.beta = structure, beta
@@ -377,7 +377,7 @@ class Motion:
 
 
 class Held:
-    """The structure with z' = 0 held for good: the largest load it will ever see."""
+    """The structure with z' = 0 held permanently: the largest load that it will ever have."""
 
     def __init__(self, s: Structure):
         n = s.n
@@ -421,7 +421,7 @@ class Held:
 
 
 class History:
-    """States at tau = 0 mod 2 pi, and the judgement whether they repeat."""
+    """States at tau = 0 mod 2 pi, and the test whether they repeat."""
 
     def __init__(self, tol: float):
         self.tol = tol
@@ -440,7 +440,7 @@ class History:
         return float(self.residuals[-1][q - 1])
 
     def settled(self, q: int) -> bool:
-        """Is what is left of a geometric approach to period q within bounds?"""
+        """Whether the remainder of a geometric approach to period q is within bounds."""
         now = self.residual(q)
         if now > self.tol:
             return False
@@ -467,7 +467,7 @@ class History:
 
 
 def phase_durations(segments: list[Segment]) -> list[tuple[int, float]]:
-    """(mode, duration) of the phases of a closed cycle, parts of one phase joined."""
+    """(mode, duration) of the segments of a closed cycle, with the parts of one segment joined."""
     phases: list[list] = []
     open_end = False
     for segment in segments:
@@ -482,7 +482,7 @@ def phase_durations(segments: list[Segment]) -> list[tuple[int, float]]:
 
 
 def blocks(flow: Flow, segment: Segment) -> Iterator[tuple[np.ndarray, float]]:
-    """Cut a segment into stretches that the table covers: (state, length in steps)."""
+    """Cut a segment into intervals that the table covers: (state, length in steps)."""
     y, left = segment.start, segment.length / flow.h
     while left > 0.0:
         yield y, min(left, flow.block)
@@ -516,7 +516,7 @@ def tie_distance(motion: Motion, segments: list[Segment]) -> float:
 
 
 def measure(motion: Motion, segments: list[Segment], periods: int) -> dict:
-    """What is reported of the given number of excitation periods."""
+    """Results of the given number of excitation periods."""
     s = motion.s
     ends = np.array([y for segment in segments for y in (segment.start, segment.end)])
     X = []

@@ -1,10 +1,10 @@
 """Periodic orbits of any structure in 40-digit arithmetic, from the equations of motion alone; for few cells.
 
-A phase (slide or stop) is followed in steps by its Taylor series, whose coefficients the equations of motion
-give one from another.  The series of what ends the phase (the velocity in a slide; in a stop what the contact
-can still hold) is sampled inside every step, its dips between samples are looked into, and the first zero is
-polished.  The orbit is found by Newton's method on the return map, from the state that a fixed-step method
-has come to.
+A segment (slide or stop) is followed in steps by its Taylor series, whose coefficients follow recursively
+from the equations of motion. The series of the quantity that ends the segment (the velocity in a slide; in a
+stop the remaining holding force) is sampled inside every step. Minima between samples are examined, and the
+first zero is polished. The orbit is found by Newton's method on the return map, from the state that a
+fixed-step method has reached.
 """
 
 import math
@@ -38,7 +38,7 @@ class _State(NamedTuple):
 
 
 class _Path(NamedTuple):
-    """What a march passed: its end, max |x_j|, and the times since its start at which stops begin."""
+    """Result of a march: its end, max |x_j|, and the times since its start at which stops begin."""
 
     state: _State
     peak: mp.mpf
@@ -46,7 +46,7 @@ class _Path(NamedTuple):
 
 
 class _Exact:
-    """The series of one problem, in 40 digits."""
+    """Series of one problem, in 40 digits."""
 
     def __init__(self, p: Problem):
         def exact(rows):
@@ -64,7 +64,7 @@ class _Exact:
         self.h = mp.mpf(1) / math.ceil(fastest)
 
     def series(self, state: _State, sign: int) -> tuple[list, list, list]:
-        """Coefficients of places, velocities and of the force that would hold the contact, in tau."""
+        """Coefficients of displacements, velocities and of the force that would hold the contact, in tau."""
         n, j = self.n, self.contact
         x, v = [list(state.place)], [list(state.velocity)]
         load, quarter = (
@@ -93,13 +93,13 @@ class _Exact:
         return [mp.polyval([row[i] for row in reversed(series)], t) for i in range(self.n)]
 
     def move(self, state: _State, x: list, v: list, t: mp.mpf) -> _State:
-        """The state t later."""
+        """State after the time t."""
         c, s = mp.cos(t), mp.sin(t)
         turned = state.cosine * c - state.sine * s, state.sine * c + state.cosine * s
         return _State(self.at(x, t), self.at(v, t), *turned)
 
     def decide(self, state: _State) -> int:
-        """What follows a zero of the velocity: 0, or the direction of the next slide."""
+        """Next segment after a zero of the velocity: 0, or the direction of the next slide."""
         load = self.load_cos * state.cosine + self.load_sin * state.sine if self.load == self.contact else 0
         push = (
             load - mp.fdot(self.stiffness[self.contact], state.place)
@@ -167,7 +167,7 @@ def first_fall(coefficients: list, h: mp.mpf, fresh: bool) -> mp.mpf | None:
 
 
 def periodic_orbit(p: Problem, tau: float, place: np.ndarray, velocity: np.ndarray) -> Orbit | None:
-    """The orbit of one excitation period near a state in a slide at tau; None if there is none so near."""
+    """Orbit of one excitation period near a state in a slide at tau; None if there is none that close."""
     with mp.workdps(DIGITS):
         exact = _Exact(p)
         n = exact.n

@@ -1,9 +1,9 @@
 """Steady states of one mass in doubles, from the equation of motion alone: event-exact, compiled.
 
-A phase (slide or stop) is followed in steps by its Taylor series, whose coefficients the equation of motion
-gives one from another.  The velocity's series is sampled inside every step, its dips between samples are
-looked into, and the first zero is polished; a stop of one mass ends where an arccos says.  The march goes on
-from rest until the state repeats.
+A segment (slide or stop) is followed in steps by its Taylor series, whose coefficients follow recursively
+from the equation of motion. The series of the velocity is sampled inside every step, minima between samples
+are examined, and the first zero is polished. A stop of one mass ends at a time given by an arccos. The march
+continues from rest until the state repeats.
 """
 
 import math
@@ -26,7 +26,7 @@ LONGEST_PERIOD = 8
 
 
 class Settled(NamedTuple):
-    """What `settle` has found; `period` is 0 if the state did not repeat in time."""
+    """Result of `settle`; `period` is 0 if the state did not repeat in time."""
 
     period: int  # excitation periods
     stops: float  # a cycle; nan where the contact sticks for good
@@ -71,7 +71,7 @@ def _slope(a, t):
 
 @njit(cache=True, error_model="numpy")
 def _bisect(a, low, high, sense, derivative):
-    """Where sense times the series (or its derivative) falls from positive to not positive."""
+    """Time at which sense times the series (or its derivative) falls from positive to not positive."""
     for _ in range(60):
         middle = 0.5 * (low + high)
         value = _slope(a, middle) if derivative else _sum(a, middle)
@@ -84,7 +84,7 @@ def _bisect(a, low, high, sense, derivative):
 
 @njit(cache=True, error_model="numpy")
 def _first_fall(a, sign, fresh):
-    """First t in (0, 1] at which sign times the series is no longer positive; 2.0 if it stays so."""
+    """First t in (0, 1] at which sign times the series is no longer positive; 2.0 if it remains positive."""
     bend = 0.0
     for k in range(1, TERMS):
         bend += k * abs(a[k])
@@ -117,7 +117,7 @@ def _first_fall(a, sign, fresh):
 
 @njit(cache=True, error_model="numpy")
 def _release(load, limit, tau, phase, z):
-    """Length of a stop at z from tau on, and the direction after it; the contact was able to stick."""
+    """Length of a stop at z from tau, and the direction after it; the contact was able to stick."""
     wait = math.inf
     sign = 0
     theta = tau + phase
@@ -136,7 +136,7 @@ def _release(load, limit, tau, phase, z):
 
 @njit(cache=True, error_model="numpy")
 def settle(r, zeta, load, phase, beta, mu, most_cycles, tolerance):
-    """March one mass from rest under load cos(tau + phase) until what is left to come is below the tolerance.
+    """March one mass from rest under load cos(tau + phase) until the remaining change is below the tolerance.
 
     z'' = (load cos(tau + phase) - beta sgn(z') - z)/r^2 - 2 zeta z'/r
     """

@@ -87,7 +87,7 @@ def _sum(phasors: object, f: float, t: np.ndarray, derivative: int = 0) -> np.nd
 def _first_change(
     function: Callable[[np.ndarray], np.ndarray], begin: float, end: float, step: float, refined: int = 0
 ) -> float:
-    """Where a function that is positive just after `begin` first becomes negative; `end` if nowhere."""
+    """Time at which a function that is positive just after `begin` first becomes negative; `end` if never."""
     left = begin
     while left < end:
         grid = np.minimum(left + step * np.arange(1, _BLOCK + 1), end)
@@ -118,7 +118,7 @@ class _Equation:
         self.step = 1.0 / (_POINTS * max(rig.f_n, rig.f * max(1, len(rig.base) - 1)))
 
     def slide(self, begin: float, q: float, speed: float, sense: float) -> tuple[Callable, Callable]:
-        """q(t) and its velocity from a state on, sliding in one sense."""
+        """q(t) and its velocity from a state, sliding in one direction."""
         zeta, w, f = self.rig.zeta, self.w, self.rig.f
         d = w * np.sqrt(1.0 - zeta**2)
         at = np.array([begin])
@@ -145,7 +145,7 @@ class _Equation:
 
 
 def _cycle(equation: _Equation, q: float, speed: float) -> tuple[list[Phase], int, float, float]:
-    """One cycle from a state: its phases, its stops and the state after it; at speed 0 it may stick."""
+    """One cycle from a state: its segments, its stops and the state after it; at speed 0 it may stick."""
     rig, period, t = equation.rig, 1.0 / equation.rig.f, 0.0
     held = rig.mu * rig.x_F
     phases: list[Phase] = []

@@ -1,6 +1,7 @@
 """Steady states of one mass in 40-digit arithmetic, written from the equations (theory.md 5); slow.
 
-Slides and stops in closed form, every event by Newton's method, the periodic orbit by Steffensen's.
+Slides and stops have closed forms. Every event is found by Newton's method, the periodic orbit by
+Steffensen's.
 """
 
 import math
@@ -67,7 +68,7 @@ class OneMass:
         sine: Number,
         t: Number,
     ) -> tuple:
-        """The same from speed v0, with cos and sin of t."""
+        """z, z' and z'' of an upward slide from speed v0, with cos and sin of t."""
         r, x, y = self.r, self.v.real, self.v.imag
         c, s = c0 * cosine - s0 * sine, s0 * cosine + c0 * sine
         a = z0 - (x * c0 - y * s0) + b
@@ -112,7 +113,7 @@ class OneMass:
         raise ArithmeticError("a slide does not end")
 
     def _zero_within(self, z0: Number, c0: Number, s0: Number, k: int) -> Number:
-        """The first zero in scan step k in 40 digits, if there is one: signs and minima on eighths of it."""
+        """First zero in scan step k in 40 digits, if there is one: signs and minima on eighths of it."""
         parts = 8
         h = mp.mpf(self.h)
         nodes = [(k + mp.mpf(j) / parts) * h for j in range(parts + 1)]
@@ -133,7 +134,7 @@ class OneMass:
         return None
 
     def _bottom(self, z0: Number, c0: Number, s0: Number, low: Number, high: Number) -> Number:
-        """Where the acceleration changes its sign from below."""
+        """Time at which the acceleration changes its sign from below."""
         for _ in range(60):
             middle = (low + high) / 2
             if self._state(z0, c0, s0, middle)[2] < 0:
@@ -162,7 +163,7 @@ class OneMass:
     def after(self, z0: Number, c0: Number, s0: Number) -> tuple:
         """A slide and what follows: (event, z, cos, sin of the next upward slide, |z|, duration, wait).
 
-        The event is None where the contact sticks for good.
+        The event is None if the contact sticks permanently.
         """
         t = self._first_zero(z0, c0, s0)
         z = self._state(z0, c0, s0, t)[0]
@@ -175,7 +176,9 @@ class OneMass:
         return *self._pause(z, c, s), abs(z), t, self._wait(z, c, s)[1]
 
     def _wait(self, z: Number, c: Number, s: Number) -> tuple:
-        """(leaves upwards in the load, i.e. moves back; duration of the stop)."""
+        """(whether the load leaves the range of friction upwards, so that the mass moves back; duration of
+        the stop).
+        """
         now = mp.atan2(s, c)
         ends = []
         for level, back in ((z - self.mu_b, True), (z + self.mu_b, False)):
@@ -188,7 +191,7 @@ class OneMass:
         return ends[0] < ends[1], min(ends)
 
     def _pause(self, z: Number, c: Number, s: Number) -> tuple:
-        """A stop at z: (event, state of the next upward slide); the event is None if it lasts."""
+        """A stop at z: (event, state of the next upward slide); None as event if the stop is permanent."""
         back, wait = self._wait(z, c, s)
         if mp.isinf(wait):
             return None, z, c, s
@@ -199,7 +202,7 @@ class OneMass:
         return ON, z, level, -sine
 
     def anchor(self, z: Number) -> tuple:
-        """The state in which a stop at z ends, upward motion following."""
+        """State in which a stop at z ends, with upward motion following."""
         c = z + self.mu_b
         if abs(c) > 1:
             raise ArithmeticError("no stop ends there")
@@ -210,13 +213,13 @@ class OneMass:
         for _ in range(slides):
             event, *state = self.after(*state)[:4]
             if event is None:
-                raise ArithmeticError("sticks for good")
+                raise ArithmeticError("sticks permanently")
         return state[0]
 
     def steady(self, phase: Number, most: int) -> Steady | None:
         """Steady state reached from rest at load phase `phase`.
 
-        None if it sticks, has no stops or is not found in `most` slides.
+        None if it sticks, has no stops or is not found within `most` slides.
         """
         c, s = mp.cos_sin(mp.mpf(phase))
         event, *state = self._pause(mp.mpf(0), c, s) if abs(c) <= self.mu_b else self._push_off(c, s)
@@ -238,10 +241,10 @@ class OneMass:
         return None
 
     def unique(self, guess: Number, phase: Number, most: int) -> Steady | None:
-        """The same for mu = 1, where there is one only, however found.
+        """Steady state for mu = 1, where only one exists, found from any state.
 
         First the symmetric orbit with one stop, at its turn, is tried: from the amplitude `guess`, and from
-        the middle of two stops; next to a multiplier of -1 a march stays asymmetric for long.
+        the middle of two stops. Next to a multiplier of -1 a march remains asymmetric for long.
         """
         if mp.isfinite(guess):
             found = self.solved(-guess, 1)
@@ -262,11 +265,11 @@ class OneMass:
 
     @staticmethod
     def _push_off(c: Number, s: Number) -> tuple:
-        """The first slide from rest under a load beyond mu b."""
+        """First slide from rest under a load beyond mu b."""
         return (REVERSE, mp.mpf(0), c, s) if c > 0 else (REVERSE, mp.mpf(0), -c, -s)
 
     def solved(self, z: Number, slides: int) -> Steady | None:
-        """Steffensen's method on the return after so many slides from z, then the orbit's measures."""
+        """Steffensen's method on the recurrence after `slides` slides from z, and results of the orbit."""
         try:
             for _ in range(_MOST_STEPS):
                 once = self._return(z, slides)

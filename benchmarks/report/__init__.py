@@ -1,1 +1,1 @@
-"""What is made of measurements: JSON, tables, figures, and the numbers that docs/results.md quotes."""
+"""Reports of measurements: JSON, tables, figures, and the tables of docs/results.md."""

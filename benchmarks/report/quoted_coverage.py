@@ -1,4 +1,4 @@
-"""The table of docs/results.md about the intervals of `identify`: how often they hold the truth."""
+"""Table of docs/results.md about the intervals of `identify`: how often they contain the true value."""
 
 import statistics
 from collections.abc import Iterator
@@ -11,19 +11,19 @@ HEADER = (
     "seeds",
     "refused",
     "warned",
-    "intervals that hold the truth",
-    "least",
-    "worst error over s.e.",
+    "intervals that contain the true value",
+    "lowest coverage",
+    "largest error over s.e.",
     "s.e. over Cramer-Rao bound",
     "time per fit",
 )
 
-#: Of a standard error over the Cramer-Rao bound, and of an error over its standard error.
+#: Keys of the standard error over the Cramer-Rao bound, and of an error over its standard error.
 _BOUND, _ERROR = "standard error over Cramer-Rao bound", "error over standard error"
 
 
 def _share(part: int, whole: int) -> str:
-    """In percent."""
+    """Share in percent, as text."""
     return f"{100.0 * part / whole:.1f} %" if whole else "-"
 
 
@@ -63,28 +63,30 @@ def coverage_notes(kinds: dict) -> Iterator[str]:
     short = [text for text, one in counts if one["short"]]
     below = sum(one["below the band"] for _, one in counts)
     yield (
-        "Parameters whose coverage is below the range that holds 95 % of all counts by chance, 92.8 to 97 % "
-        f"of 400 fits: {below} of {len(counts)}; {round(0.025 * len(counts))} are expected."
+        "By chance, 95 % of all counts lie in a certain range (92.8 to 97 % for 400 fits). The coverage of "
+        f"{below} of {len(counts)} parameters is below this range; {round(0.025 * len(counts))} are expected."
     )
     words = "; ".join(short) or "none"
-    yield f"Coverage so low that chance makes it in fewer than one of 1,000 counts: {words}."
+    yield f"Coverage so low that chance explains it in fewer than one of 1,000 counts: {words}."
     for kind, cases in kinds.items():
         for name, case in cases.items():
             for reason, count in case["refusals"].items():
-                yield f"Refused, {count} of {case['seeds']} of `{kind}`, {name}: {reason.replace('|', '/')}."
+                message = reason.replace("|", "/")
+                yield f'Refused: {count} of {case["seeds"]} of `{kind}`, {name}, with "{message}".'
 
 
 def coverage_lines(coverage: dict) -> list[str]:
-    """Coverage of the intervals."""
+    """Lines of the section on the coverage of the intervals."""
     kinds = coverage["kinds"]
     return [
         "",
         "### Intervals of identify",
         "",
-        "Synthetic data of known truth, drawn anew for every seed without the package, are disturbed in one "
-        "way and fitted as a user would fit them. Every interval should hold its truth in 95 % of the fits; "
-        "fits that warn count like the others. The Cramer-Rao bound is that of the noise alone, for the "
-        'samples that are left. Outliers are fitted with `loss = "soft_l1"` where the fit has that option.',
+        "For every seed, synthetic data with known true values are generated without the package, "
+        "disturbed in one way, and fitted as a user would fit them. Every interval should contain its "
+        "true value in 95 % of the fits. Fits with warnings count like the others. The Cramer-Rao bound "
+        "is that of the noise alone, for the "
+        'remaining samples. Outliers are fitted with `loss = "soft_l1"` if the fit has this option.',
         *markdown(HEADER, coverage_rows(kinds)),
         "",
         *(f"- {note}" for note in coverage_notes(kinds)),

@@ -1,11 +1,11 @@
-"""Tables of docs/results.md that say how good numbers are: of `accuracy`, `stress` and `steady`."""
+"""Tables of docs/results.md about accuracy: results of `accuracy`, `stress` and `steady`."""
 
 import statistics
 from collections.abc import Iterator
 
 from .quoting import duration, markdown, rounded_off, two_digits
 
-#: What a method of `accuracy` is called in the table.
+#: Names of the methods of `accuracy` in the table.
 _METHODS = {
     "frictionmap": "frictionmap, until the steady state is found",
     "frictionmap, marched": "its integrator alone",
@@ -26,7 +26,7 @@ _Z, _TIMES, _WRONG = "relative errors of Z", "errors of event times", "cells wit
 
 
 def _points(scenes: list[dict], method: str) -> dict[float, list[dict]]:
-    """What a method did in some scenes, by setting."""
+    """Results of a method in some scenes, by setting."""
     found: dict[float, list[dict]] = {}
     for scene in scenes:
         entry = scene["methods"].get(method)
@@ -44,7 +44,7 @@ def _median(values: list[float]) -> str:
 
 
 def _setting(scenes: list[dict], method: str) -> float | None:
-    """Ours: the default.  Others: where the median error of Z is least over all scenes."""
+    """Setting to quote: the default for frictionmap, for others that of the smallest median error of Z."""
     points = _points(scenes, method)
     if method in _OURS:
         return _DEFAULT_STEPS if _DEFAULT_STEPS in points else None
@@ -63,6 +63,7 @@ def _method_rows(accuracy: dict) -> Iterator[tuple[str, ...]]:
         if setting is None:
             continue
         unit = next(s["methods"][method]["setting"] for s in everything if method in s["methods"])
+        unit = unit.replace("steps a period", "steps per period")
         cells: list[str] = []
         for scenes in (one, three):
             points = _points(scenes, method).get(setting, [])
@@ -80,7 +81,7 @@ def _method_rows(accuracy: dict) -> Iterator[tuple[str, ...]]:
 
 
 def _search_rows(accuracy: dict) -> Iterator[tuple[str, ...]]:
-    """The kernel, then the coarsest grid, one in the middle and the finest."""
+    """Rows of the kernel, and of the coarsest, a medium and the finest grid."""
     systems = accuracy["search of S"]
 
     def cells(entries: list[dict]) -> list[str]:
@@ -107,14 +108,15 @@ def _accuracy_notes(accuracy: dict) -> Iterator[str]:
     error = random["relative error of Z"]
     wrong = random[_WRONG]
     yield (
-        f"Of {random['cells']:,} random cells of one mass at the default settings, against an event-exact "
-        f"code of its own, {wrong or 'none'} had another number of stops; Z is off by "
-        f"{rounded_off(error['median'])} in the median, {rounded_off(error['largest'])} at most (relative). "
-        f"Besides, {random['left out, not settled by the reference']:,} did not settle in the reference and "
-        f"{random['left out, with a status of the package']:,} have a status instead of an answer."
+        f"{random['cells']:,} random cells of one mass at the default settings were compared with an "
+        f"independent event-exact code; {wrong or 'none'} of them had a different number of stops. The "
+        f"median relative error of Z is {rounded_off(error['median'])}, the largest "
+        f"{rounded_off(error['largest'])}. In addition, the reference did not converge in "
+        f"{random['left out, not settled by the reference']:,} cells, and the package reported a status "
+        f"other than resolved in {random['left out, with a status of the package']:,}."
     )
     steps = [
-        f"{entry['best steps by time']} ({name}; the default takes "
+        f"{entry['best steps by time']} for {name} (the default takes "
         f"{entry['time at the default 24 over the best']:.2f} times as long)"
         for name, entry in accuracy["scan steps"].items()
     ]
@@ -123,15 +125,15 @@ def _accuracy_notes(accuracy: dict) -> Iterator[str]:
     off = max(point["largest relative difference of Z"] for point in points)
     yield (
         f"Scan steps (default {_DEFAULT_STEPS}) from {min(p['steps'] for p in points)} to "
-        f"{max(p['steps'] for p in points)} change {other or 'no'} stop counts, and Z by "
-        f"{rounded_off(off)} at most; the fastest are {', '.join(steps)}."
+        f"{max(p['steps'] for p in points)} change {other or 'no'} stop counts, and Z by at most "
+        f"{rounded_off(off)}. The fastest numbers are {'; '.join(steps)}."
     )
     for name, why in _skipped(accuracy).items():
         yield f"Not measured: {name} ({why})."
 
 
 def _skipped(accuracy: dict) -> dict[str, str]:
-    """Methods that were to be had in no scene, and why."""
+    """Methods that were available in no scene, and why."""
     scenes = accuracy["steady states"].values()
     return {
         name: why
@@ -142,15 +144,15 @@ def _skipped(accuracy: dict) -> dict[str, str]:
 
 
 def accuracy_lines(accuracy: dict) -> list[str]:
-    """Error against run time."""
+    """Lines of the section on error against run time."""
     marched = accuracy["periods marched"]
     return [
         "",
         "### Error against run time",
         "",
-        f"The same random stick-slip cells for all; all but the first march {marched} periods from rest. "
-        "Ours at the default, the others at their most accurate setting; medians of the errors against "
-        f"{accuracy['digits of the references']}-digit orbits.",
+        f"All methods compute the same random stick-slip cells. All except the first march {marched} "
+        "periods from rest. frictionmap runs at its default settings, the others at their most accurate "
+        f"setting. The errors are medians relative to {accuracy['digits of the references']}-digit orbits.",
         *markdown(
             (
                 "steady state of a cell",
@@ -158,7 +160,7 @@ def accuracy_lines(accuracy: dict) -> list[str]:
                 "error of Z",
                 "three masses",
                 "error of Z",
-                "error of times of stops [rad]",
+                "error of stop times [rad]",
                 "wrong stop counts",
             ),
             list(_method_rows(accuracy)),
@@ -178,7 +180,7 @@ def accuracy_lines(accuracy: dict) -> list[str]:
 
 
 def _kind(group: str) -> str:
-    """What a group of the torture test is about."""
+    """Row of the table that a group of the torture test belongs to."""
     of_many = "chains" in group or "close modes" in group
     if group.startswith("curves"):
         return "boundaries, structures of 2 to 50 masses" if of_many else "boundaries, one mass"
@@ -221,10 +223,10 @@ def _stress_notes(stress: dict) -> Iterator[str]:
         return sum(group[key] for group in groups)
 
     yield (
-        f"Besides, {total('wrong regimes at rounding'):,} regimes and "
-        f"{total('wrong stop counts at rounding'):,} counts are those of a beta that differs by rounding; "
-        f"{total('wrong stop counts with a status'):,} wrong counts come with a status that warns of it. "
-        f"Outputs that contradict each other: {total('inconsistent') or 'none'}; exceptions, warnings and "
+        f"Not counted as wrong: {total('wrong regimes at rounding'):,} regimes and "
+        f"{total('wrong stop counts at rounding'):,} stop counts are right for a beta that differs by "
+        f"rounding, and {total('wrong stop counts with a status'):,} stop counts have a status that warns "
+        f"about them. Contradictory outputs: {total('inconsistent') or 'none'}. Exceptions, warnings and "
         f"hangs: {total('trouble') or 'none'}."
     )
     random = stress.get("random cells")
@@ -237,26 +239,27 @@ def _stress_notes(stress: dict) -> Iterator[str]:
         for name, count in sorted(random["statuses"].items(), key=lambda item: -item[1])
     )
     yield (
-        f"{cells:,} random cells of 1 to 6 masses (r from 1e-3 to 1e3, mu to 10, zeta to 5; followed for at "
-        f"most {most} periods, at small r {least}): {shares}. Resolved without a regime or a number: "
-        f"{len(random['resolved without a regime or a number']) or 'none'}; the slowest "
-        f"row of {random['cells of a row']} took {duration(random['slowest row of cells [s]'])}."
+        f"{cells:,} random cells of 1 to 6 masses (r from 1e-3 to 1e3, mu up to 10, zeta up to 5) were "
+        f"followed for at most {most} periods ({least} at small r). Status: {shares}. Resolved cells "
+        f"without a regime or a number: {len(random['resolved without a regime or a number']) or 'none'}. "
+        f"The slowest row of {random['cells of a row']} cells took "
+        f"{duration(random['slowest row of cells [s]'])}."
     )
 
 
 def stress_lines(stress: dict) -> list[str]:
-    """The torture test."""
+    """Lines of the section on the torture test."""
     return [
         "",
         "### Torture test",
         "",
-        "At and around every singular point, against 40-digit arithmetic. What counts is what is lost beyond "
-        "the condition number of the answer; 16 digits are all that a double has.",
+        "The results at and around every singular point are compared with 40-digit arithmetic. The table "
+        "shows the digits lost beyond the condition number of the result; a double has 16 digits.",
         *markdown(
             (
-                "what",
+                "quantity",
                 "numbers compared",
-                "digits lost beyond, worst",
+                "digits lost beyond the condition number, largest",
                 "wrong regimes",
                 "wrong stop counts",
             ),
@@ -288,7 +291,7 @@ def _steady_rows(steady: dict) -> Iterator[tuple[str, ...]]:
 
 
 def _undamped_lines(maps: dict) -> list[str]:
-    """Maps of undamped structures: share of cells by status."""
+    """Table of undamped maps: share of cells by status."""
     found = [status for statuses in maps.values() for status in statuses]
     names = list(dict.fromkeys(name for name in found if name != "resolved"))
     rows = []
@@ -300,14 +303,23 @@ def _undamped_lines(maps: dict) -> list[str]:
 
 
 def steady_lines(steady: dict) -> list[str]:
-    """Solved against marched, and undamped maps."""
+    """Lines of the section on solved and marched steady states, with the undamped maps."""
     return [
         "",
         "### Steady states, solved against marched",
         "",
-        "The same cells marched until the motion repeats, with nothing skipped; undamped maps by status.",
+        "Cells solved by Newton's method are compared with the same cells marched until the motion "
+        "repeats, without skipping any cell. The second table gives the share of unresolved and special "
+        "cells in undamped maps.",
         *markdown(
-            ("cells of", "cells", "both resolved", "other answers, by cause", "Z off by, median", "largest"),
+            (
+                "set of cells",
+                "cells",
+                "both resolved",
+                "different results, by cause",
+                "error of Z, median",
+                "largest",
+            ),
             list(_steady_rows(steady)),
         ),
         *_undamped_lines(steady["undamped maps"]),

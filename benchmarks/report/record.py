@@ -1,4 +1,4 @@
-"""What is kept of a benchmark: machine, versions, medians and spread, as JSON."""
+"""Records of a benchmark as JSON: machine, versions, medians and spread."""
 
 import json
 import math
@@ -18,7 +18,7 @@ PACKAGES = ("numpy", "numba", "scipy", "xarray")
 
 
 def processor() -> str:
-    """Name of the processor."""
+    """Return the name of the processor."""
     try:
         for line in Path("/proc/cpuinfo").read_text().splitlines():
             if line.startswith("model name"):
@@ -29,7 +29,7 @@ def processor() -> str:
 
 
 def machine() -> dict:
-    """The machine and the versions that a result holds for."""
+    """Describe the machine and the versions of a result."""
     return {
         "processor": processor(),
         "processors": os.cpu_count(),
@@ -41,7 +41,7 @@ def machine() -> dict:
 
 
 def spread(seconds: Sequence[float]) -> dict:
-    """Median, least and most of repeated timings."""
+    """Median, minimum and maximum of repeated timings."""
     return {
         "median": statistics.median(seconds),
         "least": min(seconds),
@@ -51,7 +51,7 @@ def spread(seconds: Sequence[float]) -> dict:
 
 
 def timed(function: Callable[[], Result]) -> tuple[float, Result]:
-    """Wall-clock seconds of one call, and what it returned."""
+    """Measure one call: wall-clock seconds, and its return value."""
     began = time.perf_counter()
     result = function()
     return time.perf_counter() - began, result
@@ -59,7 +59,7 @@ def timed(function: Callable[[], Result]) -> tuple[float, Result]:
 
 @contextmanager
 def pinned() -> Iterator[None]:
-    """Keep this process on one processor, where the system can: what is timed is not moved about."""
+    """Keep this process on one processor, if the system can, so that timed code stays there."""
     if not hasattr(os, "sched_setaffinity"):
         yield
         return
@@ -72,7 +72,7 @@ def pinned() -> Iterator[None]:
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
-    """Print rows under a header, columns as wide as what is in them; numbers to three digits."""
+    """Print rows under a header in aligned columns; numbers with three digits."""
     words = [[f"{cell:.3g}" if isinstance(cell, float) else str(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(header, *words, strict=True)]
     for row in (header, ["-" * width for width in widths], *words):
@@ -80,7 +80,7 @@ def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
 
 
 def finite(content: object) -> object:
-    """A result with None for every number that is not finite: JSON has no other word for it."""
+    """Replace every number that is not finite by None, because JSON cannot represent it."""
     if isinstance(content, dict):
         return {key: finite(value) for key, value in content.items()}
     if isinstance(content, list | tuple):
@@ -89,7 +89,7 @@ def finite(content: object) -> object:
 
 
 def save(name: str, content: dict, folder: Path) -> Path:
-    """Write one result."""
+    """Write one result to a file."""
     text = json.dumps(finite({"machine": machine(), **content}), indent=2, allow_nan=False)
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.json"

@@ -1,10 +1,10 @@
-"""The numbers in docs/results.md: tables made from the results, between two marker comments.
+"""Tables of docs/results.md, generated from the results between two marker comments.
 
     python -m benchmarks all --results benchmarks/results
     python -m benchmarks page
 
-measures everything and writes the tables anew; a test compares them with the committed results.  A benchmark
-whose results are not there is left out.
+measures everything and writes the tables again; a test compares them with the committed results.  Benchmarks
+without results are left out.
 """
 
 import json
@@ -21,7 +21,7 @@ PAGE = ROOT / "docs" / "results.md"
 BEGIN = "<!-- from benchmarks/results by `python -m benchmarks page`: do not edit -->"
 END = "<!-- end of the results -->"
 
-#: The benchmarks whose results are quoted.
+#: Benchmarks whose results are quoted.
 QUOTED = (
     "peers",
     "structures",
@@ -37,7 +37,7 @@ QUOTED = (
     "explore",
 )
 
-#: What `faults` found in an earlier state, quoted beside what it finds.
+#: Results of `faults` for an earlier version, quoted for comparison.
 BEFORE = "faults-before"
 
 
@@ -53,6 +53,19 @@ _PEER_NAMES = {
     "heyoka": "heyoka's Taylor integrator with events",
     "heyoka, batch": "heyoka's batch mode",
     "solve_ivp DOP853": "`solve_ivp` (DOP853)",
+}
+
+#: Names of scenes and measurements of `explore` and `startup` in the results, and the words in the tables.
+_WORDS = {
+    "started to address": "start of the server to its address",
+    "loaded to painted": "first load to finished map",
+    "loaded again to painted": "later load to finished map",
+    "slider to painted": "slider to finished map",
+    "hover to motion": "pointing at a cell to its motion",
+    "first picture": "slider to first map",
+    "full picture": "slider to finished map",
+    "outdated": "cancellation of an old computation",
+    "python, doing nothing": "python without a program",
 }
 
 
@@ -87,7 +100,7 @@ def _structure_rows(structures: dict) -> Iterator[tuple[str, ...]]:
 
 
 def _answers(peers: dict | None, structures: dict | None) -> str:
-    """How many cells were compared, and how the answers differ."""
+    """Sentence on the number of compared cells and the differences of the results."""
     one = [e for e in peers["cells"].values() if "ratio" in e] if peers else []
     many = [
         e
@@ -98,22 +111,27 @@ def _answers(peers: dict | None, structures: dict | None) -> str:
     cells = sum(entry["cells"] for entry in one + many)
     other = sum(entry["differences"]["cells with other stop counts"] for entry in one)
     other += sum(len(entry["differences"]["cells with other stop counts"]) for entry in many)
-    text = f"Of the {cells:,} cells compared {other or 'none'} had another number of stops."
+    text = f"{cells:,} cells were compared; {other or 'none'} of them had a different number of stops."
     medians = [
         f"{rounded_off(entry['differences']['median relative difference of Z'])} ({name})"
         for name, entry in (peers["cells"].items() if peers else ())
         if "ratio" in entry
     ]
-    return f"{text} Amplitudes of one mass differ by {', '.join(medians)} in the median." if medians else text
+    return (
+        f"{text} The median relative difference of the amplitudes of one mass is {', '.join(medians)}."
+        if medians
+        else text
+    )
 
 
 def _caveats(peers: dict | None, structures: dict | None) -> Iterator[str]:
-    """What the ratios above leave out."""
+    """Sentences on what the ratios do not include."""
     share = (peers or {"cells": {}})["cells"].get("heyoka", {}).get("share of the time in the integrator")
     if share is not None:
         yield (
-            f"Of heyoka's time for one mass {two_digits(100.0 * share)} % is spent in the integrator, the "
-            "rest in the logic of stops around it, in Python; the batch mode has that logic on arrays."
+            f"For one mass, heyoka spends {two_digits(100.0 * share)} % of its time in the integrator and "
+            "the rest in the logic for stops, which is written in Python. With the batch mode this logic "
+            "works on arrays."
         )
     lower = [
         entry["ratio with the curves"] / entry["ratio"]
@@ -123,14 +141,15 @@ def _caveats(peers: dict | None, structures: dict | None) -> Iterator[str]:
     ]
     if lower:
         yield (
-            "Ours is the kernel of maps: with the boundaries of each cell's own frequency counted too, which "
-            f"the cells of a map share, the ratios of five masses are {two_digits(min(lower))} to "
-            f"{two_digits(max(lower))} of those given."
+            "The times of frictionmap are those of the kernel for maps. The cells of a map share the "
+            "boundaries of their frequency. If the time for these boundaries is added to each cell, the "
+            f"ratios for five masses are {two_digits(min(lower))} to {two_digits(max(lower))} of those in "
+            "the table."
         )
 
 
 def _newton(peers: dict) -> str:
-    """What Newton's method gains, and next to a resonance."""
+    """Sentences on the gain of Newton's method, also next to a resonance."""
     ways = [
         (name, kind, one)
         for name, entry in peers["solved and marched"].items()
@@ -142,15 +161,15 @@ def _newton(peers: dict) -> str:
     least, most = (f"{two_digits(ratio)} ({name})" for ratio, name in (gains[0], gains[-1]))
     shares = [one["ratio"] for _, kind, one in ways if kind != "open cells"]
     return (
-        f"Newton's method makes an open cell {least} to {most} times as fast as marching until the motion "
-        'repeats. A continuous cell next to a resonance, which only `skip = "none"` and mu > 1 integrate, '
-        f"takes {duration(min(near))} to {duration(max(near))}, and marching without it "
-        f"{two_digits(min(shares))} to {two_digits(max(shares))} times that."
+        f"With Newton's method an open cell is {least} to {most} times as fast as marching until the motion "
+        'repeats. Continuous cells next to a resonance are integrated only with `skip = "none"` or mu > '
+        f"1. They take {duration(min(near))} to {duration(max(near))}. Marching without Newton's method "
+        f"takes {two_digits(min(shares))} to {two_digits(max(shares))} times as long."
     )
 
 
 def _peer_lines(peers: dict | None, structures: dict | None) -> list[str]:
-    """Against general-purpose solvers."""
+    """Lines of the section on general-purpose solvers."""
     rows = list(_peer_rows(peers)) if peers else []
     rows += _structure_rows(structures) if structures else []
     notes = [_answers(peers, structures), *_caveats(peers, structures)]
@@ -158,7 +177,7 @@ def _peer_lines(peers: dict | None, structures: dict | None) -> list[str]:
     return [
         "",
         "### Against general-purpose solvers",
-        *markdown(("one thread", "frictionmap", "peer", "times"), rows),
+        *markdown(("one thread", "frictionmap", "other solver", "ratio"), rows),
         "",
         *(f"- {note}" for note in notes),
     ]
@@ -172,52 +191,59 @@ def _scaling_rows(scaling: dict) -> Iterator[tuple[str, ...]]:
         done = [row for row in rows if "seconds" in row]
         last = done[-1]
         yield (
-            f"cells: map of T Fig. 3.12 on ever finer grids, {mu}, one thread",
+            f"map of T Fig. 3.12 on successively finer grids, {mu}, one thread",
             f"{duration(done[0]['seconds']['median'])} for {done[0]['cells']:,} cells, "
             f"{duration(last['seconds']['median'])} for {last['cells']:,} "
-            f"({duration(1e-9 * last['ns a cell'])} a cell)",
+            f"({duration(1e-9 * last['ns a cell'])} per cell)",
         )
     memory = scaling["cells"]["bytes a cell"]
-    yield "memory of the three default outputs", f"{two_digits(memory)} bytes a cell"
+    yield "memory of the three default outputs", f"{two_digits(memory)} bytes per cell"
     threads = scaling["threads"]["threads"]
     most = max(threads, key=int)
-    yield f"{most} threads", f"{two_digits(threads[most]['speed-up'])} times as fast, the same bits"
+    yield (
+        f"{most} threads",
+        f"{two_digits(threads[most]['speed-up'])} times as fast, results equal to the bit",
+    )
     line = scaling["open cells"]
     closed = max(line["line: ns a closed cell"], 0.0)
     yield (
-        "share of open cells",
-        f"{duration(1e-9 * closed)} a cell that a formula decides, "
-        f"{duration(1e-9 * line['line: ns more an open cell'])} more if it is open",
+        "time per cell",
+        f"{duration(1e-9 * closed)} for a cell that a formula decides, "
+        f"{duration(1e-9 * line['line: ns more an open cell'])} more for an open cell",
     )
     low = scaling["low frequency"]["zeta = 0"]
     ends = [f"{duration(1e-6 * row['us a cell']['median'])} at r = {row['r']:g}" for row in low]
     settled = [text for text, row in zip(ends, low, strict=True) if row["cells that do not repeat"] == 0]
-    yield "low frequency: an open cell of an undamped mass", f"{settled[0]}, {settled[-1]}"
+    yield "open cell of an undamped mass at low frequency", f"{settled[0]}, {settled[-1]}"
     odd = [
-        f"{text} ({row['cells that do not repeat']} of {row['cells']} cells do not repeat)"
+        f"{text} ({row['cells that do not repeat']} of {row['cells']} cells do not become periodic)"
         for text, row in zip(ends, low, strict=True)
         if row["cells that do not repeat"] > 0
     ]
     if odd:
-        yield "the same where motions no longer repeat within `cycles`", ", ".join(odd)
+        yield "the same, with motions that do not become periodic within `cycles`", ", ".join(odd)
     phases = scaling["phases"].values()
     kernel = [entry["kernel"]["median"] for entry in phases]
-    ratio = [entry["kernel over its closed forms"] for entry in phases]
+    ratios = [entry["kernel over its closed forms"] for entry in phases]
+    least, most = two_digits(min(ratios)), two_digits(max(ratios))
     yield (
-        "a phase (slide or stop) of one mass",
-        f"{min(kernel):.0f} to {max(kernel):.0f} ns: {two_digits(min(ratio))} to {two_digits(max(ratio))} "
-        "times what its closed forms take without any logic",
+        "a slide or stop of one mass",
+        f"{min(kernel):.0f} to {max(kernel):.0f} ns, {least if least == most else f'{least} to {most}'} "
+        "times as long as its closed forms alone",
     )
 
 
 def _large_rows(large: dict) -> Iterator[tuple[str, ...]]:
     last = large["size"][-1]
     yield (
-        f"a store of {last['n'] ** 2:,} cells of T Fig. 3.12, mu = 1",
+        f"store with {last['n'] ** 2:,} cells of T Fig. 3.12, mu = 1",
         f"{duration(last['store']['seconds'])}, {last['store']['MB']:.0f} MB of memory, "
         f"{last['store']['disk MB']:.0f} MB on disk",
     )
-    yield "a store over the same map in memory, CPU", f"{two_digits(large['overhead']['ratio'])} times"
+    yield (
+        "processor time of a store, relative to the same map in memory",
+        f"{two_digits(large['overhead']['ratio'])}",
+    )
     study = large["study"]
     each = study["cells"] // study["samples"]
     yield (
@@ -227,16 +253,16 @@ def _large_rows(large: dict) -> Iterator[tuple[str, ...]]:
     if "speed-up" in large["workers"]:
         yield (
             "two worker processes",
-            f"{two_digits(large['workers']['speed-up'])} times as fast as one, the same bytes",
+            f"{two_digits(large['workers']['speed-up'])} times as fast as one, results equal to the byte",
         )
     kills = large["kills"]
     yield (
         "runs killed at random moments",
-        f"{kills['killed']} killed; {kills['finished']} got through, {kills['different']} with other bytes",
+        f"{kills['killed']} killed, {kills['finished']} finished, {kills['different']} with different bytes",
     )
     ahead = large["ahead"]["minutes of 1e10 cells on 100 machines"]
     yield (
-        "10^10 cells on 100 machines like this one, computed from the above",
+        "10^10 cells on 100 machines like this one, estimated from the above",
         ", ".join(f"{name} {two_digits(minutes)} min" for name, minutes in ahead.items()),
     )
 
@@ -246,12 +272,12 @@ def _mass_rows(structures: dict) -> Iterator[tuple[str, ...]]:
     line = cost["ns a scan step, line over masses"]
     special, general = cost["1, kernel for one mass"], cost["1"]
     step = f"{two_digits(line['constant'])} + {two_digits(line['a mass'])} N ns"
-    yield "number of masses N", f"a scan step of a structure takes {step}"
+    yield "scan step of a structure with N masses", step
     cells = [entry["map"]["us a cell"]["median"] for entry in (special, general)]
     yield (
-        "one mass by its own kernel, and by the code for structures",
-        f"{duration(1e-9 * special['ns a phase'])} and {duration(1e-9 * general['ns a phase'])} a phase, "
-        f"{duration(1e-6 * cells[0])} and {duration(1e-6 * cells[1])} an integrated cell",
+        "one mass by its own kernel and by the code for structures",
+        f"{duration(1e-9 * special['ns a phase'])} and {duration(1e-9 * general['ns a phase'])} per slide "
+        f"or stop, {duration(1e-6 * cells[0])} and {duration(1e-6 * cells[1])} per integrated cell",
     )
 
 
@@ -260,7 +286,11 @@ def _mass_rows(structures: dict) -> Iterator[tuple[str, ...]]:
 
 def _explore_lines(explore: dict) -> list[str]:
     rows = [
-        (scene, what, *(duration(1e-3 * spread[name]) for name in ("median", "least", "most")))
+        (
+            scene,
+            _WORDS.get(what, what),
+            *(duration(1e-3 * spread[name]) for name in ("median", "least", "most")),
+        )
         for scene, measured in explore["milliseconds"].items()
         for what, spread in measured.items()
     ]
@@ -268,9 +298,10 @@ def _explore_lines(explore: dict) -> list[str]:
         "",
         "### The page in the browser",
         "",
-        f"`frictionmap explore` in headless Chromium {explore['browser']}, {explore['pixels']} pixels each "
-        "way.  Loaded: by a new server; loaded again: by one that has shown it before.",
-        *markdown(("scene", "from and to", "median", "least", "most"), rows),
+        f"`frictionmap explore` in headless Chromium {explore['browser']}, map of {explore['pixels']} x "
+        f"{explore['pixels']} pixels. The first load uses a new server, the later load a server that has "
+        "shown the page before.",
+        *markdown(("scene", "measured time", "median", "minimum", "maximum"), rows),
     ]
 
 
@@ -292,12 +323,13 @@ def _coupling_lines(coupling: dict) -> list[str]:
     ]
     return [
         "",
-        "### Damping that the modes do not diagonalise",
+        "### Damping that couples the modes",
         "",
-        "Random chains of 2 to 5 masses, marched with the whole damping matrix, against those whose modes "
-        "are damped by its diagonal: what leaving out the coupling costs.",
+        "The table shows the error that results from neglecting the coupling. Random chains of 2 to 5 "
+        "masses are marched with the whole damping matrix and computed with its diagonal in modal "
+        "coordinates only.",
         *markdown(
-            ("damping", "mean zeta", "cells", "error of Z, median", "nine of ten below", "other stop counts"),
+            ("damping", "mean zeta", "cells", "error of Z, median", "90 % quantile", "different stop counts"),
             rows,
         ),
     ]
@@ -308,13 +340,16 @@ def _coupling_lines(coupling: dict) -> list[str]:
 
 def _start_rows(startup: dict) -> list[tuple[str, ...]]:
     return [
-        (name, f"{duration(entry['median'])} ({duration(entry['least'])} to {duration(entry['most'])})")
+        (
+            _WORDS.get(name, name),
+            f"{duration(entry['median'])} ({duration(entry['least'])} to {duration(entry['most'])})",
+        )
         for name, entry in startup["seconds"].items()
     ]
 
 
 def _machine(found: dict[str, dict]) -> str:
-    """Where the results come from."""
+    """Sentence on the machines of the results."""
     machines = {
         json.dumps({key: value for key, value in content["machine"].items() if key != "load"})
         for content in found.values()
@@ -331,7 +366,7 @@ def _machine(found: dict[str, dict]) -> str:
 
 
 def block(results: Path) -> str:
-    """The part of the page between the markers."""
+    """Text of the page between the markers."""
     found = {
         name: json.loads((results / f"{name}.json").read_text(encoding="utf-8"))
         for name in (*QUOTED, BEFORE)
@@ -356,15 +391,15 @@ def block(results: Path) -> str:
     growth += _mass_rows(structures) if structures else []
     growth += _large_rows(found["large"]) if "large" in found else []
     if growth or "startup" in found:
-        lines += ["", "### How cost grows"]
-    lines += markdown(("how cost grows", "time"), growth)
+        lines += ["", "### Computing time and memory"]
+    lines += markdown(("task", "time or memory"), growth)
     if "startup" in found:
-        lines += markdown(("fresh process", "time (least to most)"), _start_rows(found["startup"]))
+        lines += markdown(("fresh process", "time (minimum to maximum)"), _start_rows(found["startup"]))
     return "\n".join(lines)
 
 
 def parts(text: str) -> tuple[str, str, str]:
-    """The page before the block, the block, and what comes after."""
+    """Split the page into the text before the block, the block, and the text after it."""
     before, begin, rest = text.partition(f"{BEGIN}\n")
     inside, end, after = rest.partition(END)
     if not begin or not end:
@@ -373,7 +408,7 @@ def parts(text: str) -> tuple[str, str, str]:
 
 
 def rewrite(results: Path, page: Path = PAGE) -> None:
-    """Put the block of these results into the page."""
+    """Write the block of these results into the page."""
     before, _, after = parts(page.read_text(encoding="utf-8"))
     text = f"{before}{BEGIN}\n{block(results)}\n{END}{after}"
     page.write_text(text, encoding="utf-8")

@@ -2,8 +2,8 @@
 One mass: where it slides, and where it sticks
 ==============================================
 
-The three maps with which the thesis begins. Between the two boundaries, and only there, the motion
-sticks and slips; for mu = 1 nothing but this strip is ever integrated.
+The first three maps of the thesis. The motion sticks and slips only between the two boundaries. For mu = 1
+only this strip is integrated.
 """
 
 from picture_data import computed
@@ -11,15 +11,15 @@ from picture_data import computed
 import frictionmap as fm
 
 # %%
-# **T Fig. 2.5**, friction against a fixed wall. From beta = 1 on the load is too weak to move the mass.
+# **T Fig. 2.5**, friction against a fixed wall. For beta >= 1 the load cannot move the mass.
 fm.plot_regimes(computed("fig-2-5"))
 
 # %%
-# **T Fig. 3.4**, friction against a wall that moves with the shaken base: at high frequency it slides
-# whatever the friction.
+# **T Fig. 3.4**, friction against a wall that moves with the base. At high frequency the contact slides for
+# any friction force.
 fm.plot_regimes(computed("fig-3-4"))
 
 # %%
-# **T Fig. 3.5**, the same for four ratios of static to kinetic friction. Sticking loses, and stick-slip
-# is squeezed out between continuous motion and permanent sticking.
+# **T Fig. 3.5**, the same for four static-to-kinetic ratios. As the ratio increases, the stick-slip region
+# between continuous motion and permanent sticking becomes smaller.
 fm.plot_regimes(computed("fig-3-5"))

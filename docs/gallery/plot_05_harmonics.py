@@ -2,8 +2,8 @@
 First harmonics, as they are measured
 =====================================
 
-Transmissibility and phase of the first harmonic, from integrals in closed form over the exact motion,
-not from samples.
+Transmissibility and phase of the first harmonic, computed from closed-form integrals over the exact motion
+instead of samples.
 """
 
 from picture_data import computed
@@ -11,13 +11,13 @@ from picture_data import computed
 import frictionmap as fm
 
 # %%
-# **T Fig. 4.7 and 4.8**, fixed wall, shaken base: above resonance the phase hardly depends on
-# frequency, which is what friction is measured by.
+# **T Fig. 4.7 and 4.8**, fixed wall, moving base. Above resonance the phase hardly depends on
+# frequency, so friction can be measured from it.
 fixed = computed("fig-4-7")
 fm.plot_curves(fixed)
 
 # %%
-# The other harmonics, in dB beside the first: only odd ones.
+# The other harmonics, in dB relative to the first. Only odd harmonics occur.
 fm.plot_curves(fixed, "harmonics")
 
 # %%

@@ -2,8 +2,8 @@
 Two and five masses
 ===================
 
-In a chain every mode has its own resonance, and the contact may see it or not. Where the contact sits,
-and where the load acts, decides more than the friction does.
+In a chain every mode has its own resonance, in which the contact may or may not take part. The positions of
+the contact and of the load matter more than the friction force.
 """
 
 from picture_data import computed
@@ -12,11 +12,11 @@ import frictionmap as fm
 
 # %%
 # **T Fig. 6.7**, two masses, contact and load on the first. Undamped chains with mu > 1 have wide
-# regions in which the motion repeats in no eight periods: stops there are means over a hundred.
+# regions in which the motion does not repeat within eight periods. Stops there are averages over a hundred.
 fm.plot_regimes(computed("fig-6-7"))
 
 # %%
-# **T Fig. 6.14**, contact on the second mass: it slides easily at both resonances.
+# **T Fig. 6.14**, contact on the second mass. It slides easily at both resonances.
 fm.plot_regimes(computed("fig-6-14"))
 
 # %%

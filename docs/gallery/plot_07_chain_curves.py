@@ -15,15 +15,16 @@ fm.plot_curves(computed("fig-6-6"))
 fm.plot_curves(computed("fig-6-13"))
 
 # %%
-# Points that no friction moves are marked: there all curves of a mass meet.
+# Invariant points are marked.  All curves of a mass meet there, because friction does not affect the
+# amplitude.
 #
 # **T Fig. 6.23**, contact between the masses; **6.25**, a wall joined to the base.
 fm.plot_curves(computed("fig-6-23"))
 fm.plot_curves(computed("fig-6-25"))
 
 # %%
-# **T Fig. 6.2**, three masses, contact on the second. Each resonance becomes finite at a friction ratio of
-# its own, T(6.2): 0.436, 1.765 and 0.630.
+# **T Fig. 6.2**, three masses, contact on the second. Each resonance becomes finite at its own
+# friction ratio, T(6.2): 0.436, 1.765 and 0.630.
 fm.plot_curves(computed("fig-6-2"))
 
 # %%

@@ -2,8 +2,8 @@
 Two masses with modal damping
 =============================
 
-T Fig. 7.7 and 7.5: contact on the second mass, load on the first, damping ratios inverse to the natural
-frequencies.
+T Fig. 7.7 and 7.5: contact on the second mass, load on the first. The damping ratios are inversely
+proportional to the natural frequencies.
 """
 
 from picture_data import computed

@@ -1,10 +1,10 @@
 """
-Where the start decides
-=======================
+Where the initial state decides
+===============================
 
-With static friction above kinetic friction a cell may have several steady states. The map answers for
-the start that was asked for; ``also_reachable`` lists what other starts end in, and where there are
-several the picture is hatched.
+If static friction exceeds kinetic friction, a cell can have several steady states. A map shows the outcome
+for one initial state. ``also_reachable`` lists the regimes that other initial states lead to. Cells with
+several regimes are hatched.
 """
 
 from picture_data import computed

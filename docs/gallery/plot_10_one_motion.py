@@ -2,7 +2,7 @@
 Motions in time
 ===============
 
-Single cells in full: what moves, when the contact stops, and what friction takes.
+Single cells over time: displacements, stops of the contact, and the energy that friction dissipates.
 """
 
 from picture_data import computed
@@ -10,19 +10,19 @@ from picture_data import computed
 import frictionmap as fm
 
 # %%
-# A mass on a fixed wall that stops twice in a cycle. Grey: the contact sticks.
+# A mass on a fixed wall that stops twice per cycle. The contact sticks in the grey bands.
 one = fm.response(fm.System(), 0.3, 0.5)
 fm.plot_response(one)
 
 # %%
-# The same as phase portrait, friction loop and spectrum. The area of the loop is what friction takes in
-# a cycle.
+# The same as phase portrait, friction loop and spectrum. The area of the loop is the energy that
+# friction dissipates per cycle.
 fm.plot_orbit(one)
-print(f"work of friction in a cycle: {one.work_friction.item():.4f}")
+print(f"work of friction per cycle: {one.work_friction.item():.4f}")
 
 # %%
-# **T Fig. 4.6**, a mass on a shaken base against a fixed wall, at r = 0.85: so little friction does not
-# stop it.
+# **T Fig. 4.6**, a mass on a shaken base against a fixed wall, at r = 0.85. The friction is too small
+# for stops.
 fm.plot_response(computed("fig-4-6"))
 
 # %%
@@ -31,13 +31,13 @@ fm.plot_response(computed("fig-6-9"))
 
 # %%
 # **T Fig. 7.1**, the same at another frequency with modal damping ratios of 0.01 and of 0.1; **7.2**, with
-# the contact on the third mass. With more damping the masses move no longer in phase, or opposed.
+# the contact on the third mass. With more damping the masses no longer move in phase or in antiphase.
 for figure in ("7-1", "7-2"):
     for zeta in ("0.01", "0.1"):
         fm.plot_response(computed(f"fig-{figure}-zeta-{zeta}"))
 
 # %%
-# **T Fig. 7.10**, stick-slip at low frequency: four stops in a cycle without damping and with little, two
+# **T Fig. 7.10**, stick-slip at low frequency: four stops per cycle without or with little damping, two
 # with a damping ratio of 0.1.
 for zeta in ("0", "0.01", "0.1"):
     fm.plot_response(computed(f"fig-7-10-zeta-{zeta}"))

@@ -2,17 +2,17 @@
 Your own structure: a plate that rubs at a corner
 =================================================
 
-A finite-element program writes mass and stiffness matrices into files; frictionmap reads them, reduces
-them to the degrees of freedom that matter, and draws the map.  Here the program is forty lines of NumPy: a
-steel plate of 0.6 m x 0.4 m x 4 mm, clamped along one short edge, of 3,600 degrees of freedom.  One free
-corner is pressed against a fixed wall and rubs on it; a shaker drives the other.
+A finite-element program writes mass and stiffness matrices to files. frictionmap reads and reduces them and
+draws the map.  Here forty lines of NumPy replace the finite-element program.  The structure is a steel plate
+of 0.6 m x 0.4 m x 4 mm with 3,600 degrees of freedom, clamped along one short edge.  One free corner is
+pressed against a fixed wall and rubs on it.  A shaker drives the other free corner.
 """
 
 # %%
 # The plate
 # ---------
-# Rectangular elements of Kirchhoff's theory, one deflection and two slopes a node: the deflection is a
-# polynomial of twelve terms, integrated by Gauss points.
+# The plate consists of rectangular Kirchhoff elements with one deflection and two slopes per node.  The
+# deflection is a polynomial with twelve terms, integrated at Gauss points.
 
 from pathlib import Path
 from tempfile import mkdtemp
@@ -82,7 +82,7 @@ print(f"{M.shape[0]} degrees of freedom; the free corners are {corners}")
 # %%
 # Files
 # -----
-# Matrix Market takes the triangle of a symmetric matrix; 17 digits keep every bit.
+# Matrix Market stores one triangle of a symmetric matrix.  17 digits preserve every bit.
 
 folder = Path(mkdtemp())
 for name, matrix in (("m", M), ("k", K)):
@@ -92,8 +92,8 @@ for name, matrix in (("m", M), ("k", K)):
 # %%
 # The reduced structure
 # ---------------------
-# Both corners stay, with twelve modes of the rest.  What that costs is found when a range of frequency is
-# asked for; more than 0.1 % is refused, with the number of modes that would do.
+# The reduction keeps both corners and twelve modes of the rest.  Its error is determined when a frequency
+# range is requested.  An error above 0.1 % is refused, and the message states how many modes suffice.
 
 plate = fm.System(
     contact="fixed-wall",
@@ -111,9 +111,10 @@ print(plate.costs(r)["reduction"])
 # %%
 # The map
 # -------
-# beta is the friction force over that of the shaker.  Where friction is small the corner slides; where it is
-# large it sticks for good, but near the resonances of the plate with the corner held, where the force in the
-# contact grows.  The white peaks stand at the resonances of the free plate.
+# beta is the friction force over the force of the shaker.  With small friction the corner slides, with large
+# friction it sticks permanently.  Near the resonances of the plate with the corner held, sticking needs more
+# friction, because the load in the contact is larger.  The white peaks are at the resonances of the free
+# plate.
 
 ds = fm.sweep(plate, r, np.geomspace(0.02, 4.0, 60), outputs=["regime", "stops_per_cycle", "status"])
 for ax in np.ravel(fm.plot_regimes(ds)):
@@ -121,8 +122,9 @@ for ax in np.ravel(fm.plot_regimes(ds)):
 plt.show()
 
 # %%
-# What is promised is the answer to loads in the range.  With 24 modes permanent sticking stays where it is
-# and amplitudes change by 0.4 % in the median; but of a hundred cells nine that slid without stopping stop
-# for an instant: friction that reverses finds fast modes, and the corner's own mass is 1/363 of what twelve
-# modes leave to it.  On a finer mesh it is less still, so where the motion of a point contact is continuous
-# is a matter of the model.
+# The stated error applies to responses to loads in the range.  With 24 modes the boundary to permanent
+# sticking is unchanged and the median change of the amplitudes is 0.4 %.  However, nine of a hundred cells
+# change from continuous motion to very short stops.  The reason is that a reversal of friction excites fast
+# modes: with twelve modes the effective mass of the corner is 363 times the true one.  On a finer mesh the
+# true effective mass of a point is smaller still, so the boundary of continuous motion depends on the
+# model.

@@ -161,7 +161,7 @@ def _solve_arrow(
 
     The mode that is softest at the contact is solved for together with F, because it may resonate.  The other
     modes are eliminated; modes with chi = 0 are excluded.  Returns q, F, and whether the equations are
-    singular but for rounding.
+    singular except for rounding.
     """
     seen = np.flatnonzero(body.chi)
     columns = np.arange(displacement.re.size)

@@ -200,7 +200,7 @@ def _held_squares(mass: np.ndarray, stiffness: np.ndarray, contact: np.ndarray) 
 def _solve_unexcited_resonance(
     bordered: np.ndarray, mass: np.ndarray, right: np.ndarray
 ) -> np.ndarray | None:
-    """Solve equations that are singular but for rounding, for a load that does not excite the resonance.
+    """Solve equations that are singular to rounding, for a load that does not excite the resonance.
 
     The solution is the limit in which the resonant motions are absent: it is orthogonal to them with respect
     to the mass.  Returns None if the load excites them.

@@ -204,7 +204,7 @@ def seconds_of_cells(
 
 
 def _spread(values: np.ndarray, most: int) -> np.ndarray:
-    """So many values of an axis at most: the middles of equal parts of it."""
+    """At most `most` values of an axis: the middles of equal parts of it."""
     count = min(values.size, most)
     return values[((np.arange(count) + 0.5) * values.size / count).astype(int)]
 

@@ -164,7 +164,7 @@ def _fill(
     cells: Cells, work: Plan, shape: tuple[int, int, int], unique: np.ndarray, out: Any, threads: int,
     progress: Progress | None, watch: Watch | None,
 ) -> None:  # fmt: skip
-    """Fill all cells; `unique` (n_mu,) tells where mu = 1."""
+    """Fill all cells; `unique` (n_mu,): where mu = 1."""
     n_rows, columns = work.low.size, shape[2]
     rows_at_once = max(1, ROW_CELLS // columns)
     opened = OpenCells(work.rows, work.ends, work.low, work.high)

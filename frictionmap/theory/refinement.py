@@ -74,7 +74,7 @@ def with_more_modes(system: System) -> System | None:
 
 
 def thinned(axis: np.ndarray, most: int) -> np.ndarray:
-    """At most so many values of an axis, evenly from its first to its last."""
+    """At most `most` values of an axis, evenly from its first to its last."""
     return axis[np.unique(np.linspace(0, axis.size - 1, min(most, axis.size)).round().astype(int))]
 
 
@@ -104,7 +104,7 @@ def one_mu(mu: np.ndarray) -> float:
 
 
 def boundary_check(system: System, r: np.ndarray, mu: np.ndarray) -> dict[str, str]:
-    """The attribute `reduction_check` of boundaries over r and mu; none of what is not reduced."""
+    """Attribute `reduction_check` of boundaries over r and mu; empty for a structure that is not reduced."""
     try:
         finer = with_more_modes(system)
         if finer is None:

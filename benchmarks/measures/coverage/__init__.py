@@ -1,12 +1,13 @@
-"""Intervals of `identify`: how often the stated 95 % intervals hold the truth.
+"""Coverage of `identify`: how often the stated 95 % intervals contain the true value.
 
-For every kind of measurement synthetic data of known truth are drawn, one seed at a time, disturbed in one
-way (a gap, a drift, a wandering zero, outliers, a range that ends too early, heavy damping), and fitted by
-the public call as a user would.  Each row of the table counts, over its seeds, the intervals that hold their
-truth, the refusals and the warnings, and compares errors with the standard errors that were stated.
+For every kind of measurement, synthetic data with known true values are generated, one seed at a time,
+disturbed in one way (a gap, a drift, a wandering zero, outliers, a limited range, heavy damping), and fitted
+with the public function as a user would. Each row of the table counts, over its seeds, the intervals that
+contain their true value, the refusals and the warnings. It also compares errors with the stated standard
+errors.
 
-The data are made without the package: decays half cycle by half cycle in closed form, records by
-`references.shaken`, forced responses by half-period propagators or marched, sweeps from M, K and C.
+The data are generated without the package: decays in closed form by half cycles, records by
+`references.shaken`, forced responses by half-period propagators or by marching, and sweeps from M, K and C.
 """
 
 import os
@@ -39,14 +40,14 @@ _PROCESSES, _AT_ONCE = min(os.cpu_count() or 1, 16), 5
 
 
 def trial(task: tuple[str, int, int]) -> Trial:
-    """One fit of a kind, the place of its case in the list, and a seed."""
+    """Fit one case: kind, position of the case in the list, and seed."""
     kind, place, seed = task
     rng = np.random.default_rng([list(KINDS).index(kind), place, seed])
     return attempt(KINDS[kind][place].make(rng), seed)
 
 
 def _tasks(share: float | None) -> Iterator[tuple[str, int, int]]:
-    """All fits of a share of the seeds; without a share one fit of every case that has all seeds."""
+    """All fits of a share of the seeds; without a share, one fit of every case that has all seeds."""
     for kind, cases in KINDS.items():
         for place, case in enumerate(cases):
             seeds = int(case.seeds == SEEDS) if share is None else round(share * case.seeds)
@@ -65,6 +66,7 @@ def measure(share: float | None = 1.0) -> Iterator[dict[str, dict[str, dict]]]:
 
 
 def _rows(tasks: list[tuple[str, int, int]], trials: Iterable[Trial]) -> Iterator[dict[str, dict[str, dict]]]:
+    """Add a row for every case when its last fit is complete."""
     found: dict[str, dict[str, dict]] = {}
     for (kind, place), some in groupby(zip(tasks, trials, strict=True), key=lambda one: one[0][:2]):
         name = KINDS[kind][place].name
@@ -73,7 +75,7 @@ def _rows(tasks: list[tuple[str, int, int]], trials: Iterable[Trial]) -> Iterato
 
 
 def run(quick: bool, results: Path) -> dict:
-    """Draw, fit, count, print, draw the figure and save, all anew after each case."""
+    """Generate data, fit, count and print; save after each case, and draw the figure at the end."""
     content: dict = {"machine": machine(), "stated coverage": STATED}
     for kinds in measure(None if quick else 1.0):
         content["kinds"] = kinds

@@ -1,4 +1,4 @@
-"""One case: data with a known truth, the public fit of them, and what a trial of it found."""
+"""One case: data with known true values, the public fit, and the result of one trial."""
 
 import re
 import time
@@ -22,7 +22,7 @@ _NUMBER = re.compile(r"-?\d[\d.]*(?:e[+-]?\d+)?")
 
 
 class Made(NamedTuple):
-    """Data drawn for one seed: their truth, and the call that fits them."""
+    """Data of one seed: their true values, and the call that fits them."""
 
     truth: Mapping[str, float]
     fit: Callable[[], xr.Dataset]
@@ -30,7 +30,7 @@ class Made(NamedTuple):
 
 
 class Case(NamedTuple):
-    """A row of the table: what is done to the data, and what draws them."""
+    """One row of the table: the disturbance, and the function that generates the data."""
 
     name: str
     make: Callable[[np.random.Generator], Made]
@@ -38,7 +38,7 @@ class Case(NamedTuple):
 
 
 class Estimate(NamedTuple):
-    """How an estimate compares with its truth."""
+    """Comparison of an estimate with its true value."""
 
     inside: bool  # the 95 % interval holds the truth
     deviation: float  # estimate less truth, over its standard error; NaN where that is zero
@@ -46,7 +46,7 @@ class Estimate(NamedTuple):
 
 
 class Trial(NamedTuple):
-    """One fit."""
+    """Result of one fit."""
 
     seed: int
     seconds: float
@@ -56,12 +56,12 @@ class Trial(NamedTuple):
 
 
 def robust(fit: Callable[..., xr.Dataset]) -> dict[str, str]:
-    """The option that gives outliers little weight, of a fit that has it."""
+    """Option that reduces the weight of outliers, for a fit that has it."""
     return {"loss": "soft_l1"} if "loss" in signature(fit).parameters else {}
 
 
 def attempt(made: Made, seed: int) -> Trial:
-    """Fit and compare; an exception other than a refusal is kept with its name, as it is a defect."""
+    """Fit and compare; an exception other than a refusal is a defect, recorded with its name."""
     began = time.perf_counter()
     try:
         ds = made.fit()
@@ -91,17 +91,18 @@ def _compared(ds: xr.Dataset, made: Made) -> dict[str, Estimate]:
 
 
 def _reason(message: str) -> str:
-    """A message without its numbers."""
+    """Replace the numbers in a message by #."""
     return _NUMBER.sub("#", message)
 
 
 def cramer_rao(
     model: Callable[[np.ndarray], np.ndarray], truth: Mapping[str, float], sigma: float | np.ndarray
 ) -> dict[str, float]:
-    """Least standard errors that unbiased estimates of `truth` can have, from normal noise `sigma`.
+    """Smallest standard errors that unbiased estimates of `truth` can have with normal noise `sigma`.
 
     model : noiseless data, shape (samples,), from the values of `truth` in their order
-    sigma : standard deviation of a sample, or of each
+
+    sigma : standard deviation of every sample, or of each
     """
     values = np.array(list(truth.values()))
     slopes = np.empty((model(values).size, values.size))

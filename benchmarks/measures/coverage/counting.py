@@ -1,4 +1,4 @@
-"""From trials to a row of the table: how often intervals hold the truth, refusals, warnings, times."""
+"""Rows of the table from trials: coverage of the intervals, refusals, warnings, times."""
 
 from collections import Counter
 
@@ -16,13 +16,15 @@ RARE = 1e-3
 
 
 def band(trials: int) -> tuple[float, float]:
-    """Least and largest coverage of BAND of all counts, if every interval holds its truth with STATED."""
+    """Smallest and largest coverage of BAND of all counts, if every interval contains its true value with
+    STATED.
+    """
     low, high = binom.interval(BAND, trials, STATED)
     return float(low) / trials, float(high) / trials
 
 
 def row(trials: list[Trial]) -> dict:
-    """What is kept of a case."""
+    """Summarise the trials of a case."""
     answered = [trial for trial in trials if trial.refusal is None]
     names = list(dict.fromkeys(name for trial in answered for name in trial.estimates))
     return {

@@ -1,4 +1,4 @@
-"""Free decays of known truth: half cycle by half cycle in closed form, identified by `free_decay`."""
+"""Free decays with known true values: closed form by half cycles, identified by `free_decay`."""
 
 from collections.abc import Callable
 from functools import partial
@@ -13,7 +13,7 @@ from .disturbances import clipped, outliers, wander, without_gap
 
 
 class Decay(NamedTuple):
-    """A decay and how it is sampled; Hz, mm, s."""
+    """A decay and its sampling; Hz, mm, s."""
 
     f_n: float
     zeta: float
@@ -50,13 +50,13 @@ PLACES = np.linspace(0.05, 1.5, 45)
 
 
 def _next(decay: Decay, place: float) -> float:
-    """The turning point after another: X_{j+1} = -q X_j + (1 + q) s_j x_F, from the centre."""
+    """Next turning point: X_{j+1} = -q X_j + (1 + q) s_j x_F, from the centre."""
     q = np.exp(-np.pi * decay.zeta / np.sqrt(1.0 - decay.zeta**2))
     return -q * place + (1.0 + q) * np.sign(place) * decay.x_F
 
 
 def half_cycles(decay: Decay) -> int:
-    """How many there are before it rests, or until the record has ended."""
+    """Number of half cycles before rest, or before the end of the record."""
     place, count = decay.X0, 0
     while abs(place) > decay.mu * decay.x_F and decay.t0 + count * decay.half < decay.length:
         place, count = _next(decay, place), count + 1
@@ -64,7 +64,7 @@ def half_cycles(decay: Decay) -> int:
 
 
 def places(decay: Decay, count: int, time: np.ndarray) -> np.ndarray:
-    """x without noise: held before t0, at rest after `count` half cycles."""
+    """Displacement without noise: held before t0, at rest after `count` half cycles."""
     points = [decay.X0]
     for _ in range(count):
         points.append(_next(decay, points[-1]))
@@ -83,7 +83,7 @@ def _made(
     change: Disturbance | None = None,
     **arguments: object,
 ) -> Made:
-    """Noise on a decay, then a disturbance; the bound is that of the noise on the samples that are left."""
+    """Add noise to a decay, then a disturbance; the bound is that of the noise on the remaining samples."""
     decay = draw(rng)
     time, count = np.arange(int(decay.rate * decay.length)) / decay.rate, half_cycles(decay)
     x = places(decay, count, time) + rng.normal(0.0, decay.noise, time.size)
@@ -102,7 +102,7 @@ def _made(
 
 
 def _light(rng: np.random.Generator, noise: float | None = None) -> Decay:
-    """Some decay with light damping; noise as a share of the first swing, or some hundredths of a mm."""
+    """Random decay with light damping; noise as a share of the first amplitude, or some 0.01 mm."""
     f_n, zeta = rng.uniform(1.5, 5.0), 10.0 ** rng.uniform(-2.5, -1.5)
     first = rng.choice([-1.0, 1.0]) * rng.uniform(6.0, 12.0)
     sigma = rng.uniform(0.02, 0.05) if noise is None else noise * abs(first)
@@ -113,12 +113,12 @@ def _light(rng: np.random.Generator, noise: float | None = None) -> Decay:
 
 
 def _first_turn(rng: np.random.Generator) -> float:
-    """Half cycles from the first sample to t0: in a swing, or held before; next to 0 both are one record."""
+    """Half cycles from the first sample to t0: moving, or held before; near 0 both give one record."""
     return float(rng.uniform(-0.4, -0.1) if rng.uniform() < 0.8 else rng.uniform(0.1, 0.5))
 
 
 def _heavy(rng: np.random.Generator) -> Decay:
-    """Some decay with a damping ratio of about 0.3: four half cycles or so."""
+    """Random decay with a damping ratio of about 0.3, which has about four half cycles."""
     light, f_n = _light(rng), rng.uniform(1.0, 3.0)
     return light._replace(
         f_n=f_n, zeta=rng.uniform(0.25, 0.35), x_F=abs(light.X0) * rng.uniform(0.01, 0.03),
@@ -127,7 +127,7 @@ def _heavy(rng: np.random.Generator) -> Decay:
 
 
 def _gap(rng: np.random.Generator, decay: Decay, time: np.ndarray, x: np.ndarray) -> Disturbed:
-    """1 to 1.6 cycles, somewhere after the first half cycle and before it rests."""
+    """Gap of 1 to 1.6 cycles, after the first half cycle and before rest."""
     length = 2.0 * decay.half * rng.uniform(1.0, 1.6)
     rests = min(decay.t0 + decay.half * half_cycles(decay), decay.length)
     left = without_gap(time, rng.uniform(decay.half, max(rests - length, 2.0 * decay.half)), length)
@@ -135,7 +135,7 @@ def _gap(rng: np.random.Generator, decay: Decay, time: np.ndarray, x: np.ndarray
 
 
 def _gap_of(length: float) -> Disturbance:
-    """That many seconds, at one of `PLACES`."""
+    """Gap of the given number of seconds at one of `PLACES`."""
 
     def change(rng: np.random.Generator, decay: Decay, time: np.ndarray, x: np.ndarray) -> Disturbed:
         left = without_gap(time, rng.choice(PLACES), length)
@@ -145,7 +145,7 @@ def _gap_of(length: float) -> Disturbance:
 
 
 def _drift(rng: np.random.Generator, decay: Decay, time: np.ndarray, x: np.ndarray) -> Disturbed:
-    """Up to 0.2 mm/s, to be found by the fit."""
+    """Drift of up to 0.2 mm/s, to be found by the fit."""
     slope = rng.uniform(-0.2, 0.2)
     return time, x + slope * time, {"drift": slope}
 
@@ -159,7 +159,7 @@ def _outliers(rng: np.random.Generator, decay: Decay, time: np.ndarray, x: np.nd
 
 
 def _clipped(rng: np.random.Generator, decay: Decay, time: np.ndarray, x: np.ndarray) -> Disturbed:
-    """The range ends at 60 to 90 % of the first swing."""
+    """Limit the range to 60 to 90 % of the first amplitude."""
     return time, clipped(x, decay.centre, rng.uniform(0.6, 0.9)), {}
 
 

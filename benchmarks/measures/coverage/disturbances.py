@@ -1,4 +1,4 @@
-"""What happens to measured channels: gaps, wander of the zero, outliers, a range that ends too early."""
+"""Disturbances of measured channels: gaps, wander of the zero, outliers, a limited range."""
 
 import numpy as np
 
@@ -15,18 +15,20 @@ def without_gap(time: np.ndarray, begin: float, length: float) -> np.ndarray:
 
 
 def wander(rng: np.random.Generator, time: np.ndarray, noise: float) -> np.ndarray:
-    """The zero at `time`, of a random phase; its mean is 0, as it would be part of the unloaded place."""
+    """Slow motion of the zero at `time` with random phase; its mean is 0, because a mean is part of the
+    centre.
+    """
     zero = WANDER * noise * np.sin(2.0 * np.pi * (WANDER_FREQUENCY * time + rng.uniform()))
     return zero - np.mean(zero)
 
 
 def outliers(rng: np.random.Generator, size: int, noise: float | np.ndarray) -> np.ndarray:
-    """Errors of the samples that are far off, 0 of the others."""
+    """Errors of the samples that are far off, 0 for the others."""
     far = rng.uniform(size=size) < OUTLIERS
     return np.where(far, FAR * noise * rng.choice([-1.0, 1.0], size), 0.0)
 
 
 def clipped(x: np.ndarray, centre: float, share: float) -> np.ndarray:
-    """A channel whose range ends on both sides at a share of its largest distance from `centre`."""
+    """Limit the range of a channel on both sides to a share of its largest distance from `centre`."""
     reach = share * np.max(np.abs(x - centre))
     return np.clip(x, centre - reach, centre + reach)

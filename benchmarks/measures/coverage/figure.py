@@ -1,4 +1,4 @@
-"""The figure of coverage: one line per case, one dot per parameter."""
+"""Figure of coverage: one line per case, one dot per parameter."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -13,7 +13,7 @@ _WITHIN, _BELOW, _SHORT = "#2c5aa0", "#e07b00", "#c0232c"
 
 
 def draw(kinds: dict[str, dict[str, dict]], path: Path) -> None:
-    """Coverage of every parameter by case, over the band that chance allows; refusals beside it."""
+    """Draw the coverage of every parameter by case, the range that chance explains, and the refusals."""
     rows = [(kind, name, row) for kind, cases in kinds.items() for name, row in cases.items()]
     figure = new_figure(9.0, _REST + _LINE * len(rows))
     ax, beside = figure.subplots(1, 2, sharey=True, width_ratios=(5, 1))
@@ -40,7 +40,7 @@ def draw(kinds: dict[str, dict[str, dict]], path: Path) -> None:
 
 
 def _label(ax: object, rows: list[tuple[str, str, dict]], least: float) -> None:
-    """Axes, names of the cases, and what the colours are."""
+    """Label axes, cases and colours."""
     ax.axvline(100.0 * STATED, color="k", linewidth=0.8)
     ax.set_yticks(
         range(len(rows)), [f"{kind}: {name} ({row['seeds']})" for kind, name, row in rows], fontsize=8

@@ -1,4 +1,4 @@
-"""Forced responses of known truth: exact first harmonics of steady motions, identified by `forced`."""
+"""Forced responses with known true values: exact first harmonics, identified by `forced`."""
 
 from collections.abc import Callable
 from functools import lru_cache, partial
@@ -45,7 +45,7 @@ TWO_SIGMAS = 1.0, 0.015
 
 
 def _phasor(r: float, beta: float, zeta: float, mu: float, wall_moves: bool) -> complex:
-    """X/Y of one mass, its damper between base and mass: in closed form, or marched where it stops."""
+    """X/Y of one mass with its damper between base and mass: closed form, or marched if it stops."""
     moving = continuous(chain([1.0], [1.0], [zeta], True), 0, wall_moves, r, beta)
     if moving is not None:
         return complex(moving[0])
@@ -61,12 +61,12 @@ def _phasors(truth: Truth) -> np.ndarray:
 
 
 def _quantities(phasors: np.ndarray) -> np.ndarray:
-    """Lags [rad], then logarithms of amplitudes."""
+    """Phase lags [rad], then logarithms of amplitudes."""
     return np.concatenate((-np.angle(phasors), np.log(np.abs(phasors))))
 
 
 def _bound(truth: Truth, names: dict[str, float]) -> dict[str, float]:
-    """The Cramer-Rao bound of beta of every set, f_n, zeta and perhaps mu."""
+    """Cramer-Rao bound of beta of every set, f_n, zeta and optionally mu."""
     sets, frequency = len(truth.beta), truth.f_n * np.array(truth.r)
 
     def model(values: np.ndarray) -> np.ndarray:
@@ -87,7 +87,9 @@ def _made(
     mu_known: bool = True,
     **arguments: object,
 ) -> Made:
-    """Noise on the first harmonics; `far`: and outliers; `given`: the fit is given the errors of the data."""
+    """Add noise to the first harmonics; `far`: also outliers; `given`: pass the errors of the data to the
+    fit.
+    """
     truth = draw(rng)
     names = {f"beta_{k}": beta for k, beta in enumerate(truth.beta, start=1)}
     names |= {"f_n": truth.f_n, "zeta": truth.zeta} | ({} if mu_known else {"mu": truth.mu})
@@ -133,7 +135,7 @@ def _storeys(beta: float, zeta: float) -> np.ndarray:
 
 
 def _two_storeys(rng: np.random.Generator) -> Made:
-    """Lags and amplitudes of both storeys, errors given; beta and zeta are fitted."""
+    """Phase lags and amplitudes of both storeys, errors given; beta and zeta are fitted."""
     phasors = _storeys(TWO_BETA, TWO_ZETA)
     lags = -np.degrees(np.angle(phasors)) + rng.normal(0.0, TWO_SIGMAS[0], phasors.shape)
     ratios = np.abs(phasors) * np.exp(rng.normal(0.0, TWO_SIGMAS[1], phasors.shape))

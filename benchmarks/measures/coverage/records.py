@@ -1,4 +1,4 @@
-"""Records of known truth: steady motions of `references.shaken`, identified by `record`."""
+"""Records with known true values: steady motions of `references.shaken`, identified by `record`."""
 
 from collections.abc import Callable
 from functools import lru_cache, partial
@@ -30,7 +30,7 @@ settled = lru_cache(maxsize=4)(steady)
 
 
 def _random(rng: np.random.Generator, heavy: bool = False) -> Rig:
-    """Some rig at 0.8 to 1.6 Hz, a quarter to 1.6 times its natural frequency."""
+    """Random rig with a base frequency of 0.8 to 1.6 Hz, a quarter to 1.6 times the natural frequency."""
     f, r = rng.uniform(0.8, 1.6), 10.0 ** rng.uniform(-0.6, 0.2)
     wall_moves = bool(rng.uniform() < 0.3)
     zeta = rng.uniform(0.08, 0.12) if heavy else rng.uniform(0.002, 0.05)
@@ -44,7 +44,7 @@ def _random(rng: np.random.Generator, heavy: bool = False) -> Rig:
 
 
 def _settled(rng: np.random.Generator, draw: Callable[[np.random.Generator], Rig]) -> Steady:
-    """The steady motion of a rig that has one with the period of the base."""
+    """Steady motion of a rig whose motion has the period of the base."""
     for _ in range(_DRAWS):
         motion = settled(draw(rng))
         if motion.settled:
@@ -67,7 +67,7 @@ def _made(
     known: dict[str, float] | None = None,
     **arguments: object,
 ) -> Made:
-    """Noise on a steady motion, then a disturbance of the mass."""
+    """Add noise to a steady motion, then a disturbance of the mass."""
     motion = _settled(rng, draw)
     rig = motion.rig
     time, shakes, x = measured(rng, motion)
@@ -89,13 +89,13 @@ def _all(time: np.ndarray) -> np.ndarray:
 
 
 def _gap(rng: np.random.Generator, rig: Rig, time: np.ndarray, x: np.ndarray) -> Disturbed:
-    """1 to 1.5 cycles of the base, in both channels."""
+    """Gap of 1 to 1.5 cycles of the base, in both channels."""
     length = rng.uniform(1.0, 1.5) / rig.f
     return without_gap(time, rng.uniform(0.1, LENGTH - length - 0.1), length), x
 
 
 def _drift(rng: np.random.Generator, rig: Rig, time: np.ndarray, x: np.ndarray) -> Disturbed:
-    """Of the zero of the mass, up to 0.05 mm/s; the offset is that at the middle of the record."""
+    """Drift of the zero of the mass of up to 0.05 mm/s; the offset is that at the middle of the record."""
     return _all(time), x + rng.uniform(-0.05, 0.05) * (time - np.mean(time[[0, -1]]))
 
 
@@ -108,7 +108,7 @@ def _outliers(rng: np.random.Generator, rig: Rig, time: np.ndarray, x: np.ndarra
 
 
 def _clipped(rng: np.random.Generator, rig: Rig, time: np.ndarray, x: np.ndarray) -> Disturbed:
-    """The range of the mass ends at 80 to 95 % of its amplitude."""
+    """Limit the range of the mass to 80 to 95 % of its amplitude."""
     return _all(time), clipped(x, float(np.mean(x)), rng.uniform(0.8, 0.95))
 
 

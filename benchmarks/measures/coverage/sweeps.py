@@ -1,4 +1,4 @@
-"""Sweeps of known truth: chains on a shaken base by M, K and C, identified by `sweep`."""
+"""Sweeps with known true values: chains with base excitation from M, K and C, identified by `sweep`."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -38,7 +38,7 @@ def _responses(values: np.ndarray, n: int, frequency: np.ndarray) -> np.ndarray:
 
 
 def _quantities(phasors: np.ndarray, lags: bool) -> np.ndarray:
-    """Logarithms of amplitudes, and lags [rad]."""
+    """Logarithms of amplitudes, and phase lags [rad]."""
     phasors = phasors.ravel()
     return np.concatenate((np.log(np.abs(phasors)), -np.angle(phasors))) if lags else np.log(np.abs(phasors))
 
@@ -51,7 +51,7 @@ def _made(
     far: bool = False,
     **arguments: object,
 ) -> Made:
-    """Amplitudes of some masses; of a damped chain, `zeta` from to, lags too; `far`: outliers, too."""
+    """Amplitudes of some masses; for a damped chain (range `zeta`) also phase lags; `far`: also outliers."""
     damped = zeta is not None
     values = np.concatenate((
         [rng.uniform(2.0, 5.0)], rng.uniform(0.7, 1.4, 2 * (n - 1)), rng.uniform(*zeta, n) if damped else [],

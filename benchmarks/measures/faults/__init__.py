@@ -1,31 +1,31 @@
-"""`faults`: the program in careless hands and on bad days: nothing lost, nothing left behind, no traceback.
+"""`faults`: invalid input, interrupts and damaged files: nothing lost, nothing left behind, no traceback.
 
     python -m benchmarks faults [--quick] [--results FOLDER] [--package CHECKOUT]
 
-tries the checkout that it stands in, or another one, in child processes only: `faults.json` is of this one,
-`faults-before.json` of another.  Whatever goes wrong is counted by what a user sees of it, with examples.
+tests this checkout, or another one, in child processes only.  `faults.json` contains the results of this
+checkout, `faults-before.json` those of another.  Failures are counted by what a user sees, with examples.
 
 ==============  =========================================================================================
 module          what is in it
 ==============  =========================================================================================
-configurations  bad configurations: every key with wrong values, whole files gone wrong, bad matrices
-command_lines   bad command lines: arguments, overrides, outputs and inputs in the wrong place
-refusals        runs both: refused in one line that names what is wrong, with nothing changed
-calls           bad calls of the Python API, good ones in unusual dress, settings that must not be dropped
+configurations  invalid configurations: every key with wrong values, invalid files, invalid matrices
+command_lines   invalid command lines: arguments, overrides, outputs and inputs
+refusals        runs both: refused in one line that names the cause, with nothing changed
+calls           invalid calls of the Python API, valid ones in unusual form, settings
 mutants         thousands of malformed files, read by `info` and `plot`
-moments         what runs of every verb take and write
-interrupts      SIGINT, SIGTERM and SIGKILL at random moments of every verb
-races           several runs to one name, files that appear during a run, links, permissions
-places          full disks, read-only folders, terminals of few letters, closed streams
-caches          damaged caches of kernels, machines on which none can be written
-damages         ways to damage them
-malformed       makes the malformed files: of `contents`, by `other_structure`, `other_values`, `slices`
-calling         makes the calls; both in the child
+moments         duration and output of every command
+interrupts      SIGINT, SIGTERM and SIGKILL at random moments of every command
+races           several runs that write the same file, files that appear during a run, links
+places          full disks, read-only folders, terminals with few characters, closed streams
+caches          damaged caches of kernels, read-only machines
+damages         damage to a cache
+malformed       makes malformed files from `contents` by `other_structure`, `other_values`, `slices`
+calling         makes the calls; runs in the child
 worker          the child's side
 child           the parent's side
-machine         processes of their own, and how busy the machine is
-folders         what lies in a folder before and after
-verdict         what is wrong with how a run ended; counts
+machine         new processes, and how busy the machine is
+folders         content of a folder before and after
+verdict         defects of a run; counts
 report          table, figure, JSON
 ==============  =========================================================================================
 """
@@ -46,7 +46,7 @@ Part = Callable[[Path], list[Family]]
 
 
 def _parts(child: Child, package: Path, quick: bool) -> dict[str, Part]:
-    """What is tried, each in a folder of its own; those that need a long-lived child come first."""
+    """All parts, each in its own folder; those that need a long-lived child come first."""
     env = environment(package)
 
     def in_processes(part: Callable) -> Part:

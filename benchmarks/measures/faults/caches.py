@@ -1,4 +1,4 @@
-"""Damaged caches of kernels, and machines on which none can be written: an answer all the same."""
+"""Damaged caches of kernels, and machines on which no cache can be written: results stay the same."""
 
 import random
 import shutil
@@ -23,7 +23,7 @@ _QUICK = ("data: cut off",)
 
 
 def _installed(package: Path, folder: Path) -> Path:
-    """A copy of the package alone, without the caches of other states that may lie in it."""
+    """Copy the package alone, without caches of other versions."""
     stale = shutil.ignore_patterns("__pycache__")
     shutil.copytree(package / "frictionmap", folder / "frictionmap", dirs_exist_ok=True, ignore=stale)
     return folder
@@ -35,7 +35,7 @@ def _answer(folder: Path) -> xr.Dataset:
 
 
 def _judge(said: Said, folder: Path, right: xr.Dataset) -> str | None:
-    """An answer, the right one, and one line said at most."""
+    """Check that a run gives the right result and at most one line."""
     if said.status is None:
         return HANG
     if said.status < 0:
@@ -44,7 +44,7 @@ def _judge(said: Said, folder: Path, right: xr.Dataset) -> str | None:
 
 
 class _Trials:
-    """A package with a warm cache, to be damaged again and again."""
+    """A package with a complete cache, to be damaged repeatedly."""
 
     def __init__(self, package: Path, folder: Path) -> None:
         self.folder = folder
@@ -64,14 +64,14 @@ class _Trials:
         shutil.copytree(self.home, folder / "warm home")
 
     def run(self, package: Path, **more: str | None) -> Said:
-        """One run, for which permissions hold."""
+        """Run the program once, under file permissions."""
         (self.work / "out.nc").unlink(missing_ok=True)
         usual = {"HOME": str(self.home), "TMPDIR": str(self.temporary)}
         env = environment(package, **{"XDG_CACHE_HOME": None, "NUMBA_CACHE_DIR": None, **usual, **more})
         return run_once(_ARGUMENTS, self.work, env, _LIMIT, preexec_fn=preparation(ordinary=True))
 
     def restored(self) -> Path:
-        """The package, the home folder and that of temporary files as they were when the cache was warm."""
+        """Restore the package, the home folder and the temporary folder with a complete cache."""
         trial = self.folder / "trial"
         _unsealed(trial, self.home)
         shutil.rmtree(self.temporary)
@@ -82,14 +82,14 @@ class _Trials:
         return trial
 
     def cache(self, package: Path) -> list[Path]:
-        """The files of kernels, wherever they lie."""
+        """Cache files of kernels in all folders."""
         found = sorted(path for place in (package, self.home) for path in place.rglob("*.nb?"))
         if not found:
             raise RuntimeError("no cache was found")
         return found
 
     def damaged(self, damage: Damage, rng: random.Random) -> tuple[str | None, str] | None:
-        """Damage the cache, then two runs; None if there is nothing to damage."""
+        """Damage the cache and run twice; None if there is nothing to damage."""
         trial = self.restored()
         targets = damage.of(self.cache(trial))
         if not targets:
@@ -104,7 +104,7 @@ class _Trials:
 
 
 def _sealed(*folders: Path) -> None:
-    """Nobody writes there any more."""
+    """Make folders read-only."""
     for folder in folders:
         for path in [folder, *folder.rglob("*")]:
             if path.is_dir():
@@ -112,7 +112,7 @@ def _sealed(*folders: Path) -> None:
 
 
 def _unsealed(*folders: Path) -> None:
-    """They can be written to again."""
+    """Make folders writable again."""
     for folder in folders:
         for path in [folder, *folder.rglob("*")]:
             if path.is_dir():
@@ -120,7 +120,7 @@ def _unsealed(*folders: Path) -> None:
 
 
 def _unwritable(trials: _Trials, quick: bool) -> Family:
-    """Package folder and home that cannot be written, with a warm cache and with none."""
+    """Read-only package and home folders, with and without a complete cache."""
     family = Family("package and home that cannot be written")
     nowhere = str(trials.folder / "nowhere")
     places: dict[str, dict[str, str | None]] = {
@@ -150,7 +150,7 @@ def _unwritable(trials: _Trials, quick: bool) -> Family:
 
 
 def run(package: Path, folder: Path, quick: bool) -> list[Family]:
-    """Both families."""
+    """Run both families."""
     folder.mkdir()
     trials = _Trials(package, folder)
     family = Family("damaged caches of kernels")

@@ -1,4 +1,4 @@
-"""Python calls, given as text and run in the child, with the package under trial."""
+"""Python calls, given as text and run in the child with the tested package."""
 
 import warnings
 from typing import Any
@@ -29,14 +29,14 @@ _names: dict[str, Any] = {}
 
 
 def evaluate(code: str) -> Any:
-    """What a call returns."""
+    """Return the result of a call."""
     if not _names:
         _names.update(_namespace())
     return eval(code, dict(_names))
 
 
 def _plain(answer: Any) -> Any:
-    """An answer without what tells when and how it was asked for."""
+    """Remove the time and the call from a result."""
     if isinstance(answer, xr.Dataset):
         answer = answer.copy()
         answer.attrs.clear()
@@ -44,7 +44,7 @@ def _plain(answer: Any) -> Any:
 
 
 def same(one: Any, other: Any) -> bool:
-    """Whether two answers are the same."""
+    """Whether two results are the same."""
     one, other = _plain(one), _plain(other)
     if isinstance(one, xr.Dataset):
         return isinstance(other, xr.Dataset) and one.identical(other)
@@ -56,7 +56,7 @@ def same(one: Any, other: Any) -> bool:
 
 
 def outcome(code: str, plain: str) -> dict:
-    """How a call ends: the error by name and words, or whether the answer is that of the plain call."""
+    """Result of a call: the error by name and message, or whether the result is that of the plain call."""
     import frictionmap as fm
 
     with warnings.catch_warnings(record=True) as caught:

@@ -1,4 +1,4 @@
-"""Bad calls of the Python API, good calls in unusual dress, and settings that used to be dropped."""
+"""Invalid calls of the Python API, valid calls in unusual form, and settings that must not be ignored."""
 
 import random
 from collections.abc import Iterator
@@ -98,7 +98,7 @@ _SOLVER = {
 
 @dataclass(frozen=True)
 class Call:
-    """A call, and what its error has to name."""
+    """A call, and the words that its error must contain."""
 
     code: str
     says: Words = ()
@@ -148,7 +148,7 @@ def _functions() -> Iterator[Call]:
 
 
 def _others() -> Iterator[Call]:
-    """Files, pictures, and names that do not exist."""
+    """Files, pictures, and unknown names."""
     for value in (
         "1",
         "None",
@@ -263,7 +263,7 @@ _HONOURED = (
 
 
 def _wrong_error(call: Call, found: dict) -> str | None:
-    """What is wrong with the error of a call."""
+    """Check the error of a call; return the defect."""
     if call.plain and not call.may_refuse:
         return REFUSED
     if found["error"] not in call.errors:
@@ -274,7 +274,7 @@ def _wrong_error(call: Call, found: dict) -> str | None:
 
 
 def wrong_outcome(call: Call, found: dict) -> str | None:
-    """What is wrong with the outcome of a call."""
+    """Check the outcome of a call; return the defect."""
     if found["error"]:
         return _wrong_error(call, found)
     if not call.plain:
@@ -294,7 +294,7 @@ def families() -> dict[str, list[Call]]:
 
 
 def run(child: Child, folder: Path, quick: bool) -> list[Family]:
-    """All three families; `folder` holds c.toml."""
+    """Run all three families; `folder` holds c.toml."""
     tried = []
     child.ask(limit=_COMPILES, do="call", code=_EVERY_KERNEL, folder=str(folder))
     for name, calls in families().items():

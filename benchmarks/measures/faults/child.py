@@ -1,4 +1,4 @@
-"""A long-lived child that does what it is told with the package under trial; started anew when it ends."""
+"""Long-lived child process that runs the tested package; it is restarted when it ends."""
 
 import contextlib
 import json
@@ -23,7 +23,7 @@ _START = (
 
 
 class Ended(Exception):
-    """The child ended, or had to be ended."""
+    """The child ended, or was ended."""
 
     def __init__(self, hang: bool, stack: str) -> None:
         super().__init__(stack)
@@ -38,7 +38,7 @@ class Ended(Exception):
 
 
 class Child:
-    """Requests in, answers out, one line of JSON each, under a time limit."""
+    """Requests and replies, one line of JSON each, under a time limit."""
 
     def __init__(self, package: Path) -> None:
         self.package = package
@@ -51,7 +51,7 @@ class Child:
         self.close()
 
     def close(self) -> None:
-        """End it."""
+        """End the child."""
         if self._process is not None:
             self._process.kill()
             self._process.wait()
@@ -78,7 +78,7 @@ class Child:
         return self._process
 
     def ask(self, limit: float = 120.0, **request: object) -> dict:
-        """The answer to a request; Ended if it takes longer than `limit` seconds, or ends the child."""
+        """Return the reply to a request; Ended if it takes longer than `limit` seconds or ends the child."""
         process = self._started()
         process.stdin.write(json.dumps(request).encode() + b"\n")
         process.stdin.flush()
@@ -112,5 +112,5 @@ class Child:
         return Ended(hang, stack)
 
     def main(self, arguments: list[str], folder: Path, limit: float = 120.0) -> Said:
-        """The command line, in this folder."""
+        """Run the command line in this folder."""
         return Said(**self.ask(limit, do="main", arguments=arguments, folder=str(folder)))

@@ -1,4 +1,4 @@
-"""Bad command lines: arguments, overrides, and outputs in places where they must not go."""
+"""Invalid command lines: arguments, overrides, and outputs in places where they must not be written."""
 
 from .configurations import Case
 from .verdict import Words
@@ -8,13 +8,13 @@ _LONG = 30
 
 
 def _key(text: str) -> str:
-    """What of an override a message has to name: its key, or the part of it that exists."""
+    """Part of an override that a message must contain: its key, or the part of it that exists."""
     parts = " ".join(text.partition("=")[0].split())[:_LONG].split(".")
     return ".".join(parts[:2])
 
 
 def _arguments() -> list[tuple[str, Words]]:
-    """Unknown, missing, misspelt, abbreviated and repeated arguments, words parted by blanks."""
+    """Unknown, missing, misspelt, abbreviated and repeated arguments, and arguments split by blanks."""
     return [
         ("", (("COMMAND", "command"),)),
         ("frobnicate", (("frobnicate",),)),
@@ -65,7 +65,7 @@ def _arguments() -> list[tuple[str, Words]]:
 
 
 def _responses() -> list[tuple[str, Words]]:
-    """Bad cells of `response`."""
+    """Invalid cells of `response`."""
     given = "response one.toml -o x.nc"
     lines: list[tuple[str, Words]] = [
         (given, (("--r",),)),
@@ -103,7 +103,7 @@ def _responses() -> list[tuple[str, Words]]:
 
 
 def _overrides() -> list[Case]:
-    """--set with what is no KEY=VALUE, or says more than one thing."""
+    """--set with an argument that is not KEY=VALUE, or with several statements."""
     texts = (
         "", "=", "=1", "grid", "grid.r", "grid=", "grid.r=", "grid.=1", ".r=1", "grid..r=1", "grid.r.=1",
         " =1",
@@ -127,7 +127,7 @@ def _overrides() -> list[Case]:
 
 
 def _outputs() -> list[tuple[str, Words]]:
-    """Outputs that must not be written, for every verb: inputs by any name, folders, taken names."""
+    """Outputs that must not be written, for every command: inputs under any name, folders, existing files."""
     lines: list[tuple[str, Words]] = []
     for verb in ("map c.toml", "boundaries c.toml", "response one.toml --r 0.5 --beta 0.5"):
         config = verb.split()[1]
@@ -182,7 +182,7 @@ def _outputs() -> list[tuple[str, Words]]:
 
 
 def _inputs() -> list[tuple[str, Words]]:
-    """Files that are not there, or not what they should be."""
+    """Inputs that do not exist or have the wrong kind."""
     lines: list[tuple[str, Words]] = []
     for name in ("nothere.toml", "folder", ".", "m.nc", "dead.toml", "nothere/c.toml", "\udcff.toml"):
         for verb in ("map", "boundaries"):

@@ -1,4 +1,4 @@
-"""Bad configurations: every key with values of the wrong kind, size or order, and whole files gone wrong."""
+"""Invalid configurations: every key with values of the wrong kind, size or order, and invalid files."""
 
 import math
 import tomllib
@@ -77,7 +77,7 @@ MISSPELT = (
 
 @dataclass(frozen=True)
 class Case:
-    """A command line in a folder with some more files."""
+    """A command line in a folder with additional files."""
 
     arguments: tuple[str, ...]
     says: Words = ()
@@ -89,7 +89,7 @@ class Case:
 
 
 def _ways(value: object) -> Iterator[str]:
-    """How a message may name a value."""
+    """Forms in which a message may quote a value."""
     yield repr(value)
     yield str(value)
     if isinstance(value, float):
@@ -108,7 +108,7 @@ def _ways(value: object) -> Iterator[str]:
 
 
 def ways(text: str) -> tuple[str, ...]:
-    """How a message may name a TOML value."""
+    """Forms in which a message may quote a TOML value."""
     return (text, *_ways(tomllib.loads(f"value = {text}")["value"]))
 
 
@@ -125,7 +125,7 @@ def _with(key: str, text: str) -> str:
 
 
 def by_key() -> Iterator[Case]:
-    """Every key with every wrong value, in the file and by --set, and every misspelt key."""
+    """Every key with every invalid value, in the file and by --set, and every misspelt key."""
     for key, texts in WRONG_VALUES.items():
         for text in texts:
             says = ((key,), ways(text))
@@ -207,7 +207,7 @@ _WHOLE_FILES: dict[str, tuple[bytes, Words]] = {
 
 
 def whole_files() -> Iterator[Case]:
-    """Files that are no configurations, for every verb that takes one."""
+    """Files that are not configurations, for every command that takes one."""
     for about, (content, says) in _WHOLE_FILES.items():
         for arguments in (
             ("map", "bad.toml", "-o", "out.nc"),
@@ -264,7 +264,7 @@ def _archive(folder: Path, content: dict) -> bytes:
 
 
 def matrices(folder: Path) -> Iterator[Case]:
-    """Matrices files of every bad kind."""
+    """Invalid matrix files of every kind."""
     good = _archive(folder, {"M": _ONE, "K": _TWO})
     np.save(folder / "made.npy", _ONE)
     contents = {name: _archive(folder, content) for name, content in _MATRICES.items()}

@@ -1,4 +1,4 @@
-"""The content of a NetCDF file in memory, to be changed and written again."""
+"""Content of a NetCDF file in memory, to be changed and written again."""
 
 import random
 from collections.abc import Callable
@@ -23,14 +23,14 @@ class Variable:
 
 @dataclass
 class Content:
-    """A whole file, in memory."""
+    """A complete file, in memory."""
 
     variables: dict[str, Variable]
     attrs: dict
 
     @classmethod
     def of(cls, path: Path) -> "Content":
-        """Read as it is, without masks and scales."""
+        """Read a file as it is, without masks and scales."""
         with netCDF4.Dataset(path) as file:
             file.set_auto_maskandscale(False)
             variables = {
@@ -42,7 +42,7 @@ class Content:
             return cls(variables, {key: file.getncattr(key) for key in file.ncattrs()})
 
     def write(self, path: Path, kind: str = "NETCDF4") -> None:
-        """Write what the library accepts of it; a dimension of two sizes gets two names."""
+        """Write the variables that the library accepts; a dimension with two sizes gets two names."""
         with netCDF4.Dataset(path, "w", format=kind) as file:
             for name, variable in self.variables.items():
                 _write_variable(file, name, variable)
@@ -74,5 +74,5 @@ Mutation = Callable[[Content, random.Random], str]
 
 
 def pick(content: Content, rng: random.Random, least_dims: int = 0) -> str:
-    """The name of some variable."""
+    """Name of a random variable."""
     return rng.choice([name for name, v in content.variables.items() if len(v.dims) >= least_dims])

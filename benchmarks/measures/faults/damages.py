@@ -1,4 +1,4 @@
-"""Ways to damage a cache of kernels: its files, one by one or exchanged, and its folders."""
+"""Damage to a cache of kernels: to its files, one by one or exchanged, and to its folders."""
 
 import pickle
 import random
@@ -41,7 +41,7 @@ def _wrong_pickle(path: Path, rng: random.Random) -> None:
 
 
 class _Elsewhere:
-    """Pickles as a name of a module that does not exist."""
+    """Pickles as a name in a module that does not exist."""
 
     def __reduce__(self) -> tuple:
         return (_nowhere, ())
@@ -123,14 +123,14 @@ _OF_FOLDERS: dict[str, Act] = {
 
 @dataclass(frozen=True)
 class Damage:
-    """What is done to the files with one ending, or to the folders that hold any."""
+    """An action on the files with one ending, or on the folders that contain any."""
 
     name: str
     ending: str  # "" for folders
     act: Act
 
     def of(self, cache: list[Path]) -> list[Path]:
-        """Of the files of a cache those that it is done to."""
+        """Select the files of a cache that are damaged."""
         if not self.ending:
             return sorted({path.parent for path in cache})
         return [path for path in cache if path.suffix == self.ending]

@@ -1,4 +1,4 @@
-"""Folders to try things in: what lies there before, and what a run changed."""
+"""Folders for the trials: their content before, and the changes by a run."""
 
 import hashlib
 import os
@@ -37,7 +37,7 @@ _MADE_ANEW = ("fifo", "hard.toml")
 
 
 def _entry(path: Path) -> tuple[str, str]:
-    """Kind and permissions, and what is in it."""
+    """Kind, permissions and content."""
     mode = path.lstat().st_mode
     if stat.S_ISLNK(mode):
         return "link", str(path.readlink())
@@ -52,14 +52,14 @@ def snapshot(folder: Path) -> dict[str, tuple[str, str]]:
 
 @dataclass(frozen=True)
 class Change:
-    """What is different between two snapshots."""
+    """Differences between two snapshots."""
 
     lost: list[str]  # changed or gone
     new: list[str]
 
     @classmethod
     def between(cls, before: dict, after: dict) -> "Change":
-        """From one snapshot to the other."""
+        """Differences from one snapshot to the other."""
         lost = [name for name in before if after.get(name) != before[name]]
         return cls(lost, [name for name in after if name not in before])
 
@@ -75,7 +75,7 @@ class Change:
 
 
 def fresh(template: Path, folder: Path) -> Path:
-    """A copy of a prepared folder, links kept as links, with what copies do not keep: a pipe, a hard link."""
+    """Copy a prepared folder with its links, and with a pipe and a hard link, which copies do not keep."""
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(template, folder, symlinks=True, ignore=shutil.ignore_patterns(*_MADE_ANEW))
     os.mkfifo(folder / "fifo")

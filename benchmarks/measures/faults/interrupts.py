@@ -1,4 +1,6 @@
-"""Interrupts at random moments of all verbs: each run ends at once, with nothing lost and nothing left."""
+"""Interrupts at random moments of all commands: each run ends at once, nothing is lost, nothing is left
+behind.
+"""
 
 import contextlib
 import random
@@ -43,7 +45,7 @@ _OURS = ("frictionmap", "numba", "xarray", "matplotlib", "numpy")
 
 @dataclass(frozen=True)
 class Moment:
-    """When a run is interrupted, and what lay there before."""
+    """When a run is interrupted, and the content of its folder before."""
 
     of: Run
     signal: str
@@ -60,7 +62,7 @@ class Moment:
 def moments_of(
     runs: list[Run], start_up: float, counts: tuple[int, int], rng: random.Random
 ) -> Iterator[Moment]:
-    """Spread evenly over the time that a run takes, from where Python itself is through."""
+    """Moments spread evenly over the duration of a run, after the start of Python itself."""
     spread, writing = counts
     for one in runs:
         for name in SIGNALS:
@@ -82,7 +84,7 @@ def _start_up() -> float:
 
 
 def _interrupted(moment: Moment, folder: Path, env: dict[str, str], limit: float) -> Said:
-    """Start the run and interrupt it; the seconds are those from the interrupt on."""
+    """Start the run and interrupt it; the seconds are counted from the interrupt."""
     known = {path.name for path in folder.iterdir()}
     process = start(moment.of.arguments, folder, env)
     with ended(process):
@@ -103,7 +105,7 @@ def _before_the_program(said: Said) -> bool:
 
 
 def wrong_end(moment: Moment, said: Said, allowed: float) -> str | None:
-    """What is wrong with how a run ended."""
+    """Check how a run ended; return the defect."""
     if said.status is None:
         return HANG
     if said.traceback and not _before_the_program(said):
@@ -118,7 +120,7 @@ def wrong_end(moment: Moment, said: Said, allowed: float) -> str | None:
 def _wrong_files(
     moment: Moment, said: Said, folder: Path, before: dict, env: dict[str, str]
 ) -> tuple[str | None, str]:
-    """What is wrong with the files after it."""
+    """Check the files after the run; return the defect."""
     change = Change.between(before, snapshot(folder))
     others = [name for name in change.lost if name != moment.of.output]
     if others or (moment.of.output in change.lost and not moment.of.whole(folder)):
@@ -135,7 +137,7 @@ def _wrong_files(
 
 
 def _after_the_next_run(folder: Path, left: list[str], env: dict[str, str]) -> list[str]:
-    """What of that is still there when the next run has written there."""
+    """Defects that remain after the next run has written to the same folder."""
     machine.run(["map", "small.toml", "-o", "next.nc", "--quiet"], folder, env)
     return [name for name in left if (folder / name).exists()]
 
@@ -156,7 +158,7 @@ def _try(
 
 
 def run(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> list[Family]:
-    """One family a signal."""
+    """One family per signal."""
     runs = [
         Run.measured(verb, prepared, env, folder / f"whole-{verb}") for verb in (_QUICK if quick else VERBS)
     ]

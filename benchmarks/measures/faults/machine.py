@@ -1,4 +1,4 @@
-"""Processes of the package under trial, and how much slower they are than on a machine of their own."""
+"""Processes of the tested package, and their slowdown by other processes."""
 
 import contextlib
 import ctypes
@@ -24,7 +24,7 @@ _BUSY = (
 
 
 def environment(package: Path, **more: str | None) -> dict[str, str]:
-    """The environment of a child: the package under trial first; None takes a name out."""
+    """Environment of a child: the tested package first; None removes a name."""
     content: dict[str, str | None] = {
         **os.environ, "PYTHONPATH": str(package), "MPLBACKEND": "Agg", **more,
     }  # fmt: skip
@@ -32,14 +32,17 @@ def environment(package: Path, **more: str | None) -> dict[str, str]:
 
 
 def slowness() -> float:
-    """How many times as long as its processor time a process takes: others run beside it."""
+    """Ratio of elapsed time to processor time of a process, which grows if other processes run."""
     done = subprocess.run([sys.executable, "-c", _BUSY], capture_output=True, text=True, check=True)
     return max(1.0, float(done.stdout))
 
 
 def prepared(*, file_size: int | None = None, ordinary: bool = False) -> Callable[[], None]:
-    """What a new process does first: Ctrl-C means what it means in a terminal; files up to so many bytes;
-    `ordinary`: permissions hold for it, even if it is root's."""
+    """Preparation of a new process.
+
+    It restores the effect of Ctrl-C in a terminal. It limits files to `file_size` bytes. With `ordinary`,
+    file permissions apply to it, even if it belongs to root.
+    """
     library = ctypes.CDLL(None) if ordinary and os.geteuid() == 0 else None
 
     def prepare() -> None:
@@ -53,7 +56,7 @@ def prepared(*, file_size: int | None = None, ordinary: bool = False) -> Callabl
 
 
 def start(arguments: list[str], folder: Path, env: dict[str, str], **more: object) -> subprocess.Popen:
-    """The command line in a process of its own."""
+    """Start the command line in a new process."""
     command = [sys.executable, "-m", "frictionmap", *arguments]
     given = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **more}
     given.setdefault("preexec_fn", prepared())
@@ -62,7 +65,7 @@ def start(arguments: list[str], folder: Path, env: dict[str, str], **more: objec
 
 @contextlib.contextmanager
 def ended(process: subprocess.Popen) -> Iterator[subprocess.Popen]:
-    """Whatever happens, the process is gone afterwards."""
+    """Make sure that the process has ended."""
     try:
         yield process
     finally:
@@ -72,7 +75,7 @@ def ended(process: subprocess.Popen) -> Iterator[subprocess.Popen]:
 
 
 def said_by(process: subprocess.Popen, limit: float) -> Said:
-    """How a process ended; status None if it had to be ended."""
+    """How a process ended; the status is None if it had to be ended."""
     began = time.perf_counter()
     with ended(process):
         try:
@@ -86,5 +89,5 @@ def said_by(process: subprocess.Popen, limit: float) -> Said:
 def run(
     arguments: list[str], folder: Path, env: dict[str, str], limit: float = 600.0, **more: object
 ) -> Said:
-    """A whole run in a process of its own."""
+    """Run the command line in a new process."""
     return said_by(start(arguments, folder, env, **more), limit)

@@ -1,4 +1,4 @@
-"""Malformed files, made in the child from good ones: other structure, other values, damaged bytes, slices."""
+"""Malformed files, made from valid ones in the child: other structure or values, damaged bytes, slices."""
 
 import random
 from pathlib import Path
@@ -14,7 +14,7 @@ STRUCTURE, VALUES, BYTES, SLICES = "other structure", "other values", "damaged b
 
 
 def _changed(base: Path, mutations: tuple[Mutation, ...], rng: random.Random, path: Path) -> str:
-    """Write the file with one to three changes; the next ones if the library cannot write these."""
+    """Write the file with one to three changes; try others if the library cannot write these."""
     for _ in range(200):
         content = Content.of(base)
         kind = rng.choice(["NETCDF4"] * 9 + ["NETCDF3_64BIT_OFFSET"])
@@ -53,7 +53,7 @@ def _damaged(content: bytearray, rng: random.Random) -> str:
 
 
 def differs(base: Path, path: Path) -> bool:
-    """Whether a number in a file is another one than in the file that it was made from."""
+    """Whether a number in a file differs from the file it was made from."""
     try:
         with xr.open_dataset(base, decode_cf=False) as good, xr.open_dataset(path, decode_cf=False) as bad:
             return any(
@@ -67,7 +67,7 @@ def differs(base: Path, path: Path) -> bool:
 
 
 def make(base: Path, family: str, seed: int, path: Path) -> str:
-    """Write one malformed file; what it is, in words."""
+    """Write one malformed file; return a description."""
     rng = random.Random(f"{family} {base.name} {seed}")
     path.unlink(missing_ok=True)
     if family == SLICES:

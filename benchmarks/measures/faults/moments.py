@@ -1,4 +1,4 @@
-"""What runs of every verb take, so that they can be interrupted at any moment; what they leave behind."""
+"""Duration of the runs of every command, for interrupts at any moment, and the files they leave."""
 
 import os
 import shutil
@@ -42,7 +42,7 @@ VERBS: dict[str, tuple[tuple[str, ...], str]] = {
 
 
 def inputs(folder: Path, env: dict[str, str], quick: bool) -> Path:
-    """A folder with all that the verbs read."""
+    """Folder with all inputs of the commands."""
     folder.mkdir()
     long = _LONG.format(r=_CELLS[quick], beta=_CELLS[quick])
     curves = _LONG.format(r=200_000, beta=500)
@@ -55,7 +55,7 @@ def inputs(folder: Path, env: dict[str, str], quick: bool) -> Path:
 
 
 def same_file(one: Path, other: Path) -> bool:
-    """Whether two outputs say the same, whenever they were written."""
+    """Whether two outputs have the same content, apart from the time of writing."""
     try:
         if one.suffix == ".png":
             return bool(np.array_equal(imread(one), imread(other)))
@@ -67,7 +67,7 @@ def same_file(one: Path, other: Path) -> bool:
 
 @dataclass(frozen=True)
 class Run:
-    """One verb: what it takes undisturbed, and what it writes."""
+    """One command: its duration and its output without interrupts."""
 
     verb: str
     arguments: list[str]
@@ -77,7 +77,7 @@ class Run:
 
     @classmethod
     def measured(cls, verb: str, prepared: Path, env: dict[str, str], folder: Path) -> "Run":
-        """Run it twice in a new folder; the second time counts, with all kernels and caches warm."""
+        """Run a command twice in a new folder; the second run counts, with complete caches."""
         given, output = VERBS[verb]
         arguments = [*given, *(["-o", output, "--overwrite"] if output else [])]
         shutil.copytree(prepared, folder)
@@ -88,12 +88,12 @@ class Run:
         return cls(verb, arguments, output, said.seconds, folder / output if output else None)
 
     def whole(self, folder: Path) -> bool:
-        """Whether the output in a folder is what an undisturbed run writes."""
+        """Whether the output in a folder is that of an uninterrupted run."""
         return self.result is None or same_file(folder / self.output, self.result)
 
 
 def wait_for_new(folder: Path, known: set[str], until: float) -> bool:
-    """Wait until a file appears that was not known; False if none did until then."""
+    """Wait until a new file appears; False if none appeared in time."""
     while time.perf_counter() < until:
         if set(os.listdir(folder)) - known:
             return True

@@ -1,4 +1,4 @@
-"""Thousands of malformed files, read by `info` and `plot`: an answer or a refusal, and nothing else."""
+"""Thousands of malformed files, read by `info` and `plot`: a result or a refusal, and nothing else."""
 
 from pathlib import Path
 
@@ -31,7 +31,7 @@ _BASES: tuple[tuple[str, str, list[str]], ...] = (
 
 
 def bases(child: Child, folder: Path) -> list[Path]:
-    """The good files, written by the package under trial."""
+    """Valid files, written by the tested package."""
     folder.mkdir()
     found = []
     for name, config, (verb, *rest) in _BASES:
@@ -45,7 +45,7 @@ def bases(child: Child, folder: Path) -> list[Path]:
 
 
 def _judge(family: Family, answer: dict) -> None:
-    """Count what `info` and `plot` made of one file; the first thing that is wrong counts."""
+    """Check the results of `info` and `plot` for one file; the first defect counts."""
     for verb in ("info", "plot"):
         if verb in answer:
             said = Said(**answer[verb])
@@ -76,7 +76,7 @@ def _try(name: str, count: int, child: Child, good: list[Path], folder: Path) ->
 
 
 def run(child: Child, folder: Path, quick: bool) -> list[Family]:
-    """All families of malformed files."""
+    """Run all families of malformed files."""
     good = bases(child, folder / "good")
     work = folder / "mutants"
     work.mkdir()

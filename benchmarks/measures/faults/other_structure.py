@@ -1,4 +1,4 @@
-"""Changes of what stands in a file: names, dimensions, types, attributes."""
+"""Changes of the structure of a file: names, dimensions, types, attributes."""
 
 import math
 import random

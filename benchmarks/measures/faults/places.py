@@ -1,4 +1,4 @@
-"""Full disks, folders that cannot be written to, terminals of few letters, closed standard streams."""
+"""Full disks, read-only folders, terminals with few characters, closed standard streams."""
 
 import shutil
 import subprocess
@@ -29,7 +29,7 @@ _TITLE = 'title="Reibung \u03bc \u2265 1, \u00dcbersicht"'
 
 
 def _outputs() -> Iterator[tuple[list[str], str]]:
-    """Arguments of every verb that writes, and what it is to write."""
+    """Arguments of every command that writes, and its output."""
     for given, output in VERBS.values():
         if output:
             name = f"wanted{Path(output).suffix}"
@@ -39,7 +39,7 @@ def _outputs() -> Iterator[tuple[list[str], str]]:
 def _untouched(
     said: Said, words: tuple, statuses: tuple[int, ...], before: dict, folder: Path
 ) -> tuple[str | None, str]:
-    """A refusal with nothing changed."""
+    """Check for a refusal that changes nothing."""
     change = Change.between(before, snapshot(folder))
     if change:
         return (CHANGED if change.lost else LEFT), f"{change}; {said}"
@@ -47,7 +47,7 @@ def _untouched(
 
 
 def _full(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> Family:
-    """No room for the output: a line that names it, and nothing of it."""
+    """No space for the output: a line that names it, and no partial file."""
     family = Family("full disk")
     for room in _ROOM[:1] if quick else _ROOM:
         for arguments, name in list(_outputs())[:: 3 if quick else 1]:
@@ -65,7 +65,7 @@ def _full(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> Fam
 
 
 def _read_only(prepared: Path, folder: Path, env: dict[str, str]) -> Family:
-    """A folder that takes no files, and files that may not be read."""
+    """Read-only folder, and unreadable files."""
     family = Family("read-only folder, unreadable files")
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(prepared, folder)
@@ -88,7 +88,7 @@ def _read_only(prepared: Path, folder: Path, env: dict[str, str]) -> Family:
 
 
 def _shell(command: str, folder: Path, env: dict[str, str]) -> Said:
-    """A line of a shell; {} stands for the program."""
+    """A shell command; {} stands for the program."""
     line = command.format(f"'{sys.executable}' -m frictionmap")
     done = subprocess.run(
         ["bash", "-c", f"set -o pipefail; {line}"],
@@ -102,12 +102,12 @@ def _shell(command: str, folder: Path, env: dict[str, str]) -> Said:
 
 
 def _no_traceback(said: Said) -> str | None:
-    """A run whose reader went away: any status, and none of Python's own words."""
+    """A run whose reader was closed: any status, no traceback."""
     return TRACEBACK if said.traceback or "Exception ignored" in said.err else None
 
 
 def _quiet_end(said: Said) -> str | None:
-    """The same, in one line at most."""
+    """A run whose reader was closed: no traceback, and at most one line."""
     return _no_traceback(said) or (LINES if len(said.lines) > 1 else None)
 
 
@@ -148,7 +148,7 @@ _LINES: tuple[tuple[str, Callable[[Said], str | None], dict[str, str]], ...] = (
 
 
 def _terminals(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> Family:
-    """Streams that take no letters, few letters, or are closed."""
+    """Streams that accept no or few characters, or are closed."""
     family = Family("terminals and closed streams")
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(prepared, folder)
@@ -160,7 +160,7 @@ def _terminals(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -
 
 
 def run(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> list[Family]:
-    """All three families."""
+    """Run all three families."""
     return [
         _full(prepared, folder / "here", env, quick),
         _read_only(prepared, folder / "here", env),

@@ -1,4 +1,4 @@
-"""Several runs and one name, files that appear during a run, links and permissions of what is replaced."""
+"""Several runs that write the same file, files that appear during a run, links and permissions."""
 
 import os
 import random
@@ -47,7 +47,7 @@ def _left(folder: Path, prepared: Path, *outputs: str) -> list[str]:
 def _four_at_once(
     of: Run, prepared: Path, folder: Path, env: dict[str, str], overwrite: bool
 ) -> tuple[str | None, str]:
-    """Four runs to one name: one of them writes it, with --overwrite more may; the others say why not."""
+    """Four runs write the same file: one succeeds, with --overwrite several may; the others are refused."""
     _copy(prepared, folder)
     arguments = [word for word in of.arguments if overwrite or word != "--overwrite"]
     processes: list[subprocess.Popen] = [start(arguments, folder, env) for _ in range(4)]
@@ -72,7 +72,7 @@ def _four_at_once(
 def _appears(
     of: Run, delay: float, prepared: Path, folder: Path, env: dict[str, str]
 ) -> tuple[str | None, str]:
-    """Somebody writes a file of that name while the run is busy: it stays."""
+    """A file of that name appears during the run: it is not replaced."""
     _copy(prepared, folder)
     process = start([word for word in of.arguments if word != "--overwrite"], folder, env)
     time.sleep(delay)
@@ -90,7 +90,7 @@ def _appears(
 
 
 def _links(prepared: Path, folder: Path, env: dict[str, str]) -> Iterator[tuple[str, str | None, str]]:
-    """Links stay links, what they point at is replaced; permissions stay."""
+    """Links remain, their targets are replaced; permissions remain."""
     reference = _copy(prepared, folder) / "reference.nc"
     run_once([*_SMALL[:-1], "reference.nc"], folder, env)
     whole = Run("map", [], "out.nc", 0.0, shutil.move(reference, folder.parent / "reference.nc"))
@@ -129,7 +129,7 @@ def _links(prepared: Path, folder: Path, env: dict[str, str]) -> Iterator[tuple[
 
 
 def run(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> list[Family]:
-    """Both families."""
+    """Run both families."""
     rng = random.Random(4)
     several = Family("several runs to one name")
     appearing = Family("files that appear during a run")

@@ -1,4 +1,4 @@
-"""Runs bad configurations and command lines: each has to be refused in one line, with nothing changed."""
+"""Runs with invalid configurations and command lines: each is refused in one line and changes nothing."""
 
 import random
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ beta = [0.2]
 
 
 def template(folder: Path) -> Path:
-    """What lies in the folder of every case, without what the program itself writes."""
+    """Content of the folder of every case, without output of the program."""
     folder.mkdir()
     (folder / "c.toml").write_text(CONFIG)
     (folder / "one.toml").write_text(CONFIG.replace("[1.0, 1.5]", "[1.0]"))
@@ -49,7 +49,7 @@ def template(folder: Path) -> Path:
 
 
 def with_outputs(child: Child, folder: Path) -> Path:
-    """The same with a map, boundaries and damaged ones."""
+    """Content of the folder with a map, boundaries and damaged files."""
     for arguments in (["map", "c.toml", "-o", "m.nc"], ["boundaries", "c.toml", "-o", "b.nc"]):
         said = child.main(arguments, folder, limit=1800.0)
         if said.status != 0:
@@ -68,7 +68,7 @@ def _foreign(path: Path) -> None:
 
 
 def try_case(child: Child, case: Case, prepared: Path, folder: Path) -> tuple[str | None, object]:
-    """What is wrong with the answer to one case, and the answer."""
+    """Run one case; return the defect and the run."""
     fresh(prepared, folder)
     for name, content in case.files.items():
         (folder / name).write_bytes(content)
@@ -99,7 +99,7 @@ def families(folder: Path) -> dict[str, list[Case]]:
 
 
 def run(child: Child, folder: Path, quick: bool) -> list[Family]:
-    """Both families."""
+    """Run both families."""
     prepared = with_outputs(child, template(folder / "prepared"))
     (folder / "made").mkdir()
     tried = families(folder / "made")

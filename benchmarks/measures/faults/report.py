@@ -1,4 +1,4 @@
-"""What was tried and what went wrong: table, JSON, and a figure of before and after."""
+"""Trials and failures: table, JSON, and a figure of before and after."""
 
 import json
 from pathlib import Path
@@ -18,19 +18,19 @@ def _kinds(entry: dict) -> str:
 
 
 def show(families: dict[str, dict]) -> None:
-    """The table, as text."""
+    """Print the table."""
     rows = [(name, entry["tried"], entry["wrong"], _kinds(entry)) for name, entry in families.items()]
     total = [sum(entry[key] for entry in families.values()) for key in ("tried", "wrong")]
     table(("what was tried", "trials", "wrong", "by kind"), [*rows, ("all", *total, "")])
 
 
 def _share(entries: dict[str, dict], family: str) -> float:
-    """Percent of the trials of a family that went wrong; 0 where none were made."""
+    """Percentage of failed trials of a family; 0 without trials."""
     return 100.0 * entries[family]["wrong"] / entries[family]["tried"] if family in entries else 0.0
 
 
 def draw(results: Path, path: Path) -> None:
-    """Trials that went wrong, in percent, of this state and of an earlier one if it was tried."""
+    """Draw the percentage of failed trials, of this version and of an earlier one if it was tried."""
     found = {
         name: json.loads((results / f"{name}.json").read_text())["families"]
         for name in (BEFORE, NAME)
@@ -60,7 +60,7 @@ def draw(results: Path, path: Path) -> None:
 
 
 def write(families: list[Family], seconds: dict[str, float], results: Path, *, another: bool) -> dict:
-    """Print, save and draw; `another`: of another checkout than the one this stands in."""
+    """Print, save and draw; `another`: for another checkout than this one."""
     content = {
         "seconds": seconds,
         "families": {family.name: family.content() for family in families},

@@ -1,4 +1,4 @@
-"""What a user may do with a dataset of ours before writing it again."""
+"""Operations that a user may apply to a dataset before writing it again."""
 
 import random
 from collections.abc import Callable
@@ -77,7 +77,7 @@ _STEPS: dict[str, Step] = {
 
 
 def write_slice(base: Path, rng: random.Random, path: Path) -> str:
-    """Write what one to three steps make of a dataset; other steps if xarray cannot take these."""
+    """Write a dataset after one to three operations; try others if xarray cannot apply these."""
     with xr.open_dataset(base) as opened:
         whole = opened.load()
     for _ in range(100):

@@ -1,4 +1,4 @@
-"""What a run said and did, and what is wrong with it; counts of it, family by family."""
+"""Output and exit of a run, its defects, and counts of defects by family."""
 
 import re
 from collections import Counter
@@ -43,12 +43,12 @@ class Said:
 
     @property
     def lines(self) -> list[str]:
-        """What stands on standard error."""
+        """Lines on standard error."""
         return self.err.splitlines()
 
     @property
     def traceback(self) -> bool:
-        """Whether a user would see Python's own words."""
+        """Whether a user would see a traceback."""
         return bool(self.escaped) or "Traceback (most recent call last)" in self.err
 
     def __str__(self) -> str:
@@ -60,12 +60,12 @@ Words = Sequence[Sequence[str]]
 
 
 def unsaid(message: str, words: Words) -> bool:
-    """Whether a message leaves out something that it has to name."""
+    """Whether a message lacks a word that it must contain."""
     return not all(any(way in message for way in ways) for ways in words)
 
 
 def wrong_refusal(said: Said, words: Words = (), statuses: Iterable[int] = (2,)) -> str | None:
-    """What is wrong with the refusal of bad input; None if nothing is."""
+    """Check the refusal of invalid input; return the defect, or None."""
     if said.traceback:
         return TRACEBACK
     if said.status == 0:
@@ -78,7 +78,7 @@ def wrong_refusal(said: Said, words: Words = (), statuses: Iterable[int] = (2,))
 
 
 def wrong_success(said: Said, lines: int = 0) -> str | None:
-    """What is wrong with a run that had to succeed, with so many lines on standard error at most."""
+    """Check a run that must succeed, with at most the given lines on standard error."""
     if said.traceback:
         return TRACEBACK
     if said.status != 0:
@@ -89,7 +89,7 @@ def wrong_success(said: Said, lines: int = 0) -> str | None:
 
 
 def wrong_answer_or_refusal(said: Said) -> str | None:
-    """What is wrong with a run that may either succeed or refuse."""
+    """Check a run that may either succeed or be refused."""
     return wrong_success(said) if said.status == 0 else wrong_refusal(said)
 
 
@@ -104,7 +104,7 @@ class Family:
     examples: dict[str, list[dict[str, str]]] = field(default_factory=dict)
 
     def add(self, what: object, wrong: str | None, said: object = "", *, excused: bool = False) -> None:
-        """Count one trial; `excused`: what went wrong is beyond our reach."""
+        """Count one trial; `excused`: the defect is outside this package."""
         self.tried += 1
         if wrong is None:
             return
@@ -114,7 +114,7 @@ class Family:
             kept.append({"tried": str(what)[:_KEPT], "said": _FOLDERS.sub("", str(said))[:_KEPT]})
 
     def content(self) -> dict:
-        """For the JSON."""
+        """Content for the JSON file."""
         return {
             "tried": self.tried,
             "wrong": sum(self.wrong.values()),

@@ -1,7 +1,7 @@
-"""The side of the child: runs the command line, calls and malformed files of the package under trial.
+"""Code of the child: runs the command line, calls and malformed files of the tested package.
 
 It is started with that package already imported, and imports nothing else that needs it by name but
-`frictionmap`.  What standard output and standard error would show is caught where they leave the process.
+`frictionmap`. Standard output and standard error are captured at the level of file descriptors.
 """
 
 import contextlib
@@ -24,7 +24,7 @@ _MEMORY = 12 * 2**30
 
 
 class _Caught:
-    """What went to file descriptors 1 and 2."""
+    """Output on file descriptors 1 and 2."""
 
     def __init__(self) -> None:
         self.files = [tempfile.TemporaryFile(), tempfile.TemporaryFile()]  # noqa: SIM115 (as long as we live)
@@ -62,13 +62,13 @@ class _Caught:
 
 
 class Worker:
-    """Does one request after the other."""
+    """Runs one request after the other."""
 
     def __init__(self) -> None:
         self._caught = _Caught()
 
     def main(self, arguments: list[str], folder: str) -> dict:
-        """The command line: status, what it printed, and the error that escaped from it."""
+        """Run the command line: status, output, and the error that escaped from it."""
         from frictionmap.command_line.cli import main
 
         os.chdir(folder)
@@ -84,14 +84,14 @@ class Worker:
         return {"status": status, "out": out, "err": err, "escaped": escaped}
 
     def call(self, code: str, folder: str, plain: str = "") -> dict:
-        """A call of the Python API."""
+        """Call the Python API."""
         os.chdir(folder)
         with self._caught.catching():
             found = calling.outcome(code, plain)
         return found | {"said": "".join(self._caught.text())}
 
     def mutant(self, base: str, family: str, seed: int, folder: str, plot: bool) -> dict:
-        """Make a malformed file, and let `info` and `plot` read it."""
+        """Make a malformed file, and read it with `info` and `plot`."""
         made = malformed.make(Path(base), family, seed, Path(folder) / "mutant.nc")
         answer = {"what": made, "info": self.main(["info", "mutant.nc"], folder)}
         if answer["info"]["status"] == 0:

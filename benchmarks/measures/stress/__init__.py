@@ -1,15 +1,17 @@
-"""The numerical torture test: cells at and around every singular point, against 40-digit arithmetic.
+"""Numerical torture test: cells at and around every singular point, against 40-digit arithmetic.
 
-Every number that has an answer in 40 digits (`references`) is compared with it.  Digits lost are those of the
-relative error over the rounding of a double, 2^-53; its condition number, the relative change of the answer
-per relative change of what it is computed from (r, beta, mu, zeta, ratios of masses and springs), explains
-log10 of it.  What is lost beyond counts; cells with more than `ALLOWED` are listed, one by one.
+Every number with a 40-digit reference (`references`) is compared with it. The digits lost are the logarithm
+of the relative error over the rounding error of a double, 2^-53. The condition number is the relative change
+of the result per relative change of its inputs (r, beta, mu, zeta, mass and stiffness ratios). It explains as
+many digits as its logarithm. Only the digits lost beyond these count; cells that lose more than `ALLOWED` are
+listed individually.
 
-Regimes at mu = 1 are proved: continuous below beta_lim, stuck from beta_stick on; boundaries of 40 digits say
-on which side a double lies.  Between them motions stop, or turn more than twice a cycle.  A wrong regime is
-`at rounding` where it is nearer to the boundary than the rounding of r can tell, else it is listed.  Stops
-are counted by the 40-digit steady state, found from rest, or for mu = 1 from anywhere.  Where there is no
-such answer, outputs have to agree with each other and their status.  Random cells (`random_cells`) follow.
+Regimes at mu = 1 are proved: continuous below beta_lim, stuck at or above beta_stick; the 40-digit boundaries
+show on which side a double lies. Between them motions stop, or turn more than twice per cycle. A wrong regime
+is `at rounding` if it is closer to the boundary than the rounding of r can resolve; otherwise it is listed.
+Stops are compared with the 40-digit steady state, found from rest, or for mu = 1 from any initial state.
+Without such a reference, outputs must be consistent with each other and with their status. Random cells
+(`random_cells`) follow.
 """
 
 import time

@@ -1,4 +1,4 @@
-"""The structures under test, each to the package and in 40 digits."""
+"""Structures of the torture test, for the package and in 40 digits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ FEW = 5
 
 @dataclass(frozen=True)
 class Body:
-    """One structure, to the package and in 40 digits."""
+    """One structure, for the package and in 40 digits."""
 
     name: str
     system: fm.System
@@ -27,7 +27,7 @@ class Body:
     ground: tuple[float, ...] = ()  # springs of every mass to the ground beside the chain's, if any
 
     def precise(self, masses: Sequence, springs: Sequence, zeta: Number) -> closed_forms.Structure:
-        """In 40 digits, with these numbers."""
+        """The structure in 40 digits, with these numbers."""
         mass, stiffness = closed_forms.chain_matrices(masses, springs)
         for i, spring in enumerate(self.ground):
             stiffness[i, i] += mp.mpf(spring)
@@ -40,7 +40,7 @@ class Body:
 
     @cached_property
     def own(self) -> closed_forms.Structure:
-        """In 40 digits."""
+        """The structure in 40 digits."""
         return self.precise(self.masses, self.springs, self.zeta)
 
 
@@ -53,7 +53,7 @@ def one_mass(zeta: float, contact: str = "fixed-wall") -> Body:
 def chain(
     masses: Sequence[float], springs: Sequence[float], zeta: float, contact: Sequence[int], load: int = 1
 ) -> Body:
-    """A chain; contact between a mass and a wall, or between two masses."""
+    """Chain with contact between a mass and a wall, or between two masses."""
     system = fm.System(
         contact="fixed-wall" if len(contact) == 1 else "between-masses", contact_masses=contact,
         load_mass=load, mass_ratios=masses, stiffness_ratios=springs, damping_ratios=zeta,
@@ -67,7 +67,7 @@ def _few(values: Sequence[float]) -> str:
 
 
 def close_modes(n: int, coupling: float, zeta: float) -> Body:
-    """Equal oscillators, each on a spring of its own, coupled weakly: n frequencies within 2 `coupling`."""
+    """Weakly coupled equal oscillators, each on its own spring: n frequencies within 2 `coupling`."""
     springs = [coupling] * n
     ground = [1.0] * n
     stiffness = np.diag(ground) + np.diag(springs) + np.diag(np.append(springs[1:], 0.0))

@@ -14,14 +14,14 @@ _EVERY = 19
 
 
 def _check_edge(group: Group, row: Row, edge: Number, index: int, quick: bool) -> None:
-    """Cells around a boundary; stops are counted in a few rows only, as that is slow."""
+    """Check cells around a boundary; stops are counted in a few rows only, because this is slow."""
     check_cells(group, row, around(edge, exponents(quick)))
     if index % _EVERY == 0:
         check_cells(group, row, around(edge, (3, 6)), count=True)
 
 
 def cells_at_lim(quick: bool) -> Group:
-    """beta = beta_lim (1 +- 10^-k), mu = 1."""
+    """Cells at beta = beta_lim (1 +- 10^-k), mu = 1."""
     group = Group("cells, beta around beta_lim")
     for index, (body, r) in enumerate(one_mass_rows(quick)):
         row = Row.of(body, r)
@@ -31,7 +31,7 @@ def cells_at_lim(quick: bool) -> Group:
 
 
 def cells_at_stick(quick: bool) -> Group:
-    """beta = beta_stick (1 +- 10^-k), mu = 1."""
+    """Cells at beta = beta_stick (1 +- 10^-k), mu = 1."""
     group = Group("cells, beta around beta_stick")
     for index, (body, r) in enumerate(one_mass_rows(quick)):
         row = Row.of(body, r)
@@ -40,7 +40,7 @@ def cells_at_stick(quick: bool) -> Group:
 
 
 def cells_without_friction(quick: bool) -> Group:
-    """beta = 0, and 10^-k."""
+    """Cells at beta = 0 and 10^-k."""
     group = Group("cells, beta = 0 and 10^-k")
     for body, r in one_mass_rows(quick):
         check_cells(group, Row.of(body, r), [(None, 0.0), *((k, 10.0**-k) for k in exponents(quick))])
@@ -48,7 +48,7 @@ def cells_without_friction(quick: bool) -> Group:
 
 
 def cells_inside(quick: bool) -> Group:
-    """The strip between the boundaries, mu = 1."""
+    """Cells in the strip between the boundaries, mu = 1."""
     group = Group("cells inside the strip, stops counted")
     rng = np.random.default_rng(5)
     for body, r in one_mass_rows(quick)[:: 1 if quick else 3]:
@@ -60,7 +60,7 @@ def cells_inside(quick: bool) -> Group:
 
 
 def cells_at_mu(quick: bool) -> Group:
-    """mu = 1 + 10^-k, from rest."""
+    """Cells at mu = 1 + 10^-k, from rest."""
     group = Group("cells, mu = 1 + 10^-k, stops counted")
     places = (
         ((0.3, 0.0), (1.2, 0.05)) if quick else ((0.1, 0.0), (0.3, 0.0), (0.7, 0.02), (1.2, 0.05), (3.0, 0.3))
@@ -73,7 +73,7 @@ def cells_at_mu(quick: bool) -> Group:
 
 
 def cells_chattering(quick: bool) -> Group:
-    """Low r: many short stops in a cycle."""
+    """Cells at low r with many short stops per cycle."""
     group = Group("cells, chattering (r to 0.015), stops counted")
     for r in (0.03,) if quick else (0.03, 0.015):
         for zeta in (0.0, 0.02):
@@ -83,7 +83,7 @@ def cells_chattering(quick: bool) -> Group:
 
 
 def cells_far(quick: bool) -> Group:
-    """r from 1e-6 to 1e6."""
+    """Cells at r from 1e-6 to 1e6."""
     group = Group("cells, r = 1e-6 to 1e6")
     for e in (-2, 3, 6) if quick else range(-6, 7):
         for zeta in (0.0, 0.05, 2.0) if e > -5 else (0.0,):
@@ -102,7 +102,7 @@ def cells_far(quick: bool) -> Group:
 
 
 def million_cycles(quick: bool) -> Group:
-    """Marched to the end, up to 10^6 cycles: what is left of the digits of the closed form."""
+    """Cells marched for up to 10^6 cycles: the digits that remain of the closed form."""
     group = Group("marched, cycles = 10^6" if not quick else "marched, cycles = 10^4")
     cycles = 10**4 if quick else 10**6
     for r, zeta, share in ((0.999, 0.0, 0.01), (0.97, 1e-5, 0.001), (5.0, 0.0, 0.9), (20.0, 0.0, 0.5)):

@@ -1,4 +1,4 @@
-"""Cells of one (r, mu): regimes, amplitudes and stops against 40 digits, outputs against each other."""
+"""Checks of the cells of one (r, mu): regimes, amplitudes and stops against 40 digits, and consistency."""
 
 import math
 import warnings
@@ -29,7 +29,7 @@ def check_cells(
     group: Group, row: Row, cells: Iterable[tuple[int | None, float]], *, count: bool = False,
     **settings: Any,
 ) -> None:  # fmt: skip
-    """Cells (k, beta) of one row; with `count` (one mass) those with stops against 40-digit steady states."""
+    """Check cells (k, beta) of one row; with `count` (one mass), stops against 40-digit steady states."""
     k_of = {beta: k for k, beta in cells if beta >= 0.0}
     betas = sorted(k_of)
     where = f"{row.body.name}, r = {row.r!r}, mu = {row.mu!r}"
@@ -65,7 +65,7 @@ def _amplitude_condition(row: Row, beta: float) -> Iterator:
 
 
 def _check_consistent(group: Group, what: str, cell: dict) -> None:
-    """Outputs that cannot all be true."""
+    """Check that outputs do not contradict each other."""
     z, stops, stuck = cell["contact_amplitude"], cell["stops_per_cycle"], cell["stuck_fraction"]
     resolved = cell["status"] == regimes.RESOLVED
     regime = cell["regime"]
@@ -104,7 +104,7 @@ def _check_regime(group: Group, row: Row, beta: float, what: str, cell: dict) ->
 
 
 def _turns(row: Row, beta: float) -> float:
-    """Changes of direction in a cycle of the steady state that the package gives."""
+    """Changes of direction per cycle of the steady state found by the package."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:

@@ -1,4 +1,4 @@
-"""Stops and amplitudes of one mass against 40-digit steady states."""
+"""Checks of stops and amplitudes of one mass against 40-digit steady states."""
 
 from collections.abc import Iterator
 from functools import partial
@@ -17,7 +17,7 @@ _BESIDE = mp.mpf(10) ** -15
 
 
 def _one_mass(row: Row, beta: Number, r: Number, mu: Number) -> tuple[steady_states.OneMass, Number, Number]:
-    """The normalised oscillator, and amplitude and phase of the load in its contact."""
+    """Normalised oscillator, and amplitude and phase of the load in its contact."""
     load = mp.mpc(1)
     if row.own.base_motion:
         load = mp.mpc(mp.mpf(r) ** 2, -2 * mp.mpf(row.body.zeta) * mp.mpf(r))
@@ -27,7 +27,7 @@ def _one_mass(row: Row, beta: Number, r: Number, mu: Number) -> tuple[steady_sta
 
 
 def _steady(row: Row, beta: Number) -> tuple[steady_states.Steady | None, Number]:
-    """The 40-digit steady state, if one is found, and the amplitude of the load in the contact."""
+    """40-digit steady state, if one is found, and the amplitude of the load in the contact."""
     motion, load, phase = _one_mass(row, beta, row.r, row.mu)
     try:
         if row.mu == 1.0:
@@ -39,7 +39,7 @@ def _steady(row: Row, beta: Number) -> tuple[steady_states.Steady | None, Number
 
 
 def check_count(group: Group, row: Row, k: int | None, beta: float, what: str, cell: dict) -> None:
-    """Stops and amplitude against the 40-digit steady state, where one is found."""
+    """Check stops and amplitude against the 40-digit steady state, if one is found."""
     found, load = _steady(row, beta)
     if found is None:
         return
@@ -69,7 +69,7 @@ def _same_count(cell: dict, found: steady_states.Steady) -> bool:
 
 
 def _orbit_condition(row: Row, beta: float, found: steady_states.Steady) -> Iterator:
-    """Of the amplitude of the orbit with respect to beta, r and mu."""
+    """Condition number of the amplitude of the orbit with respect to beta, r and mu."""
 
     def amplitude(beta: Number, r: Number, mu: Number) -> Number:
         motion, load, _ = _one_mass(row, beta, r, mu)

@@ -1,4 +1,4 @@
-"""Response functions and boundaries at single frequencies, against 40 digits."""
+"""Checks of response functions and boundaries at single frequencies, against 40 digits."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator
@@ -26,7 +26,7 @@ def _curve_values(
 def check_curves(
     group: Group, body: Body, points: Iterable[tuple[int | None, float]], mu: float = 1.0
 ) -> None:
-    """V, U, G, H, S, beta_lim and beta_stick at points (k, r)."""
+    """Check V, U, G, H, S, beta_lim and beta_stick at points (k, r)."""
     own = body.own
     for k, r in points:
         what = f"{body.name}, r = {r!r}"

@@ -1,4 +1,4 @@
-"""Groups of curves: frequencies, dampings and structures where something is singular."""
+"""Groups of curves: singular frequencies, damping ratios and structures."""
 
 from ...references.closed_forms import mp
 from .bodies import chain, chains, close_modes, one_mass
@@ -54,7 +54,7 @@ def curves_at_modes(quick: bool) -> Group:
 
 
 def curves_spread(quick: bool) -> Group:
-    """Chains of masses and springs of very different size."""
+    """Chains with masses and springs of very different size."""
     group = Group("curves of chains, masses or springs far apart")
     bodies = [chain((1.0, 1.0), (1.0, 1e8), 0.01, [1]), chain((1.0, 1e-8), (1.0, 1.0), 0.01, [1])]
     if not quick:

@@ -1,4 +1,4 @@
-"""Cells where the number of stops changes: a dip of the velocity touches zero there."""
+"""Cells where the number of stops changes: a minimum of the velocity touches zero there."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ from .row import Row
 
 
 def cells_grazing(quick: bool) -> Group:
-    """beta where the number of stops changes, +- 10^-k: a dip of the velocity touches zero there."""
+    """Cells at beta (1 +- 10^-k), where the number of stops changes at beta."""
     group = Group("cells, grazing, stops counted")
     for r, zeta in ((0.1, 0.0),) if quick else ((0.1, 0.0), (0.25, 0.01)):
         row = Row.of(one_mass(zeta), r)
@@ -40,7 +40,7 @@ def _changes(row: Row, most: int) -> list[tuple[float, float]]:
 
 
 def _bisected(row: Row, low: float, high: float) -> float:
-    """Where the number changes, to the double."""
+    """Value of beta where the number changes, to the double."""
     below = _stops(row, [low])[0]
     while True:
         middle = 0.5 * (low + high)

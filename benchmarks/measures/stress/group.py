@@ -1,4 +1,4 @@
-"""What comes of one group of cells: digits lost, regimes and counts that are wrong, trouble."""
+"""Results of one group of cells: digits lost, wrong regimes and counts, exceptions."""
 
 import math
 import time
@@ -23,7 +23,7 @@ STATUS_NAMES = {code.value: code.name for code in regimes.STATUSES}
 
 @dataclass
 class Group:
-    """What came of one group of cells."""
+    """Results of one group of cells."""
 
     name: str
     answers: list[dict] = field(default_factory=list)  # numbers compared: what, k, lost, explained
@@ -51,7 +51,7 @@ class Group:
     ) -> None:
         """Digits lost by a number; `explained` gives the parts of its condition number, one by one.
 
-        Of these no more are asked for than it takes to explain what is lost.
+        Only as many parts are requested as are needed to explain the digits lost.
         """
         lost = digits_lost(value, exact)
         known, total = 0.0, mp.mpf(0)
@@ -64,12 +64,12 @@ class Group:
 
     @property
     def beyond(self) -> list[dict]:
-        """Answers that lost more than is allowed."""
+        """Results that lost more digits than allowed."""
         return [row for row in self.answers if row["lost"] - row["explained"] > ALLOWED]
 
 
 def digits_lost(value: float, exact: Number) -> float:
-    """log10 of the relative error over the rounding of a double, 0 to 16."""
+    """log10 of the relative error over the rounding error of a double, 0 to 16."""
     if mp.isinf(exact) or math.isinf(value):
         return 0.0 if mp.isinf(exact) and math.isinf(value) else 16.0
     if math.isnan(value):
@@ -83,7 +83,7 @@ def digits_lost(value: float, exact: Number) -> float:
 
 
 def watched(group: Group, what: str, call: Callable[[], xr.Dataset], cells: int) -> xr.Dataset | None:
-    """A call of the package; exceptions, warnings and hangs are noted."""
+    """Call the package; exceptions, warnings and hangs are recorded."""
     began = time.perf_counter()
     with warnings.catch_warnings():
         warnings.simplefilter("error")

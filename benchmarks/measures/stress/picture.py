@@ -1,4 +1,4 @@
-"""The picture of the torture test: digits lost by group and distance from the singular point."""
+"""Picture of the torture test: digits lost by group and distance from the singular point."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,7 +15,7 @@ _OTHER = 17
 
 
 def _worst_by_distance(group: Group) -> dict[int, float]:
-    """Column of the picture: digits lost beyond the condition number by the worst number in it."""
+    """Column of the picture: most digits lost beyond the condition number by any number in it."""
     worst: dict[int, float] = {}
     for row in group.answers:
         column = _OTHER if row["k"] is None else row["k"]
@@ -24,7 +24,7 @@ def _worst_by_distance(group: Group) -> dict[int, float]:
 
 
 def _verdict(group: Group) -> str:
-    """Regimes and stops in a few words."""
+    """Short summary of regimes and stops."""
     if not group.statuses:
         return ""
     cells = f"{len(group.wrong)} of {group.cells}"
@@ -32,7 +32,7 @@ def _verdict(group: Group) -> str:
 
 
 def draw(groups: Sequence[Group], path: Path) -> None:
-    """Digits lost beyond the condition number, by group and distance from the singular point."""
+    """Draw the digits lost beyond the condition number, by group and distance from the singular point."""
     figure = new_figure(11.0, 0.33 * len(groups) + 1.7)
     axes = figure.subplots()
     lost = np.full((len(groups), _OTHER), np.nan)

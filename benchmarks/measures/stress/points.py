@@ -1,4 +1,4 @@
-"""Where to look: distances from a singular point."""
+"""Points of the torture test: distances from a singular point."""
 
 from collections.abc import Iterable
 
@@ -10,7 +10,7 @@ def exponents(quick: bool) -> tuple[int, ...]:
 
 
 def around(centre: Number, exponents: Iterable[int]) -> list[tuple[int | None, float]]:
-    """(k, centre (1 +- 10^-k)), doubles, and the centre itself (k = 16)."""
+    """(k, centre (1 +- 10^-k)) as doubles, and the centre itself (k = 16)."""
     points: list[tuple[int | None, float]] = [(16, float(centre))]
     for k in exponents:
         points += [(k, float(centre * (1 + sign * mp.mpf(10) ** -k))) for sign in (1, -1)]

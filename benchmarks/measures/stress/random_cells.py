@@ -1,4 +1,4 @@
-"""Nothing hangs: up to a million random cells, every one with a regime or a status that says why not.
+"""No cell hangs: up to a million random cells, each with a regime or a status that states the cause.
 
 r from 1e-3 to 1e3 (logarithmic), beta from 0 to 2 beta_stick, mu from 1 to 10, zeta from 0 to 5, 1 to 6
 masses, any contact, from rest and moving.
@@ -33,7 +33,7 @@ SLOW = 10.0
 
 
 def random_system(rng: np.random.Generator, n: int) -> fm.System:
-    """A chain of n random masses and springs, any contact, any load; undamped, or damped by up to 5."""
+    """Chain of n random masses and springs, any contact, any load; undamped, or damped by up to 5."""
     mass, stiffness = (np.concatenate(([1.0], rng.uniform(0.3, 3.0, n - 1))) for _ in range(2))
     contact = str(rng.choice(["fixed-wall", "joined-base-wall", "between-masses"][: 2 + (n > 1)]))
     first = int(rng.integers(1, n + (contact != "between-masses")))
@@ -47,7 +47,7 @@ def random_system(rng: np.random.Generator, n: int) -> fm.System:
 
 
 def _why(system: fm.System, r: float, mu: float, status: int) -> str:
-    """What unresolved cells have in common."""
+    """Common properties of unresolved cells."""
     name = next(code.name for code in regimes.STATUSES if code.value == status)
     damping = "undamped" if system.zeta == 0.0 else "damped"
     pace = "r < 0.1" if r < 0.1 else "r > 10" if r > 10.0 else "r 0.1 to 10"
@@ -65,12 +65,12 @@ class Row(NamedTuple):
 
     @property
     def words(self) -> dict:
-        """What it is."""
+        """Description of the row."""
         return {"system": str(self.system), "r": self.r, "mu": self.mu, "start": self.start}
 
 
 def random_row(rng: np.random.Generator) -> Row:
-    """A structure, a frequency, a ratio of friction, a start, and friction from 0 to 2 beta_stick."""
+    """Random structure, frequency, static-to-kinetic ratio and initial state; beta from 0 to 2 beta_stick."""
     system = random_system(rng, int(rng.integers(1, 7)))
     r = 10.0 ** float(rng.uniform(-3.0, 3.0))
     mu = float(rng.choice([1.0, rng.uniform(1.0, 2.0), rng.uniform(1.0, 10.0)]))
@@ -80,7 +80,7 @@ def random_row(rng: np.random.Generator) -> Row:
 
 
 def _solve(row: Row) -> tuple[xr.Dataset, float]:
-    """The cells of a row, and the seconds they took."""
+    """Compute the cells of a row; return them with the seconds they took."""
     cycles = max(LEAST_CYCLES, round(CYCLES * min(1.0, 10.0 * row.r)))
     began = time.perf_counter()
     ds = fm.sweep(
@@ -90,7 +90,7 @@ def _solve(row: Row) -> tuple[xr.Dataset, float]:
 
 
 def _wrong(ds: xr.Dataset) -> np.ndarray:
-    """Cells that are resolved but have no regime, or not the numbers that go with it."""
+    """Resolved cells without a regime, or without the numbers that belong to it."""
     regime, status = ds.regime.values.ravel(), ds.status.values.ravel()
     stops, z = ds.stops_per_cycle.values.ravel(), ds.contact_amplitude.values.ravel()
     slides = regime != regimes.PERMANENT_STICKING
@@ -102,9 +102,9 @@ def _wrong(ds: xr.Dataset) -> np.ndarray:
 
 
 def random_cells(wanted: int, seconds: float) -> dict:
-    """Cells by status, and those not resolved by what they have in common.
+    """Cells by status, and the unresolved ones by their common properties.
 
-    No row is begun after so many seconds: the number of cells is then below what was wanted.
+    No row is started after `seconds`: the number of cells is then below the requested one.
     """
     began = time.perf_counter()
     statuses: dict[str, int] = {}
@@ -148,7 +148,7 @@ def _ranked(counts: dict[str, int], cells: int) -> list[tuple]:
 
 
 def report(found: dict) -> None:
-    """Print it."""
+    """Print the results."""
     cells = found["cells"]
     if cells < found["wanted"]:
         print(f"{found['wanted']:,} random cells were wanted, the limit of {found['limit [s]']:g} s ended it")

@@ -1,4 +1,4 @@
-"""What 40 digits say of one structure at one frequency: boundaries, regimes, continuous amplitudes."""
+"""40-digit results of one structure at one frequency: boundaries, regimes, continuous amplitudes."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from .group import ROUNDING
 
 @dataclass(frozen=True)
 class Row:
-    """What 40 digits say of one structure at one (r, mu)."""
+    """40-digit results of one structure at one (r, mu)."""
 
     body: Body
     own: closed_forms.Structure
@@ -26,7 +26,7 @@ class Row:
 
     @classmethod
     def of(cls, body: Body, r: float, mu: float = 1.0) -> "Row":
-        """Find it."""
+        """Compute them."""
         own = body.own
         found = closed_forms.functions(own, r)
         lim = closed_forms.beta_lim(own, r, mu, found)
@@ -45,7 +45,7 @@ class Row:
         )
 
     def regime(self, beta: float) -> int | None:
-        """What is proved: for mu = 1 all, for mu > 1 (from rest, one mass) sticking only."""
+        """Proved regime: for mu = 1 any, for mu > 1 (from rest, one mass) only sticking."""
         if mp.mpf(beta) >= self.stick:
             return regimes.PERMANENT_STICKING
         if self.mu > 1.0:

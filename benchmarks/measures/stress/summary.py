@@ -1,4 +1,4 @@
-"""What came of the groups: numbers for the JSON, tables for the terminal."""
+"""Results of the groups: numbers for the JSON file, tables for the terminal."""
 
 from frictionmap import regimes
 

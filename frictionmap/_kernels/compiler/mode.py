@@ -53,7 +53,7 @@ class Mode:
     def plain_instead(self, error: Exception) -> Iterator[None]:
         """Change to plain numba after an error of the fast compiler, unless plain numba fails too.
 
-        If both fail, the kernel is at fault, not the compiler: the second error is raised, nothing changes.
+        If both fail, the kernel is wrong, not the compiler: the second error is raised, nothing changes.
         """
         with self._lock:
             before, self.plain = self.plain, True

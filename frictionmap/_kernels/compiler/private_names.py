@@ -36,7 +36,7 @@ NAMES = (
     Names(
         "numba.core.types:Dispatcher",
         ("get_call_type", "get_overload"),
-        "the body of a function is chosen by the class of an argument",
+        "the class of an argument selects the body of a function",
     ),
     Names("numba.core.types", ("unliteral",), "constant arguments are typed like variables"),
     Names(
@@ -70,7 +70,7 @@ NAMES = (
     Names(
         "numba.core.codegen:JitEngine",
         (),
-        "kernels loaded from disk are found by the linker",
+        "the linker finds kernels that were loaded from disk",
         ("_defined_symbols",),
     ),
     Names("llvmlite.binding", ("parse_bitcode",), "inner kernels are loaded from disk"),
@@ -82,7 +82,7 @@ NAMES = (
     ),
     Names("numba.core.cpu:CPUContext", ("get_executable",), "a kernel loaded from disk gets its entry point"),
     Names("numba.core.runtime.nrt:rtsys", ("initialize",), "a kernel loaded from disk may count references"),
-    Names("numba.core.serialize", ("dumps",), "numba's objects are pickled"),
+    Names("numba.core.serialize", ("dumps",), "numba's objects are written to files"),
     Names("numba.core.sigutils", ("normalize_signature",), "a kernel's file names its argument types"),
 )  # fmt: skip
 

@@ -99,7 +99,7 @@ def _prepare_segment(st, row, oscillators, n, friction, spectrum):
 
 @kernel
 def _add_slide(st, row, beta, near, spectrum):
-    """Add a slide to the harmonics; `near` tells whether any mode is integrated."""
+    """Add a slide to the harmonics; `near`: whether any mode is integrated."""
     _prepare_segment(st, row, st.free, st.n if near else 0, beta, spectrum)
     sign, turn = row[SIGN], row[SIGN] * complex(row[COS], -row[SIN])
     factor = complex(sign, 0.0)

@@ -1,4 +1,4 @@
-"""Measured samples over the fitted curve, and what is left between them."""
+"""Pictures of measured samples over the fitted curve, with residuals."""
 
 from typing import NamedTuple
 
@@ -69,7 +69,7 @@ def in_brackets(unit: str) -> str:
 def draw_data(
     ax: Axes, samples: Samples, ends: tuple[np.ndarray, np.ndarray], colour: str = MEASURED
 ) -> list[Handle]:
-    """Samples as dots, with bars between two ends where there are few enough to be told apart."""
+    """Draw samples as dots, with error bars if there are few enough to distinguish them."""
     size = _SIZE if samples.few else _MANY_SIZE
     ax.plot(
         samples.x, samples.data, "o", color=colour, markersize=size, zorder=2.5,

@@ -1,4 +1,4 @@
-"""Files: configurations read, datasets written whole or not at all, read with a check, and put in words.
+"""Files: reading of configurations and datasets, atomic writing, summaries.
 
 ===========  ==================================================================
 module       what is in it

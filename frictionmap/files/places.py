@@ -193,7 +193,7 @@ def _check(path: Path, overwrite: bool, inputs: Sequence[Path], name: str) -> No
 
 
 def abandon() -> str:
-    """Remove all claims for good; nothing can be claimed or moved into place afterwards."""
+    """Remove all claims permanently; nothing can be claimed or moved into place afterwards."""
     known = _guard.acquire(timeout=1.0)
     kept = "".join(output.kept() for output in _claims)
     for output in list(_claims):

@@ -11,6 +11,6 @@ run        computation of missing blocks in this process
 workers    computation of blocks by dask workers
 =========  =============================================================================
 
-A block is whole rows in r of one point of the study and one mu; small ones are computed and written in
-batches.  Its mark is written last, so that a stopped run loses only the blocks in progress.
+A block consists of complete rows in r at one point of the study and one mu; small ones are computed and
+written in batches.  Its mark is written last, so that a stopped run loses only the blocks in progress.
 """

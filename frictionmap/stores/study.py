@@ -1,6 +1,6 @@
 """Contents of a store: systems along further axes, a grid, settings; and the blocks it is computed in.
 
-A block is whole rows in r of one point of the further axes and one mu.
+A block consists of complete rows in r at one point of the further axes and one mu.
 """
 
 import math

@@ -40,7 +40,7 @@ class _Card(NamedTuple):
 
 
 def read_harwell_boeing(path: Path) -> Matrix:
-    """A matrix; of one that the file calls symmetric the lower triangle is there.
+    """Read a matrix; a symmetric one is stored by its lower triangle.
 
     Raises
     ------

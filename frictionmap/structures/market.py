@@ -21,7 +21,7 @@ _SYMMETRIES = ("general", "symmetric")
 
 
 def read_market(path: Path) -> Matrix:
-    """A real matrix; of one that the file calls symmetric the lower triangle is there.
+    """Read a real matrix; a symmetric one is stored by its lower triangle.
 
     Raises
     ------

@@ -75,7 +75,7 @@ def _dofs(found: GivenMatrices, n: int) -> Dofs:
     )
     if not whole or (np.diff(numbers) <= 0).any() or numbers[0] < 1:
         raise InputError(
-            f"matrices: dofs must be {n} whole numbers, increasing, from 1; got {checks.one_line(found.dofs)}"
+            f"matrices: dofs must be {n} increasing integers >= 1; got {checks.one_line(found.dofs)}"
         )
     return Dofs(tuple(int(number) for number in numbers))
 

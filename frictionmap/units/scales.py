@@ -164,7 +164,7 @@ class Scales:
         return None if found is None else float(found)
 
     def needed(self, kind: str, name: str, given: object) -> Fraction:
-        """Reference value of an axis; the error names what is missing."""
+        """Reference value of an axis; the error names the missing key."""
         found: Fraction | None = getattr(self, kind)
         if found is None:
             missing = {

@@ -95,7 +95,7 @@ def test_refusals_are_counted_and_quoted():
     }
     text = "\n".join(coverage_lines(content))
     assert "| `free_decay` | a case | 100 | 5 | 0 | 94.7 % | 94.7 % (f_n) |" in text
-    assert "Refused, 5 of 100 of `free_decay`, a case: x must decay." in text
+    assert 'Refused: 5 of 100 of `free_decay`, a case, with "x must decay".' in text
     assert "| refused | 3 | 3 | 0 | - | - | - | - |" in text
 
 

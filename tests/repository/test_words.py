@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pytest
 from conftest import ROOT
 
-from frictionmap.arguments import described
+from frictionmap.command_line.arguments import described
 
 #: Phrase (regular expression, any case), and what to write instead.
 BANNED = (
@@ -62,22 +62,6 @@ BANNED = (
 
 #: First words of docstrings that are fragments.
 FRAGMENTS = r"(Of|Those of|That of|The same of|The same as|What of|Than)"
-
-#: Folders and modules of frictionmap/ that are not yet rewritten.  This list is to become empty.
-NOT_YET = (
-    "__init__.py",
-    "checks.py",
-    "cli.py",
-    "command_line",
-    "errors.py",
-    "explorer",
-    "files",
-    "identify",
-    "progress.py",
-    "stores",
-    "structures",
-    "units",
-)
 
 
 class Text(NamedTuple):
@@ -231,10 +215,7 @@ def test_benchmarks():
 @pytest.mark.parametrize("part", package_parts())
 def test_docstrings_and_messages(part):
     found = [*findings(python_texts(files_of(part))), *fragments(files_of(part))]
-    if part in NOT_YET:
-        assert found, f"{part} passes: take it off the list NOT_YET"
-    else:
-        assert not report(found)
+    assert not report(found)
 
 
 @pytest.mark.parametrize(

@@ -53,9 +53,9 @@ def fit_robust_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, P
 
 
 def _weighed(data: Measured, task: Problem, best: Solution, size: Callable[..., float]) -> Measured:
-    """The data with errors of both kinds in the ratio of their residuals, of exact data as they are.
+    """Weigh amplitudes and lags by the sizes of their residuals; exact data stay as they are.
 
-    size : of some residuals with so many degrees of freedom
+    size : function of residuals and their degrees of freedom
     """
     residual = task.residuals(best.values)[0] * data.sigma
     left = 1.0 - leverage(best.slopes[:, task.free & ~best.at_bound])

@@ -32,7 +32,7 @@ def _meanings(n: int) -> dict[str, str]:
 def chain_estimates(
     data: Measured, best: Solution, found: Errors, free: np.ndarray, given: bool, damped: bool
 ) -> xr.Dataset:
-    """The dataset of a fit but for its verdict; of two masses their natural frequencies come first."""
+    """Dataset of a fit without its verdict; for two masses the natural frequencies come first."""
     shown = 3 * data.n - 1 if damped else 2 * data.n - 1
     meanings = dict(list(_meanings(data.n).items())[:shown])
     rows = np.eye(best.values.size)[:shown]

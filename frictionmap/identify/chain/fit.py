@@ -1,7 +1,7 @@
 """The chain of masses nearest to measured amplitudes and phases over frequency.
 
 Without damping the model is infinite at every natural frequency, and a fit cannot pass one across a sample.
-Damping ratios open a way around: a search begins with damped chains and ends with what is asked for.
+Damping ratios open a way around: a search begins with damped chains and ends with the requested ones.
 """
 
 from collections.abc import Iterator

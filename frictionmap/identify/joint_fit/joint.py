@@ -100,8 +100,8 @@ def joint(
 
     Notes
     -----
-    Each part counts by its noise.  A record that the model does not explain down to its noise counts by what
-    is left at the harmonics of the base, so that the decay prevails.  mu is 1 unless the records ask for
+    Each part counts by its noise.  A record that the model does not explain down to its noise counts by its
+    residual at the harmonics of the base, so that the decay prevails.  mu is 1 unless the records ask for
     more.
     """
     checked_unit(unit, "length", "unit")

@@ -91,7 +91,7 @@ def decay_part(label: str, time: object, x: object, unit: str, known: Mapping[st
 def record_part(
     label: str, arrays: Sequence[object], contact: str, reference: str, known: Mapping[str, float], loss: str
 ) -> Part:
-    """A record, fitted alone with what is known and mu = 1 to begin with."""
+    """A record, first fitted alone with the known parameters held and mu = 1."""
     robust = loss == "soft_l1"
     time, base, x = arrays
     given = measured_record(time, base, x, None, robust)

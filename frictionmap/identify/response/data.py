@@ -81,7 +81,7 @@ def _errors(values: object, name: str, size: int) -> np.ndarray:
 
 
 def _members(sets: Sequence[object] | None, size: int) -> tuple[np.ndarray, tuple[str, ...]]:
-    """The set of every row, from 0, and their labels: numbers in their order, other words as they come."""
+    """The set of every row, from 0, and the labels: numbers sorted, other words in order of appearance."""
     if sets is None:
         return np.zeros(size, dtype=int), ("1",)
     labels = [_label(one) for one in checks.array(sets, "sets").tolist()]

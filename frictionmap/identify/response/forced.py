@@ -99,7 +99,7 @@ def forced(
 
     Notes
     -----
-    Motions are continuous, theory.md 2 and 9, or stick-slip, as they come; of several with mu > 1 that
+    Motions are continuous, theory.md 2 and 9, or stick-slip; of several with mu > 1 that
     nearest to the data counts.  Phase data alone cannot determine f_n: it is then held where lags pass 90
     deg.
     """

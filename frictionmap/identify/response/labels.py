@@ -25,7 +25,7 @@ _WORDS = {
 
 
 def labelled(table: ForcedTable, fit: Fit, unit: str | None) -> xr.Dataset:
-    """The dataset of a fit but for its verdict; `unit` of the loads, if they were given."""
+    """Dataset of a fit without its verdict; `unit` of the loads, if they were given."""
     samples, solution = fit.model.samples, fit.solution
     names = parameter_names(table)
     meanings = {name: _WORDS.get(name) or f"{_WORDS['beta']} {name[5:]}" for name in names}

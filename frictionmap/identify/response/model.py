@@ -146,7 +146,7 @@ def _slope(
 ) -> np.ndarray:
     """Derivative of the phasors (k, n) by the difference to the same motion below and above.
 
-    One-sided where the motion ends on the other side: what is found there is far away.
+    One-sided where the motion ends on the other side: that motion is far away.
     """
     lower, upper = (
         (_same_motion(states, phasors) - phasors, off[:, np.newaxis]) for states, off in (below, above)

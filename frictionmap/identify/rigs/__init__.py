@@ -1,9 +1,9 @@
-"""Configurations of rigs: measured data and what is known of them, for the command `identify`.
+"""Configurations of rigs: measured data and known parameters, for the command `identify`.
 
 =============  ===============================================================================
 module         what is in it
 =============  ===============================================================================
-rig            a rig: what a configuration says, and what a kind of data has to tell of itself
+rig            configuration of a rig, and the description of a kind of data
 decay          free decays from the file of a rig
 forced         forced responses from the file of a rig
 record         records of steady motion from the file of a rig

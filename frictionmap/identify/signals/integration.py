@@ -1,6 +1,6 @@
 """Displacements from velocities and accelerations, harmonic by harmonic: X = V/(i omega) = -A/omega^2.
 
-Of a record its harmonics are divided by (i n omega)^k, and what is left, noise, line by line of its spectrum.
+Harmonics of a record are divided by (i n omega)^k, and the noise beside them line by line of its spectrum.
 Lines below half the frequency of the base are left out: no motion is in them, and their noise would grow
 beyond bounds.  A mean and a drift, which tell nothing of a displacement, go with them.
 """
@@ -141,7 +141,7 @@ def _integrated(t: np.ndarray, values: np.ndarray, frequency: float, order: int)
 def _harmonics(
     t: np.ndarray, values: np.ndarray, frequency: float, harmonics: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Complex harmonics 0 to H by least squares, with a drift, and what is left."""
+    """Complex harmonics 0 to H by least squares, with a drift, and the residual."""
     angle = np.multiply.outer(2.0 * np.pi * frequency * t, np.arange(1, harmonics + 1))
     columns = np.column_stack((np.ones_like(t), t / np.ptp(t), np.cos(angle), np.sin(angle)))
     # squares of the columns will do: harmonics of one frequency are all but orthogonal

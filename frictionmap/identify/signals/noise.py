@@ -56,7 +56,7 @@ def wanders(residual: np.ndarray, waves: np.ndarray) -> bool:
 
 
 def noise_levels(time: np.ndarray, residual: np.ndarray, frequency: float, harmonics: int) -> Levels:
-    """Levels of what is left when harmonics, drift and wander have been taken out."""
+    """Levels of the residual after harmonics, drift and wander are removed."""
     level = np.ones(harmonics + 1)
     white = float(residual @ residual) / residual.size
     if white == 0.0:
@@ -94,7 +94,7 @@ def noise_of_fit(
     counts as so much larger.
 
     residual : shape (samples,), of the fit, drift and wander taken out
-    unknowns : parameters fitted but for a constant, drift and wander
+    unknowns : fitted parameters, without a constant, drift and wander
     waves : how many slow waves were fitted beside the drift
     """
     columns = harmonic_columns(time, frequency, harmonics)

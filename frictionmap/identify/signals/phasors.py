@@ -124,7 +124,7 @@ def harmonics_of(time: np.ndarray, channels: np.ndarray, robust: bool) -> tuple[
 
 
 def scatter_of(residual: np.ndarray) -> np.ndarray:
-    """Standard deviations but for outliers, shape (channels,): by the medians of distances."""
+    """Standard deviations regardless of outliers, shape (channels,): from medians of distances."""
     return np.median(np.abs(residual), axis=0) / _MEDIAN
 
 

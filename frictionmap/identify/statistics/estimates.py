@@ -34,7 +34,7 @@ def usable_errors(found: Errors, index: int, bound: float, fitted: bool) -> np.n
     """Standard errors, NaN of a parameter whose interval begins on its bound.
 
     Near such a bound the data see the square of the distance from it: its likelihood is no normal curve, and
-    only the interval says what is known.
+    only the interval is meaningful.
     """
     result = found.standard_error.copy()
     if fitted and found.lower[index] <= bound:

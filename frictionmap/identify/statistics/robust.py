@@ -1,8 +1,8 @@
 """Least squares in which outliers have little weight: the cost soft_l1 as squares of other residuals.
 
 With t = r/s the cost 2 s^2 (sqrt(1 + t^2) - 1) is the square of r sqrt(2/(1 + q)), q = sqrt(1 + t^2): within
-the scale s it is r^2, far beyond it grows like |r|.  What holds for least squares holds for these residuals,
-but for the variance, which is that of an M-estimator (Huber and Ronchetti, Robust Statistics, 2009, ch. 7).
+the scale s it is r^2, far beyond it grows like |r|.  Least squares apply to these residuals,
+but the variance is that of an M-estimator (Huber and Ronchetti, Robust Statistics, 2009, ch. 7).
 """
 
 import numpy as np
@@ -82,14 +82,14 @@ def jackknife_growth(problem: Problem, best: Solution, scale: float) -> np.ndarr
 
 
 def root_mean_square(residual: np.ndarray, freedom: float) -> float:
-    """The standard deviation of residuals that have so many degrees of freedom."""
+    """Standard deviation of residuals with the given degrees of freedom."""
     return float(np.sqrt(residual @ residual / freedom))
 
 
 def usual_size(residual: np.ndarray, freedom: float) -> float:
     """The standard deviation s of residuals with outliers: sum psi(r/s)^2 is that of normal deviates.
 
-    Huber's second proposal, with psi(t) = t/sqrt(1 + t^2); residuals have so many degrees of freedom.
+    Huber's second proposal, with psi(t) = t/sqrt(1 + t^2) and the given degrees of freedom.
     """
     share = residual.size / freedom
     size = float(np.median(np.abs(residual))) / _NORMAL_MEDIAN * np.sqrt(share)

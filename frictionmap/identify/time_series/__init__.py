@@ -8,9 +8,9 @@ starts           where the fit starts
 static_friction  whether mu is fitted, and its interval
 fit              the steady motion nearest to all samples
 data             records, checked, with their harmonics
-errors           errors of the fit, and of what follows from it
-labels           what a record is without any model, and what to mind of it
-verdict          what a record shows of friction, and what it cannot tell apart
+errors           standard errors of the fit and of derived quantities
+labels           results of a record without any model, and warnings
+verdict          verdict on a record, and identifiability
 record           `record`: from arrays to estimates
 ===============  ===================================================================
 """

@@ -76,7 +76,7 @@ def moved(mass: Shaken, change: np.ndarray) -> Shaken:
 
 
 def contact_harmonics(mass: Shaken, x: np.ndarray) -> np.ndarray:
-    """Harmonics of q, but for the offset, of a mass with harmonics x."""
+    """Harmonics of q without the offset, for a mass with harmonics x."""
     result = x.copy()
     if mass.contact == "joined-base-wall":
         result[: mass.base.size] -= mass.base

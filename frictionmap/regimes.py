@@ -111,7 +111,7 @@ STATUSES = (
         "two, or at a frequency of the held structure that the load does not excite: a continuum of steady "
         "states exists and the result depends on the initial state; where the regime is continuous, the "
         "amplitude is that of the symmetric motion; add a little damping",
-        "without damping at this frequency the result depends on the initial state; add a little damping",
+        "undamped at this frequency: the result depends on the initial state; add some damping",
     ),
     Code(
         QUASI_STATIC,
@@ -130,7 +130,7 @@ STATUSES = (
         "not_periodic",
         "stick-slip that does not repeat within 8 periods in the `cycles` followed: stops, amplitude and "
         "stuck fraction are averages over the last 100 periods; if it converges slowly, raise solver.cycles",
-        "averages over 100 periods; if the motion converges slowly, raise solver.cycles",
+        "averages over 100 periods; raise solver.cycles if it converges slowly",
     ),
 )
 

@@ -101,7 +101,7 @@ def _served(config: str) -> Iterator[str]:
     )
     try:
         assert process.stdout is not None
-        yield process.stdout.readline().split(" at ")[1].split()[0]
+        yield next(word for word in process.stdout.readline().split() if word.startswith("http"))
     finally:
         process.terminate()
         process.communicate()

@@ -73,7 +73,7 @@ def test_errors_that_are_too_small_are_told():
 
 def test_one_peak():
     f = np.linspace(0.5, 7.75, 30)
-    with pytest.raises(fm.InputError, match="one peak: two frequencies wanted"):
+    with pytest.raises(fm.InputError, match="must have two peaks for two frequencies; got one peak"):
         fm.identify.sweep(f, 1.0 / abs(1.0 - (f / 3.1) ** 2))
 
 

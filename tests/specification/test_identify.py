@@ -172,7 +172,7 @@ def test_a_growing_motion_is_no_decay(rig, capsys):
 def test_rows_without_a_number_are_dropped_on_request_only(rig, capsys):
     path = rig(changed(402, "2,nan"))
     assert main(["identify", str(path), "--set", "data.missing=drop"]) == 0
-    assert "warning: 1 of 800 rows of decay.csv have no number and were left out" in capsys.readouterr().out
+    assert "warning: 1 of 800 rows of decay.csv have no number and were ignored" in capsys.readouterr().out
     many = "\n".join(GOOD[:1] + [f"{line.split(',')[0]}," for line in GOOD[1:10]] + GOOD[10:])
     message = refusal(capsys, "identify", rig(many), "--overwrite", "--set", "data.missing=drop")
     assert "column x_mm, line 2 must be a finite number; got ''" in message

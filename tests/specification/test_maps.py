@@ -193,14 +193,20 @@ def test_bad_arguments(call, message):
     assert "\n" not in str(error.value)
 
 
+def same(one, other):
+    """Compare all of two datasets but the time at which they were made."""
+    time = {"history": ""}
+    return one.assign_attrs(time).identical(other.assign_attrs(time))
+
+
 def test_numbers_in_any_dress():
     """Scalars of a dataset and arrays without dimensions are numbers; axes may be any arrays; no -0.0."""
     system = fm.System()
     ds = fm.sweep(system, xr.DataArray([0.4, 0.9]), np.array([0.2, 0.5], dtype=">f4"), range(1, 3))
     one = fm.response(system, ds.r[1], np.array(0.5), mu=ds.mu[0])
-    assert one.identical(fm.response(system, 0.9, 0.5, 1.0))
+    assert same(one, fm.response(system, 0.9, 0.5, 1.0))
     minus = fm.sweep(system, np.array([-0.0, 0.5]), [-0.0, 0.5])
-    assert minus.identical(fm.sweep(system, [0.0, 0.5], [0.0, 0.5]))
+    assert same(minus, fm.sweep(system, [0.0, 0.5], [0.0, 0.5]))
     assert not np.signbit(minus.r.values).any()
 
 

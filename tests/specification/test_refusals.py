@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from frictionmap.cli import main
 
 import frictionmap as fm
+from frictionmap.command_line.cli import main
 from frictionmap.datasets.variables import coordinate, label_variable
 from frictionmap.explorer.queries import read_query
 from frictionmap.explorer.scene import scene_of_system

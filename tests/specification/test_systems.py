@@ -152,7 +152,7 @@ BAD_SYSTEMS = {
     ),
     "C and ratios": (
         {"matrices": {**CHAIN, "C": 0.1 * CHAIN["M"]}, "damping_ratios": 0.1},
-        ["cannot use damping_ratios with matrices: C defines the damping"],
+        ["damping_ratios with matrices: C defines the damping"],
     ),
     "rows": ({"matrices": {**CHAIN, "M": np.ones((2, 3))}}, ["matrices: M must be square", "(2, 3)"]),
     "a vector": ({"matrices": {**CHAIN, "M": np.ones(3)}}, ["matrices: M must be square", "(3,)"]),
@@ -195,11 +195,11 @@ BAD_SYSTEMS = {
     ),
     "matrices and masses": (
         {**FRAME, "mass_ratios": [1.0]},
-        ["cannot use mass_ratios with matrices"],
+        ["mass_ratios with matrices"],
     ),
     "matrices and springs": (
         {**FRAME, "stiffness_ratios": [1.0, 1.0]},
-        ["cannot use stiffness_ratios with matrices"],
+        ["stiffness_ratios with matrices"],
     ),
     "a frequency of zero": ({**FRAME, "frequency_scale": 0.0}, ["frequency_scale must be > 0", "got 0"]),
     "a frequency below zero": ({**FRAME, "frequency_scale": -1.0}, ["frequency_scale must be > 0", "-1"]),
@@ -215,11 +215,11 @@ BAD_SYSTEMS = {
     ),
     "a frequency scale of a chain": (
         {"frequency_scale": 2.0},
-        ["cannot use frequency_scale without matrices"],
+        ["frequency_scale without matrices"],
     ),
     "a stiffness scale of a chain": (
         {"stiffness_scale": 2.0},
-        ["cannot use stiffness_scale without matrices"],
+        ["stiffness_scale without matrices"],
     ),
     "a damping ratio too few": (
         {**FRAME, "damping_ratios": [0.1, 0.2]},

@@ -111,7 +111,7 @@ STATUSES = (
         "two, or at a frequency of the held structure that the load does not excite: a continuum of steady "
         "states exists and the result depends on the initial state; where the regime is continuous, the "
         "amplitude is that of the symmetric motion; add a little damping",
-        "undamped at this frequency: the result depends on the initial state; add some damping",
+        "undamped: the result depends on the initial state; add some damping",
     ),
     Code(
         QUASI_STATIC,

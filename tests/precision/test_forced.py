@@ -48,14 +48,13 @@ def test_synthetic_responses(measured, tmp_path, folder, kind):
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth():
-    """95 % intervals over 100 seeds; chance leaves 90 to 99 % in 98 of 100 such trials, a parameter each."""
+    """Of 20 intervals fewer than 16 hold it in one of 400 cases; `benchmarks coverage` asks it of 400."""
     truth = np.array([*WALL.beta, WALL.f_n, WALL.zeta])
     inside = np.zeros(truth.size)
-    for seed in range(100):
+    for seed in range(20):
         ds = fitted(WALL, seed, sigma_phase=0.7, sigma_amplitude=0.01)
         inside += (ds.lower.values[:-1] <= truth) & (truth <= ds.upper.values[:-1])
-    assert 90.0 <= inside.mean() <= 99.0
-    assert inside.min() >= 88.0
+    assert inside.min() >= 16.0
 
 
 #: r, beta and X_1 of one mass on a wall with zeta = 0.02, mu = 1.15, by `responses.integrated`.

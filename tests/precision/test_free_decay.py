@@ -149,7 +149,8 @@ def test_synthetic_measurements(measured, folder, kind):
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth_as_often_as_they_say():
-    seeds = 100
+    """Of 30 intervals fewer than 24 hold it in one of 1,700 cases; `benchmarks coverage` asks it of 400."""
+    seeds = 30
     names = ["f_n", "zeta", "x_F", "X0", "t0", "centre"]
     truths = np.array([getattr(MIXED, name) for name in names])
     held, scaled = [], []
@@ -157,11 +158,9 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
         ds = fm.identify.free_decay(*synthetic(MIXED, seed))
         held.append((ds.lower.values <= truths) & (truths <= ds.upper.values))
         scaled.append((ds.estimate.values - truths) / ds.standard_error.values)
-    share = np.mean(held, axis=0)  # 0.95, give or take 0.022
-    assert (share >= 0.9).all()
-    assert (share <= 0.99).all()
-    # the scatter of 100 normal deviates is 1, give or take 0.071
-    np.testing.assert_allclose(np.sqrt(np.mean(np.square(scaled), axis=0)), 1.0, atol=0.25)
+    assert (np.sum(held, axis=0) >= 24).all()
+    # the scatter of 30 normal deviates is 1, give or take 0.13
+    np.testing.assert_allclose(np.sqrt(np.mean(np.square(scaled), axis=0)), 1.0, atol=0.4)
 
 
 def test_a_bound_on_zeta_is_told():

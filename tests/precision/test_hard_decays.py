@@ -151,14 +151,13 @@ def test_rounding_is_no_wander():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("amplitude", [0.5, 1.0])
-def test_intervals_hold_the_truth_although_the_zero_wanders(amplitude):
-    """A 95 % interval holds less than 20 of 25 truths once in 600 sets; without the wander about 15 hold."""
+def test_intervals_hold_the_truth_although_the_zero_wanders():
+    """Fewer than 11 of 15 intervals hold it in one of 1,600 cases; `benchmarks coverage` asks it of 400."""
     held = 0
-    for seed in range(25):
-        one = fm.identify.free_decay(*wandering(MIXED, amplitude, seed)).sel(parameter="x_F")
+    for seed in range(15):
+        one = fm.identify.free_decay(*wandering(MIXED, 1.0, seed)).sel(parameter="x_F")
         held += bool(one.lower <= MIXED.x_F <= one.upper)
-    assert held >= 20
+    assert held >= 11
 
 
 def test_the_likelihood_integrates_the_wander_out():

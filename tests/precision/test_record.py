@@ -100,12 +100,12 @@ def test_with_one_more_unknown_no_fit_is_worse(truth):
 
 @pytest.mark.slow
 def test_errors_are_those_of_many_records(motion):
-    """Scatter over 40 seeds is known to 11 %: four of its errors are allowed; 1 of 20 intervals may miss."""
-    fits = [fit(RIG, motion, seed, known={"mu": 1.0}) for seed in range(40)]
+    """Scatter over 20 seeds is known to 16 %; `benchmarks coverage` counts the intervals of 400."""
+    fits = [fit(RIG, motion, seed, known={"mu": 1.0}) for seed in range(20)]
     names = ["f_n", "zeta", "x_F", "offset_x", "beta", "lag_deg", "amplitude_ratio"]
     values = np.array([ds.estimate.sel(parameter=names).values for ds in fits])
     stated = np.array([ds.standard_error.sel(parameter=names).values for ds in fits])
-    np.testing.assert_allclose(values.std(axis=0, ddof=1) / np.median(stated, axis=0), 1.0, atol=0.45)
+    np.testing.assert_allclose(values.std(axis=0, ddof=1) / np.median(stated, axis=0), 1.0, atol=0.5)
     exact = [RIG.f_n, RIG.zeta, RIG.x_F, RIG.offset_x, RIG.x_F / abs(RIG.base[1])]
     inside = np.abs(values[:, :5] - exact) < 1.96 * stated[:, :5]
     assert 0.88 < inside.mean() <= 1.0

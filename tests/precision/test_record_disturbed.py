@@ -93,14 +93,14 @@ def test_drift_and_wander_are_part_of_the_model(motion):
     [(drifting, {}), (wandering, {}), (coloured, {}), (with_outliers, {"loss": "soft_l1"})],
 )
 def test_intervals_hold_the_truth(motion, change, arguments):
-    """Of 25 intervals fewer than 19 hold it in one of 2,000 cases; scatter is known to 15 %."""
-    fits = [fit(motion, seed, change, **arguments) for seed in range(25)]
+    """Of 20 intervals fewer than 15 hold it in one of 3,000 cases; `benchmarks coverage` asks it of 400."""
+    fits = [fit(motion, seed, change, **arguments) for seed in range(20)]
     lower, upper = (
         np.array([ds[end].sel(parameter=NAMES).values for ds in fits]) for end in ("lower", "upper")
     )
-    assert (((lower <= EXACT) & (upper >= EXACT)).sum(axis=0) >= 19).all()
+    assert (((lower <= EXACT) & (upper >= EXACT)).sum(axis=0) >= 15).all()
     scatter = np.sqrt(np.mean(np.array([off(ds) for ds in fits]) ** 2, axis=0))
-    assert (scatter > 0.5).all(), scatter
+    assert (scatter > 0.5).all(), scatter  # known to 16 %
     assert (scatter < 1.6).all(), scatter
 
 
@@ -110,10 +110,10 @@ def test_intervals_allow_for_a_mu_that_noise_hides():
     truth = RIG._replace(mu=1.06)
     motion = settled(truth)
     fits = [
-        fm.identify.record(*synthetic(truth, motion, seed), damping_reference="base") for seed in range(16)
+        fm.identify.record(*synthetic(truth, motion, seed), damping_reference="base") for seed in range(8)
     ]
     hidden = [ds for ds in fits if float(ds.estimate.sel(parameter="mu")) == 1.0]
-    assert len(hidden) > 6
+    assert len(hidden) > 3
     names = ["f_n", "zeta", "x_F", "mu"]
     exact = np.array([truth.f_n, truth.zeta, truth.x_F, truth.mu])
     held = np.array(
@@ -122,7 +122,7 @@ def test_intervals_allow_for_a_mu_that_noise_hides():
             for ds in fits
         ]
     )
-    assert (held.sum(axis=0) >= 12).all(), held.sum(axis=0)
+    assert (held.sum(axis=0) >= 6).all(), held.sum(axis=0)
     moved = [
         (ds.estimate - 0.0055).sel(parameter="zeta") / ds.standard_error.sel(parameter="zeta")
         for ds in hidden

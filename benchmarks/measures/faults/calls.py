@@ -22,7 +22,7 @@ from .verdict import (
 )
 
 #: Calls of the quick form, of each family.
-_QUICK = 20
+_QUICK = 8
 
 #: A call that compiles what the others need, and the seconds that it may take.
 _EVERY_KERNEL = "fm.sweep(s, [0.5], [0.5], outputs=['regime', 'also_reachable', 'multiplier', 'amplitude'])"

@@ -8,7 +8,7 @@ from .malformed import BYTES, SLICES, STRUCTURE, VALUES
 from .verdict import CRASH, HANG, UNSEEN, Family, Said, wrong_answer_or_refusal
 
 #: Files of each family, in full and quick.
-_COUNTS = {STRUCTURE: (2000, 15), VALUES: (1000, 8), BYTES: (1600, 12), SLICES: (800, 10)}
+_COUNTS = {STRUCTURE: (2000, 6), VALUES: (1000, 4), BYTES: (1600, 6), SLICES: (800, 4)}
 
 #: One file in so many is drawn, too: more of the slices, which are meant to be drawn.
 _DRAWN = {STRUCTURE: 12, VALUES: 12, BYTES: 20, SLICES: 3}

@@ -13,7 +13,7 @@ from .folders import CONFIG, Change, fresh, snapshot
 from .verdict import CHANGED, CRASH, HANG, LEFT, Family, Said, wrong_refusal
 
 #: Cases of the quick form, of each family.
-_QUICK = 25
+_QUICK = 10
 
 _FRAME = """\
 [system]

@@ -93,14 +93,14 @@ def test_drift_and_wander_are_part_of_the_model(motion):
     [(drifting, {}), (wandering, {}), (coloured, {}), (with_outliers, {"loss": "soft_l1"})],
 )
 def test_intervals_hold_the_truth(motion, change, arguments):
-    """Of 20 intervals fewer than 15 hold it in one of 3,000 cases; `benchmarks coverage` asks it of 400."""
-    fits = [fit(motion, seed, change, **arguments) for seed in range(20)]
+    """Of 25 intervals fewer than 19 hold it in one of 5,000 cases; scatter is known to 15 %."""
+    fits = [fit(motion, seed, change, **arguments) for seed in range(25)]
     lower, upper = (
         np.array([ds[end].sel(parameter=NAMES).values for ds in fits]) for end in ("lower", "upper")
     )
-    assert (((lower <= EXACT) & (upper >= EXACT)).sum(axis=0) >= 15).all()
+    assert (((lower <= EXACT) & (upper >= EXACT)).sum(axis=0) >= 19).all()
     scatter = np.sqrt(np.mean(np.array([off(ds) for ds in fits]) ** 2, axis=0))
-    assert (scatter > 0.5).all(), scatter  # known to 16 %
+    assert (scatter > 0.5).all(), scatter
     assert (scatter < 1.6).all(), scatter
 
 

@@ -111,7 +111,7 @@ def _of_decay(ds: xr.Dataset) -> LogLikelihood:
 
     # coefficients of a wander have a flat prior: what they can follow is no residual
     terms = int(ds["wander_terms"]) if "wander_terms" in ds else 0
-    slow = np.linalg.qr(polynomials(record, terms))[0]
+    slow = np.linalg.qr(polynomials(record.time, record.names, terms))[0]
 
     def residuals(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         found, slopes = plain.residuals(at)

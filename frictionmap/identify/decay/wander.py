@@ -5,6 +5,7 @@ place of rest, and with it x_F, by many standard errors.  Legendre polynomials u
 cycles in a record, roughly.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -72,7 +73,7 @@ def search(record: Record, points: TurningPoints) -> Search:
 
 def _wander(record: Record, fit: Fit) -> _Wander:
     """Slow functions of time that the residuals of a decay follow best."""
-    basis = polynomials(record, _most_terms(record, fit))
+    basis = polynomials(record.time, record.names, _most_terms(record, fit))
     wide = record._replace(wander=basis)
     named = len(record.names)
     values = np.concatenate((fit.solution.values[:named], np.zeros(basis.shape[1])))
@@ -94,9 +95,8 @@ def _most_terms(record: Record, fit: Fit) -> int:
     return int(np.clip(np.ceil(_TERMS_PER_CYCLE * cycles), min(_FEWEST_TERMS, most), most))
 
 
-def polynomials(record: Record, terms: int) -> np.ndarray:
+def polynomials(time: np.ndarray, names: Sequence[str], terms: int) -> np.ndarray:
     """Legendre polynomials over a record, shape (samples, terms), above the degree of the named unknowns."""
-    time = record.time
-    lowest = 2 if DRIFT in record.names else 1
+    lowest = 2 if DRIFT in names else 1
     scaled = 2.0 * (time - time[0]) / np.ptp(time) - 1.0
     return legendre.legvander(scaled, lowest + terms - 1)[:, lowest:]

@@ -15,6 +15,7 @@ from ..decay.free_decay import free_decay
 from ..decay.motion import PARAMETERS as DECAY
 from ..decay.motion import Decay, displacement_and_slopes
 from ..decay.problem import half_cycles_of
+from ..decay.wander import polynomials
 from ..signals.turning_points import noise_level
 from ..statistics.least_squares import Problem, Solution
 from ..statistics.robust import effective_variance, softened
@@ -60,8 +61,7 @@ def decay_part(label: str, time: object, x: object, unit: str, known: Mapping[st
     start = ds["estimate"].values[: len(DECAY)].astype(float)
     rest = half_cycles_of(ds)
     terms = int(ds["wander_terms"]) if "wander_terms" in ds else 0
-    middle, half = 0.5 * (times[0] + times[-1]), 0.5 * (times[-1] - times[0])
-    slow = ((times[:, None] - middle) / half) ** np.arange(1, terms + 1)
+    slow = polynomials(times, DECAY, terms)
     waves = np.full(terms, np.inf)
 
     def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

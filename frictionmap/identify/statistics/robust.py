@@ -41,11 +41,14 @@ def effective_variance(problem: Problem, best: Solution, scale: float) -> float:
 
     problem : as it was before it was softened
     """
-    plain = problem.residuals(best.values)[0]
+    return _variance(problem.residuals(best.values)[0], int(problem.free.sum()), scale)
+
+
+def _variance(plain: np.ndarray, unknowns: int, scale: float) -> float:
+    """Effective variance from residuals that are not softened."""
     q = np.hypot(1.0, plain / scale)
     influence, change = plain / q, q**-3
     weight = 0.5 * (1.0 + q) / q**2
-    unknowns = int(problem.free.sum())
     # of few samples: Huber's correction for unknowns that the residuals have followed
     few = 1.0 + unknowns / plain.size * float(np.var(change)) / float(np.mean(change)) ** 2
     spread = float(np.sum(influence**2)) / (plain.size - unknowns)
@@ -73,7 +76,7 @@ def jackknife_growth(problem: Problem, best: Solution, scale: float) -> np.ndarr
     own = np.sum((inverse @ (x * alone[:, np.newaxis]).T) ** 2, axis=1)
     soft = np.sqrt(0.5 * (1.0 + q)) / q
     usual = np.diag(np.linalg.inv(x.T @ (soft[:, np.newaxis] ** 2 * x)))
-    usual = usual * effective_variance(problem, best, scale)
+    usual = usual * _variance(plain, x.shape[1], scale)
     grown = np.ones(problem.free.size)
     grown[problem.free] = np.sqrt(
         np.maximum(np.divide(own, usual, out=np.ones(own.size), where=usual > 0.0), 1.0)

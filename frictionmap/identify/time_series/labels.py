@@ -74,8 +74,8 @@ def of_data(given: MeasuredRecord, ds: xr.Dataset) -> list[str]:
     words = []
     phasors, time = given.phasors, given.every_time
     if not given.good.all() or given.time.size < time.size:
-        cut_off = 1.0 - np.sum(~given.clipped) / time.size
-        near = (np.sum(~given.clipped) - given.good.sum()) / time.size
+        inside = np.sum(~given.clipped)
+        cut_off, near = 1.0 - inside / time.size, (inside - given.good.sum()) / time.size
         words.append(
             f"clipped: {cut_off:.1%} of the samples are at the extremes and were ignored"
             + (f", with {near:.1%} so near to them that noise decides which are clipped" if near else "")

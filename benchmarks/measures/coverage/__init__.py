@@ -55,8 +55,8 @@ def _tasks(share: float | None) -> Iterator[tuple[str, int, int]]:
                 yield kind, place, seed
 
 
-def measure(share: float | None = 1.0) -> Iterator[dict[str, dict[str, dict]]]:
-    """Rows by kind and case, more after each case; without a share the quick form, in this process."""
+def measure(share: float | None = 1.0) -> Iterator[tuple[str, str, dict]]:
+    """Kind, name and row of each case when it is done; without a share the quick form, in this process."""
     tasks = list(_tasks(share))
     if share is None:
         yield from _rows(tasks, map(trial, tasks))
@@ -65,23 +65,20 @@ def measure(share: float | None = 1.0) -> Iterator[dict[str, dict[str, dict]]]:
         yield from _rows(tasks, pool.map(trial, tasks, chunksize=_AT_ONCE))
 
 
-def _rows(tasks: list[tuple[str, int, int]], trials: Iterable[Trial]) -> Iterator[dict[str, dict[str, dict]]]:
-    """Add a row for every case when its last fit is complete."""
-    found: dict[str, dict[str, dict]] = {}
+def _rows(tasks: list[tuple[str, int, int]], trials: Iterable[Trial]) -> Iterator[tuple[str, str, dict]]:
+    """Complete the row of every case with its last fit."""
     for (kind, place), some in groupby(zip(tasks, trials, strict=True), key=lambda one: one[0][:2]):
-        name = KINDS[kind][place].name
-        found.setdefault(kind, {})[name] = row([one for _, one in some])
-        yield found
+        yield kind, KINDS[kind][place].name, row([one for _, one in some])
 
 
 def run(quick: bool, results: Path) -> dict:
     """Generate data, fit, count and print; save after each case, and draw the figure at the end."""
-    content: dict = {"machine": machine(), "stated coverage": STATED}
-    for kinds in measure(None if quick else 1.0):
-        content["kinds"] = kinds
+    kinds: dict[str, dict[str, dict]] = {}
+    content = {"machine": machine(), "stated coverage": STATED, "kinds": kinds}
+    for kind, name, one in measure(None if quick else 1.0):
+        kinds.setdefault(kind, {})[name] = one
         save("coverage", content, results)
-        kind = list(kinds)[-1]
-        print(*coverage_rows({kind: dict([list(kinds[kind].items())[-1]])})[0], sep="  ", flush=True)
+        print(*coverage_rows({kind: {name: one}})[0], sep="  ", flush=True)
     table(HEADER, coverage_rows(kinds))
     for note in coverage_notes(kinds):
         print(note)

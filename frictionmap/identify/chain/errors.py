@@ -4,9 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..statistics.least_squares import Problem, Solution, leverage, minimise
+from ..statistics.least_squares import Problem, Solution, minimise
 from ..statistics.levels import ROUNDS, SETTLED
 from ..statistics.robust import root_mean_square, softened, usual_size
+from ..statistics.weights import freedom_by_kind
 from .fit import HOPELESS, Found, Measured, fit_chain, no_sum, problem
 
 #: In the first rounds all starts are tried.
@@ -58,13 +59,12 @@ def _weighed(data: Measured, task: Problem, best: Solution, size: Callable[..., 
     size : function of residuals and their degrees of freedom
     """
     residual = task.residuals(best.values)[0] * data.sigma
-    left = 1.0 - leverage(best.slopes[:, task.free & ~best.at_bound])
-    sizes = np.array(
-        [size(residual[kind], max(float(left[kind].sum()), 1.0)) for kind in (~data.is_phase, data.is_phase)]
-    )
+    kind = data.is_phase.astype(int)
+    freedom = freedom_by_kind(best, task.free, kind)
+    sizes = np.array([size(residual[kind == k], one) for k, one in enumerate(freedom)])
     if not (sizes > 0.0).all():
         return data
-    return data._replace(sigma=sizes[data.is_phase.astype(int)] / size(residual, float(left.sum())))
+    return data._replace(sigma=sizes[kind] / size(residual, float(freedom.sum())))
 
 
 def _of_both_kinds(data: Measured) -> bool:

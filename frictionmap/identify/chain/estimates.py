@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..statistics.estimates import QUANTITIES, estimates
-from ..statistics.least_squares import Errors, Solution, two_sided
+from ..statistics.least_squares import Errors, Solution, half_widths
 from .fit import Measured
 from .two_masses import frequencies, ratio_slopes
 
@@ -46,9 +46,7 @@ def chain_estimates(
         natural = np.concatenate((three, natural))
         logarithmic = np.concatenate((np.ones(3, dtype=bool), logarithmic))
         meanings = _FREQUENCIES | meanings
-    natural_solution, wider = _transformed(
-        best, found, rows, natural, logarithmic, best.residual.size - int(free.sum())
-    )
+    natural_solution, wider = _transformed(best, found, rows, natural, logarithmic)
     units = tuple("Hz" if name.startswith("f") else "1" for name in meanings)
     residual = data.sigma * best.residual
     sigma = data.sigma if given else data.sigma * np.sqrt(found.variance)
@@ -65,7 +63,6 @@ def _transformed(
     rows: np.ndarray,
     natural: np.ndarray,
     logarithmic: np.ndarray,
-    freedom: int,
 ) -> tuple[Solution, Errors]:
     """Estimates and errors of numbers whose derivatives, of some by logarithms, are `rows`.
 
@@ -77,7 +74,9 @@ def _transformed(
     correlation = np.where(np.eye(natural.size, dtype=bool), 1.0, covariance / np.outer(scale, scale))
     own = (rows == 1.0) & (np.count_nonzero(rows, axis=1) == 1)[:, np.newaxis]
     place, is_own = own.argmax(axis=1), own.any(axis=1)
-    reach = two_sided(freedom) * deviation
+    # of what several decide, the least known
+    freedom = np.where(rows != 0.0, found.freedom, np.inf).min(axis=1)
+    reach = half_widths(freedom) * deviation
     centre = np.where(logarithmic, np.log(np.where(logarithmic, natural, 1.0)), natural)
     lower = np.where(is_own, found.lower[place], centre - reach)
     upper = np.where(is_own, found.upper[place], centre + reach)

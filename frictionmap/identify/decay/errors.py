@@ -48,6 +48,7 @@ def _of_one(record: Record, fit: Fit) -> Errors:
         standard_error=np.maximum(found.standard_error, reach)[named],
         lower=found.lower[named],
         upper=found.upper[named],
+        freedom=found.freedom[named],
         correlation=found.correlation[named, named],
         variance=float(residual @ residual) / freedom_of(record),
         inflation=grown,

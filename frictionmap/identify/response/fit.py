@@ -9,11 +9,11 @@ from ... import checks, regimes
 from ...errors import InputError
 from ...model.system import System
 from ..statistics.least_squares import (
+    Allowance,
     Errors,
     Problem,
     Solution,
     errors,
-    leverage,
     minimise,
     one_sided,
     profile_end,
@@ -22,6 +22,7 @@ from ..statistics.least_squares import (
 )
 from ..statistics.levels import ROUNDS, SETTLED
 from ..statistics.robust import effective_variance, jackknife_growth, root_mean_square, softened, usual_size
+from ..statistics.weights import estimated_weights, freedom_by_kind
 from .data import ForcedTable
 from .model import F_N, MU, ZETA, Fitted, ForcedModel, Samples, evaluate
 from .start import closer, starts
@@ -76,20 +77,21 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bo
     flat = _is_flat(model, solution, task)
     determined = _without_mu(task) if flat else task
     _check_identifiable(table, model, solution, determined)
+    plain = problem(model, task.free, float(solution.values[F_N]))
     variance = 1.0 if any(table.given) else None
-    plain = problem(model, task.free, float(solution.values[F_N])) if robust else None
-    larger: np.ndarray | float = 1.0
-    if plain is not None:
+    if robust:
         variance = effective_variance(plain, solution, _OUTLIER)
-        larger = jackknife_growth(plain._replace(free=determined.free), solution, _OUTLIER)
-    found = errors(
-        determined, solution._replace(at_bound=solution.at_bound & determined.free), variance, larger=larger
-    )
-    interval = _on_bound if flat else _near_bound
-    found = interval(found, task, solution, variance)
+    now = solution._replace(at_bound=solution.at_bound & determined.free)
+    if robust:
+        allowance = Allowance(jackknife_growth(plain._replace(free=determined.free), solution, _OUTLIER))
+    else:
+        allowance = estimated_weights(determined, now, _kind(model.samples), ~np.array(table.given))
+    found = errors(determined, now, variance, allowance=allowance)
+    of_mu = (found.variance if variance is None else variance) * (found.inflation * allowance.larger[MU]) ** 2
+    found = (_on_bound if flat else _near_bound)(found, task, solution, of_mu)
     if flat:
         solution = solution._replace(at_bound=solution.at_bound | (task.free & ~determined.free))
-    if plain is not None:
+    if robust:
         solution = solution._replace(residual=plain.residuals(solution.values)[0])
         found = found._replace(variance=solution.sum / _freedom(solution, task))
     return Fit(model, task, solution, found, here, idle)
@@ -114,10 +116,9 @@ def _without_mu(task: Problem) -> Problem:
     return task._replace(free=free)
 
 
-def _on_bound(found: Errors, task: Problem, solution: Solution, variance: float | None) -> Errors:
+def _on_bound(found: Errors, task: Problem, solution: Solution, variance: float) -> Errors:
     """Take the interval of mu = 1 from the profile of the sum; those of the others allow for all of it."""
-    of_one = (found.variance if variance is None else variance) * found.inflation**2
-    allowed = one_sided(_freedom(solution, task)) ** 2 * of_one
+    allowed = one_sided(_freedom(solution, task)) ** 2 * variance
     most, end = profile_end(task, solution, MU, allowed, _STEP_OF_MU)
     moved = end.values - solution.values
     lower, upper = found.lower + np.minimum(moved, 0.0), found.upper + np.maximum(moved, 0.0)
@@ -130,14 +131,13 @@ def _freedom(solution: Solution, task: Problem) -> int:
     return solution.residual.size - int(task.free.sum())
 
 
-def _near_bound(found: Errors, task: Problem, solution: Solution, variance: float | None) -> Errors:
+def _near_bound(found: Errors, task: Problem, solution: Solution, variance: float) -> Errors:
     """Take the interval of mu from the profile of the sum where it begins at 1: there slopes say little."""
     if not task.free[MU] or solution.at_bound[MU] or found.lower[MU] > 1.0:
         return found
-    of_one = (found.variance if variance is None else variance) * found.inflation**2
     scale = float(found.standard_error[MU])
     upper = found.upper.copy()
-    allowed = two_sided(_freedom(solution, task)) ** 2 * of_one
+    allowed = two_sided(_freedom(solution, task)) ** 2 * variance
     upper[MU] = profile_end(task, solution, MU, allowed, scale)[0]
     return found._replace(upper=upper)
 
@@ -187,12 +187,17 @@ def _with_scatter(
     if robust:  # those of the solution are drawn in
         residual = problem(model, free, float(solution.values[F_N])).residuals(solution.values)[0]
     size = usual_size if robust else root_mean_square
-    left = 1.0 - leverage(solution.slopes[:, free & ~solution.at_bound])  # of each residual
+    kind = _kind(samples)
     sigma = samples.sigma.copy()
-    for kind, known in zip((samples.is_phase, ~samples.is_phase), given, strict=True):
-        if not known and kind.any():
-            sigma[kind] *= size(residual[kind], max(float(left[kind].sum()), 1.0))
+    for k, freedom in enumerate(freedom_by_kind(solution, free, kind)):
+        if not given[k]:
+            sigma[kind == k] *= size(residual[kind == k], freedom)
     return samples._replace(sigma=sigma)
+
+
+def _kind(samples: Samples) -> np.ndarray:
+    """Lags 0, amplitudes 1, as errors of a table are given."""
+    return (~samples.is_phase).astype(int)
 
 
 def _best(model: ForcedModel, known: np.ndarray, sure: bool, robust: bool) -> tuple[Solution, Problem]:

@@ -6,6 +6,7 @@ module         what is in it
 orthonormal    orthonormal columns of tall matrices
 least_squares  least squares with bounds; standard errors, intervals, correlations
 robust         least squares in which outliers have little weight
+weights        errors where variances of lags, or of amplitudes, follow from the residuals
 correlation    how much larger errors are where residuals are correlated
 levels         what is beyond chance: standard errors, probabilities, correlations
 cautions       what to mind of any fit, in words

@@ -58,12 +58,22 @@ class Noise(NamedTuple):
     freedom: int  # degrees of freedom by which it is known
 
 
+class Allowance(NamedTuple):
+    """How the errors of each parameter differ from those that the slopes give."""
+
+    larger: np.ndarray  # (parameters,) factors of standard errors
+    freedom: np.ndarray | None = (
+        None  # (parameters,) degrees of freedom of the intervals, if not those of all
+    )
+
+
 class Errors(NamedTuple):
     """Errors of estimates; held parameters have none."""
 
     standard_error: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
+    freedom: np.ndarray  # degrees of freedom of the intervals
     correlation: np.ndarray
     variance: float  # reduced chi square: the mean square of residuals, per degree of freedom
     lag_correlation: float
@@ -99,7 +109,7 @@ def errors(
     best: Solution,
     known_variance: float | None = None,
     noise: Noise | None = None,
-    larger: np.ndarray | float = 1.0,
+    allowance: Allowance | None = None,
 ) -> Errors:
     """Standard errors, 95 % intervals and correlations from the slopes at the least sum.
 
@@ -107,8 +117,6 @@ def errors(
     count as fewer: errors grow by the root of the integrated autocorrelation time, (1 + c)/(1 - c) for the
     lag-1 correlation c, or as `noise` says.  On a bound the interval is one-sided, from the profile of the
     sum.
-
-    larger : by what standard errors are larger than the slopes make them, one for each parameter
     """
     free = problem.free
     freedom = best.residual.size - int(free.sum())
@@ -121,17 +129,21 @@ def errors(
     if noise is not None:
         variance, freedom = noise.variance, noise.freedom
         inverse, grown = _with_excess(inverse, best.slopes, noise.excess)
-    standard_error = deviation * np.sqrt(variance) * grown * larger
+    larger, freedoms = grown, np.full(free.size, float(freedom))
+    if allowance is not None:
+        larger = grown * allowance.larger
+        freedoms = freedoms if allowance.freedom is None else allowance.freedom
+    standard_error = deviation * np.sqrt(variance) * larger
     scale = np.where(free, deviation * (grown if noise is not None else 1.0), 1.0)
     correlation = np.where(np.eye(free.size, dtype=bool), 1.0, inverse / np.outer(scale, scale))
-    reach = two_sided(freedom) * standard_error
+    reach = half_widths(freedoms) * standard_error
     lower, upper = best.values - reach, best.values + reach
     lower = np.where(free, np.maximum(lower, problem.floor), lower)
     for index in np.flatnonzero(best.at_bound):
         lower[index] = problem.floor[index]
-        allowed = one_sided(freedom) ** 2 * variance * float(grown[index]) ** 2
+        allowed = (one_sided(float(freedoms[index])) * float(larger[index])) ** 2 * variance
         upper[index], _ = profile_end(problem, best, int(index), allowed, float(standard_error[index]))
-    return Errors(standard_error, lower, upper, correlation, reduced, lag, float(grown.max()))
+    return Errors(standard_error, lower, upper, freedoms, correlation, reduced, lag, float(grown.max()))
 
 
 def leverage(slopes: np.ndarray) -> np.ndarray:
@@ -164,12 +176,17 @@ def _with_excess(
     return grown, np.sqrt(np.divide(np.diag(grown), plain, out=np.ones(plain.size), where=plain > 0.0))
 
 
+def half_widths(freedom: np.ndarray) -> np.ndarray:
+    """Half the widths of 95 % intervals, over the standard errors; freedom of each."""
+    return np.asarray(stdtrit(freedom, _TWO_SIDED))
+
+
 def two_sided(freedom: int) -> float:
     """Half the width of a 95 % interval, over the standard error."""
     return float(stdtrit(freedom, _TWO_SIDED))
 
 
-def one_sided(freedom: int) -> float:
+def one_sided(freedom: float) -> float:
     """Width of a one-sided 95 % interval, over the standard error."""
     return float(stdtrit(freedom, _ONE_SIDED))
 

@@ -19,6 +19,9 @@ os.environ.setdefault("MPLBACKEND", "agg")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
+#: Files that take minutes, first: a worker that begins one of them last works on alone.
+LONGEST = ("test_quick_benchmarks.py", "test_quick_faults.py", "test_interrupts.py", "test_stores_cut.py")
+
 REFERENCE = Path(os.environ.get("FRICTIONMAP_REFERENCE", ROOT.parent / "shared" / "reference"))
 
 
@@ -28,6 +31,17 @@ def _rows(name: str) -> tuple[dict, list[dict]]:
         pytest.skip(f"the reference values {name} are not at hand")
     content = json.loads(path.read_text())
     return content["systems"], content["rows"]
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Let workers take files in the order of collection; xdist would take those with few tests last."""
+    if hasattr(config.option, "loadscopereorder"):
+        config.option.loadscopereorder = False
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the longest files."""
+    items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
 
 
 @pytest.fixture(scope="session")

@@ -1,134 +1,21 @@
-"""The benchmarks run, write what they say they write, and the manual quotes the committed results."""
+"""The command of the benchmarks, the committed results, and how the manual quotes them."""
 
 import json
 import math
-import os
-import subprocess
-import sys
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from conftest import ROOT
+from measuring import python, spreads
 
 from benchmarks.__main__ import BENCHMARKS
-from benchmarks.measures.faults.verdict import SLOW as TOO_SLOW
 from benchmarks.report import quoting, record, results_page
 
 RESULTS = ROOT / "benchmarks" / "results"
 
 #: Benchmarks without timings.
 UNTIMED = {"stress", "steady", "faults", "coupling"}
-
-#: Benchmarks whose figure has another name.
-FIGURES = {"bound": "fig-5-55"}
-
-
-def python(*arguments: str, timeout: float = 7200.0) -> str:
-    """What a fresh Python prints."""
-    search = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    done = subprocess.run(
-        [sys.executable, *arguments],
-        env=os.environ | {"PYTHONPATH": search},
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        timeout=timeout,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
-def numbers(content: object) -> list[float]:
-    """All numbers in a result, flags left out."""
-    if isinstance(content, dict):
-        return [number for value in content.values() for number in numbers(value)]
-    if isinstance(content, list):
-        return [number for value in content for number in numbers(value)]
-    if isinstance(content, int | float) and not isinstance(content, bool):
-        return [float(content)]
-    return []
-
-
-def spreads(content: object) -> list[dict]:
-    """All timings in a result: what `record.spread` made."""
-    if isinstance(content, list):
-        return [one for value in content for one in spreads(value)]
-    if not isinstance(content, dict):
-        return []
-    if {"median", "least", "most", "runs"} <= set(content):
-        return [content]
-    return [one for value in content.values() for one in spreads(value)]
-
-
-# The quick forms, all in one process
-
-
-@pytest.fixture(scope="module")
-def quick(tmp_path_factory):
-    """The folder of the results, and what was printed."""
-    folder = tmp_path_factory.mktemp("results")
-    return folder, python("-m", "benchmarks", "all", "--quick", "--results", str(folder))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", BENCHMARKS)
-def test_quick_form(name, quick):
-    folder, said = quick
-    assert [line for line in said.splitlines()[-len(BENCHMARKS) :] if line.split()[:2] == [name, "took"]]
-    content = json.loads((folder / f"{name}.json").read_text())
-    machine = content.pop("machine")
-    assert machine["versions"]["numba"]
-    if "no browser" in content:
-        pytest.skip(content["no browser"])
-    found = numbers(content)
-    assert len(found) > 5
-    assert not any(math.isnan(number) for number in found)
-    for one in spreads(content):
-        assert one["least"] <= one["median"] <= one["most"]
-        assert one["runs"] >= 1
-    assert (folder / f"{FIGURES.get(name, name)}.png").read_bytes().startswith(b"\x89PNG")
-
-
-@pytest.mark.slow
-def test_quick_results_can_be_quoted(quick):
-    folder, _ = quick
-    lines = results_page.block(folder).splitlines()
-    tables = [line.count("|") for line in lines if line.startswith("|")]
-    assert len(tables) > 40
-    assert not {"nan", "inf", "None"} & set(" ".join(lines).replace("(", " ").split())
-    for before, line in pairwise(lines):  # as many cells in a row as in the one above
-        if before.startswith("|") and line.startswith("|"):
-            assert before.count("|") == line.count("|")
-
-
-@pytest.mark.slow
-def test_our_quick_answers_are_right(quick):
-    folder, _ = quick
-    accuracy = json.loads((folder / "accuracy.json").read_text())
-    for scene in accuracy["steady states"].values():
-        for point in scene["methods"]["frictionmap"]["points"]:
-            assert point["cells with wrong stop counts"] == 0
-            assert max(point["relative errors of Z"]) < 1e-10
-    assert accuracy["random cells"]["cells with wrong stop counts"] == 0
-    stress = json.loads((folder / "stress.json").read_text())
-    assert stress["random cells"]["resolved without a regime or a number"] == []
-    for group in stress["groups"].values():
-        assert group["inconsistent"] == group["trouble"] == group["wrong stop counts"] == 0
-    steady = json.loads((folder / "steady.json").read_text())
-    for name in ("T Fig. 3.12", "five damped chains", "mu = 1, any start"):
-        assert "unexplained" not in steady[name]["differences by cause"]
-
-
-@pytest.mark.slow
-def test_nothing_goes_wrong_in_careless_hands(quick):
-    folder, _ = quick
-    families = json.loads((folder / "faults.json").read_text())["families"]
-    assert sum(entry["tried"] for entry in families.values()) > 90
-    for name, entry in families.items():
-        wrong = set(entry["wrong by kind"]) - {TOO_SLOW}  # a busy machine is
-        assert not wrong, (name, entry["examples"])
 
 
 def test_what_is_no_number_is_saved_as_none(tmp_path):

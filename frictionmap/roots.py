@@ -81,7 +81,7 @@ def polish(
     return root
 
 
-class _Brackets(NamedTuple):
+class Brackets(NamedTuple):
     """Intervals in which functions `which` change sign; arrays of equal size."""
 
     which: np.ndarray
@@ -91,7 +91,7 @@ class _Brackets(NamedTuple):
     at_high: np.ndarray
 
 
-def _dips(r: np.ndarray, values: np.ndarray, cut: np.ndarray) -> _Brackets:
+def _dips(r: np.ndarray, values: np.ndarray, cut: np.ndarray) -> Brackets:
     """Samples closer to zero than their neighbours of equal sign, with the frequencies of both neighbours.
 
     cut : (n_r + 1,) bool, whether a pole, or an end of the range, precedes the sample
@@ -103,10 +103,10 @@ def _dips(r: np.ndarray, values: np.ndarray, cut: np.ndarray) -> _Brackets:
     lowest = (start | (size <= before)) & (end | (size < after))
     k, which = np.nonzero(same & lowest & (sign != 0.0))
     low, high = np.where(cut[k], k, k - 1), np.where(cut[k + 1], k, k + 1)
-    return _Brackets(which, r[low], r[high], values[low, which], values[high, which])
+    return Brackets(which, r[low], r[high], values[low, which], values[high, which])
 
 
-def _pairs(f: Callable[..., np.ndarray], dips: _Brackets) -> _Brackets:
+def _pairs(f: Callable[..., np.ndarray], dips: Brackets) -> Brackets:
     """Sign changes within dips, two for each dip that has any."""
     which, low, high, side = dips.which, dips.low, dips.high, np.sign(dips.at_low)
     share = np.linspace(0.0, 1.0, _DIP_SAMPLES + 2)
@@ -121,7 +121,7 @@ def _pairs(f: Callable[..., np.ndarray], dips: _Brackets) -> _Brackets:
         across = depth[rows, least] < 0.0
         for one, other in ((np.zeros_like(least), least), (least, np.full_like(least, share.size - 1))):
             ends = [part[rows, at][across] for part in (nodes, inside) for at in (one, other)]
-            found.append(_Brackets(which[across], *ends))
+            found.append(Brackets(which[across], *ends))
         open_ = ~across & (np.ptp(depth, axis=1) > _DIP_ALIKE * depth[rows, least])
         low = nodes[rows, np.maximum(least - 1, 0)][open_]
         high = nodes[rows, np.minimum(least + 1, share.size - 1)][open_]
@@ -129,10 +129,10 @@ def _pairs(f: Callable[..., np.ndarray], dips: _Brackets) -> _Brackets:
     return _joined(found)
 
 
-def _joined(brackets: list[_Brackets]) -> _Brackets:
+def _joined(brackets: list[Brackets]) -> Brackets:
     if not brackets:
-        return _Brackets(np.empty(0, dtype=np.intp), *np.empty((4, 0)))
-    return _Brackets(*(np.concatenate(part) for part in zip(*brackets, strict=True)))
+        return Brackets(np.empty(0, dtype=np.intp), *np.empty((4, 0)))
+    return Brackets(*(np.concatenate(part) for part in zip(*brackets, strict=True)))
 
 
 def find_roots(f: Callable[..., np.ndarray], where: FrequencyRange) -> list[np.ndarray]:
@@ -148,7 +148,7 @@ def find_roots(f: Callable[..., np.ndarray], where: FrequencyRange) -> list[np.n
     sign = np.sign(values)
     cut = np.searchsorted(where.poles, r[1:]) != np.searchsorted(where.poles, r[:-1])
     k, which = np.nonzero((sign[1:] * sign[:-1] < 0.0) & ~cut[:, np.newaxis])
-    changes = _Brackets(which, r[k], r[k + 1], values[k, which], values[k + 1, which])
+    changes = Brackets(which, r[k], r[k + 1], values[k, which], values[k + 1, which])
     brackets = _joined([changes, _pairs(f, _dips(r, values, np.concatenate(([True], cut, [True]))))])
     found = polish(f, *brackets)
     exact = (sign == 0.0) & (values != 0.0).any(axis=0)  # excludes functions that are zero everywhere

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..statistics.correlation import long_inflation
 from ..statistics.least_squares import Errors, Solution, errors, inflation, one_sided
-from .fit import Fit, freedom_of, sample_variance
+from .fit import DecayFit, freedom_of, sample_variance
 from .problem import Record
 from .wander import Search
 
@@ -24,7 +24,7 @@ def decay_errors(found: Search) -> Errors:
     return each[0]._replace(lower=lower, upper=upper)
 
 
-def decay_solution(record: Record, fit: Fit) -> Solution:
+def decay_solution(record: Record, fit: DecayFit) -> Solution:
     """The named parameters, and the residuals of the decay alone: a wander of the zero stays in them."""
     named = len(record.names)
     values = fit.solution.values.copy()
@@ -33,7 +33,7 @@ def decay_solution(record: Record, fit: Fit) -> Solution:
     return Solution(values[:named], residual, slopes[:, :named], fit.solution.at_bound[:named])
 
 
-def _of_one(record: Record, fit: Fit) -> Errors:
+def _of_one(record: Record, fit: DecayFit) -> Errors:
     """Errors of one fit; the variance is that of a sample with its full weight."""
     grown, by_lag_1 = long_inflation(fit.solution.residual), inflation(fit.solution.residual)[1]
     # errors() allows for the lag-1 correlation itself

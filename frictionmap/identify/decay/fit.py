@@ -25,7 +25,7 @@ _MOST_FITS = 12
 _ROUNDING = 1e-9
 
 
-class Fit(NamedTuple):
+class DecayFit(NamedTuple):
     """A fitted decay, and whether the mass came to rest within the record."""
 
     n: int  # the turning point with which the model ends
@@ -51,7 +51,7 @@ class Fit(NamedTuple):
         return is_possible(self.decay, self.half_cycles)
 
 
-def fit_decay(record: Record, points: TurningPoints) -> list[Fit]:
+def fit_decay(record: Record, points: TurningPoints) -> list[DecayFit]:
     """Fits with different numbers of half cycles that the noise cannot distinguish, the best one first.
 
     It has the least sum, if possible of those in which friction would not have held the mass before.
@@ -59,7 +59,7 @@ def fit_decay(record: Record, points: TurningPoints) -> list[Fit]:
     some = improving(record)
     least = reference = np.inf
     allowed = 0.0
-    fits: list[Fit] = []
+    fits: list[DecayFit] = []
     for start in sorted(starts(record, points), key=lambda start: (not start.possible, start.sum)):
         # what friction would have held counts only if it fits clearly better
         margin = _HOPELESS if start.possible else -_AS_GOOD
@@ -75,14 +75,14 @@ def fit_decay(record: Record, points: TurningPoints) -> list[Fit]:
     return [best, *(fit for fit in alike[1:] if fit.possible and _same_release(fit, best))]
 
 
-def refitted(record: Record, fit: Fit) -> Fit:
+def refitted(record: Record, fit: DecayFit) -> DecayFit:
     """A fit of a record that has further terms of a wander, with the same number of half cycles."""
     values = np.zeros(record.free.size)
     values[: fit.solution.values.size] = fit.solution.values
     return _fit(record, fit.n, values)
 
 
-def noise_variance(record: Record, fit: Fit) -> float:
+def noise_variance(record: Record, fit: DecayFit) -> float:
     """Variance of a sample for comparing fits: larger where residuals are correlated."""
     variance = sample_variance(record, fit) * long_inflation(fit.solution.residual) ** 2
     return max(variance, rounding_variance(record))
@@ -93,7 +93,7 @@ def rounding_variance(record: Record) -> float:
     return (_ROUNDING * float(np.ptp(record.x))) ** 2
 
 
-def sample_variance(record: Record, fit: Fit) -> float:
+def sample_variance(record: Record, fit: DecayFit) -> float:
     """The variance of a sample by which slopes give the errors of estimates."""
     if record.outliers is not None:
         return effective_variance(fit.plain, fit.solution, record.outliers)
@@ -105,13 +105,13 @@ def freedom_of(record: Record) -> int:
     return record.time.size - int(record.free.sum())
 
 
-def _fit(record: Record, n: int, start: np.ndarray) -> Fit:
+def _fit(record: Record, n: int, start: np.ndarray) -> DecayFit:
     task = problem(record, n, start)
     solution = minimise(task, start)
     decay = Decay(*solution.values[: len(PARAMETERS)])
     most = in_record(decay, record.time[-1])
     plain = plain_problem(record, n, start)
-    return Fit(n, solution, min(n, most + 1), n <= most, task, plain)
+    return DecayFit(n, solution, min(n, most + 1), n <= most, task, plain)
 
 
 def _sum(record: Record, n: int, values: np.ndarray) -> float:
@@ -119,6 +119,6 @@ def _sum(record: Record, n: int, values: np.ndarray) -> float:
     return float(residual @ residual)
 
 
-def _same_release(one: Fit, other: Fit) -> bool:
+def _same_release(one: DecayFit, other: DecayFit) -> bool:
     """Whether two fits begin at the same turning point."""
     return abs(one.decay.t0 - other.decay.t0) < 0.5 * half_period(other.decay)

@@ -22,7 +22,7 @@ from ..statistics.levels import FOUND
 from ..statistics.robust import LOSSES
 from .checks import check_misfit, checked_turning_points
 from .errors import decay_errors, decay_solution
-from .fit import Fit, fit_decay, noise_variance
+from .fit import DecayFit, fit_decay, noise_variance
 from .motion import PARAMETERS
 from .problem import DRIFT, X_F, ZETA, Record
 from .wander import Search, search
@@ -178,7 +178,7 @@ def _units(unit: str) -> tuple[str, ...]:
     return ("Hz", "1", unit, unit, "s", unit)
 
 
-def _losses(record: Record, points: TurningPoints, fit: Fit) -> dict[str, float]:
+def _losses(record: Record, points: TurningPoints, fit: DecayFit) -> dict[str, float]:
     """Growth of the sum of squares without friction, and without damping, over the variance of a sample."""
     losses, variance = {}, noise_variance(record, fit)
     for name in ("x_F", "zeta"):
@@ -191,7 +191,7 @@ def _losses(record: Record, points: TurningPoints, fit: Fit) -> dict[str, float]
     return losses
 
 
-def _verdict(fit: Fit, found: Errors, losses: Mapping[str, float]) -> int:
+def _verdict(fit: DecayFit, found: Errors, losses: Mapping[str, float]) -> int:
     """Verdict: friction and damping beyond three standard errors, by estimate and by likelihood ratio."""
     friction, damping = (
         losses[PARAMETERS[index]] > FOUND**2
@@ -201,7 +201,7 @@ def _verdict(fit: Fit, found: Errors, losses: Mapping[str, float]) -> int:
     return int(friction) + 2 * int(damping)
 
 
-def _motion(fits: list[Fit], unit: str) -> dict[str, xr.Variable]:
+def _motion(fits: list[DecayFit], unit: str) -> dict[str, xr.Variable]:
     """Number of half cycles, place of rest, and the bounds of mu that follow."""
     fit = fits[0]
     bounds = np.array([_bounds_of_mu(one) for one in fits])
@@ -223,7 +223,7 @@ def _motion(fits: list[Fit], unit: str) -> dict[str, xr.Variable]:
     return result
 
 
-def _bounds_of_mu(fit: Fit) -> tuple[float, float]:
+def _bounds_of_mu(fit: DecayFit) -> tuple[float, float]:
     """Least and largest mu, from where the mass came to rest and which turning point it left last."""
     heights, friction = fit.heights, fit.decay.x_F
     if friction == 0.0 or not fit.possible:
@@ -232,7 +232,7 @@ def _bounds_of_mu(fit: Fit) -> tuple[float, float]:
     return abs(float(heights[-1])) / friction if fit.at_rest else 0.0, float(passed[-1]) / friction
 
 
-def _wander(record: Record, fit: Fit, unit: str) -> dict[str, xr.Variable]:
+def _wander(record: Record, fit: DecayFit, unit: str) -> dict[str, xr.Variable]:
     """The wander of the zero that was fitted, if there is one."""
     if record.wander is None or not record.terms:
         return {}
@@ -246,7 +246,7 @@ def _wander(record: Record, fit: Fit, unit: str) -> dict[str, xr.Variable]:
 
 
 def _scaled(
-    fit: Fit, found: Errors, unit: str, base: float | None, stiffness: float | None
+    fit: DecayFit, found: Errors, unit: str, base: float | None, stiffness: float | None
 ) -> dict[str, xr.Variable]:
     """x_F as a friction ratio and as a force, with its error."""
     scales: list[tuple[str, str, str, float]] = []
@@ -293,7 +293,7 @@ def _wandering(searched: Search) -> list[str]:
     ]
 
 
-def _other_counts(fits: list[Fit]) -> list[str]:
+def _other_counts(fits: list[DecayFit]) -> list[str]:
     """Warn of other numbers of half cycles before rest that fit as well."""
     words = [] if fits[0].possible else [_IMPOSSIBLE]
     others = sorted({_count(fit) for fit in fits[1:]} - {_count(fits[0])})
@@ -305,5 +305,5 @@ def _other_counts(fits: list[Fit]) -> list[str]:
     return words
 
 
-def _count(fit: Fit) -> str:
+def _count(fit: DecayFit) -> str:
     return str(fit.half_cycles) if fit.at_rest else "no rest in the record"

@@ -14,7 +14,7 @@ from scipy.special import chdtrc
 
 from ..signals.turning_points import TurningPoints
 from ..statistics.correlation import long_inflation
-from .fit import Fit, fit_decay, refitted, rounding_variance
+from .fit import DecayFit, fit_decay, refitted, rounding_variance
 from .problem import DRIFT, Record, problem
 
 #: Terms for each cycle of the decay: they follow what is slower than a quarter of its frequency.
@@ -43,9 +43,9 @@ class Search(NamedTuple):
     """Fits of a record that noise cannot distinguish."""
 
     record: Record  # with the terms of a wander, if one is found
-    fits: list[Fit]  # the best one first
+    fits: list[DecayFit]  # the best one first
     doubted: Record | None  # with the terms of a wander that is neither found nor excluded
-    also: list[Fit]  # fits of that
+    also: list[DecayFit]  # fits of that
 
 
 class _Wander(NamedTuple):
@@ -71,7 +71,7 @@ def search(record: Record, points: TurningPoints) -> Search:
     return Search(record, fits, doubted, [refitted(doubted, fit) for fit in fits])
 
 
-def _wander(record: Record, fit: Fit) -> _Wander:
+def _wander(record: Record, fit: DecayFit) -> _Wander:
     """Slow functions of time that the residuals of a decay follow best."""
     basis = polynomials(record.time, record.names, _most_terms(record, fit))
     wide = record._replace(wander=basis)
@@ -88,7 +88,7 @@ def _wander(record: Record, fit: Fit) -> _Wander:
     return _Wander(basis[:, : max(best + 1 + _MARGIN, _LEAST)], float(chdtrc(best + 1, gains[best])))
 
 
-def _most_terms(record: Record, fit: Fit) -> int:
+def _most_terms(record: Record, fit: DecayFit) -> int:
     """Terms that are slower than the decay."""
     cycles = float(np.ptp(record.time)) * fit.decay.f_n
     most = min(_MOST_TERMS, record.time.size // _SAMPLES_PER_TERM)

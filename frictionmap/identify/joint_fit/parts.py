@@ -20,7 +20,7 @@ from ..signals.turning_points import noise_level
 from ..statistics.least_squares import Problem, Solution
 from ..statistics.robust import effective_variance, softened
 from ..time_series.data import MeasuredRecord, fit_clipped, measured_record, whole_record
-from ..time_series.fit import Fit, noise_of_record, problem_of
+from ..time_series.fit import RecordFit, noise_of_record, problem_of
 from ..time_series.motion import PARAMETERS
 
 #: What all parts share, in this order; (mu - 1)^2 stands for mu in the fit.
@@ -41,7 +41,7 @@ class Part(NamedTuple):
     freedom: int  # degrees of freedom by which that is known
     model_error: float
     record: MeasuredRecord | None  # None: a decay
-    fit: Fit | None  # of the record alone, with what all share held
+    fit: RecordFit | None  # of the record alone, with what all share held
     time: np.ndarray  # s, of the samples
     data: np.ndarray
     decay: xr.Dataset | None

@@ -12,14 +12,14 @@ from ..statistics.cautions import (
 )
 from ..statistics.levels import CHANCE
 from .data import ForcedTable
-from .fit import Fit, parameter_names
+from .fit import TableFit, parameter_names
 from .model import MU, ZETA, points_of
 
 #: Share of beta_stick above which structures stuck in tests, T 4.4.
 _NEAR_STICKING = 0.7
 
 
-def fit_warnings(table: ForcedTable, fit: Fit) -> list[str]:
+def fit_warnings(table: ForcedTable, fit: TableFit) -> list[str]:
     """Warnings."""
     names = parameter_names(table)
     return [
@@ -34,14 +34,14 @@ def fit_warnings(table: ForcedTable, fit: Fit) -> list[str]:
     ]
 
 
-def _scatter(table: ForcedTable, fit: Fit) -> list[str]:
+def _scatter(table: ForcedTable, fit: TableFit) -> list[str]:
     freedom = fit.solution.residual.size - int(fit.problem.free.sum())
     if not all(table.given) or gammaincc(0.5 * freedom, 0.5 * fit.solution.sum) >= CHANCE:
         return []
     return [f"residuals are larger than the errors given: reduced chi square {fit.errors.variance:.3g}"]
 
 
-def _near_sticking(fit: Fit) -> list[str]:
+def _near_sticking(fit: TableFit) -> list[str]:
     """Rows whose friction is near that which holds the contact, beta_stick = |F|/mu, theory.md 4."""
     values = fit.solution.values
     r, beta = points_of(fit.model.rows, values)
@@ -52,7 +52,7 @@ def _near_sticking(fit: Fit) -> list[str]:
     return [f"{near} of {r.size} rows have beta above {_NEAR_STICKING:g} beta_stick, where tests may stick"]
 
 
-def _several(fit: Fit) -> list[str]:
+def _several(fit: TableFit) -> list[str]:
     """Rows where another steady state exists than the one that is nearest to the data."""
     if len(fit.here.states) == 1:
         return []
@@ -64,7 +64,7 @@ def _several(fit: Fit) -> list[str]:
     return [f"{count} have several steady states: the nearest ones to the data are fitted"]
 
 
-def _idle(fit: Fit) -> list[str]:
+def _idle(fit: TableFit) -> list[str]:
     if not fit.mu_idle:
         return []
     return ["no fitted motion sticks: the data do not determine mu, which is held at 1"]

@@ -48,7 +48,7 @@ _RANK = 1e-5
 _STEP_OF_MU = 0.05
 
 
-class Fit(NamedTuple):
+class TableFit(NamedTuple):
     """A fit with its errors."""
 
     model: ForcedModel  # its samples have the errors that were taken
@@ -59,7 +59,7 @@ class Fit(NamedTuple):
     mu_idle: bool  # mu was to be fitted, but no motion that was found stops
 
 
-def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bool = False) -> Fit:
+def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bool = False) -> TableFit:
     """The steady states nearest to a table.
 
     known : (parameters,) values that are held; NaN of the others
@@ -94,7 +94,7 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bo
     if robust:
         solution = solution._replace(residual=plain.residuals(solution.values)[0])
         found = found._replace(variance=solution.sum / _freedom(solution, task))
-    return Fit(model, task, solution, found, here, idle)
+    return TableFit(model, task, solution, found, here, idle)
 
 
 def _is_flat(model: ForcedModel, solution: Solution, task: Problem) -> bool:

@@ -14,7 +14,7 @@ from ..statistics.levels import FOUND
 from ..statistics.robust import LOSSES
 from .cautions import fit_warnings
 from .data import ForcedTable, Values, checked_table
-from .fit import Fit, fit_forced
+from .fit import TableFit, fit_forced
 from .labels import friction_forces, labelled
 from .lags import friction_ratios, impossible, refuse_impossible, without
 from .model import F_N, MU, ZETA
@@ -204,7 +204,7 @@ def _passing(table: ForcedTable) -> float:
     return float(np.median(found))
 
 
-def _verdict(fit: Fit) -> int:
+def _verdict(fit: TableFit) -> int:
     values, error = fit.solution.values, fit.errors.standard_error
     found = values > FOUND * error
     friction = bool(found[:F_N].all())

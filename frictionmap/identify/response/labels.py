@@ -7,7 +7,7 @@ from ... import regimes
 from ...units.table import checked_unit, conversion
 from ..statistics.estimates import QUANTITIES, estimates, number, usable_errors
 from .data import ForcedTable
-from .fit import Fit, parameter_names
+from .fit import TableFit, parameter_names
 from .model import F_N, MU, points_of
 
 #: From where the motion is reached: both starts, or one.
@@ -24,7 +24,7 @@ _WORDS = {
 }
 
 
-def labelled(table: ForcedTable, fit: Fit, unit: str | None) -> xr.Dataset:
+def labelled(table: ForcedTable, fit: TableFit, unit: str | None) -> xr.Dataset:
     """Dataset of a fit without its verdict; `unit` of the loads, if they were given."""
     samples, solution = fit.model.samples, fit.solution
     names = parameter_names(table)
@@ -44,7 +44,7 @@ def labelled(table: ForcedTable, fit: Fit, unit: str | None) -> xr.Dataset:
     return ds
 
 
-def _of_samples(table: ForcedTable, fit: Fit) -> dict[str, xr.Variable]:
+def _of_samples(table: ForcedTable, fit: TableFit) -> dict[str, xr.Variable]:
     """Variables on the samples: data and model as measured, residuals in degrees or relative."""
     samples, rows = fit.model.samples, table.rows
     phase = samples.is_phase
@@ -84,7 +84,7 @@ def _flags(meanings: tuple[str, ...]) -> dict[str, object]:
     return {"flag_values": np.arange(len(meanings), dtype=np.int8), "flag_meanings": " ".join(meanings)}
 
 
-def _reached(fit: Fit) -> np.ndarray:
+def _reached(fit: TableFit) -> np.ndarray:
     """Codes of `_REACHED`, row by row."""
     codes = np.zeros(fit.here.phasors.shape[0], dtype=np.int8)
     if len(fit.here.states) == 1:  # mu = 1
@@ -98,7 +98,7 @@ def _is_one(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return (np.abs(other - one) <= _SAME * np.abs(one)).all(axis=1)
 
 
-def friction_forces(table: ForcedTable, fit: Fit, unit: str, stiffness: float) -> dict[str, xr.Variable]:
+def friction_forces(table: ForcedTable, fit: TableFit, unit: str, stiffness: float) -> dict[str, xr.Variable]:
     """Friction force k1 x_F [N] of every set on a shaken base, with its error; `stiffness` k1 [N/m].
 
     Under a force it is already given in the unit of the force: nothing is added.
@@ -109,7 +109,7 @@ def friction_forces(table: ForcedTable, fit: Fit, unit: str, stiffness: float) -
     return _per_set(table, fit, "friction_force", "kinetic friction force k1 x_F", newtons, "N")
 
 
-def _friction(table: ForcedTable, fit: Fit, unit: str) -> dict[str, xr.Variable]:
+def _friction(table: ForcedTable, fit: TableFit, unit: str) -> dict[str, xr.Variable]:
     """Friction of every set in the unit of its loads: of a base a length, F/k1; of a force a force."""
     base = fit.model.system.excitation == "base"
     what, words = ("x_F", "F/k1") if base else ("friction_force", "F")
@@ -117,7 +117,7 @@ def _friction(table: ForcedTable, fit: Fit, unit: str) -> dict[str, xr.Variable]
 
 
 def _per_set(
-    table: ForcedTable, fit: Fit, what: str, words: str, scale: float, unit: str
+    table: ForcedTable, fit: TableFit, what: str, words: str, scale: float, unit: str
 ) -> dict[str, xr.Variable]:
     """beta of every set as friction, times its load and `scale`, with the standard error."""
     result = {}

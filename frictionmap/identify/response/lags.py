@@ -6,7 +6,7 @@ import xarray as xr
 from ...errors import InputError
 from ...model.system import System
 from .data import ForcedTable, most_beyond
-from .fit import Fit
+from .fit import TableFit
 from .model import F_N, ZETA, Samples
 from .phase_inversion import MEANINGS, invert, reach
 
@@ -41,7 +41,7 @@ def without(table: ForcedTable, samples: np.ndarray) -> ForcedTable:
     return table._replace(samples=Samples(*(part[kept] for part in table.samples)))
 
 
-def friction_ratios(fit: Fit) -> dict[str, xr.Variable]:
+def friction_ratios(fit: TableFit) -> dict[str, xr.Variable]:
     """Friction ratios from single lags, at the frequency and damping that were fitted, mu = 1."""
     samples, values = fit.model.samples, fit.solution.values
     lags = np.flatnonzero(samples.is_phase)

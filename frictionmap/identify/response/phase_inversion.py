@@ -9,7 +9,7 @@ from ... import checks
 from ...errors import InputError
 from ...model.modes import wrapped
 from ...model.system import System
-from ...roots import polish
+from ...roots import Brackets, polish
 from ...steady.points import steady_states
 from ...theory.boundary_curves import find_curves
 from .extremes import Extremes, extremes_near_zero
@@ -58,16 +58,6 @@ class _Lags(NamedTuple):
 
     beta: np.ndarray
     lag: np.ndarray
-
-
-class _Brackets(NamedTuple):
-    """Friction ratios between which the lags `which` pass those measured; arrays of one size."""
-
-    which: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    at_low: np.ndarray
-    at_high: np.ndarray
 
 
 class _Measured(NamedTuple):
@@ -261,12 +251,12 @@ def _crossings(measured: _Measured, x: np.ndarray, off: np.ndarray) -> tuple[np.
     inner = some.off(x[1:-1].ravel(), np.tile(np.arange(which.size), _PARTS.size - 2))
     off = np.vstack((off[k, which], inner.reshape(_PARTS.size - 2, which.size), off[k + 1, which]))
     k, column = np.nonzero(off[:-1] * off[1:] < 0.0)
-    passed = _Brackets(column, x[k, column], x[k + 1, column], off[k, column], off[k + 1, column])
+    passed = Brackets(column, x[k, column], x[k + 1, column], off[k, column], off[k + 1, column])
     extreme = extremes_near_zero(some.off, x, off)
-    brackets = _Brackets(*map(np.concatenate, zip(passed, *_beside(extreme), strict=True)))
+    brackets = Brackets(*map(np.concatenate, zip(passed, *_beside(extreme), strict=True)))
 
     def difference(beta: np.ndarray, bracket: np.ndarray) -> np.ndarray:
-        one = _Brackets(*(part[bracket] for part in brackets))
+        one = Brackets(*(part[bracket] for part in brackets))
         found = some.off(beta, one.which)
         # next to where motion ceases to be continuous a steady state may not be found: a line takes its place
         line = one.at_low + (beta - one.low) / (one.high - one.low) * (one.at_high - one.at_low)
@@ -290,14 +280,14 @@ def _near(off: np.ndarray) -> np.ndarray:
     return (nearest <= around) & (change < 0.5 * np.pi)
 
 
-def _beside(extreme: Extremes) -> tuple[_Brackets, _Brackets]:
+def _beside(extreme: Extremes) -> tuple[Brackets, Brackets]:
     """Brackets below and above the extremes beyond zero."""
     below = extreme.crossed & (extreme.place > extreme.low) & (extreme.at_low * extreme.value < 0.0)
     above = extreme.crossed & (extreme.place < extreme.high) & (extreme.at_high * extreme.value < 0.0)
     which, low, high, at_low, at_high, place, value = extreme
     return (
-        _Brackets(*(part[below] for part in (which, low, place, at_low, value))),
-        _Brackets(*(part[above] for part in (which, place, high, value, at_high))),
+        Brackets(*(part[below] for part in (which, low, place, at_low, value))),
+        Brackets(*(part[above] for part in (which, place, high, value, at_high))),
     )
 
 

@@ -11,7 +11,7 @@ from ..signals.plateaus import unclipped_mass
 from ..signals.samples import checked_record, unclipped, within
 from ..signals.turning_points import resolution
 from ..statistics.levels import FOUND
-from .fit import Fit, Samples, fit_record, places_at, samples_of
+from .fit import RecordFit, Samples, fit_record, places_at, samples_of
 
 #: Errors of the base's first harmonic so many times those of samples at all phases.
 _WORSE = 4.0
@@ -64,7 +64,7 @@ def _limits(x: np.ndarray, good: np.ndarray) -> tuple[float, float]:
 
 def fit_clipped(
     contact: str, damping_reference: str, given: MeasuredRecord, known: Mapping[str, float], robust: bool
-) -> tuple[MeasuredRecord, Fit]:
+) -> tuple[MeasuredRecord, RecordFit]:
     """Fit a steady motion as by `fit_record`, without what happens beside the ends of a measuring range.
 
     There noise decides which samples are cut off: those that are left lie too far inside, and would draw the
@@ -83,19 +83,19 @@ def fit_clipped(
     return given, fit
 
 
-def _inside(given: MeasuredRecord, fit: Fit) -> np.ndarray:
+def _inside(given: MeasuredRecord, fit: RecordFit) -> np.ndarray:
     """Samples that are not clipped, where the fitted motion is farther from the ends than noise reaches."""
     fitted, (lowest, highest) = _fitted(given, fit), given.limits
     margin = _MARGIN * float(np.std(fit.residual))
     return ~given.clipped & (fitted > lowest + margin) & (fitted < highest - margin)
 
 
-def whole_record(given: MeasuredRecord, fit: Fit, robust: bool) -> MeasuredRecord:
+def whole_record(given: MeasuredRecord, fit: RecordFit, robust: bool) -> MeasuredRecord:
     """The record with the fitted motion where it is clipped, and the harmonics of that."""
     return given if not given.clipped.any() else _filled(given, fit, given.good, robust)
 
 
-def _filled(given: MeasuredRecord, fit: Fit, used: np.ndarray, robust: bool) -> MeasuredRecord:
+def _filled(given: MeasuredRecord, fit: RecordFit, used: np.ndarray, robust: bool) -> MeasuredRecord:
     """The record with the fitted motion where it is clipped, its harmonics, and the samples to be used."""
     x = np.where(given.clipped, _fitted(given, fit), given.channels[:, 1])
     channels = np.column_stack((given.channels[:, 0], x))
@@ -104,7 +104,7 @@ def _filled(given: MeasuredRecord, fit: Fit, used: np.ndarray, robust: bool) -> 
     return given._replace(channels=channels, good=used, phasors=phasors, samples=samples)
 
 
-def _fitted(given: MeasuredRecord, fit: Fit) -> np.ndarray:
+def _fitted(given: MeasuredRecord, fit: RecordFit) -> np.ndarray:
     """The fitted motion, drift and wander of the zero included, at all times."""
     return places_at(fit, given.phasors, given.time) + fit.slow_at(given.samples.everywhere)
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..signals.phasors import Phasors, first_harmonics
 from ..statistics.least_squares import Errors, errors, growth, two_sided
-from .fit import Fit, base_errors
+from .fit import RecordFit, base_errors
 from .motion import F_N, MU, OFFSET, PARAMETERS, X_F, ZETA
 from .static_friction import FITTED, IDLE, ONE, highest, interval, per_square
 
@@ -36,14 +36,14 @@ class _Linear(NamedTuple):
         return self.transfer @ self.covariance @ self.transfer.T
 
 
-def derived_values(fit: Fit, phasors: Phasors) -> np.ndarray:
+def derived_values(fit: RecordFit, phasors: Phasors) -> np.ndarray:
     """beta, lag [deg], amplitude ratio and stops per cycle."""
     base, mass = phasors.values[0, 1], phasors.values[1, 1]
     lag = -np.degrees(np.angle(mass / base))
     return np.array([fit.values[X_F] / abs(base), lag, abs(mass / base), float(fit.motion.stops)])
 
 
-def record_errors(fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray) -> Errors:
+def record_errors(fit: RecordFit, phasors: Phasors, time: np.ndarray, used: np.ndarray) -> Errors:
     """Errors of the parameters and of `DERIVED`, in this order.
 
     used : shape (samples,), bool: whether a sample is part of the fit, which takes the place of the others
@@ -79,14 +79,14 @@ def record_errors(fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray
     )  # fmt: skip
 
 
-def _mu_of_first_stop(fit: Fit) -> float:
+def _mu_of_first_stop(fit: RecordFit) -> float:
     """Largest mu without an effect, as the mass does not stick."""
     friction = float(fit.values[X_F])
     return max(fit.motion.turn_load / friction, 1.0) if friction > 0.0 else np.inf
 
 
 def _in_what_is_fitted(
-    fit: Fit, phasors: Phasors, time: np.ndarray, used: np.ndarray, found: Errors
+    fit: RecordFit, phasors: Phasors, time: np.ndarray, used: np.ndarray, found: Errors
 ) -> _Linear:
     """Linear dependence of the parameters and of `DERIVED`, and the covariance of its sources."""
     size, own = len(PARAMETERS), found.standard_error
@@ -108,7 +108,7 @@ def _in_what_is_fitted(
     return _Linear(transfer, covariance)
 
 
-def _add_derived(transfer: np.ndarray, fit: Fit, phasors: Phasors) -> None:
+def _add_derived(transfer: np.ndarray, fit: RecordFit, phasors: Phasors) -> None:
     """Rows of beta, the lag and the amplitude ratio."""
     size = len(PARAMETERS)
     base, mass = phasors.values[0, 1], phasors.values[1, 1]

@@ -68,7 +68,7 @@ class Samples(NamedTuple):
     scale: float | None  # beyond which residuals have little weight; None: never
 
 
-class Fit(NamedTuple):
+class RecordFit(NamedTuple):
     """A steady motion; the solution is in what is fitted, see `inner`, and its residuals are whitened.
 
     After the parameters come the parts of the slow waves, see `Samples`.
@@ -123,7 +123,7 @@ def samples_of(
 
 def fit_record(
     contact: str, damping_reference: str, phasors: Phasors, samples: Samples, known: Mapping[str, float]
-) -> Fit:
+) -> RecordFit:
     """The least sum over all samples, with mu = 1 unless it is known or the data ask for more."""
     few = slice(None, None, max(1, samples.time.size // _SAMPLES))
     coarse = shaken(contact, damping_reference, phasors, samples.time[few])
@@ -137,7 +137,7 @@ def fit_record(
     solution = minimise(problem, _begin(near, samples))
     found = motion(mass, outer(solution.values[: len(PARAMETERS)]))
     noise = noise_of_record(mass, phasors, samples, problem, solution)
-    fit = Fit(mass, samples, problem, with_mu, solution, *noise, whitening, by_base, found, KNOWN)
+    fit = RecordFit(mass, samples, problem, with_mu, solution, *noise, whitening, by_base, found, KNOWN)
     if "mu" in known:
         return fit
     begin = [solution.values]
@@ -146,7 +146,7 @@ def fit_record(
     return _with_static(fit, phasors, begin)
 
 
-def _with_static(fit: Fit, phasors: Phasors, begin: list[np.ndarray]) -> Fit:
+def _with_static(fit: RecordFit, phasors: Phasors, begin: list[np.ndarray]) -> RecordFit:
     """The fit with mu free, if the data ask for it; else that with mu = 1."""
     task = fit.with_mu
     solution = min((minimise(task, start) for start in begin), key=lambda found: found.sum)
@@ -166,7 +166,7 @@ def _with_static(fit: Fit, phasors: Phasors, begin: list[np.ndarray]) -> Fit:
     )  # fmt: skip
 
 
-def problem_of(fit: Fit, known: Mapping[str, float]) -> Problem:
+def problem_of(fit: RecordFit, known: Mapping[str, float]) -> Problem:
     """The problem that was solved, with other parameters held."""
     return _problem(fit.mass, fit.samples, _free(known, fit.samples), fit.solution.values, fit.whitening)
 
@@ -208,7 +208,7 @@ def _free(known: Mapping[str, float], samples: Samples) -> np.ndarray:
     return np.array([name not in known for name in PARAMETERS] + [True] * samples.slow.shape[1])
 
 
-def places_at(fit: Fit, phasors: Phasors, time: np.ndarray) -> np.ndarray:
+def places_at(fit: RecordFit, phasors: Phasors, time: np.ndarray) -> np.ndarray:
     """The fitted motion at other times."""
     mass = shaken(fit.mass.contact, fit.mass.damping_reference, phasors, time)
     return motion(mass, fit.values).places

@@ -17,7 +17,7 @@ from ..statistics.least_squares import Errors
 from ..statistics.robust import LOSSES
 from .data import fit_clipped, measured_record, whole_record
 from .errors import DERIVED, derived_values, record_errors
-from .fit import Fit
+from .fit import RecordFit
 from .labels import of_data, of_record, one_mass
 from .motion import CONTACTS, FLOOR, MU, PARAMETERS, X_F, ZETA, outer
 from .static_friction import IDLE, ONE
@@ -146,7 +146,7 @@ def checked_known(known: Mapping[str, float]) -> dict[str, float]:
     return result
 
 
-def _dataset(fit: Fit, phasors: Phasors, found: Errors, unit: str) -> xr.Dataset:
+def _dataset(fit: RecordFit, phasors: Phasors, found: Errors, unit: str) -> xr.Dataset:
     """The estimates, residuals as they are measured."""
     size = len(PARAMETERS)
     at_bound = fit.solution.at_bound[:size]
@@ -168,7 +168,7 @@ def _dataset(fit: Fit, phasors: Phasors, found: Errors, unit: str) -> xr.Dataset
     return ds
 
 
-def _of_motion(fit: Fit, found: Errors, unit: str, stiffness: float | None) -> dict[str, xr.Variable]:
+def _of_motion(fit: RecordFit, found: Errors, unit: str, stiffness: float | None) -> dict[str, xr.Variable]:
     """Further results of the fitted motion."""
     result = {"stuck_fraction": number(fit.motion.stuck, "share of the cycle in which the fit sticks")}
     if stiffness is not None:
@@ -180,7 +180,7 @@ def _of_motion(fit: Fit, found: Errors, unit: str, stiffness: float | None) -> d
     return result
 
 
-def _of_fit(fit: Fit, found: Errors) -> list[str]:
+def _of_fit(fit: RecordFit, found: Errors) -> list[str]:
     """Warnings about the estimates."""
     words = []
     if not fit.motion.repeats:

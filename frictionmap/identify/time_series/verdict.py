@@ -4,7 +4,7 @@ from itertools import combinations
 
 from ..statistics.least_squares import Errors
 from ..statistics.levels import CORRELATED, FOUND
-from .fit import Fit
+from .fit import RecordFit
 from .motion import F_N, MU, PARAMETERS, X_F, ZETA
 
 #: Estimates that correlate by more than `CORRELATED` are not identifiable separately if the interval of the
@@ -31,7 +31,7 @@ REMEDY = (
 )
 
 
-def record_verdict(fit: Fit, found: Errors) -> tuple[int, dict[str, str]]:
+def record_verdict(fit: RecordFit, found: Errors) -> tuple[int, dict[str, str]]:
     """A code and the meanings of all codes."""
     meanings = dict(_VERDICTS)
     sticks = fit.motion.stops > 0
@@ -51,7 +51,7 @@ def friction_found(friction: float, error: float) -> bool:
     return friction > FOUND * error
 
 
-def inseparable(fit: Fit, found: Errors) -> list[str]:
+def inseparable(fit: RecordFit, found: Errors) -> list[str]:
     """Fitted parameters that the record does not identify separately: none, or two and more."""
     limit = limit_of_correlation(
         fit.model_error, float(fit.values[X_F]), float(found.lower[X_F]), float(found.upper[X_F])

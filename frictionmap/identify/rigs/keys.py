@@ -22,7 +22,7 @@ from .rig import KNOWN_UNITS
 TABLES = {
     "data": "The measurement.",
     "system": "The structure, as in maps.",
-    "known": "Known parameters, which are held, and scales of the results, in Hz, mm, s, N/m.",
+    "known": "Known parameters, which are not fitted, and scales of the results, in Hz, mm, s, N/m.",
     "fit": "Options of the fit.",
 }
 
@@ -46,10 +46,12 @@ _DATA = (
     Key("window", "time window to be fitted, s", _TIMES, example="[0.5, 4.0]", words="[begin, end]"),
     Key("use", "quantities to fit; default: all available", several(word("phase", "amplitude")),
         example='["phase", "amplitude"]'),
-    Key("sigma_phase_deg", "error of lags; default: from the residuals", _POSITIVE, example="1.0"),
-    Key("sigma_amplitude", "relative error of amplitudes; default: from the residuals", _POSITIVE,
+    Key("sigma_phase_deg", "standard error of phase lags; default: from the residuals", _POSITIVE,
+        example="1.0"),
+    Key("sigma_amplitude", "relative standard error of amplitudes; default: from the residuals", _POSITIVE,
         example="0.02"),
-    Key("unreachable", "lags that no friction force gives", word("refuse", "drop"), "refuse"),
+    Key("unreachable", "lags that no friction ratio gives: refuse or ignore them", word("refuse", "drop"),
+        "refuse"),
 )  # fmt: skip
 
 #: Key of each of several measurements.
@@ -69,7 +71,7 @@ _FIT = (
 _CONTACT, _MASSES, *_ = KEYS["system"]
 _BASE = Key("excitation", "excitation", word("base"), "base")
 _REFERENCE = Key(
-    "damping_reference", "whether damping acts on absolute velocities or on those relative to the base",
+    "damping_reference", "damping acts on velocities relative to the ground, or relative to the base",
     word(*DAMPING_REFERENCES), DAMPING_REFERENCES[0],
 )  # fmt: skip
 _SYSTEMS = {
@@ -114,7 +116,7 @@ def _known(name: str) -> Key:
     if name not in KNOWN_UNITS:
         return Key(name, meaning, number(), example=example)
     kind = UNITS[KNOWN_UNITS[name]].measures
-    words = f"a number, or text with {', '.join(units_of(kind))}"
+    words = f"a number, or text with a unit: {', '.join(units_of(kind))}"
     return Key(name, meaning, either(number(), with_unit(kind)), example=example, words=words)
 
 

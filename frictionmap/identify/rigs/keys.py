@@ -36,7 +36,7 @@ _DATA = (
     Key("file", "data file, relative to this file", {"type": "string", "minLength": 1}, example='"data.csv"'),
     Key(
         "columns",
-        "names of columns; default: these names, whose suffixes are units",
+        "names of columns; default: these names, which end in units",
         {"type": "object", "additionalProperties": {"type": "string"}},
         example='{ time = "time_s", x = "x_mm" }',
         words="a table of column names",
@@ -59,8 +59,9 @@ _LABEL = Key("label", "name in the results; default: its number", {"type": "stri
              example='"10 N"')  # fmt: skip
 
 _FIT = (
-    Key("free", "parameters to be fitted: all that are not in [known]", several({"type": "string"}),
-        example='["zeta", "x_F"]'),
+    Key("free", "parameters to be fitted: exactly those that are not in [known], which is the default",
+        several({"type": "string"}), example='["f_n", "zeta", "x_F", "X0", "t0", "centre"]',
+        words="a list of parameters"),
     Key("drift", "whether to fit a linear drift of the zero", {"type": "boolean"}, False,
         words="true or false"),
     Key("loss", "loss function: soft_l1 gives little weight to outliers", word(*LOSSES), LOSSES[0]),
@@ -68,8 +69,21 @@ _FIT = (
         COSTS[0]),
 )  # fmt: skip
 
+#: Examples that differ from those above, by kind of data.
+_EXAMPLES = {
+    "forced": {
+        "columns": '{ frequency = "frequency_Hz", phase_lag = "phase_lag_deg" }',
+        "free": '["beta", "f_n", "zeta"]',
+    },
+    "record": {
+        "columns": '{ time = "time_s", base = "base_mm", x = "x_mm" }',
+        "free": '["f_n", "zeta", "x_F", "mu", "offset_x"]',
+    },
+    "sweep": {"columns": '{ frequency = "frequency_Hz", amplitude_ratio_1 = "amplitude_ratio_1" }'},
+}
+
 _CONTACT, _MASSES, *_ = KEYS["system"]
-_BASE = Key("excitation", "excitation", word("base"), "base")
+_BASE = Key("excitation", "kind of excitation", word("base"), "base")
 _REFERENCE = Key(
     "damping_reference", "damping acts on velocities relative to the ground, or relative to the base",
     word(*DAMPING_REFERENCES), DAMPING_REFERENCES[0],
@@ -78,7 +92,7 @@ _SYSTEMS = {
     "forced": KEYS["system"],
     "record": (
         _CONTACT._replace(valid=word(*CONTACTS)),
-        _MASSES._replace(valid=several({"const": 1}, maxItems=1), words="[1]"),
+        _MASSES._replace(meaning="the mass in contact", valid=several({"const": 1}, maxItems=1), words="[1]"),
         _BASE,
         _REFERENCE,
     ),
@@ -120,17 +134,23 @@ def _known(name: str) -> Key:
     return Key(name, meaning, either(number(), with_unit(kind)), example=example, words=words)
 
 
+def _with_example(key: Key, kind: str) -> Key:
+    """A key with the example for a kind of data."""
+    return key._replace(example=_EXAMPLES.get(kind, {}).get(key.name, key.example))
+
+
 def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
     """The keys of each table, for a kind of data."""
     of = KINDS[kind]
     data = ("kind", "file", "columns", "missing", *of.data)
     known = (*of.parameters, *of.known)
+    fit = (*of.fit, *(("free",) if of.parameters else ()))
     tables = {
         "": (_TITLE,),
-        "data": tuple(key for key in _DATA if key.name in data),
+        "data": tuple(_with_example(key, kind) for key in _DATA if key.name in data),
         "system": _SYSTEMS.get(kind, ()),
         "known": tuple(_known(name) for name in known),
-        "fit": tuple(key for key in _FIT if key.name in (*of.fit, *(("free",) if of.parameters else ()))),
+        "fit": tuple(_with_example(key, kind) for key in _FIT if key.name in fit),
     }
     return {name: keys for name, keys in tables.items() if keys}
 

@@ -248,9 +248,7 @@ def build_parser() -> argparse.ArgumentParser:
         "standard errors; write NetCDF."
     )
     sub = command("identify", "friction, damping and natural frequency from measured data", text)
-    _takes_config(
-        sub, "RIG", "configuration of the fit: measured data and known parameters", "data.window=[0.5,4]"
-    )
+    _takes_config(sub, "RIG", "configuration of the measured data and the fit", "data.window=[0.5,4]")
     sub = command("plot", "picture of any output file", "Draw any file written by the other commands.")
     sub.add_argument("file", metavar="FILE", type=Path, help="file to draw: FILE.nc, or a store FILE.zarr")
     _takes_output(sub, "PICTURE", ".png, .pdf or .svg (default: FILE.png in the current folder)")

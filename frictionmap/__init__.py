@@ -1,39 +1,39 @@
 """Exact regime maps of vibrating structures with one dry-friction contact.
 
-In the order in which data flows: none imports one that stands below it.
+The rows follow the flow of data: a module imports only from rows above its own.
 
-=============  =================================================================================
+=============  =====================================================================================
 module         what is in it
-=============  =================================================================================
+=============  =====================================================================================
 errors         the exceptions of the package
-version        the number of this version
+version        version number of the package
 regimes        codes of regime, origin and status, their names and meanings
 checks         checks of input, whose messages name the valid range
-packages       packages of the extras, and what is said where one is missing
-mat_files      arrays of MAT files, of all versions
-structures     matrices from the files of finite-element programs, and their reduction
+packages       optional packages (extras), and the message if one is missing
+mat_files      arrays from MAT files of all versions
+structures     matrices from files of finite-element programs, and their reduction
 _kernels       all compiled code: numbers and arrays in, numbers and codes out
 model          what is simulated: system, matrices, modes, settings of the solver
 units          units of measurement: hertz and newtons for the ratios r and beta
-datasets       what a dataset holds: names, types, units, valid values; how it was made
-roots          the search for all roots of functions with known poles
-features       limits, peak thresholds, invariant points: what needs no map
-theory         closed forms over frequency: boundaries of the regimes, continuous motion
-steady         steady states: cells, maps, response curves, one motion in time; what a map costs
-files          configurations; places of output, storage, reading; files in words
-probabilities  many samples of an uncertain structure as probabilities
-stores         maps block by block into a zarr store, in this process or on workers
+datasets       contents of datasets: names, types, units, valid values, provenance
+roots          search for all roots of functions with known poles
+features       high-frequency limits, peak thresholds, invariant points: features that need no map
+theory         closed forms over frequency: beta_lim, beta_stick, continuous motion
+steady         steady states: cells, maps, response curves, time histories; time and memory of a map
+files          configurations; output files, reading, writing; summaries in words
+probabilities  shares of the regimes over many samples of an uncertain structure
+stores         maps written block by block into a zarr store, by this process or by workers
 identify       measured data: tables, fits, estimates with their errors
-examples       synthetic measurements of rigs whose truth is known
-pictures       pictures of maps, curves, motions and fits; colours
-plot           the functions `plot_...`, and which picture a file is drawn as
+examples       synthetic measurements with known true values
+pictures       pictures of maps, curves, motions and fits; colours of the regimes
+plot           the functions `plot_...`, and the choice of the picture for a file
 explorer       the map in a browser: a server for this machine, and the page
 command_line   the command line: arguments, commands, completion, progress, interrupts
 __main__       the program as a process: streams, exit status
-=============  =================================================================================
+=============  =====================================================================================
 
-The names in `__all__`, and what is written into files, may grow and not change: people have scripts and
-files.  What begins with an underscore, `_kernels` first, may change at any time.
+The names in `__all__` and the contents of files may be extended but not changed, because users have scripts
+and files that rely on them.  Everything that begins with an underscore, such as `_kernels`, may change.
 """
 
 from importlib import import_module

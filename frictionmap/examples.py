@@ -42,8 +42,8 @@ _SHAKEN_AT, _HARMONICS = 1.0, (0.0, 1.75, 0.018j)
 _RECORD_RATE, _RECORD_LENGTH, _RECORD_ERRORS = 100, 8, (0.01, 0.003)
 
 _HEAD = """\
-# Above each key: its meaning and its valid values.  A line that begins with # and a key shows the default,
-# if there is one, else an example.
+# Above each key: its meaning and its valid values.  A line that begins with # and a key shows the default or,
+# if there is none, an example.
 """
 
 _SYNTHETIC = "# Synthetic: made by frictionmap.examples, not measured."

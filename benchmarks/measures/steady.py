@@ -29,7 +29,7 @@ CYCLES = 20000
 CLOSE = 1e-6
 SMALL_Z = 1e-3
 
-#: A cell this near to a boundary is on it, as far as rounding can tell.
+#: A cell this close to a boundary is on it, to rounding.
 ON_BOUNDARY = 1e-14
 
 DAMPED = {

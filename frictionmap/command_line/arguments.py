@@ -57,7 +57,7 @@ getting started:
   frictionmap explore map.toml                               show its map in the browser
   frictionmap map map.toml && frictionmap plot map.nc        write the map and its picture to files
 
-exit status: 0 success, 1 any other error, 2 invalid input, 130 interrupted"""
+exit status: 0 success, 2 invalid input, 130 interrupted, 1 any other error"""
 
 
 def one_line(message: object) -> str:
@@ -179,13 +179,13 @@ def _takes_cell(sub: argparse.ArgumentParser) -> None:
 
 
 def _takes_choices(sub: argparse.ArgumentParser) -> None:
-    text = "select a value on a further axis, e.g. --at damping_ratios=0.01; repeatable"
+    text = "select a value on one of the further axes of a map, e.g. --at damping_ratios=0.01; repeatable"
     sub.add_argument("--at", metavar="NAME=VALUE", action="append", default=[], help=text)
 
 
 def _takes_over(sub: argparse.ArgumentParser, what: str) -> None:
     text = (
-        f"{what} the share of each regime over a further axis such as sample, and quantiles of the boundaries"
+        f"{what} the share of each regime over a further axis, e.g. sample, with quantiles of the boundaries"
     )
     sub.add_argument("--over", metavar="NAME", action=_Once, help=text)
 
@@ -245,10 +245,10 @@ def build_parser() -> argparse.ArgumentParser:
     _takes_page(command("explore", "interactive map in the browser", text))
     text = (
         "Fit friction, damping and natural frequency to measured data; print the estimates with their "
-        "standard errors, write NetCDF."
+        "standard errors; write NetCDF."
     )
     sub = command("identify", "friction, damping and natural frequency from measured data", text)
-    _takes_config(sub, "RIG", "description of the data and of the known parameters", "data.window=[0.5,4]")
+    _takes_config(sub, "RIG", "configuration of the measured data and the fit", "data.window=[0.5,4]")
     sub = command("plot", "picture of any output file", "Draw any file written by the other commands.")
     sub.add_argument("file", metavar="FILE", type=Path, help="file to draw: FILE.nc, or a store FILE.zarr")
     _takes_output(sub, "PICTURE", ".png, .pdf or .svg (default: FILE.png in the current folder)")
@@ -266,7 +266,7 @@ def build_parser() -> argparse.ArgumentParser:
     _takes_output(sub, "OUT", "OUT.nc or OUT.csv (default: FILE.csv in the current folder)")
     _takes_choices(sub)
     _takes_over(sub, "write")
-    sub = command("info", "summary of a file", "Summarise the contents of a file in one screen.")
+    sub = command("info", "summary of a file", "Summarise the contents of a file on one screen.")
     sub.add_argument("file", metavar="FILE", type=Path, help="file to read: FILE.nc, or a store FILE.zarr")
     _takes_choices(sub)
     _takes_beginnings(command)

@@ -39,7 +39,7 @@ def _finish(ds: "xr.Dataset", config: "Config", options: Options) -> Callable[[P
     return lambda scratch: write_netcdf(ds, scratch, options.command_line)
 
 
-def _tell(options: Options, output: "Output", *summary: str) -> None:
+def _report(options: Options, output: "Output", *summary: str) -> None:
     if not options.quiet:
         _print("\n  ".join((f"{summary[0]}; wrote {output.path}", *summary[1:])))
 
@@ -90,7 +90,7 @@ def _fill_cells(
         output.fill(_finish(ds, config, options), lambda size: progress.writing(output.path, size))
         listeners.remove(progress.compiling)
     first = f"{describe_map(ds)} in {took:.2g} s"
-    _tell(options, output, first, *describe_causes(ds), *describe_reduction(ds))
+    _report(options, output, first, *describe_causes(ds), *describe_reduction(ds))
 
 
 def _cost(options: Options, config: "Config") -> str:
@@ -112,7 +112,7 @@ def _boundaries(options: Options, config: "Config", output: "Output") -> None:
 
     ds = boundaries(config.system, config.r, config.mu, units=config.units)
     output.fill(_finish(ds, config, options))
-    _tell(options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu", *describe_reduction(ds))
+    _report(options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu", *describe_reduction(ds))
 
 
 def _response(options: Options, config: "Config", output: "Output") -> None:
@@ -122,7 +122,7 @@ def _response(options: Options, config: "Config", output: "Output") -> None:
     mu = _one_mu(config) if options.mu is None else options.mu
     ds = response(config.system, options.r, options.beta, mu, solver=config.solver, units=config.units)
     output.fill(_finish(ds, config, options))
-    _tell(options, output, describe_response(ds))
+    _report(options, output, describe_response(ds))
 
 
 def _one_mu(config: "Config") -> float:
@@ -263,7 +263,7 @@ def _identify(options: Options) -> None:
     with claimed(path, options.overwrite, rig.files) as output:
         ds = identify(rig)
         output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
-    _tell(options, output, rig.title, *describe_estimates(ds))
+    _report(options, output, rig.title, *describe_estimates(ds))
 
 
 def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None) -> "xr.Dataset":

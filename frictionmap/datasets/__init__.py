@@ -1,13 +1,13 @@
 """Datasets: names, units and valid values of variables; checks; provenance.
 
-===============  ===================================================================
+===============  ==================================================================
 module           what is in it
-===============  ===================================================================
+===============  ==================================================================
 labels           names, dimensions, types, units and meanings of all variables
-estimate_labels  the same of estimates from measured data
-provenance       the history of a dataset, and the configuration that makes it again
+estimate_labels  names, units and meanings of estimates from measured data
+provenance       the history of a dataset, and the configuration that reproduces it
 variables        arrays as labelled variables, and datasets with their attributes
 schema           every variable checked against its label
 physical         hertz, newtons and metres in addition to ratios
-===============  ===================================================================
+===============  ==================================================================
 """

@@ -46,16 +46,16 @@ _ENTRIES = (
     Entry("stops_per_cycle", "stops per cycle", ""),
     Entry("stuck_fraction", "share of time stuck", "%"),
     Entry("contact_amplitude", "amplitude in the contact", "length"),
-    Entry("contact_first_harmonic_amplitude", "its first harmonic", "length"),
-    Entry("contact_first_harmonic_phase", "phase lag of its first harmonic", "rad"),
+    Entry("contact_first_harmonic_amplitude", "first harmonic in the contact", "length"),
+    Entry("contact_first_harmonic_phase", "phase lag of this harmonic", "rad"),
     Entry("amplitude", "amplitude of", "length"),
-    Entry("phase_lag", "lag of", "rad"),
+    Entry("phase_lag", "phase lag of", "rad"),
     Entry("work_friction", "energy dissipated by friction per cycle", "energy"),
     Entry("work_damping", "energy dissipated by damping per cycle", "energy"),
     Entry("equivalent_damping", "equivalent damping of the contact, cω/k₁", ""),
-    Entry("period", "period, in cycles of the excitation", ""),
-    Entry("beta_lim", "β_lim here", ""),
-    Entry("beta_stick", "β_stick here", ""),
+    Entry("period", "period, in excitation periods", ""),
+    Entry("beta_lim", "β_lim at this r", ""),
+    Entry("beta_stick", "β_stick at this r", ""),
 )
 
 #: What a motion without slides has, and what else a list would only repeat.
@@ -124,9 +124,9 @@ def _reason_for_no_lag(values: Mapping[str, Any], k: int) -> str:
     """Explain why mass k, counted from 0, has no lag: its maximum has no single phase in the cycle."""
     period = int(values["period"])
     if period != 1:
-        return f"its period is {period} cycles" if period else "it has no period"
+        return f"the period is {period} cycles" if period else "the motion has no period"
     if values["amplitude"][k] == 0.0:
-        return "it rests"
+        return "the mass is at rest"
     begin, end = (f"{values[name][k]:.3f}".replace("-", "−") for name in ("phase_begin", "phase_end"))
     return f"held at its maximum from {begin} to {end} rad"
 
@@ -163,7 +163,7 @@ def describe_motion(beta: float, numbers: Mapping[str, Any]) -> list[str]:
     else:
         why = (
             f"β = {beta:.4g} lies between β_lim = {lim:.4g} and β_stick = {stick:.4g}: friction stops the "
-            "contact, but cannot hold it."
+            "contact, but cannot hold it permanently."
         )
     sentences.append(why)
     status = int(numbers["status"])

@@ -58,7 +58,7 @@ def configuration_text(scene: Scene, view: View, quantity: CellQuantity, piece: 
     found = configuration(scene.title, loaded.system, again, loaded.solver, units=loaded.units)
     if _uncommented(found) != _uncommented(text):
         raise InputError(
-            "cannot save this view: no configuration reproduces it exactly; save its map instead"
+            "cannot save this view: no configuration reproduces it exactly; save its cells instead"
         )
     return text
 
@@ -77,7 +77,7 @@ def _with_files(scene: Scene, view: View, text: str) -> str:
     if scene.config is None:
         raise InputError(
             f"cannot save this view: its matrices ({scene.system.n} degrees of freedom) are too large for "
-            "a configuration; save its map instead"
+            "a configuration; save its cells instead"
         )
     given = parse(scene.config.text)
     of_view = parse(_uncommented(text))

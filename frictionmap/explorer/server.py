@@ -105,7 +105,7 @@ class Page:
     def warm(self) -> None:
         """Import the computing modules, which takes longer than the browser needs to load the page."""
         try:
-            from . import cell, cut, queries, told, views  # noqa: F401
+            from . import cell, cut, queries, scene_description, views  # noqa: F401
 
             self.jobs.listen()
         finally:
@@ -144,7 +144,7 @@ class Page:
 
     def _scene(self, query: str, gone: Callable[[], bool]) -> Answer:
         from .queries import read_query
-        from .told import describe_scene
+        from .scene_description import describe_scene
 
         return _json(describe_scene(self.scene, read_query(self.scene, query).view))
 
@@ -160,7 +160,7 @@ class Page:
 
     def _map(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
-        from .told import description
+        from .scene_description import description
         from .views import piece_of_map
 
         query = queries.read_query(self.scene, text, queries.PIECE)
@@ -183,7 +183,7 @@ class Page:
 
     def _of_cell(self, kind: str, work: Callable, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
-        from .told import units_of
+        from .scene_description import units_of
 
         query = queries.read_query(self.scene, text, queries.CELL)
         cell = queries.cell_of(query)
@@ -195,7 +195,7 @@ class Page:
     def _cut(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
         from .cut import cut
-        from .told import units_of
+        from .scene_description import units_of
 
         query = queries.read_query(self.scene, text, queries.CUT)
         line = queries.cut_of(query)

@@ -18,8 +18,8 @@ import numpy as np
 from ..errors import InputError
 from .queries import read_query
 from .scene import Scene, Slider
+from .scene_description import describe_scene, description
 from .server import page_files
-from .told import describe_scene, description
 from .views import CellQuantity, Follower, Piece, View, classes_of, quantities, solve_piece, values_of
 
 #: Cells of every map, each way: of one mass, and of structures, whose cells take some hundred times as long

@@ -130,7 +130,7 @@ def _unit(name: str, meaning: str) -> Key:
     words = f"a number and one of {', '.join(units_of(kind))}"
     valid = with_unit(kind)
     if name in MODEL_HAS:
-        words, valid = f'{words}, or "{OF_MODEL}" of matrices in SI units', either(valid, word(OF_MODEL))
+        words, valid = f'{words}, or "{OF_MODEL}" for matrices in SI units', either(valid, word(OF_MODEL))
     return Key(name, meaning, valid, example=f'"{EXAMPLES[kind]}"', words=words)
 
 
@@ -145,10 +145,15 @@ KEYS: dict[str, tuple[Key, ...]] = {
             several(_DOF, maxItems=2),
             words='a list of one or two whole numbers >= 1, or of labels of a file, "NODE.DOF"',
         ),
-        _of_system("load_mass", "the mass on which the harmonic load acts, counted from 1", _DOF),
+        _of_system(
+            "load_mass",
+            "the mass on which the harmonic load acts, counted from 1",
+            _DOF,
+            words='a whole number >= 1, or a label of a file, "NODE.DOF"',
+        ),
         Key(
             "load",
-            "instead of load_mass: the load on every mass, over P",
+            "instead of load_mass: the load on every mass, divided by P",
             several(either(number(), several(number(), 2, maxItems=2))),
             example="[1.0]",
             words="for every mass a number or [real part, imaginary part]",
@@ -214,7 +219,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         _of_system(
             "stiffness_scale",
-            "with matrices: displacements are over P/stiffness_scale; in the units of K",
+            "with matrices: displacements are in units of P/stiffness_scale; given in the units of K",
             number(above=0.0),
         ),
         _of_system(
@@ -224,14 +229,14 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         _of_system(
             "damping_reference",
-            "whether damping acts on absolute velocities or on those relative to a moving base",
+            "damping acts on velocities relative to the ground, or relative to a moving base",
             word(*DAMPING_REFERENCES),
         ),
     ),
     "grid": (
         Key(
             "r",
-            "frequency ratio: excitation frequency over natural frequency",
+            "frequency ratio: excitation frequency over sqrt(k_1/m_1), or over frequency_scale",
             axis(KINDS["r"], **AXES["r"]),
             example="1.0",
             words=_RANGE,
@@ -260,7 +265,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         _setting("steps", "scan steps per period; affects speed only", whole(**RANGES["steps"])),
         _setting(
             "skip",
-            "integrate only the cells that no proof decides, or every cell with friction",
+            'skip cells that a proof decides ("exact"), or integrate every cell with friction ("none")',
             word(*get_args(Skip)),
         ),
         _setting(
@@ -293,7 +298,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "instead of the load: base acceleration at acceleration_frequency",
         ),
         _unit("acceleration_frequency", "frequency of base_acceleration"),
-        _unit("stiffness", "k_1, or stiffness_scale: displacements are over P/k_1"),
+        _unit("stiffness", "k_1, or stiffness_scale: displacements are in units of P/k_1"),
         _unit("mass", "instead of the stiffness, for a chain: m_1"),
     ),
 }
@@ -305,7 +310,7 @@ TABLES = {
     "solver": "How steady states are found, and the output variables.",
     "curves": "For `frictionmap curves` only, which takes a short list of beta.",
     "units": "Optional: reference values that convert ratios to Hz and N; [grid] may then use these units.",
-    "axes": "Further axes: values of [system] that vary, one per axis, or several together from a CSV.",
+    "axes": "Further axes: values of [system] that vary, one per axis, or several together from a CSV file.",
 }
 
 
@@ -326,7 +331,7 @@ def _in_words(valid: Schema) -> str:
     if "anyOf" in valid:
         return " or ".join(_in_words(one) for one in valid["anyOf"])
     if valid["type"] == "array":
-        some = "some of " if "enum" in valid["items"] else ""
+        some = "one or more of " if "enum" in valid["items"] else ""
         return f"a list of {some}{_in_words(valid['items'])}"
     words = {"integer": "a whole number", "number": "a number", "string": "text"}[valid["type"]]
     ends = [

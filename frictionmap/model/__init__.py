@@ -5,14 +5,14 @@ module              what is in it
 ==================  ===================================================================================
 settings            settings of the solver and of response curves; names of the outputs
 matrices            mass, stiffness and damping matrices: small, dense, definite
-phasors             complex arrays as pairs of real ones, which round alike wherever they stand
+phasors             complex arrays as pairs of real ones, which are rounded alike at any position
 damped_oscillators  a damped structure as oscillators that do not depend on r
 free_structure      the sliding structure as oscillators
 balance             linear response at many frequencies, free or held
 modes               modes, participation factors of contact and load, the structure held at its contact
-decoupling          the error of leaving out the damping that couples modes
+decoupling          the error of neglecting the damping that couples modes
 coupled_modes       structures whose damping couples their modes: responses to loads
-system              `System`: structure, damping, load, contact, and what they must be
+system              `System`: structure, damping, load, contact, and their valid values
 variations          further axes of a study: parameters of a system that vary
 held_structure      the structure held at its contact as oscillators
 ==================  ===================================================================================

@@ -15,6 +15,6 @@ features     natural frequencies and other features of a system on the frequency
 maps         regimes, boundaries and probabilities over frequency and friction
 curves       response curves over frequency
 motions      one steady state: in time, as phase portrait, as friction loop
-fits         measured data with what was fitted
+fits         measured data with the fitted curves
 ===========  ========================================================================
 """

@@ -171,7 +171,7 @@ class Comparison:
         own = _own_frequencies(mass, stiffness, contact)
         high = (1.0 + _NEAR) * self._range[1]  # a resonance just beyond the range is felt in it
         if not self._frequencies or max(map(len, self._frequencies)) >= self._limit:
-            self._limit = mass.shape[0] + 1  # one too many is enough to tell that some are missing
+            self._limit = mass.shape[0] + 1  # one too many suffices to show that some are missing
             self._frequencies = tuple(
                 self._whole.frequencies(bool(k), high, int((one <= high).sum()), self._limit)
                 for k, one in enumerate(own)

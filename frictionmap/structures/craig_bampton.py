@@ -2,8 +2,8 @@
 
 A motion is that of the kept degrees of freedom, which the others follow statically, and of the modes of the
 others with the kept ones held: x = T u.  The coordinates u are displacements of degrees of freedom of the
-file, those kept and as many more as there are modes, taken where they tell the modes apart best: then the
-reduced structure is one of masses and springs as any other, and results are displacements of all of it.  What
+file, those kept and as many more as there are modes, taken where they distinguish the modes best.  Then the
+reduced structure has masses and springs like any other, and results are displacements of all of it.  What
 T spans does not depend on that choice.
 """
 

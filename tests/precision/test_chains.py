@@ -1,4 +1,4 @@
-"""Chains of masses from sweeps: the model against M, K and C, chains given back, what cannot be told."""
+"""Chains of masses from sweeps: the model against M, K and C, chains recovered, what cannot be determined."""
 
 import re
 
@@ -175,7 +175,7 @@ def test_outliers_of_a_sweep_have_little_weight():
     assert (ds.standard_error.values < 2.0 * bound).all()
 
 
-# What cannot be told
+# What cannot be determined
 
 
 @pytest.mark.parametrize(

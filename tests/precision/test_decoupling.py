@@ -1,4 +1,4 @@
-"""Damping matrices that couple the modes, taken by their diagonal: what that changes, and that it is told."""
+"""Damping matrices that couple the modes, taken by their diagonal: the change, and the report of it."""
 
 import re
 

@@ -45,7 +45,7 @@ def test_one_harmonic_is_the_one_mass_of_maps(seed):
     ],
 )
 def test_several_harmonics_against_the_equation_of_motion(r, zeta, x_F, mu, contact, reference):
-    """The integration tells places to its tolerance, some 1e-11 of the motion at every event."""
+    """The integration determines positions to its tolerance, some 1e-11 of the motion at every event."""
     truth = Truth(3.0, zeta, x_F, mu, -0.1, 3.0 * r, BASE, contact, reference)
     expected = steady(truth)
     assert expected.change < 1e-10

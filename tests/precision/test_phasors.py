@@ -1,4 +1,4 @@
-"""Phasors of records: recovered exactly, with errors as their scatter, and what cannot be told."""
+"""Phasors of records: recovered exactly, with errors as their scatter, and what cannot be determined."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Records of steady motion: estimates against truths, errors against their scatter, what mu can be told."""
+"""Records of steady motion: estimates against truths, errors against their scatter, what is known of mu."""
 
 import json
 
@@ -121,7 +121,7 @@ def test_mu_of_a_mass_that_sticks():
 
 
 def test_mu_of_one_is_on_its_bound_or_near(motion):
-    """(mu - 1)^2 is told: the interval begins at 1."""
+    """(mu - 1)^2 is determined: the interval begins at 1."""
     for seed in range(3):
         ds = fit(RIG, motion, seed)
         mu = ds.sel(parameter="mu")

@@ -222,7 +222,7 @@ def test_marginal_continuum_is_named():
 
 
 def test_just_above_beta_lim():
-    """Next to beta_lim a stop is shorter than rounding tells, and marching creeps; 40-digit values."""
+    """Next to beta_lim a stop is shorter than rounding resolves, and marching creeps; 40-digit values."""
     found = cell("wall", 0.3, 0.046342464513956357, zeta=0.2)  # 1.0e-14 above beta_lim
     assert (found["regime"], found["stops_per_cycle"]) == (regimes.STICK_SLIP, 2.0)
     found = cell("wall", 0.1, 0.010102000000000002)

@@ -100,7 +100,7 @@ def change_over_a_period(entry, zeta, system, r, beta, mu):
     structure = Structure(zeta=zeta, r=r, **entry)
     motion = Motion(structure, beta, mu, 400)
     x, v = found.x.values[:, 0], found.v.values[:, 0].copy()
-    if found.phase[0] == 0:  # it tells a stop by a velocity of zero to the bit
+    if found.phase[0] == 0:  # it recognises a stop by a velocity of exactly zero
         v -= structure.to_contact * (structure.velocity_row @ np.concatenate((x, v, [1.0, 0.0, 0.0])))
     motion.begin(x, v)
     for _ in range(int(found.period)):

@@ -1,4 +1,4 @@
-"""Two masses from a sweep: the closed form, estimates against truths, what cannot be told."""
+"""Two masses from a sweep: the closed form, estimates against truths, what cannot be determined."""
 
 import json
 import re
@@ -96,7 +96,7 @@ def test_bad_sweeps(frequency, amplitude, message):
 
 
 def test_amplitudes_and_lags_have_errors_of_their_own():
-    """Amplitudes with 5 %, lags with 0.3 deg: what each is worth is told by its own residuals."""
+    """Amplitudes with 5 %, lags with 0.3 deg: the weight of each follows from its own residuals."""
     f = np.linspace(0.5, 8.0, 80)
     X = responses(f, [1.0, GAMMA], [1.0, KAPPA], [0.02, 0.02], F_K1M1)[:, 0]
     noise = np.random.default_rng(2).normal(size=(2, f.size))

@@ -1,4 +1,4 @@
-"""The benchmark of faults tells what is wrong: tried on a stand-in that does everything wrong."""
+"""The benchmark of faults reports every fault: tried on a stand-in that does everything wrong."""
 
 import random
 import shutil

@@ -163,7 +163,7 @@ def test_the_configuration_in_the_file_makes_it_again(tmp_path, two_masses):
 
 
 def test_a_file_of_variants_is_part_of_the_configuration(tmp_path, monkeypatch):
-    """Another file of that name, where the map is looked at, tells nothing."""
+    """Another file of that name, where the map is looked at, is not used."""
     (tmp_path / "v.csv").write_text("\ufeffmass_ratios[2], damping_ratios\r\n1.5, 0.01\r\n , \r\n0.5,0\r\n")
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "elsewhere" / "v.csv").write_text("mass_ratios[2],damping_ratios\n7,0.07\n7,0.07\n")

@@ -153,9 +153,9 @@ def test_a_motion_of_every_kind_is_rehearsed(one, two, monkeypatch):
 @pytest.mark.parametrize(
     ("asked", "period", "why"),
     [
-        ("at=0.3,1.1&mu=1", 1, "it rests"),
-        ("at=0.3881,0.1013&mu=2.5", 3, "its period is 3 cycles"),
-        ("at=0.1913,0.0496&mu=2.5", 0, "it has no period"),
+        ("at=0.3,1.1&mu=1", 1, "the mass is at rest"),
+        ("at=0.3881,0.1013&mu=2.5", 3, "the period is 3 cycles"),
+        ("at=0.1913,0.0496&mu=2.5", 0, "the motion has no period"),
         ("at=1.5,0.1&mu=1", 1, ""),
     ],
 )

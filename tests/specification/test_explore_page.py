@@ -1,4 +1,4 @@
-"""The page that explores maps in headless Chromium: what it paints, tells, asks for, keeps in its address."""
+"""The page that explores maps in headless Chromium: what it paints, states, asks for, keeps in addresses."""
 
 import contextlib
 import json
@@ -278,7 +278,7 @@ def test_pointing_at_a_cell_shows_its_motion(browser, one):
         assert float(rows["share of time stuck"].split()[0]) == pytest.approx(
             100 * ds["stuck_fraction"].item(), rel=2e-2
         )
-        assert rows["lag of the mass"].startswith("none: held at its maximum from")
+        assert rows["phase lag of the mass"].startswith("none: held at its maximum from")
         for canvas in ("displacement", "force", "portrait", "loop", "spectrum"):
             assert page.evaluate(DRAWN, canvas) > 10, canvas
 

@@ -510,7 +510,7 @@ def test_the_caption_tells_the_system(tiny_map, tiny_boundaries, tiny_response):
 
 
 def test_the_caption_tells_the_start_and_the_axis_the_features(tiny_map):
-    """As far as the configuration in the file tells them."""
+    """As far as the configuration in the file contains them."""
     configured = tiny_map.assign_attrs(config='[system]\n[solver]\nstart = "moving"')
     axes = fm.plot_regimes(configured)
     assert "start: moving" in axes[0].figure.legends[0].get_title().get_text()
@@ -632,7 +632,7 @@ def test_what_is_not_drawn_need_not_be_read(request, tmp_path, kind):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(sys.platform != "linux", reason="peak memory is told by Linux only")
+@pytest.mark.skipif(sys.platform != "linux", reason="peak memory is reported by Linux only")
 def test_a_large_map_is_drawn_in_little_memory(tmp_path):
     """4096 by 4096 cells in less than 500 MB, Python and all libraries included."""
     n = 4096

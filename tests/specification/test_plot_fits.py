@@ -242,7 +242,7 @@ def test_without_the_structure_fitted_values_are_joined(responses):
     )
     chosen = (ds["set"].values == "1") & (ds.quantity.values == 0)
     np.testing.assert_array_equal(first, np.column_stack((ds.frequency, ds.model))[chosen])
-    assert "as the file does not tell the structure" in caption_of(axes)
+    assert "as the file does not contain the structure" in caption_of(axes)
     rendered(axes)
 
 

@@ -212,7 +212,7 @@ def test_read_holds_nothing_open(files, tmp_path, kind):
 
 
 def open_files():
-    """Paths of the files this process holds open, where the system tells."""
+    """Paths of the files this process holds open, where the system lists them."""
     for entry in Path("/proc/self/fd").glob("*"):
         with contextlib.suppress(OSError):  # the descriptor of the listing itself
             yield os.readlink(entry)

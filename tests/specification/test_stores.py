@@ -509,7 +509,7 @@ main(args=[sys.argv[1], "--no-nanny", "--nthreads=1", "--no-dashboard"])
 
 
 def test_a_worker_that_lacks_the_package_is_named(tmp_path, scheduler):
-    """There is none at first, which is told; then one comes that cannot compute."""
+    """There is none at first, which is reported; then one comes that cannot compute."""
     from frictionmap.stores import workers
 
     told, started = [], []

@@ -1,4 +1,4 @@
-"""Files with further axes and stores: told, drawn, cut, counted."""
+"""Files with further axes and stores: summarised, drawn, cut, counted."""
 
 import csv
 import shutil
@@ -176,7 +176,7 @@ def test_shares_tell_their_system(files, end):
 
 
 def test_a_point_of_a_slice(files, tmp_path, capsys):
-    """What xarray has left of a file tells its systems by values, not by places."""
+    """What xarray has left of a file identifies its systems by values, not by places."""
     with xr.open_dataset(files[".nc"]) as ds:
         ds.isel(sample=[1, 2], damping_ratios=1, r=0).to_netcdf(tmp_path / "slice.nc")
     expected = fm.System(mass_ratios=[1, 0.5], stiffness_ratios=[1, 0.5], damping_ratios=0.05)

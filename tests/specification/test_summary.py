@@ -122,7 +122,7 @@ def test_every_cause_has_advice():
 
 
 def test_causes_end_the_output_of_map(tmp_path, capsys, monkeypatch):
-    """They are not among the outputs asked for; the regimes do not tell them apart."""
+    """They are not among the outputs asked for; the regimes do not distinguish them."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "c.toml").write_text(
         '[system]\ncontact = "fixed-wall"\n[grid]\nr = [0.0, 0.5, 1.5]\nbeta = [0.2, 0.8]\nmu = [1.0, 1.5]\n'

@@ -44,9 +44,9 @@ def _parameter(name: str, answered: list[Trial]) -> dict:
         (trial.seed, trial.estimates[name]) for trial in answered if name in trial.estimates
     ]
     inside = sum(one.inside for _, one in found)
-    told = [(abs(one.deviation), seed) for seed, one in found if np.isfinite(one.deviation)]
+    with_error = [(abs(one.deviation), seed) for seed, one in found if np.isfinite(one.deviation)]
     bounded = [one.of_bound for _, one in found if np.isfinite(one.of_bound)]
-    worst, seed = max(told, default=(None, None))
+    worst, seed = max(with_error, default=(None, None))
     low, high = band(len(found))
     return {
         "fits": len(found),
@@ -56,7 +56,7 @@ def _parameter(name: str, answered: list[Trial]) -> dict:
         "below the band": inside / len(found) < low,
         "short": bool(binom.cdf(inside, len(found), STATED) < RARE),
         "error over standard error": {
-            "median": float(np.median([one for one, _ in told])) if told else None,
+            "median": float(np.median([one for one, _ in with_error])) if with_error else None,
             "worst": worst,
             "seed of the worst": seed,
         },

@@ -62,7 +62,7 @@ def differs(base: Path, path: Path) -> bool:
                 for name, v in good.variables.items()
                 if v.dtype.kind in "iuf"
             )
-    except Exception:  # what cannot be read is not told wrong
+    except Exception:  # an unreadable file shows no wrong values
         return False
 
 

@@ -1,4 +1,4 @@
-"""Response functions and boundaries of structures; evaluated once per r, independent of beta.
+"""Response functions U, G, H and S of structures, and the modal bound; once per r, independent of beta.
 
 S of many modes is the maximum of the sum over modes, theory.md 3.  With ``Y = sum c_i h_i'``, ``c_i =
 chi_i^2/w_i^2``, the bracket is ``f = n/sin``, ``n = U cos + Y``, and ``f' = m/sin^2`` where

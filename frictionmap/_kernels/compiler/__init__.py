@@ -2,13 +2,13 @@
 
 Kernels import `kernel`, `inner_kernel`, `entry` and `by_class` from here and nothing else.
 
-==============  ==========================================================================
+==============  =====================================================================================
 module          what is in it
-==============  ==========================================================================
+==============  =====================================================================================
 notices         warnings given once; listeners called before a kernel is compiled
 folders         the folders that compiled kernels are kept in
 private_names   the private names of numba and llvmlite that `fast` needs; looked up first
-mode            which of fast and plain this process uses, and the variable that chooses
+mode            fast or plain compiler: which one this process uses, and the variable that chooses it
 interpreted     kernels as Python functions, with NUMBA_DISABLE_JIT
 plain           the fall-back: `numba.njit(cache=True)`, public parts of numba only
 class_dispatch  (fast) functions whose body is chosen by the class of an argument
@@ -16,9 +16,9 @@ linking         (fast) libraries of compiled kernels, linked by name or inlined
 cache           (fast) compiled kernels on disk, with a digest
 fast            the default: each kernel is compiled once, called by name, kept on disk
 decorators      the four decorators; chooses one of the three compilers above
-==============  ==========================================================================
+==============  =====================================================================================
 
-docs/compiler.md lists the private names, why each is needed, and what a process loses without them.
+docs/compiler.md lists the private names, why each is needed, and what happens if one is missing.
 """
 
 from .decorators import by_class, entry, inner_kernel, kernel

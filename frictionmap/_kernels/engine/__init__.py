@@ -3,7 +3,7 @@
 =============  ====================================================================================
 module         what is in it
 =============  ====================================================================================
-periods        half periods in a time, and periods of a motion that recurs
+periods        half periods in a time, and periods of a recurring motion
 policies       initial states and thresholds shared by both kinds of motion
 records        records passed to and returned by the solver: contact, state, limits, orbit, cell
 memory         ring buffer of past anchors
@@ -13,7 +13,7 @@ one_mass       one mass as a kind of motion
 many_masses    a structure as a kind of motion
 motion         the operations that each kind of motion implements
 recurrence     recurrence detection
-measure        stops, amplitude, share stuck and segment table of a periodic orbit
+measure        stops, amplitude, stuck fraction and segment table of a periodic orbit
 march          the solver: follow the motion from event to event, then solve for the periodic orbit
 window         segment table of the last periods of a motion that does not repeat
 extremes       largest displacements, and largest force to the ground

@@ -1,12 +1,12 @@
 """Kernels for any structure: oscillators, states, events, return map, sliding orbit.
 
-=============  =================================================================
+=============  ==============================================================================
 module         what is in it
-=============  =================================================================
+=============  ==============================================================================
 oscillators    oscillators under one load, and when a sum of them leaves a range
-state          free and held oscillators at one frequency; from one to the other
+state          free and held oscillators at one frequency; conversion between them
 events         the end of a slide, and what follows it
 newton         periodic orbits by Newton's method on the return map
-sliding_orbit  the continuous orbit, and how near to it no motion can stop
-=============  =================================================================
+sliding_orbit  the continuous orbit, and the distance from it within which no motion can stop
+=============  ==============================================================================
 """

@@ -24,7 +24,7 @@ export class Costs {
 
   /**
    * A picture is begun: `column` foresees the milliseconds of its next columns, which are like the last ones;
-   * `add` tells what columns took.  Left and right may differ much: all that was seen of a picture counts.
+   * `add` records the time that columns took.  Left and right may differ much, so all columns seen so far count.
    */
   begin(asked, columns, rows) {
     const taken = { columns: 0, milliseconds: 0 };

@@ -411,7 +411,7 @@ class Page {
   #release() {
     this.pointed = null;
     this.motions.stop();
-    this.motion.tell(this.hint);
+    this.motion.say(this.hint);
   }
 
   /** Select the next cell by keys: some pixels from the selected one, or from the centre. */
@@ -436,11 +436,11 @@ class Page {
   /** Wait for a motion; if it takes long, remove the one of another cell meanwhile. */
   async #slowly(motion, [r, beta], kept) {
     const place = `r = ${short(r)}, β = ${short(beta)}`;
-    const slow = setTimeout(() => kept === Boolean(this.view.cell) && this.motion.tell(`Computing the motion at ${place}.`), SLOW);
+    const slow = setTimeout(() => kept === Boolean(this.view.cell) && this.motion.say(`Computing the motion at ${place}.`), SLOW);
     try {
       return await this.#waiting(motion);
     } catch (error) {
-      if (!this.motion.motion && error.name !== "AbortError") this.motion.tell(this.hint);
+      if (!this.motion.motion && error.name !== "AbortError") this.motion.say(this.hint);
       throw error;
     } finally {
       clearTimeout(slow);
@@ -458,8 +458,8 @@ class Page {
   #showStored(cell, { quantity }) {
     if (!cell) return;
     const value = cell.value === null ? "" : ` Value of ${quantity.label}: about ${short(cell.value, 3)}.`;
-    this.motion.tell(`r = ${short(cell.r)}, β = ${short(cell.beta)}: ${this.scene.classes[cell.class].label}.${value} ` +
-      "This file holds maps; to see motions, run frictionmap explore on the configuration.");
+    this.motion.say(`r = ${short(cell.r)}, β = ${short(cell.beta)}: ${this.scene.classes[cell.class].label}.${value} ` +
+      "This file contains maps only; to see motions, run frictionmap explore on the configuration.");
   }
 
   async #fetchCut(signal) {
@@ -542,7 +542,7 @@ class Page {
       } else {
         await source.sizes(view, scene, map.size); // shows errors of the view here instead of in the file
         save(source.file(view, scene, map.size, what), `map.${what}`);
-        if (this.#ahead(view)) this.#toast(`The file holds the cells of this view.${this.#ahead(view)}`);
+        if (this.#ahead(view)) this.#toast(`The file contains the cells of this view.${this.#ahead(view)}`);
       }
     } catch (error) {
       this.#toast(error.message);

@@ -52,7 +52,7 @@ export class MotionPanel {
   }
 
   /** Show a text instead of a motion. */
-  tell(text) {
+  say(text) {
     this.motion = null;
     this.panel.replaceChildren(make("p", { className: "hint" }, text));
   }
@@ -71,7 +71,7 @@ export class MotionPanel {
     this.#part(".regime").textContent = none ? REGIMES.unresolved : REGIMES[motion.regime];
     const { frequency, force } = motion.physical;
     const place = `r = ${short(motion.r)}${inUnits(motion.r, frequency)}, β = ${short(motion.beta)}${inUnits(motion.beta, force)}`;
-    this.#part(".where").textContent = `${kept ? "kept: " : ""}${place}`;
+    this.#part(".where").textContent = `${kept ? "selected: " : ""}${place}`;
     this.#part(".words").replaceChildren(...(none ? [motion.none] : [...motion.summary, motion.comment]).filter(Boolean).map(paragraph));
     for (const figure of this.panel.querySelectorAll(".moves")) figure.hidden = none;
     this.#part(".others").hidden = true;
@@ -171,7 +171,7 @@ export class MotionPanel {
     for (let k = 0; k < masses; k += 1) names.push(keyLine(massColour(k), masses === 1 ? "x, mass" : `x${motion.dofs[k]}`));
     names.push(keyLine(ink, "z, contact", masses === 1 ? "dotted" : "solid"), keyLine(colour("warm"), "friction"));
     if (bands.length) names.push(keyLine(colour("stop"), "stuck", "solid", 9));
-    if (other) names.push(keyLine(colour("second"), other.start === "moving" ? "from moving" : "from rest", "dashed"));
+    if (other) names.push(keyLine(colour("second"), other.start === "moving" ? "from sliding" : "from rest", "dashed"));
     return names;
   }
 

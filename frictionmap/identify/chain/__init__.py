@@ -1,16 +1,16 @@
 """Chains of masses without friction, base shaken: sweeps of amplitudes and lags.
 
-==========  =====================================================================
+==========  ================================================================
 module      what is in it
-==========  =====================================================================
+==========  ================================================================
 response    response of a chain, and its derivatives
 two_masses  two masses in closed form
-inverse     a chain from where its first mass resonates and where it stands still
-sides       the sides of samples that resonances are on
+inverse     a chain from the resonances and antiresonances of its first mass
+sides       resonances next to a sample: on which side of it they lie
 fit         the chain nearest to amplitudes and lags
-errors      such fits where errors are not known
+errors      fits to data whose errors are not known
 estimates   the dataset of such a fit
 data        tables of sweeps, checked
 sweep       `sweep`: from amplitudes and lags over frequency to estimates
-==========  =====================================================================
+==========  ================================================================
 """

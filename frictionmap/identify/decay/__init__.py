@@ -1,15 +1,15 @@
 """Free decay of one mass with Coulomb and viscous friction.
 
-==========  ================================================================
+==========  ========================================================================
 module      what is in it
-==========  ================================================================
+==========  ========================================================================
 checks      whether a record is a free decay, and whether the fit follows it
 motion      the exact decay and its derivatives
 problem     least squares of a record on the exact decay
-starts      where that starts, for each number of half cycles before rest
+starts      initial estimates of the fit, for each number of half cycles before rest
 fit         the decay nearest to all samples
 wander      a slow wander of the measured zero
 errors      errors where the noise hides the number of half cycles
 free_decay  `free_decay`: from arrays to estimates
-==========  ================================================================
+==========  ========================================================================
 """

@@ -9,8 +9,8 @@ start            where the fit begins
 fit              the steady states nearest to the data
 extremes         extremes of sampled functions between their samples
 phase_inversion  `friction_ratio`: friction ratios from single lags
-lags             what the lags of a table tell one by one
-cautions         what to mind of the fit, in words
+lags             friction ratios from the single lags of a table
+cautions         warnings about the fit
 labels           the dataset of the fit
 forced           `forced`: from amplitudes and lags to estimates
 ===============  =====================================================================

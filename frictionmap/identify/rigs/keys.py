@@ -22,7 +22,7 @@ from .rig import KNOWN_UNITS
 TABLES = {
     "data": "The measurement.",
     "system": "The structure, as in maps.",
-    "known": "Known parameters, which are held, and scales of the results, in Hz, mm, s, N/m.",
+    "known": "Known parameters, which are not fitted, and scales of the results, in Hz, mm, s, N/m.",
     "fit": "Options of the fit.",
 }
 
@@ -36,7 +36,7 @@ _DATA = (
     Key("file", "data file, relative to this file", {"type": "string", "minLength": 1}, example='"data.csv"'),
     Key(
         "columns",
-        "names of columns; default: these names, whose suffixes are units",
+        "names of columns; default: these names, which end in units",
         {"type": "object", "additionalProperties": {"type": "string"}},
         example='{ time = "time_s", x = "x_mm" }',
         words="a table of column names",
@@ -46,10 +46,12 @@ _DATA = (
     Key("window", "time window to be fitted, s", _TIMES, example="[0.5, 4.0]", words="[begin, end]"),
     Key("use", "quantities to fit; default: all available", several(word("phase", "amplitude")),
         example='["phase", "amplitude"]'),
-    Key("sigma_phase_deg", "error of lags; default: from the residuals", _POSITIVE, example="1.0"),
-    Key("sigma_amplitude", "relative error of amplitudes; default: from the residuals", _POSITIVE,
+    Key("sigma_phase_deg", "standard error of phase lags; default: from the residuals", _POSITIVE,
+        example="1.0"),
+    Key("sigma_amplitude", "relative standard error of amplitudes; default: from the residuals", _POSITIVE,
         example="0.02"),
-    Key("unreachable", "lags that no friction force gives", word("refuse", "drop"), "refuse"),
+    Key("unreachable", "lags that no friction ratio gives: refuse or ignore them", word("refuse", "drop"),
+        "refuse"),
 )  # fmt: skip
 
 #: Key of each of several measurements.
@@ -57,8 +59,9 @@ _LABEL = Key("label", "name in the results; default: its number", {"type": "stri
              example='"10 N"')  # fmt: skip
 
 _FIT = (
-    Key("free", "parameters to be fitted: all that are not in [known]", several({"type": "string"}),
-        example='["zeta", "x_F"]'),
+    Key("free", "parameters to be fitted: exactly those that are not in [known], which is the default",
+        several({"type": "string"}), example='["f_n", "zeta", "x_F", "X0", "t0", "centre"]',
+        words="a list of parameters"),
     Key("drift", "whether to fit a linear drift of the zero", {"type": "boolean"}, False,
         words="true or false"),
     Key("loss", "loss function: soft_l1 gives little weight to outliers", word(*LOSSES), LOSSES[0]),
@@ -66,17 +69,30 @@ _FIT = (
         COSTS[0]),
 )  # fmt: skip
 
+#: Examples that differ from those above, by kind of data.
+_EXAMPLES = {
+    "forced": {
+        "columns": '{ frequency = "frequency_Hz", phase_lag = "phase_lag_deg" }',
+        "free": '["beta", "f_n", "zeta"]',
+    },
+    "record": {
+        "columns": '{ time = "time_s", base = "base_mm", x = "x_mm" }',
+        "free": '["f_n", "zeta", "x_F", "mu", "offset_x"]',
+    },
+    "sweep": {"columns": '{ frequency = "frequency_Hz", amplitude_ratio_1 = "amplitude_ratio_1" }'},
+}
+
 _CONTACT, _MASSES, *_ = KEYS["system"]
-_BASE = Key("excitation", "excitation", word("base"), "base")
+_BASE = Key("excitation", "kind of excitation", word("base"), "base")
 _REFERENCE = Key(
-    "damping_reference", "whether damping acts on absolute velocities or on those relative to the base",
+    "damping_reference", "damping acts on velocities relative to the ground, or relative to the base",
     word(*DAMPING_REFERENCES), DAMPING_REFERENCES[0],
 )  # fmt: skip
 _SYSTEMS = {
     "forced": KEYS["system"],
     "record": (
         _CONTACT._replace(valid=word(*CONTACTS)),
-        _MASSES._replace(valid=several({"const": 1}, maxItems=1), words="[1]"),
+        _MASSES._replace(meaning="the mass in contact", valid=several({"const": 1}, maxItems=1), words="[1]"),
         _BASE,
         _REFERENCE,
     ),
@@ -114,8 +130,13 @@ def _known(name: str) -> Key:
     if name not in KNOWN_UNITS:
         return Key(name, meaning, number(), example=example)
     kind = UNITS[KNOWN_UNITS[name]].measures
-    words = f"a number, or text with {', '.join(units_of(kind))}"
+    words = f"a number, or text with a unit: {', '.join(units_of(kind))}"
     return Key(name, meaning, either(number(), with_unit(kind)), example=example, words=words)
+
+
+def _with_example(key: Key, kind: str) -> Key:
+    """A key with the example for a kind of data."""
+    return key._replace(example=_EXAMPLES.get(kind, {}).get(key.name, key.example))
 
 
 def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
@@ -123,12 +144,13 @@ def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
     of = KINDS[kind]
     data = ("kind", "file", "columns", "missing", *of.data)
     known = (*of.parameters, *of.known)
+    fit = (*of.fit, *(("free",) if of.parameters else ()))
     tables = {
         "": (_TITLE,),
-        "data": tuple(key for key in _DATA if key.name in data),
+        "data": tuple(_with_example(key, kind) for key in _DATA if key.name in data),
         "system": _SYSTEMS.get(kind, ()),
         "known": tuple(_known(name) for name in known),
-        "fit": tuple(key for key in _FIT if key.name in (*of.fit, *(("free",) if of.parameters else ()))),
+        "fit": tuple(_with_example(key, kind) for key in _FIT if key.name in fit),
     }
     return {name: keys for name, keys in tables.items() if keys}
 

@@ -2,7 +2,8 @@
 
 Harmonics of a record are divided by (i n omega)^k, and the noise beside them line by line of its spectrum.
 Lines below half the frequency of the base are left out: no motion is in them, and their noise would grow
-beyond bounds.  A mean and a drift, which tell nothing of a displacement, go with them.
+beyond bounds.  A mean and a drift, which contain no information about a displacement, are
+removed with them.
 """
 
 from collections.abc import Sequence

@@ -1,7 +1,7 @@
 """Noise of a record near its harmonics: slow wander of the zero, and levels by which errors grow.
 
-A steady motion repeats, so that all it tells stands at multiples of the base's frequency.  What counts for
-the errors is the noise near these lines, not its correlation from one sample to the next.
+A steady motion repeats, so all information about it is at multiples of the base's frequency.  The errors
+depend on the noise near these lines, not on its correlation from one sample to the next.
 """
 
 from typing import NamedTuple

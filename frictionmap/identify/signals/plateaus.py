@@ -6,8 +6,8 @@ as
 
     d = a ((t + k)^2 - k^2)/2,   k = 0 of a mass that came to rest,
 
-so that two such times tell k.  A record that shows its noise shows it in a stop as well: there no plateau is
-flat but one that is cut off.
+so two such times determine k.  A record that shows its noise shows it in a stop as well: then only a clipped
+plateau is flat.
 """
 
 import numpy as np

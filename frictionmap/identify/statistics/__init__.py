@@ -1,15 +1,15 @@
 """Fits and their errors: least squares, outliers, correlated residuals, estimates as a dataset.
 
-=============  ===================================================================
+=============  ===========================================================================
 module         what is in it
-=============  ===================================================================
+=============  ===========================================================================
 orthonormal    orthonormal columns of tall matrices
 least_squares  least squares with bounds; standard errors, intervals, correlations
 robust         least squares in which outliers have little weight
 weights        errors where variances of lags, or of amplitudes, follow from the residuals
-correlation    how much larger errors are where residuals are correlated
-levels         what is beyond chance: standard errors, probabilities, correlations
-cautions       what to mind of any fit, in words
+correlation    increase of the standard errors where residuals are correlated
+levels         thresholds of significance: standard errors, probabilities, correlations
+cautions       warnings about any fit
 estimates      estimates with their errors as a dataset
-=============  ===================================================================
+=============  ===========================================================================
 """

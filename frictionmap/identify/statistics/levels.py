@@ -6,7 +6,7 @@ FOUND = 3.0
 #: What chance makes more rarely than this is beyond the errors that are given, or no white noise.
 CHANCE = 1e-3
 
-#: Beyond this correlation two estimates can hardly be told apart.
+#: Beyond this correlation two estimates can hardly be separated.
 CORRELATED = 0.95
 
 #: Errors from residuals are found again and again until they change by less than this share, and so often at

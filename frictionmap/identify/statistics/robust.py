@@ -21,7 +21,7 @@ _NORMAL_INFLUENCE = 1.0 - float(np.sqrt(0.5 * np.pi) * erfcx(np.sqrt(0.5)))
 #: The standard deviation is found to this share, in so many steps at most.
 _SETTLED, _STEPS = 1e-6, 200
 
-#: A sample whose leverage is so near to 1 has no residual that tells of its error.
+#: If the leverage of a sample is closer to 1 than this, its residual contains no information about its error.
 _UNSEEN = 1e-6
 
 

@@ -9,7 +9,7 @@ static_friction  whether mu is fitted, and its interval
 fit              the steady motion nearest to all samples
 data             records, checked, with their harmonics
 errors           standard errors of the fit and of derived quantities
-labels           results of a record without any model, and warnings
+labels           results of a record that need no model, and warnings
 verdict          verdict on a record, and identifiability
 record           `record`: from arrays to estimates
 ===============  ===================================================================

@@ -13,6 +13,6 @@ responses  panels of amplitudes and lags over frequency
 chain      sweeps of chains
 forced     forced responses with the curves of their sets
 record     records in time, and their cycles superimposed
-figure     which of these is drawn, and its layout
+figure     choice of these pictures, and their layout
 =========  =====================================================
 """

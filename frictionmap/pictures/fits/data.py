@@ -12,7 +12,7 @@ from ...files.estimates import unit_in_words
 from ..palette import CLASSES, LINES, STUCK, Shade
 from ..panels import Handle
 
-#: With more samples bars of errors would hide them: the band beside the residuals tells it.
+#: With more samples, error bars would hide them: the band beside the residuals shows the error instead.
 _MOST_BARS = 120
 
 #: Lag-1 correlations within so many standard errors, each 1/sqrt(samples), are no more than chance makes.

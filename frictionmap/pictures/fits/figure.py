@@ -31,7 +31,7 @@ def plot_fit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> 
     """Picture of a fit to measured data: samples over the fitted curve, residuals below.
 
     A free decay has its turning points, their envelope and the place of rest; forced responses have the
-    fitted curve of every set and, as a record, their place on the regime map, if the dataset tells the
+    fitted curve of every set and, as a record, their place on the regime map, if the dataset has the
     structure; all cycles of a record lie over each other as well.  Bars are one standard error of a sample,
     and a band beside the residuals; the caption has the estimates with their standard errors, what was found,
     and the lag-1 correlation of the residuals.

@@ -16,7 +16,7 @@ from .responses import ResponseCurves, ResponseSet, response_panels
 
 _NEEDED = ("frequency", "quantity", "mass", "set", "sigma", "frequency_ratio", "friction_ratio")
 
-#: Sets of one picture; more cannot be told apart.
+#: Largest number of sets in one picture; more cannot be distinguished.
 _MOST_SETS = 40
 
 #: Points of a curve; room beside the data, as a share of their frequencies.
@@ -77,5 +77,5 @@ def _positions(ds: xr.Dataset, sets: list[ResponseSet]) -> Iterator[Positions]:
 
 def _remarks(mu: float, dense: ResponseCurves | None) -> list[str]:
     if dense is None:
-        return ["fitted values are joined, as the file does not tell the structure"]
+        return ["fitted values are joined, as the file does not contain the structure"]
     return ["bars and band: one standard error"] + ["curves: as reached from rest"] * (mu > 1.0)

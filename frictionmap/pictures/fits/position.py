@@ -35,7 +35,7 @@ class Positions(NamedTuple):
 
 
 def fitted_system(ds: xr.Dataset) -> System | None:
-    """The structure with the damping that was fitted, as far as the dataset tells it."""
+    """The structure with the fitted damping, as far as the dataset contains it."""
     system = stored_system(ds)
     if system is None or system.modes.zeta.any() or "zeta" not in ds["parameter"].values:
         return system

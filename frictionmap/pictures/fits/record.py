@@ -69,7 +69,7 @@ def _draw_motion(ax: Axes, samples: Samples) -> list[Handle]:
 
 
 def _position(ds: xr.Dataset, r: float) -> list[Tall]:
-    """The map of the structure on a base that moves with one harmonic, if the file tells the structure."""
+    """The map of the structure on a base that moves with one harmonic, if the file contains the structure."""
     system = fitted_system(ds)
     if system is None or system.n > 1:
         return []

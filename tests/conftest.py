@@ -83,6 +83,15 @@ def curve_rows() -> tuple[dict, list[dict]]:
     return _rows("curves.json")
 
 
+@pytest.fixture(scope="session")
+def browser():
+    """Headless Chromium; tests that ask for it are skipped where there is none."""
+    from browser import chromium  # imports the package: the cache of kernels is set by then
+
+    with chromium() as driven:
+        yield driven
+
+
 @pytest.fixture(autouse=True)
 def _without_pyplot(monkeypatch: pytest.MonkeyPatch) -> None:
     """A package that imports pyplot has it keep every figure: no test may see what another has imported."""

@@ -14,6 +14,18 @@ from frictionmap.files.config import load_config
 #: Seconds after which what does not come counts as hung, on a machine ten times as slow as a slow one.
 HANG = 120.0
 
+#: A configuration whose contact is between the masses.
+TWO_MASSES = """\
+[system]
+contact = "between-masses"
+contact_masses = [1, 2]
+mass_ratios = [1.0, 0.5]
+stiffness_ratios = [1.0, 2.0]
+[grid]
+r = [0.1, 2.5]
+beta = [0.0, 2.0]
+"""
+
 
 def scene_from(folder, text: str) -> Scene:
     """The scene of a configuration."""

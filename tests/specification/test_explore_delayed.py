@@ -7,8 +7,8 @@ import threading
 import matplotlib.image
 import numpy as np
 import pytest
-from browser import DONE, MOVE, WAIT, chromium, colours, page_of, point, repainted, wanted
-from pages import scene_from, served
+from browser import DONE, MOVE, WAIT, colours, page_of, point, repainted, wanted
+from pages import TWO_MASSES, scene_from, served
 
 import frictionmap as fm
 from frictionmap.explorer import stored, views
@@ -23,16 +23,6 @@ contact = "fixed-wall"
 r = [0.0, 2.0]
 beta = [0.0, 1.2]
 """
-CHAIN = """\
-[system]
-contact = "between-masses"
-contact_masses = [1, 2]
-mass_ratios = [1.0, 0.5]
-stiffness_ratios = [1.0, 2.0]
-[grid]
-r = [0.1, 2.5]
-beta = [0.0, 2.0]
-"""
 SMALL, LARGE = {"width": 400, "height": 420}, {"width": 1280, "height": 800}
 RANGES = (0.0, 2.0), (0.0, 1.2)
 
@@ -46,12 +36,6 @@ WRITTEN = """() => {
   };
 }"""
 FADED = "(name) => document.querySelector(name).classList.contains('outdated')"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as driven:
-        yield driven
 
 
 @pytest.fixture(scope="module")
@@ -254,7 +238,7 @@ def test_a_view_that_is_refused_is_not_saved(browser, one):
 @pytest.mark.slow
 def test_a_page_as_a_file_shows_the_map_that_its_sliders_say(browser, tmp_path):
     """Sliders that were not moved together when it was written go back, in words."""
-    scene = scene_from(tmp_path, CHAIN)
+    scene = scene_from(tmp_path, TWO_MASSES)
     with pytest.MonkeyPatch.context() as patch:
         for name, value in {"_CELLS": {True: (24, 20)}, "_PLACES": 3}.items():
             patch.setattr(stored, name, value)

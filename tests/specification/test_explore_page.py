@@ -7,8 +7,8 @@ import urllib.parse
 
 import numpy as np
 import pytest
-from browser import DONE, MOVE, area, chromium, colours, page_of, point, repainted, wanted
-from pages import packet, scene_from, served
+from browser import DONE, MOVE, area, colours, page_of, point, repainted, wanted
+from pages import TWO_MASSES, packet, scene_from, served
 
 import frictionmap as fm
 from frictionmap.explorer import stored
@@ -25,23 +25,7 @@ r = [0.0, 2.0]
 beta = [0.0, 1.2]
 mu = [1.0, 1.5]
 """
-TWO = """\
-[system]
-contact = "between-masses"
-contact_masses = [1, 2]
-mass_ratios = [1.0, 0.5]
-stiffness_ratios = [1.0, 2.0]
-[grid]
-r = [0.1, 2.5]
-beta = [0.0, 2.0]
-"""
 SMALL = {"width": 400, "height": 400}
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as driven:
-        yield driven
 
 
 @pytest.fixture(scope="module")
@@ -237,7 +221,7 @@ def test_many_inputs_in_a_row_end_with_the_last(browser, one):
 
 
 def test_ratios_of_a_chain_have_sliders(browser, tmp_path):
-    with served(scene_from(tmp_path, TWO)) as server, page_of(browser, server.url) as page:
+    with served(scene_from(tmp_path, TWO_MASSES)) as server, page_of(browser, server.url) as page:
         page.fill("input[type=number][name='mass_ratios[2]']", "0.8")
         repainted(page, lambda: page.keyboard.press("Enter"))
         assert of_address(page)["mass_ratios[2]"] == "0.8"
@@ -344,7 +328,7 @@ def test_a_cut_is_drawn(browser, one):
 
 
 def test_what_is_outdated_is_given_up(browser, tmp_path):
-    with served(scene_from(tmp_path, TWO)) as server:
+    with served(scene_from(tmp_path, TWO_MASSES)) as server:
         slow = f"{server.url}#mu=1.9&r=0.02,0.2&beta=0.01,0.9"
         with page_of(browser, slow, wait="#stage[data-state=refining]") as page:
             page.wait_for_function(

@@ -132,9 +132,7 @@ def measured_again(part: Part, values: np.ndarray) -> Part:
     if part.record is None or part.fit is None:
         return part
     at = part.fit.solution._replace(values=values, residual=residual, slopes=slopes)
-    noise, model_error = noise_of_record(
-        part.fit.mass, part.record.phasors, part.fit.samples, part.problem, at
-    )
+    noise, model_error = noise_of_record(part.record.phasors, part.fit.samples, part.problem, at)
     levels = np.sqrt(1.0 + np.sum(noise.excess**2, axis=0))
     sigma = np.sqrt(noise.variance) * float(levels.max(initial=1.0))
     return part._replace(sigma=float(sigma), freedom=noise.freedom, model_error=model_error)

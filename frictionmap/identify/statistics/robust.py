@@ -36,6 +36,15 @@ def softened(problem: Problem, scale: float) -> Problem:
     return problem._replace(residuals=residuals)
 
 
+def drawn_in(residual: np.ndarray, scale: float) -> np.ndarray:
+    """Residuals whose least squares are solved by the estimate of soft_l1, with those of outliers drawn in.
+
+    psi(r)/mean(psi') with psi = r/sqrt(1 + (r/s)^2): their variance is that of a sample in the covariance.
+    """
+    q = np.hypot(1.0, residual / scale)
+    return residual / q / float(np.mean(q**-3))
+
+
 def effective_variance(problem: Problem, best: Solution, scale: float) -> float:
     """The variance of a sample by which the softened slopes give the errors of estimates.
 

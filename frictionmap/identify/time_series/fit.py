@@ -14,7 +14,7 @@ import numpy as np
 from ..signals.noise import noise_of_fit
 from ..signals.phasors import Phasors, scatter_of
 from ..statistics.least_squares import Noise, Problem, Solution, minimise
-from ..statistics.robust import effective_variance, softened
+from ..statistics.robust import drawn_in
 from .motion import (
     F_N,
     FLOOR,
@@ -36,6 +36,12 @@ from .static_friction import FITTED, IDLE, KNOWN, ONE, is_asked_for
 #: Number of starts that are followed, and of samples used; the best one continues with all samples.
 _FOLLOWED = 4
 _SAMPLES = 600
+
+#: Fits with errors of outliers drawn in: each is a step of Newton's method with the mean slope.
+_ROUNDS = 8
+
+#: They end where no error of a sample is changed by more of its scale.
+_SETTLED = 1e-3
 
 #: The natural frequency lies within this factor of a start.
 _RANGE = 1.5
@@ -62,10 +68,11 @@ class Samples(NamedTuple):
 
     time: np.ndarray  # s
     x: np.ndarray
+    fitted: np.ndarray  # what is fitted: x, or with errors of outliers drawn in
     near: np.ndarray  # x without drift, wander and outliers, to begin with
     slow: np.ndarray  # shape (samples, 1 + waves), a straight line and slow waves, of norm 1
     everywhere: np.ndarray  # the same at all times of the record
-    scale: float | None  # beyond which residuals have little weight; None: never
+    scale: float | None  # beyond which errors are drawn in; None: never
 
 
 class RecordFit(NamedTuple):
@@ -118,32 +125,69 @@ def samples_of(
     slow /= np.linalg.norm(slow[used], axis=0)
     near = tamed - phasors.drift[1] * line - phasors.wander[:, 1]
     scale = float(scatter_of(phasors.residual[:, 1])) if robust else 0.0
-    return Samples(time[used], x[used], near[used], slow[used], slow, scale or None)
+    return Samples(
+        time[used], x[used], (tamed if scale else x)[used], near[used], slow[used], slow, scale or None
+    )
 
 
 def fit_record(
     contact: str, damping_reference: str, phasors: Phasors, samples: Samples, known: Mapping[str, float]
 ) -> RecordFit:
-    """The least sum over all samples, with mu = 1 unless it is known or the data ask for more."""
+    """The least sum over all samples, with mu = 1 unless it is known or the data ask for more.
+
+    Errors of outliers are drawn in by the motion that was fitted last (Huber and Ronchetti, Robust
+    Statistics, 2009, section 7.8): the fits end at the estimate of soft_l1, with errors of least squares.
+    """
     few = slice(None, None, max(1, samples.time.size // _SAMPLES))
     coarse = shaken(contact, damping_reference, phasors, samples.time[few])
     mass = shaken(contact, damping_reference, phasors, samples.time)
+    near = _nearest(coarse, samples.near[few], phasors, {"mu": 1.0, **known})
+    scatter = float(np.sqrt(near.sum / samples.near[few].size))
+    at_one = _fit_near(mass, phasors, samples, known, _begin(near, samples), scatter)
+    starting = [at_one.solution.values]
+    if "mu" not in known and at_one.model_error > 1.0:  # else nothing far away can be much nearer
+        starting.append(_begin(_nearest(coarse, samples.near[few], phasors, known), samples))
+    fit = at_one if "mu" in known else _with_static(at_one, phasors, starting)
+    scale = samples.scale or 0.0
+    for _ in range(_ROUNDS if scale else 0):
+        again = _drawn_in(fit)
+        change = np.abs(again.fitted - fit.samples.fitted).max()
+        scatter = float(np.sqrt(fit.solution.sum / again.x.size))
+        at_one = _fit_near(mass, phasors, again, known, at_one.solution.values, scatter)
+        fit = at_one if "mu" in known else _with_static(at_one, phasors, [fit.solution.values])
+        if change < _SETTLED * scale:
+            break
+    return fit
+
+
+def _drawn_in(fit: RecordFit) -> Samples:
+    """The samples with errors of outliers drawn in, as the fitted motion shows them."""
+    samples, residual = fit.samples, fit.residual
+    assert samples.scale is not None
+    return samples._replace(fitted=samples.x + residual - drawn_in(residual, samples.scale))
+
+
+def _fit_near(
+    mass: Shaken,
+    phasors: Phasors,
+    samples: Samples,
+    known: Mapping[str, float],
+    start: np.ndarray,
+    scatter: float,
+) -> RecordFit:
+    """The least sum near a start, with mu = 1 unless it is known.
+
+    scatter : standard deviation of a sample, without what errors of the base make
+    """
     held = {"mu": 1.0, **known}
-    near = _nearest(coarse, samples.near[few], phasors, held)
-    by_base = base_slopes(mass, outer(near.values))
-    whitening = _whitening(by_base, base_errors(mass, phasors), np.sqrt(near.sum / samples.near[few].size))
-    with_mu = _problem(mass, samples, _free(known, samples), near.values, whitening)
+    by_base = base_slopes(mass, outer(start[: len(PARAMETERS)]))
+    whitening = _whitening(by_base, base_errors(mass, phasors), scatter)
+    with_mu = _problem(mass, samples, _free(known, samples), start, whitening)
     problem = with_mu._replace(free=_free(held, samples))
-    solution = minimise(problem, _begin(near, samples))
+    solution = minimise(problem, start)
     found = motion(mass, outer(solution.values[: len(PARAMETERS)]))
-    noise = noise_of_record(mass, phasors, samples, problem, solution)
-    fit = RecordFit(mass, samples, problem, with_mu, solution, *noise, whitening, by_base, found, KNOWN)
-    if "mu" in known:
-        return fit
-    begin = [solution.values]
-    if fit.model_error > 1.0:  # else nothing far away can be much nearer
-        begin.append(_begin(_nearest(coarse, samples.near[few], phasors, known), samples))
-    return _with_static(fit, phasors, begin)
+    noise = noise_of_record(phasors, samples, problem, solution)
+    return RecordFit(mass, samples, problem, with_mu, solution, *noise, whitening, by_base, found, KNOWN)
 
 
 def _with_static(fit: RecordFit, phasors: Phasors, begin: list[np.ndarray]) -> RecordFit:
@@ -151,7 +195,7 @@ def _with_static(fit: RecordFit, phasors: Phasors, begin: list[np.ndarray]) -> R
     task = fit.with_mu
     solution = min((minimise(task, start) for start in begin), key=lambda found: found.sum)
     found = motion(fit.mass, outer(solution.values[: len(PARAMETERS)]))
-    noise, model_error = noise_of_record(fit.mass, phasors, fit.samples, task, solution)
+    noise, model_error = noise_of_record(phasors, fit.samples, task, solution)
     gain = fit.solution.sum - solution.sum
     if found.stops > 0 and is_asked_for(gain, task, solution, noise, MU):
         return fit._replace(
@@ -172,32 +216,26 @@ def problem_of(fit: RecordFit, known: Mapping[str, float]) -> Problem:
 
 
 def noise_of_record(
-    mass: Shaken, phasors: Phasors, samples: Samples, problem: Problem, solution: Solution
+    phasors: Phasors, samples: Samples, problem: Problem, solution: Solution
 ) -> tuple[Noise, float]:
     """The noise, and the error of the model in it."""
     free = problem.free & ~solution.at_bound
-    noise, model_error = noise_of_fit(
+    return noise_of_fit(
         samples.time, solution.residual, phasors.frequency, phasors.values.shape[1] - 1,
         int(free[:OFFSET].sum()), samples.slow.shape[1] - 1,
     )  # fmt: skip
-    if samples.scale is None:
-        return noise, model_error
-    plain = _problem(mass, samples._replace(scale=None), problem.free, solution.values)
-    softened_variance = solution.sum / (solution.residual.size - int(problem.free.sum()))
-    larger = effective_variance(plain, solution, samples.scale) / softened_variance
-    return noise._replace(variance=noise.variance * larger), model_error
 
 
 def _begin(near: Solution, samples: Samples) -> np.ndarray:
     """Starting values of the fit of all samples: a nearby motion, drift and wander."""
-    slow = np.linalg.lstsq(samples.slow, samples.x - samples.near, rcond=None)[0]
+    slow = np.linalg.lstsq(samples.slow, samples.fitted - samples.near, rcond=None)[0]
     return np.concatenate((near.values, slow))
 
 
 def _nearest(mass: Shaken, x: np.ndarray, phasors: Phasors, known: Mapping[str, float]) -> Solution:
     """The least sum from several starts, of samples without drift and outliers."""
     none = np.zeros((x.size, 0))
-    samples = Samples(np.zeros(x.size), x, x, none, none, None)
+    samples = Samples(np.zeros(x.size), x, x, x, none, none, None)
     free = _free(known, samples)
     candidates = starts(mass.contact, mass.damping_reference, phasors, known)[:_FOLLOWED]
     problems = [(_problem(mass, samples, free, inner(start)), inner(start)) for start in candidates]
@@ -239,20 +277,18 @@ def _problem(
     start: np.ndarray,
     whitening: Whitening | None = None,
 ) -> Problem:
-    """Residuals are softened where samples may be outliers, then whitened."""
+    """Residuals of what is fitted, whitened if errors of the base are allowed for."""
     size = len(PARAMETERS)
 
     def plain(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         places, slopes = places_and_slopes(mass, values[:size], free[:size])
         slow = samples.slow @ values[size:]
-        return places + slow - samples.x, np.hstack((slopes, samples.slow))
+        return places + slow - samples.fitted, np.hstack((slopes, samples.slow))
 
     waves = np.full(samples.slow.shape[1], np.inf)
     lowest, highest = np.concatenate((_BELOW, -waves)), np.concatenate((_HIGHEST, waves))
     lowest[F_N], highest[F_N] = start[F_N] / _RANGE, start[F_N] * _RANGE
     problem = Problem(plain, free, np.concatenate((FLOOR, -waves)), lowest, highest)
-    if samples.scale is not None:
-        problem = softened(problem, samples.scale)
     return problem if whitening is None else _whitened(problem, whitening)
 
 

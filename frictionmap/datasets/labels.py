@@ -183,7 +183,8 @@ CELL_VARIABLES = {
         np.float64,
         "amplitude of the displacement of each mass, over P/k1 (Y)",
         (*CELL, "dof"),
-        comment="largest modulus over the steady state; infinite at a resonance, NaN where unresolved",
+        comment="largest modulus over the steady state, where the contact sticks measured from the static "
+        "offset; infinite at a resonance, NaN where unresolved",
         least=0.0,
         nan=True,
         inf=True,

@@ -123,7 +123,7 @@ def curves(
         motion at beta_lim; on (r, dof) `held_response` and `held_phase` with the contact held.
 
         Amplitudes are infinite at an undamped resonance; phases are then those that the growing motion
-        approaches.  Where the contact sticks, the motion is measured from its static offset.
+        approaches.  Where the contact sticks, displacements are measured from their static offset.
 
     Raises
     ------

@@ -319,8 +319,6 @@ def _cycle(request: MotionRequest, cells: Cells, found: FoundMotion) -> dict[str
         else:
             table_cell_quantities(cells.quantities, request.beta, found.recurrence)
     values = {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
-    if found.table is None:  # here the static offset of the stuck contact is included
-        values["amplitude"] += np.abs(cells.structure_arrays.outputs.static_shape * found.stuck_at)
     values["phase_lag"] = values.pop("phase")
     return values
 

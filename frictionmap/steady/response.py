@@ -85,7 +85,8 @@ def response(
         slide or stop that starts) and `event_z`.  Scalars: `regime`, `stops_per_cycle`, `contact_amplitude`,
         `stuck_fraction`, `period`, `status`, the boundaries, further requested `outputs`, and those of
         `frictionmap.curves`, whose `phase` is called `phase_lag(dof)` here; harmonics 0 to 7 over
-        (`harmonic`, `part`).  tau = 0 is a maximum of the load (of the base displacement).
+        (`harmonic`, `part`).  tau = 0 is a maximum of the load (of the base displacement).  Where the contact
+        sticks away from z = 0, `x` and `z` contain this static offset, and `amplitude` does not.
 
         For stick-slip that does not repeat (`status` not_periodic, `period` 0) tau covers the last 8 of the
         periods followed, and the scalars are the averages of the map.

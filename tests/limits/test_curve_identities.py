@@ -242,6 +242,26 @@ def test_a_slow_load_takes_masses_as_far_as_friction_lets_it():
     np.testing.assert_allclose(ds.amplitude[2], [0.5, 0.0], atol=1e-15)  # held at mass 2: k = 2
 
 
+@pytest.mark.parametrize(
+    ("contact", "masses"), [("fixed-wall", [2]), ("joined-base-wall", [2]), ("between-masses", [1, 2])]
+)
+def test_amplitudes_of_a_stuck_structure_leave_out_its_static_offset(contact, masses):
+    """A contact that gets stuck away from z = 0: the same amplitude in maps, responses and curves, |X_k|."""
+    system = fm.System(contact, contact_masses=masses, damping_ratios=0.05, **TWO)
+    r, beta, mu = 0.45, 1.4, 1.5
+    held = fm.curves(system, [r], [beta], mu, quantities=["amplitude"]).held_response.values[0]
+    for outputs in (["regime"], ["regime", "amplitude"]):
+        one = fm.response(system, r, beta, mu, start="moving", outputs=outputs)
+        assert int(one.regime) == fm.regimes.PERMANENT_STICKING
+        assert abs(one.z[0]) > 0.05
+        np.testing.assert_allclose(one.amplitude, held, rtol=1e-14)
+        np.testing.assert_allclose(one.x.max("tau") - one.x.min("tau"), 2.0 * held, rtol=1e-4)
+    cell = fm.sweep(system, [r], [beta], mu, start="moving", outputs=["amplitude"])
+    np.testing.assert_allclose(cell.amplitude[0, 0, 0], held, rtol=1e-14)
+    curve = fm.curves(system, [r], [beta], mu, quantities=["amplitude"], start="moving")
+    np.testing.assert_allclose(curve.amplitude[0, 0, 0], held, rtol=1e-14)
+
+
 @pytest.mark.parametrize("beta", [0.0, 0.3])
 def test_at_an_undamped_resonance_all_is_infinite_and_lags_by_a_quarter(beta):
     ds = fm.curves(fm.System(), [0.9, 1.0], beta, quantities=ALL).isel(mu=0, r=1, beta=0)

@@ -80,18 +80,16 @@ def _details_at(requested, i):
 
 
 @kernel
-def _no_stuck(details, out, m, i, j, z):
+def _no_stuck(details, out, m, i, j):
     """Write nothing."""
     pass
 
 
 @kernel
-def _stuck(details, out, m, i, j, z):
-    """Write the amplitudes with the contact held at z: those of the vibration plus the static offsets."""
-    displacements = details.displacements
+def _stuck(details, out, m, i, j):
+    """Write the amplitudes with the contact held; its static offset is not part of the vibration."""
     for mass in range(out.amplitude.shape[3]):
-        offset = abs(displacements.outputs.static_shape[mass] * z)
-        out.amplitude[m, i, j, mass] = abs(displacements.held[i, mass]) + offset
+        out.amplitude[m, i, j, mass] = abs(details.displacements.held[i, mass])
 
 
 @kernel
@@ -187,8 +185,8 @@ def details_at(requested, i):
 
 
 @by_class((NotRequested, _no_stuck), (DetailsAtFrequency, _stuck))
-def write_stuck_details(details, out, m, i, j, z):
-    """Write the details of a cell whose contact sticks at z."""
+def write_stuck_details(details, out, m, i, j):
+    """Write the details of a cell whose contact sticks."""
 
 
 @by_class((NotRequested, _no_continuous), (DetailsAtFrequency, _continuous))

@@ -124,7 +124,7 @@ def fill_closed(first, last, cells, axes, closed, out, requested):
                 store(out, m, i, j, quasi_static_cell(), load)
         for j in range(cells.high[row], axes.beta.size):
             store(out, m, i, j, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
-            write_stuck_details(details, out, m, i, j, 0.0)
+            write_stuck_details(details, out, m, i, j)
             write_stuck_quantities(quantities, m, j)
 
 
@@ -164,7 +164,7 @@ def _write_details(details, motion, contact, found, out, m, i, j, beta, mu_beta)
     beta, mu_beta : kinetic and static friction force
     """
     if found.regime == PERMANENT_STICKING:
-        write_stuck_details(details, out, m, i, j, motion.load * found.contact_state.z)
+        write_stuck_details(details, out, m, i, j)
     elif found.slides > 0:
         amplitude = motion.load * found.amplitude
         write_orbit_details(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude)

@@ -66,8 +66,8 @@ class History:
     v: np.ndarray
     z: np.ndarray  # (tau.size,)
     friction: np.ndarray
-    phase: np.ndarray
-    events: tuple[np.ndarray, np.ndarray, np.ndarray]  # tau, sense of the segment that starts, z
+    direction: np.ndarray  # -1, 0, 1: sliding down, sticking, sliding up
+    events: tuple[np.ndarray, np.ndarray, np.ndarray]  # tau, direction of the segment that starts, z
     durations: np.ndarray  # durations of the stops
     amplitude: float
     stuck: bool  # whether the contact sticks permanently
@@ -318,9 +318,7 @@ def _cycle(request: MotionRequest, cells: Cells, found: FoundMotion) -> dict[str
             continuous_cell_quantities(cells.quantities, request.beta)
         else:
             table_cell_quantities(cells.quantities, request.beta, found.recurrence)
-    values = {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
-    values["phase_lag"] = values.pop("phase")
-    return values
+    return {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
 
 
 def _history(request: MotionRequest, cells: Cells, found: FoundMotion) -> History:

@@ -41,7 +41,7 @@ from .kernel_data import StructureArrays
 _MASSES, _FORCE, _CONTACT, _CELL = "masses", "force", "contact", "cell"
 _LOCATIONS = {
     "amplitude": ("extremes", _MASSES, VALUE),
-    "phase": ("extremes", _MASSES, PHASE),
+    "phase_lag": ("extremes", _MASSES, PHASE),
     "phase_begin": ("extremes", _MASSES, PHASE_BEGIN),
     "phase_end": ("extremes", _MASSES, PHASE_END),
     "contact_phase": ("extremes", _CONTACT, PHASE),
@@ -70,7 +70,7 @@ _LOCATIONS = {
 VARIABLES: dict[str, tuple[str, ...]] = {
     "amplitude": ("amplitude",),
     "phase": (
-        "phase", "phase_begin", "phase_end", "contact_phase", "contact_phase_begin", "contact_phase_end",
+        "phase_lag", "phase_begin", "phase_end", "contact_phase", "contact_phase_begin", "contact_phase_end",
     ),
     "first_harmonic": (
         "first_harmonic_amplitude", "first_harmonic_phase", "contact_first_harmonic_amplitude",

@@ -10,7 +10,7 @@ from .. import regimes
 from .._kernels.continuous_motion import orbit_phase
 from .._kernels.engine import segment_table
 from .._kernels.engine.fill import one_cell
-from .._kernels.engine.quantities import (
+from .._kernels.engine.further import (
     continuous_cell_quantities,
     stuck_cell_quantities,
     table_cell_quantities,
@@ -313,11 +313,11 @@ def _cycle(request: MotionRequest, cells: Cells, found: FoundMotion) -> dict[str
     """Quantities of response curves of the cell; NaN for a motion that does not repeat."""
     if found.averages is None:
         if found.table is None:
-            stuck_cell_quantities(cells.quantities)
+            stuck_cell_quantities(cells.common, cells.quantities)
         elif found.recurrence is None:
-            continuous_cell_quantities(cells.quantities, request.beta)
+            continuous_cell_quantities(cells.common, cells.quantities, request.beta)
         else:
-            table_cell_quantities(cells.quantities, request.beta, found.recurrence)
+            table_cell_quantities(cells.common, cells.quantities, request.beta, found.recurrence)
     return {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
 
 

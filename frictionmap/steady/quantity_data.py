@@ -261,7 +261,6 @@ def quantity_arrays(
     system: System,
     r: np.ndarray,
     found: StructureArrays,
-    steps: float,
     request: QuantityRequest,
     out: Results,
 ) -> Quantities:
@@ -271,7 +270,6 @@ def quantity_arrays(
     outputs = _with_force(found.outputs, found, modes) if request.force else found.outputs
     linear = Linear(found.held, modes.held_load(r), _growth(system, found, r))
     return Quantities(
-        r, found.model, found.loads, found.orbit, steps, _wall_mass(system), outputs,
-        _uncoupled_response(found, modes, r, balance, request.force), linear, balance, out,
-        request.harmonics,
+        _wall_mass(system), outputs, _uncoupled_response(found, modes, r, balance, request.force), linear,
+        balance, out, request.harmonics,
     )  # fmt: skip

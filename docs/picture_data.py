@@ -43,7 +43,7 @@ _PUSH = 1e-13
 
 _MAPPED = ("contact_amplitude", "also_reachable")
 _BOUNDARIES = ("beta_lim", "beta_stick")
-_PHASES = ("phase", "first_harmonic_phase")
+_PHASES = ("phase_lag", "first_harmonic_phase")
 _DRAWN = ("amplitude", "first_harmonic_amplitude", *_PHASES)
 _MOVES = ("x", "z", "friction")
 _CODES = ("class", "also_reachable", "sense")
@@ -115,7 +115,7 @@ def _moving(ds: xr.Dataset) -> dict[str, np.ndarray]:
     cell = ds.expand_dims("beta").expand_dims("r").expand_dims("mu")
     numbers = {name: np.atleast_1d(ds[name].values) for name in ("r", "beta")}
     numbers["class"] = classes(cell.isel(mu=0))[np.newaxis]
-    numbers["sense"] = some["phase"].values
+    numbers["sense"] = some["direction"].values
     return numbers | {name: some[name].values.astype(np.float32) for name in _MOVES}
 
 

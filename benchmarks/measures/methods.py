@@ -124,7 +124,7 @@ def open_cells(
 def _stop_times(scene: Scene, r: float, beta: float, steps: int) -> list[float]:
     """Start times of the stops of the steady state, also of one with a longer period."""
     ds = fm.response(scene.system, r, beta, scene.mu, steps=steps, points=2)
-    return sorted((ds.event_tau.values[ds.event_phase.values == 0] % TWO_PI).tolist())
+    return sorted((ds.event_tau.values[ds.event_direction.values == 0] % TWO_PI).tolist())
 
 
 def prepare_solved(scene: Scene, cells: list[tuple[float, float]], setting: float, cycles: int) -> Prepared:

@@ -183,7 +183,8 @@ CELL_VARIABLES = {
         np.float64,
         "amplitude of the displacement of each mass, over P/k1 (Y)",
         (*CELL, "dof"),
-        comment="largest modulus over the steady state; infinite at a resonance, NaN where unresolved",
+        comment="largest modulus over the steady state, where the contact sticks measured from the static "
+        "offset; infinite at a resonance, NaN where unresolved",
         least=0.0,
         nan=True,
         inf=True,
@@ -214,7 +215,7 @@ _PLATEAU = "the load's phase, counted from its maximum; NaN where the maximum is
 
 #: Variables of every cell of response curves, in addition to outputs of a map.
 CYCLE_VARIABLES = {
-    "phase": _phase(
+    "phase_lag": _phase(
         "lag of the maximum of the displacement of each mass behind that of the load",
         "where the largest modulus is at a minimum, half a period later; NaN where it is held over a stop "
         "(phase_begin, phase_end) and where the period is not 1",
@@ -224,7 +225,7 @@ CYCLE_VARIABLES = {
     "phase_end": _phase("end of the stop that holds a mass at its maximum", _PLATEAU, "dof", most=np.inf),
     "contact_phase": _phase(
         "lag of the maximum of the motion in the contact behind that of the load",
-        "as `phase`; NaN where it is held over a stop (contact_phase_begin, contact_phase_end)",
+        "as `phase_lag`; NaN where it is held over a stop (contact_phase_begin, contact_phase_end)",
     ),
     "contact_phase_begin": _phase("begin of the stop that holds the contact at its maximum", _PLATEAU),
     "contact_phase_end": _phase(
@@ -433,16 +434,31 @@ HISTORY_VARIABLES = {
     "v": Label(np.float64, "velocity of the masses, dx/dtau, over P/k1 (Y)", ("dof", "tau")),
     "z": Label(np.float64, "motion in the contact, over P/k1 (Y)", ("tau",)),
     "friction": Label(np.float64, "friction force against the motion in the contact, over P", ("tau",)),
-    "phase": Label(np.int8, "direction of the motion in the contact", ("tau",), _SENSES),
+    "direction": Label(np.int8, "direction of the motion in the contact", ("tau",), _SENSES),
     "event_tau": Label(
-        np.float64, "excitation phase at which a phase of the motion begins", ("event",), least=0.0
+        np.float64, "excitation phase at which a slide or a stop begins", ("event",), least=0.0
     ),
-    "event_phase": Label(np.int8, "phase of the motion that begins", ("event",), _SENSES),
+    "event_direction": Label(
+        np.int8, "direction of the motion in the contact that begins", ("event",), _SENSES
+    ),
     "event_z": Label(np.float64, "motion in the contact at the event, over P/k1 (Y)", ("event",)),
 }
 
-#: In a response `phase` is the direction of the motion; the phase lag of a mass has another name there.
-LAG = {"phase_lag": CYCLE_VARIABLES["phase"]}
+#: Older names of variables, by kind of dataset.  Files of version 0.2.0 have only these; files of today have
+#: both, with the same values.
+OLDER_NAMES = {
+    "curves": {"phase": "phase_lag"},
+    "response": {"phase": "direction", "event_phase": "event_direction"},
+}
+
+
+def _older(what: str) -> dict[str, Label]:
+    """Labels of the older names in a kind of dataset."""
+    now = {**CYCLE_VARIABLES, **HISTORY_VARIABLES}
+    return {
+        old: now[new]._replace(long_name=f"older name of {new}: {now[new].long_name}")
+        for old, new in OLDER_NAMES[what].items()
+    }
 
 
 def _quantiles(name: str) -> Label:
@@ -515,7 +531,7 @@ def _in_si(label: Label, measure: str) -> Label:
     return label._replace(long_name=f"{name}{what}", comment="", units=SI[measure][0], unresolved=np.nan)
 
 
-_RATIOS = {**CELL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES, **LAG, **SHARES}
+_RATIOS = {**CELL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES, **_older("response"), **SHARES}
 IN_SI = {
     in_si(name, measure): _in_si(_RATIOS[name], measure)
     for measure, names in MEASURES.items()
@@ -552,7 +568,7 @@ def labels_of(what: str) -> dict[str, Label]:
         name: LABELS[name]._replace(dims=("r", "dof"))
         for name in ("held_response", "held_phase", in_si("held_response", "length"))
     }
-    return {**LABELS, **CYCLE_VARIABLES, **held}
+    return {**LABELS, **_older("curves"), **held}
 
 
 def attributes(label: Label) -> dict[str, object]:

@@ -17,9 +17,11 @@ from .labels import (
     HISTORY_VARIABLES,
     LABELS,
     LIMIT,
+    OLDER_NAMES,
     SCALES,
     SHARES,
     Label,
+    attributes,
     labels_of,
 )
 
@@ -36,9 +38,15 @@ def _labels_by_name(what: str) -> dict[str, Label]:
 
 
 def _is_history(ds: xr.Dataset, name: object) -> bool:
-    """Whether a variable belongs to a motion in time; `phase` is an angle in curves."""
-    angle = name == "phase" and ds.variables["phase"].attrs.get("units") == "radian"
-    return name in HISTORY_VARIABLES and not angle
+    """Whether a variable belongs to a motion in time; the older name `phase` is an angle in curves."""
+    if name in OLDER_NAMES["response"]:
+        return ds.variables[name].attrs.get("units") != "radian"
+    return name in HISTORY_VARIABLES
+
+
+def _is_curve(name: object) -> bool:
+    """Whether only response curves have a variable with this name."""
+    return name in CYCLE_VARIABLES or name in OLDER_NAMES["curves"] or _on_limit(name)
 
 
 def _on_limit(name: object) -> bool:
@@ -56,10 +64,21 @@ def kind(ds: xr.Dataset) -> str:
         return "shares"
     if any(_is_history(ds, name) for name in ds.variables):
         return "response"
-    if any(name in CYCLE_VARIABLES or _on_limit(name) for name in ds.variables):
+    if any(_is_curve(name) for name in ds.variables):
         return "curves"
     cells = "beta" in ds.dims or any("beta" in LABELS[name].dims for name in LABELS if name in ds.variables)
     return "map" if cells else "boundaries"
+
+
+def with_current_names(ds: xr.Dataset) -> xr.Dataset:
+    """Add the variables that a dataset has only under their older names; the values are not copied."""
+    what = kind(ds)
+    added = {}
+    for old, new in OLDER_NAMES.get(what, {}).items():
+        if old in ds.variables and new not in ds.variables:
+            added[new] = ds.variables[old].copy(deep=False)
+            added[new].attrs = attributes(labels_of(what)[new])
+    return ds.assign(added)
 
 
 def in_brackets(dims: Iterable[object]) -> str:

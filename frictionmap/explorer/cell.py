@@ -66,9 +66,9 @@ _MOVING = ("stops_per_cycle", "contact_amplitude", "contact_first_harmonic_ampli
 def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
     """The motion in a cell for the page.
 
-    Arrays over `tau`: `z`, its velocity `z_rate`, `friction`, `phase` (-1, 0, 1), `x` (masses, tau).  Moduli
-    of harmonics 0 to 7: `z_harmonics`, `friction_harmonics`.  `numbers` are those of the header's `entries`;
-    its `dofs` are the numbers of the masses.
+    Arrays over `tau`: `z`, its velocity `z_rate`, `friction`, `direction` (-1, 0, 1), `x` (masses, tau).
+    Moduli of harmonics 0 to 7: `z_harmonics`, `friction_harmonics`.  `numbers` are those of the header's
+    `entries`; its `dofs` are the numbers of the masses.
 
     Where there is no steady state, the header says why under `none`, and there are no arrays.
     """
@@ -138,14 +138,14 @@ def curves_of(view: View, found: SteadyMotion) -> dict[str, np.ndarray]:
     drawn = {
         "tau": history.tau,
         "z": history.z,
-        "z_rate": np.where(history.phase == 0, 0.0, rate),  # at rest to the bit, not to rounding
+        "z_rate": np.where(history.direction == 0, 0.0, rate),  # at rest to the bit, not to rounding
         "friction": history.friction,
         "x": history.x,
         "z_harmonics": _moduli(found.cycle["contact_harmonic"]),
         "friction_harmonics": _moduli(found.cycle["friction_harmonic"]),
     }
     arrays = {name: values.astype(np.float32) for name, values in drawn.items()}
-    return {**arrays, "phase": history.phase}
+    return {**arrays, "direction": history.direction}
 
 
 def _moduli(harmonics: np.ndarray) -> np.ndarray:

@@ -15,7 +15,15 @@ import xarray as xr
 from .. import checks
 from ..datasets.labels import BESIDE, CELL, COORDINATES, CURVES, LABELS, MARKS, labels_of
 from ..datasets.physical import in_si_too
-from ..datasets.schema import check_structure, checked_values, in_brackets, kind, placed, standard_dims
+from ..datasets.schema import (
+    check_structure,
+    checked_values,
+    in_brackets,
+    kind,
+    placed,
+    standard_dims,
+    with_current_names,
+)
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError
 from .estimates import estimates_form
@@ -155,7 +163,7 @@ def _load(
     if kind(ds) == "estimates":  # small, and drawn of all that is there
         return ds.load()
     wanted = LABELS if only is None else only[kind(ds)]
-    part = _ours(ds)
+    part = with_current_names(_ours(ds))
     part = part.drop_vars([name for name in part.variables if name in LABELS and name not in wanted]).load()
     return in_si_too(part) if in_store and only is None else part  # a store has ratios only
 
@@ -172,8 +180,8 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
     Works by names.  A value of mu, r, beta or of a mass that was chosen (`isel`, `sel`) becomes an axis of
     one value again; dimensions come in their order (mu, r, beta, dof, harmonic, part), axes increase, types
     and attributes are those of `labels`.  A response is of one cell: its mu, r and beta are numbers.
-    Variables may be missing; those that are not ours are left out.  Values are not copied where they are well
-    as they are.
+    Variables may be missing; those that are not ours are left out; those under an older name only have the
+    current one, too.  Values are not copied where they are well as they are.
 
     Parameters
     ----------
@@ -194,7 +202,7 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
     what = kind(ds)
     if what == "estimates":
         return estimates_form(ds)
-    ds = _ours(ds)
+    ds = with_current_names(_ours(ds))
     ds = ds.set_coords([name for name in (*COORDINATES, *BESIDE) if name in ds.data_vars])
     if what == "response":
         ds = ds.squeeze([dim for dim in CELL if ds.sizes.get(dim) == 1])

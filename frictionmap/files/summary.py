@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from ..datasets.labels import CELL, IN_SI, LABELS
+from ..datasets.labels import CELL, IN_SI, LABELS, OLDER_NAMES
 from ..datasets.physical import describe_scales
 from ..datasets.schema import TEXTS, kind
 from .estimates import describe_estimates, source_of_data
@@ -158,10 +158,13 @@ def variable_lines(ds: xr.Dataset) -> list[str]:
 
 
 def _variables(ds: xr.Dataset, names: Sequence[str], further: Sequence[str] = ()) -> list[str]:
-    """Variables with their meanings; of those in SI units only the names."""
-    lines = ["variables", *(_named(ds[name], further) for name in names if name not in IN_SI)]
+    """Variables with their meanings; of those in SI units, and of older names, only the names."""
+    older = [name for name in names if name in OLDER_NAMES.get(kind(ds), {})]
     beside = [name for name in names if name in IN_SI]
-    return [*lines, *(_entry("in SI units", ", ".join(beside)) if beside else [])]
+    lines = ["variables"]
+    lines += [_named(ds[name], further) for name in names if name not in (*beside, *older)]
+    lines += _entry("in SI units", ", ".join(beside)) if beside else []
+    return lines + (_entry("older names", ", ".join(older)) if older else [])
 
 
 def _estimates(ds: xr.Dataset) -> Iterator[str]:
@@ -258,8 +261,8 @@ def _motion(ds: xr.Dataset) -> Iterator[str]:
     """Numbers of a motion in time: how far the masses go, and when the contact stops."""
     if "x" in ds:
         yield f"largest |x|, mass by mass  {_numbers(np.abs(ds['x'].values).max(axis=1))}"
-    if "event_tau" in ds and "event_phase" in ds and (ds["event_phase"] == 0).any():
-        begins = ds["event_tau"].values[ds["event_phase"].values == 0]
+    if "event_tau" in ds and "event_direction" in ds and (ds["event_direction"] == 0).any():
+        begins = ds["event_tau"].values[ds["event_direction"].values == 0]
         yield f"stops begin at tau/pi =  {_numbers(begins / np.pi)}"
 
 

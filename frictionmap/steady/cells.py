@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from .._kernels.engine.details import Details, Displacements, NotRequested
+from .._kernels.engine.details import DetailResults, Details, Displacements
 from .._kernels.engine.extremes import UncoupledResponse
-from .._kernels.engine.fill import Axes, ClosedForm, OpenCells, Requested, fill_closed, fill_open
+from .._kernels.engine.fill import Axes, ClosedForm, OpenCells, fill_closed, fill_open
+from .._kernels.engine.further import Common, NotRequested, Requested
 from .._kernels.engine.many_masses import ManyMassSystem
 from .._kernels.engine.one_mass import OneMassSystem
 from .._kernels.engine.quantities import Quantities
@@ -109,37 +110,39 @@ class Cells:
         return float(self._closed_form.load[0])
 
     @cached_property
-    def _details(self) -> Details | NotRequested:
-        if "details" not in self._needs:
-            return NotRequested(0)
+    def common(self) -> Common:
+        """Data that further outputs share."""
         f = self.structure_arrays
-        parts = Displacements(f.outputs, UncoupledResponse(f.uncoupled, f.uncoupled), f.held)
-        return Details(self._axes.r, f.model, f.loads, f.orbit, float(self._solver.steps), parts)
+        return Common(self._axes.r, f.model, f.loads, f.orbit, float(self._solver.steps))
 
     @cached_property
-    def quantities(self) -> Quantities | NotRequested:
+    def quantities(self) -> Quantities:
         """Data for the requested quantities of a cycle."""
-        if self._request is None:
-            return NotRequested(0)
-        return quantity_arrays(
-            self._system, self._axes.r, self.structure_arrays, float(self._solver.steps), self._request,
-            self.results,
-        )  # fmt: skip
+        assert self._request is not None
+        return quantity_arrays(self._system, self._axes.r, self.structure_arrays, self._request, self.results)
 
-    @cached_property
-    def _requested(self) -> Requested:
-        return Requested(self._details, self.quantities)
+    def _requested(self, out: Any) -> Requested:
+        """The further outputs that are requested, with the arrays for their results."""
+        details: Details | NotRequested = NotRequested(0)
+        if "details" in self._needs:
+            f = self.structure_arrays
+            parts = Displacements(f.outputs, UncoupledResponse(f.uncoupled, f.uncoupled), f.held)
+            arrays = DetailResults(out.amplitude, out.multiplier, out.asymmetry)
+            details = Details(self._axes.mu, parts, arrays)
+        quantities = NotRequested(0) if self._request is None else self.quantities
+        nothing = isinstance(details, NotRequested) and isinstance(quantities, NotRequested)
+        return Requested(NotRequested(0) if nothing else self.common, details, quantities)
 
     def closed(self, first: int, last: int, cells: OpenCells, out: Any) -> Job:
         """Job for the cells of rows first..last-1 that closed forms decide."""
-        return fill_closed, (first, last, cells, self._axes, self._closed_form, out, self._requested)
+        return fill_closed, (first, last, cells, self._axes, self._closed_form, out, self._requested(out))
 
     def opened(self, first: int, last: int, cells: OpenCells, out: Any, cancel: np.ndarray) -> Job:
         """Job for cells first..last-1 of the list of open cells."""
         moving = self._solver.start == "moving"
         return fill_open, (
-            first, last, cells, self._axes, self.motion, limits(self._solver), moving, out, self._requested,
-            cancel,
+            first, last, cells, self._axes, self.motion, limits(self._solver), moving, out,
+            self._requested(out), cancel,
         )  # fmt: skip
 
     def reachable(self, out: Any, cancel: np.ndarray) -> list[Job]:

@@ -71,12 +71,12 @@ def memory_of_curves(
     counts: Mapping[str, int], masses: int, settings: CurveSettings, units: Units | None = None
 ) -> float:
     """Estimate the peak memory in bytes of response curves with these numbers of values of mu, r and beta."""
-    from .curves import cycle_variables, plain_outputs
+    from .curves import cycle_variables, older_names, plain_outputs
     from .quantity_data import quantity_request
 
     sizes = {**counts, "dof": masses, "harmonic": settings.harmonics + 1, "part": 2}
     names = cycle_variables(settings)
-    variables = _also_in_si({*plain_outputs(settings), *names}, units)
+    variables = _also_in_si({*plain_outputs(settings), *names, *older_names(names)}, units)
     return _memory(sizes, variables, quantity_request(names, settings.harmonics), "curves")
 
 

@@ -1,6 +1,6 @@
 """Response curves: amplitude, phase, harmonics and energy of steady states over frequency."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Unpack
 
@@ -9,6 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
+from ..datasets.labels import OLDER_NAMES
 from ..datasets.physical import with_units
 from ..datasets.variables import coordinate, label_variable, stamp
 from ..model.settings import CurveSettings, Output, Quantity, Solver, SolverSettings, curve_settings, merged
@@ -36,6 +37,11 @@ def cycle_variables(asked: CurveSettings) -> list[str]:
     return [name for quantity in asked.quantities for name in VARIABLES[quantity]]
 
 
+def older_names(names: Collection[str]) -> dict[str, str]:
+    """Older names under which some of these variables are stored as well, with the current ones."""
+    return {old: new for old, new in OLDER_NAMES["curves"].items() if new in names}
+
+
 def _over_frequency(system: System, axes: Mapping[str, np.ndarray], found: Curves) -> dict[str, xr.Variable]:
     """Variables that do not depend on beta: responses with the contact held, and motions on the boundary."""
     held = held_variables(system, axes["r"])
@@ -55,6 +61,7 @@ def solve_curves(
     )
     values: dict[str, np.ndarray] = {name: getattr(out, name) for name in basic}
     values |= {name: read_result(name, cells.results) for name in names}
+    values |= {old: values[new] for old, new in older_names(names).items()}
     variables = {name: label_variable(name, value, "curves") for name, value in values.items()}
     return variables | boundary_variables(cells.curves) | _over_frequency(system, axes, cells.curves)
 
@@ -107,8 +114,9 @@ def curves(
         `status`, and the variables of the requested quantities.
 
         * `amplitude` and `contact_amplitude`: largest moduli over time.
-        * `phase` and `contact_phase`: lags of the maxima [rad].  NaN where the maximum is held during a stop
-          (then see `phase_begin` and `phase_end`), and where the period is not 1.
+        * `phase_lag` and `contact_phase`: lags of the maxima [rad].  NaN where the maximum is held during a
+          stop (then see `phase_begin` and `phase_end`), and where the period is not 1.  `phase` is an older
+          name of `phase_lag`.
         * `first_harmonic_amplitude` and `first_harmonic_phase`: modulus and lag -arg X_1 of the first
           harmonic; also with the prefix `contact_`.
         * `sliding_distance`, `work_friction`, `work_input`, `work_damping` and `equivalent_damping`, per
@@ -123,7 +131,7 @@ def curves(
         motion at beta_lim; on (r, dof) `held_response` and `held_phase` with the contact held.
 
         Amplitudes are infinite at an undamped resonance; phases are then those that the growing motion
-        approaches.  Where the contact sticks, the motion is measured from its static offset.
+        approaches.  Where the contact sticks, displacements are measured from their static offset.
 
     Raises
     ------

@@ -10,7 +10,7 @@ from .. import regimes
 from .._kernels.continuous_motion import orbit_phase
 from .._kernels.engine import segment_table
 from .._kernels.engine.fill import one_cell
-from .._kernels.engine.quantities import (
+from .._kernels.engine.further import (
     continuous_cell_quantities,
     stuck_cell_quantities,
     table_cell_quantities,
@@ -66,8 +66,8 @@ class History:
     v: np.ndarray
     z: np.ndarray  # (tau.size,)
     friction: np.ndarray
-    phase: np.ndarray
-    events: tuple[np.ndarray, np.ndarray, np.ndarray]  # tau, sense of the segment that starts, z
+    direction: np.ndarray  # -1, 0, 1: sliding down, sticking, sliding up
+    events: tuple[np.ndarray, np.ndarray, np.ndarray]  # tau, direction of the segment that starts, z
     durations: np.ndarray  # durations of the stops
     amplitude: float
     stuck: bool  # whether the contact sticks permanently
@@ -313,16 +313,12 @@ def _cycle(request: MotionRequest, cells: Cells, found: FoundMotion) -> dict[str
     """Quantities of response curves of the cell; NaN for a motion that does not repeat."""
     if found.averages is None:
         if found.table is None:
-            stuck_cell_quantities(cells.quantities)
+            stuck_cell_quantities(cells.common, cells.quantities)
         elif found.recurrence is None:
-            continuous_cell_quantities(cells.quantities, request.beta)
+            continuous_cell_quantities(cells.common, cells.quantities, request.beta)
         else:
-            table_cell_quantities(cells.quantities, request.beta, found.recurrence)
-    values = {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
-    if found.table is None:  # here the static offset of the stuck contact is included
-        values["amplitude"] += np.abs(cells.structure_arrays.outputs.static_shape * found.stuck_at)
-    values["phase_lag"] = values.pop("phase")
-    return values
+            table_cell_quantities(cells.common, cells.quantities, request.beta, found.recurrence)
+    return {name: read_result(name, cells.results)[0, 0, 0] for name in CYCLE}
 
 
 def _history(request: MotionRequest, cells: Cells, found: FoundMotion) -> History:

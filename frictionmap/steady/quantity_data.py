@@ -41,7 +41,7 @@ from .kernel_data import StructureArrays
 _MASSES, _FORCE, _CONTACT, _CELL = "masses", "force", "contact", "cell"
 _LOCATIONS = {
     "amplitude": ("extremes", _MASSES, VALUE),
-    "phase": ("extremes", _MASSES, PHASE),
+    "phase_lag": ("extremes", _MASSES, PHASE),
     "phase_begin": ("extremes", _MASSES, PHASE_BEGIN),
     "phase_end": ("extremes", _MASSES, PHASE_END),
     "contact_phase": ("extremes", _CONTACT, PHASE),
@@ -70,7 +70,7 @@ _LOCATIONS = {
 VARIABLES: dict[str, tuple[str, ...]] = {
     "amplitude": ("amplitude",),
     "phase": (
-        "phase", "phase_begin", "phase_end", "contact_phase", "contact_phase_begin", "contact_phase_end",
+        "phase_lag", "phase_begin", "phase_end", "contact_phase", "contact_phase_begin", "contact_phase_end",
     ),
     "first_harmonic": (
         "first_harmonic_amplitude", "first_harmonic_phase", "contact_first_harmonic_amplitude",
@@ -261,7 +261,6 @@ def quantity_arrays(
     system: System,
     r: np.ndarray,
     found: StructureArrays,
-    steps: float,
     request: QuantityRequest,
     out: Results,
 ) -> Quantities:
@@ -271,7 +270,6 @@ def quantity_arrays(
     outputs = _with_force(found.outputs, found, modes) if request.force else found.outputs
     linear = Linear(found.held, modes.held_load(r), _growth(system, found, r))
     return Quantities(
-        r, found.model, found.loads, found.orbit, steps, _wall_mass(system), outputs,
-        _uncoupled_response(found, modes, r, balance, request.force), linear, balance, out,
-        request.harmonics,
+        _wall_mass(system), outputs, _uncoupled_response(found, modes, r, balance, request.force), linear,
+        balance, out, request.harmonics,
     )  # fmt: skip

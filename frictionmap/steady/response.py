@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
-from ..datasets.labels import CELL_VARIABLES
+from ..datasets.labels import CELL_VARIABLES, OLDER_NAMES
 from ..datasets.physical import with_units
 from ..datasets.variables import coordinate, label_variable, stamp
 from ..errors import InputError
@@ -81,11 +81,14 @@ def response(
     -------
     xarray.Dataset
         Over `tau` (0 to 2 pi times the period): `x(dof, tau)`, `v(dof, tau)`, `z`, `friction` (over P) and
-        `phase` (-1, 0, 1: sliding down, sticking, sliding up).  Over `event`: `event_tau`, `event_phase` (the
-        slide or stop that starts) and `event_z`.  Scalars: `regime`, `stops_per_cycle`, `contact_amplitude`,
-        `stuck_fraction`, `period`, `status`, the boundaries, further requested `outputs`, and those of
-        `frictionmap.curves`, whose `phase` is called `phase_lag(dof)` here; harmonics 0 to 7 over
-        (`harmonic`, `part`).  tau = 0 is a maximum of the load (of the base displacement).
+        `direction` (-1, 0, 1: sliding down, sticking, sliding up).  Over `event`: `event_tau`,
+        `event_direction` (of the slide or stop that starts) and `event_z`.  `phase` and `event_phase` are
+        older names of `direction` and `event_direction`.  Scalars: `regime`, `stops_per_cycle`,
+        `contact_amplitude`, `stuck_fraction`, `period`, `status`, the boundaries, further requested
+        `outputs`, and those of `frictionmap.curves`; harmonics 0 to 7 over (`harmonic`, `part`).
+
+        tau = 0 is a maximum of the load (of the base displacement).  Where the contact sticks away from
+        z = 0, `x` and `z` contain this static offset, and `amplitude` does not.
 
         For stick-slip that does not repeat (`status` not_periodic, `period` 0) tau covers the last 8 of the
         periods followed, and the scalars are the averages of the map.
@@ -104,7 +107,7 @@ def response(
     --------
     >>> import frictionmap as fm
     >>> ds = fm.response(fm.System(), r=0.3, beta=0.5)
-    >>> int((ds.event_phase == 0).sum())
+    >>> int((ds.event_direction == 0).sum())
     2
     """
     checks.instance(system, "system", System)
@@ -121,11 +124,12 @@ def response(
         "v": history.v,
         "z": history.z,
         "friction": history.friction,
-        "phase": history.phase,
+        "direction": history.direction,
         "event_tau": times,
-        "event_phase": begins.astype(np.int8),
+        "event_direction": begins.astype(np.int8),
         "event_z": places,
     }
+    variables |= {old: variables[new] for old, new in OLDER_NAMES["response"].items()}
     # what a map is asked for comes from its kernels below, to the bit
     variables |= {name: value for name, value in cycle.items() if name not in solver.outputs}
     own: dict[str, np.ndarray | float] = {

@@ -222,7 +222,7 @@ def test_without_friction_all_is_the_linear_answer():
     )
     np.testing.assert_allclose(ds.amplitude, np.abs(x), rtol=1e-13)
     np.testing.assert_allclose(ds.first_harmonic_amplitude, np.abs(x), rtol=1e-13)
-    np.testing.assert_allclose(ds.phase, -np.angle(x), atol=1e-13)
+    np.testing.assert_allclose(ds.phase_lag, -np.angle(x), atol=1e-13)
     np.testing.assert_allclose(ds.work_input, -math.pi * x[:, 0].imag, atol=1e-13)
     np.testing.assert_allclose(ds.work_damping, ds.work_input, atol=1e-13)
     np.testing.assert_allclose(ds.transmitted_force, np.abs(1.0 + r**2 * x.sum(axis=1)), rtol=1e-13)
@@ -235,11 +235,31 @@ def test_a_slow_load_takes_masses_as_far_as_friction_lets_it():
     ds = fm.curves(system, [0.0, 0.5], [0.0, 0.3, 2.0], quantities=ALL).isel(mu=0, r=0)
     x = np.linalg.solve(system.modes.stiffness, [1.0, -0.3])
     np.testing.assert_allclose(ds.amplitude[1], np.abs(x), rtol=1e-14)
-    np.testing.assert_array_equal(ds.phase[1], np.where(x > 0.0, 0.0, math.pi))
+    np.testing.assert_array_equal(ds.phase_lag[1], np.where(x > 0.0, 0.0, math.pi))
     assert float(ds.contact_amplitude[1]) == pytest.approx(abs(x[1]), rel=1e-14)
     assert math.isnan(ds.work_friction[1])
     assert int(ds.status[1]) == 4
     np.testing.assert_allclose(ds.amplitude[2], [0.5, 0.0], atol=1e-15)  # held at mass 2: k = 2
+
+
+@pytest.mark.parametrize(
+    ("contact", "masses"), [("fixed-wall", [2]), ("joined-base-wall", [2]), ("between-masses", [1, 2])]
+)
+def test_amplitudes_of_a_stuck_structure_leave_out_its_static_offset(contact, masses):
+    """A contact that gets stuck away from z = 0: the same amplitude in maps, responses and curves, |X_k|."""
+    system = fm.System(contact, contact_masses=masses, damping_ratios=0.05, **TWO)
+    r, beta, mu = 0.45, 1.4, 1.5
+    held = fm.curves(system, [r], [beta], mu, quantities=["amplitude"]).held_response.values[0]
+    for outputs in (["regime"], ["regime", "amplitude"]):
+        one = fm.response(system, r, beta, mu, start="moving", outputs=outputs)
+        assert int(one.regime) == fm.regimes.PERMANENT_STICKING
+        assert abs(one.z[0]) > 0.05
+        np.testing.assert_allclose(one.amplitude, held, rtol=1e-14)
+        np.testing.assert_allclose(one.x.max("tau") - one.x.min("tau"), 2.0 * held, rtol=1e-4)
+    cell = fm.sweep(system, [r], [beta], mu, start="moving", outputs=["amplitude"])
+    np.testing.assert_allclose(cell.amplitude[0, 0, 0], held, rtol=1e-14)
+    curve = fm.curves(system, [r], [beta], mu, quantities=["amplitude"], start="moving")
+    np.testing.assert_allclose(curve.amplitude[0, 0, 0], held, rtol=1e-14)
 
 
 @pytest.mark.parametrize("beta", [0.0, 0.3])
@@ -253,7 +273,7 @@ def test_at_an_undamped_resonance_all_is_infinite_and_lags_by_a_quarter(beta):
         "work_input",
     ):
         assert np.isinf(ds[name]).all(), name
-    for name in ("phase", "first_harmonic_phase", "contact_phase", "contact_first_harmonic_phase"):
+    for name in ("phase_lag", "first_harmonic_phase", "contact_phase", "contact_first_harmonic_phase"):
         np.testing.assert_allclose(ds[name], 0.5 * math.pi, rtol=1e-15)
     assert float(ds.equivalent_damping) == 0.0
     np.testing.assert_array_equal(ds.displacement_harmonic[0, 1], [0.0, -np.inf])

@@ -73,7 +73,7 @@ def test_one_changed_value_fails(variable, change):
     assert text.startswith(f"{name} differs in 1 places, at {tuple(int(index) for index in place)}")
 
 
-@pytest.mark.parametrize("variable", ["amplitude", "phase"])
+@pytest.mark.parametrize("variable", ["amplitude", "phase_lag"])
 def test_one_changed_point_of_a_curve_fails(variable):
     ds = picture_data.coarse("fig-6-13").copy(deep=True)
     ds[variable].values[0, 5, 1, 0] += 1e-4

@@ -263,7 +263,7 @@ def test_continuous_motion():
         assert abs(balance) < 1e-11 * abs(motion.work_input)
         cell = fm.curves(system, [r], [beta], quantities=["amplitude", "phase", "first_harmonic"]).squeeze()
         np.testing.assert_allclose(motion.amplitude, cell.amplitude, rtol=0.0, atol=1e-11 * size)
-        np.testing.assert_allclose(np.exp(1j * motion.phase), np.exp(1j * cell.phase), atol=1e-8)
+        np.testing.assert_allclose(np.exp(1j * motion.phase), np.exp(1j * cell.phase_lag), atol=1e-8)
         first = cell.first_harmonic_amplitude * np.exp(-1j * cell.first_harmonic_phase)
         np.testing.assert_allclose(motion.first_harmonic, first, rtol=0.0, atol=1e-11 * size)
 

@@ -76,7 +76,7 @@ def test_share_stuck_of_reference_rows(steady_rows):
         )
         ds = fm.response(system, float(row["r"]), float(row["beta"]), float(row["mu"]), points=2)
         tau = np.append(ds.event_tau.values, ds.event_tau.values[:1] + 2.0 * np.pi * int(ds.period))
-        stuck = np.diff(tau)[ds.event_phase.values == 0].sum() / (2.0 * np.pi * int(ds.period))
+        stuck = np.diff(tau)[ds.event_direction.values == 0].sum() / (2.0 * np.pi * int(ds.period))
         assert stuck == pytest.approx(float(row["stuck_fraction"]), abs=1e-9), row
         assert float(ds.contact_amplitude) == pytest.approx(float(row["Z"]), rel=1e-10), row
 
@@ -333,7 +333,9 @@ def test_response_satisfies_the_equation_of_motion(contact, r, beta, mu, zeta):
     h = tau[1]
     acceleration = (v[2:] - v[:-2]) / (2.0 * h)
     velocity = (x[2:] - x[:-2]) / (2.0 * h)
-    same = (ds.phase.values[2:] == ds.phase.values[1:-1]) & (ds.phase.values[1:-1] == ds.phase.values[:-2])
+    same = (ds.direction.values[2:] == ds.direction.values[1:-1]) & (
+        ds.direction.values[1:-1] == ds.direction.values[:-2]
+    )
     residual = (
         r**2 * acceleration + 2.0 * zeta * r * v[1:-1] + x[1:-1] + ds.friction.values[1:-1]
         - np.cos(tau[1:-1])
@@ -344,9 +346,9 @@ def test_response_satisfies_the_equation_of_motion(contact, r, beta, mu, zeta):
     assert np.abs(residual[same]).max() < bound * max(1.0, r**2)
     assert np.abs(velocity - v[1:-1])[same].max() < bound * fastest
     # friction: the kinetic force against the motion, and at most mu times that in a stop
-    sliding = ds.phase.values != 0
+    sliding = ds.direction.values != 0
     np.testing.assert_allclose(
-        ds.friction.values[sliding], beta * ds.phase.values[sliding], rtol=1e-12, atol=1e-15
+        ds.friction.values[sliding], beta * ds.direction.values[sliding], rtol=1e-12, atol=1e-15
     )
     assert np.abs(ds.friction.values).max() <= mu * beta * (1.0 + 1e-12) + 1e-15
     assert x[0] == pytest.approx(x[-1], rel=1e-11, abs=1e-13)
@@ -385,15 +387,17 @@ def test_a_window_of_a_motion_that_does_not_repeat(contact, r, beta, mu, start, 
     assert tau[-1] == pytest.approx(16.0 * np.pi)
     assert abs(x[-1] - x[0]) > 1e-6  # it does not come back
     acceleration = (v[2:] - v[:-2]) / (2.0 * tau[1])
-    same = (ds.phase.values[2:] == ds.phase.values[1:-1]) & (ds.phase.values[1:-1] == ds.phase.values[:-2])
+    same = (ds.direction.values[2:] == ds.direction.values[1:-1]) & (
+        ds.direction.values[1:-1] == ds.direction.values[:-2]
+    )
     off = r**2 * acceleration + x[1:-1] + ds.friction.values[1:-1] - np.cos(tau[1:-1])
     assert np.abs(off[same]).max() < 1e-4
     inside = ds.event_tau.values
     assert np.all(np.diff(inside) >= 0.0)
     assert 0.0 <= inside[0] < inside[-1] <= tau[-1]
-    for at, sense in zip(inside, ds.event_phase.values, strict=True):
+    for at, sense in zip(inside, ds.event_direction.values, strict=True):
         k = np.searchsorted(tau, at)
-        assert sense in ds.phase.values[k : k + 2]
+        assert sense in ds.direction.values[k : k + 2]
     cell = fm.sweep(
         system,
         [r],

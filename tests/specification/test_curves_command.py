@@ -20,7 +20,7 @@ ALWAYS = {
 QUANTITIES = {
     "amplitude": {"amplitude": MASS, "contact_amplitude": CELL},
     "phase": {
-        **dict.fromkeys(("phase", "phase_begin", "phase_end"), MASS),
+        **dict.fromkeys(("phase_lag", "phase", "phase_begin", "phase_end"), MASS),
         **dict.fromkeys(("contact_phase", "contact_phase_begin", "contact_phase_end"), CELL),
     },
     "first_harmonic": {
@@ -58,7 +58,7 @@ def test_nothing_is_held_that_was_not_asked_for(quantity):
     assert dims(ds) == ALWAYS | QUANTITIES[quantity]
     for name, variable in ds.variables.items():
         assert variable.attrs["long_name"], name
-        angle = name.endswith(("phase", "phase_begin", "phase_end"))
+        angle = name.endswith(("phase", "phase_lag", "phase_begin", "phase_end"))
         assert variable.attrs.get("units", "1") == ("radian" if angle else "1"), name
 
 

@@ -121,7 +121,7 @@ def test_a_cell_moves_as_response_says(one):
     ds = fm.response(fm.System(), 0.3, 0.5, points=arrays["tau"].size - 1)
     for name in ("tau", "z", "friction", "x"):
         np.testing.assert_array_equal(arrays[name], ds[name].values.astype(np.float32))
-    sliding = arrays["phase"] != 0
+    sliding = arrays["direction"] != 0
     np.testing.assert_array_equal(arrays["z_rate"][sliding], ds["v"].values[0, sliding].astype(np.float32))
     assert not arrays["z_rate"][~sliding].any()
     numbers = dict(zip([entry["name"] for entry in header["entries"]], arrays["numbers"], strict=True))

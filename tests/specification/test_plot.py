@@ -560,22 +560,26 @@ def test_the_response_shows_load_contact_masses_and_friction(tiny_response):
     np.testing.assert_array_equal(lines_of(friction)[0], ds.friction)
     begins = contact.lines[1]
     assert begins.get_label() == "stop begins"
-    assert begins.get_xdata().size == int((ds.event_phase == 0).sum()) == 2
+    assert begins.get_xdata().size == int((ds.event_direction == 0).sum()) == 2
     assert load.get_ylabel() == "base / $Y$"
     assert load.figure._suptitle.get_text() == "r = 0.3, β = 0.05, μ = 1: stick-slip, 2 stops per cycle"
     assert words_of([load]) == ["stop", "maximum of the load (of the base's motion)", "stop begins"]
 
 
-@pytest.mark.parametrize("name", ["z", "x", "friction", "phase"])
-def test_a_response_without_a_motion_to_draw(name, tiny_response):
-    with pytest.raises(InputError, match=rf"^a dataset must hold {name} for its motion to be drawn"):
-        fm.plot_response(tiny_response.drop_vars(name))
+#: Names of the direction, and of that at events, in files of today and in older ones.
+DIRECTION, EVENT_DIRECTION = ("direction", "phase"), ("event_direction", "event_phase")
 
 
-@pytest.mark.parametrize("name", ["event_tau", "event_phase", "event_z"])
-def test_a_response_without_its_events(name, tiny_response):
+@pytest.mark.parametrize("names", [("z",), ("x",), ("friction",), DIRECTION])
+def test_a_response_without_a_motion_to_draw(names, tiny_response):
+    with pytest.raises(InputError, match=rf"^a dataset must hold {names[0]} for its motion to be drawn"):
+        fm.plot_response(tiny_response.drop_vars(names))
+
+
+@pytest.mark.parametrize("names", [("event_tau",), EVENT_DIRECTION, ("event_z",)])
+def test_a_response_without_its_events(names, tiny_response):
     whole = sum(len(ax.lines) for ax in fm.plot_response(tiny_response))
-    assert sum(len(ax.lines) for ax in fm.plot_response(tiny_response.drop_vars(name))) == whole - 1
+    assert sum(len(ax.lines) for ax in fm.plot_response(tiny_response.drop_vars(names))) == whole - 1
 
 
 def test_the_response_of_a_fixed_wall_has_one_motion():

@@ -173,7 +173,7 @@ def caption_of(axes):
 @pytest.mark.parametrize(
     ("quantity", "size", "phase"),
     [
-        ("amplitude", "amplitude", "phase"),
+        ("amplitude", "amplitude", "phase_lag"),
         ("first_harmonic", "first_harmonic_amplitude", "first_harmonic_phase"),
         ("contact", "contact_amplitude", "contact_phase"),
     ],
@@ -195,7 +195,7 @@ def test_stops_that_have_no_phase_are_bands(wall):
     """A mass that a fixed wall stops is at its largest displacement throughout; T 3.6.1 gives no phase."""
     _, lower = axes = fm.plot_curves(wall, "amplitude")
     cells = wall.isel(mu=0, beta=1, dof=0)
-    stopped = np.isnan(cells.phase.values)
+    stopped = np.isnan(cells.phase_lag.values)
     assert stopped.sum() > 10
     assert (cells.regime.values[stopped] == SLIP).all()
     vertices = np.concatenate([path.vertices for band in lower.collections for path in band.get_paths()])

@@ -13,7 +13,9 @@ from frictionmap import InputError
 from frictionmap.datasets.labels import BESIDE, COORDINATES, LABELS
 from frictionmap.files.reading import read, standard_form
 from frictionmap.files.storage import write
+from frictionmap.files.summary import describe_file
 from frictionmap.model.settings import OUTPUTS
+from frictionmap.plot import PICTURED
 
 TWO = fm.System(mass_ratios=[1.0, 0.5], stiffness_ratios=[1.0, 2.0], damping_ratios=0.02)
 UNITS = fm.Units(natural_frequency="4.2 Hz", load="12.5 N", stiffness="3 N/mm")
@@ -137,6 +139,41 @@ def test_other_types_of_whole_values_are_read(datasets, kind, tmp_path):
     xr.testing.assert_identical(through_a_file(ds, tmp_path / "filled.nc", encoding=encoding), ds)
     swapped = ds.assign({name: ds[name].astype(">f8") for name in ds.data_vars if ds[name].dtype == float})
     xr.testing.assert_identical(through_a_file(swapped, tmp_path / "swapped.nc"), ds)
+
+
+# Older names
+
+#: Older names of variables and the current ones, by kind of file.
+OLDER = {
+    "curves": {"phase": "phase_lag"},
+    "response": {"phase": "direction", "event_phase": "event_direction"},
+}
+
+
+@pytest.mark.parametrize("kind", OLDER)
+def test_older_names_are_kept_beside_the_current_ones(files, kind):
+    with xr.open_dataset(files[kind]) as ds:
+        for old, new in OLDER[kind].items():
+            assert ds[old].dtype == ds[new].dtype
+            np.testing.assert_array_equal(ds[old], ds[new])
+            assert ds[old].attrs["long_name"] == f"older name of {new}: {ds[new].attrs['long_name']}"
+
+
+@pytest.mark.parametrize("kind", OLDER)
+def test_a_file_with_older_names_only_is_drawn_and_summarised(datasets, kind, tmp_path):
+    """As version 0.2.0 wrote it; read by this package, or by xarray alone."""
+    ds = datasets[kind]
+    path = tmp_path / "older.nc"
+    older = ds.drop_vars(OLDER[kind].values())
+    older.to_netcdf(path)
+    draw = {"curves": fm.plot_curves, "response": fm.plot_response}[kind]
+    expected = [line.get_xydata() for ax in draw(ds) for line in ax.lines]
+    for found in (older, read(path), read(path, PICTURED)):
+        drawn = [line.get_xydata() for ax in draw(found) for line in ax.lines]
+        for one, other in zip(drawn, expected, strict=True):
+            np.testing.assert_array_equal(one, other)
+    assert sorted(describe_file(older).splitlines()) == sorted(describe_file(ds).splitlines())
+    xr.testing.assert_identical(standard_form(older), standard_form(ds))
 
 
 # What makes no sense

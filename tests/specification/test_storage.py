@@ -52,8 +52,10 @@ RESPONSE = {
     "v": ("float64", ("dof", "tau")),
     "z": ("float64", ("tau",)),
     "friction": ("float64", ("tau",)),
+    "direction": ("int8", ("tau",)),
     "phase": ("int8", ("tau",)),
     "event_tau": ("float64", ("event",)),
+    "event_direction": ("int8", ("event",)),
     "event_phase": ("int8", ("event",)),
     "event_z": ("float64", ("event",)),
     "regime": ("int8", ()),
@@ -145,7 +147,8 @@ def test_codes_of_the_regime_are_those_promised(files):
         assert ds.status.attrs["flag_values"][0] == 0
         assert ds.status.attrs["flag_meanings"].startswith("resolved ")
     with xr.open_dataset(files / "response.nc") as ds:
-        assert ds.phase.attrs["flag_values"].tolist() == [-1, 0, 1]
+        for name in ("direction", "phase", "event_direction", "event_phase"):
+            assert ds[name].attrs["flag_values"].tolist() == [-1, 0, 1]
 
 
 def test_only_what_was_asked_for_is_stored(files, tmp_path):

@@ -58,7 +58,7 @@ def test_a_response_prints_its_numbers(datasets):
         assert f"{float(ds[name]):.6g}" in text
     reach = np.abs(ds.x).max("tau").values
     assert f"mass by mass  {reach[0]:.6g}, {reach[1]:.6g}" in text
-    begins = ds.event_tau.values[ds.event_phase.values == 0] / np.pi
+    begins = ds.event_tau.values[ds.event_direction.values == 0] / np.pi
     assert ", ".join(f"{value:.6g}" for value in begins) in text
 
 

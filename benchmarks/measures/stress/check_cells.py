@@ -108,9 +108,9 @@ def _turns(row: Row, beta: float) -> float:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            phase = fm.response(row.body.system, row.r, beta, row.mu).phase
+            direction = fm.response(row.body.system, row.r, beta, row.mu).direction
         except fm.NoSteadyState:
             return math.nan
-    moving = phase.values[phase.values != 0]
-    cycles = round(float(phase.tau[-1]) / (2.0 * math.pi))
+    moving = direction.values[direction.values != 0]
+    cycles = round(float(direction.tau[-1]) / (2.0 * math.pi))
     return float(np.count_nonzero(np.diff(moving, append=moving[0]))) / cycles

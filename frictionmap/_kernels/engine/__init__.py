@@ -25,6 +25,7 @@ time_history   a steady state sampled in time
 floquet        Floquet multipliers, and deviation from antiperiodicity
 details        further outputs of a map: amplitudes of the masses, multipliers, asymmetry
 quantities     what response curves hold: extremes, harmonics, work
+further        details and quantities of a cell, as far as they are requested
 coexistence    `also_reachable`: regimes that other initial states lead to
 fill           the cells of a map
 =============  ====================================================================================

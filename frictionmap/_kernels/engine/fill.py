@@ -8,26 +8,11 @@ import numpy as np
 from ...regimes import CLOSED_FORM, CONTINUOUS, PERMANENT_STICKING, RESOLVED
 from ..compiler import entry, kernel
 from ..continuous_motion import continuous_amplitude
-from .details import (
-    Details,
-    NotRequested,
-    details_at,
-    write_continuous_details,
-    write_orbit_details,
-    write_stuck_details,
-)
+from .further import requested_at, write_continuous, write_orbit, write_stuck
 from .march import steady_state
-from .measure import measure
+from .measure import orbit_table
 from .motion import at_frequency, contact_at, forget_neighbour, start
-from .quantities import (
-    Quantities,
-    quantities_at,
-    write_continuous_quantities,
-    write_orbit_quantities,
-    write_stuck_quantities,
-)
-from .records import continuous_cell, known_orbit, quasi_static_cell, stuck_cell
-from .segment_table import segment_columns
+from .records import continuous_cell, quasi_static_cell, stuck_cell
 
 #: Number of open cells of a row after which the search from the neighbour's orbit starts anew.  Jobs begin
 #: only there and at the start of rows, so that no result depends on how the map is divided into jobs.
@@ -59,13 +44,6 @@ class ClosedForm(NamedTuple):
     u: np.ndarray
     g: np.ndarray
     marginal: np.ndarray  # bool
-
-
-class Requested(NamedTuple):
-    """Results requested beyond the outputs of every cell."""
-
-    details: Details | NotRequested
-    quantities: Quantities | NotRequested
 
 
 @kernel
@@ -103,38 +81,36 @@ def fill_closed(first, last, cells, axes, closed, out, requested):
     axes : Axes
     closed : ClosedForm
     out : named tuple of arrays (n_mu, n_r, n_beta, ...), one for every output
-    requested : Requested
+    requested : Requested, see `further`
     """
     n_r = axes.r.size
     for row in range(first, last):
         m = row // n_r
         i = row % n_r
         load = closed.load[i]
-        details, quantities = details_at(requested.details, i), quantities_at(requested.quantities, i)
+        further = requested_at(requested, i)
         for j in range(cells.low[row]):
             b = axes.beta[j] / load
             amplitude = continuous_amplitude(closed.v_abs[i], closed.u[i], closed.g[i], b)
             marginal = closed.marginal[i] and b > 0.0
             store(out, m, i, j, continuous_cell(amplitude, marginal, CLOSED_FORM, 0.0), load)
             if axes.r[i] > 0.0:
-                write_continuous_details(details, out, m, i, j, axes.beta[j], axes.mu[m] * axes.beta[j])
-                write_continuous_quantities(quantities, m, j, axes.beta[j])
+                write_continuous(further, m, j, axes.beta[j])
         if axes.r[i] == 0.0:
             for j in range(cells.low[row], cells.high[row]):
                 store(out, m, i, j, quasi_static_cell(), load)
         for j in range(cells.high[row], axes.beta.size):
             store(out, m, i, j, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
-            write_stuck_details(details, out, m, i, j, 0.0)
-            write_stuck_quantities(quantities, m, j)
+            write_stuck(further, m, j)
 
 
 @kernel
-def _write_quantities(quantities, motion, contact, found, m, j, beta):
-    """Write the requested quantities of an open cell.
+def _write_further(further, motion, contact, found, m, j, beta):
+    """Write the further outputs of an open cell.
 
     Parameters
     ----------
-    quantities : QuantitiesAtFrequency or NotRequested
+    further : RequestedAtFrequency
     motion : a kind of motion, at the anchor of the steady state
     contact : Contact
     found : Cell
@@ -142,34 +118,11 @@ def _write_quantities(quantities, motion, contact, found, m, j, beta):
     beta : friction ratio
     """
     if found.regime == PERMANENT_STICKING:
-        write_stuck_quantities(quantities, m, j)
+        write_stuck(further, m, j)
     elif found.slides > 0:
-        write_orbit_quantities(quantities, motion, contact, found, m, j, beta)
+        write_orbit(further.table, further, motion, contact, found, m, j, beta)
     elif found.regime == CONTINUOUS:
-        write_continuous_quantities(quantities, m, j, beta)
-
-
-@kernel
-def _write_details(details, motion, contact, found, out, m, i, j, beta, mu_beta):
-    """Write the requested details of an open cell.
-
-    Parameters
-    ----------
-    details : DetailsAtFrequency or NotRequested
-    motion : a kind of motion, at the anchor of the steady state
-    contact : Contact
-    found : Cell
-    out : named tuple of output arrays
-    m, i, j : indices of mu, r and beta
-    beta, mu_beta : kinetic and static friction force
-    """
-    if found.regime == PERMANENT_STICKING:
-        write_stuck_details(details, out, m, i, j, motion.load * found.contact_state.z)
-    elif found.slides > 0:
-        amplitude = motion.load * found.amplitude
-        write_orbit_details(details, motion, contact, found, out, m, i, j, beta, mu_beta, amplitude)
-    elif found.regime == CONTINUOUS:
-        write_continuous_details(details, out, m, i, j, beta, mu_beta)
+        write_continuous(further, m, j, beta)
 
 
 @kernel
@@ -197,7 +150,7 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, requested, 
     limits : Limits
     moving : whether the initial state is the moving start; else the contact starts at rest
     out : named tuple of arrays (n_mu, n_r, n_beta, ...), one for every output
-    requested : Requested, see `details` and `quantities`
+    requested : Requested, see `further`
     cancel : (1,) set by another thread to end the computation
     """
     n_r = axes.r.size
@@ -209,7 +162,7 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, requested, 
         i = row % n_r
         begin = cells.ends[k - 1] if k > 0 else 0
         motion = at_frequency(system, i)
-        details, quantities = details_at(requested.details, i), quantities_at(requested.quantities, i)
+        further = requested_at(requested, i)
         for position in range(cell - begin, min(last, cells.ends[k]) - begin):
             if cancel[0] != 0:
                 return
@@ -222,8 +175,7 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, requested, 
             found = steady_state(motion, contact, contact_state, moving, limits, cancel)
             store(out, m, i, j, found, motion.load)
             motion.scratch.left[0] = math.inf  # the orbit is known, so following it ends
-            _write_details(details, motion, contact, found, out, m, i, j, beta, mu * beta)
-            _write_quantities(quantities, motion, contact, found, m, j, beta)
+            _write_further(further, motion, contact, found, m, j, beta)
         cell = cells.ends[k]
         k += 1
 
@@ -239,10 +191,6 @@ def one_cell(system, beta, mu, limits, moving):
     contact = contact_at(system, 0, 0, beta, mu)
     contact_state = start(motion, system, 0, contact, moving)
     found = steady_state(motion, contact, contact_state, moving, limits, np.zeros(1, dtype=np.uint8))
-    table = np.empty((2 * found.slides, segment_columns(system.modes)))
-    segments = 0
     if found.slides > 0:
         motion.scratch.left[0] = math.inf  # the orbit is known, so following it ends
-        orbit = known_orbit(found.contact_state, found.event, found.sign, found.slides)
-        segments = measure(motion, contact, orbit, table).segments
-    return found, table[:segments]
+    return found, orbit_table(motion, contact, found, system.modes)

@@ -11,7 +11,7 @@ from ..structure.events import slide_on
 from ..structure.newton import copy_state, return_map, spectral_radius
 from ..structure.sliding_orbit import orbit_state
 from .periods import half_periods
-from .segment_table import CONTACT_FORCE, COS, EVENT, LENGTH, SENSE, SIN, take_start
+from .segment_table import CONTACT_FORCE, COS, EVENT, LENGTH, SENSE, SIN, Z_END, take_start
 from .time_history import Samples, sample_segments
 
 #: Samples of z per half period of the excitation.
@@ -100,15 +100,16 @@ def _least_difference(z, halves):
 
 
 @entry
-def asymmetry(st, beta, table, amplitude, work, scratch):
-    """Deviation of the motion of a segment table from its mirror image, relative to the amplitude.
+def asymmetry(st, beta, table, work, scratch):
+    """Deviation of the motion of a segment table from its mirror image, relative to the amplitude of z.
 
     It is the least over odd m of the largest |z(tau + m pi) + z(tau)|, and 0 for a motion that recurs after
     an odd number of half periods.
     """
-    total = 0.0
+    total = amplitude = 0.0
     for k in range(table.shape[0]):
         total += table[k, LENGTH]
+        amplitude = max(amplitude, abs(table[k, Z_END]))
     halves = half_periods(total)
     if halves % 2 == 1:
         return 0.0

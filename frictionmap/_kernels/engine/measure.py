@@ -2,14 +2,16 @@
 
 from typing import NamedTuple
 
-from ..compiler import kernel
+import numpy as np
+
+from ..compiler import entry, kernel
 from ..event_codes import NO_END
 from ..newton_limits import LONGEST_SLIDE
 from .motion import after_turn, bring_back, has_returned, keep_state, put_slide, put_stop, slide_to_turn
 from .periods import half_periods
 from .policies import ANCHOR
-from .records import SHORTEST_STOP, TURN, stops_at, turns_at
-from .segment_table import CONTACT_FORCE, EVENT, put_segment
+from .records import SHORTEST_STOP, TURN, known_orbit, stops_at, turns_at
+from .segment_table import CONTACT_FORCE, EVENT, put_segment, segment_columns
 
 
 class Measured(NamedTuple):
@@ -78,6 +80,14 @@ def measure(motion, contact, orbit, table):
     bring_back(motion, ANCHOR)
     share = stuck / time if time > 0.0 else 0.0
     return Measured(count, segments, half_periods(time), stops, amplitude, share)
+
+
+@entry
+def orbit_table(motion, contact, found, n):
+    """Segment table of the periodic orbit of a Cell, with the motion at its anchor; n oscillators."""
+    table = np.empty((2 * found.slides, segment_columns(n)))
+    orbit = known_orbit(found.contact_state, found.event, found.sign, found.slides)
+    return table[: measure(motion, contact, orbit, table).segments]
 
 
 @kernel

@@ -1,8 +1,7 @@
 """Quantities of a steady state over one excitation cycle: extremes and their phases, harmonics, work,
 distortion.
 
-They are requested separately from `details`, and in the same way by the class of `requested`: nothing is
-compiled for quantities that are not requested.  Rows of results are the masses, one force, and the contact.
+Rows of results are the masses, one force, and the contact.
 """
 
 import math
@@ -10,22 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import by_class, entry, kernel
+from ..compiler import entry, kernel
 from ..continuous_motion import continuous_amplitude, orbit_phase
-from ..structure.newton import Workspace, make_workspace
-from ..structure.oscillators import Scratch, make_scratch
+from ..structure.newton import Workspace
+from ..structure.oscillators import Scratch
 from ..structure.sliding_orbit import Continuous
-from ..structure.state import (
-    FEEDTHROUGH_COS,
-    FEEDTHROUGH_SIN,
-    Z_RATE,
-    Loads,
-    Model,
-    StructureAtFrequency,
-    Z,
-    make_structure,
-)
-from .details import NotRequested
+from ..structure.state import FEEDTHROUGH_COS, FEEDTHROUGH_SIN, Z_RATE, StructureAtFrequency, Z
 from .dissipation import Dampers, sliding_distance, viscous_work
 from .distortion import distortion_square
 from .extremes import (
@@ -41,9 +30,7 @@ from .extremes import (
     turned_half,
 )
 from .harmonics import Spectrum, harmonics_of_continuous, harmonics_of_segments, make_spectrum
-from .measure import measure
 from .periods import full_period
-from .records import known_orbit
 from .segment_table import continuous_segment, segment_columns
 
 #: Columns of `Results.work_terms`, per excitation cycle.
@@ -98,11 +85,6 @@ class Balance(NamedTuple):
 class Quantities(NamedTuple):
     """Data for the quantities over a whole map."""
 
-    r: np.ndarray
-    model: Model
-    loads: Loads
-    orbit: Continuous
-    steps: float
     wall_mass: int  # mass whose displacement equals the contact displacement, or -1
     outputs: OutputMatrices  # of the masses and, if requested, of the transmitted force
     uncoupled: UncoupledResponse
@@ -113,10 +95,11 @@ class Quantities(NamedTuple):
 
 
 class QuantitiesAtFrequency(NamedTuple):
-    """Data for the quantities at one frequency; at r = 0 a placeholder (r = 1) that is never read."""
+    """Data for the quantities at one frequency."""
 
     i: int
     st: StructureAtFrequency
+    orbit: Continuous
     request: Quantities
     spectrum: Spectrum
     rows: np.ndarray  # (rows, N + 1) complex harmonics of one cell; the force is the friction force
@@ -126,22 +109,14 @@ class QuantitiesAtFrequency(NamedTuple):
     scratch: Scratch
 
 
-@kernel
-def _not_requested(requested, i):
-    """Return the placeholder itself."""
-    return requested
-
-
 @entry
-def _quantities_at(requested, i):
-    """Build the data for the i-th frequency."""
-    r = requested.r[i] if requested.r[i] > 0.0 else 1.0
-    st = make_structure(requested.model, requested.loads, i, r, requested.steps)
-    rows, harmonics = requested.linear.growth.shape[1], max(1, requested.harmonics)
+def quantities_at(quantities, common, shared):
+    """Build the data for one frequency; `common` and `shared` as in `further`."""
+    rows, harmonics, st = quantities.linear.growth.shape[1], max(1, quantities.harmonics), shared.st
     return QuantitiesAtFrequency(
-        i, st, requested, make_spectrum(st, harmonics),
+        shared.i, st, common.orbit, quantities, make_spectrum(st, harmonics),
         np.zeros((rows, harmonics + 1), dtype=np.complex128), np.full((rows, FOUND), math.nan),
-        np.empty((1, segment_columns(st.n))), make_workspace(st.n), make_scratch(st.n),
+        np.empty((1, segment_columns(st.n))), shared.work, shared.scratch,
     )  # fmt: skip
 
 
@@ -278,13 +253,7 @@ def _write_distortions(quantities, m, j, beta, table, halves):
 
 
 @kernel
-def _no_stuck(quantities, m, j):
-    """Write nothing."""
-    pass
-
-
-@kernel
-def _stuck(quantities, m, j):
+def stuck_quantities(quantities, m, j):
     """Write the quantities of a cell whose contact sticks; its static offset is not part of the vibration."""
     _put_held(quantities)
     _extremes_of_one_harmonic(quantities)
@@ -322,15 +291,9 @@ def _viscous_work(quantities, beta, table, halves):
 
 
 @kernel
-def _no_continuous(quantities, m, j, beta):
-    """Write nothing."""
-    pass
-
-
-@kernel
-def _continuous(quantities, m, j, beta):
+def continuous_quantities(quantities, m, j, beta):
     """Write the quantities of the continuous orbit."""
-    orbit, i = quantities.request.orbit, quantities.i
+    orbit, i = quantities.orbit, quantities.i
     contact = quantities.extremes[quantities.extremes.shape[0] - 1]
     if not orbit.v_abs[i] < math.inf:
         _write_growing(quantities, m, j, beta)
@@ -408,34 +371,9 @@ def _write_growing(quantities, m, j, beta):
             out.distortions[m, i, j, k, RMS], out.distortions[m, i, j, k, DISTORTION] = math.inf, 0.0
 
 
-@kernel
-def _no_orbit(quantities, motion, contact, found, m, j, beta):
-    """Write nothing.
-
-    Parameters
-    ----------
-    quantities, motion, contact, found, m, j, beta : see `write_orbit_quantities`
-    """
-    pass
-
-
 @entry
-def _orbit(quantities, motion, contact, found, m, j, beta):
-    """Write the quantities of a periodic orbit from its segment table.
-
-    Parameters
-    ----------
-    quantities, motion, contact, found, m, j, beta : see `write_orbit_quantities`
-    """
-    table = np.empty((2 * found.slides, segment_columns(quantities.st.n)))
-    orbit = known_orbit(found.contact_state, found.event, found.sign, found.slides)
-    table = table[: measure(motion, contact, orbit, table).segments]
-    _write_periodic(quantities, m, j, beta, table)
-
-
-@kernel
-def _write_periodic(quantities, m, j, beta, table):
-    """Write the quantities of the steady state of a segment table."""
+def periodic_quantities(quantities, m, j, beta, table):
+    """Write the quantities of a periodic orbit from its segment table."""
     halves = harmonics_of_segments(quantities.st, beta, table, quantities.spectrum)
     _put_harmonics(quantities)
     largest_in_contact(table, quantities.extremes[quantities.extremes.shape[0] - 1])
@@ -447,54 +385,3 @@ def _write_periodic(quantities, m, j, beta, table):
     distance = 2.0 / halves * sliding_distance(quantities.st, table, quantities.work)
     _store(quantities, m, j, beta, distance, _viscous_work(quantities, beta, table, halves))
     _write_distortions(quantities, m, j, beta, table, halves)
-
-
-# For the only cell of a map: one entry per branch, so that only the branch in use is compiled.
-
-
-@entry
-def stuck_cell_quantities(requested):
-    """Write the quantities of the only cell of a map, whose contact sticks."""
-    _stuck(_quantities_at(requested, 0), 0, 0)
-
-
-@entry
-def continuous_cell_quantities(requested, beta):
-    """Write the quantities of the only cell of a map, on the continuous orbit of the closed form."""
-    _continuous(_quantities_at(requested, 0), 0, 0, beta)
-
-
-@entry
-def table_cell_quantities(requested, beta, table):
-    """Write the quantities of the only cell of a map, from its segment table."""
-    _write_periodic(_quantities_at(requested, 0), 0, 0, beta, table)
-
-
-@by_class((NotRequested, _not_requested), (Quantities, _quantities_at))
-def quantities_at(requested, i):
-    """Build the data for the quantities at the i-th frequency."""
-
-
-@by_class((NotRequested, _no_stuck), (QuantitiesAtFrequency, _stuck))
-def write_stuck_quantities(quantities, m, j):
-    """Write the quantities of a cell whose contact sticks."""
-
-
-@by_class((NotRequested, _no_continuous), (QuantitiesAtFrequency, _continuous))
-def write_continuous_quantities(quantities, m, j, beta):
-    """Write the quantities of a cell on the continuous orbit."""
-
-
-@by_class((NotRequested, _no_orbit), (QuantitiesAtFrequency, _orbit))
-def write_orbit_quantities(quantities, motion, contact, found, m, j, beta):
-    """Write the quantities of a cell on a periodic orbit.
-
-    Parameters
-    ----------
-    quantities : QuantitiesAtFrequency or NotRequested
-    motion : a kind of motion, at the anchor of the orbit
-    contact : Contact, in the units of the motion
-    found : Cell
-    m, j : indices of mu and beta
-    beta : kinetic friction force, in the units of the map
-    """

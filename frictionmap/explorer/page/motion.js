@@ -120,12 +120,12 @@ export class MotionPanel {
 
   /** Times in excitation periods, and stops as bands behind them. */
   #time() {
-    const { tau, phase } = this.motion;
+    const { tau, direction } = this.motion;
     const time = Float32Array.from(tau, (value) => value / (2 * Math.PI));
     const bands = [];
     let from = null;
-    for (let k = 0; k <= phase.length; k += 1) {
-      const stuck = k < phase.length && phase[k] === 0;
+    for (let k = 0; k <= direction.length; k += 1) {
+      const stuck = k < direction.length && direction[k] === 0;
       if (stuck && from === null) from = time[k];
       if (!stuck && from !== null) {
         bands.push({ from, to: time[Math.min(k, time.length - 1)], colour: colour("stop") });

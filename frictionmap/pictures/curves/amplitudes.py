@@ -33,7 +33,7 @@ class Names(NamedTuple):
 
 NAMES = {
     "amplitude": Names(
-        ("amplitude", "phase"),
+        ("amplitude", "phase_lag"),
         ("contact_amplitude", "contact_phase"),
         ("limit_amplitude", "limit_phase"),
         "amplitude",

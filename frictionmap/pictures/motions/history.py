@@ -32,7 +32,7 @@ _GAP, MOST_LABELS = 0.09, 11
 _ROUNDING = 1e-9
 
 #: Variables of the events; without one of these the starts of stops are not marked.
-_EVENTS = ("event_tau", "event_phase", "event_z")
+_EVENTS = ("event_tau", "event_direction", "event_z")
 
 _SHADE: Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.55, "linewidth": 0.0}
 _LOAD_COLOUR = "#cc1f03"
@@ -87,7 +87,7 @@ def _draw_contact(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> list[Handle]:
     _in_sight(ax, z)
     ax.set_ylabel("contact\n" r"$z$ / $(P/k_1)$")
     on_the_right(ax, ds, "length", "$z$")
-    begins = ds["event_phase"].values == 0 if set(_EVENTS) <= set(ds) else np.zeros(0, dtype=bool)
+    begins = ds["event_direction"].values == 0 if set(_EVENTS) <= set(ds) else np.zeros(0, dtype=bool)
     if not begins.any():
         return []
     times, places = ds["event_tau"].values[begins] / np.pi, ds["event_z"].values[begins]
@@ -126,9 +126,9 @@ def _draw_friction(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     ax.set_ylabel("friction / $P$")
 
 
-def _mark_phases(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray) -> list[Handle]:
+def _mark_stops(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray) -> list[Handle]:
     """Shade stops, and mark maxima of the load with dotted lines, in all panels."""
-    stopped = ds["phase"].values == 0
+    stopped = ds["direction"].values == 0
     for ax in axes:
         transform = ax.get_xaxis_transform()
         ax.fill_between(turns, 0, 1, where=stopped.tolist(), transform=transform, zorder=0.5, **_SHADE)
@@ -210,7 +210,7 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
         the panels.
     """
     ds = to_draw(ds, "plot_response", "response")
-    check_holds(ds, ("z", "x", "friction", "phase"), "its motion")
+    check_holds(ds, ("z", "x", "friction", "direction"), "its motion")
     check_can_be_seen(ds, ("z", "x", "friction"))
     names = _panels(ds)
     if ax is None:
@@ -220,7 +220,7 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
     else:
         axes = given_axes(ax, len(names), f"for {', '.join(names)}")
     turns = ds["tau"].values / np.pi
-    handles = _mark_phases(axes, ds, turns)
+    handles = _mark_stops(axes, ds, turns)
     by_name = dict(zip(names, axes, strict=True))
     if "load" in by_name:
         _draw_load(by_name["load"], turns, load_of(ds) or "")

@@ -57,6 +57,21 @@ def with_outliers(time, x, rng):
     return np.where(rng.uniform(size=x.size) < 0.02, x + rng.choice([-0.5, 0.5], x.size), x)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_without_outliers_both_losses_agree(seed):
+    """The base's own errors are most of the error here: soft_l1 must allow for them as least squares do."""
+    rig = RIG._replace(
+        f_n=2.98, zeta=0.04, x_F=0.6, offset_x=-0.28, f=1.076, base=(0.0, 2.88 * np.exp(0.7j), 0.03)
+    )
+    data = synthetic(rig, settled(rig), seed)
+    linear, soft = (
+        fm.identify.record(*data, damping_reference="base", known={"mu": 1.0}, loss=loss).sel(parameter=NAMES)
+        for loss in ("linear", "soft_l1")
+    )
+    assert np.abs((soft.estimate - linear.estimate) / linear.standard_error).max() < 0.6
+    np.testing.assert_allclose(soft.standard_error, linear.standard_error, rtol=0.15)
+
+
 def coloured(time, x, rng):
     """Noise of the size of the white one, correlated by 0.9 from sample to sample."""
     steps = rng.normal(0.0, RIG.noise_x * np.sqrt(1.0 - 0.9**2), x.size + 100)

@@ -182,7 +182,7 @@ def test_a_pinch_zooms(browser, one):
         assert sum(r) / 2 == pytest.approx(1.0, abs=0.05)
         devices.send("Input.synthesizeTapGesture", {"x": round(x0), "y": round(y0)})
         page.wait_for_selector("#motion h2")
-        assert "kept" in page.inner_text("#motion h2")
+        assert "selected" in page.inner_text("#motion h2")
 
 
 # Numbers

@@ -1,10 +1,13 @@
 """The coverage benchmark: its truths are those of other generators, and its counts can fail."""
 
+import json
+
 import decays
 import numpy as np
 import pytest
 import records
 import responses
+from conftest import ROOT
 
 import frictionmap as fm
 from benchmarks.measures import coverage
@@ -120,3 +123,15 @@ def test_every_kind_meets_every_condition_that_it_can():
     for kind in ("forced", "sweep"):  # tables have no time
         for word in ("noise only", "outliers", "zeta 0."):
             assert word in names(kind)
+
+
+def test_the_kept_table_has_all_cases_and_no_interval_that_falls_short():
+    """`short`: as few intervals hold their truth as chance makes in fewer than one of 1,000 counts."""
+    kept = json.loads((ROOT / "benchmarks" / "results" / "coverage.json").read_text(encoding="utf-8"))[
+        "kinds"
+    ]
+    for kind, cases in coverage.KINDS.items():
+        for case in cases:
+            row = kept[kind][case.name]
+            assert row["seeds"] == case.seeds, (kind, case.name)
+            assert not [name for name, one in row["parameters"].items() if one["short"]], (kind, case.name)

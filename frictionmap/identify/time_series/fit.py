@@ -143,17 +143,19 @@ def fit_record(
     mass = shaken(contact, damping_reference, phasors, samples.time)
     near = _nearest(coarse, samples.near[few], phasors, {"mu": 1.0, **known})
     scatter = float(np.sqrt(near.sum / samples.near[few].size))
-    at_one = _fit_near(mass, phasors, samples, known, _begin(near, samples), scatter)
+    begin = _begin(near, samples)
+    at_one = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
     starting = [at_one.solution.values]
     if "mu" not in known and at_one.model_error > 1.0:  # else nothing far away can be much nearer
         starting.append(_begin(_nearest(coarse, samples.near[few], phasors, known), samples))
     fit = at_one if "mu" in known else _with_static(at_one, phasors, starting)
     scale = samples.scale or 0.0
-    for _ in range(_ROUNDS if scale else 0):
-        again = _drawn_in(fit)
+    # where mu is fitted, what errors of the base do is known only now: it was taken for mu = 1
+    for _ in range(_ROUNDS if scale else int(fit.static == FITTED)):
+        again = _drawn_in(fit) if scale else samples
         change = np.abs(again.fitted - fit.samples.fitted).max()
         scatter = float(np.sqrt(fit.solution.sum / again.x.size))
-        at_one = _fit_near(mass, phasors, again, known, at_one.solution.values, scatter)
+        at_one = _fit_near(mass, phasors, again, known, at_one.solution.values, scatter, fit.solution.values)
         fit = at_one if "mu" in known else _with_static(at_one, phasors, [fit.solution.values])
         if change < _SETTLED * scale:
             break
@@ -174,13 +176,15 @@ def _fit_near(
     known: Mapping[str, float],
     start: np.ndarray,
     scatter: float,
+    about: np.ndarray,
 ) -> RecordFit:
     """The least sum near a start, with mu = 1 unless it is known.
 
     scatter : standard deviation of a sample, without what errors of the base make
+    about : values of the motion that errors of the base move
     """
     held = {"mu": 1.0, **known}
-    by_base = base_slopes(mass, outer(start[: len(PARAMETERS)]))
+    by_base = base_slopes(mass, outer(about[: len(PARAMETERS)]))
     whitening = _whitening(by_base, base_errors(mass, phasors), scatter)
     with_mu = _problem(mass, samples, _free(known, samples), start, whitening)
     problem = with_mu._replace(free=_free(held, samples))

@@ -1,10 +1,14 @@
 """Benchmarks as commands, and the numbers in their results."""
 
+import json
+import math
 import os
 import subprocess
 import sys
 from itertools import pairwise
+from pathlib import Path
 
+import pytest
 from conftest import ROOT
 
 
@@ -46,11 +50,26 @@ def spreads(content: object) -> list[dict]:
     return [one for value in content.values() for one in spreads(value)]
 
 
-def check_tables(lines: list[str]) -> int:
-    """Check tables in Markdown, numbers in every cell; return the number of their lines."""
-    tables = [line for line in lines if line.startswith("|")]
-    assert not {"nan", "inf", "None"} & set(" ".join(tables).replace("(", " ").split())
+def check_result(folder: Path, name: str, figure: str) -> None:
+    """Check one result: machine, numbers, timings and figure; skip if there was no browser for it."""
+    content = json.loads((folder / f"{name}.json").read_text())
+    machine = content.pop("machine")
+    assert machine["versions"]["numba"]
+    if "no browser" in content:
+        pytest.skip(content["no browser"])
+    found = numbers(content)
+    assert len(found) > 5
+    assert not any(math.isnan(number) for number in found)
+    for one in spreads(content):
+        assert one["least"] <= one["median"] <= one["most"]
+        assert one["runs"] >= 1
+    assert (folder / f"{figure}.png").read_bytes().startswith(b"\x89PNG")
+
+
+def check_quoted(lines: list[str]) -> int:
+    """Check lines in Markdown, with tables of numbers; return the number of lines of tables."""
+    assert not {"nan", "inf", "None"} & set(" ".join(lines).replace("(", " ").split())
     for before, line in pairwise(lines):  # as many cells in a row as in the one above
         if before.startswith("|") and line.startswith("|"):
             assert before.count("|") == line.count("|")
-    return len(tables)
+    return sum(line.startswith("|") for line in lines)

@@ -1,10 +1,9 @@
 """The quick forms of the benchmarks run, and write what they say they write; faults: test_quick_faults."""
 
 import json
-import math
 
 import pytest
-from measuring import check_tables, numbers, python, spreads
+from measuring import check_quoted, check_result, python
 
 from benchmarks.__main__ import BENCHMARKS
 from benchmarks.report import results_page
@@ -28,25 +27,13 @@ def quick(tmp_path_factory):
 def test_quick_form(name, quick):
     folder, said = quick
     assert [line for line in said.splitlines()[-len(NAMES) :] if line.split()[:2] == [name, "took"]]
-    content = json.loads((folder / f"{name}.json").read_text())
-    machine = content.pop("machine")
-    assert machine["versions"]["numba"]
-    if "no browser" in content:
-        pytest.skip(content["no browser"])
-    found = numbers(content)
-    assert len(found) > 5
-    assert not any(math.isnan(number) for number in found)
-    for one in spreads(content):
-        assert one["least"] <= one["median"] <= one["most"]
-        assert one["runs"] >= 1
-    assert (folder / f"{FIGURES.get(name, name)}.png").read_bytes().startswith(b"\x89PNG")
+    check_result(folder, name, FIGURES.get(name, name))
 
 
 @pytest.mark.slow
 def test_quick_results_can_be_quoted(quick):
     folder, _ = quick
-    lines = results_page.block(folder).splitlines()
-    assert check_tables(lines) > 40
+    assert check_quoted(results_page.block(folder).splitlines()) > 40
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from conftest import ROOT
-from pages import HANG, ask, packet, scene_from, served, solver
+from pages import HANG, TWO_MASSES, ask, packet, scene_from, served, solver
 from refusals import refusal
 from structures import chain_matrices
 
@@ -44,17 +44,7 @@ mu = [1.5, 1.75]
 [solver]
 outputs = ["period"]
 """
-TWO = """\
-[system]
-contact = "between-masses"
-contact_masses = [1, 2]
-mass_ratios = [1.0, 0.5]
-stiffness_ratios = [1.0, 2.0]
-damping_ratios = 0.02
-[grid]
-r = [0.1, 2.5]
-beta = [0.0, 2.0]
-"""
+TWO = TWO_MASSES.replace("[grid]", "damping_ratios = 0.02\n[grid]")
 
 UNITS = '[units]\nnatural_frequency = "4.2 Hz"\nload = "12.5 N"\nstiffness = "3 N/mm"\n'
 

@@ -78,11 +78,10 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bo
     determined = _without_mu(task) if flat else task
     _check_identifiable(table, model, solution, determined)
     plain = problem(model, task.free, float(solution.values[F_N]))
+    now = solution._replace(at_bound=solution.at_bound & determined.free)
     variance = 1.0 if any(table.given) else None
     if robust:
         variance = effective_variance(plain, solution, _OUTLIER)
-    now = solution._replace(at_bound=solution.at_bound & determined.free)
-    if robust:
         allowance = Allowance(jackknife_growth(plain._replace(free=determined.free), solution, _OUTLIER))
     else:
         allowance = estimated_weights(determined, now, _kind(model.samples), ~np.array(table.given))

@@ -177,13 +177,13 @@ def _with_excess(
 
 
 def half_widths(freedom: np.ndarray) -> np.ndarray:
-    """Half the widths of 95 % intervals, over the standard errors; freedom of each."""
+    """Half the widths of 95 % intervals over the standard errors, by the degrees of freedom of each."""
     return np.asarray(stdtrit(freedom, _TWO_SIDED))
 
 
 def two_sided(freedom: int) -> float:
     """Half the width of a 95 % interval, over the standard error."""
-    return float(stdtrit(freedom, _TWO_SIDED))
+    return float(half_widths(np.array(freedom)))
 
 
 def one_sided(freedom: float) -> float:

@@ -36,10 +36,11 @@ def softened(problem: Problem, scale: float) -> Problem:
     return problem._replace(residuals=residuals)
 
 
-def drawn_in(residual: np.ndarray, scale: float) -> np.ndarray:
-    """Residuals whose least squares are solved by the estimate of soft_l1, with those of outliers drawn in.
+def pseudo_residuals(residual: np.ndarray, scale: float) -> np.ndarray:
+    """Residuals psi(r)/mean(psi') of pseudo-values, psi = r/sqrt(1 + (r/s)^2).
 
-    psi(r)/mean(psi') with psi = r/sqrt(1 + (r/s)^2): their variance is that of a sample in the covariance.
+    Least squares of pseudo-values about the estimate of soft_l1 end at this estimate, and the variance of
+    these residuals is that of a sample in its covariance.
     """
     q = np.hypot(1.0, residual / scale)
     return residual / q / float(np.mean(q**-3))

@@ -14,7 +14,7 @@ import numpy as np
 from ..signals.noise import noise_of_fit
 from ..signals.phasors import Phasors, scatter_of
 from ..statistics.least_squares import Noise, Problem, Solution, minimise
-from ..statistics.robust import drawn_in
+from ..statistics.robust import pseudo_residuals
 from .motion import (
     F_N,
     FLOOR,
@@ -37,10 +37,10 @@ from .static_friction import FITTED, IDLE, KNOWN, ONE, is_asked_for
 _FOLLOWED = 4
 _SAMPLES = 600
 
-#: Fits with errors of outliers drawn in: each is a step of Newton's method with the mean slope.
+#: Fits to pseudo-values: each is a step of Newton's method with the mean slope, so few are needed.
 _ROUNDS = 8
 
-#: They end where no error of a sample is changed by more of its scale.
+#: They end where no pseudo-value changes by more than this share of the scale.
 _SETTLED = 1e-3
 
 #: The natural frequency lies within this factor of a start.
@@ -68,11 +68,11 @@ class Samples(NamedTuple):
 
     time: np.ndarray  # s
     x: np.ndarray
-    fitted: np.ndarray  # what is fitted: x, or with errors of outliers drawn in
+    fitted: np.ndarray  # x, or pseudo-values where there may be outliers
     near: np.ndarray  # x without drift, wander and outliers, to begin with
     slow: np.ndarray  # shape (samples, 1 + waves), a straight line and slow waves, of norm 1
     everywhere: np.ndarray  # the same at all times of the record
-    scale: float | None  # beyond which errors are drawn in; None: never
+    scale: float | None  # residuals beyond it have little influence; None: all count alike
 
 
 class RecordFit(NamedTuple):
@@ -135,8 +135,9 @@ def fit_record(
 ) -> RecordFit:
     """The least sum over all samples, with mu = 1 unless it is known or the data ask for more.
 
-    Errors of outliers are drawn in by the motion that was fitted last (Huber and Ronchetti, Robust
-    Statistics, 2009, section 7.8): the fits end at the estimate of soft_l1, with errors of least squares.
+    Where there may be outliers, pseudo-values from the last fit take the place of x (Huber and Ronchetti,
+    Robust Statistics, 2009, section 7.8): this converges to the estimate of soft_l1, and the errors are those
+    of least squares.
     """
     few = slice(None, None, max(1, samples.time.size // _SAMPLES))
     coarse = shaken(contact, damping_reference, phasors, samples.time[few])
@@ -148,25 +149,26 @@ def fit_record(
     starting = [at_one.solution.values]
     if "mu" not in known and at_one.model_error > 1.0:  # else nothing far away can be much nearer
         starting.append(_begin(_nearest(coarse, samples.near[few], phasors, known), samples))
-    fit = at_one if "mu" in known else _with_static(at_one, phasors, starting)
-    scale = samples.scale or 0.0
-    # where mu is fitted, what errors of the base do is known only now: it was taken for mu = 1
-    for _ in range(_ROUNDS if scale else int(fit.static == FITTED)):
-        again = _drawn_in(fit) if scale else samples
+    fit = _with_static(at_one, phasors, starting)
+    # without outliers once more if mu is fitted: what errors of the base do was computed for mu = 1
+    for _ in range(_ROUNDS if samples.scale else int(fit.static == FITTED)):
+        again = _with_pseudo_values(fit)
         change = np.abs(again.fitted - fit.samples.fitted).max()
         scatter = float(np.sqrt(fit.solution.sum / again.x.size))
         at_one = _fit_near(mass, phasors, again, known, at_one.solution.values, scatter, fit.solution.values)
-        fit = at_one if "mu" in known else _with_static(at_one, phasors, [fit.solution.values])
-        if change < _SETTLED * scale:
+        fit = _with_static(at_one, phasors, [fit.solution.values])
+        if samples.scale and change < _SETTLED * samples.scale:
             break
     return fit
 
 
-def _drawn_in(fit: RecordFit) -> Samples:
-    """The samples with errors of outliers drawn in, as the fitted motion shows them."""
-    samples, residual = fit.samples, fit.residual
-    assert samples.scale is not None
-    return samples._replace(fitted=samples.x + residual - drawn_in(residual, samples.scale))
+def _with_pseudo_values(fit: RecordFit) -> Samples:
+    """The samples with pseudo-values from the fitted motion, if there may be outliers."""
+    samples = fit.samples
+    if samples.scale is None:
+        return samples
+    pseudo = pseudo_residuals(fit.residual, samples.scale)
+    return samples._replace(fitted=samples.x + fit.residual - pseudo)
 
 
 def _fit_near(
@@ -195,8 +197,10 @@ def _fit_near(
 
 
 def _with_static(fit: RecordFit, phasors: Phasors, begin: list[np.ndarray]) -> RecordFit:
-    """The fit with mu free, if the data ask for it; else that with mu = 1."""
+    """The fit with mu free, if it is not known and the data ask for it; else the fit as it is."""
     task = fit.with_mu
+    if not task.free[MU]:
+        return fit
     solution = min((minimise(task, start) for start in begin), key=lambda found: found.sum)
     found = motion(fit.mass, outer(solution.values[: len(PARAMETERS)]))
     noise, model_error = noise_of_record(phasors, fit.samples, task, solution)
@@ -281,7 +285,7 @@ def _problem(
     start: np.ndarray,
     whitening: Whitening | None = None,
 ) -> Problem:
-    """Residuals of what is fitted, whitened if errors of the base are allowed for."""
+    """Least squares of `samples.fitted`, whitened if errors of the base are allowed for."""
     size = len(PARAMETERS)
 
     def plain(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

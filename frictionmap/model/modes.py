@@ -425,6 +425,21 @@ class ModalModel:
         which they would otherwise make singular.
         """
         r = np.asarray(r, dtype=float)
+        key = r.tobytes()
+        known = self._last_held.get(key)
+        if known is None:
+            known = self._held(r)
+            self._last_held.clear()
+            self._last_held[key] = known
+        return known[0].copy(), known[1].copy()
+
+    @cached_property
+    def _last_held(self) -> dict[bytes, tuple[np.ndarray, np.ndarray]]:
+        """The last result of `held`: boundaries and cells of a map ask for the same frequencies."""
+        return {}
+
+    def _held(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Compute what `held` returns."""
         participating = self.chi != 0.0
         found, force, singular = held_motions(r, self._body)
         at = np.flatnonzero(singular)

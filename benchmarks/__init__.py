@@ -3,8 +3,9 @@ and the effect of invalid input, interrupts and damaged files.
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
-NAME is accuracy, peers, scaling, startup, stress, steady, structures, bound, faults, large, explore, coupling
-or coverage: each is a module of that name in `measures`.  It prints tables, and writes JSON and a figure.
+NAME is accuracy, peers, scaling, startup, stress, steady, structures, static, bound, faults, large, explore,
+coupling or coverage: each is a module of that name in `measures`.  It prints tables, and writes JSON and a
+figure.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -20,6 +21,7 @@ or coverage: each is a module of that name in `measures`.  It prints tables, and
   stress                       the numerical torture test against 40-digit arithmetic
   steady                       solved against marched, uniqueness for mu = 1, unresolved undamped cells
   structures                   time against the number of masses; five masses against other solvers
+  static                       maps at mu > 1 against those of another checkout, in turn
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
   faults                       invalid input, interrupts, malformed files, damaged caches
   large                        stores: overhead, memory, workers, random variations, kills

@@ -2,6 +2,8 @@
 
 import argparse
 import os
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from importlib import import_module
@@ -22,6 +24,7 @@ BENCHMARKS = (
     "stress",
     "steady",
     "structures",
+    "static",
     "bound",
     "faults",
     "large",
@@ -37,6 +40,13 @@ def _run(name: str, quick: bool, results: Path, **more: Path) -> float:
     began = time.perf_counter()
     run: Callable[..., dict] = import_module(f".measures.{name}", __package__).run
     run(quick, results, **more)
+    return time.perf_counter() - began
+
+
+def _run_apart(name: str, _: bool, results: Path) -> float:
+    """Run one of several benchmarks in a process of its own: memory and caches of another would count."""
+    began = time.perf_counter()
+    subprocess.run([sys.executable, "-m", __package__, name, "--results", str(results)], check=True)
     return time.perf_counter() - began
 
 
@@ -56,10 +66,14 @@ def main() -> None:
         type=Path,
         help="folder of the results (default: benchmarks/results/local; page: benchmarks/results)",
     )
-    parser.add_argument("--package", type=Path, help="faults: the checkout to try (default: this one)")
+    parser.add_argument(
+        "--package",
+        type=Path,
+        help="faults: the checkout to try; static: one to compare with",
+    )
     options = parser.parse_args()
-    if options.package and options.benchmarks != ["faults"]:
-        parser.error("--package goes with faults only")
+    if options.package and options.benchmarks not in (["faults"], ["static"]):
+        parser.error("--package goes with faults or static alone")
     more = {"package": options.package} if options.package else {}
     if options.benchmarks == ["page"]:  # quotes what is there
         from .report.results_page import rewrite
@@ -70,7 +84,8 @@ def main() -> None:
         parser.error("page goes alone: it quotes results that are there")
     names = [name for name in BENCHMARKS if {name, "all"} & set(options.benchmarks)]
     results = options.results or RESULTS / "local"
-    seconds = {name: _run(name, options.quick, results, **more) for name in names}
+    run = _run if options.quick or len(names) == 1 else _run_apart
+    seconds = {name: run(name, options.quick, results, **more) for name in names}
     print()
     for name, taken in seconds.items():
         print(f"{name:10} took {taken:6.1f} s")

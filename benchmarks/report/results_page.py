@@ -35,6 +35,7 @@ QUOTED = (
     "coupling",
     "coverage",
     "explore",
+    "static",
 )
 
 #: Results of `faults` for an earlier version, quoted for comparison.
@@ -267,6 +268,15 @@ def _large_rows(large: dict) -> Iterator[tuple[str, ...]]:
     )
 
 
+def _static_rows(static: dict) -> Iterator[tuple[str, ...]]:
+    for name, entry in static["scenes"].items():
+        faster = f", {two_digits(entry['ratio'])} times as fast as version 0.2" if "ratio" in entry else ""
+        yield (
+            f"map of {name}, {entry['cells']:,} cells, one thread",
+            (f"{duration(entry['seconds']['this']['median'])}{faster}"),
+        )
+
+
 def _mass_rows(structures: dict) -> Iterator[tuple[str, ...]]:
     cost = structures["cost"]
     line = cost["ns a scan step, line over masses"]
@@ -389,6 +399,7 @@ def block(results: Path) -> str:
         lines += coverage_lines(found["coverage"])
     growth = list(_scaling_rows(found["scaling"])) if "scaling" in found else []
     growth += _mass_rows(structures) if structures else []
+    growth += _static_rows(found["static"]) if "static" in found else []
     growth += _large_rows(found["large"]) if "large" in found else []
     if growth or "startup" in found:
         lines += ["", "### Computing time and memory"]

@@ -12,6 +12,9 @@ from .row import Row
 
 #: Slides a 40-digit march may take, a millisecond or two each.
 _MOST_SLIDES = 100
+#: A stop that lasts t is missed where the velocity, which would fall below zero by about t^2/2, is rounded by
+#: as much: t = sqrt(2 eps), docs/known-limits.md.
+_SHORTEST = mp.sqrt(2 * mp.mpf(2) ** -52)
 #: Relative change of beta that rounding makes of some ten operations.
 _BESIDE = mp.mpf(10) ** -15
 
@@ -48,7 +51,9 @@ def check_count(group: Group, row: Row, k: int | None, beta: float, what: str, c
         beside = [_steady(row, mp.mpf(beta) * (1 + sign * _BESIDE))[0] for sign in (1, -1)]
         if cell["status"] != regimes.RESOLVED:
             group.flagged_miscounts += 1
-        elif any(orbit is not None and _same_count(cell, orbit) for orbit in beside):
+        elif found.shortest < _SHORTEST or any(
+            orbit is not None and _same_count(cell, orbit) for orbit in beside
+        ):
             group.miscounts_at_rounding += 1
         else:
             stops = 2.0 * found.stops / found.halves

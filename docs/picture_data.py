@@ -156,13 +156,19 @@ def _different(name: str, now: np.ndarray, kept: np.ndarray, open_to_any: np.nda
 
 
 def write(name: str) -> None:
-    """Save the numbers that a figure shows now; cells whose class changes with rounding become `ANY`."""
+    """Save the numbers that a figure shows now; cells that change with rounding become `ANY`.
+
+    Their class may change, or which of several equal maxima is found first.
+    """
     ds = coarse(name)
     kept = shown(ds)
     config = fm.load_config(CONFIGS / f"{name}.toml")
     for push in (1.0 - _PUSH, 1.0 + _PUSH):
         pushed = shown(compute(config, push * kept["r"], push * kept["beta"]))
         kept["class"][pushed["class"] != kept["class"]] = ANY
+        for phase in set(_PHASES) & kept.keys():
+            moved = np.abs(pushed[phase] - kept[phase]) > 1e-3
+            kept["class"][moved.any(axis=-1)] = ANY
     DATA.mkdir(exist_ok=True)
     np.savez_compressed(DATA / f"{name}.npz", **kept)
 

@@ -24,6 +24,7 @@ __all__ = [
     "CLOSED_FORM",
     "CONTINUOUS",
     "INTEGRATED",
+    "IRREGULAR",
     "MARGINAL",
     "NOT_COMPUTED",
     "NOT_PERIODIC",
@@ -39,6 +40,7 @@ __all__ = [
     "STICK_SLIP",
     "TOO_MANY_EVENTS",
     "UNRESOLVED",
+    "WITHOUT_PERIOD",
     "regime_name",
     "status_meaning",
 ]
@@ -59,6 +61,10 @@ MARGINAL = 3
 QUASI_STATIC = 4
 NOT_COMPUTED = 5
 NOT_PERIODIC = 6
+IRREGULAR = 7
+
+#: Statuses of stick-slip that does not repeat; files of version 0.2 have the first.
+WITHOUT_PERIOD = (NOT_PERIODIC, IRREGULAR)
 
 
 class Code(NamedTuple):
@@ -128,9 +134,17 @@ STATUSES = (
     Code(
         NOT_PERIODIC,
         "not_periodic",
-        "stick-slip that does not repeat within 8 periods in the `cycles` followed: stops, amplitude and "
-        "stuck fraction are averages over the last 100 periods; if it converges slowly, raise solver.cycles",
-        "averages over 100 periods; raise solver.cycles if it converges slowly",
+        "(version 0.2 only) stick-slip that did not repeat within 8 periods: stops, amplitude and stuck "
+        "fraction are averages over the last 100 periods; compute the map again for periods up to 256",
+        "averages over 100 periods; compute the map again for periods up to 256",
+    ),
+    Code(
+        IRREGULAR,
+        "irregular",
+        "stick-slip that did not return within the `cycles` followed, nor within 256 periods: stops, "
+        "amplitude and stuck fraction are those of the last two thirds of these cycles; to follow it longer, "
+        "raise solver.cycles",
+        "averages over the cycles followed; raise solver.cycles to follow it longer",
     ),
 )
 

@@ -17,7 +17,7 @@ from frictionmap._kernels.event_codes import REVERSE, STOP_THEN_BACK, STOP_THEN_
 from frictionmap._kernels.one_mass import events
 from frictionmap._kernels.one_mass.scan_step import step_constants
 from frictionmap._kernels.structure.events import after_slide, slide_on
-from frictionmap._kernels.structure.oscillators import make_scratch
+from frictionmap._kernels.structure.oscillators import make_scratch, make_state
 from frictionmap._kernels.structure.state import contact_displacement, make_structure
 from frictionmap._kernels.taylor_series import MAX_TERMS
 from frictionmap.model.settings import Solver
@@ -178,7 +178,7 @@ def _march_one_mass(r, beta, zeta, load, phase, mu, steps, cycles, out, begins):
 def _march_structure(model, loads, r, beta, mu, steps, cycles, out, begins):
     """Integrator of structures alone, from rest; arguments as in `_march_one_mass`."""
     n = model.modes.shape[1]
-    state, held, scratch = np.zeros((2, n)), np.zeros((2, n - 1)), make_scratch(n)
+    state, held, scratch = make_state(n), make_state(n - 1), make_scratch(n)
     for k in range(r.size):
         st = make_structure(model, loads, k, r[k], steps)
         state[:] = 0.0

@@ -28,7 +28,7 @@ from frictionmap._kernels.event_codes import GRAZING, REVERSE, STOP_THEN_BACK, S
 from frictionmap._kernels.one_mass import events
 from frictionmap._kernels.one_mass import scan_step as phases
 from frictionmap._kernels.structure.events import after_slide, slide_on
-from frictionmap._kernels.structure.oscillators import FELL, make_scratch
+from frictionmap._kernels.structure.oscillators import FELL, make_scratch, make_state
 from frictionmap._kernels.structure.state import make_structure
 from frictionmap._kernels.taylor_series import MAX_TERMS
 from frictionmap.model.settings import Solver
@@ -124,7 +124,7 @@ def _motion(system: fm.System, r: float, steps: int, special: bool) -> Callable[
     found = Cells(system, np.array([r]), np.array([BETA]), np.ones(1), Solver()).structure_arrays
     n = found.participating.size
     st = make_structure(found.model, found.loads, 0, r, float(steps))
-    state, held, scratch = np.zeros((2, n)), np.zeros((2, n - 1)), make_scratch(n)
+    state, held, scratch = make_state(n), make_state(n - 1), make_scratch(n)
     return lambda slides: follow_structure(st, BETA, BETA, slides, state, held, scratch)
 
 

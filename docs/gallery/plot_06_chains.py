@@ -12,7 +12,7 @@ import frictionmap as fm
 
 # %%
 # **T Fig. 6.7**, two masses, contact and load on the first. Undamped chains with mu > 1 have wide
-# regions in which the motion does not repeat within eight periods. Stops there are averages over a hundred.
+# regions of irregular motion. Stops there are averages over the cycles followed.
 fm.plot_regimes(computed("fig-6-7"))
 
 # %%

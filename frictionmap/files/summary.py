@@ -87,8 +87,8 @@ def describe_response(ds: xr.Dataset) -> str:
         words.append(f"amplitude {float(ds['contact_amplitude']):.6g}")
     if "period" in ds and int(ds["period"]) > 1:
         words.append(f"period {int(ds['period'])}")
-    if "status" in ds and int(ds["status"]) == regimes.NOT_PERIODIC:
-        words.append("not periodic: an excerpt of the motion, and averages")
+    if "status" in ds and int(ds["status"]) in regimes.WITHOUT_PERIOD:
+        words.append("irregular: an excerpt of the motion, and averages")
     return ", ".join(words)
 
 
@@ -158,11 +158,13 @@ def variable_lines(ds: xr.Dataset) -> list[str]:
 
 
 def _variables(ds: xr.Dataset, names: Sequence[str], further: Sequence[str] = ()) -> list[str]:
-    """Variables with their meanings; of those in SI units, and of older names, only the names."""
+    """Variables with their meanings; of those in SI units, of errors and of older names, only the names."""
     older = [name for name in names if name in OLDER_NAMES.get(kind(ds), {})]
     beside = [name for name in names if name in IN_SI]
+    errors = [name for name in names if name.endswith("_error") and name.removesuffix("_error") in names]
     lines = ["variables"]
-    lines += [_named(ds[name], further) for name in names if name not in (*beside, *older)]
+    lines += [_named(ds[name], further) for name in names if name not in (*beside, *older, *errors)]
+    lines += _entry("standard errors", ", ".join(errors)) if errors else []
     lines += _entry("in SI units", ", ".join(beside)) if beside else []
     return lines + (_entry("older names", ", ".join(older)) if older else [])
 

@@ -30,6 +30,9 @@ from .quantity_limits import put_resonance, put_static
 #: low frequency an excitation period has very many of them.
 _FREE_PERIODS = 4000.0
 
+#: Outputs about the growth of a disturbance.
+_EXPONENT = ("lyapunov_exponent", "lyapunov_exponent_error")
+
 Job = tuple[Callable[..., None], tuple]
 
 
@@ -64,7 +67,14 @@ class Cells:
 
     @property
     def _needs(self) -> set[str]:
-        return {CELL_VARIABLES[name].needs for name in self._solver.outputs}
+        needs = {CELL_VARIABLES[name].needs for name in self._solver.outputs}
+        return needs | {"details"} if "exponent" in needs else needs
+
+    @property
+    def kept(self) -> tuple[str, ...]:
+        """Outputs that are computed: the requested ones, `status`, and those that others are made from."""
+        made_from = ("period", "cycles", "multiplier", *_EXPONENT) if "exponent" in self._needs else ()
+        return (*self._solver.outputs, "status", *made_from)
 
     @property
     def rest_sticks(self) -> bool:
@@ -158,9 +168,25 @@ class Cells:
         )  # fmt: skip
         return [(fill_reachable, (row, row + 1, *shared)) for row in range(axes.mu.size * axes.r.size)]
 
+    def exponents(self, out: Any, cancel: np.ndarray) -> list[Job]:
+        """Jobs for the exponents of irregular motions, if requested, when all cells are filled."""
+        if "exponent" not in self._needs:
+            return []
+        from .._kernels.engine.exponents import fill_exponents
+
+        moves = self._solver.start == "moving"
+        starts = self.structure_arrays.moving if moves else self.structure_arrays.rest
+        rows = range(self._axes.mu.size * self._axes.r.size)
+        return [(fill_exponents, (row, self._axes, self.common, starts, moves, out, cancel)) for row in rows]
+
     def finish(self, out: Any) -> None:
-        """Fill the limit r = 0 without friction, and resonances of modes that do not participate."""
+        """Fill what arrays give: exponents of steady states, r = 0 without friction, resonances elsewhere."""
         axes = self._axes
+        if out.lyapunov_exponent.size:
+            returns = (out.period > 0) & ~np.isnan(out.multiplier)
+            with np.errstate(divide="ignore"):
+                out.lyapunov_exponent[returns] = np.log(out.multiplier[returns]) / out.period[returns]
+            out.lyapunov_exponent_error[returns] = 0.0
         if out.amplitude.size:
             if axes.beta[0] == 0.0:
                 static = np.abs(self._system.modes.static_response())

@@ -118,12 +118,12 @@ def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: 
 
 
 def allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> Any:
-    """Allocate the requested outputs and status, unresolved until filled; other outputs have size 0."""
+    """Allocate these outputs, unresolved until filled; other outputs have size 0."""
     sizes = dict(zip((*CELL, "dof"), (*shape, dofs), strict=True))
     arrays: list[np.ndarray] = []
     for name in _NAMES:
         label = CELL_VARIABLES[name]
-        kept = name in (*names, "status")
+        kept = name in names
         arrays.append(np.full([kept * sizes[dim] for dim in label.dims], label.unresolved, label.dtype))
     return Arrays(*arrays)
 
@@ -194,6 +194,7 @@ def _fill(
 
     try:
         _run(jobs, threads, done, watch)
+        _run(cells.exponents(out, cancel), threads, lambda _: None, watch)
     except BaseException:
         cancel[0] = 1  # the kernels check it at every event
         raise
@@ -222,7 +223,7 @@ def compute(
         raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]
     cells = Cells(system, r, beta, mu, solver, request)
-    out = allocate((mu.size, r.size, beta.size), system.n, solver.outputs)
+    out = allocate((mu.size, r.size, beta.size), system.n, cells.kept)
     work = plan(cells, r, mu, beta, solver)
     _fill(cells, work, (mu.size, r.size, beta.size), mu == 1.0, out, threads, progress, watch)
     return cells, out

@@ -30,12 +30,12 @@ from .kernel_data import StructureArrays
 from .maps import plan
 from .quantity_data import VARIABLES, quantity_request, read_result
 
-#: Excitation periods shown of a motion that does not repeat, equal to the longest steady period.
+#: Excitation periods shown of an irregular motion.
 WINDOW = 8
 
 _WINDOWED = (
-    f"the motion does not repeat within 8 periods: x, v, z, friction and events cover the last {WINDOW} "
-    "of the {} periods followed; the scalars are averages over the last 100"
+    f"the motion is irregular: x, v, z, friction and events cover the last {WINDOW} of the {{}} periods "
+    "followed; the scalars are averages over the last two thirds of them"
 )
 
 _TURN = 2.0 * math.pi
@@ -154,7 +154,7 @@ def _continuous_table(request: MotionRequest, cells: Cells) -> np.ndarray:
 
 def _window(request: MotionRequest, cells: Cells, cell: Cell) -> FoundMotion:
     """Segment table of the last periods of a motion that does not repeat."""
-    before = _TURN * max(0.0, request.solver.cycles - WINDOW - 2.0)
+    before = _TURN * max(0.0, cell.cycles - WINDOW - 2.0)
     moving = request.solver.start == "moving"
     table = window_table(
         cells.motion, request.beta, request.mu, moving, before, _TURN * (WINDOW + 2.0)
@@ -173,7 +173,7 @@ def _find(request: MotionRequest, cells: Cells) -> FoundMotion:
         moving = solver.start == "moving"
         cell, table = one_cell(cells.motion, request.beta, request.mu, limits(solver), moving)
         status = cell.status
-        if status == regimes.NOT_PERIODIC:
+        if status == regimes.IRREGULAR:
             return _window(request, cells, cell)
         if cell.period == 0:
             raise _no_steady_state(request, regimes.status_meaning(status))
@@ -340,7 +340,7 @@ def find_motion(request: MotionRequest) -> SteadyMotion:
     cells = Cells(system, r, beta, mu, solver, quantity_request(CYCLE, HARMONICS))
     found = _find(request, cells)
     history = _history(request, cells, found)
-    comment = _WINDOWED.format(solver.cycles) if found.averages is not None else ""
+    comment = _WINDOWED.format(math.ceil(found.averages.cycles)) if found.averages else ""
     return SteadyMotion(
         history, _summary(history, found), _cycle(request, cells, found), cells.curves, comment
     )

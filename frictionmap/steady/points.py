@@ -122,7 +122,7 @@ def _follow(system: System, points: _Points, start: Start, chosen: np.ndarray, s
         columns, column = np.unique(points.beta[some], return_inverse=True)
         rows = np.arange(some.size)
         cells = Cells(system, points.r[some], columns, np.array([points.mu]), solver, request)
-        out = allocate((1, some.size, columns.size), system.n, solver.outputs)
+        out = allocate((1, some.size, columns.size), system.n, (*solver.outputs, "status"))
         places = OpenCells(rows, rows + 1, column, column + 1)
         fill, arguments = cells.opened(0, some.size, places, out, np.zeros(1, dtype=np.uint8))
         fill(*arguments)

@@ -90,8 +90,8 @@ def response(
         tau = 0 is a maximum of the load (of the base displacement).  Where the contact sticks away from
         z = 0, `x` and `z` contain this static offset, and `amplitude` does not.
 
-        For stick-slip that does not repeat (`status` not_periodic, `period` 0) tau covers the last 8 of the
-        periods followed, and the scalars are the averages of the map.
+        For irregular stick-slip (`status` irregular, `period` 0) tau covers the last 8 of the periods
+        followed, and the scalars are the averages of the map.
 
         With units also `time` [s] along tau, and every quantity in m, N, J or m/s in addition to its ratio,
         such as `x_m`, `friction_N` and `v_m_s`.

@@ -102,7 +102,9 @@ def imports_of(path):
 #: What numba documents for its users.
 PUBLIC = {
     ("numba", "config"), ("numba", "njit"), ("numba", "types"), ("numba.extending", "overload"),
-    ("numba.core", "event"),
+    ("numba.core", "event"), ("llvmlite", "ir"), ("numba.extending", "lower_builtin"),
+    ("numba.extending", "models"), ("numba.extending", "register_model"),
+    ("numba.extending", "type_callable"),
 }  # fmt: skip
 
 

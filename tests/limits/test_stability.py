@@ -14,7 +14,7 @@ from frictionmap._kernels.structure import events as follow
 from frictionmap._kernels.structure import newton as returns
 from frictionmap._kernels.structure.events import UNDER_WAY
 from frictionmap._kernels.structure.newton import make_workspace
-from frictionmap._kernels.structure.oscillators import make_scratch
+from frictionmap._kernels.structure.oscillators import make_scratch, make_state
 from frictionmap._kernels.structure.state import make_structure
 from frictionmap.steady.cells import Cells
 
@@ -50,7 +50,8 @@ def set_moving(system, r, beta, mu):
     n = found.participating.size
     st = make_structure(found.model, found.loads, 0, r, 24.0)
     moving = found.moving
-    state = np.array([moving.coordinates[0], moving.velocity[0] / st.rate])
+    state = make_state(n)
+    state[:, :n] = moving.coordinates[0], moving.velocity[0] / st.rate
     return n, st, state, moving.cos[0], moving.sin[0], make_workspace(n), make_scratch(n)
 
 
@@ -133,7 +134,7 @@ def test_derivative_of_the_return_map():
                 moved[j // n, j % n] += sign * step / (st.rate if j >= n else 1.0)
                 if not return_map(st, beta, mu * beta, moved, c, s, sequence, halves, False, work, scratch):
                     break
-                ends.append(np.concatenate((moved[0], moved[1] * st.rate)))
+                ends.append(np.concatenate((moved[0, :n], moved[1, :n] * st.rate)))
             if len(ends) == 2:
                 column = (ends[0] - ends[1]) / (2.0 * step)
                 np.testing.assert_allclose(flow[:, j], column, atol=2e-4 * np.abs(flow).max())
@@ -161,9 +162,13 @@ def test_spectral_radius():
         for _ in range(20):
             matrix = rng.normal(size=(n, n))
             exact = np.abs(np.linalg.eigvals(matrix)).max()
-            assert spectral_radius(matrix.copy(), n, np.empty((n, n))) == pytest.approx(exact, rel=1e-9)
-    assert spectral_radius(np.zeros((3, 3)), 3, np.empty((3, 3))) == 0.0
-    assert spectral_radius(np.array([[0.0, 1.0], [0.0, 0.0]]), 2, np.empty((2, 2))) == 0.0
+            assert spectral_radius(matrix.copy(), n, np.empty((n, n)), 0.0) == pytest.approx(exact, rel=1e-9)
+            matrix *= rng.uniform(0.5, 0.999) / exact
+            exact = np.abs(np.linalg.eigvals(matrix)).max()
+            quick = spectral_radius(matrix.copy(), n, np.empty((n, n)), 0.01)
+            assert abs(quick - exact) <= 0.05 * (1.0 - exact)
+    assert spectral_radius(np.zeros((3, 3)), 3, np.empty((3, 3)), 0.0) == 0.0
+    assert spectral_radius(np.array([[0.0, 1.0], [0.0, 0.0]]), 2, np.empty((2, 2)), 0.0) == 0.0
 
 
 def test_steady_states_are_stable_and_antiperiodic_where_unique():

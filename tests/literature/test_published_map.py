@@ -52,7 +52,7 @@ def test_published_map_is_resolved(published):
     assert not np.any(smooth.regime == regimes.UNRESOLVED)
     assert not np.any(np.isnan(smooth.contact_amplitude))
     rough = published.sel(mu=1.5)
-    assert int((rough.status == regimes.NOT_PERIODIC).sum()) <= 8
+    assert int((rough.status == regimes.IRREGULAR).sum()) <= 8
     assert not np.any(rough.regime == regimes.UNRESOLVED)
     nan = np.isnan(published.contact_amplitude) & (published.status == regimes.RESOLVED)
     assert not bool(nan.any())

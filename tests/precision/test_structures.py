@@ -112,10 +112,10 @@ def change_over_a_period(entry, zeta, system, r, beta, mu):
 def test_unconverged_reference_rows(all_steady):
     """Rows that marching in 40-digit arithmetic left unfinished are solved: the state returns to 1e-12.
 
-    All but one, mu = 2, whose motion is chaotic: it repeats in no 8 periods, and so it is named.
+    One of them, mu = 2, has period 11, longer than the marching knew; its stops were not counted.
     """
     systems, rows = all_steady
-    lost = []
+    long = []
     for row in rows:
         if row["status"] != "unconverged":
             continue
@@ -123,16 +123,16 @@ def test_unconverged_reference_rows(all_steady):
         zeta, *cell = (float(row[name]) for name in ("zeta", "r", "beta", "mu"))
         system = chain(entry, zeta)
         found = steady(system, *cell)
-        if found["status"] == regimes.NOT_PERIODIC:
-            lost.append(row["residual"])
-            continue
         assert found["status"] == regimes.RESOLVED, row
-        assert found["stops_per_cycle"] == row["stops"], row
+        if found["period"] > 8:
+            long.append(row["residual"])
+        else:
+            assert found["stops_per_cycle"] == row["stops"], row
         entry = {name: entry[name] for name in ("contact", "load")} | {
             name: tuple(map(float, entry[name])) for name in ("gamma", "kappa")
         }
         assert change_over_a_period(entry, zeta, system, *cell) < 1e-12, row
-    assert lost == ["1.83"]
+    assert long == ["1.83"]
 
 
 def test_solved_states_return():
@@ -149,20 +149,6 @@ def test_solved_states_return():
             seen += 1
             change = change_over_a_period(entry, zeta, system, r, beta, mu)
             assert change < 1e-12 * max(1.0, 1.0 / found["amplitude"].max()), (entry, zeta, r, beta, mu)
-
-
-def test_motion_that_repeats_in_no_eight_periods():
-    """Named, counted over 100 periods or more: the chaotic cell of the reference; no period is above 8."""
-    system = chain({"contact": ("wall", 3), "load": 1, "gamma": (1,) * 5, "kappa": (1,) * 5}, 0.02)
-    found = steady(system, 1.14, 0.9569, 2.0)
-    assert found["status"] == regimes.NOT_PERIODIC
-    assert found["regime"] == regimes.STICK_SLIP
-    longer = steady(system, 1.14, 0.9569, 2.0, cycles=20000)
-    assert found["stops_per_cycle"] == pytest.approx(longer["stops_per_cycle"], rel=0.2)
-    assert found["contact_amplitude"] == pytest.approx(longer["contact_amplitude"], rel=0.2)
-    ds = fm.sweep(system, np.linspace(1.0, 1.3, 16), np.linspace(0.5, 1.0, 11), 2.0, outputs=PLAIN)
-    assert ds.period.max() <= 8
-    assert bool(((ds.period > 0) == (ds.status == regimes.RESOLVED)).all())
 
 
 @pytest.mark.slow
@@ -405,7 +391,7 @@ def test_a_held_contact_whose_load_repeats():
     system = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1])
     for start in ("rest", "moving"):
         found = steady(system, 0.2, 0.98, mu=1.5, start=start)
-        assert found["status"] in (regimes.RESOLVED, regimes.NOT_PERIODIC)
+        assert found["status"] in (regimes.RESOLVED, regimes.IRREGULAR)
         found = steady(system, 0.2, 0.96, start=start, skip="none")
         assert found["status"] == regimes.RESOLVED
 
@@ -499,7 +485,7 @@ def test_special_frequencies():
     """At and next to natural and held frequencies and their sub-multiples: no hole without a status."""
     for zeta, allowed in (
         (0.01, {0}),
-        (0.0, {0, regimes.MARGINAL, regimes.NOT_REACHED, regimes.NOT_PERIODIC}),
+        (0.0, {0, regimes.MARGINAL, regimes.NOT_REACHED, regimes.IRREGULAR}),
     ):
         system = fm.System(
             contact_masses=[2], mass_ratios=[1, 0.7, 1.6], stiffness_ratios=[1, 1.3, 0.6], damping_ratios=zeta

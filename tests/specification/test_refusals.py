@@ -118,9 +118,9 @@ map good.toml --set solver.start=sliding
 map good.toml --set solver.skip=all
     solver.skip must be one of exact, none; got 'all'
 map good.toml --set solver.outputs=[]
-    solver.outputs must name at least one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase; got none
+    solver.outputs must name at least one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase; got none
 map good.toml --set 'solver.outputs=["regim"]'
-    solver.outputs must be one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase; got 'regim' (did you mean regime?)
+    solver.outputs must be one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase; got 'regim' (did you mean regime?)
 map good.toml --set 'axes.damping_ratio=[0,0.1]'
     axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i]; got 'damping_ratio' (did you mean damping_ratios?)
 map good.toml --set 'axes={"mass_ratios[2]"=[1,2]}'

@@ -36,8 +36,8 @@ stiffness_ratios = [1.0, 1.0, 1.0, 1.0, 1.0]
 damping_ratios = 0.01
 contact_masses = [3]
 [grid]
-r = { start = 0.05, stop = 2.0, num = 80 }
-beta = { start = 0.0, stop = 1.2, num = 80 }
+r = { start = 0.05, stop = 2.0, num = 120 }
+beta = { start = 0.0, stop = 1.2, num = 120 }
 mu = [1.5]
 """
 ONE_LINE = re.compile(
@@ -56,10 +56,10 @@ def seconds(asked, threads=1):
 
 
 def test_a_large_map_that_is_expensive_is_cut_into_many_blocks():
-    asked = study(FIVE, 400, [1.5])
+    asked = study(FIVE, 800, [1.5])
     cut = cut_by_cost(asked)
     assert replace(asked, cut=cut).blocks >= 4 * 16
-    assert cut.rows * 400 * seconds(asked) <= 10.0
+    assert cut.rows * 800 * seconds(asked) <= 10.0
     finer = cut_by_cost(asked, workers=100)
     assert replace(asked, cut=finer).blocks >= 4 * 100
 

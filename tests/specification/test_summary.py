@@ -11,7 +11,7 @@ from frictionmap.files.summary import describe_causes, describe_file, describe_m
 from frictionmap.model.settings import OUTPUTS
 
 TWO = fm.System(mass_ratios=[1.0, 0.5], stiffness_ratios=[1.0, 2.0], damping_ratios=0.02)
-WIDTH, HEIGHT = 100, 40
+WIDTH, HEIGHT = 100, 42
 
 
 @pytest.fixture(scope="module")

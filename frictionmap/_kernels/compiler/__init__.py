@@ -1,6 +1,6 @@
 """Compilation of kernels: the decorators, and what they rely on inside numba.
 
-Kernels import `kernel`, `inner_kernel`, `entry` and `by_class` from here and nothing else.
+Kernels import `kernel`, `inner_kernel`, `entry` and `by_class` from here, and vectors from `vectors`.
 
 ==============  =====================================================================================
 module          what is in it
@@ -16,6 +16,7 @@ linking         (fast) libraries of compiled kernels, linked by name or inlined
 cache           (fast) compiled kernels on disk, with a digest
 fast            the default: each kernel is compiled once, called by name, kept on disk
 decorators      the four decorators; chooses one of the three compilers above
+vectors         vectors of eight numbers that kernels compute with at once
 ==============  =====================================================================================
 
 docs/compiler.md lists the private names, why each is needed, and what happens if one is missing.

@@ -7,7 +7,8 @@ periods        half periods in a time, and periods of a recurring motion
 policies       initial states and thresholds shared by both kinds of motion
 records        records passed to and returned by the solver: contact, state, limits, orbit, cell
 memory         ring buffer of past anchors
-statistics     averages of motions that do not repeat; schedule of Newton's method
+cycle_log      what a motion did in every excitation period, and its averages
+schedules      when Newton's method is tried, and when long periods are looked for
 segment_table  slides and stops of a steady state in order, each with its exact motion
 one_mass       one mass as a kind of motion
 many_masses    a structure as a kind of motion
@@ -23,6 +24,7 @@ dissipation    sliding distance, and work of the dampers
 distortion     the part of a motion beyond its mean and first harmonic
 time_history   a steady state sampled in time
 floquet        Floquet multipliers, and deviation from antiperiodicity
+exponents      Lyapunov exponents of irregular motions
 details        further outputs of a map: amplitudes of the masses, multipliers, asymmetry
 quantities     what response curves hold: extremes, harmonics, work
 further        details and quantities of a cell, as far as they are requested

@@ -47,24 +47,49 @@ class ClosedForm(NamedTuple):
 
 
 @kernel
-def store(out, m, i, j, cell, load):
-    """Write the requested outputs of a cell; outputs that are not requested have size 0."""
-    if out.regime.size:
-        out.regime[m, i, j] = cell.regime
-    if out.stops_per_cycle.size:
-        out.stops_per_cycle[m, i, j] = cell.stops
+def _fill(values, m, i, first, last, value):
+    """Fill a part of a row of an output; one that is not requested has size 0."""
+    if values.size:
+        for j in range(first, last):
+            values[m, i, j] = value
+
+
+@kernel
+def store(out, m, i, first, last, cell, load):
+    """Write the requested outputs of a cell to some cells of a row.
+
+    Parameters
+    ----------
+    out : named tuple of arrays (n_mu, n_r, n_beta, ...), one for every output
+    m, i : indices of mu and r
+    first, last : cells first..last-1 are written
+    cell : Cell
+    load : unit of force and displacement
+    """
+    _fill(out.regime, m, i, first, last, cell.regime)
+    _fill(out.stops_per_cycle, m, i, first, last, cell.stops)
+    _fill(out.contact_amplitude, m, i, first, last, cell.amplitude * load)
+    _fill(out.stuck_fraction, m, i, first, last, cell.stuck)
+    _fill(out.stops_per_cycle_error, m, i, first, last, cell.stops_error)
+    _fill(out.stuck_fraction_error, m, i, first, last, cell.stuck_error)
+    _fill(out.period, m, i, first, last, cell.period)
+    _fill(out.origin, m, i, first, last, cell.origin)
+    _fill(out.cycles, m, i, first, last, math.ceil(cell.cycles))
+    _fill(out.status, m, i, first, last, cell.status)
+
+
+@kernel
+def _store_continuous(out, m, i, last, axes, closed):
+    """Write the requested outputs of the first cells of a row, which are in continuous motion."""
+    load = closed.load[i]
+    # without friction, which the first cell may be, no motion forms a continuum
+    first = 1 if last > 0 and axes.beta[0] == 0.0 else 0
+    store(out, m, i, 0, first, continuous_cell(0.0, False, CLOSED_FORM, 0.0), load)
+    store(out, m, i, first, last, continuous_cell(0.0, closed.marginal[i], CLOSED_FORM, 0.0), load)
     if out.contact_amplitude.size:
-        out.contact_amplitude[m, i, j] = cell.amplitude * load
-    if out.stuck_fraction.size:
-        out.stuck_fraction[m, i, j] = cell.stuck
-    if out.period.size:
-        out.period[m, i, j] = cell.period
-    if out.origin.size:
-        out.origin[m, i, j] = cell.origin
-    if out.cycles.size:
-        out.cycles[m, i, j] = math.ceil(cell.cycles)
-    if out.status.size:
-        out.status[m, i, j] = cell.status
+        for j in range(last):
+            amplitude = continuous_amplitude(closed.v_abs[i], closed.u[i], closed.g[i], axes.beta[j] / load)
+            out.contact_amplitude[m, i, j] = amplitude * load
 
 
 @entry
@@ -87,20 +112,17 @@ def fill_closed(first, last, cells, axes, closed, out, requested):
     for row in range(first, last):
         m = row // n_r
         i = row % n_r
+        low, high, end = cells.low[row], cells.high[row], axes.beta.size
         load = closed.load[i]
         further = requested_at(requested, i)
-        for j in range(cells.low[row]):
-            b = axes.beta[j] / load
-            amplitude = continuous_amplitude(closed.v_abs[i], closed.u[i], closed.g[i], b)
-            marginal = closed.marginal[i] and b > 0.0
-            store(out, m, i, j, continuous_cell(amplitude, marginal, CLOSED_FORM, 0.0), load)
-            if axes.r[i] > 0.0:
+        _store_continuous(out, m, i, low, axes, closed)
+        if axes.r[i] > 0.0:
+            for j in range(low):
                 write_continuous(further, m, j, axes.beta[j])
-        if axes.r[i] == 0.0:
-            for j in range(cells.low[row], cells.high[row]):
-                store(out, m, i, j, quasi_static_cell(), load)
-        for j in range(cells.high[row], axes.beta.size):
-            store(out, m, i, j, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
+        else:
+            store(out, m, i, low, high, quasi_static_cell(), load)
+        store(out, m, i, high, end, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
+        for j in range(high, end):
             write_stuck(further, m, j)
 
 
@@ -173,7 +195,7 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, requested, 
             contact = contact_at(system, m, i, beta, mu)
             contact_state = start(motion, system, i, contact, moving)
             found = steady_state(motion, contact, contact_state, moving, limits, cancel)
-            store(out, m, i, j, found, motion.load)
+            store(out, m, i, j, j + 1, found, motion.load)
             motion.scratch.left[0] = math.inf  # the orbit is known, so following it ends
             _write_further(further, motion, contact, found, m, j, beta)
         cell = cells.ends[k]

@@ -37,7 +37,7 @@ def _multiplier(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
     """
     if not return_map(st, beta, mu_beta, work.middle, c, s, sequence, halves, True, work, scratch):
         return math.nan
-    radius = spectral_radius(work.flow, 2 * st.n, work.square)
+    radius = spectral_radius(work.flow, 2 * st.n, work.square, 0.0)
     return radius * radius if halves % 2 == 1 else radius
 
 

@@ -143,8 +143,8 @@ def _add_stop(st, row, near, spectrum):
                 if spectrum.near[n, i]:
                     moved = st.modes[STATIC_SHAPE, i] * row[STOP_Z] * spectrum.waves[n]
                     for k in range(st.m):
-                        moved += st.to_free[i, k] * spectrum.parts[0, k]
-                        moved += st.to_free[i, st.m + k] * spectrum.parts[1, k]
+                        moved += st.into_free[k, i] * spectrum.parts[0, k]
+                        moved += st.into_free[st.m + k, i] * spectrum.parts[1, k]
                     spectrum.modes[n, i] += factor * moved
         factor *= turn
 

@@ -30,7 +30,7 @@ from ..structure.newton import (
     solve_return,
     spectral_radius,
 )
-from ..structure.oscillators import FELL, Scratch, make_scratch
+from ..structure.oscillators import FELL, Scratch, make_scratch, make_state, padded
 from ..structure.sliding_orbit import Continuous, orbit_state, stop_free_radius
 from ..structure.state import (
     Loads,
@@ -44,6 +44,7 @@ from ..structure.state import (
     release_steady,
     vibrates_in_step,
 )
+from .cycle_log import make_log
 from .memory import STATE, Memory, Recurrence, make_memory, turned
 from .policies import FINE_STEPS, SLOTS
 from .records import TURN, Contact, ContactState, known_orbit, no_orbit, turns_at, undefined_state
@@ -65,6 +66,9 @@ _RECURRENCE_THRESHOLD = 0.01
 #: Where several steady states exist the orbit found must be the one that the motion approaches: its distance
 #: may exceed the one expected from the last recurrence and the contraction by at most this factor.
 _HEADING = 4.0
+
+#: Error of the contraction of an orbit, relative to its distance from 1: it decides how far the orbit may be.
+_CONTRACTION_PRECISION = 0.01
 
 #: Largest extrapolation along the line through the last two orbits, in units of their distance in beta.
 _FURTHEST = 2.0
@@ -113,9 +117,10 @@ class ManyMasses(NamedTuple):
     st: StructureAtFrequency
     fine: StructureAtFrequency  # with scan steps at least as short, for bounds over a whole orbit
     orbit: Continuous
-    state: np.ndarray  # (2, n) present state of the free oscillators
-    kept: np.ndarray  # (SLOTS, 2, n) saved states
+    state: np.ndarray  # (2, padded(n)) present state of the free oscillators
+    kept: np.ndarray  # (SLOTS, 2, padded(n)) saved states
     memory: Memory
+    log: np.ndarray  # see `cycle_log`
     work: Workspace
     scratch: Scratch
     no_table: np.ndarray  # (0, 0)
@@ -130,8 +135,8 @@ def at_frequency(system, i):
     n = st.n
     return ManyMasses(
         st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _RECURRENCE_THRESHOLD, i, st, fine,
-        system.orbit, np.empty((2, n)), np.empty((SLOTS, 2, n)), make_memory(st.h, 2 * n), make_workspace(n),
-        make_scratch(n), np.empty((0, 0)),
+        system.orbit, make_state(n), np.zeros((SLOTS, 2, padded(n))), make_memory(st.h, 2 * n),
+        make_log(), make_workspace(n), make_scratch(n), np.empty((0, 0)),
     )  # fmt: skip
 
 
@@ -339,7 +344,7 @@ def _attracts(motion, contact, anchored, sequence, recurrence):
         True, work, motion.scratch,
     ):  # fmt: skip
         return False
-    contraction = spectral_radius(work.flow, 2 * n, work.square)
+    contraction = spectral_radius(work.flow, 2 * n, work.square, _CONTRACTION_PRECISION)
     for i in range(n):
         work.moved[0, i] = work.middle[0, i] - work.start[0, i]
         work.moved[1, i] = work.middle[1, i] - work.start[1, i]

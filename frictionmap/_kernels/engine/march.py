@@ -13,6 +13,7 @@ from ...regimes import (
     INTEGRATED,
     MARGINAL,
     NOT_COMPUTED,
+    NOT_REACHED,
     PERIODIC_ORBIT,
     RESOLVED,
     TOO_MANY_EVENTS,
@@ -21,6 +22,7 @@ from ...regimes import (
 from ..compiler import inner_kernel, kernel
 from ..event_codes import GRAZING, NO_END, STUCK
 from ..structure.events import NO_RELEASE
+from .cycle_log import averages, clear_log, log_event, log_stop
 from .measure import measure, proven_stops
 from .memory import Recurrence, record_anchor, settled
 from .motion import (
@@ -40,8 +42,8 @@ from .motion import (
 from .policies import GOAL, NOW
 from .records import (
     TURN,
-    averaged_cell,
     continuous_cell,
+    irregular_cell,
     known_orbit,
     no_orbit,
     periodic_cell,
@@ -50,8 +52,8 @@ from .records import (
     turns_at,
     unresolved,
 )
-from .recurrence import find_recurrence
-from .statistics import Windows, count_event, first_schedule, open_windows, postpone
+from .recurrence import find_long_recurrence, find_recurrence
+from .schedules import first_schedule, first_search, next_search, postpone
 
 #: Events per excitation period (times one quarter over the scan step, if that exceeds 1) beyond which a
 #: motion counts as chattering without end.
@@ -62,6 +64,12 @@ _GROWING = 64
 
 #: Slides without a stop after which a motion away from the continuous orbit is also searched for recurrences.
 _SLIDES_WITHOUT_STOP = 8
+
+#: Excitation periods after which a motion that does not return, and whose averages are stationary, is taken
+#: as irregular; and the share of the periods that may be followed, if that is more.  A motion that is not
+#: stationary is followed twice as long.
+_FEWEST_CYCLES = 512.0
+_SHARE_OF_CYCLES = 0.25
 
 #: Relative distance from an orbit that is rounding error.
 _ROUNDING = 1e-12
@@ -81,7 +89,6 @@ class MotionHistory(NamedTuple):
     slides: int  # since the last stop
     growing: int  # successive slides, each larger than the one before
     size: float  # displacement at the end of the last slide
-    windows: Windows
 
 
 class ContinuousOrbit(NamedTuple):
@@ -132,13 +139,16 @@ def _next_anchor(motion, contact, contact_state, history, moves, end, most_steps
     event, contact_state, wait = after_turn(motion, contact, contact_state, end - time)
     sign = -history.sign if turns_at(event) else history.sign
     stopped = stops_at(event)
-    windows = count_event(history.windows, time, size, stopped, wait)
+    log_event(motion.log, time, size, stopped, wait)
+    if event == NO_RELEASE:  # within the time left
+        log_stop(motion.log, time, end - time)
+        time = end
     column = history.events % motion.memory.events.size
     if stopped:
-        history = MotionHistory(time + wait, history.events + 1, sign, 0, 0, size, windows)
+        history = MotionHistory(time + wait, history.events + 1, sign, 0, 0, size)
     else:
         growing = history.growing + 1 if size > history.size else 0
-        history = MotionHistory(time, history.events + 1, sign, history.slides + 1, growing, size, windows)
+        history = MotionHistory(time, history.events + 1, sign, history.slides + 1, growing, size)
     record_anchor(motion.memory, column, event, contact_state, history.time, sign)
     record_state(motion, contact_state, column)
     return event, z, contact_state, history
@@ -233,6 +243,13 @@ def _orbit_cell(motion, contact, orbit, origin, time):
 
 
 @kernel
+def _marched_cell(motion, contact, contact_state, event, history, lag):
+    """Build the cell of the orbit that the motion has reached, which returns after `lag` slides."""
+    orbit = known_orbit(contact_state, event, history.sign, lag)
+    return _orbit_cell(motion, contact, orbit, INTEGRATED, history.time)
+
+
+@kernel
 def _approaches(motion, contact, contact_state, orbit, allowed):
     """Whether the motion, its state saved in NOW, approaches an orbit, whose state is saved in GOAL.
 
@@ -297,6 +314,47 @@ def _seek(motion, contact, contact_state, event, history, recurrence, schedule, 
 
 
 @kernel
+def _is_marginal(motion, contact):
+    """Whether there is a continuum of steady states, or a vibration that lasts in a stop."""
+    return lasting_vibration(motion) or (motion.marginal and contact.b < contact.b_lim)
+
+
+@kernel
+def _long_search(motion, contact, contact_state, event, history, schedule, limits):
+    """Find the orbit of a long period that the motion is on, or recognise that it is irregular.
+
+    Parameters
+    ----------
+    motion, contact, contact_state, event, history, schedule, limits : see `_seek`
+
+    Returns
+    -------
+    Cell : unresolved where the motion is to be followed further
+    """
+    recurrence = find_long_recurrence(motion, contact_state, history.events)
+    if recurrence.lag > 0:
+        orbit = _seek(motion, contact, contact_state, event, history, recurrence, schedule, limits)
+        if orbit.found:
+            return _orbit_cell(motion, contact, orbit, PERIODIC_ORBIT, history.time)
+    enough = TURN * max(_FEWEST_CYCLES, _SHARE_OF_CYCLES * limits.cycles)
+    if history.time >= enough and not _is_marginal(motion, contact):
+        found = averages(motion.log, history.time)
+        if found.stationary or history.time >= 2.0 * enough:
+            return irregular_cell(found, history.time)
+    return unresolved(NOT_REACHED, history.time)
+
+
+@kernel
+def _unfinished(motion, contact, time, end):
+    """Build the cell of a motion followed up to `time` in vain; `end`: the time allowed, both in tau."""
+    if _is_marginal(motion, contact):
+        return unresolved(MARGINAL, time)
+    if time < end:
+        return unresolved(NOT_REACHED, time)
+    return irregular_cell(averages(motion.log, time), time)
+
+
+@kernel
 def _follow(motion, contact, contact_state, moves, limits, cancel):
     """Follow the motion from a contact state to the steady state."""
     end = TURN * limits.cycles
@@ -305,10 +363,12 @@ def _follow(motion, contact, contact_state, moves, limits, cancel):
     vibrates = lasting_vibration(motion)
     unbounded = math.isinf(motion.v_abs) and contact.b < contact.b_lim
     continuous = _continuous_orbit(motion, contact)
+    clear_log(motion.log)
     check = OrbitCheck(False, math.inf, 0, 0)
-    history = MotionHistory(0.0, 0, 1.0, 0, 0, 0.0, open_windows(limits.cycles))
+    history = MotionHistory(0.0, 0, 1.0, 0, 0, 0.0)
     schedule = first_schedule()
     half = 0
+    search = first_search()
     last = Recurrence(0, math.inf, 0)
     while history.time < end:
         if cancel[0] != 0:
@@ -317,8 +377,7 @@ def _follow(motion, contact, contact_state, moves, limits, cancel):
             motion, contact, contact_state, history, moves, end, most_steps
         )
         if event == STUCK:
-            status = MARGINAL if vibrates else RESOLVED
-            return stuck_cell(INTEGRATED, status, history.time, z, history.sign)
+            return stuck_cell(INTEGRATED, MARGINAL if vibrates else RESOLVED, history.time, z, history.sign)
         if event == NO_END or event == NO_RELEASE:
             break
         if history.events > most_events:
@@ -339,6 +398,11 @@ def _follow(motion, contact, contact_state, moves, limits, cancel):
         if now == half or not _may_recur(event, history, continuous, unbounded):
             continue  # one search per half period is enough
         half = now
+        if now >= search and limits.newton and not contact.unique:
+            cell = _long_search(motion, contact, contact_state, event, history, schedule, limits)
+            if cell.regime != UNRESOLVED:
+                return cell
+            search = next_search(now)
         if limits.newton and half < schedule.due:
             continue
         recurrence = _nearest_recurrence(motion, contact, contact_state, history, schedule, limits.newton)
@@ -349,12 +413,9 @@ def _follow(motion, contact, contact_state, moves, limits, cancel):
             schedule = postpone(schedule, half)
         if not limits.newton:
             if _has_settled(recurrence, last, limits.tolerance):
-                orbit = known_orbit(contact_state, event, history.sign, recurrence.lag)
-                return _orbit_cell(motion, contact, orbit, INTEGRATED, history.time)
+                return _marched_cell(motion, contact, contact_state, event, history, recurrence.lag)
             last = recurrence
-    if vibrates or (motion.marginal and contact.b < contact.b_lim):
-        return unresolved(MARGINAL, history.time)
-    return averaged_cell(history.windows, history.time, end)
+    return _unfinished(motion, contact, history.time, end)
 
 
 @kernel

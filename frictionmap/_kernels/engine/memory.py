@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, inner_kernel, kernel
-from .periods import full_period, half_periods
+from .periods import half_periods
 
 #: Least and largest number of anchors kept; a steady period with more anchors is not recognised.
 _SHORTEST = 2048
@@ -14,9 +14,6 @@ _LONGEST = 2**18
 
 #: Columns of `Memory.anchors`; the numbers of the state follow.
 COS, SIN, TIME, SIGN, STATE = 0, 1, 2, 3, 4
-
-#: Longest steady period [excitation periods]; a motion with a longer one counts as not periodic.
-LONGEST_PERIOD = 8
 
 
 class Memory(NamedTuple):
@@ -75,12 +72,6 @@ def halves_between(memory, now, then):
     # after an odd number of half periods the motion recurs as its mirror image
     mirrored = anchors[now, SIGN] != anchors[then, SIGN]
     return halves if (halves % 2 == 1) == mirrored else 0
-
-
-@kernel
-def could_recur(halves):
-    """Whether a steady motion may take this many half periods to recur."""
-    return halves >= 1 and full_period(halves) <= LONGEST_PERIOD
 
 
 @kernel

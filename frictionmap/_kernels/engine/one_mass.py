@@ -17,6 +17,7 @@ from ..one_mass.events import Scratch, after_slide, make_scratch, slide_within
 from ..one_mass.newton import first_contact_force, solve_orbit
 from ..one_mass.scan_step import Step, step_constants
 from ..one_mass.sliding_orbit import Oscillator, distance_to_orbit, stop_free_radius
+from .cycle_log import make_log
 from .memory import STATE, Memory, make_memory, turned
 from .policies import FINE_STEPS, MOVING_START, MOVING_START_CAP
 from .records import Contact, ContactState, Orbit, known_orbit, no_orbit, stops_at
@@ -86,6 +87,7 @@ class OneMass(NamedTuple):
     step: Step
     fine: Step  # a step at least as short, for bounds over a whole orbit
     memory: Memory
+    log: np.ndarray  # see `cycle_log`
     scratch: Scratch
     neighbour: np.ndarray  # (NEIGHBOUR,)
     no_table: np.ndarray  # (0, 0)
@@ -101,7 +103,7 @@ def at_frequency(system, i):
     return OneMass(
         step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _RECURRENCE_THRESHOLD,
         oscillator, step, step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
-        make_memory(step.h, 1), make_scratch(), np.zeros(NEIGHBOUR), np.empty((0, 0)),
+        make_memory(step.h, 1), make_log(), make_scratch(), np.zeros(NEIGHBOUR), np.empty((0, 0)),
     )  # fmt: skip
 
 

@@ -7,8 +7,8 @@ from ...regimes import (
     CLOSED_FORM,
     CONTINUOUS,
     INTEGRATED,
+    IRREGULAR,
     MARGINAL,
-    NOT_PERIODIC,
     NOT_REACHED,
     PERMANENT_STICKING,
     QUASI_STATIC,
@@ -82,6 +82,8 @@ class Cell(NamedTuple):
     event: int  # event that ended the slide before the anchor
     sign: float  # -1.0 where the anchor is the mirror image of the true motion
     slides: int  # slides per recurrence; 0 where stuck and for the closed form
+    stops_error: float  # standard errors of averages; 0 of a steady state
+    stuck_error: float
 
 
 @kernel
@@ -129,15 +131,31 @@ def plain_cell(regime, status, origin, stops, amplitude, stuck, period, cycles):
     cycles : excitation periods followed
     """
     return Cell(
-        regime, status, origin, stops, amplitude, stuck, period, cycles, undefined_state(), REVERSE, 1.0, 0
-    )
+        regime, status, origin, stops, amplitude, stuck, period, cycles, undefined_state(), REVERSE, 1.0, 0,
+        0.0, 0.0,
+    )  # fmt: skip
 
 
 @kernel
 def unresolved(status, time):
     """Build an unresolved cell, whose motion was followed over `time` in tau."""
     nan = math.nan
-    return plain_cell(UNRESOLVED, status, INTEGRATED, nan, nan, nan, 0, time / TURN)
+    return Cell(
+        UNRESOLVED,
+        status,
+        INTEGRATED,
+        nan,
+        nan,
+        nan,
+        0,
+        time / TURN,
+        undefined_state(),
+        REVERSE,
+        1.0,
+        0,
+        nan,
+        nan,
+    )
 
 
 @kernel
@@ -146,8 +164,9 @@ def stuck_cell(origin, status, time, z, sign):
     nan = math.nan
     contact_state = ContactState(z, 0.0, nan, nan, nan)
     return Cell(
-        PERMANENT_STICKING, status, origin, nan, 0.0, 1.0, 1, time / TURN, contact_state, REVERSE, sign, 0
-    )
+        PERMANENT_STICKING, status, origin, nan, 0.0, 1.0, 1, time / TURN, contact_state, REVERSE, sign, 0,
+        nan, 0.0,
+    )  # fmt: skip
 
 
 @kernel
@@ -161,7 +180,22 @@ def continuous_cell(amplitude, marginal, origin, time):
 def quasi_static_cell():
     """Build a cell at r = 0 between the boundaries: stick-slip whose number of stops has no limit."""
     nan = math.nan
-    return plain_cell(STICK_SLIP, QUASI_STATIC, CLOSED_FORM, nan, nan, nan, 0, 0.0)
+    return Cell(
+        STICK_SLIP,
+        QUASI_STATIC,
+        CLOSED_FORM,
+        nan,
+        nan,
+        nan,
+        0,
+        0.0,
+        undefined_state(),
+        REVERSE,
+        1.0,
+        0,
+        nan,
+        nan,
+    )
 
 
 @kernel
@@ -173,23 +207,20 @@ def periodic_cell(measured, stops, orbit, origin, time):
     regime = STICK_SLIP if stops > 0 else CONTINUOUS
     return Cell(
         regime, RESOLVED, origin, 2.0 * stops / halves, measured.amplitude, measured.stuck,
-        full_period(halves), time / TURN, orbit.contact_state, orbit.event, orbit.sign, measured.slides,
+        full_period(halves), time / TURN, orbit.contact_state, orbit.event, orbit.sign, measured.slides, 0.0,
+        0.0,
     )  # fmt: skip
 
 
 @kernel
-def averaged_cell(windows, time, end):
-    """Build the stick-slip cell of a motion that does not repeat, from its last full window and the present
-    one.
+def irregular_cell(averages, time):
+    """Build the stick-slip cell of a motion that did not return while it was followed, from its averages.
 
-    The cell is unresolved if the motion was not followed to `end` or did not stop in these windows.
+    The cell is unresolved if the motion was followed for less than a period or did not stop.
     """
-    last, now = windows.last, windows.now
-    stops = last.stops + now.stops
-    if stops == 0 or time < end:
+    if not averages.stops.value > 0.0:
         return unresolved(NOT_REACHED, time)
-    measured = time - last.opened
-    return plain_cell(
-        STICK_SLIP, NOT_PERIODIC, INTEGRATED, stops * TURN / measured, max(last.largest, now.largest),
-        (last.stuck + now.stuck) / measured, 0, time / TURN,
+    return Cell(
+        STICK_SLIP, IRREGULAR, INTEGRATED, averages.stops.value, averages.largest, averages.stuck.value, 0,
+        time / TURN, undefined_state(), REVERSE, 1.0, 0, averages.stops.error, averages.stuck.error,
     )  # fmt: skip

@@ -3,18 +3,47 @@
 import math
 
 from ..compiler import kernel
-from .memory import TIME, Recurrence, could_recur, halves_between
+from .memory import TIME, Recurrence, halves_between
 from .motion import motion_size, recurrence_distance
+from .periods import full_period
 
-#: Largest number of candidates compared: symmetric motions need one or a few, subharmonic ones more.
-_MOST_RECURRENCES = 64
-
-#: Longest recurrence [half periods of the excitation].
+#: Longest recurrence [half periods of the excitation] looked for in every half period, and in the seldom
+#: searches for long periods.
 _LONGEST_RECURRENCE = 16
+_LONG = 512
+
+#: Largest number of candidates compared per half period of the longest recurrence: symmetric motions need one
+#: or a few, subharmonic ones more.
+_MOST_RECURRENCES = 4
+
+#: Distance, relative to the motion, of a return after a long period.
+_LONG_THRESHOLD = 1e-6
 
 
 @kernel
 def find_recurrence(motion, contact_state, events, any_will_do, shortest):
+    """Find the earlier anchor that the present one nearly equals, as a `Recurrence`.
+
+    Parameters
+    ----------
+    motion : a kind of motion, see `motion`
+    contact_state : ContactState at the present anchor
+    events : number of anchors so far
+    any_will_do : True accepts any distance, because the steady state is unique
+    shortest : True stops the search at the first recurrence
+    """
+    threshold = math.inf if any_will_do else motion.recurrence_threshold
+    return _nearest(motion, contact_state, events, threshold, _LONGEST_RECURRENCE, shortest)
+
+
+@kernel
+def find_long_recurrence(motion, contact_state, events):
+    """Find the earlier anchor, up to 256 excitation periods ago, that the present one equals."""
+    return _nearest(motion, contact_state, events, _LONG_THRESHOLD, _LONG, False)
+
+
+@kernel
+def _nearest(motion, contact_state, events, threshold, longest, shortest):
     """Find the earlier anchor that the present one nearly equals, as a `Recurrence`.
 
     The shortest recurrence wins unless a longer one is at least four times closer: a subharmonic motion may
@@ -25,7 +54,8 @@ def find_recurrence(motion, contact_state, events, any_will_do, shortest):
     motion : a kind of motion, see `motion`
     contact_state : ContactState at the present anchor
     events : number of anchors so far
-    any_will_do : True accepts any distance, because the steady state is unique
+    threshold : largest distance
+    longest : longest recurrence [half periods of the excitation]
     shortest : True stops the search at the first recurrence
     """
     memory = motion.memory
@@ -33,16 +63,15 @@ def find_recurrence(motion, contact_state, events, any_will_do, shortest):
     now = (events - 1) % length
     size = motion_size(motion, contact_state)
     best = Recurrence(0, math.inf, 0)
-    threshold = math.inf if any_will_do else motion.recurrence_threshold
     returns = 0
     for lag in range(1, min(events, length)):
         then = (events - 1 - lag) % length
-        if memory.anchors[now, TIME] - memory.anchors[then, TIME] > (_LONGEST_RECURRENCE + 0.5) * math.pi:
+        if memory.anchors[now, TIME] - memory.anchors[then, TIME] > (longest + 0.5) * math.pi:
             break
         if memory.events[then] != memory.events[now]:
             continue
         halves = halves_between(memory, now, then)
-        if not could_recur(halves):
+        if halves < 1 or full_period(halves) > longest // 2:
             continue
         distance = recurrence_distance(motion, now, then, size)
         if distance < math.inf:
@@ -50,6 +79,6 @@ def find_recurrence(motion, contact_state, events, any_will_do, shortest):
             if distance <= threshold:
                 best = Recurrence(lag, distance, halves)
                 threshold = 0.25 * distance
-        if (shortest and best.lag > 0) or returns == _MOST_RECURRENCES:
+        if (shortest and best.lag > 0) or returns == _MOST_RECURRENCES * longest:
             break
     return best

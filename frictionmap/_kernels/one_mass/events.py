@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, inner_kernel, kernel
+from ..compiler.vectors import LANES, LEADING, RAMP, delayed, lane, least, load, mask_above
 from ..event_codes import GRAZING, NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
 from ..taylor_series import MAX_POLISH, MAX_TERMS, NEARLY, ONE_STEP, cubic_root, first_root, reversion
-from .scan_step import expand
+from .scan_step import TURNS, expand
 
 
 class Scratch(NamedTuple):
@@ -104,6 +105,52 @@ def _at_root(step, b, z, c, s, x, work):
     return x, displacement, norm * c1, norm * s1
 
 
+@inner_kernel
+def _steps_above(step, b, z, w, acceleration, c, s, error, error_growth, first):
+    """How many of the next eight steps the velocity certainly stays above zero.
+
+    Parameters
+    ----------
+    step : Step
+    b : kinetic friction over load amplitude
+    z, w, acceleration, c, s : state at the present node and load phase there, see `slide`
+    error, error_growth : largest error of the cubic in the first step, and its growth per step
+    first : 0, or in the first step of a slide from rest: 1 if the velocity rises in it, 2 if it may not
+
+    Returns
+    -------
+    (passed, z, w, acceleration, w1, acceleration1) : number of steps; the state at the node after them, and
+        the velocity and acceleration at the node after that
+    """
+    ahead = step.ahead
+    speed = z * load(ahead, LANES) + w * load(ahead, 4 * LANES) + c * load(ahead, 7 * LANES)
+    speed = speed + (s * load(ahead, 10 * LANES) - b * load(ahead, 13 * LANES))
+    bend = z * load(ahead, 2 * LANES) + w * load(ahead, 5 * LANES) + c * load(ahead, 8 * LANES)
+    bend = bend + (s * load(ahead, 11 * LANES) - b * load(ahead, 14 * LANES))
+    start = delayed(w, speed)
+    left = start + delayed(acceleration, bend) * (1.0 / 3.0)
+    right = speed - bend * (1.0 / 3.0)
+    lowest = least(least(start, speed), least(left, right))
+    above = mask_above(lowest, error + error_growth * load(RAMP, 0))
+    if first > 0:
+        above = (above & ~1) | (first & 1)
+    passed = LEADING[above]
+    after = min(passed, LANES - 1)
+    w1, acceleration1 = lane(speed, after), lane(bend, after)
+    if passed > 0:
+        place = z * load(ahead, 0) + w * load(ahead, 3 * LANES) + c * load(ahead, 6 * LANES)
+        place = place + (s * load(ahead, 9 * LANES) - b * load(ahead, 12 * LANES))
+        z, w, acceleration = lane(place, passed - 1), lane(speed, passed - 1), lane(bend, passed - 1)
+    return passed, z, w, acceleration, w1, acceleration1
+
+
+@inner_kernel
+def _turned_by(step, steps, c, s):
+    """Rotate the load phase by 1 to 8 steps."""
+    turn_c, turn_s = step.ahead[TURNS + steps - 1], step.ahead[TURNS + LANES + steps - 1]
+    return turn_c * c - turn_s * s, turn_c * s + turn_s * c
+
+
 @kernel
 def slide(step, b, z, w, acceleration, c, s, max_steps, work):
     """Follow an upward slide from (z, w >= 0) to the first zero of the velocity.
@@ -128,9 +175,7 @@ def slide(step, b, z, w, acceleration, c, s, max_steps, work):
         has Bernstein coefficients above the cubic's largest error, max|w''''|/384, which follows from the
         energy of the motion of z'': no dip of the velocity can be missed.
     """
-    stiffness = step.stiffness
-    damping = step.damping
-    h = step.h
+    stiffness, damping, h = step.stiffness, step.damping, step.h
     omega = math.sqrt(stiffness)
     square = h * h
     # |z3| + omega |z2| can grow by the load only: by stiffness h^2 per step.  (zk: k-th x-derivative)
@@ -143,45 +188,43 @@ def slide(step, b, z, w, acceleration, c, s, max_steps, work):
     error = per_energy * (energy + growth) + (stiffness * square * h + damping * growth) / 384.0
     error_growth = per_energy * growth
     curve = (damping + omega) * growth
-    z_pull = step.z_one * b
-    w_pull = step.w_one * b
     n = 0.0
-    sure = w == 0.0 and acceleration >= 0.0 and acceleration + jerk - 0.5 * fourth > 0.0
+    first = 0
+    if w == 0.0:
+        first = 1 if acceleration >= 0.0 and acceleration + jerk - 0.5 * fourth > 0.0 else 2
     while n < max_steps and w >= 0.0:  # NaN ends the loop too
-        # in this order the load's part does not depend on the state, and the processor can overlap the sums
-        z1 = (step.z_cos * c + step.z_sin * s - z_pull) + (step.zz * z + step.zw * w)
-        w1 = (step.w_cos * c + step.w_sin * s - w_pull) + (step.wz * z + step.ww * w)
-        c1 = step.cos * c - step.sin * s
-        s1 = step.cos * s + step.sin * c
-        acceleration1 = stiffness * (c1 - b - z1) - damping * w1
-        if not sure:
-            sure = (
-                w > error
-                and w1 > error
-                and w + acceleration * (1.0 / 3.0) > error
-                and w1 - acceleration1 * (1.0 / 3.0) > error
-            )
-        if not sure:
-            expand(step, b, z, w, acceleration, c, s, work)
-            if w > 0.0 and w1 <= 0.0 and max(acceleration, acceleration1) + 0.125 * fourth < 0.0:
-                x = cubic_root(w, acceleration, w1, acceleration1)  # w falls: one root
-            else:
-                first = 0
-                if n == 0.0 and w == 0.0:
-                    first = 1 if acceleration != 0.0 else 2  # skip the root at the start
-                x = first_root(work, first, step.terms)
-            if x <= 1.0:
-                x, z, c, s = _at_root(step, b, z, c, s, x, work)
-                return n + x, z, c, s
+        passed, z, w, acceleration, w1, acceleration1 = _steps_above(
+            step, b, z, w, acceleration, c, s, error, error_growth, first
+        )
+        if passed > 0:
+            c, s = _turned_by(step, passed, c, s)
+            n += passed
+            error += passed * error_growth
+            fourth += passed * curve
+            first = 0
+        if passed == LANES:
+            continue
+        expand(step, b, z, w, acceleration, c, s, work)
+        if w > 0.0 and w1 <= 0.0 and max(acceleration, acceleration1) + 0.125 * fourth < 0.0:
+            x = cubic_root(w, acceleration, w1, acceleration1)  # w falls: one root
+        else:
+            start = 0
+            if first > 0:
+                start = 1 if acceleration != 0.0 else 2  # skip the root at the start
+            x = first_root(work, start, step.terms)
+        if x <= 1.0:
+            x, z, c, s = _at_root(step, b, z, c, s, x, work)
+            return n + x, z, c, s
+        z, w = (
+            (step.z_cos * c + step.z_sin * s - step.z_one * b) + (step.zz * z + step.zw * w),
+            (step.w_cos * c + step.w_sin * s - step.w_one * b) + (step.wz * z + step.ww * w),
+        )
+        c, s = step.cos * c - step.sin * s, step.cos * s + step.sin * c
+        acceleration = stiffness * (c - b - z) - damping * w
         n += 1.0
         error += error_growth
         fourth += curve
-        z = z1
-        w = w1
-        c = c1
-        s = s1
-        acceleration = acceleration1
-        sure = False
+        first = 0
     return float(NO_END), z, c, s
 
 

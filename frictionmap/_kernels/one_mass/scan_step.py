@@ -17,7 +17,12 @@ import numpy as np
 
 from ..closed_form import fastest_rate
 from ..compiler import entry, kernel
+from ..compiler.vectors import LANES
 from ..taylor_series import series_terms
+
+#: Size of `Step.ahead`, and where the cosines begin in it.
+TURNS = 15 * LANES
+AHEAD = 17 * LANES
 
 
 class Step(NamedTuple):
@@ -40,6 +45,7 @@ class Step(NamedTuple):
     w_one: float
     cos: float
     sin: float
+    ahead: np.ndarray  # (AHEAD,) state at the next eight nodes, see `_fill_ahead`
 
 
 @kernel
@@ -107,6 +113,37 @@ def expand(step, b, z, w, acceleration, c, s, out):
     out[1] = acceleration
 
 
+@kernel
+def _fill_ahead(step):
+    """Fill what unit z, w, cos, sin and constant load contribute to z, w and h^2 z'' at the next eight nodes,
+    one node per lane; then the cosines and sines of 1, 2, ..., 8 step lengths.
+    """
+    ahead = step.ahead
+    for k in range(LANES):
+        ahead[TURNS + k], ahead[TURNS + LANES + k] = (
+            math.cos((k + 1.0) * step.h),
+            math.sin((k + 1.0) * step.h),
+        )
+    for unit in range(5):
+        z = 1.0 if unit == 0 else 0.0
+        w = 1.0 if unit == 1 else 0.0
+        c = 1.0 if unit == 2 else 0.0
+        s = 1.0 if unit == 3 else 0.0
+        one = 1.0 if unit == 4 else 0.0
+        for k in range(LANES):
+            z_new = step.z_cos * c + step.z_sin * s + step.z_one * one + step.zz * z + step.zw * w
+            w = step.w_cos * c + step.w_sin * s + step.w_one * one + step.wz * z + step.ww * w
+            z = z_new
+            cosine, sine = ahead[TURNS + k], ahead[TURNS + LANES + k]
+            if unit == 2:
+                c, s = cosine, sine
+            elif unit == 3:
+                c, s = -sine, cosine
+            place = 3 * LANES * unit + k
+            ahead[place], ahead[place + LANES] = z, w
+            ahead[place + 2 * LANES] = step.stiffness * (c + one - z) - step.damping * w
+
+
 @entry
 def step_constants(r, zeta, steps):
     """Build the `Step` of frequency ratio r > 0 for `steps` scan steps per period of the fastest part."""
@@ -126,7 +163,9 @@ def step_constants(r, zeta, steps):
     z_cos, w_cos = _sum_series(series[2], 0.0)
     z_sin, w_sin = _sum_series(series[3], 0.0)
     z_one, w_one = _sum_series(series[4], 0.0)
-    return Step(
+    step = Step(
         h, stiffness, damping, terms, series, zz, zw, wz, ww,
-        z_cos, w_cos, z_sin, w_sin, z_one, w_one, math.cos(h), math.sin(h),
+        z_cos, w_cos, z_sin, w_sin, z_one, w_one, math.cos(h), math.sin(h), np.empty(AHEAD),
     )  # fmt: skip
+    _fill_ahead(step)
+    return step

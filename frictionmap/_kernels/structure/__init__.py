@@ -4,6 +4,7 @@
 module         what is in it
 =============  ==============================================================================
 oscillators    oscillators under one load, and when a sum of them leaves a range
+block          the same for eight scan steps at once
 state          free and held oscillators at one frequency; conversion between them
 events         the end of a slide, and what follows it
 newton         periodic orbits by Newton's method on the return map

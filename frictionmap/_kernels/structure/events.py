@@ -7,7 +7,8 @@ import math
 
 from ..compiler import kernel
 from ..event_codes import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
-from .oscillators import AT_LIMIT, FAILED, ROSE, STARTS_INSIDE, scan
+from .block import scan
+from .oscillators import AT_LIMIT, FAILED, ROSE, STARTS_INSIDE
 from .state import (
     contact_displacement,
     contact_load,
@@ -51,7 +52,7 @@ def slide_on(st, beta, contact_force, state, c, s, limit, scratch):
     (steps, end, cos, sin, slope) : see `oscillators.scan`
     """
     slope = contact_force * st.inverse_mass / (st.rate * st.rate) if contact_force >= 0.0 else STARTS_INSIDE
-    return scan(st.free, beta, 0.0, math.inf, slope, state, c, s, limit, scratch)
+    return scan(st.free, st.free_block, beta, 0.0, math.inf, slope, state, c, s, limit, scratch)
 
 
 @kernel
@@ -84,8 +85,9 @@ def wait_for_release(st, mu_beta, z, held, c, s, allowed, scratch):
         if largest_load_to_come(st, held, z, c, s) <= most:
             return AT_LIMIT, c, s, wait, 0.0
         n, end, c, s, slope = scan(
-            st.held, 0.0, -mu_beta - level, mu_beta - level, STARTS_INSIDE, held, c, s, period, scratch
-        )
+            st.held, st.held_block, 0.0, -mu_beta - level, mu_beta - level, STARTS_INSIDE, held, c, s, period,
+            scratch,
+        )  # fmt: skip
         wait += n * st.h
         if end != AT_LIMIT:
             return end, c, s, wait, slope

@@ -16,7 +16,7 @@ from ..compiler import entry, kernel
 from ..event_codes import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
 from ..newton_limits import MAX_NEWTON, NEAR_END
 from .events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
-from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA
+from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA, make_state, padded
 from .state import PUSH, SPEED, SPEED_RATE, STATIC_SHAPE, Z_RATE, Z, energy
 
 #: Largest number of events recorded by `follow_events`.
@@ -36,21 +36,21 @@ _TURN = 2.0 * math.pi
 class Workspace(NamedTuple):
     """Work arrays of the kernels, for n free modes and m held oscillators."""
 
-    held: np.ndarray  # (2, m) state in a stop
-    middle: np.ndarray  # (2, n) unknown of Newton's method
-    moved: np.ndarray  # (2, n) its image under the return map
+    held: np.ndarray  # (2, padded(m)) state in a stop
+    middle: np.ndarray  # (2, padded(n)) unknown of Newton's method
+    moved: np.ndarray  # (2, padded(n)) its image under the return map
     flow: np.ndarray  # (2n, 2n) derivative of the state with respect to the unknown
     stopped: np.ndarray  # (2m + 1, 2n) derivative of the held state in a stop; last row: of z
     square: np.ndarray  # (2n, 2n)
     step: np.ndarray  # (2n,)
     row: np.ndarray  # (2n,)
-    start: np.ndarray  # (2, n) first guess of Newton's method
-    anchor: np.ndarray  # (2, n)
+    start: np.ndarray  # (2, padded(n)) first guess of Newton's method
+    anchor: np.ndarray  # (2, padded(n))
     table: np.ndarray  # (n + 1, COLUMNS)
     events: np.ndarray  # (LONGEST_SEQUENCE,) event codes of a sequence
-    trial: np.ndarray  # (2, n)
-    solved: np.ndarray  # (2, n) middle of a slide of the orbit solved for last
-    earlier: np.ndarray  # (2, n) middle of a slide of the orbit before that
+    trial: np.ndarray  # (2, padded(n))
+    solved: np.ndarray  # (2, padded(n)) middle of a slide of the orbit solved for last
+    earlier: np.ndarray  # (2, padded(n)) middle of a slide of the orbit before that
     anchored: np.ndarray  # (ANCHORED,)
 
 
@@ -59,10 +59,10 @@ def make_workspace(n):
     """Allocate a workspace for n free modes."""
     m = n - 1
     return Workspace(
-        np.zeros((2, m)), np.zeros((2, n)), np.zeros((2, n)), np.zeros((2 * n, 2 * n)),
+        make_state(m), make_state(n), make_state(n), np.zeros((2 * n, 2 * n)),
         np.zeros((2 * m + 1, 2 * n)), np.zeros((2 * n, 2 * n)), np.zeros(2 * n), np.zeros(2 * n),
-        np.zeros((2, n)), np.zeros((2, n)), np.zeros((n + 1, COLUMNS)), np.zeros(LONGEST_SEQUENCE),
-        np.zeros((2, n)), np.zeros((2, n)), np.zeros((2, n)), np.zeros(ANCHORED),
+        make_state(n), make_state(n), np.zeros((n + 1, COLUMNS)), np.zeros(LONGEST_SEQUENCE),
+        make_state(n), make_state(n), make_state(n), np.zeros(ANCHORED),
     )  # fmt: skip
 
 
@@ -75,7 +75,7 @@ def copy_state(source, target, n):
 
 
 @kernel
-def _free_motion(table, n, time, rows, columns):
+def free_motion(table, n, time, rows, columns):
     """Propagate derivatives by the free motion of n oscillators over `time` in t = tau/r.
 
     Row i holds a coordinate, row n + i its velocity in t.
@@ -108,7 +108,7 @@ def _contact_row(st, coordinate_row, rate, rows, columns, out):
 
 
 @kernel
-def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, row):
+def through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, row, columns):
     """Propagate the derivative through an event that ended an upward slide; see `events.after_slide`.
 
     Parameters
@@ -119,43 +119,45 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
     load : load in the contact at the end of the slide
     wait : duration of the stop in tau
     slope : dload/dx at the end of the stop
-    flow : (2n, 2n) derivative of the state, updated
-    stopped : (2m + 1, 2n) work array, the derivative during the stop
-    row : (2n,) work array
+    flow : (2n, columns) derivative of the state, updated
+    stopped : (2m + 1, columns) work array, the derivative during the stop
+    row : (columns,) work array
+    columns : number of columns
     """
     n, m = st.n, st.m
-    size = 2 * n
-    _contact_row(st, SPEED, SPEED_RATE, flow, size, row)
+    _contact_row(st, SPEED, SPEED_RATE, flow, columns, row)
     # a stop removes the contact's velocity, a turn 2 beta/(load + beta) of it
     share = (2.0 * beta / (load + beta) if code == REVERSE else 1.0) / st.inverse_mass
     for i in range(n):
         part = st.modes[PUSH, i] * share
-        for j in range(size):
+        for j in range(columns):
             flow[n + i, j] -= part * row[j]
     if code != REVERSE:
-        _contact_row(st, Z, Z_RATE, flow, size, stopped[2 * m])
+        _contact_row(st, Z, Z_RATE, flow, columns, stopped[2 * m])
         for k in range(2 * m):
-            for j in range(size):
+            of_k = k if k < m else padded(m) - m + k
+            for j in range(columns):
                 stopped[k, j] = 0.0
             for i in range(n):
-                a = st.to_held[k, i]
-                b = st.to_held[k, n + i]
+                a = st.into_held[i, of_k]
+                b = st.into_held[n + i, of_k]
                 shift = a * st.modes[STATIC_SHAPE, i]
-                for j in range(size):
+                for j in range(columns):
                     stopped[k, j] += a * flow[i, j] + b * flow[n + i, j] - shift * stopped[2 * m, j]
-        _free_motion(st.held, m, wait / st.r, stopped, size)
-        for j in range(size):
+        free_motion(st.held, m, wait / st.r, stopped, columns)
+        for j in range(columns):
             row[j] = st.stiffness * stopped[2 * m, j]
         for k in range(m):
-            for j in range(size):
+            for j in range(columns):
                 row[j] += st.held[k, OZ] * stopped[k, j] + st.held[k, OW] * stopped[m + k, j] / st.rate
-        for i in range(size):
+        for i in range(2 * n):
             shape = st.modes[STATIC_SHAPE, i] if i < n else 0.0
-            for j in range(size):
+            of_i = i if i < n else padded(n) - n + i
+            for j in range(columns):
                 flow[i, j] = shape * stopped[2 * m, j]
             for k in range(2 * m):
-                a = st.to_free[i, k]
-                for j in range(size):
+                a = st.into_free[k, of_i]
+                for j in range(columns):
                     flow[i, j] += a * stopped[k, j]
         # the stop ends where the load reaches mu beta: earlier by the excess of the load over its rate
         jump = (mu_beta - beta) / (slope * st.rate)
@@ -163,11 +165,11 @@ def _through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, ro
             jump = -jump
         for i in range(n):
             part = st.modes[PUSH, i] * jump
-            for j in range(size):
+            for j in range(columns):
                 flow[n + i, j] += part * row[j]
     if code == REVERSE or code == STOP_THEN_BACK:
-        for i in range(size):
-            for j in range(size):
+        for i in range(2 * n):
+            for j in range(columns):
                 flow[i, j] = -flow[i, j]
 
 
@@ -209,7 +211,7 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
             return False
         time += n * st.h
         if derive:
-            _free_motion(st.free, st.n, n * st.h / st.r, work.flow, size)
+            free_motion(st.free, st.n, n * st.h / st.r, work.flow, size)
         code, c, s, contact_force, wait, load, slope = after_slide(
             st, beta, mu_beta, state, work.held, c, s, whole, scratch
         )
@@ -221,7 +223,7 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
         if code != STOP_THEN_ON:
             mirrored = not mirrored
         if derive:
-            _through_event(st, beta, mu_beta, code, load, wait, slope, work.flow, work.stopped, work.row)
+            through_event(st, beta, mu_beta, code, load, wait, slope, work.flow, work.stopped, work.row, size)
     if mirrored != odd:
         return False
     # the remaining time, as exactly as the load phase gives it
@@ -233,7 +235,7 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
     if end != AT_LIMIT:
         return False
     if derive:
-        _free_motion(st.free, st.n, remaining / st.r, work.flow, size)
+        free_motion(st.free, st.n, remaining / st.r, work.flow, size)
     return True
 
 
@@ -307,26 +309,43 @@ def solve_linear(matrix, right, n):
 
 
 @kernel
-def _largest_entry(matrix, n):
-    """Largest modulus of the entries of a matrix."""
-    norm = 0.0
+def _frobenius(matrix, n):
+    """Root of the sum of the squares of the entries of a matrix."""
+    total = 0.0
     for i in range(n):
         for j in range(n):
-            norm = max(norm, abs(matrix[i, j]))
-    return norm
+            total += matrix[i, j] * matrix[i, j]
+    return math.sqrt(total)
 
 
 @kernel
-def spectral_radius(matrix, n, a):
-    """Largest modulus of the eigenvalues, from the root of a high power; `matrix` is overwritten, `a` is
-    scratch.
+def spectral_radius(matrix, n, a, precision):
+    """Largest modulus of the eigenvalues, from the root of the norm of a high power.
+
+    The root never increases from one squaring to the next, and never falls below the radius.
+
+    Parameters
+    ----------
+    matrix : (n, n), overwritten
+    n : its size
+    a : (n, n) scratch
+    precision : error allowed, relative to the distance of the radius from 1, if it is below 1; 0 for rounding
     """
     log = 0.0
-    for _ in range(_SQUARINGS):
-        norm = _largest_entry(matrix, n)
+    power = 1.0
+    last = math.inf
+    for squarings in range(_SQUARINGS + 1):
+        norm = _frobenius(matrix, n)
         if norm == 0.0:
             return 0.0
-        log = 2.0 * (log + math.log(norm))
+        log += math.log(norm)
+        radius = math.exp(log / power)
+        # the error halves with every squaring
+        if squarings == _SQUARINGS or (radius < 1.0 and last - radius < precision * (1.0 - radius)):
+            return radius
+        last = radius
+        log *= 2.0
+        power *= 2.0
         for i in range(n):
             for j in range(n):
                 a[i, j] = matrix[i, j] / norm
@@ -336,10 +355,7 @@ def spectral_radius(matrix, n, a):
             for k in range(n):
                 for j in range(n):
                     matrix[i, j] += a[i, k] * a[k, j]
-    norm = _largest_entry(matrix, n)
-    if norm == 0.0:
-        return 0.0
-    return math.exp((log + math.log(norm)) / 2.0**_SQUARINGS)
+    return last
 
 
 @kernel

@@ -16,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, inner_kernel, kernel
-from ..taylor_series import MAX_POLISH, MAX_TERMS, NEARLY, ONE_STEP, cubic_root, first_root, reversion
+from ..compiler.vectors import LANES
+from ..taylor_series import MAX_TERMS, first_root
 
 # Columns of a table of oscillators, one oscillator per row: the equation, the watched sum, ...
 K, D, FC, FS, F1, OZ, OW = 0, 1, 2, 3, 4, 5, 6
@@ -43,15 +44,27 @@ class Scratch(NamedTuple):
     series: np.ndarray  # (MAX_TERMS + 1, n) Taylor coefficients of every z
     watched: np.ndarray  # (MAX_TERMS + 1,) Taylor coefficients of y
     below: np.ndarray  # (MAX_TERMS,) Taylor coefficients of the distance to an end of the range
-    next: np.ndarray  # (2, n) state at the other end of a step
+    next: np.ndarray  # (2, padded(n)) state at the other end of a step
     left: np.ndarray  # (1,) scan steps that may still be taken
+
+
+@kernel
+def padded(n):
+    """Smallest multiple of LANES that is not below n."""
+    return (n + LANES - 1) // LANES * LANES
+
+
+@entry
+def make_state(n):
+    """Return the state of n oscillators: (2, padded(n)) zeros, of which the first n columns are used."""
+    return np.zeros((2, padded(n)))
 
 
 @entry
 def make_scratch(n):
     """Allocate scratch arrays for up to n oscillators, without a limit on scan steps."""
     return Scratch(
-        np.zeros((MAX_TERMS + 1, n)), np.zeros(MAX_TERMS + 1), np.zeros(MAX_TERMS), np.zeros((2, n)),
+        np.zeros((MAX_TERMS + 1, n)), np.zeros(MAX_TERMS + 1), np.zeros(MAX_TERMS), make_state(n),
         np.full(1, np.inf),
     )  # fmt: skip
 
@@ -281,24 +294,7 @@ def bounds(table, friction, state, c, s):
 
 
 @kernel
-def _inside(y0, dy0, y1, dy1, low, high, error):
-    """Whether the cubic through two values and slopes stays at least `error` inside a range.
-
-    Parameters
-    ----------
-    y0, dy0, y1, dy1 : values and slopes at x = 0 and x = 1
-    low, high : ends of the range
-    error : largest distance of the function from the cubic
-    """
-    left = y0 + dy0 * (1.0 / 3.0)
-    right = y1 - dy1 * (1.0 / 3.0)
-    least = min(min(y0, y1), min(left, right))
-    most = max(max(y0, y1), max(left, right))
-    return least - error > low and most + error < high
-
-
-@kernel
-def _turned(c, s, angle):
+def turned(c, s, angle):
     """Rotate the load phase (cos, sin) by an angle, keeping it on the unit circle."""
     turn_c, turn_s = math.cos(angle), math.sin(angle)
     c1 = turn_c * c - turn_s * s
@@ -308,108 +304,15 @@ def _turned(c, s, angle):
 
 
 @kernel
-def _state_inside(table, friction, before, c, s, x, powers, state):
-    """Compute the state at x inside a step, from the derivatives of every z at its start.
-
-    Parameters
-    ----------
-    table : (n + 1, COLUMNS) table of oscillators
-    friction : friction force on the oscillators
-    before : (2, n) state at the start of the step
-    c, s : cosine and sine of the load phase there
-    x : position inside the step
-    powers : (terms + 1,) work array, x^j/j!
-    state : (2, n) filled with the state at x
-    """
-    n = table.shape[0] - 1
-    h = table[n, H]
-    terms = int(table[n, TERMS])
-    powers[0] = 1.0  # x^j/j!
-    for j in range(terms):
-        powers[j + 1] = powers[j] * x / (j + 1.0)
-    for i in range(n):
-        k, d = table[i, K], table[i, D]
-        load = table[i, FC] * c + table[i, FS] * s
-        load_next = h * (table[i, FS] * c - table[i, FC] * s)
-        last = before[0, i]
-        this = before[1, i]
-        new = load + table[i, F1] * friction - k * last - d * this
-        z = last + this * x
-        w = this
-        for j in range(1, terms):
-            z += new * powers[j + 1]
-            w += new * powers[j]
-            last, this = this, new
-            new = load_next - k * last - d * this
-            load, load_next = load_next, -h * h * load
-        state[0, i] = z
-        state[1, i] = w
-
-
-@kernel
-def _advance_slightly(table, friction, state, c, s, x):
-    """Advance the state by a small part x of a step, with a third-order expansion."""
-    n = table.shape[0] - 1
-    h = table[n, H]
-    for i in range(n):
-        k, d = table[i, K], table[i, D]
-        load = table[i, FC] * c + table[i, FS] * s
-        acceleration = load + table[i, F1] * friction - k * state[0, i] - d * state[1, i]
-        jerk = h * (table[i, FS] * c - table[i, FC] * s) - k * state[1, i] - d * acceleration
-        snap = -h * h * load - k * acceleration - d * jerk
-        state[0, i] += x * (state[1, i] + x * (0.5 * acceleration + x * (1.0 / 6.0) * jerk))
-        state[1, i] += x * (acceleration + x * (0.5 * jerk + x * (1.0 / 6.0) * snap))
-
-
-@kernel
-def _at_crossing(table, friction, level, x, done, start, now, state, scratch):
-    """Refine the crossing of `level` by y next to x, by Newton steps of fourth order.
-
-    Parameters
-    ----------
-    table : (n + 1, COLUMNS) table of oscillators
-    friction : friction force on the oscillators
-    level : value of y to cross
-    x : first guess inside the step
-    done : scan steps before this one
-    start, now : load phase (cos, sin) at the start of the scan and of this step
-    state : (2, n) filled with the state at the crossing
-    scratch : Scratch; scratch.next is the state at the start of the step
-
-    Returns
-    -------
-    (found, x, slope) : not found where y only touches the level
-    """
-    h = table[table.shape[0] - 1, H]
-    for _ in range(MAX_POLISH):
-        _state_inside(table, friction, scratch.next, now[0], now[1], x, scratch.watched, state)
-        c, s = _turned(start[0], start[1], (done + x) * h)
-        y, slope, bend, third = derivatives(table, friction, state, c, s)
-        y -= level
-        if not abs(y) < NEARLY * abs(slope) or not abs(y * bend) < NEARLY * slope * slope:
-            break
-        move = reversion(y, slope, bend, third)
-        x += move
-        if abs(move) < ONE_STEP:
-            _advance_slightly(table, friction, state, c, s, move)
-            return True, x, slope + move * (bend + 0.5 * move * third)
-    return False, x, 0.0
-
-
-@kernel
-def _exit_range(table, friction, low, high, rise, ends, errors, done, start, now, state, scratch):
-    """Find where y leaves [low, high] between scratch.next and `state`.
-
-    This is the rarely executed part of `scan`, and takes its arguments.
+def leave_range(table, friction, low, high, rise, done, start, now, state, scratch):
+    """Find where y leaves [low, high] in a step, by its Taylor series: no root can be missed.
 
     Parameters
     ----------
     table : (n + 1, COLUMNS) table of oscillators
     friction : friction force on the oscillators
     low, high : range of y
-    rise : as of `scan` in its first step; else STARTS_INSIDE
-    ends : y at both ends of the step
-    errors : bounds on the derivatives 2 to 4 of y
+    rise : slope of y at x = 0 if y starts at `low` exactly, >= 0; else STARTS_INSIDE
     done : scan steps before this one
     start, now : load phase (cos, sin) at the start of the scan and of this step
     state : (2, n) state at the end of the step; replaced by the state at the exit
@@ -421,28 +324,6 @@ def _exit_range(table, friction, low, high, rise, ends, errors, done, start, now
     """
     n = table.shape[0] - 1
     c, s = now
-    y, y1 = ends
-    second, third, fourth = errors
-    _, dy, bend, _ = derivatives(table, friction, scratch.next, c, s)
-    if rise >= 0.0:
-        # y/x is above a concave parabola that is positive at both ends
-        if rise + 0.5 * bend - third * (1.0 / 6.0) > 0.0 and y1 + 0.125 * second < high:
-            return 2.0, AT_LIMIT, 0.0
-    else:
-        turn_c, turn_s = table[n, TURN_COS], table[n, TURN_SIN]
-        _, dy1, _, _ = derivatives(table, friction, state, turn_c * c - turn_s * s, turn_c * s + turn_s * c)
-        if _inside(y, dy, y1, dy1, low, high, fourth * (1.0 / 384.0)):
-            return 2.0, AT_LIMIT, 0.0
-        # the slope deviates too little from the straight line to change sign: there is one root
-        falls = y > low and y1 <= low and max(dy, dy1) + 0.125 * third < 0.0
-        rises = y < high and y1 >= high and min(dy, dy1) - 0.125 * third > 0.0
-        if falls or rises:
-            sign, level = (1.0, low) if falls else (-1.0, high)
-            x = cubic_root(sign * (y - level), sign * dy, sign * (y1 - level), sign * dy1)
-            found, x, slope = _at_crossing(table, friction, level, x, done, start, now, state, scratch)
-            if found:
-                return x, FELL if falls else ROSE, slope
-            _state_inside(table, friction, scratch.next, c, s, 1.0, scratch.watched, state)
     terms = int(table[n, TERMS])
     expand(table, n, friction, scratch.next, c, s, table[n, H], terms, scratch.series)
     watch(table, c, s, scratch.series, scratch.watched)
@@ -450,71 +331,8 @@ def _exit_range(table, friction, low, high, rise, ends, errors, done, start, now
     if end == AT_LIMIT:
         return 2.0, end, 0.0
     advance(scratch.series, n, terms, x, state)
-    c, s = _turned(start[0], start[1], (done + x) * table[n, H])
+    c, s = turned(start[0], start[1], (done + x) * table[n, H])
     return x, end, derivatives(table, friction, state, c, s)[1]
-
-
-@kernel
-def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
-    """Follow the motion until y leaves [low, high], or for `limit` steps.
-
-    Parameters
-    ----------
-    table, friction : the oscillators, (n + 1, COLUMNS), and the friction force on them
-    low, high : range of y; one end may be infinite
-    rise : if >= 0, y starts at `low` exactly with this slope, and that root is skipped; else STARTS_INSIDE
-    state : (2, n) z and w; replaced by the state at the end
-    c, s : cos(tau), sin(tau)
-    limit : steps allowed, including a fraction
-    scratch : Scratch
-
-    Returns
-    -------
-    (steps, end, cos, sin, slope) : steps taken; AT_LIMIT, FELL, ROSE or FAILED; the load phase; dy/dx where y
-        leaves its range.  FAILED also if scratch.left is used up; the steps taken, and one for the call, are
-        subtracted from it.
-
-    Notes
-    -----
-    A step is passed where y cannot reach an end of the range inside it: by the bound on y'', or by the cubic
-        through its ends and the bound on y''''.  Any other step is examined by `_exit_range`.
-    """
-    n = table.shape[0] - 1
-    turn_c, turn_s, yc, ys = table[n, TURN_COS], table[n, TURN_SIN], table[n, YC], table[n, YS]
-    start = (c, s)
-    second, third, fourth, second_growth, third_growth, fourth_growth = bounds(table, friction, state, c, s)
-    y = low if rise >= 0.0 else value(table, state, c, s)
-    done = 0.0
-    left = scratch.left[0]
-    while y == y and done < left:  # a number
-        c1 = turn_c * c - turn_s * s
-        s1 = turn_c * s + turn_s * c
-        y1 = step_on(table, n, friction, state, scratch.next, c, s) + (yc * c1 + ys * s1)
-        margin = 0.125 * second
-        sure = min(y, y1) - margin > low and max(y, y1) + margin < high
-        whole = done + 1.0 <= limit
-        if not (sure and whole):
-            x, end, slope = 2.0, AT_LIMIT, 0.0
-            if not sure:
-                x, end, slope = _exit_range(
-                    table, friction, low, high, rise if done == 0.0 else STARTS_INSIDE, (y, y1),
-                    (second, third, fourth), done, start, (c, s), state, scratch,
-                )  # fmt: skip
-            remaining = 1.0 if whole else limit - done
-            if x > remaining and not whole:
-                x, end = remaining, AT_LIMIT
-                _state_inside(table, friction, scratch.next, c, s, x, scratch.watched, state)
-            if x <= remaining:
-                c, s = _turned(start[0], start[1], (done + x) * table[n, H])
-                scratch.left[0] = left - done - 1.0
-                return done + x, end, c, s, slope
-        done += 1.0
-        second += second_growth
-        third += third_growth
-        fourth += fourth_growth
-        y, c, s = y1, c1, s1
-    scratch.left[0] = left - done - 1.0
-    return done, FAILED, c, s, 0.0
 
 
 @kernel

@@ -17,7 +17,9 @@ import numpy as np
 
 from ..closed_form import fastest_rate
 from ..compiler import entry, kernel
+from ..compiler.vectors import LANES, filled, load, root, store, total
 from ..taylor_series import series_terms
+from .block import EQUATION, REACH, STEADY, STEADY_IM, STEADY_LOAD, STEADY_RE, block_size, fill_block
 from .oscillators import (
     COLUMNS,
     F1,
@@ -30,8 +32,11 @@ from .oscillators import (
     YS,
     ZETA,
     D,
+    H,
     K,
     fill_steps,
+    make_state,
+    padded,
     value,
     watch_load,
 )
@@ -64,12 +69,14 @@ class StructureAtFrequency(NamedTuple):
     free_sin: float
     displacement_cos: float  # z without the oscillators' part
     displacement_sin: float
-    modes: np.ndarray  # (MODE_ROWS, n)
+    modes: np.ndarray  # (MODE_ROWS, padded(n))
     free: np.ndarray  # (n + 1, COLUMNS) tables of `oscillators`
     held: np.ndarray  # (m + 1, COLUMNS)
-    held_feedthrough: np.ndarray  # (2, m) cos and sin of the feedthrough of the load into y'
-    to_free: np.ndarray  # (2n, 2m), see `held.HeldStructure`
-    to_held: np.ndarray  # (2m, 2n)
+    free_block: np.ndarray  # eight scan steps at once, see `block`
+    held_block: np.ndarray
+    held_feedthrough: np.ndarray  # (2, padded(m)) cos and sin of the feedthrough of the load into y'
+    into_held: np.ndarray  # (2n, 2 padded(m)) what each free (u, v) adds to all y, then to all p
+    into_free: np.ndarray  # (2m, 2 padded(n)) what each held (y, p) adds to all u, then to all v
 
 
 class Model(NamedTuple):
@@ -79,8 +86,8 @@ class Model(NamedTuple):
     omega: np.ndarray  # (m,) held oscillators
     ratio: np.ndarray
     watch: np.ndarray  # (2m,) coefficients of (y, p) in the load in the contact
-    to_free: np.ndarray
-    to_held: np.ndarray
+    to_free: np.ndarray  # (2n, 2m), see `held.HeldStructure`
+    to_held: np.ndarray  # (2m, 2n)
     inverse_mass: float
     stiffness: float
     reach: float
@@ -103,10 +110,10 @@ class Loads(NamedTuple):
 
 
 @kernel
-def _fill_free(loads, i, scale, modes, free):
+def _fill_free(loads, i, scale, n, modes, free):
     """Fill the table of the free oscillators, and the feedthrough of the load into their velocities."""
     square = scale * scale
-    for j in range(modes.shape[1]):
+    for j in range(n):
         w = modes[W, j]
         zeta = modes[DAMPING, j]
         free[j, K] = (w * scale) * (w * scale)
@@ -159,6 +166,18 @@ def _feedthrough(modes, row):
 
 
 @entry
+def _in_columns(matrix, rows, parts, n):
+    """Return a matrix (rows, parts n) with each part padded by zeros to whole vectors."""
+    width = padded(n)
+    out = np.zeros((rows, parts * width))
+    for row in range(rows):
+        for part in range(parts):
+            for j in range(n):
+                out[row, part * width + j] = matrix[row, part * n + j]
+    return out
+
+
+@entry
 def make_structure(model, loads, i, r, steps):
     """Build the structure at the i-th frequency, r > 0, for `steps` scan steps per period of the fastest
     part.
@@ -174,22 +193,28 @@ def make_structure(model, loads, i, r, steps):
     h = turn / max(1.0, fastest / r)
     scale = h / r
     free = np.zeros((n + 1, COLUMNS))
-    modes = model.modes.copy()
-    _fill_free(loads, i, scale, modes, free)
+    modes = _in_columns(model.modes, MODE_ROWS, 1, n)
+    _fill_free(loads, i, scale, n, modes, free)
     fill_steps(free, h, terms)
     speed_cos, speed_sin = _feedthrough(modes, SPEED_RATE)
     watch_load(free, speed_cos * scale, speed_sin * scale)
     held = np.zeros((m + 1, COLUMNS))
-    feedthrough = np.empty((2, m))
+    feedthrough = make_state(m)
     held_cos, held_sin = _fill_held(model, loads, i, scale, held, feedthrough)
     fill_steps(held, h, terms)
     watch_load(held, held_cos, held_sin)
+    free_block = np.zeros(block_size(n))
+    fill_block(free, free_block)
+    held_block = np.zeros(block_size(m))
+    fill_block(held, held_block)
+    _fill_steady(held, held_block)
     load_cos, load_sin = _feedthrough(modes, LOAD_RATE)
     displacement_cos, displacement_sin = _feedthrough(modes, Z_RATE)
     return StructureAtFrequency(
         n, m, r, h, r / h, terms, model.inverse_mass, model.stiffness, model.reach, model.norm,
         load_cos - loads.contact_cos[i], load_sin - loads.contact_sin[i], displacement_cos, displacement_sin,
-        modes, free, held, feedthrough, model.to_free, model.to_held,
+        modes, free, held, free_block, held_block, feedthrough,
+        _in_columns(model.to_held.T, 2 * n, 2, m), _in_columns(model.to_free.T, 2 * m, 2, n),
     )  # fmt: skip
 
 
@@ -222,37 +247,42 @@ def held_load(st, held, z, c, s):
 @kernel
 def hold(st, state, z, c, s, held):
     """Convert free-mode coordinates to held-mode coordinates (requires z' = 0)."""
-    n, m, modes = st.n, st.m, st.modes
-    for k in range(m):
-        held[0, k] = 0.0
-        held[1, k] = 0.0
-    for i in range(n):
-        u = state[0, i] - modes[STATIC_SHAPE, i] * z
-        v = st.rate * state[1, i] - (modes[FEEDTHROUGH_COS, i] * c + modes[FEEDTHROUGH_SIN, i] * s)
-        for k in range(m):
-            held[0, k] += st.to_held[k, i] * u + st.to_held[k, n + i] * v
-            held[1, k] += st.to_held[m + k, i] * u + st.to_held[m + k, n + i] * v
-    for k in range(m):
-        held[1, k] = (held[1, k] + st.held_feedthrough[0, k] * c + st.held_feedthrough[1, k] * s) / st.rate
+    n, modes = st.n, st.modes
+    width = padded(st.m)
+    for first in range(0, width, LANES):
+        y = filled(0.0)
+        p = filled(0.0)
+        for i in range(n):
+            u = state[0, i] - modes[STATIC_SHAPE, i] * z
+            v = st.rate * state[1, i] - (modes[FEEDTHROUGH_COS, i] * c + modes[FEEDTHROUGH_SIN, i] * s)
+            of_u = 2 * width * i + first
+            of_v = 2 * width * (n + i) + first
+            y = y + (u * load(st.into_held, of_u) + v * load(st.into_held, of_v))
+            p = p + (u * load(st.into_held, of_u + width) + v * load(st.into_held, of_v + width))
+        feedthrough = c * load(st.held_feedthrough, first) + s * load(st.held_feedthrough, width + first)
+        store(y, held, first)
+        store((p + feedthrough) * (1.0 / st.rate), held, held.shape[1] + first)
 
 
 @kernel
 def release(st, held, z, c, s, state):
     """Convert held-mode coordinates to free-mode coordinates."""
-    n, m, modes = st.n, st.m, st.modes
-    for i in range(n):
-        state[0, i] = modes[STATIC_SHAPE, i] * z
-        state[1, i] = 0.0
-    for k in range(m):
-        y = held[0, k]
-        p = st.rate * held[1, k] - st.held_feedthrough[0, k] * c - st.held_feedthrough[1, k] * s
-        for i in range(n):
-            state[0, i] += st.to_free[i, k] * y + st.to_free[i, m + k] * p
-            state[1, i] += st.to_free[n + i, k] * y + st.to_free[n + i, m + k] * p
-    for i in range(n):
-        state[1, i] = (
-            state[1, i] + (modes[FEEDTHROUGH_COS, i] * c + modes[FEEDTHROUGH_SIN, i] * s)
-        ) / st.rate
+    m, modes = st.m, st.modes
+    width = padded(st.n)
+    for first in range(0, width, LANES):
+        u = z * load(modes, STATIC_SHAPE * width + first)
+        v = c * load(modes, FEEDTHROUGH_COS * width + first) + s * load(
+            modes, FEEDTHROUGH_SIN * width + first
+        )
+        for k in range(m):
+            y = held[0, k]
+            p = st.rate * held[1, k] - (st.held_feedthrough[0, k] * c + st.held_feedthrough[1, k] * s)
+            of_y = 2 * width * k + first
+            of_p = 2 * width * (m + k) + first
+            u = u + (y * load(st.into_free, of_y) + p * load(st.into_free, of_p))
+            v = v + (y * load(st.into_free, of_y + width) + p * load(st.into_free, of_p + width))
+        store(u, state, first)
+        store(v * (1.0 / st.rate), state, state.shape[1] + first)
 
 
 @kernel
@@ -292,6 +322,8 @@ def vibrates_in_step(st):
     depends on the initial state.
     """
     found = False
+    if st.held_block[STEADY] != 0.0:
+        return found
     for k in range(st.m):
         found = found or _in_step(st.held, k, st.h)
     return found
@@ -333,8 +365,51 @@ def _steady(table, k, h):
 
 
 @kernel
+def _fill_steady(table, block):
+    """Fill the steady response of the held oscillators into their block, unless one never decays."""
+    m = table.shape[0] - 1
+    width = padded(m)
+    h = table[m, H]
+    y_re, y_im = table[m, YC], -table[m, YS]
+    for k in range(m):
+        a_re, a_im = _steady(table, k, h)
+        if math.isinf(a_re) or _in_step(table, k, h):
+            return
+        y_re += table[k, OZ] * a_re - table[k, OW] * h * a_im
+        y_im += table[k, OZ] * a_im + table[k, OW] * h * a_re
+        block[EQUATION + STEADY_RE * width + k] = a_re
+        block[EQUATION + STEADY_IM * width + k] = a_im
+        block[EQUATION + REACH * width + k] = _reach(table, k)
+    block[STEADY_LOAD], block[STEADY] = math.hypot(y_re, y_im), 1.0
+
+
+@kernel
+def _reach(table, k):
+    """Largest y of free motion of an oscillator of unit energy."""
+    return math.sqrt(table[k, OZ] * table[k, OZ] / table[k, K] + table[k, OW] * table[k, OW])
+
+
+@kernel
+def _free_load(st, held, c, s):
+    """Upper bound on the load in the contact of the remaining free motion, whose energy never grows."""
+    block, width = st.held_block, padded(st.m)
+    free = filled(0.0)
+    for first in range(0, width, LANES):
+        at = EQUATION + first
+        a_re = load(block, at + STEADY_RE * width)
+        a_im = load(block, at + STEADY_IM * width)
+        z_off = load(held, first) - (c * a_re - s * a_im)
+        w_off = load(held, held.shape[1] + first) + st.h * (s * a_re + c * a_im)
+        energy = root(load(block, at + K * width) * z_off * z_off + w_off * w_off)
+        free = free + load(block, at + REACH * width) * energy
+    return total(free)
+
+
+@kernel
 def largest_load_to_come(st, held, z, c, s):
     """Upper bound on the load in the contact as long as it is held; infinite at an undamped resonance."""
+    if st.held_block[STEADY] != 0.0:
+        return st.held_block[STEADY_LOAD] + abs(st.stiffness * z) + _free_load(st, held, c, s)
     y_re, y_im = st.held[st.m, YC], -st.held[st.m, YS]
     free = 0.0
     h = st.h
@@ -351,9 +426,7 @@ def largest_load_to_come(st, held, z, c, s):
         w_off = held[1, k] + h * (a_re * s + a_im * c)
         y_re += table[k, OZ] * a_re - table[k, OW] * h * a_im
         y_im += table[k, OZ] * a_im + table[k, OW] * h * a_re
-        # the energy of free motion never grows
-        reach = math.sqrt(table[k, OZ] * table[k, OZ] / table[k, K] + table[k, OW] * table[k, OW])
-        free += reach * math.sqrt(table[k, K] * z_off * z_off + w_off * w_off)
+        free += _reach(table, k) * math.sqrt(table[k, K] * z_off * z_off + w_off * w_off)
     return math.hypot(y_re, y_im) + abs(st.stiffness * z) + free
 
 

@@ -156,8 +156,8 @@ def title_of(ds: xr.Dataset) -> str:
     words = _REGIME_WORDS[int(ds["regime"])]
     stops = float(ds["stops_per_cycle"]) if "stops_per_cycle" in ds else 0.0
     counted = f", {stops:.4g} stops per cycle" if stops > 0 else ""
-    if "status" in ds and int(ds["status"]) == regimes.NOT_PERIODIC:
-        return f"{cell}: {words}{counted}, not periodic, excerpt"
+    if "status" in ds and int(ds["status"]) in regimes.WITHOUT_PERIOD:
+        return f"{cell}: {words}{counted}, irregular, excerpt"
     period = int(ds["period"]) if "period" in ds else 1
     return f"{cell}: {words}{counted}" + (f", period {period}" if period > 1 else "")
 

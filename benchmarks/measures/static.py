@@ -63,7 +63,7 @@ SCENES: dict[str, dict] = {
 }
 
 #: Repetitions, and the part of the grid; by quick.
-_ROUNDS = {False: 5, True: 1}
+_ROUNDS = {False: 3, True: 1}
 _EVERY = {False: 1, True: 10}
 
 

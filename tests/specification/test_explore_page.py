@@ -446,7 +446,10 @@ def test_a_view_can_be_taken_along(browser, one, tmp_path):
         np.testing.assert_array_equal(colours(page), table[classes(ds.isel(mu=0))])
         assert copied("link") == page.url
         page.click("#save summary")
-        page.wait_for_function("() => document.querySelector('[data-save=csv]').innerText.includes('about')")
+        for what in ("csv", "nc"):
+            page.wait_for_function(
+                f"() => document.querySelector('[data-save={what}]').innerText.includes('about')"
+            )
         sizes = page.inner_text("#save div").splitlines()[-2:]
         page.click("#save summary")
         for what, name in (("picture", "map.png"), ("csv", "map.csv"), ("nc", "map.nc")):

@@ -25,21 +25,7 @@ from frictionmap._kernels.structure.oscillators import (
 def scan(table, friction, low, high, rise, state, c, s, limit, scratch):
     """Follow the motion until y leaves [low, high], or for `limit` steps.
 
-    Parameters
-    ----------
-    table, friction : the oscillators, (n + 1, COLUMNS), and the friction force on them
-    low, high : range of y; one end may be infinite
-    rise : if >= 0, y starts at `low` exactly with this slope, and that root is skipped; else STARTS_INSIDE
-    state : (2, n) z and w; replaced by the state at the end
-    c, s : cos(tau), sin(tau)
-    limit : steps allowed, including a fraction
-    scratch : Scratch
-
-    Returns
-    -------
-    (steps, end, cos, sin, slope) : steps taken; AT_LIMIT, FELL, ROSE or FAILED; the load phase; dy/dx where y
-        leaves its range.  FAILED also if scratch.left is used up; the steps taken, and one for the call, are
-        subtracted from it.
+    Arguments and result as of `block.scan`, without its block.
 
     Notes
     -----

@@ -63,7 +63,7 @@ def run(folder, *arguments):
 def wait_until_caught(process, number):
     """Wait until the program has its own handler for a signal, or has ended."""
     status = Path(f"/proc/{process.pid}/status")
-    if not status.exists():  # only Linux tells
+    if not status.exists():  # only Linux lists them
         time.sleep(1.0)
         return
     wanted = 1 << (number - 1)

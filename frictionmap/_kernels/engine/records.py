@@ -119,7 +119,7 @@ def turns_at(event):
 
 @kernel
 def plain_cell(regime, status, origin, stops, amplitude, stuck, period, cycles):
-    """Build a cell without an anchor.
+    """Build a cell without an anchor; the error of an average that is NaN is NaN, too, and that of others 0.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def plain_cell(regime, status, origin, stops, amplitude, stuck, period, cycles):
     """
     return Cell(
         regime, status, origin, stops, amplitude, stuck, period, cycles, undefined_state(), REVERSE, 1.0, 0,
-        0.0, 0.0,
+        0.0 * stops, 0.0 * stuck,
     )  # fmt: skip
 
 
@@ -140,22 +140,7 @@ def plain_cell(regime, status, origin, stops, amplitude, stuck, period, cycles):
 def unresolved(status, time):
     """Build an unresolved cell, whose motion was followed over `time` in tau."""
     nan = math.nan
-    return Cell(
-        UNRESOLVED,
-        status,
-        INTEGRATED,
-        nan,
-        nan,
-        nan,
-        0,
-        time / TURN,
-        undefined_state(),
-        REVERSE,
-        1.0,
-        0,
-        nan,
-        nan,
-    )
+    return plain_cell(UNRESOLVED, status, INTEGRATED, nan, nan, nan, 0, time / TURN)
 
 
 @kernel
@@ -180,22 +165,7 @@ def continuous_cell(amplitude, marginal, origin, time):
 def quasi_static_cell():
     """Build a cell at r = 0 between the boundaries: stick-slip whose number of stops has no limit."""
     nan = math.nan
-    return Cell(
-        STICK_SLIP,
-        QUASI_STATIC,
-        CLOSED_FORM,
-        nan,
-        nan,
-        nan,
-        0,
-        0.0,
-        undefined_state(),
-        REVERSE,
-        1.0,
-        0,
-        nan,
-        nan,
-    )
+    return plain_cell(STICK_SLIP, QUASI_STATIC, CLOSED_FORM, nan, nan, nan, 0, 0.0)
 
 
 @kernel

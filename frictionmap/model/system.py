@@ -17,7 +17,9 @@ from ..structures.dofs import Dofs
 from ..structures.reduction import Reduction, reduce_structure
 from ..structures.structure import Structure, read_structure
 from .coupled_modes import CoupledModel, coupled_model
+from .contact import CONTACTS, Contact
 from .decoupling import Decoupling
+from .general import General, base_is_meant, check_contacts, general_of
 from .matrices import Matrices, full_matrices, reduced_matrices
 from .modes import (
     ModalModel,
@@ -28,8 +30,8 @@ from .modes import (
     solve_chain_modes,
     solve_modes,
 )
+from .periodic_load import PeriodicLoad
 
-CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 EXCITATIONS = ("force", "base")
 DAMPING_REFERENCES = ("ground", "base")
 
@@ -207,7 +209,17 @@ class System:
     reduce: Mapping[str, Any] | Reduce | None = field(default=None, compare=False)
     rayleigh: Sequence[float] | None = None
     decouple: float | None = None
+    contacts: Sequence[Contact | Mapping[str, Any]] | None = None
+    contact_stiffness: float | None = None
+    wall_velocity: float = 0.0
+    normal_load: Any = None
+    load_harmonics: Mapping[int, Any] | Sequence[Mapping[str, Any]] | PeriodicLoad | None = None
+    load_file: str | os.PathLike | None = None
+    waveform: str | os.PathLike | None = None
+    harmonics: int | None = None
+    load_offset: Sequence[float] | None = None
     _scale: float | None = field(default=None, init=False, repr=False)
+    _general: General | None = field(default=None, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         previous = self.matrices.reduction if isinstance(self.matrices, Matrices) else None
@@ -215,6 +227,7 @@ class System:
             self._check_chain()
         else:
             self._check_matrices()
+        self._set("contacts", check_contacts(self))
         self._check_contact()
         self._check_load()
         if isinstance(self.matrices, Structure):
@@ -227,6 +240,7 @@ class System:
             scale = self.reduction.first_frequency
         self._set("_scale", scale)
         self._check_damping()
+        self._set("_general", general_of(self))
         if self.n > 1 or self.matrices is not None:
             _ = self.modes  # errors that only the modes reveal are raised here
 
@@ -315,6 +329,10 @@ class System:
             self._set("damping_ratios", _damping(0.0 if given is None else given, self.n))
 
     def _check_contact(self) -> None:
+        if self.contacts is not None:
+            first = self.contacts[0]
+            self._set("contact", first.kind)  # type: ignore[union-attr]
+            self._set("contact_masses", first.masses)  # type: ignore[union-attr]
         checks.choice(self.contact, "contact", CONTACTS)
         if self.contact == "between-masses" and self.n == 1:
             raise InputError(
@@ -324,7 +342,7 @@ class System:
 
     def _check_load(self) -> None:
         if self.excitation is None:
-            self._set("excitation", "base" if self.base_motion else "force")
+            self._set("excitation", "base" if self.base_motion or base_is_meant(self) else "force")
         checks.choice(self.excitation, "excitation", EXCITATIONS)
         checks.choice(self.damping_reference, "damping_reference", DAMPING_REFERENCES)
         if self.base_motion and self.excitation != "base":
@@ -353,6 +371,11 @@ class System:
                 f"load_mass must be {first} for {cause}: the base loads the structure through its springs to "
                 f"the ground; got {self.load_mass}"
             )
+
+    @property
+    def general(self) -> General | None:
+        """What the general engine needs; None for one rigid contact under one harmonic load."""
+        return self._general
 
     @property
     def n(self) -> int:

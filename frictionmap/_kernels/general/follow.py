@@ -1,0 +1,270 @@
+"""The motion from one phase of the load to another: steps, and the events that end them."""
+
+from ..compiler import kernel
+from .crossings import NONE, first_zero, slope_at, value_at
+from .pattern import settle
+from .problem import TERMS
+from .record import record_step
+from .series import advance, expand, factor_held, first_contact_row
+from .tangent import advance_tangent, hold_tangent, through_event, watched_row
+
+#: Phases of no length in a row after which the contacts chatter.
+_MOST_IMMEDIATE = 200
+
+#: Events per radian of the fastest part of the motion, at most.
+_MOST_EVENTS = 200.0
+
+#: Loads within this share of their limit are at it together, for contacts with mu = 1.
+_AT_LIMIT = 1e-11
+
+#: Rows of `law` and `counts`.
+LAW_ROWS = 8
+STOPS, TURNS, STUCK, SLIPS, REVERSALS, LAST_SENSE, MOVED = 0, 1, 2, 3, 4, 5, 6
+COUNT_ROWS = 7
+
+FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
+
+
+@kernel
+def _watch(series, source, sign, shift, scratch):
+    """Copy sign times a series without its first terms, which are zero, to scratch[0]; return its zero."""
+    for k in range(TERMS - shift):
+        scratch[0, k] = sign * series[source, k + shift]
+    for k in range(TERMS - shift, TERMS):
+        scratch[0, k] = 0.0
+    return first_zero(scratch, 0)
+
+
+@kernel
+def _within(series, force, nu, size, sign, shift, scratch):
+    """Series of the distance of a force from one side of its range, to scratch[0]; return its zero."""
+    for k in range(TERMS - shift):
+        scratch[0, k] = size * series[nu, k + shift] - sign * series[force, k + shift]
+    for k in range(TERMS - shift, TERMS):
+        scratch[0, k] = 0.0
+    return first_zero(scratch, 0)
+
+
+@kernel
+def _first_event(problem, friction, work, end):
+    """Return (x, contact, side) of the first event in the present step up to `end`; x = NONE without one.
+
+    side: 0 for a velocity that vanishes, else the side of its range that a force reaches.
+    """
+    contacts = problem.spring.size
+    first = first_contact_row(problem)
+    found, contact, side = NONE, -1, 0
+    for j in range(contacts):
+        w, force, nu = first + contacts + j, first + 2 * contacts + j, first + 3 * contacts + j
+        if work.sense[j] != 0:
+            x = _watch(work.series, w, float(work.sense[j]), work.fresh[j], work.scratch)
+            if x < found:
+                found, contact, side = x, j, 0
+            continue
+        for sign in (1, -1):
+            shift = 2 if work.fresh[j] == 2 * sign else 0
+            x = _within(work.series, force, nu, friction.static[j], float(sign), shift, work.scratch)
+            if x < found:
+                found, contact, side = x, j, sign
+    if found > end:
+        return NONE, -1, 0
+    return found, contact, side
+
+
+@kernel
+def _release_without_drop(problem, friction, work, x, contact, side):
+    """Let a contact with mu = 1 slide on at the limit of its load, with all that are at theirs and go on."""
+    contacts = problem.spring.size
+    first = first_contact_row(problem)
+    for j in range(contacts):
+        if problem.spring[j] != 0.0 or work.sense[j] != 0 or friction.static[j] > friction.kinetic[j]:
+            continue
+        force, nu = first + 2 * contacts + j, first + 3 * contacts + j
+        load = value_at(work.series, force, x)
+        sign = side if j == contact else (1 if load > 0.0 else -1)
+        limit = friction.static[j] * value_at(work.series, nu, x)
+        rate = sign * slope_at(work.series, force, x) - friction.static[j] * slope_at(work.series, nu, x)
+        if j == contact or (sign * load >= limit * (1.0 - _AT_LIMIT) and rate > 0.0):
+            work.sense[j] = sign
+            work.fresh[j] = 2
+
+
+@kernel
+def _after_elastic(friction, work, contact, side):
+    """Change the pattern of an elastic contact."""
+    if side == 0:
+        work.state[2, contact] = work.sense[contact] * friction.kinetic[contact]
+        work.fresh[contact] = 2 * work.sense[contact]
+        work.sense[contact] = 0
+    else:
+        work.state[2, contact] = side * friction.kinetic[contact]
+        work.sense[contact] = side
+        work.fresh[contact] = 0
+
+
+@kernel
+def _change_pattern(problem, row, friction, tau, work, law, x, contact, side):
+    """Change the pattern after an event; False if the contacts do not determine their forces."""
+    if problem.spring[contact] != 0.0:
+        _after_elastic(friction, work, contact, side)
+        return True
+    if side != 0 and friction.static[contact] <= friction.kinetic[contact]:
+        _release_without_drop(problem, friction, work, x, contact, side)
+        return True
+    arrived, released = (contact, -1) if side == 0 else (-1, contact)
+    for j in range(work.sense.size):
+        law[7, j] = work.sense[j]
+    if not settle(problem, row, friction, tau, work, law, arrived, released):
+        return False
+    for j in range(work.sense.size):
+        if law[3, j] != 0.0:
+            work.fresh[j] = 1 if work.sense[j] != 0 else 0
+    return True
+
+
+@kernel
+def _count(problem, work, before, counts):
+    """Count stops, turns, slips and reversals from the pattern before and after an event."""
+    for j in range(work.sense.size):
+        old, new = int(before[j]), work.sense[j]
+        if new == old:
+            continue
+        if problem.spring[j] != 0.0:
+            if new != 0:
+                counts[SLIPS, j] += 1.0
+                if counts[LAST_SENSE, j] * new < 0.0:
+                    counts[REVERSALS, j] += 1.0
+                counts[LAST_SENSE, j] = new
+        elif new == 0:
+            counts[STOPS, j] += 1.0
+        elif old != 0:
+            counts[TURNS, j] += 1.0
+
+
+@kernel
+def _count_time(work, counts, time):
+    for j in range(work.sense.size):
+        if work.sense[j] == 0:
+            counts[STUCK, j] += time
+        else:
+            counts[MOVED, j] = 1.0
+
+
+@kernel
+def _forces_at(problem, work, x, out):
+    """Friction forces at x of the present step."""
+    contacts = problem.spring.size
+    first = first_contact_row(problem)
+    for j in range(contacts):
+        out[j] = value_at(work.series, first + 2 * contacts + j, x)
+
+
+@kernel
+def _event(problem, row, friction, tau, work, law, counts, event, derive):
+    """Change the pattern at an event, count it, and carry the derivatives through it.
+
+    Parameters
+    ----------
+    problem, row, friction, work : Problem, Row, Friction, Work; the state is that of the event
+    tau : phase of the event
+    law, counts : scratch of `settle`, counters
+    event : (x, contact, side) of `_first_event`
+    derive : whether the derivatives are carried on; they are those of just before the event
+
+    Returns
+    -------
+    bool : False if the contacts do not determine their forces
+    """
+    x, contact, side = event
+    contacts = problem.spring.size
+    first = first_contact_row(problem)
+    series, scratch = work.series, work.scratch
+    before, forces = scratch[1], scratch[2]
+    for j in range(contacts):
+        before[j] = work.sense[j]
+    _forces_at(problem, work, x, forces)
+    if side == 0:
+        slope = slope_at(series, first + contacts + contact, x)
+    else:
+        slope = friction.static[contact] * slope_at(series, first + 3 * contacts + contact, x)
+        slope -= side * slope_at(series, first + 2 * contacts + contact, x)
+    settles = problem.spring[contact] == 0.0 and (
+        side == 0 or friction.static[contact] > friction.kinetic[contact]
+    )
+    if derive:
+        watched_row(problem, row, work, contact, side, work.watched)
+    if settles and derive:
+        for j in range(contacts):
+            scratch[3, j] = forces[j]
+            scratch[4, j] = value_at(series, first + 3 * contacts + j, x)
+    if not _change_pattern(problem, row, friction, tau, work, law, x, contact, side):
+        return False
+    _count(problem, work, before, counts)
+    if not factor_held(problem, row, work):
+        return False
+    if derive:
+        for j in range(contacts):
+            if not settles or problem.spring[j] != 0.0:
+                forces[j] = 0.0
+            elif work.sense[j] != 0:
+                forces[j] = work.sense[j] * friction.kinetic[j] * scratch[4, j] - scratch[3, j]
+            else:
+                forces[j] = law[1, j] - scratch[3, j]
+        through_event(problem, row, work, forces, work.watched, slope)
+        hold_tangent(problem, row, work)
+    return True
+
+
+@kernel
+def follow(problem, row, friction, start, span, work, law, counts, record, derive):
+    """Follow the motion from the phase `start` over `span`.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    start, span : phase of the load at the beginning, and how far to follow
+    work : Work; state and pattern are replaced by those at the end, and `tangent` is multiplied if `derive`
+    law : (LAW_ROWS, N) scratch
+    counts : (COUNT_ROWS, N) counters, increased
+    record : Record
+    derive : whether the derivatives are carried on
+
+    Returns
+    -------
+    int : FOLLOWED, CHATTERS or UNDETERMINED
+    """
+    h = row.numbers[0]
+    time = 0.0
+    immediate = 0
+    if not factor_held(problem, row, work):
+        return UNDETERMINED
+    if derive:
+        hold_tangent(problem, row, work)
+    for _ in range(int(_MOST_EVENTS * (span / h + 1.0))):
+        rest = (span - time) / h
+        end = min(1.0, rest)
+        expand(problem, row, friction, start + time, work)
+        event = _first_event(problem, friction, work, end)
+        x = min(event[0], end)
+        if record.active[0] != 0:
+            record_step(problem, work, x, record)
+        if derive and x > 0.0:
+            advance_tangent(problem, row, work, x)
+        _count_time(work, counts, x * h)
+        if x > 0.0:
+            advance(problem, x, work)
+            for j in range(work.fresh.size):
+                work.fresh[j] = 0
+        if event[1] < 0:
+            if rest <= 1.0:
+                return FOLLOWED
+            time += h
+            immediate = 0
+            continue
+        time += x * h
+        immediate = immediate + 1 if x == 0.0 else 0
+        if immediate > _MOST_IMMEDIATE:
+            return CHATTERS
+        if not _event(problem, row, friction, start + time, work, law, counts, event, derive):
+            return UNDETERMINED
+    return CHATTERS

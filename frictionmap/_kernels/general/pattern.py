@@ -1,0 +1,251 @@
+"""What follows an event: which contacts are held, which slide, and in which sense.
+
+With several contacts one arrival can make others let go, and a contact that lets go can stop another.  For
+contacts with mu = 1 the answer is unique: the forces are those of the box law a = 0, |f| <= beta, or
+f = beta sgn(a).  Contacts with mu > 1 are held first, and the one with the largest excess over its static
+friction lets go, until none is above it.
+"""
+
+import numpy as np
+
+from ..compiler import kernel
+from .problem import set_channels
+from .series import factor_held, first_contact_row, solve_held
+
+#: A slider with a velocity below this share of the velocities in it, on its way to zero, arrives with the
+#: contact whose arrival was found: in symmetric systems contacts arrive together.
+_TOGETHER = 1e-11
+
+#: Loads within this share of the largest excess let go together.
+_TIED = 1e-9
+
+_MOST_PIVOTS = 400
+
+
+@kernel
+def _free_accelerations(problem, row, work, law):
+    """Fill law[0]: accelerations in the contacts with no force from those that take part (law[3] = 1)."""
+    modes, channels = problem.push.shape
+    contacts = problem.spring.size
+    series, first = work.series, first_contact_row(problem)
+    for j in range(contacts):
+        law[0, j] = 0.0
+        for d in range(channels):
+            law[0, j] -= problem.base[j, d] * (2.0 * series[modes + d, 2])
+    for m in range(modes):
+        found = -row.stiffness[m] * work.state[0, m]
+        if problem.coupled:
+            for other in range(modes):
+                found -= row.damping[m, other] * work.state[1, other]
+        else:
+            found -= row.damping[m, m] * work.state[1, m]
+        for d in range(channels):
+            found += row.push[m, d] * series[modes + d, 0]
+        for j in range(contacts):
+            if law[3, j] == 0.0:
+                found -= row.reaction[j, m] * series[first + 2 * contacts + j, 0]
+        for j in range(contacts):
+            law[0, j] += problem.chi[j, m] * found
+
+
+@kernel
+def _forces_of_choice(problem, row, work, law):
+    """Fill the forces law[1] and accelerations law[2] of the participants for the choice in `work.sense`."""
+    contacts = work.sense.size
+    if not factor_held(problem, row, work):
+        return False
+    right = work.solve[contacts]
+    for j in range(contacts):
+        if law[3, j] != 0.0 and work.sense[j] != 0:
+            law[1, j] = work.sense[j] * law[4, j]
+    for a in range(work.held[contacts]):
+        j = work.held[a]
+        right[a] = law[0, j]
+        for other in range(contacts):
+            if law[3, other] != 0.0 and work.sense[other] != 0:
+                right[a] -= row.mobility[j, other] * law[1, other]
+    solve_held(work, right)
+    for a in range(work.held[contacts]):
+        law[1, work.held[a]] = right[a]
+    for j in range(contacts):
+        law[2, j] = 0.0
+        if law[3, j] != 0.0 and work.sense[j] != 0:
+            law[2, j] = law[0, j]
+            for other in range(contacts):
+                if law[3, other] != 0.0:
+                    law[2, j] -= row.mobility[j, other] * law[1, other]
+    return True
+
+
+@kernel
+def _box_law(problem, row, work, law):
+    """Flip the first contact that is wrong until none is; law[5] = 1 marks those that may slide."""
+    contacts = work.sense.size
+    for _ in range(_MOST_PIVOTS):
+        if not _forces_of_choice(problem, row, work, law):
+            return False
+        flipped = False
+        for j in range(contacts):
+            if law[3, j] == 0.0 or law[5, j] == 0.0:
+                continue
+            if work.sense[j] == 0 and abs(law[1, j]) > law[4, j]:
+                work.sense[j] = 1 if law[1, j] > 0.0 else -1
+                flipped = True
+            elif work.sense[j] != 0 and work.sense[j] * law[2, j] < 0.0:
+                work.sense[j] = 0
+                flipped = True
+            if flipped:
+                break
+        if not flipped:
+            return True
+    return False
+
+
+@kernel
+def _let_go(friction, work, law):
+    """Let the most overloaded of the held contacts with mu > 1 slide; whether there was one.
+
+    law[4] is the kinetic friction, and law[6] the static one.
+    """
+    contacts = work.sense.size
+    worst = 1.0
+    for j in range(contacts):
+        if law[3, j] != 0.0 and law[5, j] == 0.0 and abs(law[1, j]) > law[6, j]:
+            worst = max(worst, abs(law[1, j]) / law[6, j])
+    if worst == 1.0:
+        return False
+    for j in range(contacts):
+        if law[3, j] != 0.0 and law[5, j] == 0.0 and abs(law[1, j]) >= worst * (1.0 - _TIED) * law[6, j]:
+            law[5, j] = 1.0
+            work.sense[j] = 1 if law[1, j] > 0.0 else -1
+    return True
+
+
+@kernel
+def _arrives_too(problem, row, work, law, j):
+    """Whether a slider reaches velocity zero together with the contact whose arrival was found."""
+    modes, channels = problem.push.shape
+    series = work.series
+    w = -row.numbers[0] * problem.belt[j]
+    size = abs(w)
+    for m in range(modes):
+        part = problem.chi[j, m] * work.state[1, m]
+        w += part
+        size += abs(part)
+    for d in range(channels):
+        w -= problem.base[j, d] * series[modes + d, 1]
+    return abs(w) <= _TOGETHER * size and work.sense[j] * law[0, j] <= 0.0
+
+
+@kernel
+def _stop_exactly(problem, row, work, law):
+    """Take the rounding error of their velocities from the participants; `work.held` lists them."""
+    modes, channels = problem.push.shape
+    contacts = work.sense.size
+    series, right = work.series, work.solve[contacts]
+    for a in range(work.held[contacts]):
+        j = work.held[a]
+        right[a] = -row.numbers[0] * problem.belt[j]
+        for m in range(modes):
+            right[a] += problem.chi[j, m] * work.state[1, m]
+        for d in range(channels):
+            right[a] -= problem.base[j, d] * series[modes + d, 1]
+    solve_held(work, right)
+    for a in range(work.held[contacts]):
+        for m in range(modes):
+            work.state[1, m] -= row.reaction[work.held[a], m] * right[a]
+
+
+@kernel
+def _take_part(problem, row, friction, tau, work, law):
+    """Decide which contacts take part in what follows an event (law[3]), and their friction there."""
+    contacts = work.sense.size
+    series, first = work.series, first_contact_row(problem)
+    set_channels(problem, row, tau, series)
+    for j in range(contacts):
+        nu = 1.0
+        for d in range(problem.push.shape[1]):
+            nu += problem.normal[j, d] * series[problem.push.shape[0] + d, 0]
+        law[4, j] = friction.kinetic[j] * nu
+        law[6, j] = friction.static[j] * nu
+        law[3, j] = 0.0
+        if problem.spring[j] == 0.0 and work.sense[j] == 0:
+            law[3, j] = 1.0
+        series[first + 2 * contacts + j, 0] = work.sense[j] * law[4, j]
+        if problem.spring[j] != 0.0 and work.sense[j] == 0:
+            series[first + 2 * contacts + j, 0] = work.state[2, j]
+    _free_accelerations(problem, row, work, law)
+    for j in range(contacts):
+        if law[3, j] == 0.0 and problem.spring[j] == 0.0 and _arrives_too(problem, row, work, law, j):
+            law[3, j] = 1.0
+
+
+@kernel
+def settle(problem, row, friction, tau, work, law, arrived, released):
+    """Decide the pattern after a contact has arrived at velocity zero, or was released with a drop of force.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    tau : phase of the load
+    work : Work; state and pattern of the instant; the pattern is replaced
+    law : (8, N) scratch: accelerations, forces, accelerations of sliders, participants, kinetic friction,
+        whether a participant may slide, static friction
+    arrived : contact that has arrived; -1: none
+    released : contact that is released; -1: none
+
+    Returns
+    -------
+    bool : False if the contacts do not determine their forces
+    """
+    contacts = work.sense.size
+    _take_part(problem, row, friction, tau, work, law)
+    if arrived >= 0:
+        law[3, arrived] = 1.0
+    _free_accelerations(problem, row, work, law)
+    for j in range(contacts):
+        if law[3, j] != 0.0:
+            work.sense[j] = 0
+        law[5, j] = 1.0 if law[6, j] <= law[4, j] else 0.0
+    if not _forces_of_choice(problem, row, work, law):
+        return False
+    _stop_exactly(problem, row, work, law)
+    if released >= 0:
+        law[5, released] = 1.0
+        work.sense[released] = 1 if law[1, released] > 0.0 else -1
+        for j in range(contacts):
+            if law[3, j] != 0.0 and law[5, j] == 0.0 and abs(law[1, j]) >= (1.0 - _TIED) * law[6, j]:
+                law[5, j] = 1.0
+                work.sense[j] = 1 if law[1, j] > 0.0 else -1
+    if not _box_law(problem, row, work, law):
+        return False
+    for _ in range(contacts):
+        if not _let_go(friction, work, law):
+            break
+        if not _box_law(problem, row, work, law):
+            return False
+    return True
+
+
+@kernel
+def begin(problem, row, friction, tau, work, law):
+    """Decide the pattern of a state at the start, from its velocities; elastic contacts begin at rest, their
+    springs unloaded.
+    """
+    modes, channels = problem.push.shape
+    contacts = work.sense.size
+    set_channels(problem, row, tau, work.series)
+    for j in range(contacts):
+        w = -row.numbers[0] * problem.belt[j]
+        for m in range(modes):
+            w += problem.chi[j, m] * work.state[1, m]
+        for d in range(channels):
+            w -= problem.base[j, d] * work.series[modes + d, 1]
+        work.fresh[j] = 0
+        work.sense[j] = int(np.sign(w)) if problem.spring[j] == 0.0 else 0
+    if not settle(problem, row, friction, tau, work, law, -1, -1):
+        return False
+    for j in range(contacts):
+        if law[3, j] != 0.0 and work.sense[j] != 0:
+            work.fresh[j] = 1
+    return True

@@ -1,0 +1,171 @@
+"""The state after one or more half periods, and the state that returns: Newton's method."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiler import entry, kernel
+from .follow import COUNT_ROWS, FOLLOWED, LAW_ROWS, MOVED, follow
+from .tangent import identity
+
+#: Phase of the load at which states are compared: events gather at the extremes of the load, away from here.
+SECTION = 0.37
+
+
+class Return(NamedTuple):
+    """Memory for the return map."""
+
+    start: np.ndarray  # (3, ...) the state at the section
+    senses: np.ndarray  # (N,) the pattern there
+    end: np.ndarray  # (3, ...) the state on return, with the sign of `halves`
+    end_senses: np.ndarray  # (N,)
+    matrix: np.ndarray  # (size, size)
+    right: np.ndarray  # (size,)
+    law: np.ndarray  # scratch of `follow`
+    counts: np.ndarray  # counters of the last way
+
+
+@entry
+def make_return(problem):
+    """Allocate the memory of the return map."""
+    contacts, modes = problem.chi.shape
+    size = 2 * modes + contacts
+    shape = (3, max(modes, contacts))
+    return Return(
+        np.zeros(shape), np.zeros(contacts, np.int64), np.zeros(shape), np.zeros(contacts, np.int64),
+        np.zeros((size, size)), np.zeros(size), np.zeros((LAW_ROWS, contacts)),
+        np.zeros((COUNT_ROWS, contacts)),
+    )  # fmt: skip
+
+
+@kernel
+def put_state(state, senses, work):
+    """Set the state and the pattern of a motion."""
+    for part in range(3):
+        for i in range(state.shape[1]):
+            work.state[part, i] = state[part, i]
+    for j in range(senses.size):
+        work.sense[j] = senses[j]
+        work.fresh[j] = 0
+
+
+@kernel
+def take_state(work, state, senses, sign):
+    """Copy the state and the pattern of a motion, with a sign."""
+    for part in range(3):
+        for i in range(state.shape[1]):
+            state[part, i] = sign * work.state[part, i]
+    for j in range(senses.size):
+        senses[j] = work.sense[j] if sign > 0.0 else -work.sense[j]
+
+
+@kernel
+def go_round(problem, row, friction, halves, work, memory, record, derive):
+    """Follow the motion from `memory.start` over some half periods, to `memory.end`.
+
+    After an odd number of them the signs are those of the mirrored motion.
+    """
+    put_state(memory.start, memory.senses, work)
+    for part in range(COUNT_ROWS):
+        for j in range(work.sense.size):
+            memory.counts[part, j] = 0.0
+    if derive:
+        identity(problem, work)
+    code = FOLLOWED
+    for half in range(halves):
+        if code == FOLLOWED:
+            begin = SECTION + math.pi * (half % 2)
+            code = follow(
+                problem, row, friction, begin, math.pi, work, memory.law, memory.counts, record, derive
+            )
+    take_state(work, memory.end, memory.end_senses, -1.0 if halves % 2 == 1 else 1.0)
+    return code
+
+
+@kernel
+def motion_size(problem, row, memory):
+    """Size of the states, the unit of `return_distance`."""
+    size = row.numbers[2]
+    for m in range(problem.push.shape[0]):
+        for part in range(2):
+            size = max(size, abs(memory.start[part, m]), abs(memory.end[part, m]))
+    return size
+
+
+@kernel
+def return_distance(problem, row, memory):
+    """Largest change of the state, over its size; infinite if the pattern changed."""
+    for j in range(memory.senses.size):
+        if memory.senses[j] != memory.end_senses[j]:
+            return math.inf
+    off = 0.0
+    for m in range(problem.push.shape[0]):
+        for part in range(2):
+            off = max(off, abs(memory.end[part, m] - memory.start[part, m]))
+    return off / motion_size(problem, row, memory)
+
+
+@kernel
+def _neutral_rows(problem, memory, matrix, weight):
+    """Add weight l^T l/|l|^2 for every contact that rests: its place z (elastic: z - f/k) is kept by the map."""
+    modes = problem.push.shape[0]
+    for j in range(memory.senses.size):
+        if memory.counts[MOVED, j] != 0.0:
+            continue
+        square = 0.0
+        for m in range(modes):
+            square += problem.chi[j, m] * problem.chi[j, m]
+        force = 0.0
+        if problem.spring[j] != 0.0:
+            force = -1.0 / problem.spring[j]
+            square += force * force
+        last = 2 * modes + j
+        for a in range(modes):
+            for b in range(modes):
+                matrix[a, b] += weight * problem.chi[j, a] * problem.chi[j, b] / square
+            matrix[a, last] += weight * problem.chi[j, a] * force / square
+            matrix[last, a] += weight * problem.chi[j, a] * force / square
+        matrix[last, last] += weight * force * force / square
+
+
+@kernel
+def fill_newton(problem, halves, work, memory):
+    """Fill the linear equations of a Newton step; the derivatives are in `work.tangent`."""
+    modes = problem.push.shape[0]
+    contacts = memory.senses.size
+    size = 2 * modes + contacts
+    sign = -1.0 if halves % 2 == 1 else 1.0
+    for a in range(size):
+        for b in range(size):
+            memory.matrix[a, b] = -sign * work.tangent[a, b]
+        memory.matrix[a, a] += 1.0
+    for j in range(contacts):
+        if problem.spring[j] == 0.0:  # a rigid contact has no force of its own in the state
+            for a in range(size):
+                memory.matrix[2 * modes + j, a] = 0.0
+                memory.matrix[a, 2 * modes + j] = 0.0
+            memory.matrix[2 * modes + j, 2 * modes + j] = 1.0
+    if halves % 2 == 0:
+        _neutral_rows(problem, memory, memory.matrix, 1.0)
+    for m in range(modes):
+        memory.right[m] = memory.end[0, m] - memory.start[0, m]
+        memory.right[modes + m] = memory.end[1, m] - memory.start[1, m]
+    for j in range(contacts):
+        memory.right[2 * modes + j] = memory.end[2, j] - memory.start[2, j]
+
+
+@kernel
+def take_step(problem, row, memory):
+    """Add the solution in `memory.right` to the state at the section; its largest part over the size."""
+    modes = problem.push.shape[0]
+    size = motion_size(problem, row, memory)
+    step = 0.0
+    for m in range(modes):
+        memory.start[0, m] += memory.right[m]
+        memory.start[1, m] += memory.right[modes + m]
+        step = max(step, abs(memory.right[m]), abs(memory.right[modes + m]))
+    for j in range(memory.senses.size):
+        if problem.spring[j] != 0.0:
+            memory.start[2, j] += memory.right[2 * modes + j]
+    return step / size

@@ -1,0 +1,298 @@
+"""The steady state of one cell: periods are followed until Newton's method finds the state that returns."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiler import entry, kernel
+from ..structure.newton import solve_linear, spectral_radius
+from .follow import FOLLOWED, follow
+from .pattern import begin
+from .problem import set_row
+from .record import clear_record
+from .return_map import (
+    SECTION,
+    fill_newton,
+    go_round,
+    motion_size,
+    return_distance,
+    take_state,
+    take_step,
+)
+
+REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED = 0, 1, 2, 3
+
+#: States that are kept, one per return to the section: periods up to half as many are recognised.
+RING = 33
+
+#: Largest distance from an earlier state at which Newton's method is tried, where the start matters, and
+#: largest distance of its result.
+_NEAR = 1e-2
+_SAME = 5e-2
+
+#: Newton steps at most, and the largest part of the distance before that may be left after each.
+_MOST_STEPS = 12
+_LESS = 0.5
+
+#: A step below this is the last one: the next would be of the size of its square.
+_LAST = 1e-9
+
+#: A steady state that is back to this share of its size after a part of its period has that period.
+_RETURNED = 1e-9
+
+#: A multiplier above this is not that of a motion that attracts.
+_STABLE = 1.0 + 1e-9
+
+
+class Ring(NamedTuple):
+    """The last states at the section."""
+
+    states: np.ndarray  # (RING, 3, ...)
+    senses: np.ndarray  # (RING, N)
+    count: np.ndarray  # (1,) states kept so far
+
+
+class Steady(NamedTuple):
+    """The steady state of a cell."""
+
+    status: int
+    halves: int  # half periods after which it returns
+    cycles: float  # periods followed
+    multiplier: float  # NaN where not computed
+
+
+@entry
+def make_ring(problem):
+    """Allocate the kept states."""
+    contacts, modes = problem.chi.shape
+    return Ring(
+        np.zeros((RING, 3, max(modes, contacts))), np.zeros((RING, contacts), np.int64),
+        np.zeros(1, np.int64),
+    )  # fmt: skip
+
+
+@kernel
+def _keep(memory, ring):
+    """Keep the state at the section."""
+    slot = ring.count[0] % RING
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            ring.states[slot, part, i] = memory.start[part, i]
+    for j in range(memory.senses.size):
+        ring.senses[slot, j] = memory.senses[j]
+    ring.count[0] += 1
+
+
+@kernel
+def _last_kept(memory, ring):
+    """Go back to the last state kept."""
+    slot = (ring.count[0] - 1) % RING
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            memory.start[part, i] = ring.states[slot, part, i]
+    for j in range(memory.senses.size):
+        memory.senses[j] = ring.senses[slot, j]
+
+
+@kernel
+def _distance_back(row, memory, ring, back):
+    """Distance of the last state kept from the one `back` before it, over its size."""
+    now, then = (ring.count[0] - 1) % RING, (ring.count[0] - 1 - back) % RING
+    for j in range(memory.senses.size):
+        if ring.senses[now, j] != ring.senses[then, j]:
+            return math.inf
+    off = 0.0
+    size = row.numbers[2]
+    for part in range(2):
+        for i in range(memory.start.shape[1]):
+            off = max(off, abs(ring.states[now, part, i] - ring.states[then, part, i]))
+            size = max(size, abs(ring.states[now, part, i]))
+    return off / size
+
+
+@kernel
+def _recurrence(row, memory, ring, base):
+    """Number of half periods after which the motion is nearly back; 0 if it is not."""
+    most = min(ring.count[0], RING) - 1
+    for back in range(1, most + 1):
+        if _distance_back(row, memory, ring, back) < _NEAR:
+            return back * base
+    return 0
+
+
+@kernel
+def _multiplier(problem, halves, work, memory):
+    """Largest modulus of the multipliers, without those of contacts that rest."""
+    modes = problem.push.shape[0]
+    size = 2 * modes + memory.senses.size
+    fill_newton(problem, halves, work, memory)
+    for a in range(size):
+        for b in range(size):
+            memory.matrix[a, b] = (1.0 if a == b else 0.0) - memory.matrix[a, b]
+    return spectral_radius(memory.matrix, size, work.tangent, 0.0)
+
+
+@kernel
+def _newton(problem, row, friction, halves, tolerance, work, memory, record):
+    """Find the state that returns after some half periods, from the one in `memory.start`.
+
+    Returns (status, cycles, whether `work.tangent` and `memory.counts` are those of the result).
+    """
+    last = math.inf
+    cycles = 0.0
+    size = 2 * problem.push.shape[0] + memory.senses.size
+    for _ in range(_MOST_STEPS):
+        code = go_round(problem, row, friction, halves, work, memory, record, True)
+        cycles += 0.5 * halves
+        if code != FOLLOWED:
+            return NO_REPEAT, cycles
+        distance = return_distance(problem, row, memory)
+        if distance == 0.0:
+            return REPEATS, cycles
+        if not distance < _LESS * last:
+            if distance <= tolerance:
+                return REPEATS, cycles
+            return NO_REPEAT, cycles
+        last = distance
+        fill_newton(problem, halves, work, memory)
+        if not solve_linear(memory.matrix, memory.right, size):
+            return NO_REPEAT, cycles
+        if take_step(problem, row, memory) <= max(tolerance, _LAST):
+            return REPEATS, cycles
+    return NO_REPEAT, cycles
+
+
+@kernel
+def _least_period(problem, row, friction, halves, base, work, memory, record):
+    """Smallest number of half periods after which a steady state returns, and the periods followed for it."""
+    cycles = 0.0
+    for shorter in range(base, halves, base):
+        if halves % shorter == 0:
+            go_round(problem, row, friction, shorter, work, memory, record, False)
+            cycles += 0.5 * shorter
+            if return_distance(problem, row, memory) <= _RETURNED:
+                return shorter, cycles
+    return halves, cycles
+
+
+@kernel
+def _far(problem, row, memory, ring):
+    """Distance of the state found from the last state kept, over its size."""
+    slot = (ring.count[0] - 1) % RING
+    off = 0.0
+    for part in range(2):
+        for i in range(problem.push.shape[0]):
+            off = max(off, abs(ring.states[slot, part, i] - memory.start[part, i]))
+    return off / motion_size(problem, row, memory)
+
+
+@kernel
+def find(problem, row, friction, cycles, tolerance, work, memory, ring, record):
+    """Find the steady state that the motion from `memory.start` reaches.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    cycles : periods to follow at most
+    tolerance : largest change of the state over a return, over its size
+    work, memory, ring, record : Work, Return, Ring, Record; `memory.start` is replaced by the steady state
+
+    Returns
+    -------
+    Steady
+    """
+    base = 1 if problem.symmetric else 2
+    unique = True
+    for j in range(memory.senses.size):
+        unique = unique and friction.static[j] <= friction.kinetic[j]
+    ring.count[0] = 0
+    _keep(memory, ring)
+    spent = 0.0
+    wait = 0
+    pause = 0
+    while spent < cycles:
+        halves = 0
+        if wait == 0:
+            halves = base if unique else _recurrence(row, memory, ring, base)
+        if halves > 0:
+            status, more = _newton(problem, row, friction, halves, tolerance, work, memory, record)
+            spent += more
+            if status == REPEATS:
+                multiplier = _multiplier(problem, halves, work, memory)
+                if unique or (multiplier <= _STABLE and _far(problem, row, memory, ring) <= _SAME):
+                    least, more = _least_period(
+                        problem, row, friction, halves, base, work, memory, record
+                    )
+                    multiplier **= least / halves
+                    return Steady(REPEATS, least, spent + more, multiplier)
+            pause += 1
+            wait = pause
+            _last_kept(memory, ring)
+        code = go_round(problem, row, friction, base, work, memory, record, False)
+        spent += 0.5 * base
+        if code != FOLLOWED:
+            return Steady(1 + code, 0, spent, math.nan)
+        for part in range(3):
+            for i in range(memory.start.shape[1]):
+                memory.start[part, i] = memory.end[part, i]
+        for j in range(memory.senses.size):
+            memory.senses[j] = memory.end_senses[j]
+        _keep(memory, ring)
+        wait = max(wait - 1, 0)
+    return Steady(NO_REPEAT, 0, spent, math.nan)
+
+
+@kernel
+def measure(problem, row, friction, halves, work, memory, record):
+    """Follow the steady state once more, whole periods of it, into `record` and `memory.counts`.
+
+    Returns the number of half periods.
+    """
+    clear_record(record)
+    record.active[0] = 1
+    both = halves if halves % 2 == 0 else 2 * halves
+    go_round(problem, row, friction, both, work, memory, record, False)
+    record.active[0] = 0
+    return both
+
+
+@entry
+def one_steady_state(problem, i, row, friction, state, cycles, tolerance, work, memory, ring, record):
+    """Find the steady state of one cell from a state at tau = 0; see `find`.
+
+    Parameters
+    ----------
+    problem, i : Problem, index of r
+    row, friction : Row, Friction
+    state : (2, m) modes and their velocities q' at tau = 0
+    cycles, tolerance : see `find`
+    work, memory, ring, record : Work, Return, Ring, Record
+
+    Returns
+    -------
+    Steady, and the number of half periods measured
+    """
+    from_rest(problem, i, row, friction, state, work, memory, record)
+    found = find(problem, row, friction, cycles, tolerance, work, memory, ring, record)
+    halves = 0
+    if found.status == REPEATS:
+        halves = measure(problem, row, friction, found.halves, work, memory, record)
+    return found, halves
+
+
+@kernel
+def from_rest(problem, i, row, friction, state, work, memory, record):
+    """Follow a motion from tau = 0 to the section."""
+    set_row(problem, i, row)
+    for m in range(problem.push.shape[0]):
+        work.state[0, m] = state[0, m]
+        work.state[1, m] = row.numbers[0] * state[1, m]
+    for j in range(problem.spring.size):
+        work.state[2, j] = 0.0
+    record.active[0] = 0
+    if begin(problem, row, friction, 0.0, work, memory.law):
+        follow(
+            problem, row, friction, 0.0, SECTION, work, memory.law, memory.counts, record, False
+        )
+    take_state(work, memory.start, memory.senses, 1.0)

@@ -1,0 +1,151 @@
+"""A friction contact of a system that has several, or one with a spring, a belt or a varying normal load."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any, Literal
+
+import numpy as np
+
+from .. import checks
+from ..errors import InputError
+from .periodic_load import scalar_harmonics
+
+CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
+
+#: Contacts of a system at most.
+MOST_CONTACTS = 8
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One friction contact.
+
+    Parameters
+    ----------
+    kind : {"fixed-wall", "joined-base-wall", "between-masses"}
+        Where friction acts: between a mass and the ground, between a mass and a wall that moves with the
+        base, or between two masses.
+    masses : int, str or sequence of them
+        The mass in contact, or the two masses, A < B, counted from 1.
+    ratio : float
+        Its friction force is this multiple of the grid's beta [-], >= 0.
+    force : float, optional
+        Instead of `ratio`: its own friction ratio F/P [-], >= 0, which the grid does not change.
+    mu : float, optional
+        Its static-to-kinetic friction ratio [-], >= 1; default: that of the grid.
+    name : str, optional
+        Default: the kind and the masses, such as "between-masses 2-3".
+    stiffness : float, optional
+        Stiffness k_t/k_1 [-] of a spring in series with the slider, > 0 (Jenkins element); default: rigid.
+    wall_velocity : float
+        Velocity of the wall over omega P/k_1 [-]; "fixed-wall" only.
+    normal_load : mapping or sequence, optional
+        Harmonics of the normal load: friction beta nu(tau), nu = 1 + Re sum nu_n e^{i n tau} >= 0.  A mapping
+        {n: phasor}, or a list of { n, amplitude, phase_deg }.
+
+    Raises
+    ------
+    InputError
+        A value has the wrong type or is out of range, or two exclude each other.
+    """
+
+    kind: Literal["fixed-wall", "joined-base-wall", "between-masses"] = "fixed-wall"
+    masses: int | str | Sequence[int | str] = (1,)
+    ratio: float | None = None
+    force: float | None = None
+    mu: float | None = None
+    name: str | None = None
+    stiffness: float | None = None
+    wall_velocity: float = 0.0
+    normal_load: Any = None
+    nu: Mapping[int, complex] = field(init=False, repr=False, compare=False, default_factory=dict)
+
+    def __post_init__(self) -> None:
+        checks.choice(self.kind, "kind", CONTACTS)
+        masses = self.masses
+        if isinstance(masses, (int, str, np.integer)) and not isinstance(masses, bool):
+            masses = (masses,)
+        self._set("masses", tuple(masses) if isinstance(masses, (Sequence, np.ndarray)) else masses)
+        if self.ratio is not None and self.force is not None:
+            raise InputError("cannot use ratio with force: both define the friction force; omit one")
+        for name, ends in (
+            ("ratio", {"least": 0.0}), ("force", {"least": 0.0}), ("mu", {"least": 1.0}),
+            ("stiffness", {"above": 0.0}),
+        ):  # fmt: skip
+            if getattr(self, name) is not None:
+                self._set(name, checks.number(getattr(self, name), name, **ends))
+        if self.ratio is None and self.force is None:
+            self._set("ratio", 1.0)
+        self._set("wall_velocity", checks.number(self.wall_velocity, "wall_velocity"))
+        if self.wall_velocity and self.kind != "fixed-wall":
+            raise InputError(f"wall_velocity must be 0 for {self.kind}, which has no wall of its own; "
+                             f"got {self.wall_velocity:g}")
+        if self.name is not None and not isinstance(self.name, str):
+            raise InputError(f"name must be text; got {checks.one_line(self.name)}")
+        if self.stiffness is not None and self.mu not in (None, 1.0):
+            raise InputError(
+                f"mu must be 1 for a contact with stiffness: its spring would jump at break-away; got {self.mu:g}"
+            )
+        if self.normal_load is not None:
+            self._set("nu", scalar_harmonics(self.normal_load, "normal_load"))
+            self._check_normal_load()
+
+    def _set(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
+
+    def _check_normal_load(self) -> None:
+        if self.nu and self.stiffness is not None:
+            raise InputError("cannot use normal_load with stiffness: elastic contacts have a constant normal "
+                             "load; omit one")
+        least = least_value(self.nu)
+        if least < -1.0:
+            raise InputError(
+                f"normal_load must leave 1 + normal_load(tau) >= 0, as contacts that separate are another "
+                f"model; got {1.0 + least:.3g} at its least"
+            )
+
+    @property
+    def label(self) -> str:
+        """Its name, or its kind and masses."""
+        return self.name or f"{self.kind} {'-'.join(map(str, self.masses))}"  # type: ignore[arg-type]
+
+
+def least_value(harmonics: Mapping[int, complex]) -> float:
+    """Least value of Re sum a_n e^{i n tau}, to rounding."""
+    if not harmonics:
+        return 0.0
+    orders = np.array(list(harmonics))
+    phasors = np.array(list(harmonics.values()))
+    tau = np.linspace(0.0, 2.0 * np.pi, 64 * int(orders.max()) + 1)[:, np.newaxis]
+    for _ in range(40):
+        terms = phasors * np.exp(1j * orders * tau)
+        slope, bend = -(orders * terms.imag).sum(axis=1), -(orders**2 * terms.real).sum(axis=1)
+        step = np.where(bend > 0.0, -slope / np.where(bend > 0.0, bend, 1.0), 0.0)
+        tau = tau + np.clip(step, -0.02 / orders.max(), 0.02 / orders.max())[:, np.newaxis]
+    return float((phasors * np.exp(1j * orders * tau)).real.sum(axis=1).min())
+
+
+def checked_contacts(given: object) -> tuple[Contact, ...]:
+    """Check a list of contacts; a mapping is one as in a configuration."""
+    if not isinstance(given, Sequence) or isinstance(given, (str, bytes)) or not given:
+        raise InputError(f"contacts must be a list of contacts; got {checks.one_line(given)}")
+    if len(given) > MOST_CONTACTS:
+        raise InputError(f"contacts must be at most {MOST_CONTACTS}; got {len(given)}")
+    valid = [one.name for one in fields(Contact) if one.init]
+    found = []
+    for k, one in enumerate(given, 1):
+        if isinstance(one, Mapping):
+            for key in one:
+                if key not in valid:
+                    raise InputError(
+                        f"unknown key {f'contacts[{k}].{key}'!r}{checks.nearest(str(key), valid)}; "
+                        f"valid: {', '.join(valid)}"
+                    )
+            try:
+                one = Contact(**one)
+            except InputError as error:
+                raise InputError(f"contacts[{k}].{error}") from None
+        if not isinstance(one, Contact):
+            raise InputError(f"contacts[{k}] must be a Contact; got {checks.one_line(one)}")
+        found.append(one)
+    return tuple(found)

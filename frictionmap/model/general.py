@@ -1,0 +1,358 @@
+"""Systems with several contacts, springs in contacts, belts, varying normal loads or loads of several harmonics.
+
+    r^2 M x'' + r C1 x' + K x + W f = p(tau),   z = W^T x - s u(tau),   w = z' - v
+
+`general_of` collects what a `System` has of these; None if it is one rigid contact under one harmonic, which
+has an engine of its own.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import checks
+from ..errors import InputError
+from .contact import Contact, checked_contacts
+from ..structures.dofs import Dofs
+from .periodic_load import (
+    DEFAULT_HARMONICS,
+    MOST_HARMONICS,
+    WAVEFORMS,
+    PeriodicLoad,
+    check_entry,
+    load_table,
+    order,
+    phasor,
+    sampled,
+    scalar_harmonics,
+    waveform,
+)
+
+if TYPE_CHECKING:
+    from .system import System
+
+#: Keys of a system that only this engine takes.
+KEYS = (
+    "contacts", "contact_stiffness", "wall_velocity", "normal_load", "load_harmonics", "load_file", "waveform",
+    "load_offset",
+)  # fmt: skip
+
+#: Rows of W that differ by less, relative to their size, are parallel.
+_PARALLEL = 1e-12
+
+
+@dataclass(frozen=True)
+class Group:
+    """A contact, or several parallel ones that act as one."""
+
+    members: tuple[Contact, ...]
+    vector: np.ndarray  # (n,) c
+    base: int  # s: 1 if its wall moves with the base
+
+    @property
+    def first(self) -> Contact:
+        """The contact that gives spring, belt and normal load."""
+        return self.members[0]
+
+    @property
+    def name(self) -> str:
+        """Names of the members."""
+        return " + ".join(member.label for member in self.members)
+
+    def friction(self, beta: float | np.ndarray, mu: float | np.ndarray) -> tuple[Any, Any]:
+        """Kinetic and static friction at a friction ratio and a static-to-kinetic ratio of the grid."""
+        kinetic: Any = 0.0
+        static: Any = 0.0
+        for one in self.members:
+            own = one.ratio * beta if one.force is None else one.force  # type: ignore[operator]
+            kinetic = kinetic + own
+            elastic = one.stiffness is not None
+            static = static + own * (1.0 if elastic else mu if one.mu is None else one.mu)
+        return kinetic, static
+
+
+@dataclass(frozen=True)
+class General:
+    """What the general engine needs beyond the structure."""
+
+    groups: tuple[Group, ...]
+    forces: Mapping[int, np.ndarray]  # phasors (n,) of the loads on the masses, by order
+    base: Mapping[int, complex]  # phasors of the base motion
+    offset: np.ndarray  # (n,) constant loads
+
+    @property
+    def count(self) -> int:
+        """Number of contacts, parallel ones as one."""
+        return len(self.groups)
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Orders of all harmonics, of normal loads too."""
+        normal = {n for group in self.groups for n in group.first.nu}
+        return tuple(sorted({*self.forces, *self.base, *normal}))
+
+    @property
+    def elastic(self) -> np.ndarray:
+        """Whether each contact has a spring, (N,) bool."""
+        return np.array([group.first.stiffness is not None for group in self.groups])
+
+    @property
+    def merged(self) -> str:
+        """What was merged, in words; empty if nothing was."""
+        found = [group.name for group in self.groups if len(group.members) > 1]
+        return f"parallel contacts act as one: {'; '.join(found)}" if found else ""
+
+
+def uses_general(system: "System") -> bool:
+    """Whether a system needs the general engine."""
+    given = (getattr(system, name) for name in KEYS if name != "wall_velocity")
+    return any(one is not None for one in given) or system.wall_velocity != 0.0
+
+
+def general_of(system: "System") -> General | None:
+    """Collect and check what the general engine needs; None if the system does not need it."""
+    if not uses_general(system):
+        return None
+    groups = _groups(system)
+    forces, base = _loads(system)
+    if system.load_offset is not None and system.excitation == "base":
+        raise InputError("cannot use load_offset with base excitation: it is a force on each mass; omit one")
+    offset = _offset(system.load_offset, system.n)
+    general = General(groups, forces, base, offset)
+    moving = any(group.first.wall_velocity for group in groups)
+    if not general.forces and not general.base and not moving:
+        raise InputError("load_harmonics must have a harmonic that is not zero; got none")
+    if not general.forces and not general.base:
+        raise InputError(
+            "cannot compute without a load: a belt alone makes vibrations of a period of their own; "
+            "give load_harmonics"
+        )
+    _refuse_loops(groups)
+    return general
+
+
+def contacts_of(system: "System") -> tuple[Contact, ...]:
+    """The contacts of a system, in either form."""
+    if system.contacts is not None:
+        return system.contacts  # type: ignore[return-value]
+    own = {
+        "stiffness": system.contact_stiffness, "wall_velocity": system.wall_velocity,
+        "normal_load": system.normal_load,
+    }  # fmt: skip
+    return (Contact(system.contact, system.contact_masses, **own),)
+
+
+def check_contacts(system: "System") -> tuple[Contact, ...] | None:
+    """Check the contacts of the form with several; None in the other form."""
+    if system.contacts is None:
+        return None
+    for name, default in (
+        ("contact_stiffness", None), ("wall_velocity", 0.0), ("normal_load", None),
+    ):  # fmt: skip
+        if getattr(system, name) != default:
+            raise InputError(f"cannot use {name} with contacts: each contact has its own; omit one")
+    found = checked_contacts(system.contacts)
+    first = (found[0].kind, found[0].masses)
+    given = (system.contact, tuple(system.contact_masses))
+    if given not in (first, ("fixed-wall", (1,))):
+        raise InputError("cannot use contact with contacts: both define where friction acts; omit one")
+    return found
+
+
+def vector_of(contact: Contact, dofs: Dofs, name: str) -> np.ndarray:
+    """c (n,) of a contact: z = c.x - s u."""
+    count = 2 if contact.kind == "between-masses" else 1
+    if len(contact.masses) != count:  # type: ignore[arg-type]
+        wanted = "two masses [A, B]" if count == 2 else "one mass"
+        raise InputError(f"{name}.masses must name {wanted} for {contact.kind}; got {list(contact.masses)}")  # type: ignore[arg-type]
+    numbers = [dofs.number(mass, f"{name}.masses[{k}]") for k, mass in enumerate(contact.masses)]  # type: ignore[arg-type]
+    if count == 2 and numbers[0] >= numbers[1]:
+        raise InputError(f"{name}.masses must be [A, B] with A < B; got {numbers}")
+    rows = dofs.rows(tuple(numbers))
+    c = np.zeros(dofs.n)
+    c[rows[-1]] = 1.0
+    if count == 2:
+        c[rows[0]] = -1.0
+    return c
+
+
+def _groups(system: "System") -> tuple[Group, ...]:
+    """The contacts of a system, parallel rigid ones merged."""
+    found: list[Group] = []
+    contacts = contacts_of(system)
+    for k, contact in enumerate(contacts, 1):
+        name = f"contacts[{k}]" if system.contacts is not None else "contact"
+        base = int(contact.kind == "joined-base-wall")
+        if base and system.excitation != "base":
+            raise InputError(f"{name} must have base excitation for a joined-base-wall; got 'force'")
+        vector = vector_of(contact, system.dofs, name)
+        for i, other in enumerate(found):
+            same = np.array_equal(other.vector, vector) and other.base == base
+            if not same or contact.stiffness is not None or other.first.stiffness is not None:
+                continue
+            if contact.wall_velocity != other.first.wall_velocity or contact.nu != other.first.nu:
+                raise InputError(
+                    f"{name} must have the wall_velocity and the normal_load of {other.name}, with which it "
+                    f"is parallel; got another one"
+                )
+            found[i] = Group((*other.members, contact), vector, base)
+            break
+        else:
+            found.append(Group((contact,), vector, base))
+    if not any(one.ratio or one.force for one in contacts):
+        raise InputError("contacts must have a ratio or a force > 0; got none")
+    return tuple(found)
+
+
+def _refuse_loops(groups: Sequence[Group]) -> None:
+    """Refuse rigid contacts whose vectors are linearly dependent, by name."""
+    rigid = [k for k, group in enumerate(groups) if group.first.stiffness is None]
+    if not rigid:
+        return
+    w = np.array([groups[k].vector for k in rigid])
+    if np.linalg.matrix_rank(w, tol=_PARALLEL * w.shape[1]) == len(rigid):
+        return
+    _, _, right = np.linalg.svd(w.T)
+    loop = [rigid[k] + 1 for k in np.flatnonzero(np.abs(right[-1]) > 1e-9)]
+    names = ", ".join(map(str, loop))
+    raise InputError(
+        f"contacts must not close a loop: the forces of contacts {names} in a common stop are not determined; "
+        f"leave one out"
+    )
+
+
+def _offset(given: object, n: int) -> np.ndarray:
+    if given is None:
+        return np.zeros(n)
+    values = checks.array(given, "load_offset").astype(float)
+    if values.shape != (n,) or not np.isfinite(values).all():
+        raise InputError(f"load_offset must have one finite number per mass ({n}); got {values.tolist()}")
+    return values
+
+
+def _loads(system: "System") -> tuple[dict[int, np.ndarray], dict[int, complex]]:
+    """Phasors of the loads on the masses, and of the base motion, by order."""
+    ways = [name for name in ("load_harmonics", "load_file", "waveform") if getattr(system, name) is not None]
+    if len(ways) > 1:
+        raise InputError(f"cannot use {ways[0]} with {ways[1]}: both define the load; omit one")
+    if ways and system.load is not None:
+        raise InputError(f"cannot use load with {ways[0]}: both define the load; omit one")
+    if system.harmonics is not None and ways != ["waveform"]:
+        raise InputError("cannot use harmonics without waveform: it is the number of its harmonics; omit it")
+    given: Any = system.load_harmonics
+    if ways == ["load_file"]:
+        given = load_table(system.load_file)  # type: ignore[arg-type]
+    elif ways == ["waveform"]:
+        given = _waveform(system)
+    if given is None:
+        return _one_harmonic(system)
+    if isinstance(given, PeriodicLoad):
+        return _on_load_mass(system, given.harmonics)
+    if isinstance(given, Mapping):
+        return _from_mapping(system, given)
+    return _from_entries(system, given, ways[0])
+
+
+def _waveform(system: "System") -> PeriodicLoad:
+    given = system.waveform
+    highest = DEFAULT_HARMONICS if system.harmonics is None else checks.whole(
+        system.harmonics, "harmonics", least=1, most=MOST_HARMONICS
+    )  # fmt: skip
+    if given in WAVEFORMS:
+        return waveform(str(given), highest)
+    if not str(given).lower().endswith(".csv"):
+        raise InputError(
+            f"waveform must be one of {', '.join(WAVEFORMS)}, or a CSV file of one period with the columns "
+            f"time, force; got {given!r}"
+        )
+    return sampled(given, highest)  # type: ignore[arg-type]
+
+
+def _one_harmonic(system: "System") -> tuple[dict[int, np.ndarray], dict[int, complex]]:
+    """The load of the form with one harmonic."""
+    if system.excitation == "base":
+        return {}, {1: 1.0 + 0.0j}
+    load = np.zeros(system.n, dtype=complex)
+    if system.load is not None:
+        load[:] = system.loads
+    else:
+        load[system.dofs.row(system.load_mass)] = 1.0  # type: ignore[arg-type]
+    return {1: load}, {}
+
+
+def _on_load_mass(
+    system: "System", harmonics: Mapping[int, complex]
+) -> tuple[dict[int, np.ndarray], dict[int, complex]]:
+    if system.excitation == "base":
+        return {}, dict(harmonics)
+    row = system.dofs.row(system.load_mass)  # type: ignore[arg-type]
+    unit = np.eye(system.n)[row]
+    return {n: value * unit for n, value in harmonics.items()}, {}
+
+
+def _from_mapping(
+    system: "System", given: Mapping[Any, Any]
+) -> tuple[dict[int, np.ndarray], dict[int, complex]]:
+    """Harmonics {n: phasor or vector of phasors}."""
+    if all(np.ndim(value) == 0 for value in given.values()):
+        return _on_load_mass(system, scalar_harmonics(given, "load_harmonics"))
+    if system.excitation == "base":
+        raise InputError("load_harmonics must have one phasor per order for base excitation; got vectors")
+    forces = {}
+    for key, value in given.items():
+        n = order(key, "load_harmonics: order")
+        vector = checks.array(value, f"load_harmonics[{key}]").astype(complex)
+        if vector.shape != (system.n,) or not np.isfinite(vector).all():
+            raise InputError(
+                f"load_harmonics[{key}] must have one finite number per mass ({system.n}); "
+                f"got {vector.tolist()}"
+            )
+        if vector.any():
+            forces[n] = vector
+    return forces, {}
+
+
+def _from_entries(
+    system: "System", given: object, name: str
+) -> tuple[dict[int, np.ndarray], dict[int, complex]]:
+    """Harmonics as a list of { n, mass, amplitude, phase_deg }."""
+    if not isinstance(given, Sequence) or isinstance(given, (str, bytes)):
+        raise InputError(
+            f"{name} must be a list of {{ n, mass, amplitude, phase_deg }}, a mapping of orders to phasors or "
+            f"a PeriodicLoad; got {checks.one_line(given)}"
+        )
+    forces: dict[int, np.ndarray] = {}
+    base: dict[int, complex] = {}
+    for k, one in enumerate(given):
+        entry = check_entry(one, f"{name}[{k}]", ("n", "mass", "amplitude", "phase_deg"))
+        n, value = order(entry["n"], f"{name}[{k}].n"), phasor(entry, f"{name}[{k}]")
+        if "mass" not in entry:
+            if system.excitation != "base":
+                raise InputError(
+                    f"{name}[{k}] must name a mass: without one it is a motion of the base, which "
+                    f'excitation = "base" needs; got none'
+                )
+            base[n] = base.get(n, 0.0) + value
+            continue
+        if system.excitation == "base":
+            raise InputError(
+                f"{name}[{k}] must have no mass with base excitation, which loads all masses; "
+                f"got mass {entry['mass']}"
+            )
+        mass = entry["mass"]
+        mass = int(mass) if isinstance(mass, float) and mass == math.floor(mass) else mass
+        row = system.dofs.row(system.dofs.number(mass, f"{name}[{k}].mass"))
+        forces.setdefault(n, np.zeros(system.n, dtype=complex))[row] += value
+    return {n: v for n, v in forces.items() if v.any()}, {n: v for n, v in base.items() if v != 0.0}
+
+
+def base_is_meant(system: "System") -> bool:
+    """Whether the load says that the base moves: harmonics without a mass, or a joined wall."""
+    given = system.load_harmonics
+    entries = isinstance(given, Sequence) and not isinstance(given, (str, bytes))
+    without_mass = entries and any(isinstance(one, Mapping) and "mass" not in one for one in given)  # type: ignore[union-attr]
+    walls = any(one.kind == "joined-base-wall" for one in system.contacts or () if isinstance(one, Contact))
+    return bool(without_mass or walls)

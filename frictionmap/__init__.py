@@ -19,6 +19,7 @@ datasets       contents of datasets: names, types, units, valid values, provenan
 roots          search for all roots of functions with known poles
 features       high-frequency limits, peak thresholds, invariant points: features that need no map
 theory         closed forms over frequency: beta_lim, beta_stick, continuous motion
+general        several contacts, springs in contacts, belts, periodic loads: arrays, boundaries, maps
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map
 files          configurations; output files, reading, writing; summaries in words
 probabilities  shares of the regimes over many samples of an uncertain structure
@@ -46,6 +47,8 @@ if TYPE_CHECKING:
     from . import features, identify, regimes
     from .explorer.notebook import explore
     from .files.config import load_config
+    from .model.contact import Contact
+    from .model.periodic_load import PeriodicLoad
     from .model.settings import Solver
     from .model.system import System
     from .plot import (
@@ -66,8 +69,10 @@ if TYPE_CHECKING:
     from .units.scales import Units
 
 __all__ = [
+    "Contact",
     "InputError",
     "NoSteadyState",
+    "PeriodicLoad",
     "Solver",
     "System",
     "Units",
@@ -95,6 +100,8 @@ __all__ = [
 # Loaded when first used: numba, xarray and matplotlib together take most of a second to import, and
 # `frictionmap --help` needs none of them.
 _HOME = {
+    "Contact": "model.contact",
+    "PeriodicLoad": "model.periodic_load",
     "Solver": "model.settings",
     "System": "model.system",
     "Units": "units.scales",

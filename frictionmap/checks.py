@@ -2,6 +2,7 @@
 
 import difflib
 import math
+import os
 from collections.abc import Iterable
 from typing import Any, TypeVar
 
@@ -23,6 +24,15 @@ LARGEST_DAMPING = 100.0
 _LONGEST_REPR = 160
 
 T = TypeVar("T")
+
+
+def threads(given: int | None = None) -> int:
+    """Number of threads to use: the given one, or that of the processors that this process may use."""
+    if given is not None:
+        return whole(given, "threads", least=1)
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def nearest(word: str, valid: Iterable[str]) -> str:

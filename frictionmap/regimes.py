@@ -21,6 +21,7 @@ from typing import NamedTuple
 from .errors import InputError
 
 __all__ = [
+    "BELT_REGIMES",
     "CLOSED_FORM",
     "CONTINUOUS",
     "INTEGRATED",
@@ -29,6 +30,7 @@ __all__ = [
     "NOT_COMPUTED",
     "NOT_PERIODIC",
     "NOT_REACHED",
+    "ONE_WAY_SLIDING",
     "ORIGINS",
     "PERIODIC_ORBIT",
     "PERMANENT_STICKING",
@@ -49,6 +51,7 @@ UNRESOLVED = -1
 PERMANENT_STICKING = 0
 STICK_SLIP = 1
 CONTINUOUS = 2
+ONE_WAY_SLIDING = 3
 
 CLOSED_FORM = 0
 INTEGRATED = 1
@@ -81,6 +84,12 @@ REGIMES = (
     Code(PERMANENT_STICKING, "permanent_sticking", "the contact never slides"),
     Code(STICK_SLIP, "stick_slip", "the contact slides and stops"),
     Code(CONTINUOUS, "continuous", "the contact slides without stopping"),
+)
+
+#: Regimes of systems with a belt.
+BELT_REGIMES = (
+    *REGIMES,
+    Code(ONE_WAY_SLIDING, "one_way_sliding", "the contact slides against its belt without turning"),
 )
 
 #: Bits of `also_reachable`.

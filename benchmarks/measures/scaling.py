@@ -28,7 +28,7 @@ from matplotlib.axes import Axes
 
 import frictionmap as fm
 from frictionmap import regimes
-from frictionmap.steady.maps import default_threads
+from frictionmap.checks import threads as usable_threads
 
 from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, table, timed
@@ -162,7 +162,7 @@ def threads_cost(quick: bool) -> dict:
     system = fm.System(contact="joined-base-wall")
     r, beta = grid(10 if quick else 31)
     repeats = 3 if quick else 7
-    counts = range(1, default_threads() + 1)
+    counts = range(1, usable_threads() + 1)
     seconds: dict[int, list[float]] = {count: [] for count in counts}
     first = fm.sweep(system, r, beta, 1.5, threads=1)
     same = True

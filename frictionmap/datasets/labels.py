@@ -46,6 +46,7 @@ class Label(NamedTuple):
     needs: str = ""  # what it requires beyond the steady state of a cell: "details", "cycle" or "coexistence"
     units: str = "1"
     texts: tuple[str, ...] = ()  # valid values of an axis of texts, in order
+    also: tuple[regimes.Code, ...] = ()  # further codes of general systems only
 
 
 #: Axes; strictly increasing and finite.
@@ -101,6 +102,7 @@ CELL_VARIABLES = {
         CELL,
         regimes.REGIMES,
         unresolved=regimes.UNRESOLVED,
+        also=regimes.BELT_REGIMES[len(regimes.REGIMES) :],
     ),
     "stops_per_cycle": Label(
         np.float32,
@@ -250,6 +252,65 @@ CELL_VARIABLES = {
     ),
 }
 
+def _range_of(long_name: str, *further: str, comment: str = "", least: float = -np.inf) -> Label:
+    """Label of a length for every cell, and for every contact or mass of a general system."""
+    return Label(np.float64, long_name, (*CELL, *further), comment=comment, least=least, nan=True, inf=True)
+
+
+#: Variables of cells that general systems have.  Systems of several contacts have further a last dimension
+#: `contact` in these, and in those of `PER_CONTACT`.
+GENERAL_VARIABLES = {
+    "contact_regime": CELL_VARIABLES["regime"]._replace(
+        long_name="motion regime of each contact",
+    ),
+    "turns_per_cycle": Label(
+        np.float32,
+        "changes of the sliding direction without a stop, per excitation period",
+        CELL,
+        comment="NaN where stuck or unresolved",
+        least=0.0,
+        nan=True,
+    ),
+    "slips_per_cycle": Label(
+        np.float32,
+        "slips of an elastic contact that begin per excitation period",
+        CELL,
+        comment="NaN for a rigid contact and where unresolved",
+        least=0.0,
+        nan=True,
+    ),
+    "slip_reversals_per_cycle": Label(
+        np.float32,
+        "slips of an elastic contact against the direction of the one before, per excitation period",
+        CELL,
+        comment="unlike the slips, they do not grow with the contact stiffness",
+        least=0.0,
+        nan=True,
+    ),
+    "elastic_fraction": Label(
+        np.float32,
+        "share of the steady period in which an elastic contact does not slip",
+        CELL,
+        least=0.0,
+        most=1.0,
+        nan=True,
+    ),
+    "contact_peak_to_peak": _range_of("range of the motion in the contact, over P/k1 (Y)", least=0.0),
+    "contact_midpoint": _range_of(
+        "middle of the range of the motion in the contact, over P/k1 (Y)",
+        comment="depends on the start where the contact rests for good",
+    ),
+    "peak_to_peak": _range_of("range of the displacement of each mass, over P/k1 (Y)", "dof", least=0.0),
+    "midpoint": _range_of("middle of the range of the displacement of each mass, over P/k1 (Y)", "dof"),
+    "work_wall": _range_of("work of the moving wall", comment=_PER_CYCLE),
+}
+
+#: Variables of all maps that have one value per contact where there are several.
+PER_CONTACT = (
+    "stops_per_cycle", "stuck_fraction", "contact_amplitude", "sliding_distance", "work_friction",
+    "beta_stick_contact", *(name for name in GENERAL_VARIABLES if "dof" not in GENERAL_VARIABLES[name].dims),
+)  # fmt: skip
+
 _PLATEAU = "the load's phase, counted from its maximum; NaN where the maximum is not held over a stop"
 
 #: Variables of every cell of response curves, in addition to outputs of a map.
@@ -343,6 +404,42 @@ CURVES = {
         inf=True,
     ),
     "beta_stick": Label(np.float64, "boundary to permanent sticking", CURVE, least=0.0, inf=True),
+    "beta_stick_contact": Label(
+        np.float64,
+        "friction ratio from which each contact rests for good",
+        CURVE,
+        comment="half the range of its force with all contacts held, over its static friction per beta",
+        least=0.0,
+        inf=True,
+    ),
+    "limiting_contact": Label(np.int64, "contact that decides beta_stick", CURVE, least=1),
+    "beta_noslip": Label(
+        np.float64, "friction ratio from which no elastic contact slips", CURVE, least=0.0, inf=True
+    ),
+    "no_stop_begin": Label(
+        np.float64,
+        "begin of each interval of the friction ratio without stops",
+        (*CURVE, "interval"),
+        comment="padded with NaN",
+        least=0.0,
+        nan=True,
+    ),
+    "no_stop_end": Label(
+        np.float64,
+        "end of each interval of the friction ratio without stops",
+        (*CURVE, "interval"),
+        comment="padded with NaN",
+        least=0.0,
+        nan=True,
+        inf=True,
+    ),
+    "wall_velocity_lim": Label(
+        np.float64,
+        "wall velocity from which the contact slides one way, over omega P/k1",
+        ("r",),
+        least=0.0,
+        inf=True,
+    ),
     "V": Label(
         np.float64, "response function of the motion in the contact, real part", ("r",), nan=True, inf=True
     ),
@@ -529,13 +626,15 @@ MEASURES = {
     "length": (
         "contact_amplitude", "amplitude", "sliding_distance", "contact_first_harmonic_amplitude",
         "first_harmonic_amplitude", "displacement_harmonic", "contact_harmonic", "rms", "held_response",
-        "limit_amplitude", "limit_first_harmonic_amplitude", "x", "z", "event_z",
+        "limit_amplitude", "limit_first_harmonic_amplitude", "x", "z", "event_z", "contact_peak_to_peak",
+        "contact_midpoint", "peak_to_peak", "midpoint",
     ),
     "force": (
         "beta_lim", "beta_lim_modal", "beta_stick", "sliding_limit", "beta_lim_high", "beta_stick_high",
         "peak_threshold", "friction_harmonic", "transmitted_force", "transmitted_first_harmonic", "friction",
+        "beta_stick_contact", "beta_noslip", "no_stop_begin", "no_stop_end",
     ),
-    "work": ("work_friction", "work_input", "work_damping"),
+    "work": ("work_friction", "work_input", "work_damping", "work_wall"),
     "frequency": (
         "natural_frequency", "held_frequency", "invariant_point", "mass_invariant_point",
         "invariant_first_harmonic", "contact_invariant_first_harmonic",
@@ -570,7 +669,10 @@ def _in_si(label: Label, measure: str) -> Label:
     return label._replace(long_name=f"{name}{what}", comment="", units=SI[measure][0], unresolved=np.nan)
 
 
-_RATIOS = {**CELL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES, **_older("response"), **SHARES}
+_RATIOS = {
+    **CELL_VARIABLES, **GENERAL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES, **_older("response"),
+    **SHARES,
+}  # fmt: skip
 IN_SI = {
     in_si(name, measure): _in_si(_RATIOS[name], measure)
     for measure, names in MEASURES.items()
@@ -580,6 +682,7 @@ LABELS = {**_RATIOS, **IN_SI}
 
 #: Coordinates along an axis: the axis in its SI unit.
 BESIDE = {
+    "contact": Label(np.int64, "contact, counted from 1", ("contact",), least=1),
     "frequency": Label(np.float64, "excitation frequency", ("r",), least=0.0, units="Hz"),
     "friction_force": Label(np.float64, "kinetic friction force", ("beta",), least=0.0, units="N"),
     "time": Label(np.float64, "time since a maximum of the load", ("tau",), least=0.0, units="s"),

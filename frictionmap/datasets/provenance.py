@@ -13,6 +13,7 @@ import numpy as np
 from ..model.matrices import Matrices
 
 if TYPE_CHECKING:
+    from ..model.contact import Contact
     from ..model.settings import Solver
     from ..model.system import System
     from ..units.scales import Units
@@ -123,6 +124,8 @@ def system_text(system: "System") -> str:
 def _system_lines(system: "System", file: str) -> list[str]:
     matrices = system.matrices
     own = {key: getattr(system, key) for key in _SYSTEM}
+    if system.general is not None:
+        own |= _general_keys(system)
     own["load"] = own.pop("loads")  # for a reduced structure, on the remaining masses
     if system.reduction is not None:  # r refers to the full structure, not to the matrices below
         own["frequency_scale"] = system.omega_1
@@ -140,6 +143,42 @@ def _system_lines(system: "System", file: str) -> list[str]:
         return [*lines, f"# matrices = {matrices.n} by {matrices.n}, too large to be put here"]
     table = {name: array.tolist() for name, array in matrices.arrays.items()}
     return [*lines, f"matrices = {value_text(table)}"]
+
+
+def _general_keys(system: "System") -> dict[str, object]:
+    """Keys of [system] that take the place of others where there are several contacts or harmonics."""
+    general = system.general
+    assert general is not None
+    found: dict[str, object] = {}
+    if system.contacts is not None:
+        found |= {"contact": None, "contact_masses": (1,)}
+        found["contacts"] = [_contact_keys(one) for one in system.contacts]
+    else:
+        one = _contact_keys(general.groups[0].first)
+        found["contact_stiffness"] = one.get("stiffness")
+        found["wall_velocity"] = one.get("wall_velocity")
+        found["normal_load"] = one.get("normal_load")
+    if any(getattr(system, name) is not None for name in ("load_harmonics", "load_file", "waveform")):
+        numbers = system.dofs.numbers
+        entries = [
+            {"n": n, "mass": int(numbers[row]), "re": value.real, "im": value.imag}
+            for n, vector in general.forces.items()
+            for row, value in enumerate(vector.tolist())
+            if value != 0.0
+        ]
+        entries += [{"n": n, "re": u.real, "im": u.imag} for n, u in general.base.items()]
+        found |= {"load_harmonics": entries, "load_mass": 1}
+    if system.load_offset is not None:
+        found["load_offset"] = general.offset.tolist()
+    return found
+
+
+def _contact_keys(contact: "Contact") -> dict[str, object]:
+    """A contact as an entry of system.contacts, without defaults."""
+    own = {key: getattr(contact, key) for key in ("name", "ratio", "force", "mu", "stiffness", "wall_velocity")}
+    normal = [{"n": n, "re": value.real, "im": value.imag} for n, value in contact.nu.items()]
+    found = {"kind": contact.kind, "masses": list(contact.masses), **own, "normal_load": normal or None}  # type: ignore[arg-type]
+    return {key: value for key, value in found.items() if value not in (None, 0.0) or key == "force" and value == 0.0}
 
 
 def quoted(text: str) -> str:

@@ -159,7 +159,7 @@ def _check_attributes(name: str, variable: xr.Variable, label: Label) -> None:
     elif label.flags in variable.attrs and "flag_meanings" in variable.attrs:
         values: list = np.atleast_1d(variable.attrs[label.flags]).tolist()
         meanings = str(variable.attrs["flag_meanings"]).split()
-        valid = {code.value: code.name for code in label.codes}
+        valid = {code.value: code.name for code in (*label.codes, *label.also)}
         if len(values) != len(meanings) or any(
             valid.get(value) != meaning for value, meaning in zip(values, meanings, strict=False)
         ):
@@ -210,7 +210,7 @@ def placed(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
 def _range(label: Label) -> tuple[float, float]:
     if not label.codes:
         return label.least, label.most
-    values = [code.value for code in label.codes]
+    values = [code.value for code in (*label.codes, *label.also)]
     return (0, sum(values)) if label.flags == "flag_masks" else (min(values), max(values))
 
 
@@ -230,7 +230,7 @@ def _describe_allowed(label: Label) -> str:
     """Describe the valid values."""
     if label.codes:
         how = "a sum of" if label.flags == "flag_masks" else "one of"
-        return f"{how} {', '.join(str(code.value) for code in label.codes)}"
+        return f"{how} {', '.join(str(code.value) for code in (*label.codes, *label.also))}"
     words = ["whole" if np.issubdtype(label.dtype, np.integer) else "a number" if label.inf else "finite"]
     words += [f">= {label.least:g}"] if label.least > -np.inf else []
     words += [f"<= {label.most:g}"] if label.most < np.inf else []

@@ -13,6 +13,7 @@ import numpy as np
 from .. import checks
 from ..datasets.provenance import to_toml
 from ..errors import InputError
+from ..model.periodic_load import WAVEFORMS
 from ..model.settings import CurveSettings, Solver, curve_settings
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
@@ -254,6 +255,10 @@ def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]
     table: dict[str, Any] = dict(_table(tree, "system"))
     if isinstance(table.get("load"), list):
         table["load"] = [_load(value, f"system.load[{index}]") for index, value in enumerate(table["load"])]
+    for key in ("load_file", "waveform"):
+        given = table.get(key)
+        if isinstance(given, str) and given and given not in WAVEFORMS:
+            table[key] = folder / given
     matrices = table.get("matrices", {})
     if isinstance(matrices, str) and matrices:
         table["matrices"] = folder / matrices

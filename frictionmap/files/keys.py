@@ -10,8 +10,10 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple, get_args
 
 from .. import checks
+from ..model.contact import CONTACTS, MOST_CONTACTS
+from ..model.periodic_load import MOST_HARMONICS
 from ..model.settings import OUTPUTS, RANGES, Quantity, Skip, Solver, Start, Steady, curve_settings
-from ..model.system import CONTACTS, DAMPING_REFERENCES, EXCITATIONS, System
+from ..model.system import DAMPING_REFERENCES, EXCITATIONS, System
 from ..units.axes import KINDS
 from ..units.quantities import EXAMPLES, NUMBER
 from ..units.scales import MODEL_HAS, OF_MODEL, UNIT_KINDS
@@ -134,6 +136,77 @@ def _unit(name: str, meaning: str) -> Key:
     return Key(name, meaning, valid, example=f'"{EXAMPLES[kind]}"', words=words)
 
 
+_HARMONIC = {
+    "n": whole(least=1, most=MOST_HARMONICS), "mass": _DOF, "amplitude": number(), "phase_deg": number(),
+    "re": number(), "im": number(),
+}  # fmt: skip
+_NORMAL = several(table({name: valid for name, valid in _HARMONIC.items() if name != "mass"}, ("n",)))
+
+#: Keys of [system] for several contacts, springs in contacts, belts and periodic loads.
+GENERAL_KEYS = (
+    Key(
+        "load_harmonics",
+        "instead of load_mass: harmonics of the load, sum of amplitude cos(n tau + phase) over P; without mass: "
+        "of the base motion",
+        several(table(_HARMONIC, ("n",))),
+        example="[{ n = 1, mass = 1, amplitude = 1.0 }, { n = 2, mass = 1, amplitude = 0.35, phase_deg = 20.0 }]",
+        words="a list of { n, mass, amplitude, phase_deg }, or re and im instead of amplitude and phase_deg",
+    ),
+    Key(
+        "load_file",
+        "the same as a table",
+        _NAME,
+        example='"orders.csv"',
+        words="path of a CSV file with the columns n, mass, amplitude, phase_deg",
+    ),
+    Key(
+        "waveform",
+        "the load on load_mass is a wave between -P and P",
+        _NAME,
+        example='"square"',
+        words='"square", "sawtooth", "triangle" or the path of a CSV file of one period: time, force',
+    ),
+    Key("harmonics", "harmonics of the waveform", whole(least=1, most=MOST_HARMONICS), example="20"),
+    Key(
+        "load_offset",
+        "constant force on each mass over P; it moves positions only",
+        several(number()),
+        example="[0.4]",
+    ),
+    Key(
+        "contact_stiffness",
+        "stiffness of a spring in series with the contact, over k_1; without it: rigid",
+        number(above=0.0),
+        example="3.0",
+    ),
+    Key(
+        "wall_velocity", "velocity of the wall (a belt) over omega P/k_1", number(), example="0.2"
+    ),
+    Key(
+        "normal_load",
+        "harmonics of the normal load: friction beta nu, nu = 1 + sum of amplitude cos(n tau + phase) >= 0",
+        _NORMAL,
+        example="[{ n = 1, amplitude = 0.3, phase_deg = 90.0 }]",
+        words="a list of { n, amplitude, phase_deg }",
+    ),
+    Key(
+        "contacts",
+        "several contacts, instead of contact, contact_masses, contact_stiffness, wall_velocity, normal_load",
+        several(
+            table(
+                {
+                    "kind": word(*CONTACTS), "masses": several(_DOF, maxItems=2), "ratio": number(least=0.0),
+                    "force": number(least=0.0), "mu": number(least=1.0), "name": _NAME,
+                    "stiffness": number(above=0.0), "wall_velocity": number(), "normal_load": _NORMAL,
+                },
+            ),
+            maxItems=MOST_CONTACTS,
+        ),
+        example='[{ kind = "fixed-wall", masses = [1] }, { kind = "between-masses", masses = [1, 2], force = 0.3 }]',
+        words="a list of { kind, masses, ratio or force, mu, name, stiffness, wall_velocity, normal_load }",
+    ),
+)
+
 #: Keys by table; "" is no table.
 KEYS: dict[str, tuple[Key, ...]] = {
     "": (Key("title", "title of plots and files", _TEXT, example='"A title"'),),
@@ -232,6 +305,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "damping acts on velocities relative to the ground, or relative to a moving base",
             word(*DAMPING_REFERENCES),
         ),
+        *GENERAL_KEYS,
     ),
     "grid": (
         Key(

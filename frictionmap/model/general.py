@@ -19,6 +19,7 @@ from .contact import Contact, checked_contacts
 from ..structures.dofs import Dofs
 from .periodic_load import (
     DEFAULT_HARMONICS,
+    ENTRY_KEYS,
     MOST_HARMONICS,
     WAVEFORMS,
     PeriodicLoad,
@@ -327,7 +328,7 @@ def _from_entries(
     forces: dict[int, np.ndarray] = {}
     base: dict[int, complex] = {}
     for k, one in enumerate(given):
-        entry = check_entry(one, f"{name}[{k}]", ("n", "mass", "amplitude", "phase_deg"))
+        entry = check_entry(one, f"{name}[{k}]", ENTRY_KEYS)
         n, value = order(entry["n"], f"{name}[{k}].n"), phasor(entry, f"{name}[{k}]")
         if "mass" not in entry:
             if system.excitation != "base":
@@ -356,3 +357,36 @@ def base_is_meant(system: "System") -> bool:
     without_mass = entries and any(isinstance(one, Mapping) and "mass" not in one for one in given)  # type: ignore[union-attr]
     walls = any(one.kind == "joined-base-wall" for one in system.contacts or () if isinstance(one, Contact))
     return bool(without_mass or walls)
+
+
+def format_orders(orders: Sequence[int]) -> str:
+    """Format orders of harmonics: up to six of them, or the first and the last."""
+    if len(orders) <= 6:
+        return ", ".join(map(str, orders))
+    return f"{orders[0]}, {orders[1]}, ..., {orders[-1]}"
+
+
+def describe_general(general: General, dofs: Dofs) -> str:
+    """Describe the contacts in one line."""
+    return "; ".join(_describe_group(group, dofs) for group in general.groups)
+
+
+def _describe_group(group: Group, dofs: Dofs) -> str:
+    one = group.first
+    a, b = dofs.word(dofs.number(one.masses[0], "masses")), dofs.word(dofs.number(one.masses[-1], "masses"))  # type: ignore[index]
+    mass = "the mass" if dofs.n == 1 else f"mass {b}"
+    words = {
+        "fixed-wall": f"friction between {mass} and a fixed wall",
+        "joined-base-wall": f"friction between {mass} and a wall that moves with the base",
+        "between-masses": f"friction between masses {a} and {b}",
+    }[one.kind]
+    more = []
+    if one.stiffness is not None:
+        more.append(f"contact stiffness {one.stiffness:g}")
+    if one.wall_velocity:
+        more.append(f"wall velocity {one.wall_velocity:g}")
+    if one.nu:
+        more.append("varying normal load")
+    if len(group.members) > 1:
+        more.append(f"{len(group.members)} parallel contacts as one")
+    return f"{words} ({', '.join(more)})" if more else words

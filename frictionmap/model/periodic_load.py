@@ -30,6 +30,10 @@ _NO_MEAN = 1e-12
 
 _ENTRY = ("n", "mass", "amplitude", "phase_deg")
 
+#: Keys of the phasor of one harmonic: amplitude and phase, or real and imaginary part.
+_PARTS = ("amplitude", "phase_deg", "re", "im")
+ENTRY_KEYS = ("n", "mass", *_PARTS)
+
 
 @dataclass(frozen=True)
 class PeriodicLoad:
@@ -153,7 +157,9 @@ def order(value: object, name: str) -> int:
 
 
 def phasor(entry: Mapping[str, Any], name: str) -> complex:
-    """Phasor of an entry with `amplitude` and `phase_deg`."""
+    """Phasor of an entry with `amplitude` and `phase_deg`, or `re` and `im`."""
+    if "re" in entry or "im" in entry:
+        return complex(*(checks.number(entry.get(part, 0.0), f"{name}.{part}") for part in ("re", "im")))
     amplitude = checks.number(entry.get("amplitude"), f"{name}.amplitude")
     angle = math.radians(checks.number(entry.get("phase_deg", 0.0), f"{name}.phase_deg"))
     # exact where a multiple of 90 degrees is meant
@@ -173,9 +179,12 @@ def check_entry(entry: object, name: str, valid: Sequence[str]) -> Mapping[str, 
                 f"unknown key {name + '.' + str(key)!r}{checks.nearest(str(key), valid)}; "
                 f"valid: {', '.join(valid)}"
             )
-    for key in ("n", "amplitude"):
-        if key not in entry:
-            raise InputError(f"{name} must have n and amplitude; got {', '.join(map(str, entry)) or 'nothing'}")
+    polar, cartesian = {"amplitude", "phase_deg"} & set(entry), {"re", "im"} & set(entry)
+    if "n" not in entry or bool(cartesian) == ("amplitude" in entry) or (polar and cartesian):
+        raise InputError(
+            f"{name} must have n, and amplitude and phase_deg or re and im; "
+            f"got {', '.join(map(str, entry)) or 'nothing'}"
+        )
     return entry
 
 
@@ -189,7 +198,7 @@ def scalar_harmonics(given: object, name: str) -> dict[int, complex]:
             found[order(n, f"{name}: order")] = complex(value)
     elif isinstance(given, Sequence) and not isinstance(given, (str, bytes)):
         for k, one in enumerate(given):
-            entry = check_entry(one, f"{name}[{k}]", ("n", "amplitude", "phase_deg"))
+            entry = check_entry(one, f"{name}[{k}]", ("n", *_PARTS))
             n = order(entry["n"], f"{name}[{k}].n")
             found[n] = found.get(n, 0.0) + phasor(entry, f"{name}[{k}]")
     else:

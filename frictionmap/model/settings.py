@@ -33,6 +33,16 @@ Output = Literal[
     "equivalent_damping",
     "contact_first_harmonic_amplitude",
     "contact_first_harmonic_phase",
+    "contact_regime",
+    "turns_per_cycle",
+    "slips_per_cycle",
+    "slip_reversals_per_cycle",
+    "elastic_fraction",
+    "contact_peak_to_peak",
+    "contact_midpoint",
+    "peak_to_peak",
+    "midpoint",
+    "work_wall",
 ]
 OUTPUTS: tuple[str, ...] = get_args(Output)
 

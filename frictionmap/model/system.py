@@ -19,7 +19,14 @@ from ..structures.structure import Structure, read_structure
 from .coupled_modes import CoupledModel, coupled_model
 from .contact import CONTACTS, Contact
 from .decoupling import Decoupling
-from .general import General, base_is_meant, check_contacts, general_of
+from .general import (
+    General,
+    base_is_meant,
+    check_contacts,
+    describe_general,
+    format_orders,
+    general_of,
+)
 from .matrices import Matrices, full_matrices, reduced_matrices
 from .modes import (
     ModalModel,
@@ -620,6 +627,8 @@ class System:
         return f"chain of {self.n} masses ({masses}), springs ({springs})"
 
     def _describe_contact(self) -> str:
+        if self._general is not None:
+            return describe_general(self._general, self.dofs)
         masses = [self.dofs.word(number) for number in self.contact_masses]  # type: ignore[arg-type]
         a, b = masses[0], masses[-1]
         mass = "the mass" if self.n == 1 else f"mass {b}"
@@ -631,6 +640,8 @@ class System:
 
     def _describe_load(self) -> str:
         one = self.n == 1
+        if self._general is not None and self._general.orders != (1,):
+            return f"periodic load, harmonics {format_orders(self._general.orders)}"
         if self.excitation == "base":
             through = "the spring" if one else "the springs"
             if self.damping_reference == "base":

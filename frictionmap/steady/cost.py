@@ -58,10 +58,10 @@ def memory_of_map(
     counts: Mapping[str, int], masses: int, outputs: tuple[str, ...], units: Units | None = None
 ) -> float:
     """Estimate the peak memory in bytes of a map with these numbers of values of mu, r and beta."""
-    from ..datasets.labels import CELL_VARIABLES
+    from ..datasets.labels import LABELS
     from .quantity_data import quantity_request
 
-    of_cycle = [name for name in outputs if CELL_VARIABLES[name].needs == "cycle"]
+    of_cycle = [name for name in outputs if LABELS[name].needs == "cycle"]
     return _memory(
         {**counts, "dof": masses}, _also_in_si({*outputs, "status"}, units), quantity_request(of_cycle)
     )
@@ -140,7 +140,16 @@ def refuse_map_without_memory(
     InputError
         States the memory needed and the memory available.
     """
-    _refuse(counts, memory_of_map(counts, system.n, tuple(solver.outputs), units), "outputs")
+    needed = memory_of_map(counts, system.n, tuple(solver.outputs), units)
+    if system.general is not None:
+        needed += _of_contacts(counts, system.general.count, system.n)
+    _refuse(counts, needed, "outputs")
+
+
+def _of_contacts(counts: Mapping[str, int], contacts: int, masses: int) -> float:
+    """Bytes of the results of every contact and mass in the cells of a general system."""
+    per_cell = 28.0 + 8.0 * 10.0 * contacts + 16.0 * (contacts + masses)
+    return per_cell * counts["mu"] * counts["r"] * counts["beta"]
 
 
 def refuse_curves_without_memory(
@@ -188,14 +197,15 @@ def seconds_of_cells(
     They are counted, not timed: from the excitation periods that some cells are followed for, to the bit the
     same at every call.  Within a factor 3 of what cells take.
     """
-    from ..datasets.labels import CELL_VARIABLES
-    from .maps import FOLLOWED, SEARCHED, SEARCHED_UNIQUE, solve_map
+    from ..datasets.labels import LABELS
+    from .maps import FOLLOWED, SEARCHED, SEARCHED_UNIQUE
+    from .sweep import regime_map
 
-    names = [name for name in solver.outputs if CELL_VARIABLES[name].needs != "coexistence"]
+    names = [name for name in solver.outputs if LABELS[name].needs != "coexistence"]
     looked_at = len(names) < len(solver.outputs)
     counting = replace(solver, outputs=tuple(dict.fromkeys((*names, "cycles"))))
     some = {name: _spread(values, _COUNTED[name]) for name, values in axes.items()}
-    cycles = solve_map(system, some, counting, threads, None)[0]["cycles"]
+    cycles = regime_map(system, some, counting, threads, None)["cycles"].values
     seconds = cycles * _seconds_of_period(system.n, some["r"])[:, np.newaxis] + _DECIDED
     if looked_at:  # the motions from other starts; they cost what a cell does that is followed
         others = np.where(some["mu"] == 1.0, SEARCHED_UNIQUE, SEARCHED) / FOLLOWED

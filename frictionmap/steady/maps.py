@@ -1,6 +1,5 @@
 """The cells of a map: decide which of them need integration, and compute them in parallel."""
 
-import os
 from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
@@ -128,13 +127,6 @@ def allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> An
     return Arrays(*arrays)
 
 
-def default_threads() -> int:
-    """Number of processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
 def _run(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None) -> None:
     """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
 
@@ -218,7 +210,7 @@ def compute(
     threads: int | None, progress: Progress | None, watch: Watch | None = None,
 ) -> tuple[Cells, Any]:  # fmt: skip
     """Compute the cells of a grid; `request` names quantities to be stored in the results of the cells."""
-    threads = default_threads() if threads is None else checks.whole(threads, "threads", least=1)
+    threads = checks.threads(threads)
     if progress is not None and not callable(progress):
         raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]

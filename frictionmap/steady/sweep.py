@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
-from ..datasets.labels import NAMES
+from ..datasets.labels import GENERAL_VARIABLES, NAMES
 from ..datasets.physical import with_units
 from ..datasets.variables import coordinate, coordinate_of_study, label_variable, stamp
 from ..errors import InputError
@@ -131,6 +131,16 @@ def regime_map(
     watch: Watch | None = None,
 ) -> xr.Dataset:
     """Compute outputs, `status` and boundaries of one system over the axes mu, r and beta."""
+    if system.general is not None:
+        from ..general.dataset import general_map
+
+        return general_map(system, axes, solver, threads, progress, watch)
+    only = [name for name in solver.outputs if name in GENERAL_VARIABLES]
+    if only:
+        raise InputError(
+            f"cannot compute {only[0]} for one rigid contact under one harmonic load; give contacts, "
+            f"load_harmonics, wall_velocity, normal_load or contact_stiffness, or omit it"
+        )
     found, curves = solve_map(system, axes, solver, threads, progress, watch)
     variables = {name: label_variable(name, values) for name, values in found.items()}
     sizes = {"dof": np.array(system.dofs.numbers)} if "amplitude" in solver.outputs else {}

@@ -163,6 +163,8 @@ def boundaries(
     r = checks.axis(ratios(r, "r", KINDS["r"], scales), "r", least=0.0, most=checks.LARGEST_RATIO)
     mu = checks.axis(mu, "mu", least=1.0)
     system.costs(r)
+    if system.general is not None:
+        return with_units(_general_boundaries(system, r, mu, units), scales)
     found = find_curves(system, r, mu)
     functions = {
         "V": found.v.real,
@@ -181,3 +183,17 @@ def boundaries(
     ds = stamp(ds, "boundaries", title, system, {"r": r, "mu": mu}, units=units)
     ds.attrs |= boundary_check(system, r, mu)
     return with_units(ds, scales)
+
+
+def _general_boundaries(system: System, r: np.ndarray, mu: np.ndarray, units: Units | None) -> xr.Dataset:
+    """Boundaries of a system with several contacts, springs, belts or harmonics."""
+    from ..general.boundaries import find_boundaries
+    from ..general.dataset import boundary_variables as general_variables
+    from ..general.dataset import contact_coordinates, refuse_static
+
+    assert system.general is not None
+    refuse_static(system.general, mu)
+    axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
+    coords = {name: coordinate(name, axis) for name, axis in axes.items()} | contact_coordinates(system)
+    ds = xr.Dataset(general_variables(system, find_boundaries(system, r, mu)), coords=coords)
+    return stamp(ds, "boundaries", "Boundaries of the motion regimes", system, {"r": r, "mu": mu}, units=units)

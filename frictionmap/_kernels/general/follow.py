@@ -18,9 +18,10 @@ _MOST_EVENTS = 200.0
 _AT_LIMIT = 1e-11
 
 #: Rows of `law` and `counts`.
-LAW_ROWS = 8
+LAW_ROWS = 9
 STOPS, TURNS, STUCK, SLIPS, REVERSALS, LAST_SENSE, MOVED = 0, 1, 2, 3, 4, 5, 6
-COUNT_ROWS = 7
+NEAREST_STOP = 7  # largest share that friction has of the force that would hold a contact at a turn
+COUNT_ROWS = 8
 
 FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
 
@@ -112,8 +113,6 @@ def _change_pattern(problem, row, friction, tau, work, law, x, contact, side):
         _release_without_drop(problem, friction, work, x, contact, side)
         return True
     arrived, released = (contact, -1) if side == 0 else (-1, contact)
-    for j in range(work.sense.size):
-        law[7, j] = work.sense[j]
     if not settle(problem, row, friction, tau, work, law, arrived, released):
         return False
     for j in range(work.sense.size):
@@ -123,7 +122,7 @@ def _change_pattern(problem, row, friction, tau, work, law, x, contact, side):
 
 
 @kernel
-def _count(problem, work, before, counts):
+def _count(problem, work, law, before, counts):
     """Count stops, turns, slips and reversals from the pattern before and after an event."""
     for j in range(work.sense.size):
         old, new = int(before[j]), work.sense[j]
@@ -139,6 +138,7 @@ def _count(problem, work, before, counts):
             counts[STOPS, j] += 1.0
         elif old != 0:
             counts[TURNS, j] += 1.0
+            counts[NEAREST_STOP, j] = max(counts[NEAREST_STOP, j], law[4, j] / abs(law[7, j]))
 
 
 @kernel
@@ -199,7 +199,7 @@ def _event(problem, row, friction, tau, work, law, counts, event, derive):
             scratch[4, j] = value_at(series, first + 3 * contacts + j, x)
     if not _change_pattern(problem, row, friction, tau, work, law, x, contact, side):
         return False
-    _count(problem, work, before, counts)
+    _count(problem, work, law, before, counts)
     if not factor_held(problem, row, work):
         return False
     if derive:

@@ -189,8 +189,8 @@ def settle(problem, row, friction, tau, work, law, arrived, released):
     problem, row, friction : Problem, Row, Friction
     tau : phase of the load
     work : Work; state and pattern of the instant; the pattern is replaced
-    law : (8, N) scratch: accelerations, forces, accelerations of sliders, participants, kinetic friction,
-        whether a participant may slide, static friction
+    law : (9, N) scratch: accelerations, forces, accelerations of sliders, participants, kinetic friction,
+        whether a participant may slide, static friction, forces that would hold all participants
     arrived : contact that has arrived; -1: none
     released : contact that is released; -1: none
 
@@ -209,6 +209,8 @@ def settle(problem, row, friction, tau, work, law, arrived, released):
         law[5, j] = 1.0 if law[6, j] <= law[4, j] else 0.0
     if not _forces_of_choice(problem, row, work, law):
         return False
+    for j in range(contacts):
+        law[7, j] = law[1, j]
     _stop_exactly(problem, row, work, law)
     if released >= 0:
         law[5, released] = 1.0

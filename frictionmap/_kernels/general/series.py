@@ -50,7 +50,7 @@ def factor_held(problem, row, work):
     return True
 
 
-@kernel
+@inner_kernel
 def solve_held(work, right):
     """Solve for the forces that hold contacts; `right` holds their accelerations and then the forces."""
     contacts = work.sense.size
@@ -78,7 +78,7 @@ def _displacement_term(problem, j, k, series, first):
     return z
 
 
-@kernel
+@inner_kernel
 def _normal_loads(problem, series, first):
     """Fill the series of the normal loads."""
     modes, channels = problem.push.shape
@@ -94,7 +94,7 @@ def _normal_loads(problem, series, first):
                     series[nu, k] += problem.normal[j, d] * series[modes + d, k]
 
 
-@kernel
+@inner_kernel
 def _sliding_forces(problem, friction, work, first):
     """Fill the forces of sliding contacts; those of held ones begin at 0, of elastic ones at their force."""
     contacts = problem.spring.size
@@ -108,7 +108,7 @@ def _sliding_forces(problem, friction, work, first):
             series[f, 0] = work.state[2, j]
 
 
-@kernel
+@inner_kernel
 def _acceleration(problem, row, k, series, first, m):
     """Term k of the acceleration of mode m under all known forces."""
     modes, channels = problem.push.shape
@@ -126,7 +126,7 @@ def _acceleration(problem, row, k, series, first, m):
     return found
 
 
-@kernel
+@inner_kernel
 def _holding_forces(problem, k, work, first):
     """Fill term k of the forces that hold contacts; accelerations are in term k + 2 of the modes."""
     modes, channels = problem.push.shape
@@ -181,7 +181,7 @@ def expand(problem, row, friction, tau, work):
     _contact_motion(problem, work, first, h)
 
 
-@kernel
+@inner_kernel
 def _contact_motion(problem, work, first, h):
     """Fill the displacements in the contacts, and the velocities relative to their walls."""
     contacts = problem.spring.size

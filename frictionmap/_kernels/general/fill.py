@@ -1,0 +1,192 @@
+"""Cells of a map, row by row: the steady state of each, from its neighbour's where the start does not matter."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ...regimes import (
+    CLOSED_FORM,
+    CONTINUOUS,
+    INTEGRATED,
+    NOT_REACHED,
+    ONE_WAY_SLIDING,
+    PERIODIC_ORBIT,
+    PERMANENT_STICKING,
+    RESOLVED,
+    STICK_SLIP,
+    TOO_MANY_EVENTS,
+)
+from ..compiler import entry, kernel
+from .follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
+from .problem import make_row, make_work, set_row
+from .record import make_record
+from .return_map import make_return
+from .series import Friction
+from .steady import NO_REPEAT, REPEATS, find, from_rest, make_ring, measure
+
+
+class Grid(NamedTuple):
+    """Friction of a grid: kinetic friction of contact j is kinetic[j, 0] beta + kinetic[j, 1], ..."""
+
+    beta: np.ndarray  # (n_beta,)
+    kinetic: np.ndarray  # (N, 2)
+    static: np.ndarray  # (n_mu, N, 2)
+    stuck_from: np.ndarray  # (n_mu, n_r) index of the first cell that is proved to stick for good
+    starts: np.ndarray  # (n_r, 2, m) modes and their velocities at tau = 0
+    cycles: float
+    tolerance: float
+
+
+class Cells(NamedTuple):
+    """Results, (n_mu, n_r, n_beta) and one number per contact or mass."""
+
+    regime: np.ndarray
+    status: np.ndarray
+    origin: np.ndarray
+    cycles: np.ndarray
+    period: np.ndarray
+    multiplier: np.ndarray
+    contact_regime: np.ndarray  # (..., N)
+    stops: np.ndarray
+    turns: np.ndarray
+    stuck: np.ndarray
+    slips: np.ndarray
+    reversals: np.ndarray
+    distance: np.ndarray
+    lowest: np.ndarray  # (..., N + n)
+    highest: np.ndarray
+
+
+@kernel
+def _regime_of(problem, counts, j):
+    """Regime of one contact over the steady state."""
+    if counts[MOVED, j] == 0.0:
+        return PERMANENT_STICKING
+    if problem.spring[j] != 0.0:
+        if counts[STUCK, j] == 0.0:
+            return ONE_WAY_SLIDING
+        return STICK_SLIP
+    if counts[STOPS, j] > 0.0:
+        return STICK_SLIP
+    if problem.belt[j] != 0.0 and counts[TURNS, j] == 0.0:
+        return ONE_WAY_SLIDING
+    return CONTINUOUS
+
+
+@kernel
+def _store_contacts(problem, out, m, i, b, counts, halves, record):
+    """Store the numbers of every contact; return the regime of all."""
+    contacts = problem.spring.size
+    period = 0.5 * halves
+    least, most = CONTINUOUS + 2, PERMANENT_STICKING
+    for j in range(contacts):
+        regime = _regime_of(problem, counts, j)
+        least, most = min(least, regime), max(most, regime)
+        out.contact_regime[m, i, b, j] = regime
+        out.stops[m, i, b, j] = counts[STOPS, j] / period
+        out.turns[m, i, b, j] = counts[TURNS, j] / period
+        out.stuck[m, i, b, j] = counts[STUCK, j] / (math.pi * halves)
+        out.slips[m, i, b, j] = counts[SLIPS, j] / period
+        if problem.spring[j] != 0.0 and counts[STUCK, j] == 0.0:
+            out.slips[m, i, b, j] = 1.0
+        if counts[MOVED, j] == 0.0:
+            out.stuck[m, i, b, j] = 1.0
+        out.reversals[m, i, b, j] = counts[REVERSALS, j] / period
+        out.distance[m, i, b, j] = record.distance[j] / period
+    for k in range(record.lowest.size):
+        out.lowest[m, i, b, k] = record.lowest[k]
+        out.highest[m, i, b, k] = record.highest[k]
+    if most == PERMANENT_STICKING:
+        return PERMANENT_STICKING
+    if least >= CONTINUOUS:
+        return ONE_WAY_SLIDING if contacts == 1 and least == ONE_WAY_SLIDING else CONTINUOUS
+    return STICK_SLIP
+
+
+@kernel
+def _store(problem, out, m, i, b, found, halves, counts, record):
+    """Store a solved cell."""
+    out.cycles[m, i, b] = math.ceil(found.cycles)
+    if found.status != REPEATS:
+        out.status[m, i, b] = NOT_REACHED if found.status == NO_REPEAT else TOO_MANY_EVENTS
+        out.origin[m, i, b] = INTEGRATED
+        return
+    out.status[m, i, b] = RESOLVED
+    out.origin[m, i, b] = PERIODIC_ORBIT
+    out.period[m, i, b] = halves // 2
+    out.multiplier[m, i, b] = found.multiplier
+    out.regime[m, i, b] = _store_contacts(problem, out, m, i, b, counts, halves, record)
+
+
+@kernel
+def _store_stuck(out, m, i, b):
+    """Store a cell that closed forms prove to stick for good; its displacements are those of the held
+    structure and filled elsewhere.
+    """
+    out.regime[m, i, b] = PERMANENT_STICKING
+    out.status[m, i, b] = RESOLVED
+    out.origin[m, i, b] = CLOSED_FORM
+    out.period[m, i, b] = 1
+    for j in range(out.contact_regime.shape[3]):
+        out.contact_regime[m, i, b, j] = PERMANENT_STICKING
+        out.stops[m, i, b, j] = 0.0
+        out.turns[m, i, b, j] = 0.0
+        out.stuck[m, i, b, j] = 1.0
+        out.slips[m, i, b, j] = 0.0
+        out.reversals[m, i, b, j] = 0.0
+        out.distance[m, i, b, j] = 0.0
+
+
+@kernel
+def _set_friction(grid, m, b, friction):
+    """Friction of every contact in a cell; whether it is the same, static and kinetic."""
+    unique = True
+    for j in range(friction.kinetic.size):
+        friction.kinetic[j] = grid.kinetic[j, 0] * grid.beta[b] + grid.kinetic[j, 1]
+        friction.static[j] = grid.static[m, j, 0] * grid.beta[b] + grid.static[m, j, 1]
+        unique = unique and friction.static[j] <= friction.kinetic[j]
+    return unique
+
+
+@entry
+def fill_rows(first, last, problem, grid, out, masses, cancel):
+    """Fill rows first..last-1 of the (mu, r) grid; stop soon after cancel[0] is set.
+
+    Parameters
+    ----------
+    first, last : range of rows; no row depends on another
+    problem : Problem
+    grid : Grid
+    out : Cells, unresolved
+    masses : (n, m) displacement of the masses per mode; n = 0 where they are not asked for
+    cancel : (1,) set by another thread to end the computation
+    """
+    row, work, memory = make_row(problem), make_work(problem), make_return(problem)
+    ring, record = make_ring(problem), make_record(problem.spring.size, masses)
+    contacts = problem.spring.size
+    friction = Friction(np.empty(contacts), np.empty(contacts))
+    n_r = problem.r.size
+    for index in range(first, last):
+        m, i = index // n_r, index % n_r
+        if problem.r[i] == 0.0:
+            continue
+        set_row(problem, i, row)
+        near = False
+        for b in range(grid.beta.size):
+            if cancel[0] != 0:
+                return
+            if b >= grid.stuck_from[m, i]:
+                _store_stuck(out, m, i, b)
+                continue
+            unique = _set_friction(grid, m, b, friction)
+            if not (near and unique):
+                from_rest(problem, i, row, friction, grid.starts[i], work, memory, record)
+            found = find(
+                problem, row, friction, grid.cycles, grid.tolerance, work, memory, ring, record
+            )
+            near = found.status == REPEATS
+            halves = 0
+            if near:
+                halves = measure(problem, row, friction, found.halves, work, memory, record)
+            _store(problem, out, m, i, b, found, halves, memory.counts, record)

@@ -1,0 +1,131 @@
+"""Friction with which no contact stops: intervals of beta, from the motions themselves (loads.md 4)."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiler import entry, kernel
+from .follow import NEAREST_STOP, STOPS
+from .problem import make_row, make_work, set_row
+from .record import make_record
+from .return_map import make_return
+from .series import Friction
+from .steady import REPEATS, find, from_rest, make_ring, measure
+
+#: Nodes in beta at which the motion is tried, and halvings of the interval around an end.
+NODES = 48
+_HALVINGS = 60
+
+
+class Search(NamedTuple):
+    """Friction over beta, as in `fill.Grid`, and where to search."""
+
+    kinetic: np.ndarray  # (N, 2)
+    static: np.ndarray  # (n_mu, N, 2)
+    top: np.ndarray  # (n_r,) largest beta that is tried
+    starts: np.ndarray  # (n_r, 2, m)
+    cycles: float
+    tolerance: float
+
+
+@kernel
+def _margin(search, m, beta, kept, k):
+    """Distance from a stop, > 0 where no contact stops, from what was kept of the motion in row k."""
+    if kept[k, 0] > 0.0 or kept[k, 0] != kept[k, 0]:
+        return -1.0
+    worst = 0.0
+    for j in range(search.kinetic.shape[0]):
+        kinetic = search.kinetic[j, 0] * beta + search.kinetic[j, 1]
+        static = search.static[m, j, 0] * beta + search.static[m, j, 1]
+        if kinetic > 0.0:
+            worst = max(worst, static / kinetic * kept[k, 1 + j])
+    return 1.0 - worst
+
+
+@kernel
+def _try(problem, i, row, search, beta, near, friction, memories, kept, k):
+    """Keep the number of stops, and how near the turns are to one, of the motion with mu = 1 at beta."""
+    work, memory, ring, record = memories
+    contacts = problem.spring.size
+    for j in range(contacts):
+        friction.kinetic[j] = search.kinetic[j, 0] * beta + search.kinetic[j, 1]
+        friction.static[j] = friction.kinetic[j]
+    if not near:
+        from_rest(problem, i, row, friction, search.starts[i], work, memory, record)
+    found = find(problem, row, friction, search.cycles, search.tolerance, work, memory, ring, record)
+    kept[k, 0] = math.nan
+    if found.status != REPEATS:
+        return False
+    measure(problem, row, friction, found.halves, work, memory, record)
+    kept[k, 0] = 0.0
+    for j in range(contacts):
+        kept[k, 0] += memory.counts[STOPS, j]
+        kept[k, 1 + j] = memory.counts[NEAREST_STOP, j]
+    return True
+
+
+@kernel
+def _end(problem, i, row, search, m, inside, outside, friction, memories, kept):
+    """End of an interval between a beta without stops and one with."""
+    near = False
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (inside + outside)
+        if middle == inside or middle == outside:
+            break
+        near = _try(problem, i, row, search, middle, near, friction, memories, kept, NODES + 1)
+        if _margin(search, m, middle, kept, NODES + 1) > 0.0:
+            inside = middle
+        else:
+            outside = middle
+    return inside
+
+
+@entry
+def fill_no_stop(problem, search, begins, ends, cancel):
+    """Fill the intervals of beta in which no contact stops.
+
+    Parameters
+    ----------
+    problem : Problem
+    search : Search
+    begins, ends : (n_mu, n_r, intervals) filled, NaN where there are fewer
+    cancel : (1,) set by another thread to end the computation
+    """
+    row, work, memory = make_row(problem), make_work(problem), make_return(problem)
+    ring, record = make_ring(problem), make_record(problem.spring.size, np.empty((0, problem.squares.size)))
+    contacts = problem.spring.size
+    friction = Friction(np.empty(contacts), np.empty(contacts))
+    kept = np.zeros((NODES + 2, 1 + contacts))
+    memories = (work, memory, ring, record)
+    for i in range(problem.r.size):
+        if cancel[0] != 0:
+            return
+        if problem.r[i] == 0.0:
+            continue
+        set_row(problem, i, row)
+        near = False
+        for k in range(1, NODES + 1):
+            beta = search.top[i] * k / NODES
+            near = _try(problem, i, row, search, beta, near, friction, memories, kept, k)
+        _try(problem, i, row, search, 1e-9 * search.top[i], False, friction, memories, kept, 0)
+        for m in range(search.static.shape[0]):
+            count = 0
+            last = _margin(search, m, 1e-9 * search.top[i], kept, 0)
+            if last > 0.0:
+                begins[m, i, 0] = 0.0
+            for k in range(1, NODES + 1):
+                now = _margin(search, m, search.top[i] * k / NODES, kept, k)
+                before, here = search.top[i] * (k - 1) / NODES, search.top[i] * k / NODES
+                if last > 0.0 and now <= 0.0 and count < begins.shape[2]:
+                    ends[m, i, count] = _end(
+                        problem, i, row, search, m, before, here, friction, memories, kept
+                    )
+                    count += 1
+                if last <= 0.0 and now > 0.0 and count < begins.shape[2]:
+                    begins[m, i, count] = _end(
+                        problem, i, row, search, m, here, before, friction, memories, kept
+                    )
+                last = now
+            if last > 0.0 and count < begins.shape[2]:
+                ends[m, i, count] = math.inf

@@ -1,0 +1,108 @@
+"""Boundaries of general systems: permanent sticking, motions without stops, belts that pull one way."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._kernels.general.no_stop import Search, fill_no_stop
+from ..model.system import System
+from .held import largest, least_static_friction, stick_scales
+from .problem import general_of, problem_of
+
+#: Intervals without stops that are looked for.
+INTERVALS = 4
+
+#: Where the boundary to sticking is infinite: beta up to which stops are looked for, over the sum of all
+#: loads.
+_HIGHEST = 8.0
+
+_CYCLES, _TOLERANCE = 400.0, 1e-12
+
+
+@dataclass(frozen=True)
+class Boundaries:
+    """Boundaries over r; NaN where a system has none of the kind."""
+
+    beta_stick: np.ndarray  # (n_mu, n_r) scale from which all contacts rest for good
+    beta_stick_contact: np.ndarray  # (n_mu, n_r, N)
+    beta_lim: np.ndarray  # (n_mu, n_r) end of the first interval without stops
+    begins: np.ndarray  # (n_mu, n_r, INTERVALS)
+    ends: np.ndarray
+    wall_velocity_lim: np.ndarray  # (n_r,) NaN without one contact on a belt
+    limiting: np.ndarray  # (n_mu, n_r) contact that decides beta_stick, counted from 1
+
+
+def friction_lines(system: System, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Kinetic (N, 2) and static (n_mu, N, 2) friction as a line over beta: slope, value at 0."""
+    groups = general_of(system).groups
+    kinetic = np.empty((len(groups), 2))
+    static = np.empty((mu.size, len(groups), 2))
+    for j, group in enumerate(groups):
+        for m, value in enumerate(mu):
+            (k0, s0), (k1, s1) = group.friction(0.0, float(value)), group.friction(1.0, float(value))
+            kinetic[j] = k1 - k0, k0
+            static[m, j] = s1 - s0, s0
+    return kinetic, static
+
+
+def rest_states(system: System, modal: "object", r: np.ndarray) -> np.ndarray:
+    """Modes and velocities at rest at tau = 0, the masses at a joined wall at its displacement, (n_r, 2, m)."""
+    general = general_of(system)
+    phi, mass = modal.phi, modal.mass  # type: ignore[attr-defined]
+    x = np.zeros(system.n)
+    u = sum(value.real for value in general.base.values())
+    for group in general.groups:
+        if group.base:
+            x += u * group.vector / (group.vector @ group.vector)
+    state = np.zeros((r.size, 2, phi.shape[1]))
+    state[:, 0] = phi.T @ mass @ x
+    return state
+
+
+def find_boundaries(system: System, r: np.ndarray, mu: np.ndarray, stops: bool = True) -> Boundaries:
+    """Find the boundaries over r.
+
+    stops : whether to look for the intervals without stops, which takes the longest
+    """
+    general = general_of(system)
+    needed = least_static_friction(system, r)
+    by_contact = stick_scales(general, needed, mu)
+    stick = by_contact.max(axis=2)
+    shape = (mu.size, r.size, INTERVALS)
+    begins, ends = np.full(shape, np.nan), np.full(shape, np.nan)
+    if stops and not general.elastic.any():
+        loads = sum(float(np.abs(v).max()) for v in (*general.forces.values(), *general.base.values()))
+        problem, modal = problem_of(system, r)
+        kinetic, static = friction_lines(system, mu)
+        highest = stick[:, :].max(axis=0)
+        top = np.where(np.isfinite(highest) & (highest > 0.0), highest, _HIGHEST * loads)
+        search = Search(kinetic, static, top, rest_states(system, modal, r), _CYCLES, _TOLERANCE)
+        fill_no_stop(problem, search, begins, ends, np.zeros(1, np.uint8))
+    first = np.where(begins[:, :, 0] == 0.0, ends[:, :, 0], 0.0)
+    first = np.where(np.isnan(begins[:, :, 0]), 0.0, first)
+    return Boundaries(
+        stick, by_contact, first, begins, ends, _belt_limit(system, r), by_contact.argmax(axis=2) + 1
+    )
+
+
+def _belt_limit(system: System, r: np.ndarray) -> np.ndarray:
+    """Belt velocity from which the contact slides one way: largest speed of the linear motion, (n_r,)."""
+    general = general_of(system)
+    if general.count > 1 or not general.groups[0].first.wall_velocity:
+        return np.full(r.size, np.nan)
+    phasors = []
+    orders = sorted({*general.forces, *general.base})
+    modal = system.modes
+    n = system.n
+    for order in orders:
+        square = (order * r)[:, np.newaxis, np.newaxis]
+        matrix = modal.stiffness - square**2 * modal.mass + 1j * square * modal.damping
+        right = np.zeros((r.size, n), dtype=complex)
+        right[:] = general.forces.get(order, 0.0)
+        u = general.base.get(order, 0.0)
+        right += u * modal.stiffness.sum(axis=1)
+        with np.errstate(all="ignore"):
+            x = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
+        phasors.append(1j * order * (x @ general.groups[0].vector))
+    sign = np.sign(general.groups[0].first.wall_velocity)
+    return largest(np.array(orders, dtype=float), sign * np.stack(phasors, axis=-1))

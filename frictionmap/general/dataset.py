@@ -1,0 +1,177 @@
+"""Maps and boundaries of general systems as labelled variables."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import xarray as xr
+
+from .. import checks, regimes
+from .._kernels.general.fill import Cells
+from ..datasets.labels import GENERAL_VARIABLES, LABELS, PER_CONTACT, attributes
+from ..datasets.variables import coordinate, label_variable
+from ..errors import InputError
+from ..model.general import General
+from ..model.settings import Solver
+from ..model.system import System
+from .boundaries import Boundaries
+from .maps import solve_cells
+from .problem import general_of
+
+#: Outputs that general systems have.
+OUTPUTS = (
+    "regime", "stops_per_cycle", "contact_amplitude", "stuck_fraction", "period", "origin", "cycles", "status",
+    "multiplier", "amplitude", "sliding_distance", "work_friction", *GENERAL_VARIABLES,
+)  # fmt: skip
+
+#: Outputs of elastic contacts that take the place of those of rigid ones.
+_ELASTIC = {"stops_per_cycle": "slips_per_cycle", "stuck_fraction": "elastic_fraction"}
+
+_OF_MASSES = ("amplitude", "peak_to_peak", "midpoint")
+
+
+def outputs_of(general: General, solver: Solver) -> tuple[str, ...]:
+    """The outputs of a map: those asked for, with their counterparts for elastic contacts.
+
+    Raises
+    ------
+    InputError
+        An output is not offered for such systems.
+    """
+    names: list[str] = []
+    for name in solver.outputs:
+        if name not in OUTPUTS:
+            raise InputError(
+                f"cannot compute {name} with several contacts, springs, belts or loads of several harmonics; "
+                f"valid outputs: {', '.join(OUTPUTS)}"
+            )
+        if name in _ELASTIC and general.elastic.any():
+            names += [name] if not general.elastic.all() else []
+            names.append(_ELASTIC[name])
+        else:
+            names.append(name)
+    if general.count > 1:
+        names.append("contact_regime")
+    return tuple(dict.fromkeys((*names, "status")))
+
+
+def contact_variable(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
+    """Label a variable with one value per contact: the last dimension, which one contact does without."""
+    label = LABELS[name]
+    if contacts == 1:
+        return label_variable(name, np.ascontiguousarray(values[..., 0]))
+    return xr.Variable((*label.dims, "contact"), values, label_variable(name, values[..., 0]).attrs)
+
+
+def _per_contact(name: str, system: System, found: Cells, beta: np.ndarray) -> np.ndarray:
+    """Values of an output for every contact, (n_mu, n_r, n_beta, N)."""
+    general = general_of(system)
+    count = general.count
+    low, high = found.lowest[..., :count], found.highest[..., :count]
+    rests = found.contact_regime == regimes.PERMANENT_STICKING
+    rigid = ~general.elastic
+    still = rests & rigid
+    if name == "contact_regime":
+        return found.contact_regime
+    if name in ("stops_per_cycle", "turns_per_cycle"):
+        table = found.stops if name == "stops_per_cycle" else found.turns
+        return np.where(rests | ~rigid, np.nan, table)
+    if name in ("slips_per_cycle", "slip_reversals_per_cycle"):
+        return np.where(rigid, np.nan, found.slips if name == "slips_per_cycle" else found.reversals)
+    if name in ("stuck_fraction", "elastic_fraction"):
+        return np.where(rigid if name == "elastic_fraction" else ~rigid, np.nan, found.stuck)
+    if name == "contact_amplitude":
+        return np.where(still, 0.0, np.maximum(np.abs(low), np.abs(high)))
+    if name == "contact_peak_to_peak":
+        return np.where(still, 0.0, high - low)
+    if name == "contact_midpoint":
+        return np.where(np.isfinite(high - low), 0.5 * (low + high), np.nan)
+    if name == "sliding_distance":
+        return found.distance
+    return found.works if name == "work_friction" else found.wall_works
+
+
+def _values(name: str, system: System, found: Cells, beta: np.ndarray) -> np.ndarray:
+    count = general_of(system).count
+    if name not in _OF_MASSES:
+        return getattr(found, name)
+    low, high = found.lowest[..., count:], found.highest[..., count:]
+    if name == "amplitude":
+        return np.maximum(np.abs(low), np.abs(high))
+    return high - low if name == "peak_to_peak" else 0.5 * (low + high)
+
+
+def boundary_variables(system: System, limits: Boundaries) -> dict[str, xr.Variable]:
+    """Label the boundaries that a system has."""
+    general = general_of(system)
+    count = general.count
+    if general.elastic.any():
+        return {"beta_noslip": label_variable("beta_noslip", limits.beta_stick)}
+    found = {
+        "beta_lim": limits.beta_lim,
+        "beta_stick": limits.beta_stick,
+        "no_stop_begin": limits.begins,
+        "no_stop_end": limits.ends,
+    }
+    if count > 1:
+        found["limiting_contact"] = limits.limiting
+    if np.isfinite(limits.wall_velocity_lim).any():
+        found["wall_velocity_lim"] = limits.wall_velocity_lim
+    variables = {name: label_variable(name, values) for name, values in found.items()}
+    if count > 1:
+        variables["beta_stick_contact"] = contact_variable(
+            "beta_stick_contact", limits.beta_stick_contact, count
+        )
+    return variables
+
+
+def contact_coordinates(system: System) -> dict[str, xr.Variable]:
+    """Coordinates along the contacts, where there are several, and of the intervals without stops."""
+    general = general_of(system)
+    found = {}
+    if general.count > 1:
+        found["contact"] = coordinate("contact", np.arange(1, general.count + 1))
+        names = np.array([group.name for group in general.groups])
+        found["contact_name"] = xr.Variable(("contact",), names, {"long_name": "name of the contact"})
+    return found
+
+
+def general_map(
+    system: System, axes: Mapping[str, np.ndarray], solver: Solver, threads: int | None,
+    progress: Callable[[int, int], None] | None, watch: Callable[[], None] | None,
+) -> xr.Dataset:  # fmt: skip
+    """Compute outputs, `status` and boundaries of a general system over the axes mu, r and beta."""
+    general = general_of(system)
+    refuse_static(general, axes["mu"])
+    names = outputs_of(general, solver)
+    masses = any(name in _OF_MASSES for name in names)
+    found, limits = solve_cells(system, axes, solver, checks.threads(threads), progress, watch, masses)
+    variables: dict[str, xr.Variable] = {}
+    for name in names:
+        if name in PER_CONTACT:
+            values = _per_contact(name, system, found, axes["beta"])
+            variables[name] = contact_variable(
+                name, values.astype(LABELS[name].dtype, copy=False), general.count
+            )
+        else:
+            values = _values(name, system, found, axes["beta"])
+            variables[name] = label_variable(name, values.astype(LABELS[name].dtype, copy=False))
+    if any(group.first.wall_velocity for group in general.groups):
+        label = LABELS["regime"]
+        full = attributes(label._replace(codes=(*label.codes, *label.also)))
+        for name in ("regime", "contact_regime"):
+            if name in variables:
+                variables[name].attrs = full | {"long_name": LABELS[name].long_name}
+    coords = {name: coordinate(name, values) for name, values in axes.items()}
+    if masses:
+        coords["dof"] = coordinate("dof", np.array(system.dofs.numbers))
+    return xr.Dataset(
+        variables | boundary_variables(system, limits), coords=coords | contact_coordinates(system)
+    )
+
+
+def refuse_static(general: General, mu: np.ndarray) -> None:
+    """Refuse mu > 1 with elastic contacts alone."""
+    if general.elastic.all() and (mu != 1.0).any():
+        raise InputError(
+            f"mu must be 1 with contact_stiffness: the spring would jump at break-away; got {mu.max():g}"
+        )

@@ -1,0 +1,171 @@
+"""Contacts that do not slide: their forces, and the friction from which they stay so.
+
+The structure with rigid contacts held and elastic ones as springs is linear; per harmonic
+
+    [K' - n^2 r^2 M + i n r C, W; W^T, 0] [X_n; F_n] = [p_n; s u_n],   K' = K + sum k_t c c^T
+
+A contact rests for good iff half the range of its force is at most its static friction (contacts.md 2,
+loads.md 2, elastic.md 1); with a varying normal load iff max(F - mu beta nu) <= min(F + mu beta nu).
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..model.general import General
+from ..model.system import System
+from .problem import general_of, modal_system, springs
+
+#: Samples per period of the highest harmonic where extremes are looked for, and steps that refine them.
+_SAMPLES = 16
+_REFINED = 8
+
+#: Steps to a boundary with a varying normal load.
+_MOST_STEPS = 60
+
+#: A pivot below this, relative to the stiffness, is a resonance of the held structure.
+_RESONANT = 1e-14
+
+
+def held_forces(system: System, r: np.ndarray) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
+    """Forces F_n (n_r, N) in the contacts and displacements X_n (n_r, n), by order; inf at a resonance."""
+    general, modal = general_of(system), modal_system(system)
+    n = system.n
+    elastic = general.elastic
+    vectors = np.array([group.vector for group in general.groups])
+    moved = np.array([float(group.base) for group in general.groups])
+    kt = springs(general)
+    w = vectors[~elastic].T
+    stiffness = modal.stiffness + (vectors.T * kt) @ vectors
+    forces, motions = {}, {}
+    for order in sorted({*general.forces, *general.base}):
+        matrix = np.zeros((r.size, n + w.shape[1], n + w.shape[1]), dtype=complex)
+        square = (order * r)[:, np.newaxis, np.newaxis]
+        matrix[:, :n, :n] = stiffness - square**2 * modal.mass + 1j * square * modal.viscous
+        matrix[:, :n, n:], matrix[:, n:, :n] = w, w.T
+        right = np.zeros((r.size, n + w.shape[1]), dtype=complex)
+        right[:, :n] = general.forces.get(order, 0.0)
+        u = general.base.get(order, 0.0)
+        if u:
+            right[:, :n] += u * modal.stiffness.sum(axis=1)
+            if system.damping_reference == "base":
+                right[:, :n] += 1j * square[:, 0] * u * modal.viscous.sum(axis=1)
+            right[:, :n] += u * (vectors.T * kt) @ moved
+            right[:, n:] = u * moved[~elastic]
+        found = _solved(matrix, right)
+        x = found[:, :n]
+        force = np.empty((r.size, general.count), dtype=complex)
+        force[:, ~elastic] = found[:, n:]
+        force[:, elastic] = kt[elastic] * (x @ vectors[elastic].T - u * moved[elastic])
+        forces[order], motions[order] = force, x
+    return forces, motions
+
+
+def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Solve for every r; inf where the matrix is singular to rounding."""
+    found = np.empty_like(right)
+    for i in range(len(matrix)):
+        try:
+            found[i] = np.linalg.solve(matrix[i], right[i])
+        except np.linalg.LinAlgError:
+            found[i] = np.inf
+    size = np.abs(matrix).max(axis=(1, 2))
+    with np.errstate(invalid="ignore"):
+        load = np.abs(right).max(axis=1)
+        found[np.abs(found).max(axis=1) * size > load / _RESONANT] = np.inf
+    return found
+
+
+def largest(orders: np.ndarray, phasors: np.ndarray) -> np.ndarray:
+    """Largest value of Re sum a_n e^{i n tau} over tau; phasors (..., H)."""
+    if orders.size == 1:
+        return np.abs(phasors[..., 0])
+    count = _SAMPLES * int(orders.max())
+    tau = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    values = (phasors[..., np.newaxis, :] * np.exp(1j * np.outer(tau, orders))).real.sum(axis=-1)
+    around = np.stack((np.roll(values, 1, axis=-1), np.roll(values, -1, axis=-1)))
+    peaks = (values >= around).all(axis=0)
+    places = np.broadcast_to(tau, values.shape)[peaks]
+    own = np.broadcast_to(phasors[..., np.newaxis, :], (*values.shape, orders.size))[peaks]
+    best = values[peaks]
+    step = np.pi / count
+    for _ in range(_REFINED):
+        terms = own * np.exp(1j * places[:, np.newaxis] * orders)
+        slope, bend = -(orders * terms.imag).sum(axis=1), -(orders**2 * terms.real).sum(axis=1)
+        best = np.maximum(best, terms.real.sum(axis=1))
+        move = np.where(bend < 0.0, -slope / np.where(bend < 0.0, bend, 1.0), 0.0)
+        places = places + np.clip(move, -step, step)
+    found = np.full(values.shape, -np.inf)
+    found[peaks] = best
+    return found.max(axis=-1)
+
+
+def half_range(forces: Mapping[int, np.ndarray]) -> np.ndarray:
+    """Half the range of the forces, (n_r, N)."""
+    orders = np.array(list(forces), dtype=float)
+    phasors = np.stack(list(forces.values()), axis=-1)
+    infinite = ~np.isfinite(phasors).all(axis=-1)
+    phasors = np.where(infinite[..., np.newaxis], 0.0, phasors)
+    return np.where(infinite, np.inf, 0.5 * (largest(orders, phasors) + largest(orders, -phasors)))
+
+
+def _least_friction(
+    forces: Mapping[int, np.ndarray], normal: Mapping[int, complex], j: int
+) -> np.ndarray:
+    """Least static friction f of contact j with max(F - f nu) <= min(F + f nu), (n_r,).
+
+    The sum max(F - f nu) + max(-F - f nu) is convex in f and falls: Newton steps from the left never pass its
+    zero.
+    """
+    orders = sorted({*forces, *normal})
+    n = np.array(orders, dtype=float)
+    load = np.stack([forces.get(k, np.zeros_like(next(iter(forces.values()))))[:, j] for k in orders], axis=-1)
+    nu = np.array([normal.get(k, 0.0) for k in orders])
+    infinite = ~np.isfinite(load).all(axis=-1)
+    load = np.where(infinite[:, np.newaxis], 0.0, load)
+
+    def excess(f: np.ndarray) -> np.ndarray:
+        part = f[:, np.newaxis] * nu
+        return largest(n, load - part) + largest(n, -load - part) - 2.0 * f
+
+    low = np.zeros(len(load))
+    high = 0.5 * excess(low)
+    while (excess(high) > 0.0).any():
+        grow = excess(high) > 0.0
+        high = np.where(grow, 2.0 * high, high)
+        if (high > 1e12).any():
+            break
+    for _ in range(_MOST_STEPS):
+        middle = 0.5 * (low + high)
+        above = excess(middle) > 0.0
+        low, high = np.where(above, middle, low), np.where(above, high, middle)
+    return np.where(infinite | (high > 1e11), np.inf, high)
+
+
+def least_static_friction(system: System, r: np.ndarray) -> np.ndarray:
+    """Least static friction of every contact with which all rest for good, (n_r, N); inf beside a belt."""
+    general = general_of(system)
+    forces, _ = held_forces(system, r)
+    found = half_range(forces)
+    for j, group in enumerate(general.groups):
+        if group.first.nu:
+            found[:, j] = _least_friction(forces, group.first.nu, j)
+        if group.first.wall_velocity:
+            found[:, j] = np.inf
+    zero = 1e-14 * np.where(np.isfinite(found), found, 0.0).max(axis=1, initial=0.0)
+    return np.where(found <= zero[:, np.newaxis], 0.0, found)
+
+
+def stick_scales(general: General, needed: np.ndarray, mu: np.ndarray) -> np.ndarray:
+    """beta from which each contact rests for good, (n_mu, n_r, N), from the static friction it needs.
+
+    inf for a contact with a friction force of its own that is too small; 0 where it is large enough.
+    """
+    found = np.empty((mu.size, *needed.shape))
+    for j, group in enumerate(general.groups):
+        for m, value in enumerate(mu):
+            own = group.friction(0.0, float(value))[1]
+            per_beta = group.friction(1.0, float(value))[1] - own
+            rest = np.maximum(needed[:, j] - own, 0.0)
+            found[m, :, j] = rest / per_beta if per_beta > 0.0 else np.where(rest > 0.0, np.inf, 0.0)
+    return found

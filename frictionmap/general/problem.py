@@ -1,0 +1,132 @@
+"""A general system over r, as arrays for the kernels."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._kernels.general.problem import Problem
+from ..model.general import General
+from ..model.system import System
+
+
+class Channel(NamedTuple):
+    """A function of time and what it drives, see `_kernels.general.problem`."""
+
+    phasors: dict[int, complex]
+    push: np.ndarray  # (n,) load on the masses
+    base: np.ndarray  # (N,) displacement of the walls
+    normal: np.ndarray  # (N,) variation of the normal loads
+    rate: bool = False  # whether r times the derivative of these phasors drives
+
+
+class ModalSystem(NamedTuple):
+    """A general system in modal coordinates, independent of r."""
+
+    squares: np.ndarray  # (m,) w^2
+    phi: np.ndarray  # (n, m), modal mass 1
+    damping: np.ndarray  # (m, m) C in modal coordinates
+    chi: np.ndarray  # (N, m)
+    mass: np.ndarray  # (n, n)
+    stiffness: np.ndarray
+    viscous: np.ndarray  # C1
+
+
+def general_of(system: System) -> General:
+    """The general parts of a system that has some."""
+    assert system.general is not None
+    return system.general
+
+
+def modal_system(system: System) -> ModalSystem:
+    """Modes of the structure without friction, and the participation of the contacts."""
+    modes = system.modes
+    general = general_of(system)
+    phi, w = modes.phi, modes.w
+    damping = phi.T @ modes.damping @ phi
+    if modes.participating_coupling() is None:  # C does not couple modes: the rest is rounding error
+        damping = np.diag(2.0 * modes.zeta * w)
+    vectors = np.array([group.vector for group in general.groups])
+    chi = vectors @ phi
+    small = 64.0 * np.finfo(float).eps * np.linalg.norm(phi, axis=0) * np.linalg.norm(vectors, axis=1)[:, None]
+    chi[np.abs(chi) <= small] = 0.0
+    return ModalSystem(w**2, phi, damping, chi, modes.mass, modes.stiffness, modes.damping)
+
+
+def channels_of(system: System, modal: ModalSystem) -> list[Channel]:
+    """The functions of time that drive a system."""
+    general = general_of(system)
+    n, count = system.n, general.count
+    none, still = np.zeros(n), np.zeros(count)
+    found = []
+    for row in range(n):
+        phasors = {order: complex(v[row]) for order, v in general.forces.items() if v[row] != 0.0}
+        if phasors:
+            found.append(Channel(phasors, np.eye(n)[row], still, still))
+    if general.base:
+        base = dict(general.base)
+        moved = np.array([float(group.base) for group in general.groups])
+        found.append(Channel(base, modal.stiffness.sum(axis=1), moved, still))
+        if system.damping_reference == "base" and modal.viscous.any():
+            found.append(Channel(base, modal.viscous.sum(axis=1), still, still, rate=True))
+    for j, group in enumerate(general.groups):
+        if group.first.nu:
+            found.append(Channel(dict(group.first.nu), none, still, np.eye(count)[j]))
+    return found
+
+
+def _phasors(channels: list[Channel], orders: tuple[int, ...], r: np.ndarray) -> np.ndarray:
+    """cos and sin parts of the channels, (n_r, 2, D, H)."""
+    table = np.zeros((r.size, len(channels), len(orders)), dtype=complex)
+    for d, channel in enumerate(channels):
+        for order, phasor in channel.phasors.items():
+            factor = 1j * order * r if channel.rate else np.ones_like(r)
+            table[:, d, orders.index(order)] = phasor * factor
+    return np.ascontiguousarray(np.stack((table.real, -table.imag), axis=1))
+
+
+def _rates(modal: ModalSystem, spring: np.ndarray, orders: tuple[int, ...], r: np.ndarray) -> np.ndarray:
+    """Bound on the rate of the fastest part of the motion, (n_r,), in tau.
+
+    Holding contacts lowers natural frequencies or leaves them below the highest one; springs raise them.  The
+    roots of l^2 + c l + k have moduli of (c + sqrt(c^2 + 4 k))/2 at most.
+    """
+    stiffness = np.diag(modal.squares) + modal.chi.T @ (spring[:, np.newaxis] * modal.chi)
+    k = float(np.linalg.eigvalsh(stiffness)[-1])
+    c = float(np.linalg.norm(modal.damping, 2))
+    fastest = 0.5 * (c + np.sqrt(c * c + 4.0 * k))
+    return np.maximum(fastest / np.where(r > 0.0, r, 1.0), float(max(orders)))
+
+
+def _symmetric(general: General) -> bool:
+    """Whether x(tau + pi) = -x(tau) is a motion if x is one."""
+    loads = (*general.forces, *general.base)
+    normal = [n for group in general.groups for n in group.first.nu]
+    belts = any(group.first.wall_velocity for group in general.groups)
+    return all(n % 2 == 1 for n in loads) and all(n % 2 == 0 for n in normal) and not belts
+
+
+def springs(general: General) -> np.ndarray:
+    """Stiffness of every contact, 0 where it is rigid, (N,)."""
+    return np.array([group.first.stiffness or 0.0 for group in general.groups])
+
+
+def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
+    """Build the arrays of a system over r; values at r = 0 are placeholders."""
+    general = general_of(system)
+    modal = modal_system(system)
+    channels, orders = channels_of(system, modal), general.orders
+    phasors = _phasors(channels, orders, r)
+    push = modal.phi.T @ np.array([channel.push for channel in channels]).T
+    spring = springs(general)
+    load = np.abs(push[np.newaxis]) @ np.hypot(phasors[:, 0], phasors[:, 1]).sum(axis=2)[:, :, np.newaxis]
+    sizes = (load[:, :, 0] / (modal.squares + (r * r)[:, np.newaxis])).max(axis=1)
+    problem = Problem(
+        modal.squares, modal.damping, bool((modal.damping != np.diag(np.diag(modal.damping))).any()),
+        np.ascontiguousarray(modal.chi), np.ascontiguousarray(push),
+        np.ascontiguousarray(np.array([channel.base for channel in channels]).T),
+        np.ascontiguousarray(np.array([channel.normal for channel in channels]).T),
+        spring, np.array([group.first.wall_velocity for group in general.groups]),
+        np.array(orders, dtype=float), r, phasors, _rates(modal, spring, orders, r),
+        np.where(sizes > 0.0, sizes, 1.0), _symmetric(general),
+    )  # fmt: skip
+    return problem, modal

@@ -4,7 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .._kernels.engine.policies import MOVING_START_CAP
 from .._kernels.general.no_stop import Search, fill_no_stop
+from .._kernels.general.problem import Problem
 from ..model.system import System
 from .held import largest, least_static_friction, stick_scales
 from .problem import general_of, problem_of
@@ -16,7 +18,7 @@ INTERVALS = 4
 #: loads.
 _HIGHEST = 8.0
 
-_CYCLES, _TOLERANCE = 400.0, 1e-12
+_CYCLES, _TOLERANCE = 100.0, 1e-12
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,23 @@ def rest_states(system: System, modal: "object", r: np.ndarray) -> np.ndarray:
     return state
 
 
+def sliding_states(problem: Problem, r: np.ndarray, size: float) -> np.ndarray:
+    """Modes and velocities at tau = 0 of the motion without friction, times `size`, (n_r, 2, m).
+
+    The response of each mode is limited to `MOVING_START_CAP` times the static one.
+    """
+    loads = np.einsum("md,rdh->rmh", problem.push, problem.phasors[:, 0] - 1j * problem.phasors[:, 1])
+    turn = problem.orders * r[:, np.newaxis]
+    squares, damping = problem.squares[:, np.newaxis], np.diag(problem.damping)[:, np.newaxis]
+    stiffness = squares - turn[:, np.newaxis] ** 2 + 1j * damping * turn[:, np.newaxis]
+    least = np.maximum(squares, turn[:, np.newaxis] ** 2) / MOVING_START_CAP
+    modulus = np.abs(stiffness)
+    unit = np.where(modulus > 0.0, stiffness / np.where(modulus > 0.0, modulus, 1.0), 1.0)
+    response = size * loads / (unit * np.maximum(modulus, least))
+    velocity = 1j * problem.orders * response
+    return np.ascontiguousarray(np.stack((response.real.sum(axis=2), velocity.real.sum(axis=2)), axis=1))
+
+
 def find_boundaries(system: System, r: np.ndarray, mu: np.ndarray, stops: bool = True) -> Boundaries:
     """Find the boundaries over r.
 
@@ -72,11 +91,11 @@ def find_boundaries(system: System, r: np.ndarray, mu: np.ndarray, stops: bool =
     begins, ends = np.full(shape, np.nan), np.full(shape, np.nan)
     if stops and not general.elastic.any():
         loads = sum(float(np.abs(v).max()) for v in (*general.forces.values(), *general.base.values()))
-        problem, modal = problem_of(system, r)
+        problem, _ = problem_of(system, r)
         kinetic, static = friction_lines(system, mu)
         highest = stick[:, :].max(axis=0)
         top = np.where(np.isfinite(highest) & (highest > 0.0), highest, _HIGHEST * loads)
-        search = Search(kinetic, static, top, rest_states(system, modal, r), _CYCLES, _TOLERANCE)
+        search = Search(kinetic, static, top, sliding_states(problem, r, 1.0), _CYCLES, _TOLERANCE)
         fill_no_stop(problem, search, begins, ends, np.zeros(1, np.uint8))
     first = np.where(begins[:, :, 0] == 0.0, ends[:, :, 0], 0.0)
     first = np.where(np.isnan(begins[:, :, 0]), 0.0, first)

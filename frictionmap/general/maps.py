@@ -6,10 +6,11 @@ from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 import numpy as np
 
 from .. import regimes
+from .._kernels.engine.policies import MOVING_START
 from .._kernels.general.fill import Cells, Grid, fill_rows
 from ..model.settings import Solver
 from ..model.system import System
-from .boundaries import Boundaries, find_boundaries, friction_lines, rest_states
+from .boundaries import Boundaries, find_boundaries, friction_lines, rest_states, sliding_states
 from .held import held_forces, largest
 from .problem import general_of, problem_of
 
@@ -101,10 +102,10 @@ def solve_cells(
     stuck_from = np.where(
         unique[:, np.newaxis], np.searchsorted(beta, limits.beta_stick), beta.size
     )  # fmt: skip
-    grid = Grid(
-        beta, kinetic, static, stuck_from, rest_states(system, modal, r), float(solver.cycles),
-        solver.tolerance,
-    )  # fmt: skip
+    starts = rest_states(system, modal, r)
+    if solver.start == "moving":
+        starts = sliding_states(problem, r, MOVING_START)
+    grid = Grid(beta, kinetic, static, stuck_from, starts, float(solver.cycles), solver.tolerance)
     count = system.n if masses else 0
     found = _allocate((mu.size, r.size, beta.size), general.count, count)
     outputs = np.ascontiguousarray(modal.phi) if masses else np.empty((0, modal.phi.shape[1]))

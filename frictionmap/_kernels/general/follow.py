@@ -252,7 +252,7 @@ def follow(problem, row, friction, start, span, work, law, counts, record, deriv
             advance_tangent(problem, row, work, x)
         _count_time(work, counts, x * h)
         if x > 0.0:
-            advance(problem, x, work)
+            advance(problem, row, x, work)
             for j in range(work.fresh.size):
                 work.fresh[j] = 0
         if event[1] < 0:

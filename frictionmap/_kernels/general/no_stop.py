@@ -13,8 +13,10 @@ from .return_map import make_return
 from .series import Friction
 from .steady import REPEATS, find, from_rest, make_ring, measure
 
-#: Nodes in beta at which the motion is tried, and halvings of the interval around an end.
-NODES = 48
+#: Nodes in beta at which the motion is tried: so many in geometric progression from _LOWEST of the top up,
+#: then equally spaced ones; and halvings of the interval around an end.
+_GEOMETRIC, _EQUAL, _LOWEST = 32, 48, 1e-6
+NODES = _GEOMETRIC + _EQUAL
 _HALVINGS = 60
 
 
@@ -27,6 +29,14 @@ class Search(NamedTuple):
     starts: np.ndarray  # (n_r, 2, m)
     cycles: float
     tolerance: float
+
+
+@kernel
+def _node(top, k):
+    """Friction ratio of node k = 0..NODES."""
+    if k > _GEOMETRIC:
+        return top * (k - _GEOMETRIC) / _EQUAL
+    return top * math.pow(_LOWEST, 1.0 - k / (_GEOMETRIC + 1.0)) / _EQUAL
 
 
 @kernel
@@ -105,18 +115,17 @@ def fill_no_stop(problem, search, begins, ends, cancel):
             continue
         set_row(problem, i, row)
         near = False
-        for k in range(1, NODES + 1):
-            beta = search.top[i] * k / NODES
+        for k in range(NODES + 1):
+            beta = _node(search.top[i], k)
             near = _try(problem, i, row, search, beta, near, friction, memories, kept, k)
-        _try(problem, i, row, search, 1e-9 * search.top[i], False, friction, memories, kept, 0)
         for m in range(search.static.shape[0]):
             count = 0
-            last = _margin(search, m, 1e-9 * search.top[i], kept, 0)
+            last = _margin(search, m, _node(search.top[i], 0), kept, 0)
             if last > 0.0:
                 begins[m, i, 0] = 0.0
             for k in range(1, NODES + 1):
-                now = _margin(search, m, search.top[i] * k / NODES, kept, k)
-                before, here = search.top[i] * (k - 1) / NODES, search.top[i] * k / NODES
+                before, here = _node(search.top[i], k - 1), _node(search.top[i], k)
+                now = _margin(search, m, here, kept, k)
                 if last > 0.0 and now <= 0.0 and count < begins.shape[2]:
                     ends[m, i, count] = _end(
                         problem, i, row, search, m, before, here, friction, memories, kept

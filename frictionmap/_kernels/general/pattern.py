@@ -40,7 +40,7 @@ def _free_accelerations(problem, row, work, law):
         else:
             found -= row.damping[m, m] * work.state[1, m]
         for d in range(channels):
-            found += row.push[m, d] * series[modes + d, 0]
+            found += row.push[d, m] * series[modes + d, 0]
         for j in range(contacts):
             if law[3, j] == 0.0:
                 found -= row.reaction[j, m] * series[first + 2 * contacts + j, 0]

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
+from ..compiler.vectors import LANES, filled, load, store
 
 #: Largest angle of the fastest part of the motion in one step [rad] ...
 TURN = 2.0
@@ -23,6 +24,9 @@ TURN = 2.0
 #: have two more, because a force is their second derivative.
 TERMS = 24
 LONG = TERMS + 2
+
+#: 1/((k+1)(k+2)): a term of a displacement per term of its acceleration.
+INVERSE = np.array([1.0 / ((k + 1.0) * (k + 2.0)) for k in range(TERMS)])
 
 #: Numbers kept per series: a whole number of vectors.
 WIDTH = 32
@@ -49,15 +53,20 @@ class Problem(NamedTuple):
 
 
 class Row(NamedTuple):
-    """The constants of one r, in units of the step."""
+    """The constants of one r, in units of the step; M is m, filled up with zeros to whole vectors."""
 
     numbers: np.ndarray  # (3,) step length h, r, size
     stiffness: np.ndarray  # (m,) h^2 w^2/r^2
     damping: np.ndarray  # (m, m) h C/r
-    push: np.ndarray  # (m, D) h^2/r^2 push
-    reaction: np.ndarray  # (N, m) h^2/r^2 chi: acceleration of the modes per unit force
+    velocity_term: np.ndarray  # (TERMS, M) what term k + 1 of a mode adds to term k + 2, by its own damping
+    place_term: np.ndarray  # (TERMS, M) what term k adds to it
+    coupling: np.ndarray  # (m, M) columns of h C/r where C couples modes
+    push: np.ndarray  # (D, M) h^2/r^2 push
+    chi: np.ndarray  # (N, M)
+    reaction: np.ndarray  # (N, M) h^2/r^2 chi: acceleration of the modes per unit force
     mobility: np.ndarray  # (N, N) chi reaction^T: acceleration in the contacts per unit force
-    powers: np.ndarray  # (H, WIDTH) +-(n h)^k/k!, signs of cos and sin
+    cosines: np.ndarray  # (H, WIDTH) series of cos(n h x)
+    sines: np.ndarray  # (H, WIDTH) series of sin(n h x)
     phasors: np.ndarray  # (2, D, H)
 
 
@@ -69,17 +78,24 @@ class Work(NamedTuple):
     the normal load.
     """
 
-    state: np.ndarray  # (3, max(m, N)): q, p, and the force of every elastic contact
+    state: np.ndarray  # (3, ...): q, p, and the force of every elastic contact
     sense: np.ndarray  # (N,) int: 1, -1 sliding up, down; 0 held
     fresh: np.ndarray  # (N,) int: leading coefficients of the watched series that are zero by definition
     series: np.ndarray  # (m + D + 4 N, WIDTH)
+    moves: np.ndarray  # (LONG, M) the displacements of modes, term by term
     solve: np.ndarray  # (N + 1, N) factors of the mobility of held contacts; its last row is scratch
     held: np.ndarray  # (N + 1,) int: contacts held by a constraint; the last: how many
     scratch: np.ndarray  # (8, WIDTH)
-    tangent: np.ndarray  # (size, size) derivatives of the state by that at the section; size = 2 m + N
-    columns: np.ndarray  # (LONG, m, size) their series
-    forces: np.ndarray  # (N, size) the derivatives of the forces
-    watched: np.ndarray  # (size,) the derivatives of what is watched at an event
+    tangent: np.ndarray  # (size, S) derivatives of the state by that at the section; size = 2 m + N
+    columns: np.ndarray  # (LONG, m, S) their series
+    forces: np.ndarray  # (N, S) the derivatives of the forces
+    watched: np.ndarray  # (S,) the derivatives of what is watched at an event
+
+
+@kernel
+def padded(n):
+    """Round up to whole vectors."""
+    return LANES * ((n + LANES - 1) // LANES)
 
 
 @entry
@@ -87,10 +103,12 @@ def make_row(problem):
     """Allocate the constants of one r."""
     contacts, modes = problem.chi.shape
     channels, harmonics = problem.push.shape[1], problem.orders.size
+    width = padded(modes)
     return Row(
-        np.empty(3), np.empty(modes), np.empty((modes, modes)), np.empty((modes, channels)),
-        np.empty((contacts, modes)), np.empty((contacts, contacts)), np.zeros((harmonics, WIDTH)),
-        np.empty((2, channels, harmonics)),
+        np.empty(3), np.empty(modes), np.empty((modes, modes)), np.zeros((TERMS, width)),
+        np.zeros((TERMS, width)), np.zeros((modes, width)), np.zeros((channels, width)),
+        np.zeros((contacts, width)), np.zeros((contacts, width)), np.empty((contacts, contacts)),
+        np.zeros((harmonics, WIDTH)), np.zeros((harmonics, WIDTH)), np.empty((2, channels, harmonics)),
     )  # fmt: skip
 
 
@@ -99,54 +117,67 @@ def make_work(problem):
     """Allocate the memory of one motion."""
     contacts, modes = problem.chi.shape
     size = 2 * modes + contacts
+    width = padded(modes)
+    rows = padded(size)
     return Work(
-        np.zeros((3, max(modes, contacts))), np.zeros(contacts, np.int64), np.zeros(contacts, np.int64),
-        np.zeros((modes + problem.push.shape[1] + 4 * contacts, WIDTH)), np.zeros((contacts + 1, contacts)),
-        np.zeros(contacts + 1, np.int64), np.zeros((8, WIDTH)), np.zeros((size, size)),
-        np.zeros((LONG, modes, size)), np.zeros((contacts, size)),
-        np.zeros(size),
+        np.zeros((3, padded(max(modes, contacts)))), np.zeros(contacts, np.int64),
+        np.zeros(contacts, np.int64), np.zeros((modes + problem.push.shape[1] + 4 * contacts + 1, WIDTH)),
+        np.zeros((LONG, width)), np.zeros((contacts + 1, contacts)), np.zeros(contacts + 1, np.int64),
+        np.zeros((8, WIDTH)), np.zeros((size, rows)), np.zeros((LONG, modes, rows)),
+        np.zeros((contacts, rows)), np.zeros(rows),
     )  # fmt: skip
 
 
 @kernel
-def _set_powers(orders, h, powers):
-    """Fill the series of cos(n h x) (even powers) and sin(n h x) (odd powers)."""
-    for n in range(orders.size):
-        angle = orders[n] * h
+def _set_waves(problem, row):
+    """Fill the series of cos(n h x) and sin(n h x)."""
+    h = row.numbers[0]
+    for n in range(problem.orders.size):
+        angle = problem.orders[n] * h
         term = 1.0
         for k in range(LONG):
-            powers[n, k] = term
-            term *= angle / (k + 1.0) if k % 2 == 0 else -angle / (k + 1.0)
+            if k % 2 == 0:
+                row.cosines[n, k] = term
+                term *= angle / (k + 1.0)
+            else:
+                row.sines[n, k] = term
+                term *= -angle / (k + 1.0)
 
 
 @kernel
-def set_row(problem, i, row):
-    """Fill the constants of r[i].
-
-    cos: 1, -a^2/2!, a^4/4!, ...; sin: a, -a^3/3!, ...: the sign changes after every odd power.
-    """
-    r = problem.r[i]
-    h = TURN / problem.rates[i]
-    row.numbers[0] = h
-    row.numbers[1] = r
-    row.numbers[2] = problem.sizes[i]
-    turn = h / r
+def _set_modes(problem, row, turn):
+    """Fill the constants of the modes; `turn` is h/r."""
     contacts, modes = problem.chi.shape
     for m in range(modes):
         row.stiffness[m] = turn * turn * problem.squares[m]
         for other in range(modes):
             row.damping[m, other] = turn * problem.damping[m, other]
+            row.coupling[other, m] = row.damping[m, other]
+        own = 0.0 if problem.coupled else row.damping[m, m]
+        for k in range(TERMS):
+            inverse = 1.0 / ((k + 1.0) * (k + 2.0))
+            row.velocity_term[k, m] = -own * (k + 1.0) * inverse
+            row.place_term[k, m] = -row.stiffness[m] * inverse
         for d in range(problem.push.shape[1]):
-            row.push[m, d] = turn * turn * problem.push[m, d]
+            row.push[d, m] = turn * turn * problem.push[m, d]
         for j in range(contacts):
+            row.chi[j, m] = problem.chi[j, m]
             row.reaction[j, m] = turn * turn * problem.chi[j, m]
-    for i1 in range(contacts):
-        for i2 in range(contacts):
-            sum_ = 0.0
+
+
+@kernel
+def set_row(problem, i, row):
+    """Fill the constants of r[i]."""
+    h = TURN / problem.rates[i]
+    row.numbers[0], row.numbers[1], row.numbers[2] = h, problem.r[i], problem.sizes[i]
+    contacts, modes = problem.chi.shape
+    _set_modes(problem, row, h / problem.r[i])
+    for a in range(contacts):
+        for b in range(contacts):
+            row.mobility[a, b] = 0.0
             for m in range(modes):
-                sum_ += problem.chi[i1, m] * row.reaction[i2, m]
-            row.mobility[i1, i2] = sum_
-    _set_powers(problem.orders, h, row.powers)
+                row.mobility[a, b] += problem.chi[a, m] * row.reaction[b, m]
+    _set_waves(problem, row)
     for part in range(2):
         for d in range(problem.push.shape[1]):
             for n in range(problem.orders.size):
@@ -158,14 +189,17 @@ def set_channels(problem, row, tau, series):
     """Fill the series of the channels from the phase tau on."""
     modes, channels = problem.push.shape
     for d in range(channels):
-        for k in range(LONG):
-            series[modes + d, k] = 0.0
+        for k in range(0, WIDTH, LANES):
+            store(filled(0.0), series, (modes + d) * WIDTH + k)
     for n in range(problem.orders.size):
         angle = problem.orders[n] * tau
         c, s = math.cos(angle), math.sin(angle)
         for d in range(channels):
             even = row.phasors[0, d, n] * c + row.phasors[1, d, n] * s
             odd = row.phasors[1, d, n] * c - row.phasors[0, d, n] * s
-            for k in range(0, LONG, 2):
-                series[modes + d, k] += row.powers[n, k] * even
-                series[modes + d, k + 1] += row.powers[n, k + 1] * odd
+            if even == 0.0 and odd == 0.0:
+                continue
+            for k in range(0, WIDTH, LANES):
+                at = (modes + d) * WIDTH + k
+                wave = load(row.cosines, n * WIDTH + k) * even + load(row.sines, n * WIDTH + k) * odd
+                store(load(series, at) + wave, series, at)

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from .follow import COUNT_ROWS, FOLLOWED, LAW_ROWS, MOVED, follow
+from .problem import padded
 from .tangent import identity
 
 #: Phase of the load at which states are compared: events gather at the extremes of the load, away from here.
@@ -31,7 +32,7 @@ def make_return(problem):
     """Allocate the memory of the return map."""
     contacts, modes = problem.chi.shape
     size = 2 * modes + contacts
-    shape = (3, max(modes, contacts))
+    shape = (3, padded(max(modes, contacts)))
     return Return(
         np.zeros(shape), np.zeros(contacts, np.int64), np.zeros(shape), np.zeros(contacts, np.int64),
         np.zeros((size, size)), np.zeros(size), np.zeros((LAW_ROWS, contacts)),

@@ -10,7 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import inner_kernel, kernel
-from .problem import LONG, TERMS, set_channels
+from ..compiler.vectors import LANES, filled, load, store, total
+from .problem import INVERSE, LONG, TERMS, WIDTH, set_channels
+
+#: k + 1: factors of a derivative.
+_NEXT = np.arange(1.0, WIDTH + 1.0)
 
 
 class Friction(NamedTuple):
@@ -65,153 +69,205 @@ def solve_held(work, right):
         right[a] /= work.solve[a, a]
 
 
-@inner_kernel
-def _displacement_term(problem, j, k, series, first):
-    """Term k of the displacement in a contact."""
-    modes = problem.push.shape[0]
-    z = 0.0
-    for m in range(modes):
-        z += problem.chi[j, m] * series[m, k]
-    for d in range(problem.push.shape[1]):
-        z -= problem.base[j, d] * series[modes + d, k]
-    series[first + j, k] = z
-    return z
-
-
-@inner_kernel
+@kernel
 def _normal_loads(problem, series, first):
     """Fill the series of the normal loads."""
     modes, channels = problem.push.shape
     contacts = problem.spring.size
     for j in range(contacts):
-        nu = first + 3 * contacts + j
-        for k in range(TERMS):
-            series[nu, k] = 0.0
-        series[nu, 0] = 1.0
+        nu = (first + 3 * contacts + j) * WIDTH
+        for k in range(0, WIDTH, LANES):
+            store(filled(0.0), series, nu + k)
         for d in range(channels):
             if problem.normal[j, d] != 0.0:
-                for k in range(TERMS):
-                    series[nu, k] += problem.normal[j, d] * series[modes + d, k]
+                for k in range(0, WIDTH, LANES):
+                    part = load(series, (modes + d) * WIDTH + k) * problem.normal[j, d]
+                    store(load(series, nu + k) + part, series, nu + k)
+        series[first + 3 * contacts + j, 0] += 1.0
 
 
 @inner_kernel
-def _sliding_forces(problem, friction, work, first):
+def _known_forces(problem, friction, work, first):
     """Fill the forces of sliding contacts; those of held ones begin at 0, of elastic ones at their force."""
     contacts = problem.spring.size
     series = work.series
     for j in range(contacts):
-        f, nu = first + 2 * contacts + j, first + 3 * contacts + j
+        force, nu = (first + 2 * contacts + j) * WIDTH, (first + 3 * contacts + j) * WIDTH
         size = work.sense[j] * friction.kinetic[j]
-        for k in range(TERMS):
-            series[f, k] = size * series[nu, k]
+        for k in range(0, WIDTH, LANES):
+            store(load(series, nu + k) * size, series, force + k)
         if work.sense[j] == 0 and problem.spring[j] != 0.0:
-            series[f, 0] = work.state[2, j]
+            series[first + 2 * contacts + j, 0] = work.state[2, j]
 
 
 @inner_kernel
-def _acceleration(problem, row, k, series, first, m):
-    """Term k of the acceleration of mode m under all known forces."""
+def _elastic_forces(problem, row, k, work, first):
+    """Fill term k > 0 of the forces of elastic contacts that are held, from that of the modes."""
     modes, channels = problem.push.shape
     contacts = problem.spring.size
-    found = -row.stiffness[m] * series[m, k]
-    if problem.coupled:
-        for other in range(modes):
-            found -= row.damping[m, other] * ((k + 1.0) * series[other, k + 1])
-    else:
-        found -= row.damping[m, m] * ((k + 1.0) * series[m, k + 1])
-    for d in range(channels):
-        found += row.push[m, d] * series[modes + d, k]
+    width = row.chi.shape[1]
     for j in range(contacts):
-        found -= row.reaction[j, m] * series[first + 2 * contacts + j, k]
-    return found
+        if work.sense[j] == 0 and problem.spring[j] != 0.0:
+            z = 0.0
+            for m in range(0, width, LANES):
+                z += total(load(row.chi, j * width + m) * load(work.moves, k * width + m))
+            for d in range(channels):
+                z -= problem.base[j, d] * work.series[modes + d, k]
+            if k == 1:
+                z -= row.numbers[0] * problem.belt[j]
+            work.series[first + 2 * contacts + j, k] = problem.spring[j] * z
 
 
 @inner_kernel
-def _holding_forces(problem, k, work, first):
-    """Fill term k of the forces that hold contacts; accelerations are in term k + 2 of the modes."""
+def _free_terms(problem, row, work, first):
+    """Fill all terms of the modes where no contact is held and C does not couple modes: mode by mode."""
     modes, channels = problem.push.shape
     contacts = problem.spring.size
+    width = row.chi.shape[1]
+    for m in range(0, width, LANES):
+        before = load(work.moves, m)
+        here = load(work.moves, width + m)
+        for k in range(TERMS):
+            drive = filled(0.0)
+            for d in range(channels):
+                drive = drive + load(row.push, d * width + m) * (INVERSE[k] * work.series[modes + d, k])
+            for j in range(contacts):
+                force = work.series[first + 2 * contacts + j, k]
+                if force != 0.0:
+                    drive = drive - load(row.reaction, j * width + m) * (INVERSE[k] * force)
+            at = k * width + m
+            drive = drive + load(row.place_term, at) * before
+            before = here
+            here = drive + load(row.velocity_term, at) * here
+            store(here, work.moves, at + 2 * width)
+
+
+@inner_kernel
+def _free_term(problem, row, k, work, first):
+    """Fill term k + 2 of the modes under all known forces."""
+    modes, channels = problem.push.shape
+    contacts = problem.spring.size
+    width = row.chi.shape[1]
+    for m in range(0, width, LANES):
+        at = k * width + m
+        drive = filled(0.0)
+        for d in range(channels):
+            drive = drive + load(row.push, d * width + m) * (INVERSE[k] * work.series[modes + d, k])
+        for j in range(contacts):
+            force = work.series[first + 2 * contacts + j, k]
+            if force != 0.0:
+                drive = drive - load(row.reaction, j * width + m) * (INVERSE[k] * force)
+        if problem.coupled:
+            for other in range(modes):
+                rate = (k + 1.0) * INVERSE[k] * work.moves[k + 1, other]
+                drive = drive - load(row.coupling, other * width + m) * rate
+        drive = drive + load(row.place_term, at) * load(work.moves, at)
+        drive = drive + load(row.velocity_term, at) * load(work.moves, at + width)
+        store(drive, work.moves, at + 2 * width)
+
+
+@inner_kernel
+def _hold_term(problem, row, k, work, first):
+    """Fill term k of the forces that hold contacts, and take them from term k + 2 of the modes."""
+    modes, channels = problem.push.shape
+    contacts = problem.spring.size
+    width = row.chi.shape[1]
     count = work.held[contacts]
     series, right = work.series, work.solve[contacts]
     for a in range(count):
         j = work.held[a]
-        wanted = 0.0
+        moves = 0.0
+        for m in range(0, width, LANES):
+            moves += total(load(row.chi, j * width + m) * load(work.moves, (k + 2) * width + m))
         for d in range(channels):
             if problem.base[j, d] != 0.0:
-                wanted += problem.base[j, d] * ((k + 1.0) * (k + 2.0) * series[modes + d, k + 2])
-        right[a] = -wanted
-        for m in range(modes):
-            right[a] += problem.chi[j, m] * series[m, k + 2]
+                moves -= problem.base[j, d] * series[modes + d, k + 2]
+        right[a] = moves
     solve_held(work, right)
+    scale = (k + 1.0) * (k + 2.0)
     for a in range(count):
-        series[first + 2 * contacts + work.held[a], k] = right[a]
+        j = work.held[a]
+        series[first + 2 * contacts + j, k] = scale * right[a]
+        for m in range(0, width, LANES):
+            at = (k + 2) * width + m
+            store(load(work.moves, at) - load(row.reaction, j * width + m) * right[a], work.moves, at)
+
+
+@inner_kernel
+def _contact_motion(problem, row, work, first):
+    """Fill the displacements in the contacts, and the velocities relative to their walls."""
+    modes, channels = problem.push.shape
+    contacts = problem.spring.size
+    series = work.series
+    width = row.chi.shape[1]
+    for k in range(LONG):
+        for m in range(modes):
+            series[m, k] = work.moves[k, m]
+    for j in range(contacts):
+        z, w = (first + j) * WIDTH, (first + contacts + j) * WIDTH
+        for k in range(0, WIDTH, LANES):
+            place = filled(0.0)
+            for m in range(modes):
+                place = place + load(series, m * WIDTH + k) * row.chi[j, m]
+            for d in range(channels):
+                if problem.base[j, d] != 0.0:
+                    place = place - load(series, (modes + d) * WIDTH + k) * problem.base[j, d]
+            store(place, series, z + k)
+        for k in range(0, WIDTH - LANES, LANES):
+            store(load(series, z + k + 1) * load(_NEXT, k), series, w + k)
+        series[first + contacts + j, 0] -= row.numbers[0] * problem.belt[j]
+
+
+@kernel
+def _all_slide(work):
+    """Whether no contact is held."""
+    for j in range(work.sense.size):
+        if work.sense[j] == 0:
+            return False
+    return True
 
 
 @kernel
 def expand(problem, row, friction, tau, work):
     """Fill the series of the step that begins at the phase tau with the state and pattern in `work`."""
-    modes = problem.push.shape[0]
     contacts = problem.spring.size
-    series, first = work.series, first_contact_row(problem)
-    h = row.numbers[0]
-    set_channels(problem, row, tau, series)
-    _normal_loads(problem, series, first)
-    _sliding_forces(problem, friction, work, first)
-    for m in range(modes):
-        series[m, 0] = work.state[0, m]
-        series[m, 1] = work.state[1, m]
-    for k in range(TERMS):
-        for j in range(contacts):
-            if work.sense[j] == 0 and problem.spring[j] != 0.0 and k > 0:
-                z = _displacement_term(problem, j, k, series, first)
-                series[first + 2 * contacts + j, k] = problem.spring[j] * (
-                    z - h * problem.belt[j] if k == 1 else z
-                )
-        for m in range(modes):
-            series[m, k + 2] = _acceleration(problem, row, k, series, first, m)
-        if work.held[contacts] > 0:
-            _holding_forces(problem, k, work, first)
-            for a in range(work.held[contacts]):
-                j = work.held[a]
-                for m in range(modes):
-                    series[m, k + 2] -= row.reaction[j, m] * series[first + 2 * contacts + j, k]
-        inverse = 1.0 / ((k + 1.0) * (k + 2.0))
-        for m in range(modes):
-            series[m, k + 2] *= inverse
-    _contact_motion(problem, work, first, h)
-
-
-@inner_kernel
-def _contact_motion(problem, work, first, h):
-    """Fill the displacements in the contacts, and the velocities relative to their walls."""
-    contacts = problem.spring.size
-    series = work.series
-    for j in range(contacts):
-        for k in range(LONG):
-            _displacement_term(problem, j, k, series, first)
-        w = first + contacts + j
+    width = row.chi.shape[1]
+    first = first_contact_row(problem)
+    set_channels(problem, row, tau, work.series)
+    _normal_loads(problem, work.series, first)
+    _known_forces(problem, friction, work, first)
+    for m in range(0, width, LANES):
+        store(load(work.state, m), work.moves, m)
+        store(load(work.state, work.state.shape[1] + m), work.moves, width + m)
+    if _all_slide(work) and not problem.coupled:
+        _free_terms(problem, row, work, first)
+    else:
         for k in range(TERMS):
-            series[w, k] = (k + 1.0) * series[first + j, k + 1]
-        series[w, 0] -= h * problem.belt[j]
+            if k > 0:
+                _elastic_forces(problem, row, k, work, first)
+            _free_term(problem, row, k, work, first)
+            if work.held[contacts] > 0:
+                _hold_term(problem, row, k, work, first)
+    _contact_motion(problem, row, work, first)
 
 
 @kernel
-def advance(problem, x, work):
+def advance(problem, row, x, work):
     """Move the state on by x <= 1 of the present step."""
     first = first_contact_row(problem)
     contacts = problem.spring.size
-    series = work.series
-    for m in range(problem.push.shape[0]):
-        place = 0.0
-        velocity = 0.0
+    width = row.chi.shape[1]
+    for m in range(0, width, LANES):
+        place = filled(0.0)
+        velocity = filled(0.0)
         for k in range(LONG - 1, -1, -1):
             velocity = velocity * x + place
-            place = place * x + series[m, k]
-        work.state[0, m] = place
-        work.state[1, m] = velocity
+            place = place * x + load(work.moves, k * width + m)
+        store(place, work.state, m)
+        store(velocity, work.state, work.state.shape[1] + m)
     for j in range(contacts):
         if problem.spring[j] != 0.0 and work.sense[j] == 0:
             force = 0.0
             for k in range(TERMS - 1, -1, -1):
-                force = force * x + series[first + 2 * contacts + j, k]
+                force = force * x + work.series[first + 2 * contacts + j, k]
             work.state[2, j] = force

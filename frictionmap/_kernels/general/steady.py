@@ -9,7 +9,7 @@ from ..compiler import entry, kernel
 from ..structure.newton import solve_linear, spectral_radius
 from .follow import FOLLOWED, follow
 from .pattern import begin
-from .problem import set_row
+from .problem import padded, set_row
 from .record import clear_record
 from .return_map import (
     SECTION,
@@ -67,7 +67,7 @@ def make_ring(problem):
     """Allocate the kept states."""
     contacts, modes = problem.chi.shape
     return Ring(
-        np.zeros((RING, 3, max(modes, contacts))), np.zeros((RING, contacts), np.int64),
+        np.zeros((RING, 3, padded(max(modes, contacts)))), np.zeros((RING, contacts), np.int64),
         np.zeros(1, np.int64),
     )  # fmt: skip
 

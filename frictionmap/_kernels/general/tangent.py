@@ -4,16 +4,16 @@ One rule serves every event: it is shifted in time by -(g J)/g', where g is the 
 long the motion follows its equation of after the event in place of that of before it.
 """
 
-from ..compiler import kernel
-from .problem import TERMS
+from ..compiler import inner_kernel, kernel
+from ..compiler.vectors import LANES, filled, load, store
+from .problem import INVERSE, TERMS
 
 
 @kernel
 def identity(problem, work):
     """Begin: the derivatives at the section itself; the force of an elastic contact that slips is given."""
-    size = work.tangent.shape[0]
-    for a in range(size):
-        for b in range(size):
+    for a in range(work.tangent.shape[0]):
+        for b in range(work.tangent.shape[1]):
             work.tangent[a, b] = 1.0 if a == b else 0.0
     for j in range(work.sense.size):
         if work.sense[j] != 0:
@@ -21,112 +21,122 @@ def identity(problem, work):
             work.tangent[a, a] = 0.0
 
 
-@kernel
+@inner_kernel
 def _solve_columns(work, right):
     """`solve_held` for all columns; rows 0.. of `right` belong to the held contacts in their order."""
-    contacts = work.sense.size
-    count = work.held[contacts]
+    count = work.held[work.sense.size]
     size = right.shape[1]
-    for a in range(count):
-        for c in range(a):
-            factor = work.solve[a, c]
-            for i in range(size):
-                right[a, i] -= factor * right[c, i]
-        inverse = 1.0 / work.solve[a, a]
-        for i in range(size):
-            right[a, i] *= inverse
-    for a in range(count - 1, -1, -1):
-        for c in range(a + 1, count):
-            factor = work.solve[c, a]
-            for i in range(size):
-                right[a, i] -= factor * right[c, i]
-        inverse = 1.0 / work.solve[a, a]
-        for i in range(size):
-            right[a, i] *= inverse
+    for i in range(0, size, LANES):
+        for a in range(count):
+            part = load(right, a * size + i)
+            for c in range(a):
+                part = part - load(right, c * size + i) * work.solve[a, c]
+            store(part * (1.0 / work.solve[a, a]), right, a * size + i)
+        for a in range(count - 1, -1, -1):
+            part = load(right, a * size + i)
+            for c in range(a + 1, count):
+                part = part - load(right, c * size + i) * work.solve[c, a]
+            store(part * (1.0 / work.solve[a, a]), right, a * size + i)
 
 
-@kernel
-def _accelerations(problem, row, work, k):
-    """Fill term k + 2 of the columns with the derivatives of the accelerations, times (k+1)(k+2).
-
-    `work.forces` then holds those of the held contacts' forces, in their order.
-    """
+@inner_kernel
+def _elastic_term(problem, row, work, k):
+    """Take the derivatives of the forces of elastic contacts that are held from term k + 2."""
     modes = problem.push.shape[0]
-    contacts = problem.spring.size
-    size = work.tangent.shape[0]
-    columns = work.columns
-    for m in range(modes):
-        stiffness, damping = row.stiffness[m], (k + 1.0) * row.damping[m, m]
-        for i in range(size):
-            columns[k + 2, m, i] = -stiffness * columns[k, m, i] - damping * columns[k + 1, m, i]
-        if problem.coupled:
-            for other in range(modes):
-                if other != m:
-                    damping = (k + 1.0) * row.damping[m, other]
-                    for i in range(size):
-                        columns[k + 2, m, i] -= damping * columns[k + 1, other, i]
-    for j in range(contacts):
-        if problem.spring[j] != 0.0 and work.sense[j] == 0:
-            if k == 0:
-                for i in range(size):
-                    work.forces[0, i] = work.tangent[2 * modes + j, i]
-            else:
-                for i in range(size):
-                    work.forces[0, i] = 0.0
+    columns, size = work.columns, work.tangent.shape[1]
+    inverse = INVERSE[k]
+    for j in range(problem.spring.size):
+        if problem.spring[j] == 0.0 or work.sense[j] != 0:
+            continue
+        for i in range(0, size, LANES):
+            force = load(work.tangent, (2 * modes + j) * size + i)
+            if k > 0:
+                force = filled(0.0)
                 for m in range(modes):
-                    stiffness = problem.spring[j] * problem.chi[j, m]
-                    for i in range(size):
-                        work.forces[0, i] += stiffness * columns[k, m, i]
+                    place = load(columns, (k * modes + m) * size + i)
+                    force = force + place * (problem.spring[j] * problem.chi[j, m])
             for m in range(modes):
-                reaction = row.reaction[j, m]
-                for i in range(size):
-                    columns[k + 2, m, i] -= reaction * work.forces[0, i]
-    for a in range(work.held[contacts]):
-        for i in range(size):
-            work.forces[a, i] = 0.0
-        for m in range(modes):
-            chi = problem.chi[work.held[a], m]
-            for i in range(size):
-                work.forces[a, i] += chi * columns[k + 2, m, i]
+                at = ((k + 2) * modes + m) * size + i
+                store(load(columns, at) - force * (inverse * row.reaction[j, m]), columns, at)
+
+
+@inner_kernel
+def _free_columns(problem, row, work, k):
+    """Fill term k + 2 of the columns without forces of held contacts."""
+    modes = problem.push.shape[0]
+    columns, size = work.columns, work.tangent.shape[1]
+    inverse = INVERSE[k]
+    for m in range(modes):
+        of_place, of_velocity = row.place_term[k, m], row.velocity_term[k, m]
+        for i in range(0, size, LANES):
+            part = load(columns, (k * modes + m) * size + i) * of_place
+            part = part + load(columns, ((k + 1) * modes + m) * size + i) * of_velocity
+            if problem.coupled:
+                for other in range(modes):
+                    rate = (k + 1.0) * inverse * row.damping[m, other]
+                    part = part - load(columns, ((k + 1) * modes + other) * size + i) * rate
+            store(part, columns, ((k + 2) * modes + m) * size + i)
+
+
+@inner_kernel
+def _holding_columns(problem, row, work, k):
+    """Fill the derivatives of the forces that hold contacts, over (k+1)(k+2), and take them from term k + 2."""
+    modes = problem.push.shape[0]
+    columns, size = work.columns, work.tangent.shape[1]
+    count = work.held[problem.spring.size]
+    for a in range(count):
+        j = work.held[a]
+        for i in range(0, size, LANES):
+            part = filled(0.0)
+            for m in range(modes):
+                part = part + load(columns, ((k + 2) * modes + m) * size + i) * problem.chi[j, m]
+            store(part, work.forces, a * size + i)
     _solve_columns(work, work.forces)
-    for a in range(work.held[contacts]):
+    for a in range(count):
+        j = work.held[a]
         for m in range(modes):
-            reaction = row.reaction[work.held[a], m]
-            for i in range(size):
-                columns[k + 2, m, i] -= reaction * work.forces[a, i]
+            for i in range(0, size, LANES):
+                at = ((k + 2) * modes + m) * size + i
+                part = load(work.forces, a * size + i) * row.reaction[j, m]
+                store(load(columns, at) - part, columns, at)
 
 
-@kernel
+@inner_kernel
+def _term(problem, row, work, k):
+    """Fill term k + 2 of the columns."""
+    _free_columns(problem, row, work, k)
+    _elastic_term(problem, row, work, k)
+    if work.held[problem.spring.size] > 0:
+        _holding_columns(problem, row, work, k)
+
+
+@inner_kernel
 def _begin_columns(problem, work):
     modes = problem.push.shape[0]
-    size = work.tangent.shape[0]
-    for m in range(modes):
-        for i in range(size):
-            work.columns[0, m, i] = work.tangent[m, i]
-            work.columns[1, m, i] = work.tangent[modes + m, i]
+    size = work.tangent.shape[1]
+    for i in range(0, modes * size, LANES):
+        store(load(work.tangent, i), work.columns, i)
+        store(load(work.tangent, modes * size + i), work.columns, modes * size + i)
 
 
 @kernel
 def advance_tangent(problem, row, work, x):
     """Carry the derivatives through x of the present step."""
     modes = problem.push.shape[0]
-    size = work.tangent.shape[0]
     columns, tangent = work.columns, work.tangent
+    size = tangent.shape[1]
     _begin_columns(problem, work)
     for k in range(TERMS):
-        _accelerations(problem, row, work, k)
-        inverse = 1.0 / ((k + 1.0) * (k + 2.0))
-        for m in range(modes):
-            for i in range(size):
-                columns[k + 2, m, i] *= inverse
+        _term(problem, row, work, k)
     for m in range(modes):
-        for i in range(size):
-            tangent[m, i] = 0.0
-            tangent[modes + m, i] = 0.0
-        for k in range(TERMS + 1, -1, -1):
-            for i in range(size):
-                tangent[modes + m, i] = tangent[modes + m, i] * x + tangent[m, i]
-                tangent[m, i] = tangent[m, i] * x + columns[k, m, i]
+        for i in range(0, size, LANES):
+            place = filled(0.0)
+            velocity = filled(0.0)
+            for k in range(TERMS + 1, -1, -1):
+                velocity = velocity * x + place
+                place = place * x + load(columns, (k * modes + m) * size + i)
+            store(place, tangent, m * size + i)
+            store(velocity, tangent, (modes + m) * size + i)
     for j in range(problem.spring.size):
         if problem.spring[j] != 0.0 and work.sense[j] == 0:
             for m in range(modes):
@@ -144,28 +154,26 @@ def watched_row(problem, row, work, j, sign, out):
     problem, row, work : Problem, Row, Work; the pattern is that of before the event
     j : contact
     sign : 0: its velocity is watched; 1, -1: the distance of its force from that side of its range
-    out : (size,) filled
+    out : (S,) filled
     """
     modes = problem.push.shape[0]
-    contacts = problem.spring.size
-    size = work.tangent.shape[0]
+    size = work.tangent.shape[1]
     for i in range(size):
         out[i] = 0.0
     if sign == 0:
         for m in range(modes):
-            chi = problem.chi[j, m]
             for i in range(size):
-                out[i] += chi * work.tangent[modes + m, i]
+                out[i] += problem.chi[j, m] * work.tangent[modes + m, i]
     elif problem.spring[j] != 0.0:
         for i in range(size):
             out[i] = -sign * work.tangent[2 * modes + j, i]
     else:
         _begin_columns(problem, work)
-        _accelerations(problem, row, work, 0)
-        for a in range(work.held[contacts]):
+        _term(problem, row, work, 0)
+        for a in range(work.held[problem.spring.size]):
             if work.held[a] == j:
                 for i in range(size):
-                    out[i] = -sign * work.forces[a, i]
+                    out[i] = -2.0 * sign * work.forces[a, i]
 
 
 @kernel
@@ -176,11 +184,11 @@ def through_event(problem, row, work, drop, watched, slope):
     ----------
     problem, row, work : Problem, Row, Work; the pattern is that of after the event
     drop : (N,) forces after the event less those before it
-    watched : (size,) derivatives of the watched quantity
+    watched : (S,) derivatives of the watched quantity
     slope : its rate of change along the motion before the event
     """
     modes = problem.push.shape[0]
-    size = work.tangent.shape[0]
+    size = work.tangent.shape[1]
     for j in range(problem.spring.size):
         if drop[j] != 0.0:
             for m in range(modes):
@@ -196,7 +204,7 @@ def through_event(problem, row, work, drop, watched, slope):
 def hold_tangent(problem, row, work):
     """Take the velocities of held contacts from the derivatives: they vanish but for rounding."""
     modes = problem.push.shape[0]
-    size = work.tangent.shape[0]
+    size = work.tangent.shape[1]
     count = work.held[problem.spring.size]
     for a in range(count):
         for i in range(size):

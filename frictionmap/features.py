@@ -14,6 +14,7 @@ from ._kernels.boundary.functions import fill_damping_functions
 from .errors import InputError
 from .model.free_structure import FreeStructure
 from .model.modes import ModalModel
+from .model.general import refuse_general
 from .model.system import System
 from .roots import FrequencyRange, find_roots, shaped, union, with_poles, without
 
@@ -38,6 +39,7 @@ def peak_thresholds(system: System) -> np.ndarray:
     (pi/4)|lambda_i/chi_i| without damping; with damping T(7.62), which is approximate.  Infinite for a mode
     that does not participate; NaN for a mode that C couples to others.
     """
+    refuse_general(system, "compute peak thresholds")
     modes = system.modes
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.abs(np.diagonal(modes.participation(modes.w))) / np.abs(modes.chi)  # each at its own w
@@ -54,6 +56,7 @@ def peak_amplitudes(system: System, beta: float) -> np.ndarray:
     It decreases linearly with beta, to 0 at the `peak_thresholds` of the mode; at and above it the motion is
     not continuous and the value is NaN.  Infinite without damping; NaN for a mode that C couples to others.
     """
+    refuse_general(system, "compute peak amplitudes")
     beta = checks.number(beta, "beta", least=0.0)
     modes = system.modes
     part = np.abs(modes.phi * np.diagonal(modes.participation(modes.w))) / modes.w**2
@@ -70,6 +73,7 @@ def high_frequency_limits(system: System, mu: float = 1.0) -> HighFrequency:
     Zero if the load does not act on a mass in contact.  With a joined base-wall they grow with r^2, with
     dashpots to the base with r.
     """
+    refuse_general(system, "compute high-frequency limits")
     mu = checks.number(mu, "mu", least=1.0)
     modes = system.modes
     if system.base_motion or modes.contact_acceleration(modes.load_rate) != 0.0:
@@ -87,6 +91,7 @@ def quasi_static_displacement(system: System, beta: float) -> np.ndarray:
     They are the displacements at tau = 0, where the load equals the real part of its phasor, with the contact
     sliding towards larger z.  The contact sticks instead unless beta is below beta_stick at r = 0.
     """
+    refuse_general(system, "compute the quasi-static displacement")
     beta = checks.number(beta, "beta", least=0.0)
     modes = system.modes
     return np.linalg.solve(modes.stiffness, modes.load.real - beta * modes.contact)
@@ -159,6 +164,7 @@ def invariant_points(system: System, low: float, high: float, most: int = MOST_P
     found: between two of its poles U falls from +inf to -inf once.  With damping only the phase is unchanged.
     Of more than about `most` points the highest are returned.
     """
+    refuse_general(system, "compute invariant points")
     modes = system.modes
     where = _range(modes, low, high, most)
     if modes.free.coupled:
@@ -240,6 +246,7 @@ def all_mass_invariant_points(
     system: System, low: float, high: float, most: int = MOST_POINTS
 ) -> list[np.ndarray]:
     """Find the `mass_invariant_points` of every mass, at about the cost of one mass."""
+    refuse_general(system, "compute invariant points")
     modes = _undamped(system)
     where = _range(modes, low, high, most)
     where = with_poles(where, _antiresonances(modes, where))
@@ -273,6 +280,7 @@ def mass_invariant_points(
     with a fixed wall they are the `invariant_points`.  Damping is neglected: with damping the points are
     approximate, T 7.4.3.  All loads must be in phase.
     """
+    refuse_general(system, "compute invariant points")
     mass = system.dofs.number(mass, "mass")
     return all_mass_invariant_points(system, low, high, most)[system.dofs.row(mass)]
 
@@ -301,6 +309,7 @@ def first_harmonic_points(
     abs(X_k1)^2 = V_k^2 + (8 beta^2/pi) A_k (V_k U/V + 2 A_k/pi) for every beta: where the bracket is zero,
     the amplitude is unchanged.  Damping is neglected; all loads must be in phase.
     """
+    refuse_general(system, "compute invariant points")
     modes = _undamped(system)
     where = _range(modes, low, high, most)
     motions = _motions(modes)
@@ -326,5 +335,6 @@ def first_harmonic_invariant_points(
     system: System, mass: int, low: float, high: float, most: int = MOST_POINTS
 ) -> np.ndarray:
     """All `first_harmonic_points` of one mass, the inversion points of frequency-based curves of T 4.4."""
+    refuse_general(system, "compute invariant points")
     mass = system.dofs.number(mass, "mass")
     return first_harmonic_points(system, low, high, most)[system.dofs.row(mass)].all

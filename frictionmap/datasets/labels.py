@@ -295,6 +295,10 @@ GENERAL_VARIABLES = {
         most=1.0,
         nan=True,
     ),
+    "equivalent_stiffness": _range_of(
+        "equivalent stiffness of the contact over k1",
+        comment="real part of the first harmonic of the friction force over that of the motion",
+    ),
     "contact_peak_to_peak": _range_of("range of the motion in the contact, over P/k1 (Y)", least=0.0),
     "contact_midpoint": _range_of(
         "middle of the range of the motion in the contact, over P/k1 (Y)",
@@ -308,6 +312,8 @@ GENERAL_VARIABLES = {
 #: Variables of all maps that have one value per contact where there are several.
 PER_CONTACT = (
     "stops_per_cycle", "stuck_fraction", "contact_amplitude", "sliding_distance", "work_friction",
+    "contact_first_harmonic_amplitude", "contact_first_harmonic_phase", "contact_harmonic", "friction_harmonic",
+    "equivalent_damping",
     "beta_stick_contact", *(name for name in GENERAL_VARIABLES if "dof" not in GENERAL_VARIABLES[name].dims),
 )  # fmt: skip
 
@@ -578,6 +584,10 @@ HISTORY_VARIABLES = {
         np.int8, "direction of the motion in the contact that begins", ("event",), _SENSES
     ),
     "event_z": Label(np.float64, "motion in the contact at the event, over P/k1 (Y)", ("event",)),
+    "event_contact": Label(np.int64, "contact that the event is of, counted from 1", ("event",), least=1),
+    "y": Label(
+        np.float64, "displacement of the slider of an elastic contact, over P/k1 (Y)", ("tau",), nan=True
+    ),
 }
 
 #: Older names of variables, by kind of dataset.  Files of version 0.2.0 have only these; files of today have

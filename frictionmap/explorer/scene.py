@@ -12,6 +12,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from ..model.settings import Solver, Start
+from ..model.general import refuse_general
 from ..model.system import CONTACTS, System
 from ..model.variations import Number
 from ..units.axes import KINDS, ratios
@@ -65,6 +66,7 @@ class Scene:
     units: Units | None = None
 
     def __post_init__(self) -> None:
+        refuse_general(self.system, "explore the map")
         object.__setattr__(self, "changed", lru_cache(_KEPT)(self._changed))
 
     @property

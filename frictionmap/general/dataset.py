@@ -20,7 +20,8 @@ from .problem import general_of
 #: Outputs that general systems have.
 OUTPUTS = (
     "regime", "stops_per_cycle", "contact_amplitude", "stuck_fraction", "period", "origin", "cycles", "status",
-    "multiplier", "amplitude", "sliding_distance", "work_friction", *GENERAL_VARIABLES,
+    "multiplier", "amplitude", "sliding_distance", "work_friction",
+    *(name for name in GENERAL_VARIABLES if name != "equivalent_stiffness"),
 )  # fmt: skip
 
 #: Outputs of elastic contacts that take the place of those of rigid ones.

@@ -135,6 +135,19 @@ def general_of(system: "System") -> General | None:
     return general
 
 
+def refuse_general(system: "System", what: str) -> None:
+    """Refuse a system that needs the general engine.
+
+    what : what is not offered for it, as in "cannot compute peak thresholds"
+    """
+    if system.general is not None:
+        used = [name for name in KEYS if getattr(system, name) not in (None, 0.0)]
+        raise InputError(
+            f"cannot {what} of a system with {used[0]}: this is offered for one rigid contact under one "
+            f"harmonic load; omit {used[0]}"
+        )
+
+
 def contacts_of(system: "System") -> tuple[Contact, ...]:
     """The contacts of a system, in either form."""
     if system.contacts is not None:

@@ -248,6 +248,11 @@ class System:
         self._set("_scale", scale)
         self._check_damping()
         self._set("_general", general_of(self))
+        if self._general is not None and self.reduce is not None:
+            raise InputError(
+                "cannot use reduce with several contacts, springs, belts or loads of several harmonics: they "
+                "need all degrees of freedom; omit it"
+            )
         if self.n > 1 or self.matrices is not None:
             _ = self.modes  # errors that only the modes reveal are raised here
 

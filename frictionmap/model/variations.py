@@ -22,6 +22,8 @@ NUMBERS = {
     "load_mass": "mass that the load acts on",
     "frequency_scale": "frequency of r = 1, in the units of sqrt(K/M)",
     "stiffness_scale": "stiffness that displacements are over, in the units of K",
+    "contact_stiffness": "contact stiffness over k_1",
+    "wall_velocity": "velocity of the wall over omega P/k_1",
 }
 LISTS = {
     "mass_ratios": "mass ratio m_{0}/m_1",
@@ -33,6 +35,16 @@ LISTS = {
 _WHOLE = ("load_mass", "contact_masses")
 _INDEXED = re.compile(r"([a-z_]+)\[([1-9][0-9]*)\]")
 
+#: Numbers of one of several contacts, such as ``contacts[2].force``.
+CONTACT_NUMBERS = {
+    "force": "friction force of contact {0}, over P",
+    "ratio": "ratio of contact {0} to beta",
+    "mu": "static-to-kinetic ratio of contact {0}",
+    "stiffness": "stiffness of contact {0}, over k_1",
+    "wall_velocity": "wall velocity of contact {0}, over omega P/k_1",
+}
+_OF_CONTACT = re.compile(r"contacts\[([1-9][0-9]*)\]\.([a-z_]+)")
+
 
 @dataclass(frozen=True)
 class Number:
@@ -40,24 +52,33 @@ class Number:
 
     key: str
     place: int | None  # in a list, counted from 1
+    part: str = ""  # of a contact
 
     @property
     def dimension(self) -> str:
         """Name as a dimension or a coordinate."""
+        if self.part:
+            return f"{self.key}_{self.place}_{self.part}"
         return self.key if self.place is None else f"{self.key}_{self.place}"
 
     @property
     def text(self) -> str:
         """Name in a configuration."""
+        if self.part:
+            return f"{self.key}[{self.place}].{self.part}"
         return self.key if self.place is None else f"{self.key}[{self.place}]"
 
     @property
     def meaning(self) -> str:
         """Description of the parameter."""
+        if self.part:
+            return CONTACT_NUMBERS[self.part].format(self.place)
         return NUMBERS[self.key] if self.place is None else LISTS[self.key].format(self.place)
 
     def put_into(self, before: Any, value: float) -> Any:
         """Return the value of the key with this parameter set to `value`."""
+        if self.part:
+            return self._put_into_contact(before, value)
         given = int(value) if self.key in _WHOLE and value == int(value) else float(value)
         if self.place is None:
             return given
@@ -67,6 +88,18 @@ class Number:
                 f"axes.{self.text} must have an index <= {len(values)}, as {self.key}; got {self.place}"
             )
         values[self.place - 1] = given
+        return values
+
+    def _put_into_contact(self, contacts: Any, value: float) -> list:
+        """Return the contacts with this number of one of them set to `value`."""
+        values = list(contacts or ())
+        assert self.place is not None
+        if self.place > len(values):
+            raise InputError(
+                f"axes.{self.text} must have an index <= {len(values)}, as contacts; got {self.place}"
+            )
+        rival = {"force": {"ratio": None}, "ratio": {"force": None}}.get(self.part, {})
+        values[self.place - 1] = replace(values[self.place - 1], **{self.part: float(value)}, **rival)
         return values
 
 
@@ -228,7 +261,10 @@ def _number(key: object, where: str) -> Number:
     matched = _INDEXED.fullmatch(key) if isinstance(key, str) else None
     if matched and matched[1] in LISTS:
         return Number(matched[1], int(matched[2]))
-    valid = (*NUMBERS, *(f"{name}[i]" for name in LISTS))
+    of_contact = _OF_CONTACT.fullmatch(key) if isinstance(key, str) else None
+    if of_contact and of_contact[2] in CONTACT_NUMBERS:
+        return Number("contacts", int(of_contact[1]), of_contact[2])
+    valid = (*NUMBERS, *(f"{name}[i]" for name in LISTS), *(f"contacts[i].{name}" for name in CONTACT_NUMBERS))
     raise InputError(
         f"{where} must name a number of the system, i counted from 1: {', '.join(valid)}; "
         f"got {checks.one_line(key)}{checks.nearest(str(key), valid)}"

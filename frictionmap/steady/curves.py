@@ -151,13 +151,17 @@ def curves(
     scales = scales_of(units, system)
     axes = checked_axes(r, beta, mu, system.n * (asked.harmonics + 1), scales)
     system.costs(axes["r"])
-    variables = solve_curves(system, axes, solver, asked, threads, progress)
     grid = {name: axes[name] for name in ("r", "beta", "mu")}
     axes["dof"] = np.array(system.dofs.numbers)
     if asked.harmonics:
         axes |= {"harmonic": np.arange(asked.harmonics + 1), "part": PARTS}
-    coords = {name: coordinate(name, values) for name, values in axes.items()}
-    ds = xr.Dataset(variables, coords=coords)
+    if system.general is not None:
+        from ..general.curves import general_curves
+
+        ds = general_curves(system, axes, solver, asked, progress)
+    else:
+        coords = {name: coordinate(name, values) for name, values in axes.items()}
+        ds = xr.Dataset(solve_curves(system, axes, solver, asked, threads, progress), coords=coords)
     ds = stamp(ds, "curves", "Response curves", system, grid, solver, asdict(asked), units=units)
     ds.attrs |= reduction_check(system, grid, solver, threads)
     return with_units(ds, scales)

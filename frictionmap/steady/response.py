@@ -115,6 +115,12 @@ def response(
     scales = scales_of(units, system)
     r, beta, mu = _checked_cell(r, beta, mu, scales)
     points = checks.whole(points, "points", least=2, most=_MOST_POINTS)
+    if system.general is not None:
+        from ..general.response import general_response
+
+        ds = general_response(system, r, beta, mu, solver, points)
+        axes = {"r": r, "beta": beta, "mu": mu}
+        return with_units(stamp(ds, "response", "Steady state in time", system, axes, solver, units=units), scales)
     request = MotionRequest(system, r, beta, mu, solver, points)
     found = find_motion(request)
     history, cycle = found.history, found.cycle

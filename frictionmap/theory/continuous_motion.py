@@ -16,6 +16,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError, NoSteadyState
 from ..model.modes import ModalModel, wrapped
+from ..model.general import refuse_general
 from ..model.system import System
 from .boundary_curves import find_curves
 from .energy import damping_participation, transmitted_first_harmonic, work_input
@@ -273,6 +274,7 @@ def continuous_motion(system: System, r: SupportsFloat, beta: SupportsFloat) -> 
     0.665
     """
     checks.instance(system, "system", System)
+    refuse_general(system, "compute the continuous motion")
     r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
     beta = checks.number(beta, "beta", least=0.0)
     modes = system.modes

@@ -20,7 +20,7 @@ from ...regimes import (
 from ..compiler import entry, kernel
 from .follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
 from .problem import make_row, make_work, set_row
-from .record import make_record
+from .record import RANGES, make_record
 from .return_map import make_return
 from .series import Friction
 from .steady import NO_REPEAT, REPEATS, find, from_rest, make_ring, measure
@@ -54,6 +54,8 @@ class Cells(NamedTuple):
     slips: np.ndarray
     reversals: np.ndarray
     distance: np.ndarray
+    works: np.ndarray  # of friction
+    wall_works: np.ndarray  # of walls at constant velocity
     lowest: np.ndarray  # (..., N + n)
     highest: np.ndarray
 
@@ -94,6 +96,8 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
             out.stuck[m, i, b, j] = 1.0
         out.reversals[m, i, b, j] = counts[REVERSALS, j] / period
         out.distance[m, i, b, j] = record.distance[j] / period
+        out.works[m, i, b, j] = record.works[0, j] / period
+        out.wall_works[m, i, b, j] = record.works[1, j] / period
     for k in range(record.lowest.size):
         out.lowest[m, i, b, k] = record.lowest[k]
         out.highest[m, i, b, k] = record.highest[k]
@@ -136,6 +140,8 @@ def _store_stuck(out, m, i, b):
         out.slips[m, i, b, j] = 0.0
         out.reversals[m, i, b, j] = 0.0
         out.distance[m, i, b, j] = 0.0
+        out.works[m, i, b, j] = 0.0
+        out.wall_works[m, i, b, j] = 0.0
 
 
 @kernel
@@ -163,7 +169,7 @@ def fill_rows(first, last, problem, grid, out, masses, cancel):
     cancel : (1,) set by another thread to end the computation
     """
     row, work, memory = make_row(problem), make_work(problem), make_return(problem)
-    ring, record = make_ring(problem), make_record(problem.spring.size, masses)
+    ring, record = make_ring(problem), make_record(problem, masses, 0)
     contacts = problem.spring.size
     friction = Friction(np.empty(contacts), np.empty(contacts))
     n_r = problem.r.size
@@ -181,12 +187,12 @@ def fill_rows(first, last, problem, grid, out, masses, cancel):
                 continue
             unique = _set_friction(grid, m, b, friction)
             if not (near and unique):
-                from_rest(problem, i, row, friction, grid.starts[i], work, memory, record)
+                from_rest(problem, row, friction, grid.starts[i], work, memory, record)
             found = find(
                 problem, row, friction, grid.cycles, grid.tolerance, work, memory, ring, record
             )
             near = found.status == REPEATS
             halves = 0
             if near:
-                halves = measure(problem, row, friction, found.halves, work, memory, record)
+                halves = measure(problem, row, friction, found.halves, work, memory, record, RANGES)
             _store(problem, out, m, i, b, found, halves, memory.counts, record)

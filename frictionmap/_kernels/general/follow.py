@@ -21,7 +21,8 @@ _AT_LIMIT = 1e-11
 LAW_ROWS = 9
 STOPS, TURNS, STUCK, SLIPS, REVERSALS, LAST_SENSE, MOVED = 0, 1, 2, 3, 4, 5, 6
 NEAREST_STOP = 7  # largest share that friction has of the force that would hold a contact at a turn
-COUNT_ROWS = 8
+FIRST_SENSE = 8  # of the slips of an elastic contact; 0 before the first
+COUNT_ROWS = 9
 
 FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
 
@@ -134,6 +135,8 @@ def _count(problem, work, law, before, counts):
                 if counts[LAST_SENSE, j] * new < 0.0:
                     counts[REVERSALS, j] += 1.0
                 counts[LAST_SENSE, j] = new
+                if counts[FIRST_SENSE, j] == 0.0:
+                    counts[FIRST_SENSE, j] = new
         elif new == 0:
             counts[STOPS, j] += 1.0
         elif old != 0:
@@ -247,7 +250,7 @@ def follow(problem, row, friction, start, span, work, law, counts, record, deriv
         event = _first_event(problem, friction, work, end)
         x = min(event[0], end)
         if record.active[0] != 0:
-            record_step(problem, work, x, record)
+            record_step(problem, row, work, x, record)
         if derive and x > 0.0:
             advance_tangent(problem, row, work, x)
         _count_time(work, counts, x * h)

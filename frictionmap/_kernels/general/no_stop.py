@@ -8,7 +8,7 @@ import numpy as np
 from ..compiler import entry, kernel
 from .follow import NEAREST_STOP, STOPS
 from .problem import make_row, make_work, set_row
-from .record import make_record
+from .record import RANGES, make_record
 from .return_map import make_return
 from .series import Friction
 from .steady import REPEATS, find, from_rest, make_ring, measure
@@ -62,12 +62,12 @@ def _try(problem, i, row, search, beta, near, friction, memories, kept, k):
         friction.kinetic[j] = search.kinetic[j, 0] * beta + search.kinetic[j, 1]
         friction.static[j] = friction.kinetic[j]
     if not near:
-        from_rest(problem, i, row, friction, search.starts[i], work, memory, record)
+        from_rest(problem, row, friction, search.starts[i], work, memory, record)
     found = find(problem, row, friction, search.cycles, search.tolerance, work, memory, ring, record)
     kept[k, 0] = math.nan
     if found.status != REPEATS:
         return False
-    measure(problem, row, friction, found.halves, work, memory, record)
+    measure(problem, row, friction, found.halves, work, memory, record, RANGES)
     kept[k, 0] = 0.0
     for j in range(contacts):
         kept[k, 0] += memory.counts[STOPS, j]
@@ -103,7 +103,7 @@ def fill_no_stop(problem, search, begins, ends, cancel):
     cancel : (1,) set by another thread to end the computation
     """
     row, work, memory = make_row(problem), make_work(problem), make_return(problem)
-    ring, record = make_ring(problem), make_record(problem.spring.size, np.empty((0, problem.squares.size)))
+    ring, record = make_ring(problem), make_record(problem, np.empty((0, problem.squares.size)), 0)
     contacts = problem.spring.size
     friction = Friction(np.empty(contacts), np.empty(contacts))
     kept = np.zeros((NODES + 2, 1 + contacts))

@@ -5,29 +5,43 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
-from .crossings import NONE, approach, first_zero
-from .problem import LONG, TERMS
+from .crossings import NONE, approach, first_zero, value_at
+from .problem import LONG, TERMS, WIDTH
 from .series import first_contact_row
 
+NOTHING, RANGES, STEPS = 0, 1, 2
+
 _SLOPE, _VALUE = 5, 6  # rows of the scratch
+
+#: Nodes and weights on [0, 1]: exact to rounding for products of two series of a step.
+_LEGENDRE = np.polynomial.legendre.leggauss(14)
+_NODES = 0.5 * (1.0 + _LEGENDRE[0])
+_WEIGHTS = 0.5 * _LEGENDRE[1]
 
 
 class Record(NamedTuple):
     """Extremes of the displacements in N contacts, then of the n masses."""
 
-    active: np.ndarray  # (1,) int: whether anything is kept
+    active: np.ndarray  # (1,) int: NOTHING, RANGES or STEPS: what is kept
     lowest: np.ndarray  # (N + n,)
     highest: np.ndarray  # (N + n,)
     distance: np.ndarray  # (N,) sliding distances
+    works: np.ndarray  # (2, N) work of friction, and of the walls that move at constant velocity
     masses: np.ndarray  # (n, m) displacement of the masses per mode
+    steps: np.ndarray  # (most, rows, WIDTH) the series of every step
+    patterns: np.ndarray  # (most, N + 1) sense of every contact, then the length of the step in x
+    count: np.ndarray  # (1,) steps there were; more than `most` do not fit
 
 
 @entry
-def make_record(contacts, masses):
-    """Allocate a record; `masses` (n, m) are the displacements of the masses per mode."""
+def make_record(problem, masses, most):
+    """Allocate a record for `most` steps; `masses` (n, m) are the displacements of the masses per mode."""
+    contacts = problem.spring.size
     size = contacts + masses.shape[0]
+    rows = problem.push.shape[0] + problem.push.shape[1] + 4 * contacts
     return Record(
-        np.zeros(1, np.int64), np.zeros(size), np.zeros(size), np.zeros(contacts), masses
+        np.zeros(1, np.int64), np.zeros(size), np.zeros(size), np.zeros(contacts), np.zeros((2, contacts)),
+        masses, np.zeros((most, rows, WIDTH)), np.zeros((most, contacts + 1)), np.zeros(1, np.int64),
     )  # fmt: skip
 
 
@@ -39,6 +53,9 @@ def clear_record(record):
         record.highest[i] = -np.inf
     for j in range(record.distance.size):
         record.distance[j] = 0.0
+        record.works[0, j] = 0.0
+        record.works[1, j] = 0.0
+    record.count[0] = 0
 
 
 @kernel
@@ -97,19 +114,61 @@ def _keep_range(series, at, end, i, record, scratch):
 
 
 @kernel
-def record_step(problem, work, end, record):
+def _integrate(series, a, b, end):
+    """Integrals over [0, end] of series a, of b, and of their product."""
+    of_a = 0.0
+    of_b = 0.0
+    of_both = 0.0
+    for i in range(_NODES.size):
+        value_a, value_b = value_at(series, a, end * _NODES[i]), value_at(series, b, end * _NODES[i])
+        of_a += _WEIGHTS[i] * value_a
+        of_b += _WEIGHTS[i] * value_b
+        of_both += _WEIGHTS[i] * value_a * value_b
+    return end * of_a, end * of_b, end * of_both
+
+
+@kernel
+def _keep_works(problem, row, work, end, record, first):
+    """Add the sliding distances and works of the present step."""
+    contacts = problem.spring.size
+    for j in range(contacts):
+        if work.sense[j] == 0 and problem.belt[j] == 0.0:
+            continue
+        force, way, both = _integrate(
+            work.series, first + 2 * contacts + j, first + contacts + j, end
+        )
+        if work.sense[j] != 0:
+            record.distance[j] += abs(way)
+            record.works[0, j] += both
+        record.works[1, j] -= force * row.numbers[0] * problem.belt[j]
+
+
+@kernel
+def _keep_step(work, end, record):
+    """Keep the series of the present step."""
+    k = record.count[0]
+    if k < record.steps.shape[0]:
+        for i in range(record.steps.shape[1]):
+            for n in range(WIDTH):
+                record.steps[k, i, n] = work.series[i, n]
+        for j in range(work.sense.size):
+            record.patterns[k, j] = work.sense[j]
+        record.patterns[k, work.sense.size] = end
+    record.count[0] = k + 1
+
+
+@kernel
+def record_step(problem, row, work, end, record):
     """Include the present step, up to `end` in x."""
+    if record.active[0] == STEPS:
+        _keep_step(work, end, record)
     modes = problem.push.shape[0]
     contacts = problem.spring.size
     first = first_contact_row(problem)
     series, scratch = work.series, work.scratch
     for j in range(contacts):
         _keep_range(series, first + j, end, j, record, scratch)
-        if work.sense[j] != 0:
-            way = 0.0
-            for k in range(TERMS - 1, -1, -1):
-                way = way * end + series[first + contacts + j, k] / (k + 1.0)
-            record.distance[j] += abs(way * end)
+    _keep_works(problem, row, work, end, record, first)
     for i in range(record.masses.shape[0]):
         for k in range(LONG):
             scratch[_VALUE, k] = 0.0

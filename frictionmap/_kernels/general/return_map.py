@@ -6,7 +6,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
-from .follow import COUNT_ROWS, FOLLOWED, LAW_ROWS, MOVED, follow
+from .follow import (
+    COUNT_ROWS,
+    FIRST_SENSE,
+    FOLLOWED,
+    LAST_SENSE,
+    LAW_ROWS,
+    MOVED,
+    REVERSALS,
+    follow,
+)
 from .problem import padded
 from .tangent import identity
 
@@ -71,6 +80,8 @@ def go_round(problem, row, friction, halves, work, memory, record, derive):
     for part in range(COUNT_ROWS):
         for j in range(work.sense.size):
             memory.counts[part, j] = 0.0
+    for j in range(work.sense.size):
+        memory.counts[LAST_SENSE, j] = memory.counts[FIRST_SENSE, j] = memory.senses[j]
     if derive:
         identity(problem, work)
     code = FOLLOWED
@@ -80,6 +91,9 @@ def go_round(problem, row, friction, halves, work, memory, record, derive):
             code = follow(
                 problem, row, friction, begin, math.pi, work, memory.law, memory.counts, record, derive
             )
+    for j in range(work.sense.size):  # the first slip follows the last one of the period before
+        if halves % 2 == 0 and memory.counts[FIRST_SENSE, j] * memory.counts[LAST_SENSE, j] < 0.0:
+            memory.counts[REVERSALS, j] += 1.0
     take_state(work, memory.end, memory.end_senses, -1.0 if halves % 2 == 1 else 1.0)
     return code
 

@@ -9,12 +9,13 @@ from ..compiler import entry, kernel
 from ..structure.newton import solve_linear, spectral_radius
 from .follow import FOLLOWED, follow
 from .pattern import begin
-from .problem import padded, set_row
-from .record import clear_record
+from .problem import make_row, make_work, padded, set_row
+from .record import NOTHING, STEPS, clear_record, make_record
 from .return_map import (
     SECTION,
     fill_newton,
     go_round,
+    make_return,
     motion_size,
     return_distance,
     take_state,
@@ -40,6 +41,10 @@ _LAST = 1e-9
 
 #: A steady state that is back to this share of its size after a part of its period has that period.
 _RETURNED = 1e-9
+
+#: Largest distance of a measured state from the one that it returns to, and measurements until then.
+_MEASURED = 1e-11
+_MOST_REPEATED = 3
 
 #: A multiplier above this is not that of a motion that attracts.
 _STABLE = 1.0 + 1e-9
@@ -158,7 +163,7 @@ def _newton(problem, row, friction, halves, tolerance, work, memory, record):
         fill_newton(problem, halves, work, memory)
         if not solve_linear(memory.matrix, memory.right, size):
             return NO_REPEAT, cycles
-        if take_step(problem, row, memory) <= max(tolerance, _LAST):
+        if take_step(problem, row, memory) <= (_LAST if tolerance > 0.0 else 0.0):
             return REPEATS, cycles
     return NO_REPEAT, cycles
 
@@ -244,55 +249,64 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record):
 
 
 @kernel
-def measure(problem, row, friction, halves, work, memory, record):
+def measure(problem, row, friction, halves, work, memory, record, what):
     """Follow the steady state once more, whole periods of it, into `record` and `memory.counts`.
 
-    Returns the number of half periods.
+    Where it does not quite return, as the last step of Newton's method has changed the pattern, it is solved
+    once more.  Returns the number of half periods.
     """
-    clear_record(record)
-    record.active[0] = 1
     both = halves if halves % 2 == 0 else 2 * halves
-    go_round(problem, row, friction, both, work, memory, record, False)
-    record.active[0] = 0
+    for _ in range(_MOST_REPEATED):
+        clear_record(record)
+        record.active[0] = what
+        go_round(problem, row, friction, both, work, memory, record, False)
+        record.active[0] = NOTHING
+        if return_distance(problem, row, memory) <= _MEASURED:
+            break
+        _newton(problem, row, friction, halves, 0.0, work, memory, record)
     return both
 
 
-@entry
-def one_steady_state(problem, i, row, friction, state, cycles, tolerance, work, memory, ring, record):
-    """Find the steady state of one cell from a state at tau = 0; see `find`.
-
-    Parameters
-    ----------
-    problem, i : Problem, index of r
-    row, friction : Row, Friction
-    state : (2, m) modes and their velocities q' at tau = 0
-    cycles, tolerance : see `find`
-    work, memory, ring, record : Work, Return, Ring, Record
-
-    Returns
-    -------
-    Steady, and the number of half periods measured
-    """
-    from_rest(problem, i, row, friction, state, work, memory, record)
-    found = find(problem, row, friction, cycles, tolerance, work, memory, ring, record)
-    halves = 0
-    if found.status == REPEATS:
-        halves = measure(problem, row, friction, found.halves, work, memory, record)
-    return found, halves
-
-
 @kernel
-def from_rest(problem, i, row, friction, state, work, memory, record):
-    """Follow a motion from tau = 0 to the section."""
-    set_row(problem, i, row)
+def from_rest(problem, row, friction, state, work, memory, record):
+    """Follow a motion from tau = 0 to the section.
+
+    state : (2, m) modes and their velocities q' at tau = 0; elastic contacts begin without force
+    """
     for m in range(problem.push.shape[0]):
         work.state[0, m] = state[0, m]
         work.state[1, m] = row.numbers[0] * state[1, m]
     for j in range(problem.spring.size):
         work.state[2, j] = 0.0
-    record.active[0] = 0
+    record.active[0] = NOTHING
     if begin(problem, row, friction, 0.0, work, memory.law):
-        follow(
-            problem, row, friction, 0.0, SECTION, work, memory.law, memory.counts, record, False
-        )
+        follow(problem, row, friction, 0.0, SECTION, work, memory.law, memory.counts, record, False)
     take_state(work, memory.start, memory.senses, 1.0)
+
+
+@entry
+def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, most):
+    """Find the steady state of one cell, with the series of its steps.
+
+    Parameters
+    ----------
+    problem, i : Problem, index of r
+    friction : Friction
+    state : (2, m) modes and their velocities q' at tau = 0
+    cycles, tolerance : see `find`
+    masses : (n, m) displacement of the masses per mode
+    most : number of steps that are kept
+
+    Returns
+    -------
+    Steady, half periods that the steps cover (0 without a steady state), counts (see `follow`), Record, h
+    """
+    row, work, memory = make_row(problem), make_work(problem), make_return(problem)
+    ring, record = make_ring(problem), make_record(problem, masses, most)
+    set_row(problem, i, row)
+    from_rest(problem, row, friction, state, work, memory, record)
+    found = find(problem, row, friction, cycles, tolerance, work, memory, ring, record)
+    halves = 0
+    if found.status == REPEATS:
+        halves = measure(problem, row, friction, found.halves, work, memory, record, STEPS)
+    return found, halves, memory.counts, record, row.numbers[0]

@@ -8,6 +8,7 @@ import xarray as xr
 from ... import checks
 from ...datasets.provenance import system_text
 from ...errors import InputError
+from ...model.general import refuse_general
 from ...model.system import System
 from ..statistics.estimates import verdict
 from ..statistics.levels import FOUND
@@ -104,6 +105,7 @@ def forced(
     deg.
     """
     system = _default_system() if system is None else checks.instance(system, "system", System)
+    refuse_general(system, "identify friction")
     table = checked_table(
         system, frequency, (phase_lag, amplitude_ratio), (sigma_phase, sigma_amplitude), load, sets
     )

@@ -8,6 +8,7 @@ import numpy as np
 from ... import checks
 from ...errors import InputError
 from ...model.modes import wrapped
+from ...model.general import refuse_general
 from ...model.system import System
 from ...roots import Brackets, polish
 from ...steady.points import steady_states
@@ -123,6 +124,7 @@ def friction_ratio(
     0.2
     """
     system = System() if system is None else checks.instance(system, "system", System)
+    refuse_general(system, "identify friction")
     mass = system.dofs.number(mass, "mass")
     at, lag = (np.atleast_1d(checks.array(one, name)) for one, name in ((r, "r"), (phase_lag, "phase_lag")))
     for values, name in ((at, "r"), (lag, "phase_lag")):

@@ -6,7 +6,7 @@
 from typing import Any
 
 from ...files.json_schema import DIALECT, described, keyed_table
-from ...files.keys import KEYS, Key, either, number, several, table, whole, with_unit, word
+from ...files.keys import GENERAL_KEYS, KEYS, Key, either, number, several, table, whole, with_unit, word
 from ...model.system import DAMPING_REFERENCES
 from ...units.table import UNITS, units_of
 from ..chain.data import MOST_MASSES
@@ -89,7 +89,7 @@ _REFERENCE = Key(
     word(*DAMPING_REFERENCES), DAMPING_REFERENCES[0],
 )  # fmt: skip
 _SYSTEMS = {
-    "forced": KEYS["system"],
+    "forced": tuple(key for key in KEYS["system"] if key not in GENERAL_KEYS),
     "record": (
         _CONTACT._replace(valid=word(*CONTACTS)),
         _MASSES._replace(meaning="the mass in contact", valid=several({"const": 1}, maxItems=1), words="[1]"),

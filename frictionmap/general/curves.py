@@ -1,0 +1,141 @@
+"""Response curves of general systems, cell by cell."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import xarray as xr
+
+from .. import regimes
+from ..datasets.labels import LABELS, OLDER_NAMES, PER_CONTACT, labels_of
+from ..datasets.variables import coordinate, label_variable
+from ..errors import InputError, NoSteadyState
+from ..model.settings import CurveSettings, Solver
+from ..model.system import System
+from .boundaries import find_boundaries
+from .cycle import equivalent, first_harmonics, harmonic_values, parts, phase_values, work_values
+from .dataset import boundary_variables, contact_coordinates, refuse_static
+from .held import held_forces, largest
+from .problem import general_of, problem_of
+from .response import scalars
+from .steps import Steps, cell_steps
+
+#: Scalars of every cell.
+_ALWAYS = ("regime", "contact_regime", "stops_per_cycle", "slips_per_cycle", "period", "status")
+
+_OFFERED = ("amplitude", "phase", "first_harmonic", "energy", "harmonics")
+
+
+def _cell(system: System, steps: Steps, asked: CurveSettings) -> dict[str, np.ndarray]:
+    """The requested numbers of one cell."""
+    found = scalars(system, steps)
+    values = {name: found[name] for name in _ALWAYS}
+    quantities = asked.quantities
+    phasors = harmonic_values(system, steps, max(1, asked.harmonics))
+    if "amplitude" in quantities:
+        for name in ("amplitude", "contact_amplitude", "peak_to_peak", "contact_peak_to_peak"):
+            values[name] = found[name]
+    if "phase" in quantities:
+        values |= phase_values(steps)
+    if "first_harmonic" in quantities:
+        values |= first_harmonics(phasors)
+    if "harmonics" in quantities:
+        values |= {name: parts(value) for name, value in phasors.items()}
+    if "energy" in quantities:
+        values |= work_values(system, steps)
+        values |= {"sliding_distance": found["sliding_distance"], "work_wall": found["work_wall"]}
+        values |= equivalent(steps, phasors)
+    return values
+
+
+def _stuck(system: System, asked: CurveSettings, r: float) -> dict[str, np.ndarray]:
+    """Numbers of a cell that sticks for good: amplitudes of the held structure."""
+    general = general_of(system)
+    values = {"regime": np.array(regimes.PERMANENT_STICKING), "status": np.array(regimes.RESOLVED),
+              "period": np.array(1), "contact_regime": np.zeros(general.count)}  # fmt: skip
+    _, motions = held_forces(system, np.array([r]))
+    x = np.stack([motion[0] for motion in motions.values()], axis=-1)
+    orders = np.array(list(motions), dtype=float)
+    finite = np.isfinite(x).all(axis=-1)
+    x = np.where(finite[:, np.newaxis], x, 0.0)
+    high, low = largest(orders, x), -largest(orders, -x)
+    if "amplitude" in asked.quantities:
+        values["amplitude"] = np.where(finite, np.maximum(high, -low), np.inf)
+        values["peak_to_peak"] = np.where(finite, high - low, np.inf)
+        values["contact_amplitude"] = values["contact_peak_to_peak"] = np.zeros(general.count)
+    if "first_harmonic" in asked.quantities and 1 in motions:
+        first = np.where(finite, motions[1][0], np.inf)
+        values["first_harmonic_amplitude"] = np.abs(first)
+        values["first_harmonic_phase"] = np.where(finite, -np.angle(np.where(finite, first, 1.0)), np.nan)
+    return values
+
+
+def _wanted(name: str, system: System) -> bool:
+    general = general_of(system)
+    if name in ("stops_per_cycle", "turns_per_cycle", "stuck_fraction"):
+        return not general.elastic.all()
+    if name.startswith("slip"):
+        return bool(general.elastic.any())
+    if name == "work_wall":
+        return any(group.first.wall_velocity for group in general.groups)
+    return name != "contact_regime" or general.count > 1
+
+
+def _variable(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
+    """Label values (n_mu, n_r, n_beta, ...); those of contacts get that dimension at its place."""
+    label = labels_of("curves")[name]
+    values = values.astype(label.dtype, copy=False)
+    if name not in PER_CONTACT:
+        return label_variable(name, values, "curves")
+    first = values[:, :, :, 0]
+    attrs = label_variable(name, first, "curves").attrs
+    if contacts == 1:
+        return xr.Variable(label.dims, first, attrs)
+    return xr.Variable((*label.dims[:3], "contact", *label.dims[3:]), values, attrs)
+
+
+def general_curves(
+    system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings,
+    progress: Callable[[int, int], None] | None,
+) -> xr.Dataset:  # fmt: skip
+    """Compute the response curves of a general system over the axes mu, r and beta; see `curves`."""
+    for name in asked.quantities:
+        if name not in _OFFERED:
+            raise InputError(
+                f"cannot compute {name} with several contacts, springs, belts or loads of several harmonics; "
+                f"valid quantities: {', '.join(_OFFERED)}"
+            )
+    mu, r, beta = axes["mu"], axes["r"], axes["beta"]
+    refuse_static(general_of(system), mu)
+    if r[0] == 0.0:
+        raise InputError("r must be > 0 for response curves of such systems; got 0")
+    count = general_of(system).count
+    limits = find_boundaries(system, r, mu)
+    problem, modal = problem_of(system, r)
+    shape = (mu.size, r.size, beta.size)
+    tables: dict[str, np.ndarray] = {}
+    for done, (m, i, b) in enumerate(np.ndindex(shape), 1):
+        values: dict[str, np.ndarray] = {"status": np.array(regimes.NOT_REACHED)}
+        try:
+            if mu[m] == 1.0 and solver.skip == "exact" and beta[b] >= limits.beta_stick[m, i]:
+                values = _stuck(system, asked, float(r[i]))
+            else:
+                values = _cell(
+                    system, cell_steps(system, problem, modal, i, float(beta[b]), float(mu[m]), solver), asked
+                )
+        except NoSteadyState:
+            pass
+        for name, value in values.items():
+            if name not in tables:
+                label = LABELS[name]
+                tables[name] = np.full((*shape, *value.shape), label.unresolved, dtype=float)
+            tables[name][m, i, b] = value
+        if progress is not None:
+            progress(done, int(np.prod(shape)))
+    for old, new in OLDER_NAMES["curves"].items():
+        if new in tables:
+            tables[old] = tables[new]
+    variables = {
+        name: _variable(name, values, count) for name, values in tables.items() if _wanted(name, system)
+    }
+    coords = {name: coordinate(name, values) for name, values in axes.items()} | contact_coordinates(system)
+    return xr.Dataset(variables | boundary_variables(system, limits), coords=coords)

@@ -1,0 +1,122 @@
+"""Quantities of a steady state over a cycle: harmonics, works, phases."""
+
+import numpy as np
+
+from ..model.system import System
+from .problem import general_of
+from .steps import Steps
+
+#: Samples per period and step among which the largest displacement is looked for.
+_SAMPLES = 8
+
+#: Steps to the phase of a maximum.
+_REFINED = 6
+
+
+def parts(phasors: np.ndarray) -> np.ndarray:
+    """Real and imaginary parts as a last dimension."""
+    return np.stack((phasors.real, phasors.imag), axis=-1)
+
+
+def _lag(phasors: np.ndarray) -> np.ndarray:
+    return np.where(phasors == 0.0, np.nan, -np.angle(np.where(phasors == 0.0, 1.0, phasors)))
+
+
+def harmonic_values(system: System, steps: Steps, highest: int) -> dict[str, np.ndarray]:
+    """Harmonics 0 to `highest` of masses, contacts and friction forces."""
+    general = general_of(system)
+    offset = np.linalg.solve(system.modes.stiffness, general.offset)
+    x = steps.modal.phi @ steps.harmonics("q", highest)
+    x[:, 0] += offset
+    z, f = steps.harmonics("z", highest), steps.harmonics("f", highest)
+    z[:, 0] += np.array([group.vector for group in general.groups]) @ offset
+    return {"displacement_harmonic": x, "contact_harmonic": z, "friction_harmonic": f}
+
+
+def _damping_work(system: System, steps: Steps) -> float:
+    """Work of viscous damping per period of the load, r times the integral of x'.C1 x'."""
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    x = 0.5 * (1.0 + nodes) * (steps.lengths[:, np.newaxis] / steps.h)
+    series = steps.series[:, steps.rows("q")]
+    velocity = steps._values(series[:, :, np.newaxis, :], x[:, np.newaxis, :], 1)
+    damping = steps.problem.damping
+    if system.damping_reference == "base":
+        velocity = steps.modal.phi @ velocity - _base_velocity(system, steps, x)[:, np.newaxis, :]
+        damping = steps.modal.viscous
+    power = np.einsum("sig,ij,sjg->sg", velocity, damping, velocity)
+    whole = np.sum(power * 0.5 * weights * steps.lengths[:, np.newaxis])
+    return float(steps.r * whole / steps.period)
+
+
+def _base_velocity(system: System, steps: Steps, x: np.ndarray) -> np.ndarray:
+    from .._kernels.general.return_map import SECTION
+
+    tau = SECTION + steps.begins[:, np.newaxis] + x * steps.h
+    found = np.zeros_like(tau)
+    for order, phasor in general_of(system).base.items():
+        found += (1j * order * phasor * np.exp(1j * order * tau)).real
+    return found
+
+
+def work_values(system: System, steps: Steps) -> dict[str, np.ndarray]:
+    """Works per cycle; with base excitation the input follows from the balance."""
+    general = general_of(system)
+    damping = _damping_work(system, steps)
+    friction, wall = steps.works
+    if general.base:
+        given = friction.sum() + damping - wall.sum()
+    else:
+        highest = max(general.forces)
+        x = steps.modal.phi @ steps.harmonics("q", highest)
+        given = np.pi * sum(n * (p * x[:, n].conj()).imag.sum() for n, p in general.forces.items())
+    return {"work_input": np.array(given), "work_damping": np.array(damping), "work_friction": friction}
+
+
+def first_harmonics(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Amplitudes and lags of the first harmonics."""
+    x, z = found["displacement_harmonic"][:, 1], found["contact_harmonic"][:, 1]
+    return {
+        "first_harmonic_amplitude": np.abs(x), "first_harmonic_phase": _lag(x),
+        "contact_first_harmonic_amplitude": np.abs(z), "contact_first_harmonic_phase": _lag(z),
+    }  # fmt: skip
+
+
+def phase_values(steps: Steps) -> dict[str, np.ndarray]:
+    """Lags of the maxima of the displacements; NaN where the period is not 1 or the masses rest there."""
+    count = steps.modal.phi.shape[0]
+    if steps.period != 1:
+        return {"phase_lag": np.full(count, np.nan)}
+    tau = np.linspace(0.0, 2.0 * np.pi, _SAMPLES * max(64, steps.begins.size) + 1)[:-1]
+    x = steps.modal.phi @ steps.at("q", tau)
+    found = np.full(count, np.nan)
+    for i in range(count):
+        place = tau[np.argmax(np.abs(x[i]))]
+        step = tau[1]
+        for _ in range(_REFINED):
+            around = place + 1e-4 * step * np.array([-1.0, 0.0, 1.0])
+            v = steps.modal.phi[i] @ steps.at("q", around, 1)
+            bend = (v[2] - v[0]) / (around[2] - around[0])
+            if bend == 0.0:
+                break
+            place += float(np.clip(-v[1] / bend, -step, step))
+        if abs(x[i]).max() > 0.0:
+            found[i] = np.mod(place + np.pi, 2.0 * np.pi) - np.pi
+    return {"phase_lag": found}
+
+
+def equivalent(steps: Steps, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Equivalent stiffness and damping of each contact, from F_1/Z_1; NaN where it rests."""
+    z, f = found["contact_harmonic"][:, 1], found["friction_harmonic"][:, 1]
+    moves = np.abs(z) > 0.0
+    ratio = np.where(moves, f / np.where(moves, z, 1.0), np.nan)
+    return {"equivalent_stiffness": ratio.real, "equivalent_damping": ratio.imag}
+
+
+def cycle_values(system: System, steps: Steps, highest: int) -> dict[str, np.ndarray]:
+    """All quantities of a cell over a cycle; phasors as real and imaginary parts."""
+    phasors = harmonic_values(system, steps, max(highest, 1))
+    return {
+        **{name: parts(values) for name, values in phasors.items()},
+        **first_harmonics(phasors),
+        **work_values(system, steps),
+    }

@@ -1,0 +1,155 @@
+"""One steady state of a general system in time, as labelled variables."""
+
+import numpy as np
+import xarray as xr
+
+from .. import regimes
+from ..datasets.labels import LABELS, OLDER_NAMES, PER_CONTACT
+from ..datasets.variables import coordinate, label_variable
+from ..model.settings import HARMONICS, Solver
+from ..model.system import System
+from .boundaries import find_boundaries
+from .cycle import cycle_values
+from .dataset import boundary_variables, contact_coordinates, contact_variable, refuse_static
+from .problem import general_of
+from .steps import Steps, steps_of
+
+#: Variables over time with one row per contact.
+_TRACES = ("z", "friction", "direction", "y")
+
+
+def _overall(found: list[int]) -> int:
+    """Regime of all contacts from those of each."""
+    if set(found) == {regimes.PERMANENT_STICKING}:
+        return regimes.PERMANENT_STICKING
+    if min(found) >= regimes.CONTINUOUS:
+        return found[0] if len(found) == 1 else regimes.CONTINUOUS
+    return regimes.STICK_SLIP
+
+
+def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarray]:
+    """Motion of masses and contacts over tau, and the forces in the contacts."""
+    general, modal = general_of(system), steps.modal
+    offset = np.linalg.solve(system.modes.stiffness, general.offset)
+    vectors = np.array([group.vector for group in general.groups])
+    z = steps.at("z", tau) + (vectors @ offset)[:, np.newaxis]
+    friction = steps.at("f", tau)
+    since = np.mod(tau - _section(), 2.0 * np.pi * steps.period)
+    k = np.clip(np.searchsorted(steps.begins, since, side="right") - 1, 0, steps.begins.size - 1)
+    found = {
+        "x": modal.phi @ steps.at("q", tau) + offset[:, np.newaxis],
+        "v": modal.phi @ steps.at("q", tau, 1),
+        "z": z,
+        "friction": friction,
+        "direction": steps.senses[k].T.astype(np.int8),
+    }
+    kt = steps.problem.spring[:, np.newaxis]
+    if kt.any():
+        belt = steps.problem.belt[:, np.newaxis] * tau
+        found["y"] = np.where(kt > 0.0, z - friction / np.where(kt > 0.0, kt, 1.0), np.nan) - belt
+    return found
+
+
+def _section() -> float:
+    from .._kernels.general.return_map import SECTION
+
+    return SECTION
+
+
+def _events(system: System, steps: Steps) -> dict[str, np.ndarray]:
+    """Where a contact begins to slide or to stop, in order of time."""
+    changed = steps.senses != np.roll(steps.senses, 1, axis=0)
+    k, j = np.nonzero(changed)
+    tau = np.mod(steps.begins[k] + _section(), 2.0 * np.pi * steps.period)
+    order = np.argsort(tau, kind="stable")
+    k, j, tau = k[order], j[order], tau[order]
+    z = steps.series[:, steps.rows("z"), 0]
+    found = {"event_tau": tau, "event_direction": steps.senses[k, j].astype(np.int8), "event_z": z[k, j]}
+    if steps.contacts > 1:
+        found["event_contact"] = j + 1
+    return found
+
+
+def scalars(system: System, steps: Steps) -> dict[str, np.ndarray]:
+    """Numbers of a steady state: of all, (), of each contact, (N,), of each mass, (n,)."""
+    count = steps.contacts
+    of_contacts = [steps.per_cycle(j) for j in range(count)]
+    found: dict[str, np.ndarray] = {
+        name: np.array([one[name] for one in of_contacts]) for name in of_contacts[0]
+    }
+    rests = np.array([steps.regime(j) == regimes.PERMANENT_STICKING for j in range(count)])
+    still = rests & (steps.problem.spring == 0.0)
+    low, high = steps.lowest, steps.highest
+    largest = np.maximum(np.abs(low), np.abs(high))
+    own = [steps.regime(j) for j in range(count)]
+    return found | {
+        "regime": np.array(_overall(own)),
+        "contact_regime": np.array(own),
+        "contact_amplitude": np.where(still, 0.0, largest[:count]),
+        "contact_peak_to_peak": np.where(still, 0.0, (high - low)[:count]),
+        "contact_midpoint": 0.5 * (high + low)[:count],
+        "amplitude": largest[count:],
+        "peak_to_peak": (high - low)[count:],
+        "midpoint": 0.5 * (high + low)[count:],
+        "period": np.array(steps.period),
+        "status": np.array(regimes.RESOLVED),
+        "multiplier": np.array(steps.multiplier),
+        "cycles": np.array(int(np.ceil(steps.cycles))),
+        "origin": np.array(regimes.PERIODIC_ORBIT),
+        "sliding_distance": steps.distance,
+        "work_friction": steps.works[0],
+        "work_wall": steps.works[1],
+    }
+
+
+def labelled(name: str, values: np.ndarray, contacts: int, what: str = "") -> xr.Variable:
+    """Label numbers of one cell; those of each contact have its dimension where there are several."""
+    values = values.astype(LABELS[name].dtype, copy=False) if name in LABELS else values
+    if name not in PER_CONTACT:
+        return label_variable(name, values, what)
+    one = label_variable(name, values[0], what)
+    return one if contacts == 1 else xr.Variable(("contact", *one.dims), values, one.attrs)
+
+
+def _trace(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
+    if contacts == 1:
+        return label_variable(name, values[0])
+    return xr.Variable(("contact", "tau"), values, label_variable(name, values[0]).attrs)
+
+
+def general_response(
+    system: System, r: float, beta: float, mu: float, solver: Solver, points: int
+) -> xr.Dataset:
+    """Compute one steady state of a general system in time; see `response`."""
+    general = general_of(system)
+    refuse_static(general, np.array([mu]))
+    steps = steps_of(system, r, beta, mu, solver)
+    tau = np.linspace(0.0, 2.0 * np.pi * steps.period, points * steps.period + 1)
+    traces = _traces(system, steps, tau)
+    count = general.count
+    variables: dict[str, xr.Variable] = {}
+    for name, values in traces.items():
+        if name in _TRACES:
+            variables[name] = _trace(name, values, count)
+        else:
+            variables[name] = label_variable(name, values)
+    events = _events(system, steps)
+    variables |= {name: label_variable(name, values) for name, values in events.items()}
+    for old, new in OLDER_NAMES["response"].items():
+        variables[old] = variables[new].copy(deep=False)
+    found = scalars(system, steps)
+    found |= cycle_values(system, steps, HARMONICS)
+    elastic = general.elastic
+    for name, values in found.items():
+        unwanted = name in ("stops_per_cycle", "turns_per_cycle", "stuck_fraction") and elastic.all()
+        unwanted |= name.startswith(("slip", "elastic")) and not elastic.any()
+        unwanted |= name == "contact_regime" and count == 1
+        unwanted |= name == "work_wall" and not steps.problem.belt.any()
+        if not unwanted:
+            variables[name] = labelled(name, values, count, "response")
+    limits = find_boundaries(system, np.array([r]), np.array([mu]))
+    variables |= {name: v[0, 0] for name, v in boundary_variables(system, limits).items() if v.dims[0] == "mu"}
+    own = {"tau": tau, "dof": np.array(system.dofs.numbers), "harmonic": np.arange(HARMONICS + 1),
+           "part": np.array(["real", "imaginary"]), "r": r, "beta": beta, "mu": mu}  # fmt: skip
+    coords = {name: coordinate(name, values) for name, values in own.items()}
+    return xr.Dataset(variables, coords=coords | contact_coordinates(system))

@@ -1,0 +1,179 @@
+"""One steady state as the Taylor series of its steps: values at any time, harmonics, works."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import regimes
+from .._kernels.engine.policies import MOVING_START
+from .._kernels.general.follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
+from .._kernels.general.problem import LONG, Problem
+from .._kernels.general.return_map import SECTION
+from .._kernels.general.series import Friction
+from .._kernels.general.steady import REPEATS, one_steady_state
+from ..errors import NoSteadyState
+from ..model.settings import Solver
+from ..model.system import System
+from .held import least_static_friction
+from .boundaries import friction_lines, rest_states, sliding_states
+from .problem import ModalSystem, general_of, problem_of
+
+#: Steps that are kept at first; four times as many where they do not suffice.
+_FIRST = 512
+
+#: Gauss nodes per step for integrals with harmonics.
+_GAUSS = 24
+
+
+@dataclass(frozen=True)
+class Steps:
+    """A steady state over its period, step by step from the phase `SECTION` on."""
+
+    problem: Problem
+    modal: ModalSystem
+    friction: Friction
+    r: float
+    begins: np.ndarray  # (steps,) time since the section
+    lengths: np.ndarray  # (steps,)
+    h: float
+    series: np.ndarray  # (steps, rows, WIDTH)
+    senses: np.ndarray  # (steps, N)
+    counts: np.ndarray
+    period: int
+    multiplier: float
+    cycles: float
+    lowest: np.ndarray  # (N + n,) extremes in the contacts and of the masses
+    highest: np.ndarray
+    works: np.ndarray  # (2, N) per period of the load
+    distance: np.ndarray  # (N,)
+
+    @property
+    def contacts(self) -> int:
+        """Number of contacts."""
+        return self.senses.shape[1]
+
+    def rows(self, name: str) -> slice:
+        """Rows of the series of the modes, of z, w, f."""
+        modes, channels = self.problem.push.shape
+        first, count = modes + channels, self.contacts
+        return {
+            "q": slice(0, modes), "L": slice(modes, first), "z": slice(first, first + count),
+            "w": slice(first + count, first + 2 * count),
+            "f": slice(first + 2 * count, first + 3 * count),
+        }[name]  # fmt: skip
+
+    def at(self, name: str, tau: np.ndarray, order: int = 0) -> np.ndarray:
+        """Values at phases tau, (rows, tau.size); `order` 1 for the derivative by tau."""
+        since = np.mod(tau - SECTION, 2.0 * np.pi * self.period)
+        k = np.clip(np.searchsorted(self.begins, since, side="right") - 1, 0, self.begins.size - 1)
+        x = (since - self.begins[k]) / self.h
+        return self._values(self.series[k, self.rows(name)], x[:, np.newaxis], order).T
+
+    def _values(self, series: np.ndarray, x: np.ndarray, order: int) -> np.ndarray:
+        value = np.zeros(series.shape[:-1])
+        slope = np.zeros(series.shape[:-1])
+        for n in range(LONG - 1, -1, -1):
+            slope = slope * x + value
+            value = value * x + series[..., n]
+        return slope / self.h if order else value
+
+    def harmonics(self, name: str, highest: int) -> np.ndarray:
+        """Fourier coefficients 0..highest of the rows, complex (rows, highest + 1), x = Re sum X_n e^{i n tau}."""
+        nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
+        x = 0.5 * (1.0 + nodes) * (self.lengths[:, np.newaxis] / self.h)  # (steps, nodes)
+        series = self.series[:, self.rows(name)]
+        values = self._values(series[:, :, np.newaxis, :], x[:, np.newaxis, :], 0)  # (steps, rows, nodes)
+        tau = SECTION + self.begins[:, np.newaxis] + x * self.h
+        weight = 0.5 * weights * self.lengths[:, np.newaxis]
+        orders = np.arange(highest + 1)
+        waves = np.exp(-1j * orders[:, np.newaxis, np.newaxis] * tau) * weight
+        found = np.einsum("skg,nsg->kn", values, waves) / (np.pi * self.period)
+        found[:, 0] *= 0.5
+        return found
+
+    def regime(self, j: int) -> int:
+        """Regime of a contact."""
+        if not self.counts[MOVED, j]:
+            return regimes.PERMANENT_STICKING
+        elastic = bool(self.problem.spring[j])
+        if self.counts[STUCK if elastic else STOPS, j]:
+            return regimes.STICK_SLIP
+        one_way = elastic or (self.problem.belt[j] != 0.0 and not self.counts[TURNS, j])
+        return regimes.ONE_WAY_SLIDING if one_way else regimes.CONTINUOUS
+
+    def per_cycle(self, j: int) -> dict[str, float]:
+        """Numbers of a contact per period of the load."""
+        c, p = self.counts[:, j], self.period
+        elastic = bool(self.problem.spring[j])
+        slips = 1.0 if elastic and c[MOVED] and not c[STUCK] else c[SLIPS] / p
+        rests = not c[MOVED]
+        stuck = 1.0 if rests else c[STUCK] / (2.0 * np.pi * p)
+        none = np.nan
+        return {
+            "stops_per_cycle": none if elastic or rests else c[STOPS] / p,
+            "turns_per_cycle": none if elastic or rests else c[TURNS] / p,
+            "stuck_fraction": none if elastic else stuck,
+            "slips_per_cycle": slips if elastic else none,
+            "slip_reversals_per_cycle": c[REVERSALS] / p if elastic else none,
+            "elastic_fraction": stuck if elastic else none,
+        }
+
+
+def _rests(system: System, problem: Problem, i: int, friction: Friction) -> bool:
+    """Whether all contacts rest for good, by closed form."""
+    needed = least_static_friction(system, problem.r[i : i + 1])[0]
+    return bool((friction.static >= needed).all())
+
+
+def steps_of(system: System, r: float, beta: float, mu: float, solver: Solver) -> Steps:
+    """Find the steady state of one cell.
+
+    Raises
+    ------
+    NoSteadyState
+        None was found.
+    """
+    problem, modal = problem_of(system, np.array([r]))
+    return cell_steps(system, problem, modal, 0, beta, mu, solver)
+
+
+def cell_steps(
+    system: System, problem: Problem, modal: ModalSystem, i: int, beta: float, mu: float, solver: Solver
+) -> Steps:
+    """Find the steady state at r[i] of a problem; see `steps_of`."""
+    kinetic, static = friction_lines(system, np.array([mu]))
+    friction = Friction(kinetic @ np.array([beta, 1.0]), static[0] @ np.array([beta, 1.0]))
+    start = rest_states(system, modal, problem.r[i : i + 1])[0]
+    if solver.start == "moving":
+        start = sliding_states(problem, problem.r, MOVING_START)[i]
+    most = _FIRST
+    phi = np.ascontiguousarray(modal.phi)
+    while True:
+        found, halves, counts, record, h = one_steady_state(
+            problem, i, friction, start, float(solver.cycles), solver.tolerance, phi, most
+        )
+        if found.status != REPEATS:
+            raise NoSteadyState(
+                f"r = {problem.r[i]:g}, beta = {beta:g}, mu = {mu:g}: no steady state was found in "
+                f"{found.cycles:.0f} periods; raise solver.cycles"
+            )
+        count = int(record.count[0])
+        if count <= most:
+            break
+        most = 4 * count
+    if (friction.static == friction.kinetic).all() and _rests(system, problem, i, friction):
+        counts[[STOPS, TURNS, SLIPS, REVERSALS, MOVED]] = 0.0  # contacts at their limit, by rounding
+    period = halves // 2
+    lengths = record.patterns[:count, -1] * h
+    begins = np.concatenate(([0.0], np.cumsum(lengths)[:-1]))
+    own = lengths > 0.0
+    offset = general_of(system).offset
+    x = np.linalg.solve(system.modes.stiffness, offset)
+    shift = np.concatenate(([group.vector @ x for group in general_of(system).groups], x))
+    return Steps(
+        problem, modal, friction, float(problem.r[i]), begins[own], lengths[own], h, record.steps[:count][own],
+        record.patterns[:count][own][:, :-1].astype(np.int8), counts, period, found.multiplier, found.cycles,
+        record.lowest + shift, record.highest + shift, record.works / period, record.distance / period,
+    )  # fmt: skip
+
+

@@ -155,6 +155,8 @@ def _load(
     """Load the wanted variables of a file, after all other checks."""
     in_store = MARKS in ds
     with naming(path):
+        if "contact" not in at and ds.sizes.get("contact", 0) > 1:
+            ds = ds.drop_dims("contact")  # what all contacts share; --at contact=2 has those of one
         if at or further_axes(ds):
             ds = choose(ds, at)
         if MARKS in ds and not ds[MARKS].values.all():  # boundaries of blocks to come are not known

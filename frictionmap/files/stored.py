@@ -12,8 +12,11 @@ def stored_system(ds: xr.Dataset) -> System | None:
     """The system that a dataset was computed for, from its attribute `config`; None if that does not say.
 
     Then the matrices are in a file of their own or too large to be stored, or there is no configuration.
+    None also of systems with several contacts, springs, belts or harmonics: what a picture marks of a system,
+    its resonant peaks and invariant points, is known for one rigid contact under one harmonic load.
     """
-    return system_in(str(ds.attrs.get("config", "")))
+    system = system_in(str(ds.attrs.get("config", "")))
+    return None if system is None or system.general is not None else system
 
 
 def stored_excitation(ds: xr.Dataset) -> str | None:

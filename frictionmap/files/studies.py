@@ -77,12 +77,13 @@ def describe_cells(path: Path) -> list[str]:
 
 def cell_lines(ds: xr.Dataset) -> list[str]:
     """Count cells by regime and by cause of unresolved cells."""
-    codes = {"regime": regimes.REGIMES, "status": regimes.STATUSES}
+    codes = {"regime": regimes.BELT_REGIMES, "status": regimes.STATUSES}
     found = {}
     for name, known in codes.items():
         counter = count_codes(ds, name)
         found[name] = [(code, counter[code.value]) for code in known if counter[code.value]]
-    dims = (*further_axes(ds), *CELL)
+    further = [dim for dim in further_axes(ds) if dim != "contact"]  # a cell has several contacts
+    dims = (*further, *CELL)
     cells = math.prod(ds.sizes.get(dim, 1) for dim in dims)
     return [in_cells(cells, found["regime"]), *in_causes(found["status"])]
 

@@ -28,7 +28,7 @@ def describe_map(ds: xr.Dataset) -> str:
     """Describe a map in one line: number of cells by regime."""
     further = [name for name in ds["regime"].dims if name not in CELL] if "regime" in ds else []
     cells = int(np.prod([ds.sizes[name] for name in (*further, *CELL)]))
-    return in_cells(cells, _counts(ds["regime"], regimes.REGIMES) if "regime" in ds else [])
+    return in_cells(cells, _counts(ds["regime"], regimes.BELT_REGIMES) if "regime" in ds else [])
 
 
 def in_cells(cells: int, counts: Sequence[tuple[regimes.Code, int]]) -> str:
@@ -74,22 +74,29 @@ def _plain(code: regimes.Code) -> str:
 def describe_response(ds: xr.Dataset) -> str:
     """Describe a response in one line: regime, stops, amplitude, period, as far as available."""
     regime = next(
-        (code for code in regimes.REGIMES if "regime" in ds and code.value == int(ds["regime"])), None
+        (code for code in regimes.BELT_REGIMES if "regime" in ds and code.value == int(ds["regime"])), None
     )
     words = [_plain(regime)] if regime else []
     moving = regime is None or regime.value != regimes.PERMANENT_STICKING
     if regime is None or regime.value == regimes.STICK_SLIP:
         if "stops_per_cycle" in ds:
-            words.append(f"{float(ds['stops_per_cycle']):.4g} stops per cycle")
+            words.append(f"{_each(ds['stops_per_cycle'], '.4g')} stops per cycle")
+        if "slips_per_cycle" in ds:
+            words.append(f"{_each(ds['slips_per_cycle'], '.4g')} slips per cycle")
         if "stuck_fraction" in ds:
-            words.append(f"stuck {100.0 * float(ds['stuck_fraction']):.3g} % of the time")
+            words.append(f"stuck {_each(100.0 * ds['stuck_fraction'], '.3g')} % of the time")
     if moving and "contact_amplitude" in ds:
-        words.append(f"amplitude {float(ds['contact_amplitude']):.6g}")
+        words.append(f"amplitude {_each(ds['contact_amplitude'], '.6g')}")
     if "period" in ds and int(ds["period"]) > 1:
         words.append(f"period {int(ds['period'])}")
     if "status" in ds and int(ds["status"]) in regimes.WITHOUT_PERIOD:
         words.append("irregular: an excerpt of the motion, and averages")
     return ", ".join(words)
+
+
+def _each(values: xr.DataArray, form: str) -> str:
+    """Format a number, or those of all contacts."""
+    return ", ".join(f"{value:{form}}" for value in np.atleast_1d(values.values))
 
 
 def describe_shares(ds: xr.Dataset) -> str:

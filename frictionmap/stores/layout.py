@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..datasets.labels import CELL_VARIABLES, MARKS
+from ..datasets.labels import LABELS, MARKS
 from ..datasets.physical import physical_axes
 from ..datasets.variables import coordinate
 from .study import Batch, Study
@@ -28,6 +28,7 @@ def arrays_of(study: Study, sample: xr.Dataset) -> dict[str, Array]:
     dims = tuple(axis.name for axis in study.variations.axes)
     sizes = dict(zip(dims, study.variations.shape, strict=True))
     sizes |= {"mu": study.mu.size, "r": study.r.size, "beta": study.beta.size, "dof": study.system.n}
+    sizes |= {str(dim): size for dim, size in sample.sizes.items() if dim not in sizes}
     further = {name: variable.dims for name, variable in study.coordinates().items() if name not in dims}
     further |= {name: variable.dims for name, variable in _physical(study).items()}
     arrays = {}
@@ -36,7 +37,9 @@ def arrays_of(study: Study, sample: xr.Dataset) -> dict[str, Array]:
         with_axes = [name for name, dims_of_it in further.items() if set(dims_of_it) <= set(own)]
         beside = {"coordinates": " ".join(with_axes)} if with_axes else {}  # CF: what goes with an axis
         chunk = dict(zip((*dims, "mu"), study.together, strict=False)) | {"r": study.rows}
-        fill = CELL_VARIABLES[str(name)].unresolved if name in CELL_VARIABLES else np.nan
+        fill = LABELS[str(name)].unresolved if "beta" in LABELS[str(name)].dims else np.nan
+        if variable.dtype.kind in "iu" and np.isnan(fill):
+            fill = 0
         arrays[str(name)] = Array(
             own, tuple(sizes[dim] for dim in own), tuple(chunk.get(dim, sizes[dim]) for dim in own),
             variable.dtype, variable.dtype.type(fill), plain(variable.attrs) | beside,
@@ -56,7 +59,8 @@ def arrays_of(study: Study, sample: xr.Dataset) -> dict[str, Array]:
 def coordinates_of(study: Study, sample: xr.Dataset) -> dict[str, xr.Variable]:
     """The axes of a store."""
     grid = {name: coordinate(name, getattr(study, name)) for name in ("mu", "r", "beta")}
-    further = {"dof": sample["dof"].variable} if "dof" in sample.coords else {}
+    own = ("dof", "contact", "contact_name")
+    further = {name: sample[name].variable for name in own if name in sample.coords}
     return study.coordinates() | grid | _physical(study) | further
 
 

@@ -584,6 +584,7 @@ HISTORY_VARIABLES = {
         np.int8, "direction of the motion in the contact that begins", ("event",), _SENSES
     ),
     "event_z": Label(np.float64, "motion in the contact at the event, over P/k1 (Y)", ("event",)),
+    "load": Label(np.float64, "sum of the loads on the masses, over P", ("tau",)),
     "event_contact": Label(np.int64, "contact that the event is of, counted from 1", ("event",), least=1),
     "y": Label(
         np.float64, "displacement of the slider of an elastic contact, over P/k1 (Y)", ("tau",), nan=True

@@ -6,6 +6,7 @@ import xarray as xr
 from .. import regimes
 from ..datasets.labels import LABELS, OLDER_NAMES, PER_CONTACT
 from ..datasets.variables import coordinate, label_variable
+from ..model.general import General
 from ..model.settings import HARMONICS, Solver
 from ..model.system import System
 from .boundaries import find_boundaries
@@ -43,11 +44,19 @@ def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarr
         "friction": friction,
         "direction": steps.senses[k].T.astype(np.int8),
     }
+    if system.load is None and not general.base:
+        found["load"] = _load(general, tau)
     kt = steps.problem.spring[:, np.newaxis]
     if kt.any():
         belt = steps.problem.belt[:, np.newaxis] * tau
         found["y"] = np.where(kt > 0.0, z - friction / np.where(kt > 0.0, kt, 1.0), np.nan) - belt
     return found
+
+
+def _load(general: General, tau: np.ndarray) -> np.ndarray:
+    """Load over tau: the sum of those on all masses."""
+    phasors = {n: complex(vector.sum()) for n, vector in general.forces.items()}
+    return sum((p * np.exp(1j * n * tau)).real for n, p in phasors.items()) + np.zeros_like(tau)
 
 
 def _section() -> float:

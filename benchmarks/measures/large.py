@@ -172,7 +172,7 @@ def _write_study(folder: Path, samples: int, quick: bool) -> None:
 
 @functools.cache
 def _alone(folder: Path, samples: int, quick: bool) -> tuple[Path, dict]:
-    """The store of the study by one command without workers, and what that took; once for so many samples."""
+    """Compute the study without workers, once for each number of samples: its store, and what it took."""
     _write_study(folder, samples, quick)
     out = folder / f"alone{samples}.zarr"
     return out, _whole(folder, "map", "study.toml", "-o", out)

@@ -47,7 +47,7 @@ def chromium() -> Iterator:
 @contextlib.contextmanager
 def page_of(browser, url, wait=DONE, **options):
     """A page; in the end nothing was wrong on its console, and nobody else was asked for anything."""
-    context = browser.new_context(**{"viewport": {"width": 640, "height": 480}, **options})
+    context = browser.new_context(**{"viewport": {"width": 480, "height": 400}, **options})
     context.set_default_timeout(WAIT)
     page = context.new_page()
     page.wrong, page.asked = [], set()

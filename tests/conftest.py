@@ -19,8 +19,11 @@ os.environ.setdefault("MPLBACKEND", "agg")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-#: Files that take minutes, first: a worker that begins one of them last works on alone.
-LONGEST = ("test_quick_benchmarks.py", "test_quick_faults.py", "test_interrupts.py", "test_stores_cut.py")
+#: Files that take a minute or so, first: a worker that begins one of them last works on alone.
+LONGEST = (
+    "test_quick_benchmarks.py", "test_stores.py", "test_explore_page.py", "test_quick_faults.py",
+    "test_interrupts.py", "test_stores_cut.py",
+)  # fmt: skip
 
 REFERENCE = Path(os.environ.get("FRICTIONMAP_REFERENCE", ROOT.parent / "shared" / "reference"))
 

@@ -217,10 +217,10 @@ def flip_bytes(rng: np.random.Generator, content: bytes) -> bytes:
 
 
 def refused(source: Path, path: Path, seed: int) -> int:
-    """How many of 60 mutants of a file are refused, each in one line that names the file."""
+    """How many of 30 mutants of a file are refused, each in one line that names the file."""
     rng = np.random.default_rng(seed)
     count = 0
-    for index in range(60):
+    for index in range(30):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             what = write_mutant(rng, source, path)

@@ -33,7 +33,7 @@ FIGURE = ROOT / "docs" / "fig-5-55.png"
 
 MASSES, CONTACT = 5, 3
 R = (0.2, 0.25, 0.27, 0.3, 0.36, 0.4, 0.42, 0.47, 0.53, 0.6, 0.7, 0.78)
-QUICK_R = (0.4, 0.6)
+QUICK_R = (0.6,)
 
 #: Damping ratio of all modes, periods of a run, and width of the bracket left over its lower end.
 UNDAMPED = (0.0, 300, 5e-4)

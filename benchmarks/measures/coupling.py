@@ -17,7 +17,7 @@ from ..references.naive import chain_stiffness, naive_steady_state
 from ..report.figures import new_figure, save_figure
 from ..report.record import save
 
-#: Mean damping ratio of the modes.
+#: Mean damping ratio of the modes; the quick form has the last one, whose motions settle soon.
 LEVELS = (0.002, 0.01, 0.03, 0.1)
 
 #: Cells of every level and kind; of the quick form.
@@ -101,7 +101,7 @@ def run(quick: bool, results: Path) -> dict:
     """Compare, print, draw and save."""
     found: dict = {}
     for kind in KINDS:
-        for level in LEVELS:
+        for level in LEVELS[-1:] if quick else LEVELS:
             rng = np.random.default_rng([KINDS.index(kind), LEVELS.index(level)])
             cells = [compare(rng, kind, level) for _ in range(QUICK_CELLS if quick else CELLS)]
             summary = _summary([cell for cell in cells if cell is not None])

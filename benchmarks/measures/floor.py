@@ -218,7 +218,7 @@ def one_motion(r: float, zeta: float, b: float, mu: float, repeats: int) -> dict
 
 def phase_floor(quick: bool) -> dict:
     """Measure and print nanoseconds per segment, of the kernel and of the closed forms alone."""
-    repeats = 20 if quick else 200
+    repeats = 5 if quick else 200
     with pinned():
         found = {
             f"r = {r:g}, zeta = {zeta:g}, b = {b:g}, mu = {mu:g}": one_motion(r, zeta, b, mu, repeats)

@@ -9,6 +9,7 @@ ahead           10^10 cells on 100 machines, estimated from the above
 """
 
 import filecmp
+import functools
 import os
 import random
 import shutil
@@ -34,7 +35,9 @@ LARGEST_R, LARGEST_BETA = 2.5, 4.0
 OVERHEAD = {False: 4096, True: 512}
 SIZES = {False: (4096, 8192, 16384), True: (256,)}
 IN_MEMORY = {False: 4096, True: 512}  # the largest that is made in memory, too
-SAMPLES = {False: 1000, True: 8}
+SAMPLES = {False: 1000, True: 24}
+WORKERS_SAMPLES = {False: 250, True: 24}
+KILLED_SAMPLES = 24
 SMALL_MAP = {False: 60, True: 15}
 KILLS = {False: 100, True: 1}
 RUNS = {False: 5, True: 1}
@@ -167,16 +170,23 @@ def _write_study(folder: Path, samples: int, quick: bool) -> None:
     (folder / "study.toml").write_text(STUDY.format(n=SMALL_MAP[quick]))
 
 
+@functools.cache
+def _alone(folder: Path, samples: int, quick: bool) -> tuple[Path, dict]:
+    """Compute the study without workers, once for each number of samples: its store, and what it took."""
+    _write_study(folder, samples, quick)
+    out = folder / f"alone{samples}.zarr"
+    return out, _whole(folder, "map", "study.toml", "-o", out)
+
+
 def workers(folder: Path, quick: bool) -> dict:
     """The study on one and on two processes; the study of a single sample measures their start."""
-    samples = SAMPLES[quick] // 4
-    _write_study(folder, samples, quick)
+    samples = WORKERS_SAMPLES[quick]
+    alone, _ = _alone(folder, samples, quick)
     seconds = {}
-    for count in (1, 2)[int(quick) :]:
+    for count in (1, 2)[: 1 if quick else 2]:
         out = folder / f"workers{count}.zarr"
         seconds[count] = _whole(folder, "map", "study.toml", "-o", out, "--workers", count)["seconds"]
-    _whole(folder, "map", "study.toml", "-o", "alone.zarr")
-    same = all(_same(folder / "alone.zarr", folder / f"workers{count}.zarr") for count in seconds)
+    same = all(_same(alone, folder / f"workers{count}.zarr") for count in seconds)
     if quick:  # no more than: does it work?
         return {"samples": samples, "seconds": seconds, "same bytes": same}
     _write_study(folder, 1, quick)
@@ -188,8 +198,7 @@ def workers(folder: Path, quick: bool) -> dict:
 
 def study(folder: Path, quick: bool) -> dict:
     """Random variations of five masses on all processors."""
-    _write_study(folder, SAMPLES[quick], quick)
-    found = _whole(folder, "map", "study.toml", "-o", "samples.zarr")
+    _, found = _alone(folder, SAMPLES[quick], quick)
     cells = SAMPLES[quick] * SMALL_MAP[quick] ** 2
     print(f"{SAMPLES[quick]} samples of five masses, {cells:,} cells: {found['seconds']:.0f} s")
     return {"samples": SAMPLES[quick], "cells": cells, **found}
@@ -197,8 +206,7 @@ def study(folder: Path, quick: bool) -> dict:
 
 def kills(folder: Path, quick: bool) -> dict:
     """Runs that are killed repeatedly at random moments."""
-    _write_study(folder, 24, quick)
-    usual = _whole(folder, "map", "study.toml", "-o", "well.zarr")["seconds"]
+    well, took = _alone(folder, KILLED_SAMPLES, quick)
     chance = random.Random(1)
     killed = finished = different = 0
     while killed < KILLS[quick]:
@@ -206,19 +214,19 @@ def kills(folder: Path, quick: bool) -> dict:
             _command(folder, "map", "study.toml", "-o", "killed.zarr"), cwd=folder, env=_environment()
         )
         try:
-            status = run.wait(usual * chance.uniform(0.2, 0.8))
+            status = run.wait(took["seconds"] * chance.uniform(0.2, 0.8))
         except subprocess.TimeoutExpired:
             run.send_signal(signal.SIGKILL)
             run.wait()
             killed += 1
             continue
         finished += 1
-        different += status != 0 or not _same(folder / "well.zarr", folder / "killed.zarr")
+        different += status != 0 or not _same(well, folder / "killed.zarr")
         shutil.rmtree(folder / "killed.zarr")
     status = subprocess.run(
         _command(folder, "map", "study.toml", "-o", "killed.zarr"), cwd=folder, env=_environment()
     ).returncode
-    different += status != 0 or not _same(folder / "well.zarr", folder / "killed.zarr")
+    different += status != 0 or not _same(well, folder / "killed.zarr")
     left = [name for name in os.listdir(folder) if name.startswith(".")]
     print(f"{killed} runs killed, {finished + 1} finished, {different} with other bytes; left over: {left}")
     return {"killed": killed, "finished": finished + 1, "different": different, "left over": left}

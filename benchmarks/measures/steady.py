@@ -191,7 +191,7 @@ def headings(quick: bool) -> dict:
     The result of a cell must be the same alone and in a map with other outputs, so no details are requested.
     """
     rng = np.random.default_rng(100000)
-    maps = 1 if quick else 25
+    maps, every = (1, 4) if quick else (25, 1)
     cells = both = 0
     found: list[dict] = []
     off = []
@@ -201,7 +201,7 @@ def headings(quick: bool) -> dict:
         system = fm.System(contact=contact, damping_ratios=zeta)
         r = np.sort(np.exp(rng.uniform(np.log(0.12), np.log(2.2), 60)))
         beta = np.sort(np.exp(rng.uniform(np.log(0.005), np.log(0.9), 40)))
-        grid = (system, r, beta, np.sort(rng.uniform(1.05, 3.0, 2)))
+        grid = (system, r[::every], beta[::every], np.sort(rng.uniform(1.05, 3.0, 2)))
         for start in ("rest", "moving"):
             solved = fm.sweep(*grid, outputs=OUTPUTS, start=start)
             marched = fm.sweep(*grid, outputs=OUTPUTS, start=start, steady="marched", cycles=CYCLES)

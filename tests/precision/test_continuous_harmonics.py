@@ -85,7 +85,9 @@ def test_in_40_digits(case):
             if exact.x(k, tau) < 0:
                 tau += mp.pi
             assert angle_between(motion.phase[k], float(tau)) < tolerance
-            for m in (1, 3, 5):  # the other half gives the same
+            # one order of each of many masses: quadrature takes long
+            orders = (1, 3, 5) if exact.n < 3 else (1 + 2 * (k % 3),)
+            for m in orders:  # the other half gives the same
                 value = mp.quad(
                     lambda t, k=k, m=m: exact.half(k, t) * mp.expjpi(-m * (t + exact.phase) / mp.pi),
                     mp.linspace(0, mp.pi, 5),

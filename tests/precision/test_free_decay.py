@@ -149,8 +149,8 @@ def test_synthetic_measurements(measured, folder, kind):
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth_as_often_as_they_say():
-    """Of 30 intervals fewer than 24 hold it in one of 1,700 cases; `benchmarks coverage` asks it of 400."""
-    seeds = 30
+    """Of 16 intervals fewer than 12 hold it in one of 1,200 cases; `benchmarks coverage` asks it of 400."""
+    seeds = 16
     names = ["f_n", "zeta", "x_F", "X0", "t0", "centre"]
     truths = np.array([getattr(MIXED, name) for name in names])
     held, scaled = [], []
@@ -158,8 +158,8 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
         ds = fm.identify.free_decay(*synthetic(MIXED, seed))
         held.append((ds.lower.values <= truths) & (truths <= ds.upper.values))
         scaled.append((ds.estimate.values - truths) / ds.standard_error.values)
-    assert (np.sum(held, axis=0) >= 24).all()
-    # the scatter of 30 normal deviates is 1, give or take 0.13
+    assert (np.sum(held, axis=0) >= 12).all()
+    # the scatter of 16 normal deviates is 1, give or take 0.18
     np.testing.assert_allclose(np.sqrt(np.mean(np.square(scaled), axis=0)), 1.0, atol=0.4)
 
 

@@ -175,7 +175,7 @@ def test_inverse_of_exact_lags():
 
 @pytest.mark.slow
 def test_inverse_of_many_exact_lags():
-    check_inverse(4, 600)
+    check_inverse(4, 300)
 
 
 def test_motion_that_just_slides():

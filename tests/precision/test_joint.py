@@ -97,14 +97,14 @@ def test_static_friction_that_records_share():
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth():
-    """Of 6 intervals fewer than 4 hold it in one of 400 cases; `benchmarks coverage` asks it of 100."""
+    """Of 4 intervals fewer than 3 hold it in one of 70 cases; `benchmarks coverage` asks it of 100."""
     exact = {"f_n": 3.13, "zeta": 0.0055, "mu": 1.0, "x_F_1": 0.2, "x_F_2": 0.8372, "offset_x_2": -0.1}
     values = np.array(list(exact.values()))
     held = []
-    for seed in range(6):
+    for seed in range(4):
         ds = fit(decay(LET_GO, seed), shaken(SHAKEN, seed)).sel(parameter=list(exact))
         held.append((ds.lower.values <= values) & (ds.upper.values >= values))
-    assert (np.sum(held, axis=0) >= 4).all()
+    assert (np.sum(held, axis=0) >= 3).all()
 
 
 def test_outliers_and_drift_in_one_of_them():

@@ -68,9 +68,9 @@ def random_truth(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(10))
 def test_records_of_other_rigs(seed):
-    """One of 80 normal deviates is beyond 4.5 in one of 2000 such tests."""
+    """One of 40 normal deviates is beyond 4.5 in one of 4000 such tests."""
     truth = random_truth(seed)
     integrated = steady(truth, 200, 1e-6)  # far below the noise
     assert integrated.change < 1e-5
@@ -89,7 +89,7 @@ TWO_MINIMA = Truth(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("truth", [TWO_MINIMA, *(random_truth(seed) for seed in (0, 3, 5, 6))])
+@pytest.mark.parametrize("truth", [TWO_MINIMA, *(random_truth(seed) for seed in (3, 6))])
 def test_with_one_more_unknown_no_fit_is_worse(truth):
     """The minimum that is found with mu free is no higher than that with mu held where it is."""
     integrated = steady(truth, 200, 1e-6)
@@ -100,8 +100,8 @@ def test_with_one_more_unknown_no_fit_is_worse(truth):
 
 @pytest.mark.slow
 def test_errors_are_those_of_many_records(motion):
-    """Scatter over 20 seeds is known to 16 %; `benchmarks coverage` counts the intervals of 400."""
-    fits = [fit(RIG, motion, seed, known={"mu": 1.0}) for seed in range(20)]
+    """Scatter over 12 seeds is known to 21 %; `benchmarks coverage` counts the intervals of 400."""
+    fits = [fit(RIG, motion, seed, known={"mu": 1.0}) for seed in range(12)]
     names = ["f_n", "zeta", "x_F", "offset_x", "beta", "lag_deg", "amplitude_ratio"]
     values = np.array([ds.estimate.sel(parameter=names).values for ds in fits])
     stated = np.array([ds.standard_error.sel(parameter=names).values for ds in fits])

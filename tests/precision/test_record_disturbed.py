@@ -108,12 +108,15 @@ def test_drift_and_wander_are_part_of_the_model(motion):
     [(drifting, {}), (wandering, {}), (coloured, {}), (with_outliers, {"loss": "soft_l1"})],
 )
 def test_intervals_hold_the_truth(motion, change, arguments):
-    """Of 25 intervals fewer than 19 hold it in one of 5,000 cases; scatter is known to 15 %."""
-    fits = [fit(motion, seed, change, **arguments) for seed in range(25)]
+    """Of 12 intervals fewer than 9 hold it in one of 450 cases; scatter is known to 20 %.
+
+    `benchmarks coverage` asks it of 400.
+    """
+    fits = [fit(motion, seed, change, **arguments) for seed in range(12)]
     lower, upper = (
         np.array([ds[end].sel(parameter=NAMES).values for ds in fits]) for end in ("lower", "upper")
     )
-    assert (((lower <= EXACT) & (upper >= EXACT)).sum(axis=0) >= 19).all()
+    assert (((lower <= EXACT) & (upper >= EXACT)).sum(axis=0) >= 9).all()
     scatter = np.sqrt(np.mean(np.array([off(ds) for ds in fits]) ** 2, axis=0))
     assert (scatter > 0.5).all(), scatter
     assert (scatter < 1.6).all(), scatter
@@ -197,7 +200,7 @@ def test_noise_shows_beside_flat_parts_that_are_most_of_a_record(motion):
 
 @pytest.mark.slow
 def test_samples_beside_the_ends_of_the_range_do_not_draw_the_fit_inside(motion):
-    """Noise decides there which samples are cut off.  The mean of 12 errors has a deviation of 1/sqrt(12)."""
-    fits = [fit(motion, seed, lambda time, x, rng: np.clip(x, -1.0, 1.3)) for seed in range(12)]
+    """Noise decides there which samples are cut off.  The mean of 8 errors has a deviation of 1/sqrt(8)."""
+    fits = [fit(motion, seed, lambda time, x, rng: np.clip(x, -1.0, 1.3)) for seed in range(8)]
     mean = np.mean([off(ds) for ds in fits], axis=0)
-    assert (np.abs(mean) < 3.0 / np.sqrt(12.0)).all(), mean
+    assert (np.abs(mean) < 3.0 / np.sqrt(8.0)).all(), mean

@@ -28,7 +28,7 @@ def test_quick_form(quick):
 def test_nothing_goes_wrong_in_careless_hands(quick):
     folder, _ = quick
     families = json.loads((folder / "faults.json").read_text())["families"]
-    assert sum(entry["tried"] for entry in families.values()) > 90
+    assert sum(entry["tried"] for entry in families.values()) >= 75
     for name, entry in families.items():
         wrong = set(entry["wrong by kind"]) - {TOO_SLOW}  # a busy machine is
         assert not wrong, (name, entry["examples"])

@@ -104,16 +104,22 @@ def test_writing_keeps_the_history(tmp_path):
 
 def test_what_is_too_large_for_text_is_a_comment(tmp_path):
     n = 65
-    system = fm.System(matrices={"M": np.eye(n), "K": 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)})
-    ds = fm.boundaries(system, np.geomspace(0.1, 10.0, 10_001))
-    config = ds.attrs["config"]
-    assert "\n# matrices = 65 by 65, too large" in config
-    assert "\n# r = 10001 values from 0.1 to 10.0, those of the axis r\n" in config
-    assert len(config) < 1000
-    assert stored_system(ds) is None
-    assert tomllib.loads(config)["system"]["contact"] == "fixed-wall"
-    write(ds, tmp_path / "b.nc")
-    assert read(tmp_path / "b.nc").attrs == ds.attrs
+    large = fm.System(matrices={"M": np.eye(n), "K": 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)})
+    for system, r, comment in (
+        (large, [0.5, 2.0], "\n# matrices = 65 by 65, too large"),
+        (
+            fm.System(), np.geomspace(0.1, 10.0, 10_001),
+            "\n# r = 10001 values from 0.1 to 10.0, those of the axis r\n",
+        ),
+    ):  # fmt: skip
+        ds = fm.boundaries(system, r)
+        config = ds.attrs["config"]
+        assert comment in config
+        assert len(config) < 1000
+        assert (stored_system(ds) is None) == (system is large)
+        assert tomllib.loads(config)["system"]["contact"] == "fixed-wall"
+        write(ds, tmp_path / "b.nc")
+        assert read(tmp_path / "b.nc").attrs == ds.attrs
 
 
 def test_the_largest_texts_go_through_a_file(tmp_path):

@@ -31,6 +31,7 @@ report          table, figure, JSON
 """
 
 import contextlib
+import functools
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -45,12 +46,19 @@ from .verdict import Family
 Part = Callable[[Path], list[Family]]
 
 
-def _parts(child: Child, package: Path, quick: bool) -> dict[str, Part]:
-    """All parts, each in its own folder; those that need a long-lived child come first."""
+def _parts(child: Child, package: Path, shared: Path, quick: bool) -> dict[str, Part]:
+    """All parts, each in its own folder; those that need a long-lived child come first.
+
+    shared : folder of the inputs that several parts use
+    """
     env = environment(package)
 
+    @functools.cache
+    def commands() -> moments.Commands:
+        return moments.Commands(moments.inputs(shared / "inputs", env, quick), env)
+
     def in_processes(part: Callable) -> Part:
-        return lambda folder: part(moments.inputs(folder / "inputs", env, quick), folder, env, quick)
+        return lambda folder: part(commands(), folder, quick)
 
     return {
         "command line": lambda folder: refusals.run(child, folder, quick),
@@ -76,8 +84,8 @@ def run(quick: bool, results: Path, package: Path | None = None) -> dict:
     families: list[Family] = []
     seconds: dict[str, float] = {}
     tried = (package or ROOT).resolve()
-    with Child(tried) as child:
-        for name, part in _parts(child, tried, quick).items():
+    with Child(tried) as child, tempfile.TemporaryDirectory(prefix="faults-") as shared:
+        for name, part in _parts(child, tried, Path(shared), quick).items():
             with _timed(name, seconds), tempfile.TemporaryDirectory(prefix="faults-") as folder:
                 families += part(Path(folder))
     return report.write(families, seconds, results, another=package is not None)

@@ -16,7 +16,7 @@ from pathlib import Path
 from . import machine
 from .folders import Change, snapshot
 from .machine import ended, said_by, slowness, start
-from .moments import SIGNALS, VERBS, Run, wait_for_new
+from .moments import SIGNALS, VERBS, Commands, Run, wait_for_new
 from .verdict import ANSWER, CHANGED, HANG, LEFT, LINES, SLOW, STATUS, TRACEBACK, Family, Said
 
 #: Seconds that a run may take to end, on a machine of its own.
@@ -29,7 +29,7 @@ _HANGS = 5.0
 _MOMENTS = {False: (5, 3), True: (1, 0)}
 
 #: Verbs of the quick form.
-_QUICK = ("map", "plot")
+_QUICK = ("map",)
 
 #: How a run may end: by the signal itself, with the status for interrupts, or it was through.
 _STATUSES = {
@@ -157,15 +157,14 @@ def _try(
     return _wrong_files(moment, said, folder, before, env)
 
 
-def run(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> list[Family]:
+def run(commands: Commands, folder: Path, quick: bool) -> list[Family]:
     """One family per signal."""
-    runs = [
-        Run.measured(verb, prepared, env, folder / f"whole-{verb}") for verb in (_QUICK if quick else VERBS)
-    ]
+    runs = [commands.measured(verb) for verb in (_QUICK if quick else VERBS)]
     rng = random.Random(3)
     families = {name: Family(f"interrupts: {name}") for name in SIGNALS}
     moments = list(moments_of(runs, _start_up(), _MOMENTS[quick], rng))
     for moment in moments:
         allowed = _ALLOWED * slowness()
-        families[moment.signal].add(moment, *_try(moment, prepared, folder / "here", env, allowed))
+        tried = _try(moment, commands.prepared, folder / "here", commands.env, allowed)
+        families[moment.signal].add(moment, *tried)
     return list(families.values())

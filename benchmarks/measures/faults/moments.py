@@ -4,7 +4,7 @@ import os
 import shutil
 import signal
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -42,8 +42,8 @@ VERBS: dict[str, tuple[tuple[str, ...], str]] = {
 
 
 def inputs(folder: Path, env: dict[str, str], quick: bool) -> Path:
-    """Folder with all inputs of the commands."""
-    folder.mkdir()
+    """Folder with all inputs of the commands; given.nc is the map of small.toml."""
+    folder.mkdir(parents=True)
     long = _LONG.format(r=_CELLS[quick], beta=_CELLS[quick])
     curves = _LONG.format(r=200_000, beta=500)
     for name, text in (("long", long), ("curves", curves), ("low", _LOW), ("small", CONFIG)):
@@ -90,6 +90,22 @@ class Run:
     def whole(self, folder: Path) -> bool:
         """Whether the output in a folder is that of an uninterrupted run."""
         return self.result is None or same_file(folder / self.output, self.result)
+
+
+@dataclass(frozen=True)
+class Commands:
+    """All commands of a package: their inputs, and each one's run without interrupts, which is made once."""
+
+    prepared: Path
+    env: dict[str, str]
+    _runs: dict[str, Run] = field(default_factory=dict)
+
+    def measured(self, verb: str) -> Run:
+        """Duration and output of a command."""
+        if verb not in self._runs:
+            folder = self.prepared.with_name(f"whole-{verb}")
+            self._runs[verb] = Run.measured(verb, self.prepared, self.env, folder)
+        return self._runs[verb]
 
 
 def wait_for_new(folder: Path, known: set[str], until: float) -> bool:

@@ -7,12 +7,13 @@ import stat
 import subprocess
 import time
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 
 from .machine import prepared as preparation
 from .machine import run as run_once
 from .machine import said_by, start
-from .moments import VERBS, Run
+from .moments import VERBS, Commands, Run
 from .verdict import (
     ANSWER,
     CHANGED,
@@ -28,8 +29,9 @@ from .verdict import (
 _MINE = b"somebody's work"
 _LIMIT = 300.0
 
-#: Trials of each race, in full and quick.
+#: Trials of each race, and runs that write the same file; by quick.
 _ROUNDS = {False: 5, True: 1}
+_RUNS = {False: 4, True: 2}
 
 _SMALL = ["map", "small.toml", "--quiet", "-o", "out.nc"]
 
@@ -44,13 +46,13 @@ def _left(folder: Path, prepared: Path, *outputs: str) -> list[str]:
     return [path.name for path in folder.iterdir() if path.name not in known]
 
 
-def _four_at_once(
-    of: Run, prepared: Path, folder: Path, env: dict[str, str], overwrite: bool
+def _at_once(
+    of: Run, count: int, prepared: Path, folder: Path, env: dict[str, str], overwrite: bool
 ) -> tuple[str | None, str]:
-    """Four runs write the same file: one succeeds, with --overwrite several may; the others are refused."""
+    """Runs write the same file: one succeeds, with --overwrite several may; the others are refused."""
     _copy(prepared, folder)
     arguments = [word for word in of.arguments if overwrite or word != "--overwrite"]
-    processes: list[subprocess.Popen] = [start(arguments, folder, env) for _ in range(4)]
+    processes: list[subprocess.Popen] = [start(arguments, folder, env) for _ in range(count)]
     said = [said_by(process, _LIMIT) for process in processes]
     words = "; ".join(map(str, said))
     if any(one.status is None for one in said):
@@ -59,7 +61,7 @@ def _four_at_once(
         return TRACEBACK, words
     good = sum(one.status == 0 for one in said)
     if good == 0 or (good > 1 and not overwrite):
-        return (CHANGED if good else STATUS), f"{good} of 4 succeeded; {words}"
+        return (CHANGED if good else STATUS), f"{good} of {count} succeeded; {words}"
     for one in said:
         if one.status != 0 and wrong_refusal(one, ((of.output,),), (1, 2)):
             return wrong_refusal(one, ((of.output,),), (1, 2)), words
@@ -89,15 +91,11 @@ def _appears(
     return (LEFT, ", ".join(left)) if left else (wrong_refusal(said, ((of.output,),), (1, 2)), str(said))
 
 
-def _links(
-    prepared: Path, folder: Path, env: dict[str, str], quick: bool
-) -> Iterator[tuple[str, str | None, str]]:
+def _links(prepared: Path, folder: Path, env: dict[str, str]) -> Iterator[tuple[str, str | None, str]]:
     """Links remain, their targets are replaced; permissions remain."""
-    reference = _copy(prepared, folder) / "reference.nc"
-    run_once([*_SMALL[:-1], "reference.nc"], folder, env)
-    whole = Run("map", [], "out.nc", 0.0, shutil.move(reference, folder.parent / "reference.nc"))
+    whole = Run("map", [], "out.nc", 0.0, prepared / "given.nc")
 
-    for target in ("kept/target.nc", "kept/new.nc")[: 1 if quick else None]:
+    for target in ("kept/target.nc", "kept/new.nc"):
         _copy(prepared, folder)
         (folder / "kept").mkdir()
         (folder / "kept" / "target.nc").write_bytes(_MINE)
@@ -110,7 +108,7 @@ def _links(
         else:
             yield f"a link to {target}", wrong_refusal(said, (("out.nc",),)), str(said)
 
-    for mode in (0o600, 0o640, 0o664, 0o444)[: 1 if quick else None]:
+    for mode in (0o600, 0o640, 0o664, 0o444):
         _copy(prepared, folder)
         (folder / "out.nc").write_bytes(_MINE)
         (folder / "out.nc").chmod(mode)
@@ -130,21 +128,21 @@ def _links(
     yield "a name of two", None if said.status == 0 and whole.whole(folder) else CHANGED, str(said)
 
 
-def run(prepared: Path, folder: Path, env: dict[str, str], quick: bool) -> list[Family]:
-    """Run both families."""
+def run(commands: Commands, folder: Path, quick: bool) -> list[Family]:
+    """Run all three families."""
     rng = random.Random(4)
+    prepared, here, env = commands.prepared, folder / "here", commands.env
     several = Family("several runs to one name")
     appearing = Family("files that appear during a run")
     for verb in ["map"] if quick else [verb for verb, (_, output) in VERBS.items() if output]:
-        of = Run.measured(verb, prepared, env, folder / f"race-{verb}")
+        of = commands.measured(verb)
         for k in range(_ROUNDS[quick]):
-            several.add(f"four {verb}", *_four_at_once(of, prepared, folder / "here", env, overwrite=False))
-            if k == 0:
-                what = f"four {verb} --overwrite"
-                several.add(what, *_four_at_once(of, prepared, folder / "here", env, overwrite=True))
+            for overwrite in (False, True)[: 2 if k == 0 and not quick else 1]:
+                what = f"{_RUNS[quick]} {verb}{' --overwrite' if overwrite else ''}"
+                several.add(what, *_at_once(of, _RUNS[quick], prepared, here, env, overwrite))
             delay = rng.uniform(0.2, 0.95) * of.seconds
-            appearing.add(f"{verb} after {delay:.2f} s", *_appears(of, delay, prepared, folder / "here", env))
+            appearing.add(f"{verb} after {delay:.2f} s", *_appears(of, delay, prepared, here, env))
     replaced = Family("links and permissions of what is replaced")
-    for what, wrong, said in _links(prepared, folder / "here", env, quick):
+    for what, wrong, said in islice(_links(prepared, here, env), 1 if quick else None):
         replaced.add(what, wrong, said)
     return [several, appearing, replaced]

@@ -10,7 +10,7 @@ from .points import around, exponents
 def curves_at_r(quick: bool) -> Group:
     """One mass at r = 1, 1/(2n), 1/(2n + 1)."""
     group = Group("curves, r around 1, 1/2, 1/3 ...")
-    orders = (1, 2, 3) if quick else (1, 2, 3, 4, 5, 6, 9, 10)
+    orders = (1, 3) if quick else (1, 2, 3, 4, 5, 6, 9, 10)
     for body in (one_mass(0.0), one_mass(1e-6), one_mass(0.05), one_mass(0.0, "joined-base-wall")):
         for n in orders:
             check_curves(group, body, around(mp.mpf(1) / n, exponents(quick)))
@@ -46,7 +46,7 @@ def curves_at_modes(quick: bool) -> Group:
     group = Group("curves of chains, around w_i, w_i/2, w_i/3, held w")
     distances = (3, 10) if quick else (1, 4, 7, 10, 13, 15)
     for body in chains(quick):
-        centres = [w / n for n in (1, 2, 3) for w in body.own.w[:2]]
+        centres = [w / n for n in ((1,) if quick else (1, 2, 3)) for w in body.own.w[:2]]
         centres += [mp.mpf(float(w)) for w in body.system.modes.held_frequencies()[:2]]
         for centre in centres:
             check_curves(group, body, around(centre, distances))
@@ -56,9 +56,10 @@ def curves_at_modes(quick: bool) -> Group:
 def curves_spread(quick: bool) -> Group:
     """Chains with masses and springs of very different size."""
     group = Group("curves of chains, masses or springs far apart")
-    bodies = [chain((1.0, 1.0), (1.0, 1e8), 0.01, [1]), chain((1.0, 1e-8), (1.0, 1.0), 0.01, [1])]
+    bodies = [chain((1.0, 1.0), (1.0, 1e8), 0.01, [1])]
     if not quick:
         bodies += [
+            chain((1.0, 1e-8), (1.0, 1.0), 0.01, [1]),
             chain((1.0, 1.0, 1.0), (1.0, 1e10, 1.0), 0.01, [3]),
             chain((1.0, 1e-3, 1.0), (1.0, 1.0, 1e-3), 0.01, [1], 3),
             chain((1.0, 1e3, 1e6), (1.0, 1.0, 1.0), 0.01, [1]),

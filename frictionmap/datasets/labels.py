@@ -252,6 +252,7 @@ CELL_VARIABLES = {
     ),
 }
 
+
 def _range_of(long_name: str, *further: str, comment: str = "", least: float = -np.inf) -> Label:
     """Label of a length for every cell, and for every contact or mass of a general system."""
     return Label(np.float64, long_name, (*CELL, *further), comment=comment, least=least, nan=True, inf=True)

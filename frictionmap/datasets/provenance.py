@@ -175,10 +175,16 @@ def _general_keys(system: "System") -> dict[str, object]:
 
 def _contact_keys(contact: "Contact") -> dict[str, object]:
     """A contact as an entry of system.contacts, without defaults."""
-    own = {key: getattr(contact, key) for key in ("name", "ratio", "force", "mu", "stiffness", "wall_velocity")}
+    own = {
+        key: getattr(contact, key) for key in ("name", "ratio", "force", "mu", "stiffness", "wall_velocity")
+    }
     normal = [{"n": n, "re": value.real, "im": value.imag} for n, value in contact.nu.items()]
     found = {"kind": contact.kind, "masses": list(contact.masses), **own, "normal_load": normal or None}  # type: ignore[arg-type]
-    return {key: value for key, value in found.items() if value not in (None, 0.0) or key == "force" and value == 0.0}
+    return {
+        key: value
+        for key, value in found.items()
+        if value not in (None, 0.0) or key == "force" and value == 0.0
+    }
 
 
 def quoted(text: str) -> str:

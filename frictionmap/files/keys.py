@@ -179,9 +179,7 @@ GENERAL_KEYS = (
         number(above=0.0),
         example="3.0",
     ),
-    Key(
-        "wall_velocity", "velocity of the wall (a belt) over omega P/k_1", number(), example="0.2"
-    ),
+    Key("wall_velocity", "velocity of the wall (a belt) over omega P/k_1", number(), example="0.2"),
     Key(
         "normal_load",
         "harmonics of the normal load: friction beta nu, nu = 1 + sum of amplitude cos(n tau + phase) >= 0",
@@ -195,9 +193,15 @@ GENERAL_KEYS = (
         several(
             table(
                 {
-                    "kind": word(*CONTACTS), "masses": several(_DOF, maxItems=2), "ratio": number(least=0.0),
-                    "force": number(least=0.0), "mu": number(least=1.0), "name": _NAME,
-                    "stiffness": number(above=0.0), "wall_velocity": number(), "normal_load": _NORMAL,
+                    "kind": word(*CONTACTS),
+                    "masses": several(_DOF, maxItems=2),
+                    "ratio": number(least=0.0),
+                    "force": number(least=0.0),
+                    "mu": number(least=1.0),
+                    "name": _NAME,
+                    "stiffness": number(above=0.0),
+                    "wall_velocity": number(),
+                    "normal_load": _NORMAL,
                 },
             ),
             maxItems=MOST_CONTACTS,

@@ -109,9 +109,7 @@ def half_range(forces: Mapping[int, np.ndarray]) -> np.ndarray:
     return np.where(infinite, np.inf, 0.5 * (largest(orders, phasors) + largest(orders, -phasors)))
 
 
-def _least_friction(
-    forces: Mapping[int, np.ndarray], normal: Mapping[int, complex], j: int
-) -> np.ndarray:
+def _least_friction(forces: Mapping[int, np.ndarray], normal: Mapping[int, complex], j: int) -> np.ndarray:
     """Least static friction f of contact j with max(F - f nu) <= min(F + f nu), (n_r,).
 
     The sum max(F - f nu) + max(-F - f nu) is convex in f and falls: Newton steps from the left never pass its
@@ -119,7 +117,9 @@ def _least_friction(
     """
     orders = sorted({*forces, *normal})
     n = np.array(orders, dtype=float)
-    load = np.stack([forces.get(k, np.zeros_like(next(iter(forces.values()))))[:, j] for k in orders], axis=-1)
+    load = np.stack(
+        [forces.get(k, np.zeros_like(next(iter(forces.values()))))[:, j] for k in orders], axis=-1
+    )
     nu = np.array([normal.get(k, 0.0) for k in orders])
     infinite = ~np.isfinite(load).all(axis=-1)
     load = np.where(infinite[:, np.newaxis], 0.0, load)

@@ -47,7 +47,9 @@ def modal_system(system: System) -> ModalSystem:
         damping = np.diag(2.0 * modes.zeta * w)
     vectors = np.array([group.vector for group in general.groups])
     chi = vectors @ phi
-    small = 64.0 * np.finfo(float).eps * np.linalg.norm(phi, axis=0) * np.linalg.norm(vectors, axis=1)[:, None]
+    small = (
+        64.0 * np.finfo(float).eps * np.linalg.norm(phi, axis=0) * np.linalg.norm(vectors, axis=1)[:, None]
+    )
     chi[np.abs(chi) <= small] = 0.0
     return ModalSystem(w**2, phi, damping, chi, modes.mass, modes.stiffness, modes.damping)
 

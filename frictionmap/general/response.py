@@ -157,7 +157,9 @@ def general_response(
         if not unwanted:
             variables[name] = labelled(name, values, count, "response")
     limits = find_boundaries(system, np.array([r]), np.array([mu]))
-    variables |= {name: v[0, 0] for name, v in boundary_variables(system, limits).items() if v.dims[0] == "mu"}
+    variables |= {
+        name: v[0, 0] for name, v in boundary_variables(system, limits).items() if v.dims[0] == "mu"
+    }
     own = {"tau": tau, "dof": np.array(system.dofs.numbers), "harmonic": np.arange(HARMONICS + 1),
            "part": np.array(["real", "imaginary"]), "r": r, "beta": beta, "mu": mu}  # fmt: skip
     coords = {name: coordinate(name, values) for name, values in own.items()}

@@ -175,5 +175,3 @@ def cell_steps(
         record.patterns[:count][own][:, :-1].astype(np.int8), counts, period, found.multiplier, found.cycles,
         record.lowest + shift, record.highest + shift, record.works / period, record.distance / period,
     )  # fmt: skip
-
-

@@ -78,8 +78,10 @@ class Contact:
             self._set("ratio", 1.0)
         self._set("wall_velocity", checks.number(self.wall_velocity, "wall_velocity"))
         if self.wall_velocity and self.kind != "fixed-wall":
-            raise InputError(f"wall_velocity must be 0 for {self.kind}, which has no wall of its own; "
-                             f"got {self.wall_velocity:g}")
+            raise InputError(
+                f"wall_velocity must be 0 for {self.kind}, which has no wall of its own; "
+                f"got {self.wall_velocity:g}"
+            )
         if self.name is not None and not isinstance(self.name, str):
             raise InputError(f"name must be text; got {checks.one_line(self.name)}")
         if self.stiffness is not None and self.mu not in (None, 1.0):
@@ -95,8 +97,10 @@ class Contact:
 
     def _check_normal_load(self) -> None:
         if self.nu and self.stiffness is not None:
-            raise InputError("cannot use normal_load with stiffness: elastic contacts have a constant normal "
-                             "load; omit one")
+            raise InputError(
+                "cannot use normal_load with stiffness: elastic contacts have a constant normal "
+                "load; omit one"
+            )
         least = least_value(self.nu)
         if least < -1.0:
             raise InputError(

@@ -1,6 +1,6 @@
 """Periodic loads: harmonics, waveforms, tables and samples of one period.
 
-    p(tau) = Re sum_n p_n e^{i n tau},  n = 1, 2, ...;  an amplitude A at a phase a is p_n = A e^{i a}
+p(tau) = Re sum_n p_n e^{i n tau},  n = 1, 2, ...;  an amplitude A at a phase a is p_n = A e^{i a}
 """
 
 import csv
@@ -54,7 +54,9 @@ class PeriodicLoad:
     cut_off: float = 0.0
 
     @classmethod
-    def from_samples(cls, t: ArrayLike, force: ArrayLike, harmonics: int = DEFAULT_HARMONICS) -> "PeriodicLoad":
+    def from_samples(
+        cls, t: ArrayLike, force: ArrayLike, harmonics: int = DEFAULT_HARMONICS
+    ) -> "PeriodicLoad":
         """Build a load from samples of one period.
 
         Parameters
@@ -71,7 +73,9 @@ class PeriodicLoad:
         InputError
             There are too few samples, or they are not at equal distances.
         """
-        times, values = (checks.array(given, name).astype(float) for given, name in ((t, "t"), (force, "force")))
+        times, values = (
+            checks.array(given, name).astype(float) for given, name in ((t, "t"), (force, "force"))
+        )
         highest = checks.whole(harmonics, "harmonics", least=1, most=MOST_HARMONICS)
         if times.ndim != 1 or times.shape != values.shape:
             raise InputError(f"force must have as many values as t ({times.size}); got {values.size}")
@@ -88,7 +92,9 @@ class PeriodicLoad:
             )
         spectrum = np.fft.rfft(values) / values.size
         phasors = 2.0 * spectrum[1 : highest + 1]
-        kept = np.fft.irfft(np.concatenate((spectrum[: highest + 1], np.zeros(spectrum.size - highest - 1))), values.size)
+        kept = np.fft.irfft(
+            np.concatenate((spectrum[: highest + 1], np.zeros(spectrum.size - highest - 1))), values.size
+        )
         rms = float(np.sqrt(np.mean((values - kept * values.size) ** 2)))
         size = float(np.abs(phasors).max())
         found = {n: complex(p) for n, p in enumerate(phasors, 1) if abs(p) > 1e-15 * size}

@@ -264,7 +264,11 @@ def _number(key: object, where: str) -> Number:
     of_contact = _OF_CONTACT.fullmatch(key) if isinstance(key, str) else None
     if of_contact and of_contact[2] in CONTACT_NUMBERS:
         return Number("contacts", int(of_contact[1]), of_contact[2])
-    valid = (*NUMBERS, *(f"{name}[i]" for name in LISTS), *(f"contacts[i].{name}" for name in CONTACT_NUMBERS))
+    valid = (
+        *NUMBERS,
+        *(f"{name}[i]" for name in LISTS),
+        *(f"contacts[i].{name}" for name in CONTACT_NUMBERS),
+    )
     raise InputError(
         f"{where} must name a number of the system, i counted from 1: {', '.join(valid)}; "
         f"got {checks.one_line(key)}{checks.nearest(str(key), valid)}"

@@ -120,7 +120,9 @@ def response(
 
         ds = general_response(system, r, beta, mu, solver, points)
         axes = {"r": r, "beta": beta, "mu": mu}
-        return with_units(stamp(ds, "response", "Steady state in time", system, axes, solver, units=units), scales)
+        return with_units(
+            stamp(ds, "response", "Steady state in time", system, axes, solver, units=units), scales
+        )
     request = MotionRequest(system, r, beta, mu, solver, points)
     found = find_motion(request)
     history, cycle = found.history, found.cycle

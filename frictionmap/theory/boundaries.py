@@ -196,4 +196,6 @@ def _general_boundaries(system: System, r: np.ndarray, mu: np.ndarray, units: Un
     axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
     coords = {name: coordinate(name, axis) for name, axis in axes.items()} | contact_coordinates(system)
     ds = xr.Dataset(general_variables(system, find_boundaries(system, r, mu)), coords=coords)
-    return stamp(ds, "boundaries", "Boundaries of the motion regimes", system, {"r": r, "mu": mu}, units=units)
+    return stamp(
+        ds, "boundaries", "Boundaries of the motion regimes", system, {"r": r, "mu": mu}, units=units
+    )

@@ -33,7 +33,9 @@ def test_rays_of_two_contacts(r, first, second, third):
     ds = fm.boundaries(two_contacts(0.3), [r], [1.0, 1.5])
     assert ds.beta_lim.values[:, 0] == pytest.approx([first, third], rel=1e-9)
     assert fm.boundaries(two_contacts(1.0), [r]).beta_lim.item() == pytest.approx(second, rel=1e-9)
-    assert ds.beta_stick_contact.values[0, 0] == pytest.approx([1.0, 0.0], abs=1e-13)  # mass 2 is behind mass 1
+    assert ds.beta_stick_contact.values[0, 0] == pytest.approx(
+        [1.0, 0.0], abs=1e-13
+    )  # mass 2 is behind mass 1
 
 
 @pytest.mark.parametrize(("n", "amplitude", "angle", "r", "stick", "intervals"), REENTRANT)

@@ -172,7 +172,11 @@ def test_one_mass_under_two_harmonics(zeta, load, r, beta, velocity, stops, shar
 
 
 #: Griffin's damper, one mass, zeta 0.01: contact stiffness, friction with the least peak, r and height of it.
-LEAST_PEAKS = [(0.3, 1.2916, 1.07265, 8.5506118), (1.0, 1.4596, 1.22504, 2.9159968), (10.0, 1.5178, 2.44105, 0.30871698)]
+LEAST_PEAKS = [
+    (0.3, 1.2916, 1.07265, 8.5506118),
+    (1.0, 1.4596, 1.22504, 2.9159968),
+    (10.0, 1.5178, 2.44105, 0.30871698),
+]
 
 
 @pytest.mark.parametrize(("stiffness", "beta", "r", "peak"), LEAST_PEAKS)
@@ -203,4 +207,6 @@ def test_harmonics_and_distances():
             z = ds.contact_harmonic.sel(harmonic=n).values
             wanted = np.array(row[f"harmonic_{n}"])
             assert np.abs(np.vstack((x, z)) - wanted).max() <= 1e-10 * size
-        assert float(ds.sliding_distance) == pytest.approx(row["sliding_distance"], abs=1e-10 * max(size, 1.0))
+        assert float(ds.sliding_distance) == pytest.approx(
+            row["sliding_distance"], abs=1e-10 * max(size, 1.0)
+        )

@@ -188,9 +188,7 @@ def fill_rows(first, last, problem, grid, out, masses, cancel):
             unique = _set_friction(grid, m, b, friction)
             if not (near and unique):
                 from_rest(problem, row, friction, grid.starts[i], work, memory, record)
-            found = find(
-                problem, row, friction, grid.cycles, grid.tolerance, work, memory, ring, record
-            )
+            found = find(problem, row, friction, grid.cycles, grid.tolerance, work, memory, ring, record)
             near = found.status == REPEATS
             halves = 0
             if near:

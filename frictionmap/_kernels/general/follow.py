@@ -1,6 +1,6 @@
 """The motion from one phase of the load to another: steps, and the events that end them."""
 
-from ..compiler import kernel
+from ..compiler import inner_kernel, kernel
 from .crossings import NONE, first_zero, slope_at, value_at
 from .pattern import settle
 from .problem import TERMS
@@ -47,7 +47,7 @@ def _within(series, force, nu, size, sign, shift, scratch):
     return first_zero(scratch, 0)
 
 
-@kernel
+@inner_kernel
 def _first_event(problem, friction, work, end):
     """Return (x, contact, side) of the first event in the present step up to `end`; x = NONE without one.
 
@@ -144,7 +144,7 @@ def _count(problem, work, law, before, counts):
             counts[NEAREST_STOP, j] = max(counts[NEAREST_STOP, j], law[4, j] / abs(law[7, j]))
 
 
-@kernel
+@inner_kernel
 def _count_time(work, counts, time):
     for j in range(work.sense.size):
         if work.sense[j] == 0:

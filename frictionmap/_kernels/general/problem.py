@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry, kernel
+from ..compiler import entry, inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
 
 #: Largest angle of the fastest part of the motion in one step [rad] ...
@@ -184,7 +184,7 @@ def set_row(problem, i, row):
                 row.phasors[part, d, n] = problem.phasors[i, part, d, n]
 
 
-@kernel
+@inner_kernel
 def set_channels(problem, row, tau, series):
     """Fill the series of the channels from the phase tau on."""
     modes, channels = problem.push.shape

@@ -13,6 +13,8 @@ NOTHING, RANGES, STEPS = 0, 1, 2
 
 _SLOPE, _VALUE = 5, 6  # rows of the scratch
 
+_ROUNDING = 2.0**-50
+
 #: Nodes and weights on [0, 1]: exact to rounding for products of two series of a step.
 _LEGENDRE = np.polynomial.legendre.leggauss(14)
 _NODES = 0.5 * (1.0 + _LEGENDRE[0])
@@ -90,9 +92,20 @@ def _next_turn(series, at, x, sign, scratch):
 
 
 @kernel
-def _keep_range(series, at, end, i, record, scratch):
-    """Include a displacement between 0 and `end` of the present step."""
+def _is_still(series, at, size):
+    """Whether a displacement varies by no more than rounding, beside itself and a motion of this size."""
+    varies = 0.0
+    for k in range(1, LONG):
+        varies += abs(series[at, k])
+    return varies <= _ROUNDING * (abs(series[at, 0]) + size)
+
+
+@kernel
+def _keep_range(series, at, end, size, i, record, scratch):
+    """Include a displacement between 0 and `end` of the present step; `size` is that of the motion."""
     _include(record, i, series[at, 0])
+    if _is_still(series, at, size):
+        return
     _include(record, i, displacement_at(series, at, end))
     sign = 1.0
     for k in range(1, LONG):
@@ -134,9 +147,7 @@ def _keep_works(problem, row, work, end, record, first):
     for j in range(contacts):
         if work.sense[j] == 0 and problem.belt[j] == 0.0:
             continue
-        force, way, both = _integrate(
-            work.series, first + 2 * contacts + j, first + contacts + j, end
-        )
+        force, way, both = _integrate(work.series, first + 2 * contacts + j, first + contacts + j, end)
         if work.sense[j] != 0:
             record.distance[j] += abs(way)
             record.works[0, j] += both
@@ -167,7 +178,7 @@ def record_step(problem, row, work, end, record):
     first = first_contact_row(problem)
     series, scratch = work.series, work.scratch
     for j in range(contacts):
-        _keep_range(series, first + j, end, j, record, scratch)
+        _keep_range(series, first + j, end, row.numbers[2], j, record, scratch)
     _keep_works(problem, row, work, end, record, first)
     for i in range(record.masses.shape[0]):
         for k in range(LONG):
@@ -176,4 +187,4 @@ def record_step(problem, row, work, end, record):
             share = record.masses[i, m]
             for k in range(LONG):
                 scratch[_VALUE, k] += share * series[m, k]
-        _keep_range(scratch, _VALUE, end, contacts + i, record, scratch)
+        _keep_range(scratch, _VALUE, end, row.numbers[2], contacts + i, record, scratch)

@@ -69,7 +69,7 @@ def solve_held(work, right):
         right[a] /= work.solve[a, a]
 
 
-@kernel
+@inner_kernel
 def _normal_loads(problem, series, first):
     """Fill the series of the normal loads."""
     modes, channels = problem.push.shape
@@ -218,7 +218,7 @@ def _contact_motion(problem, row, work, first):
         series[first + contacts + j, 0] -= row.numbers[0] * problem.belt[j]
 
 
-@kernel
+@inner_kernel
 def _all_slide(work):
     """Whether no contact is held."""
     for j in range(work.sense.size):
@@ -227,7 +227,7 @@ def _all_slide(work):
     return True
 
 
-@kernel
+@inner_kernel
 def expand(problem, row, friction, tau, work):
     """Fill the series of the step that begins at the phase tau with the state and pattern in `work`."""
     contacts = problem.spring.size
@@ -251,7 +251,7 @@ def expand(problem, row, friction, tau, work):
     _contact_motion(problem, row, work, first)
 
 
-@kernel
+@inner_kernel
 def advance(problem, row, x, work):
     """Move the state on by x <= 1 of the present step."""
     first = first_contact_row(problem)

@@ -44,7 +44,7 @@ _RETURNED = 1e-9
 
 #: Largest distance of a measured state from the one that it returns to, and measurements until then.
 _MEASURED = 1e-11
-_MOST_REPEATED = 3
+_MOST_REPEATED = 2
 
 #: A multiplier above this is not that of a motion that attracts.
 _STABLE = 1.0 + 1e-9
@@ -163,7 +163,7 @@ def _newton(problem, row, friction, halves, tolerance, work, memory, record):
         fill_newton(problem, halves, work, memory)
         if not solve_linear(memory.matrix, memory.right, size):
             return NO_REPEAT, cycles
-        if take_step(problem, row, memory) <= (_LAST if tolerance > 0.0 else 0.0):
+        if take_step(problem, row, memory) <= max(tolerance, _LAST):
             return REPEATS, cycles
     return NO_REPEAT, cycles
 
@@ -226,9 +226,7 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record):
             if status == REPEATS:
                 multiplier = _multiplier(problem, halves, work, memory)
                 if unique or (multiplier <= _STABLE and _far(problem, row, memory, ring) <= _SAME):
-                    least, more = _least_period(
-                        problem, row, friction, halves, base, work, memory, record
-                    )
+                    least, more = _least_period(problem, row, friction, halves, base, work, memory, record)
                     multiplier **= least / halves
                     return Steady(REPEATS, least, spent + more, multiplier)
             pause += 1
@@ -263,7 +261,7 @@ def measure(problem, row, friction, halves, work, memory, record, what):
         record.active[0] = NOTHING
         if return_distance(problem, row, memory) <= _MEASURED:
             break
-        _newton(problem, row, friction, halves, 0.0, work, memory, record)
+        _newton(problem, row, friction, halves, _MEASURED, work, memory, record)
     return both
 
 

@@ -119,7 +119,7 @@ def _begin_columns(problem, work):
         store(load(work.tangent, modes * size + i), work.columns, modes * size + i)
 
 
-@kernel
+@inner_kernel
 def advance_tangent(problem, row, work, x):
     """Carry the derivatives through x of the present step."""
     modes = problem.push.shape[0]

@@ -16,7 +16,7 @@ from frictionmap.identify.rigs.keys import rig_keys
 
 #: The public names, grouped by purpose; a name in none of these groups is added to the last one.
 _GROUPS: Mapping[str, tuple[str, ...]] = {
-    "Systems and settings": ("System", "Solver", "Units", "load_config"),
+    "Systems and settings": ("System", "Contact", "PeriodicLoad", "Solver", "Units", "load_config"),
     "Maps, curves, motions": ("sweep", "boundaries", "curves", "response", "continuous_motion", "shares"),
     "Pictures": (
         "plot_regimes", "plot_boundaries", "plot_curves", "plot_response", "plot_orbit", "plot_fit",
@@ -157,7 +157,7 @@ def _codes() -> Iterator[str]:
     yield f"\n{title}\n{'-' * len(title)}\n"
     yield f".. automodule:: {title}\n   :no-members:\n"
     for variable, table in (
-        ("regime", regimes.REGIMES), ("origin", regimes.ORIGINS), ("status", regimes.STATUSES)
+        ("regime", regimes.BELT_REGIMES), ("origin", regimes.ORIGINS), ("status", regimes.STATUSES)
     ):  # fmt: skip
         yield f".. list-table:: Codes of ``{variable}``\n   :header-rows: 1\n"
         yield "   * - constant\n     - value\n     - meaning"

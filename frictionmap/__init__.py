@@ -16,10 +16,10 @@ _kernels       all compiled code: numbers and arrays in, numbers and codes out
 model          what is simulated: system, matrices, modes, settings of the solver
 units          units of measurement: hertz and newtons for the ratios r and beta
 datasets       contents of datasets: names, types, units, valid values, provenance
+general        several contacts, springs in contacts, belts, periodic loads: boundaries, maps, motions
 roots          search for all roots of functions with known poles
 features       high-frequency limits, peak thresholds, invariant points: features that need no map
 theory         closed forms over frequency: beta_lim, beta_stick, continuous motion
-general        several contacts, springs in contacts, belts, periodic loads: arrays, boundaries, maps
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map
 files          configurations; output files, reading, writing; summaries in words
 probabilities  shares of the regimes over many samples of an uncertain structure

@@ -13,8 +13,8 @@ from . import checks
 from ._kernels.boundary.functions import fill_damping_functions
 from .errors import InputError
 from .model.free_structure import FreeStructure
-from .model.modes import ModalModel
 from .model.general import refuse_general
+from .model.modes import ModalModel
 from .model.system import System
 from .roots import FrequencyRange, find_roots, shaped, union, with_poles, without
 

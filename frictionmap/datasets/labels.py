@@ -313,7 +313,8 @@ GENERAL_VARIABLES = {
 #: Variables of all maps that have one value per contact where there are several.
 PER_CONTACT = (
     "stops_per_cycle", "stuck_fraction", "contact_amplitude", "sliding_distance", "work_friction",
-    "contact_first_harmonic_amplitude", "contact_first_harmonic_phase", "contact_harmonic", "friction_harmonic",
+    "contact_first_harmonic_amplitude", "contact_first_harmonic_phase", "contact_harmonic",
+    "friction_harmonic",
     "equivalent_damping",
     "beta_stick_contact", *(name for name in GENERAL_VARIABLES if "dof" not in GENERAL_VARIABLES[name].dims),
 )  # fmt: skip
@@ -682,7 +683,8 @@ def _in_si(label: Label, measure: str) -> Label:
 
 
 _RATIOS = {
-    **CELL_VARIABLES, **GENERAL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES, **_older("response"),
+    **CELL_VARIABLES, **GENERAL_VARIABLES, **CYCLE_VARIABLES, **CURVES, **HISTORY_VARIABLES,
+    **_older("response"),
     **SHARES,
 }  # fmt: skip
 IN_SI = {

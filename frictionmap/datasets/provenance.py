@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..model.general import contacts_of
 from ..model.matrices import Matrices
 
 if TYPE_CHECKING:
@@ -152,7 +153,7 @@ def _general_keys(system: "System") -> dict[str, object]:
     found: dict[str, object] = {}
     if system.contacts is not None:
         found |= {"contact": None, "contact_masses": (1,)}
-        found["contacts"] = [_contact_keys(one) for one in system.contacts]
+        found["contacts"] = [_contact_keys(one) for one in contacts_of(system)]
     else:
         one = _contact_keys(general.groups[0].first)
         found["contact_stiffness"] = one.get("stiffness")
@@ -183,7 +184,7 @@ def _contact_keys(contact: "Contact") -> dict[str, object]:
     return {
         key: value
         for key, value in found.items()
-        if value not in (None, 0.0) or key == "force" and value == 0.0
+        if value not in (None, 0.0) or (key == "force" and value == 0.0)
     }
 
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from ..model.settings import Solver, Start
 from ..model.general import refuse_general
+from ..model.settings import Solver, Start
 from ..model.system import CONTACTS, System
 from ..model.variations import Number
 from ..units.axes import KINDS, ratios

@@ -146,10 +146,10 @@ _NORMAL = several(table({name: valid for name, valid in _HARMONIC.items() if nam
 GENERAL_KEYS = (
     Key(
         "load_harmonics",
-        "instead of load_mass: harmonics of the load, sum of amplitude cos(n tau + phase) over P; without mass: "
-        "of the base motion",
+        "instead of load_mass: harmonics of the load, sum of amplitude cos(n tau + phase) over P; without "
+        "mass: of the base motion",
         several(table(_HARMONIC, ("n",))),
-        example="[{ n = 1, mass = 1, amplitude = 1.0 }, { n = 2, mass = 1, amplitude = 0.35, phase_deg = 20.0 }]",
+        example="[{ n = 1, mass = 1, amplitude = 1.0 }, { n = 2, mass = 1, amplitude = 0.3 }]",
         words="a list of { n, mass, amplitude, phase_deg }, or re and im instead of amplitude and phase_deg",
     ),
     Key(
@@ -206,7 +206,7 @@ GENERAL_KEYS = (
             ),
             maxItems=MOST_CONTACTS,
         ),
-        example='[{ kind = "fixed-wall", masses = [1] }, { kind = "between-masses", masses = [1, 2], force = 0.3 }]',
+        example='[{ kind = "fixed-wall", masses = [1] }, { kind = "between-masses", masses = [1, 2] }]',
         words="a list of { kind, masses, ratio or force, mu, name, stiffness, wall_velocity, normal_load }",
     ),
 )

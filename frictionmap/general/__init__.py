@@ -1,11 +1,16 @@
-"""Systems of the general engine: several contacts, springs in contacts, belts, periodic loads.
+"""Several contacts, springs in contacts, belts, varying normal loads and periodic loads.
 
 ==========  =====================================================================================
 module      what is in it
 ==========  =====================================================================================
 problem     a system over r as arrays for the kernels
 held        forces in contacts that do not slide, and the boundaries that follow from them
-no_stop     friction up to which no contact stops, found with the engine itself
-maps        the cells of a map
+boundaries  boundaries over r: permanent sticking, no stops, belts that pull one way
+maps        the cells of a map, on several threads
+dataset     maps and boundaries as labelled variables
+steps       one steady state as the series of its steps
+cycle       harmonics, works and phases of a steady state
+response    one steady state in time
+curves      response curves
 ==========  =====================================================================================
 """

@@ -9,7 +9,7 @@ from .._kernels.general.no_stop import Search, fill_no_stop
 from .._kernels.general.problem import Problem
 from ..model.system import System
 from .held import largest, least_static_friction, stick_scales
-from .problem import general_of, problem_of
+from .problem import ModalSystem, general_of, problem_of
 
 #: Intervals without stops that are looked for.
 INTERVALS = 4
@@ -25,7 +25,7 @@ _CYCLES, _TOLERANCE = 100.0, 1e-12
 class Boundaries:
     """Boundaries over r; NaN where a system has none of the kind."""
 
-    beta_stick: np.ndarray  # (n_mu, n_r) scale from which all contacts rest for good
+    beta_stick: np.ndarray  # (n_mu, n_r) scale from which all contacts stick permanently
     beta_stick_contact: np.ndarray  # (n_mu, n_r, N)
     beta_lim: np.ndarray  # (n_mu, n_r) end of the first interval without stops
     begins: np.ndarray  # (n_mu, n_r, INTERVALS)
@@ -47,10 +47,10 @@ def friction_lines(system: System, mu: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return kinetic, static
 
 
-def rest_states(system: System, modal: "object", r: np.ndarray) -> np.ndarray:
-    """Modes and velocities at rest at tau = 0, the masses at a joined wall at its displacement, (n_r, 2, m)."""
+def rest_states(system: System, modal: ModalSystem, r: np.ndarray) -> np.ndarray:
+    """Modes and velocities at rest at tau = 0, (n_r, 2, m); masses at a joined wall have its displacement."""
     general = general_of(system)
-    phi, mass = modal.phi, modal.mass  # type: ignore[attr-defined]
+    phi, mass = modal.phi, modal.mass
     x = np.zeros(system.n)
     u = sum(value.real for value in general.base.values())
     for group in general.groups:
@@ -90,7 +90,8 @@ def find_boundaries(system: System, r: np.ndarray, mu: np.ndarray, stops: bool =
     shape = (mu.size, r.size, INTERVALS)
     begins, ends = np.full(shape, np.nan), np.full(shape, np.nan)
     if stops and not general.elastic.any():
-        loads = sum(float(np.abs(v).max()) for v in (*general.forces.values(), *general.base.values()))
+        loads = sum(float(np.abs(vector).max()) for vector in general.forces.values())
+        loads += sum(abs(u) for u in general.base.values())
         problem, _ = problem_of(system, r)
         kinetic, static = friction_lines(system, mu)
         highest = stick[:, :].max(axis=0)

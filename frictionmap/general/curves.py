@@ -16,7 +16,7 @@ from .cycle import equivalent, first_harmonics, harmonic_values, parts, phase_va
 from .dataset import boundary_variables, contact_coordinates, refuse_static
 from .held import held_forces, largest
 from .problem import general_of, problem_of
-from .response import scalars
+from .response import is_wanted, scalars
 from .steps import Steps, cell_steps
 
 #: Scalars of every cell.
@@ -48,7 +48,7 @@ def _cell(system: System, steps: Steps, asked: CurveSettings) -> dict[str, np.nd
 
 
 def _stuck(system: System, asked: CurveSettings, r: float) -> dict[str, np.ndarray]:
-    """Numbers of a cell that sticks for good: amplitudes of the held structure."""
+    """Numbers of a cell that sticks permanently: amplitudes of the held structure."""
     general = general_of(system)
     values = {"regime": np.array(regimes.PERMANENT_STICKING), "status": np.array(regimes.RESOLVED),
               "period": np.array(1), "contact_regime": np.zeros(general.count)}  # fmt: skip
@@ -69,17 +69,6 @@ def _stuck(system: System, asked: CurveSettings, r: float) -> dict[str, np.ndarr
     return values
 
 
-def _wanted(name: str, system: System) -> bool:
-    general = general_of(system)
-    if name in ("stops_per_cycle", "turns_per_cycle", "stuck_fraction"):
-        return not general.elastic.all()
-    if name.startswith("slip"):
-        return bool(general.elastic.any())
-    if name == "work_wall":
-        return any(group.first.wall_velocity for group in general.groups)
-    return name != "contact_regime" or general.count > 1
-
-
 def _variable(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
     """Label values (n_mu, n_r, n_beta, ...); those of contacts get that dimension at its place."""
     label = labels_of("curves")[name]
@@ -98,11 +87,11 @@ def general_curves(
     progress: Callable[[int, int], None] | None,
 ) -> xr.Dataset:  # fmt: skip
     """Compute the response curves of a general system over the axes mu, r and beta; see `curves`."""
-    for name in asked.quantities:
-        if name not in _OFFERED:
+    for quantity in asked.quantities:
+        if quantity not in _OFFERED:
             raise InputError(
-                f"cannot compute {name} with several contacts, springs, belts or loads of several harmonics; "
-                f"valid quantities: {', '.join(_OFFERED)}"
+                f"cannot compute {quantity} with several contacts, springs, belts or loads of several "
+                f"harmonics; valid quantities: {', '.join(_OFFERED)}"
             )
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]
     refuse_static(general_of(system), mu)
@@ -135,7 +124,9 @@ def general_curves(
         if new in tables:
             tables[old] = tables[new]
     variables = {
-        name: _variable(name, values, count) for name, values in tables.items() if _wanted(name, system)
+        name: _variable(name, values, count)
+        for name, values in tables.items()
+        if is_wanted(name, general_of(system))
     }
     coords = {name: coordinate(name, values) for name, values in axes.items()} | contact_coordinates(system)
     return xr.Dataset(variables | boundary_variables(system, limits), coords=coords)

@@ -19,7 +19,8 @@ from .problem import general_of
 
 #: Outputs that general systems have.
 OUTPUTS = (
-    "regime", "stops_per_cycle", "contact_amplitude", "stuck_fraction", "period", "origin", "cycles", "status",
+    "regime", "stops_per_cycle", "contact_amplitude", "stuck_fraction", "period", "origin", "cycles",
+    "status",
     "multiplier", "amplitude", "sliding_distance", "work_friction",
     *(name for name in GENERAL_VARIABLES if name != "equivalent_stiffness"),
 )  # fmt: skip

@@ -4,7 +4,7 @@ The structure with rigid contacts held and elastic ones as springs is linear; pe
 
     [K' - n^2 r^2 M + i n r C, W; W^T, 0] [X_n; F_n] = [p_n; s u_n],   K' = K + sum k_t c c^T
 
-A contact rests for good iff half the range of its force is at most its static friction (contacts.md 2,
+A contact sticks permanently iff half the range of its force is at most its static friction (contacts.md 2,
 loads.md 2, elastic.md 1); with a varying normal load iff max(F - mu beta nu) <= min(F + mu beta nu).
 """
 
@@ -143,7 +143,7 @@ def _least_friction(forces: Mapping[int, np.ndarray], normal: Mapping[int, compl
 
 
 def least_static_friction(system: System, r: np.ndarray) -> np.ndarray:
-    """Least static friction of every contact with which all rest for good, (n_r, N); inf beside a belt."""
+    """Least static friction with which all contacts stick permanently, (n_r, N); inf beside a belt."""
     general = general_of(system)
     forces, _ = held_forces(system, r)
     found = half_range(forces)
@@ -157,7 +157,7 @@ def least_static_friction(system: System, r: np.ndarray) -> np.ndarray:
 
 
 def stick_scales(general: General, needed: np.ndarray, mu: np.ndarray) -> np.ndarray:
-    """beta from which each contact rests for good, (n_mu, n_r, N), from the static friction it needs.
+    """beta from which each contact sticks permanently, (n_mu, n_r, N), from the static friction it needs.
 
     inf for a contact with a friction force of its own that is too small; 0 where it is large enough.
     """

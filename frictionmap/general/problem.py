@@ -5,8 +5,12 @@ from typing import NamedTuple
 import numpy as np
 
 from .._kernels.general.problem import Problem
+from ..errors import InputError
 from ..model.general import General
 from ..model.system import System
+
+#: Largest rate of the fastest part of the motion, in tau.
+_HIGHEST_RATE = 1e4
 
 
 class Channel(NamedTuple):
@@ -112,12 +116,25 @@ def springs(general: General) -> np.ndarray:
     return np.array([group.first.stiffness or 0.0 for group in general.groups])
 
 
+def _refuse_low(rates: np.ndarray, r: np.ndarray) -> None:
+    """Refuse frequencies at which a period of the load has too many steps."""
+    low = (r > 0.0) & (rates > _HIGHEST_RATE)
+    if low.any():
+        worst = int(np.flatnonzero(low)[0])
+        raise InputError(
+            f"r must be 0, or >= {r[worst] * rates[worst] / _HIGHEST_RATE:.3g} for this system: below, a period "
+            f"of the load has more than 10^4 periods of the fastest free motion; got {r[worst]:g}"
+        )
+
+
 def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
     """Build the arrays of a system over r; values at r = 0 are placeholders."""
     general = general_of(system)
     modal = modal_system(system)
     channels, orders = channels_of(system, modal), general.orders
     phasors = _phasors(channels, orders, r)
+    rates = _rates(modal, springs(general), orders, r)
+    _refuse_low(rates, r)
     push = modal.phi.T @ np.array([channel.push for channel in channels]).T
     spring = springs(general)
     load = np.abs(push[np.newaxis]) @ np.hypot(phasors[:, 0], phasors[:, 1]).sum(axis=2)[:, :, np.newaxis]
@@ -128,7 +145,7 @@ def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
         np.ascontiguousarray(np.array([channel.base for channel in channels]).T),
         np.ascontiguousarray(np.array([channel.normal for channel in channels]).T),
         spring, np.array([group.first.wall_velocity for group in general.groups]),
-        np.array(orders, dtype=float), r, phasors, _rates(modal, spring, orders, r),
+        np.array(orders, dtype=float), r, phasors, rates,
         np.where(sizes > 0.0, sizes, 1.0), _symmetric(general),
     )  # fmt: skip
     return problem, modal

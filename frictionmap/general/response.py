@@ -1,5 +1,7 @@
 """One steady state of a general system in time, as labelled variables."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -11,7 +13,7 @@ from ..model.settings import HARMONICS, Solver
 from ..model.system import System
 from .boundaries import find_boundaries
 from .cycle import cycle_values
-from .dataset import boundary_variables, contact_coordinates, contact_variable, refuse_static
+from .dataset import boundary_variables, contact_coordinates, refuse_static
 from .problem import general_of
 from .steps import Steps, steps_of
 
@@ -126,6 +128,17 @@ def _trace(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
     return xr.Variable(("contact", "tau"), values, label_variable(name, values[0]).attrs)
 
 
+def is_wanted(name: str, general: General) -> bool:
+    """Whether a number says something about contacts of these kinds."""
+    if name in ("stops_per_cycle", "turns_per_cycle", "stuck_fraction"):
+        return not general.elastic.all()
+    if name.startswith(("slip_", "slips", "elastic")):
+        return bool(general.elastic.any())
+    if name == "work_wall":
+        return any(group.first.wall_velocity for group in general.groups)
+    return name != "contact_regime" or general.count > 1
+
+
 def general_response(
     system: System, r: float, beta: float, mu: float, solver: Solver, points: int
 ) -> xr.Dataset:
@@ -148,19 +161,21 @@ def general_response(
         variables[old] = variables[new].copy(deep=False)
     found = scalars(system, steps)
     found |= cycle_values(system, steps, HARMONICS)
-    elastic = general.elastic
     for name, values in found.items():
-        unwanted = name in ("stops_per_cycle", "turns_per_cycle", "stuck_fraction") and elastic.all()
-        unwanted |= name.startswith(("slip", "elastic")) and not elastic.any()
-        unwanted |= name == "contact_regime" and count == 1
-        unwanted |= name == "work_wall" and not steps.problem.belt.any()
-        if not unwanted:
+        if is_wanted(name, general):
             variables[name] = labelled(name, values, count, "response")
     limits = find_boundaries(system, np.array([r]), np.array([mu]))
     variables |= {
         name: v[0, 0] for name, v in boundary_variables(system, limits).items() if v.dims[0] == "mu"
     }
-    own = {"tau": tau, "dof": np.array(system.dofs.numbers), "harmonic": np.arange(HARMONICS + 1),
-           "part": np.array(["real", "imaginary"]), "r": r, "beta": beta, "mu": mu}  # fmt: skip
+    own: dict[str, Any] = {
+        "tau": tau,
+        "dof": np.array(system.dofs.numbers),
+        "harmonic": np.arange(HARMONICS + 1),
+        "part": np.array(["real", "imaginary"]),
+        "r": r,
+        "beta": beta,
+        "mu": mu,
+    }
     coords = {name: coordinate(name, values) for name, values in own.items()}
     return xr.Dataset(variables, coords=coords | contact_coordinates(system))

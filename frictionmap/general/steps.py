@@ -14,8 +14,8 @@ from .._kernels.general.steady import REPEATS, one_steady_state
 from ..errors import NoSteadyState
 from ..model.settings import Solver
 from ..model.system import System
-from .held import least_static_friction
 from .boundaries import friction_lines, rest_states, sliding_states
+from .held import least_static_friction
 from .problem import ModalSystem, general_of, problem_of
 
 #: Steps that are kept at first; four times as many where they do not suffice.
@@ -78,7 +78,7 @@ class Steps:
         return slope / self.h if order else value
 
     def harmonics(self, name: str, highest: int) -> np.ndarray:
-        """Fourier coefficients 0..highest of the rows, complex (rows, highest + 1), x = Re sum X_n e^{i n tau}."""
+        """Harmonics 0 to `highest` of the rows, complex (rows, highest + 1): x = Re sum X_n e^{i n tau}."""
         nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
         x = 0.5 * (1.0 + nodes) * (self.lengths[:, np.newaxis] / self.h)  # (steps, nodes)
         series = self.series[:, self.rows(name)]
@@ -120,7 +120,7 @@ class Steps:
 
 
 def _rests(system: System, problem: Problem, i: int, friction: Friction) -> bool:
-    """Whether all contacts rest for good, by closed form."""
+    """Whether all contacts stick permanently, by closed form."""
     needed = least_static_friction(system, problem.r[i : i + 1])[0]
     return bool((friction.static >= needed).all())
 
@@ -171,7 +171,8 @@ def cell_steps(
     x = np.linalg.solve(system.modes.stiffness, offset)
     shift = np.concatenate(([group.vector @ x for group in general_of(system).groups], x))
     return Steps(
-        problem, modal, friction, float(problem.r[i]), begins[own], lengths[own], h, record.steps[:count][own],
+        problem, modal, friction, float(problem.r[i]), begins[own], lengths[own], h,
+        record.steps[:count][own],
         record.patterns[:count][own][:, :-1].astype(np.int8), counts, period, found.multiplier, found.cycles,
         record.lowest + shift, record.highest + shift, record.works / period, record.distance / period,
     )  # fmt: skip

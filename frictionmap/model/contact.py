@@ -86,7 +86,8 @@ class Contact:
             raise InputError(f"name must be text; got {checks.one_line(self.name)}")
         if self.stiffness is not None and self.mu not in (None, 1.0):
             raise InputError(
-                f"mu must be 1 for a contact with stiffness: its spring would jump at break-away; got {self.mu:g}"
+                f"mu must be 1 for a contact with stiffness: its spring would jump at break-away; "
+                f"got {self.mu:g}"
             )
         if self.normal_load is not None:
             self._set("nu", scalar_harmonics(self.normal_load, "normal_load"))

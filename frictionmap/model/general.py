@@ -1,4 +1,4 @@
-"""Systems with several contacts, springs in contacts, belts, varying normal loads or loads of several harmonics.
+"""Systems with several contacts, springs in contacts, belts, varying normal loads or periodic loads.
 
     r^2 M x'' + r C1 x' + K x + W f = p(tau),   z = W^T x - s u(tau),   w = z' - v
 
@@ -9,14 +9,14 @@ has an engine of its own.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from .contact import Contact, checked_contacts
 from ..structures.dofs import Dofs
+from .contact import Contact, checked_contacts
 from .periodic_load import (
     DEFAULT_HARMONICS,
     ENTRY_KEYS,
@@ -32,17 +32,72 @@ from .periodic_load import (
     waveform,
 )
 
-if TYPE_CHECKING:
-    from .system import System
-
 #: Keys of a system that only this engine takes.
 KEYS = (
-    "contacts", "contact_stiffness", "wall_velocity", "normal_load", "load_harmonics", "load_file", "waveform",
-    "load_offset",
+    "contacts", "contact_stiffness", "wall_velocity", "normal_load", "load_harmonics", "load_file",
+    "waveform", "load_offset",
 )  # fmt: skip
 
 #: Rows of W that differ by less, relative to their size, are parallel.
 _PARALLEL = 1e-12
+
+
+class Definition(Protocol):
+    """What is read here of a system: its keys, checked or not yet."""
+
+    @property
+    def contact(self) -> Any: ...
+
+    @property
+    def contact_masses(self) -> Any: ...
+
+    @property
+    def load_mass(self) -> Any: ...
+
+    @property
+    def load(self) -> Any: ...
+
+    @property
+    def excitation(self) -> Any: ...
+
+    @property
+    def contacts(self) -> Any: ...
+
+    @property
+    def contact_stiffness(self) -> float | None: ...
+
+    @property
+    def wall_velocity(self) -> float: ...
+
+    @property
+    def normal_load(self) -> Any: ...
+
+    @property
+    def load_harmonics(self) -> Any: ...
+
+    @property
+    def load_file(self) -> Any: ...
+
+    @property
+    def waveform(self) -> Any: ...
+
+    @property
+    def harmonics(self) -> int | None: ...
+
+    @property
+    def load_offset(self) -> Any: ...
+
+    @property
+    def n(self) -> int: ...
+
+    @property
+    def dofs(self) -> Dofs: ...
+
+    @property
+    def loads(self) -> tuple[complex, ...] | None: ...
+
+    @property
+    def general(self) -> "General | None": ...
 
 
 @dataclass(frozen=True)
@@ -107,14 +162,16 @@ class General:
         return f"parallel contacts act as one: {'; '.join(found)}" if found else ""
 
 
-def uses_general(system: "System") -> bool:
+def uses_general(system: Definition) -> bool:
     """Whether a system needs the general engine."""
     given = (getattr(system, name) for name in KEYS if name != "wall_velocity")
     return any(one is not None for one in given) or system.wall_velocity != 0.0
 
 
-def general_of(system: "System") -> General | None:
+def general_of(system: Definition) -> General | None:
     """Collect and check what the general engine needs; None if the system does not need it."""
+    if system.harmonics is not None and system.waveform is None:
+        raise InputError("cannot use harmonics without waveform: it is the number of its harmonics; omit it")
     if not uses_general(system):
         return None
     groups = _groups(system)
@@ -135,10 +192,10 @@ def general_of(system: "System") -> General | None:
     return general
 
 
-def refuse_general(system: "System", what: str) -> None:
+def refuse_general(system: Definition, what: str) -> None:
     """Refuse a system that needs the general engine.
 
-    what : what is not offered for it, as in "cannot compute peak thresholds"
+    what : words after "cannot", such as "compute peak thresholds"
     """
     if system.general is not None:
         used = [name for name in KEYS if getattr(system, name) not in (None, 0.0)]
@@ -148,10 +205,10 @@ def refuse_general(system: "System", what: str) -> None:
         )
 
 
-def contacts_of(system: "System") -> tuple[Contact, ...]:
+def contacts_of(system: Definition) -> tuple[Contact, ...]:
     """The contacts of a system, in either form."""
     if system.contacts is not None:
-        return system.contacts  # type: ignore[return-value]
+        return system.contacts
     own = {
         "stiffness": system.contact_stiffness, "wall_velocity": system.wall_velocity,
         "normal_load": system.normal_load,
@@ -159,7 +216,7 @@ def contacts_of(system: "System") -> tuple[Contact, ...]:
     return (Contact(system.contact, system.contact_masses, **own),)
 
 
-def check_contacts(system: "System") -> tuple[Contact, ...] | None:
+def check_contacts(system: Definition) -> tuple[Contact, ...] | None:
     """Check the contacts of the form with several; None in the other form."""
     if system.contacts is None:
         return None
@@ -179,10 +236,11 @@ def check_contacts(system: "System") -> tuple[Contact, ...] | None:
 def vector_of(contact: Contact, dofs: Dofs, name: str) -> np.ndarray:
     """c (n,) of a contact: z = c.x - s u."""
     count = 2 if contact.kind == "between-masses" else 1
-    if len(contact.masses) != count:  # type: ignore[arg-type]
+    masses: tuple = contact.masses  # type: ignore[assignment]
+    if len(masses) != count:
         wanted = "two masses [A, B]" if count == 2 else "one mass"
-        raise InputError(f"{name}.masses must name {wanted} for {contact.kind}; got {list(contact.masses)}")  # type: ignore[arg-type]
-    numbers = [dofs.number(mass, f"{name}.masses[{k}]") for k, mass in enumerate(contact.masses)]  # type: ignore[arg-type]
+        raise InputError(f"{name}.masses must name {wanted} for {contact.kind}; got {list(masses)}")
+    numbers = [dofs.number(mass, f"{name}.masses[{k}]") for k, mass in enumerate(masses)]
     if count == 2 and numbers[0] >= numbers[1]:
         raise InputError(f"{name}.masses must be [A, B] with A < B; got {numbers}")
     rows = dofs.rows(tuple(numbers))
@@ -193,7 +251,7 @@ def vector_of(contact: Contact, dofs: Dofs, name: str) -> np.ndarray:
     return c
 
 
-def _groups(system: "System") -> tuple[Group, ...]:
+def _groups(system: Definition) -> tuple[Group, ...]:
     """The contacts of a system, parallel rigid ones merged."""
     found: list[Group] = []
     contacts = contacts_of(system)
@@ -233,8 +291,8 @@ def _refuse_loops(groups: Sequence[Group]) -> None:
     loop = [rigid[k] + 1 for k in np.flatnonzero(np.abs(right[-1]) > 1e-9)]
     names = ", ".join(map(str, loop))
     raise InputError(
-        f"contacts must not close a loop: the forces of contacts {names} in a common stop are not determined; "
-        f"leave one out"
+        f"contacts must not close a loop: the forces of contacts {names} in a common stop are not "
+        f"determined; leave one out"
     )
 
 
@@ -247,18 +305,16 @@ def _offset(given: object, n: int) -> np.ndarray:
     return values
 
 
-def _loads(system: "System") -> tuple[dict[int, np.ndarray], dict[int, complex]]:
+def _loads(system: Definition) -> tuple[dict[int, np.ndarray], dict[int, complex]]:
     """Phasors of the loads on the masses, and of the base motion, by order."""
     ways = [name for name in ("load_harmonics", "load_file", "waveform") if getattr(system, name) is not None]
     if len(ways) > 1:
         raise InputError(f"cannot use {ways[0]} with {ways[1]}: both define the load; omit one")
     if ways and system.load is not None:
         raise InputError(f"cannot use load with {ways[0]}: both define the load; omit one")
-    if system.harmonics is not None and ways != ["waveform"]:
-        raise InputError("cannot use harmonics without waveform: it is the number of its harmonics; omit it")
     given: Any = system.load_harmonics
     if ways == ["load_file"]:
-        given = load_table(system.load_file)  # type: ignore[arg-type]
+        given = load_table(system.load_file)
     elif ways == ["waveform"]:
         given = _waveform(system)
     if given is None:
@@ -270,7 +326,7 @@ def _loads(system: "System") -> tuple[dict[int, np.ndarray], dict[int, complex]]
     return _from_entries(system, given, ways[0])
 
 
-def _waveform(system: "System") -> PeriodicLoad:
+def _waveform(system: Definition) -> PeriodicLoad:
     given = system.waveform
     highest = DEFAULT_HARMONICS if system.harmonics is None else checks.whole(
         system.harmonics, "harmonics", least=1, most=MOST_HARMONICS
@@ -282,10 +338,10 @@ def _waveform(system: "System") -> PeriodicLoad:
             f"waveform must be one of {', '.join(WAVEFORMS)}, or a CSV file of one period with the columns "
             f"time, force; got {given!r}"
         )
-    return sampled(given, highest)  # type: ignore[arg-type]
+    return sampled(given, highest)
 
 
-def _one_harmonic(system: "System") -> tuple[dict[int, np.ndarray], dict[int, complex]]:
+def _one_harmonic(system: Definition) -> tuple[dict[int, np.ndarray], dict[int, complex]]:
     """The load of the form with one harmonic."""
     if system.excitation == "base":
         return {}, {1: 1.0 + 0.0j}
@@ -293,22 +349,22 @@ def _one_harmonic(system: "System") -> tuple[dict[int, np.ndarray], dict[int, co
     if system.load is not None:
         load[:] = system.loads
     else:
-        load[system.dofs.row(system.load_mass)] = 1.0  # type: ignore[arg-type]
+        load[system.dofs.row(system.load_mass)] = 1.0
     return {1: load}, {}
 
 
 def _on_load_mass(
-    system: "System", harmonics: Mapping[int, complex]
+    system: Definition, harmonics: Mapping[int, complex]
 ) -> tuple[dict[int, np.ndarray], dict[int, complex]]:
     if system.excitation == "base":
         return {}, dict(harmonics)
-    row = system.dofs.row(system.load_mass)  # type: ignore[arg-type]
+    row = system.dofs.row(system.load_mass)
     unit = np.eye(system.n)[row]
     return {n: value * unit for n, value in harmonics.items()}, {}
 
 
 def _from_mapping(
-    system: "System", given: Mapping[Any, Any]
+    system: Definition, given: Mapping[Any, Any]
 ) -> tuple[dict[int, np.ndarray], dict[int, complex]]:
     """Harmonics {n: phasor or vector of phasors}."""
     if all(np.ndim(value) == 0 for value in given.values()):
@@ -330,13 +386,13 @@ def _from_mapping(
 
 
 def _from_entries(
-    system: "System", given: object, name: str
+    system: Definition, given: object, name: str
 ) -> tuple[dict[int, np.ndarray], dict[int, complex]]:
     """Harmonics as a list of { n, mass, amplitude, phase_deg }."""
     if not isinstance(given, Sequence) or isinstance(given, (str, bytes)):
         raise InputError(
-            f"{name} must be a list of {{ n, mass, amplitude, phase_deg }}, a mapping of orders to phasors or "
-            f"a PeriodicLoad; got {checks.one_line(given)}"
+            f"{name} must be a list of {{ n, mass, amplitude, phase_deg }}, a mapping of orders to phasors "
+            f"or a PeriodicLoad; got {checks.one_line(given)}"
         )
     forces: dict[int, np.ndarray] = {}
     base: dict[int, complex] = {}
@@ -363,13 +419,13 @@ def _from_entries(
     return {n: v for n, v in forces.items() if v.any()}, {n: v for n, v in base.items() if v != 0.0}
 
 
-def base_is_meant(system: "System") -> bool:
+def base_is_meant(system: Definition) -> bool:
     """Whether the load says that the base moves: harmonics without a mass, or a joined wall."""
     given = system.load_harmonics
-    entries = isinstance(given, Sequence) and not isinstance(given, (str, bytes))
-    without_mass = entries and any(isinstance(one, Mapping) and "mass" not in one for one in given)  # type: ignore[union-attr]
+    entries = given if isinstance(given, Sequence) and not isinstance(given, (str, bytes)) else ()
+    without_mass = any(isinstance(one, Mapping) and "mass" not in one for one in entries)
     walls = any(one.kind == "joined-base-wall" for one in system.contacts or () if isinstance(one, Contact))
-    return bool(without_mass or walls)
+    return without_mass or walls
 
 
 def format_orders(orders: Sequence[int]) -> str:
@@ -386,7 +442,8 @@ def describe_general(general: General, dofs: Dofs) -> str:
 
 def _describe_group(group: Group, dofs: Dofs) -> str:
     one = group.first
-    a, b = dofs.word(dofs.number(one.masses[0], "masses")), dofs.word(dofs.number(one.masses[-1], "masses"))  # type: ignore[index]
+    masses: tuple = one.masses  # type: ignore[assignment]
+    a, b = (dofs.word(dofs.number(mass, "masses")) for mass in (masses[0], masses[-1]))
     mass = "the mass" if dofs.n == 1 else f"mass {b}"
     words = {
         "fixed-wall": f"friction between {mass} and a fixed wall",

@@ -16,8 +16,8 @@ from ..structures.craig_bampton import Reduce, checked_reduce
 from ..structures.dofs import Dofs
 from ..structures.reduction import Reduction, reduce_structure
 from ..structures.structure import Structure, read_structure
-from .coupled_modes import CoupledModel, coupled_model
 from .contact import CONTACTS, Contact
+from .coupled_modes import CoupledModel, coupled_model
 from .decoupling import Decoupling
 from .general import (
     General,

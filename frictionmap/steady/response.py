@@ -11,6 +11,7 @@ from ..datasets.labels import CELL_VARIABLES, OLDER_NAMES
 from ..datasets.physical import with_units
 from ..datasets.variables import coordinate, label_variable, stamp
 from ..errors import InputError
+from ..general.response import general_response
 from ..model.settings import HARMONICS, Output, Solver, SolverSettings, merged
 from ..model.system import System
 from ..theory.boundaries import boundary_variables
@@ -24,6 +25,8 @@ from .sweep import sweep
 #: Samples of a time history per excitation period.
 POINTS = 2000
 _MOST_POINTS = 10**6
+
+_TITLE = "Steady state in time"
 
 
 def _further(request: MotionRequest, names: list[Output]) -> dict[str, xr.Variable]:
@@ -115,14 +118,10 @@ def response(
     scales = scales_of(units, system)
     r, beta, mu = _checked_cell(r, beta, mu, scales)
     points = checks.whole(points, "points", least=2, most=_MOST_POINTS)
+    cell = {"r": r, "beta": beta, "mu": mu}
     if system.general is not None:
-        from ..general.response import general_response
-
         ds = general_response(system, r, beta, mu, solver, points)
-        axes = {"r": r, "beta": beta, "mu": mu}
-        return with_units(
-            stamp(ds, "response", "Steady state in time", system, axes, solver, units=units), scales
-        )
+        return with_units(stamp(ds, "response", _TITLE, system, cell, solver, units=units), scales)
     request = MotionRequest(system, r, beta, mu, solver, points)
     found = find_motion(request)
     history, cycle = found.history, found.cycle
@@ -146,7 +145,6 @@ def response(
         "harmonic": np.arange(HARMONICS + 1),
         "part": PARTS,
     }
-    cell = {"r": r, "beta": beta, "mu": mu}
     labelled = {name: label_variable(name, values) for name, values in variables.items()}
     labelled |= {name: v[0, 0] for name, v in boundary_variables(found.curves).items()}
     labelled |= {
@@ -155,7 +153,7 @@ def response(
     labelled |= _further(request, [name for name in solver.outputs if name not in labelled])
     coords = {name: coordinate(name, values) for name, values in {**own, **cell}.items()}
     ds = xr.Dataset(labelled, coords=coords)  # all at once: piece by piece took a third of the time
-    ds = stamp(ds, "response", "Steady state in time", system, cell, solver, units=units)
+    ds = stamp(ds, "response", _TITLE, system, cell, solver, units=units)
     ds.attrs |= boundary_check(system, np.array([r]), np.array([mu]))
     ds = with_units(ds, scales)
     if found.comment:

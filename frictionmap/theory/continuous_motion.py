@@ -15,8 +15,8 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError, NoSteadyState
-from ..model.modes import ModalModel, wrapped
 from ..model.general import refuse_general
+from ..model.modes import ModalModel, wrapped
 from ..model.system import System
 from .boundary_curves import find_curves
 from .energy import damping_participation, transmitted_first_harmonic, work_input

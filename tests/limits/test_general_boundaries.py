@@ -166,7 +166,7 @@ def test_slip_begins_below_no_slip(stiffness):
 
 
 def test_a_belt_faster_than_the_motion_pulls_one_way():
-    """From the largest speed of the motion without friction on, friction is a constant pull for every beta."""
+    """From the largest speed of the motion without friction on, friction is a constant pull."""
     load = {1: 1.0, 2: 0.4j}
     r = 0.8
     system = fm.System(damping_ratios=0.05, load_harmonics=load, wall_velocity=0.1)

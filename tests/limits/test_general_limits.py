@@ -142,7 +142,8 @@ def test_equal_masses_under_equal_loads_move_alike(mu):
     # two masses on springs of their own, joined by a soft spring that is never strained
     system = fm.System(
         matrices={"M": np.eye(2), "K": np.array([[1.5, -0.5], [-0.5, 1.5]]), "C": 0.06 * np.eye(2)},
-        frequency_scale=1.0, load=[1.0, 1.0], contacts=[fm.Contact("fixed-wall", 1), fm.Contact("fixed-wall", 2)],
+        frequency_scale=1.0, load=[1.0, 1.0],
+        contacts=[fm.Contact("fixed-wall", 1), fm.Contact("fixed-wall", 2)],
     )  # fmt: skip
     one = fm.System(damping_ratios=0.03, contacts=[fm.Contact("fixed-wall", 1)])
     r, beta = [0.35, 0.8, 1.4], [0.1, 0.4, 0.7]
@@ -178,8 +179,9 @@ def test_masses_that_are_not_joined_are_two_systems():
 def test_a_constant_load_moves_positions_only():
     load = {1: [1.0, 0.0], 2: [0.0, 0.4j]}
     contacts = [fm.Contact("fixed-wall", 1), fm.Contact("between-masses", (1, 2), ratio=0.4)]
+    outputs = [*OUTPUTS, "midpoint", "peak_to_peak"]
     a, b = (
-        fm.sweep(two(contacts, load_harmonics=load, **more), [0.5, 1.2], [0.1, 0.5], outputs=[*OUTPUTS, "midpoint", "peak_to_peak"])
+        fm.sweep(two(contacts, load_harmonics=load, **more), [0.5, 1.2], [0.1, 0.5], outputs=outputs)
         for more in ({}, {"load_offset": [0.4, -1.0]})
     )  # fmt: skip
     assert np.allclose(a.peak_to_peak, b.peak_to_peak, rtol=1e-14, atol=1e-14)
@@ -233,7 +235,7 @@ def test_steady_states_do_not_depend_on_the_start():
 
 
 def test_stiff_contacts_approach_the_rigid_one():
-    """The error falls like 1/k where the contact stops, and reversals of slip are its stops (elastic.md 3)."""
+    """The error falls like 1/k where the contact stops; reversals of slip are its stops (elastic.md 3)."""
     rigid = fm.System(damping_ratios=0.05, contacts=[fm.Contact("fixed-wall", 1)])
     cell = {"r": [0.4], "beta": [0.42]}
     wanted = fm.sweep(rigid, **cell, outputs=OUTPUTS)

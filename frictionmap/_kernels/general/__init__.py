@@ -1,0 +1,22 @@
+"""Motions of structures with any number of contacts, rigid or elastic, under any periodic load.
+
+A motion is a chain of steps.  In each the modes are Taylor series that follow from the equation of motion
+term by term, with the forces that hold the held contacts, so that no combination of held contacts needs a
+solution of its own.  Events are located on these series, with certainty.
+
+==========  =====================================================================================
+module      what is in it
+==========  =====================================================================================
+problem     a system over r, the constants of one r, the memory of a motion; series of the load
+series      series of one step: modes, forces, motion in the contacts
+crossings   the first zero of a series, with certainty
+pattern     which contacts slide and which are held after an event
+record      extremes, works and steps of a steady motion
+tangent     derivatives of the motion by its state at the section
+follow      the motion from one phase of the load to another
+return_map  the state after some half periods, and Newton steps to one that returns
+steady      the steady state of one cell
+fill        the cells of a map
+no_stop     friction ratios at which no contact stops
+==========  =====================================================================================
+"""

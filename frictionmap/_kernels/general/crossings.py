@@ -1,8 +1,8 @@
 """The first zero of a Taylor series in [0, 1], with certainty.
 
-A series is evaluated with its slope at nine nodes at once.  Between two nodes it is the cubic of these values
-and slopes, up to h^4/384 times a bound on its fourth derivative; the Bernstein coefficients of the cubic bound
-the cubic from below.  Where this does not decide, steps from one side pass no zero (`approach`).
+A series is evaluated with its slope at nine nodes at once.  Between two nodes it is the cubic of these
+values and slopes, up to h^4/384 times a bound on its fourth derivative; the Bernstein coefficients of the
+cubic bound the cubic from below.  Where this does not decide, steps from one side pass no zero (`approach`).
 """
 
 import math

@@ -1,4 +1,7 @@
-"""Cells of a map, row by row: the steady state of each, from its neighbour's where the start does not matter."""
+"""Cells of a map, row by row.
+
+Where the start does not matter, a cell starts from the steady state of its neighbour.
+"""
 
 import math
 from typing import NamedTuple
@@ -32,7 +35,7 @@ class Grid(NamedTuple):
     beta: np.ndarray  # (n_beta,)
     kinetic: np.ndarray  # (N, 2)
     static: np.ndarray  # (n_mu, N, 2)
-    stuck_from: np.ndarray  # (n_mu, n_r) index of the first cell that is proved to stick for good
+    stuck_from: np.ndarray  # (n_mu, n_r) index of the first cell that is proved to stick permanently
     starts: np.ndarray  # (n_r, 2, m) modes and their velocities at tau = 0
     cycles: float
     tolerance: float
@@ -78,7 +81,17 @@ def _regime_of(problem, counts, j):
 
 @kernel
 def _store_contacts(problem, out, m, i, b, counts, halves, record):
-    """Store the numbers of every contact; return the regime of all."""
+    """Store the numbers of every contact; return the regime of all.
+
+    Parameters
+    ----------
+    problem : Problem
+    out : Cells
+    m, i, b : indices of mu, r and beta
+    counts : counters of `follow`, over the half periods measured
+    halves : number of these
+    record : Record
+    """
     contacts = problem.spring.size
     period = 0.5 * halves
     least, most = CONTINUOUS + 2, PERMANENT_STICKING
@@ -110,7 +123,17 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
 
 @kernel
 def _store(problem, out, m, i, b, found, halves, counts, record):
-    """Store a solved cell."""
+    """Store a solved cell.
+
+    Parameters
+    ----------
+    problem : Problem
+    out : Cells
+    m, i, b : indices of mu, r and beta
+    found : Steady
+    halves : half periods measured
+    counts, record : counters of `follow`, Record
+    """
     out.cycles[m, i, b] = math.ceil(found.cycles)
     if found.status != REPEATS:
         out.status[m, i, b] = NOT_REACHED if found.status == NO_REPEAT else TOO_MANY_EVENTS
@@ -125,7 +148,7 @@ def _store(problem, out, m, i, b, found, halves, counts, record):
 
 @kernel
 def _store_stuck(out, m, i, b):
-    """Store a cell that closed forms prove to stick for good; its displacements are those of the held
+    """Store a cell that closed forms prove to stick permanently; its displacements are those of the held
     structure and filled elsewhere.
     """
     out.regime[m, i, b] = PERMANENT_STICKING

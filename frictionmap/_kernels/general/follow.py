@@ -39,7 +39,17 @@ def _watch(series, source, sign, shift, scratch):
 
 @kernel
 def _within(series, force, nu, size, sign, shift, scratch):
-    """Series of the distance of a force from one side of its range, to scratch[0]; return its zero."""
+    """Copy the distance of a force from one side of its range to scratch[0]; return its first zero.
+
+    Parameters
+    ----------
+    series : series of the step
+    force, nu : rows of the force and of the normal load
+    size : static friction under constant normal load
+    sign : 1.0 or -1.0, the side
+    shift : number of leading terms that are zero by definition
+    scratch : its row 0 is filled
+    """
     for k in range(TERMS - shift):
         scratch[0, k] = size * series[nu, k + shift] - sign * series[force, k + shift]
     for k in range(TERMS - shift, TERMS):
@@ -106,7 +116,15 @@ def _after_elastic(friction, work, contact, side):
 
 @kernel
 def _change_pattern(problem, row, friction, tau, work, law, x, contact, side):
-    """Change the pattern after an event; False if the contacts do not determine their forces."""
+    """Change the pattern after an event; False if the contacts do not determine their forces.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    tau : phase of the event
+    work, law : Work, scratch of `settle`
+    x, contact, side : the event, see `_first_event`
+    """
     if problem.spring[contact] != 0.0:
         _after_elastic(friction, work, contact, side)
         return True

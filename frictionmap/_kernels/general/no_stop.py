@@ -55,7 +55,18 @@ def _margin(search, m, beta, kept, k):
 
 @kernel
 def _try(problem, i, row, search, beta, near, friction, memories, kept, k):
-    """Keep the number of stops, and how near the turns are to one, of the motion with mu = 1 at beta."""
+    """Keep the number of stops, and how near the turns are to one, of the motion with mu = 1 at beta.
+
+    Parameters
+    ----------
+    problem, i, row : Problem, index of r, Row
+    search : Search
+    beta : friction ratio
+    near : whether the state in memory is that of a steady state near by
+    friction : Friction, filled
+    memories : Work, Return, Ring, Record
+    kept, k : row k is filled: stops, NaN without a steady state; NEAREST_STOP of every contact
+    """
     work, memory, ring, record = memories
     contacts = problem.spring.size
     for j in range(contacts):
@@ -77,7 +88,15 @@ def _try(problem, i, row, search, beta, near, friction, memories, kept, k):
 
 @kernel
 def _end(problem, i, row, search, m, inside, outside, friction, memories, kept):
-    """End of an interval between a beta without stops and one with."""
+    """End of an interval between a beta without stops and one with.
+
+    Parameters
+    ----------
+    problem, i, row : Problem, index of r, Row
+    search, m : Search, index of mu
+    inside, outside : friction ratios without and with stops
+    friction, memories, kept : see `_try`
+    """
     near = False
     for _ in range(_HALVINGS):
         middle = 0.5 * (inside + outside)

@@ -102,7 +102,16 @@ def _is_still(series, at, size):
 
 @kernel
 def _keep_range(series, at, end, size, i, record, scratch):
-    """Include a displacement between 0 and `end` of the present step; `size` is that of the motion."""
+    """Include a displacement of the present step.
+
+    Parameters
+    ----------
+    series, at : series and the row of the displacement
+    end : end of the step in x
+    size : size of the motion
+    i : place in the record
+    record, scratch : Record, scratch
+    """
     _include(record, i, series[at, 0])
     if _is_still(series, at, size):
         return

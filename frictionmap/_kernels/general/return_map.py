@@ -75,6 +75,17 @@ def go_round(problem, row, friction, halves, work, memory, record, derive):
     """Follow the motion from `memory.start` over some half periods, to `memory.end`.
 
     After an odd number of them the signs are those of the mirrored motion.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    halves : number of half periods
+    work, memory, record : Work, Return, Record
+    derive : whether the derivatives are carried on
+
+    Returns
+    -------
+    int : code of `follow`
     """
     put_state(memory.start, memory.senses, work)
     for part in range(COUNT_ROWS):
@@ -123,7 +134,7 @@ def return_distance(problem, row, memory):
 
 @kernel
 def _neutral_rows(problem, memory, matrix, weight):
-    """Add weight l^T l/|l|^2 for every contact that rests: its place z (elastic: z - f/k) is kept by the map."""
+    """Add weight l^T l/|l|^2 for every contact that rests; the map keeps its place z (elastic: z - f/k)."""
     modes = problem.push.shape[0]
     for j in range(memory.senses.size):
         if memory.counts[MOVED, j] != 0.0:

@@ -32,7 +32,7 @@ def first_contact_row(problem):
 
 @kernel
 def factor_held(problem, row, work):
-    """List the rigid contacts that are held, and factor their mobility (Cholesky); False if it is singular."""
+    """List the rigid contacts that are held, and factor their mobility (Cholesky); False if singular."""
     contacts = work.sense.size
     count = 0
     for j in range(contacts):
@@ -199,7 +199,6 @@ def _contact_motion(problem, row, work, first):
     modes, channels = problem.push.shape
     contacts = problem.spring.size
     series = work.series
-    width = row.chi.shape[1]
     for k in range(LONG):
         for m in range(modes):
             series[m, k] = work.moves[k, m]
@@ -221,10 +220,10 @@ def _contact_motion(problem, row, work, first):
 @inner_kernel
 def _all_slide(work):
     """Whether no contact is held."""
+    held = 0
     for j in range(work.sense.size):
-        if work.sense[j] == 0:
-            return False
-    return True
+        held += work.sense[j] == 0
+    return held == 0
 
 
 @inner_kernel

@@ -142,7 +142,16 @@ def _multiplier(problem, halves, work, memory):
 def _newton(problem, row, friction, halves, tolerance, work, memory, record):
     """Find the state that returns after some half periods, from the one in `memory.start`.
 
-    Returns (status, cycles, whether `work.tangent` and `memory.counts` are those of the result).
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    halves : number of half periods
+    tolerance : largest change of the state over a return, over its size
+    work, memory, record : Work, Return, Record
+
+    Returns
+    -------
+    (status, cycles) : REPEATS or NO_REPEAT; periods followed
     """
     last = math.inf
     cycles = 0.0
@@ -170,7 +179,15 @@ def _newton(problem, row, friction, halves, tolerance, work, memory, record):
 
 @kernel
 def _least_period(problem, row, friction, halves, base, work, memory, record):
-    """Smallest number of half periods after which a steady state returns, and the periods followed for it."""
+    """Smallest number of half periods after which a steady state returns, and the periods followed for it.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    halves : half periods after which it returns
+    base : smallest number that is possible
+    work, memory, record : Work, Return, Record
+    """
     cycles = 0.0
     for shorter in range(base, halves, base):
         if halves % shorter == 0:
@@ -251,7 +268,18 @@ def measure(problem, row, friction, halves, work, memory, record, what):
     """Follow the steady state once more, whole periods of it, into `record` and `memory.counts`.
 
     Where it does not quite return, as the last step of Newton's method has changed the pattern, it is solved
-    once more.  Returns the number of half periods.
+    once more.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    halves : half periods after which it returns
+    work, memory, record : Work, Return, Record
+    what : RANGES or STEPS, what is kept
+
+    Returns
+    -------
+    int : number of half periods followed, an even one
     """
     both = halves if halves % 2 == 0 else 2 * halves
     for _ in range(_MOST_REPEATED):
@@ -269,7 +297,11 @@ def measure(problem, row, friction, halves, work, memory, record, what):
 def from_rest(problem, row, friction, state, work, memory, record):
     """Follow a motion from tau = 0 to the section.
 
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
     state : (2, m) modes and their velocities q' at tau = 0; elastic contacts begin without force
+    work, memory, record : Work, Return, Record
     """
     for m in range(problem.push.shape[0]):
         work.state[0, m] = state[0, m]

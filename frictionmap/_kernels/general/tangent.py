@@ -80,7 +80,7 @@ def _free_columns(problem, row, work, k):
 
 @inner_kernel
 def _holding_columns(problem, row, work, k):
-    """Fill the derivatives of the forces that hold contacts, over (k+1)(k+2), and take them from term k + 2."""
+    """Fill the derivatives of the holding forces, over (k+1)(k+2), and take them from term k + 2."""
     modes = problem.push.shape[0]
     columns, size = work.columns, work.tangent.shape[1]
     count = work.held[problem.spring.size]
@@ -202,7 +202,7 @@ def through_event(problem, row, work, drop, watched, slope):
 
 @kernel
 def hold_tangent(problem, row, work):
-    """Take the velocities of held contacts from the derivatives: they vanish but for rounding."""
+    """Take the velocities of held contacts from the derivatives: they are rounding error."""
     modes = problem.push.shape[0]
     size = work.tangent.shape[1]
     count = work.held[problem.spring.size]

@@ -7,8 +7,8 @@ import numpy as np
 
 from ... import checks
 from ...errors import InputError
-from ...model.modes import wrapped
 from ...model.general import refuse_general
+from ...model.modes import wrapped
 from ...model.system import System
 from ...roots import Brackets, polish
 from ...steady.points import steady_states

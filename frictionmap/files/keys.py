@@ -12,7 +12,17 @@ from typing import Any, NamedTuple, get_args
 from .. import checks
 from ..model.contact import CONTACTS, MOST_CONTACTS
 from ..model.periodic_load import MOST_HARMONICS
-from ..model.settings import OUTPUTS, RANGES, Quantity, Skip, Solver, Start, Steady, curve_settings
+from ..model.settings import (
+    GENERAL_OUTPUTS,
+    OUTPUTS,
+    RANGES,
+    Quantity,
+    Skip,
+    Solver,
+    Start,
+    Steady,
+    curve_settings,
+)
 from ..model.system import DAMPING_REFERENCES, EXCITATIONS, System
 from ..units.axes import KINDS
 from ..units.quantities import EXAMPLES, NUMBER
@@ -354,7 +364,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         Key(
             "outputs",
             "output variables of every cell",
-            several(word(*OUTPUTS)),
+            several(word(*OUTPUTS, *GENERAL_OUTPUTS)),
             list(_SOLVER.outputs),
         ),
     ),

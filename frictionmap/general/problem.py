@@ -122,8 +122,8 @@ def _refuse_low(rates: np.ndarray, r: np.ndarray) -> None:
     if low.any():
         worst = int(np.flatnonzero(low)[0])
         raise InputError(
-            f"r must be 0, or >= {r[worst] * rates[worst] / _HIGHEST_RATE:.3g} for this system: below, a period "
-            f"of the load has more than 10^4 periods of the fastest free motion; got {r[worst]:g}"
+            f"r must be 0, or >= {r[worst] * rates[worst] / _HIGHEST_RATE:.3g} for this system: below, a "
+            f"period of the load has more than 10^4 periods of the fastest free motion; got {r[worst]:g}"
         )
 
 

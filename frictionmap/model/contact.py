@@ -130,6 +130,15 @@ def least_value(harmonics: Mapping[int, complex]) -> float:
     return float((phasors * np.exp(1j * orders * tau)).real.sum(axis=1).min())
 
 
+def _of_contact(k: int, error: InputError) -> InputError:
+    """Return an error about a key of a contact, with the contact named."""
+    text = str(error)
+    key = "cannot use "
+    if text.startswith(key):
+        return InputError(f"{key}contacts[{k}].{text.removeprefix(key)}")
+    return InputError(f"contacts[{k}].{text}")
+
+
 def checked_contacts(given: object) -> tuple[Contact, ...]:
     """Check a list of contacts; a mapping is one as in a configuration."""
     if not isinstance(given, Sequence) or isinstance(given, (str, bytes)) or not given:
@@ -149,7 +158,7 @@ def checked_contacts(given: object) -> tuple[Contact, ...]:
             try:
                 one = Contact(**one)
             except InputError as error:
-                raise InputError(f"contacts[{k}].{error}") from None
+                raise _of_contact(k, error) from None
         if not isinstance(one, Contact):
             raise InputError(f"contacts[{k}] must be a Contact; got {checks.one_line(one)}")
         found.append(one)

@@ -291,7 +291,7 @@ def _refuse_loops(groups: Sequence[Group]) -> None:
     loop = [rigid[k] + 1 for k in np.flatnonzero(np.abs(right[-1]) > 1e-9)]
     names = ", ".join(map(str, loop))
     raise InputError(
-        f"contacts must not close a loop: the forces of contacts {names} in a common stop are not "
+        f"cannot use contacts {names} together: they close a loop, and their forces in a common stop are not "
         f"determined; leave one out"
     )
 

@@ -33,6 +33,11 @@ Output = Literal[
     "equivalent_damping",
     "contact_first_harmonic_amplitude",
     "contact_first_harmonic_phase",
+]
+OUTPUTS: tuple[str, ...] = get_args(Output)
+
+#: Further outputs of systems with several contacts, springs in contacts, belts or periodic loads.
+GeneralOutput = Literal[
     "contact_regime",
     "turns_per_cycle",
     "slips_per_cycle",
@@ -44,7 +49,7 @@ Output = Literal[
     "midpoint",
     "work_wall",
 ]
-OUTPUTS: tuple[str, ...] = get_args(Output)
+GENERAL_OUTPUTS: tuple[str, ...] = get_args(GeneralOutput)
 
 #: Quantities of response curves, in the order of the file.
 Quantity = Literal[
@@ -102,7 +107,7 @@ class Solver:
     steps: int = 24
     skip: Skip = "exact"
     steady: Steady = "solved"
-    outputs: Sequence[Output] = ("regime", "stops_per_cycle", "contact_amplitude")
+    outputs: Sequence[Output | GeneralOutput] = ("regime", "stops_per_cycle", "contact_amplitude")
 
     def __post_init__(self) -> None:
         checks.choice(self.start, "start", get_args(Start))
@@ -114,9 +119,11 @@ class Solver:
         if isinstance(self.outputs, str) or not isinstance(self.outputs, Sequence):
             raise InputError(f"outputs must be a list of names; got {checks.one_line(self.outputs)}")
         for name in self.outputs:
-            checks.choice(name, "outputs", OUTPUTS)
+            checks.choice(name, "outputs", (*OUTPUTS, *GENERAL_OUTPUTS))
         if not self.outputs:
-            raise InputError(f"outputs must name at least one of {', '.join(OUTPUTS)}; got none")
+            raise InputError(
+                f"outputs must name at least one of {', '.join((*OUTPUTS, *GENERAL_OUTPUTS))}; got none"
+            )
         object.__setattr__(self, "outputs", tuple(dict.fromkeys(self.outputs)))
 
 
@@ -129,7 +136,7 @@ class SolverSettings(TypedDict, total=False):
     steps: int
     skip: Skip
     steady: Steady
-    outputs: Sequence[Output]
+    outputs: Sequence[Output | GeneralOutput]
 
 
 def merged(solver: Solver | None, settings: Mapping[str, object]) -> Solver:

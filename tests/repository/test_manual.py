@@ -11,7 +11,7 @@ from conftest import ROOT
 import frictionmap as fm
 from frictionmap.command_line.arguments import described
 from frictionmap.files.keys import KEYS
-from frictionmap.model.settings import OUTPUTS
+from frictionmap.model.settings import GENERAL_OUTPUTS, OUTPUTS
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +62,7 @@ def test_every_key_and_output_is_told(manual):
     page = text(manual, "reference/configuration.html")
     assert all(f">{key.name}<" in page for keys in KEYS.values() for key in keys)
     variables = text(manual, "reference/variables.html")
-    assert all(f">{name}<" in variables for name in OUTPUTS)
+    assert all(f">{name}<" in variables for name in (*OUTPUTS, *GENERAL_OUTPUTS))
 
 
 def test_every_public_name_is_told(manual):

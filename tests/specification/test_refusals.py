@@ -52,7 +52,7 @@ map good.toml --set titel=x
 map good.toml --set title=1
     title must be text; got 1
 map good.toml --set system.contct=fixed-wall
-    unknown key 'system.contct' (did you mean contact?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, damping_ratios, matrices, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference
+    unknown key 'system.contct' (did you mean contact?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, damping_ratios, matrices, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference, load_harmonics, load_file, waveform, harmonics, load_offset, contact_stiffness, wall_velocity, normal_load, contacts
 map good.toml --set solver.step=9
     unknown key 'solver.step' (did you mean steps?); valid: start, cycles, tolerance, steps, skip, steady, outputs
 map good.toml --set grid.r.stepp=1
@@ -118,11 +118,11 @@ map good.toml --set solver.start=sliding
 map good.toml --set solver.skip=all
     solver.skip must be one of exact, none; got 'all'
 map good.toml --set solver.outputs=[]
-    solver.outputs must name at least one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase; got none
+    solver.outputs must name at least one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall; got none
 map good.toml --set 'solver.outputs=["regim"]'
-    solver.outputs must be one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase; got 'regim' (did you mean regime?)
+    solver.outputs must be one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall; got 'regim' (did you mean regime?)
 map good.toml --set 'axes.damping_ratio=[0,0.1]'
-    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i]; got 'damping_ratio' (did you mean damping_ratios?)
+    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'damping_ratio' (did you mean damping_ratios?)
 map good.toml --set 'axes={"mass_ratios[2]"=[1,2]}'
     axes, at mass_ratios_2 = 1: axes.mass_ratios[2] must have an index <= 1, as mass_ratios; got 2
 map good.toml --set 'axes={damping_ratios=[]}'
@@ -484,7 +484,7 @@ identify forced.toml --set data.sigma_phase_deg=0
 identify forced.toml --set system.contact=wall
     system.contact must be one of fixed-wall, joined-base-wall, between-masses; got 'wall' (did you mean fixed-wall?)
 identify forced.toml --set system.masses=2
-    unknown key 'system.masses' (did you mean contact_masses?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, damping_ratios, matrices, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference
+    unknown key 'system.masses' (did you mean contact_masses?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, damping_ratios, matrices, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference, load_harmonics, load_file, waveform, harmonics, load_offset, contact_stiffness, wall_velocity, normal_load, contacts
 identify forced.toml --set known.mu=0.9
     file forced.csv: known.mu must be >= 1; got 0.9
 identify forced.toml --set known.x_F=1
@@ -572,7 +572,7 @@ fm.sweep(ONE, [1.0], [0.5], step=9)
 fm.sweep(ONE, [1.0], [0.5], threads=0)
     threads must be >= 1; got 0
 fm.sweep(ONE, [1.0], [0.5], axes={"zeta": [0.1]})
-    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i]; got 'zeta'
+    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'zeta'
 fm.sweep(ONE, [1.0], [0.5], axes={"damping_ratios": [-0.1, 0.1]})
     axes, at damping_ratios = -0.1: damping_ratios must be >= 0; got -0.1
 fm.sweep(ONE, [1.0], [0.5], axes={"regime": {"load_mass": [1]}})

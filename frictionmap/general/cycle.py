@@ -12,6 +12,9 @@ _SAMPLES = 8
 #: Steps to the phase of a maximum.
 _REFINED = 6
 
+#: Amplitude over P/k1 at or below which a contact rests.
+_ROUNDING = 1e-12
+
 
 def parts(phasors: np.ndarray) -> np.ndarray:
     """Real and imaginary parts as a last dimension."""
@@ -107,7 +110,7 @@ def phase_values(steps: Steps) -> dict[str, np.ndarray]:
 def equivalent(steps: Steps, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Equivalent stiffness and damping of each contact, from F_1/Z_1; NaN where it rests."""
     z, f = found["contact_harmonic"][:, 1], found["friction_harmonic"][:, 1]
-    moves = np.abs(z) > 0.0
+    moves = np.abs(z) > _ROUNDING
     ratio = np.where(moves, f / np.where(moves, z, 1.0), np.nan)
     return {"equivalent_stiffness": ratio.real, "equivalent_damping": ratio.imag}
 

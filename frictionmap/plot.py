@@ -52,7 +52,10 @@ PICTURED = {
     ),  # fmt: skip
     "boundaries": frozenset((*BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES)),
     "response": frozenset(
-        ("regime", "stops_per_cycle", "period", "status", *HISTORY_VARIABLES, *HARMONIC_VARIABLES)
+        (
+            *("regime", "contact_regime", "stops_per_cycle", "slips_per_cycle", "period", "status"),
+            *(*HISTORY_VARIABLES, *HARMONIC_VARIABLES),
+        )
     ),
     "curves": CURVE_VARIABLES,
     "shares": frozenset(SHARES),

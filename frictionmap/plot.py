@@ -46,10 +46,11 @@ _GENERAL_BOUNDARIES = ("beta_stick_contact", "beta_noslip", "no_stop_begin", "no
 PICTURED = {
     "map": frozenset(
         (
-            "regime", "contact_regime", "stops_per_cycle", "slips_per_cycle", "slip_reversals_per_cycle",
-            "status", "also_reachable", "period", *BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES,
+            *("regime", "contact_regime", "status", "also_reachable", "period"),
+            *("stops_per_cycle", "slips_per_cycle", "slip_reversals_per_cycle"),
+            *(*BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES),
         )
-    ),  # fmt: skip
+    ),
     "boundaries": frozenset((*BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES)),
     "response": frozenset(
         (

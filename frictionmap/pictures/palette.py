@@ -90,10 +90,11 @@ MODAL: LineStyle = {
 LINES = ("#2b4fa6", "#bd7f50", "#00162c", "#48b2d1", "#cc1f03", "#2880b8")
 
 #: Line styles of response curves, by regime.
-REGIME_LINES: dict[int, Literal["-"] | tuple[int, tuple[float, float]]] = {
+REGIME_LINES: dict[int, Literal["-"] | tuple[int, tuple[float, ...]]] = {
     regimes.CONTINUOUS: "-",
     regimes.STICK_SLIP: (0, (3.5, 1.5)),
     regimes.PERMANENT_STICKING: (0, (1, 1.5)),
+    regimes.ONE_WAY_SLIDING: (0, (7, 1.5, 1, 1.5)),
 }
 LIMIT: LineStyle = {
     "color": "black",

@@ -11,6 +11,7 @@ from matplotlib.patches import Patch
 
 from ... import regimes
 from ...errors import InputError
+from ...files.stored import stored_general
 from ..marks import spread
 from ..palette import CLASSES, LINES, STUCK, Shade
 from ..panels import Handle, distinct, given_axes, halo, legend_below, new_figure, title_figure
@@ -40,6 +41,8 @@ _GAP, MOST_LABELS = 0.09, 11
 _ROUNDING = 1e-9
 
 _SHADE: Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.55, "linewidth": 0.0}
+#: Size of the marks of events.
+_DOT = 4.5
 _LOAD_COLOUR = "#cc1f03"
 
 _REGIME_WORDS = {
@@ -84,24 +87,31 @@ def _in_sight(ax: Axes, values: np.ndarray) -> None:
     ax.set_ylim(0.5 * (low + high) - half, 0.5 * (low + high) + half)
 
 
-def _maxima(turns: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Where the load is largest, once per period; none for a load that is constant."""
+def _maxima(ds: xr.Dataset, load: np.ndarray) -> np.ndarray:
+    """Where the load is largest, tau/pi, once per period; none for a load that is constant.
+
+    The phase of every load of one harmonic is counted from its maximum.
+    """
+    turns = ds["tau"].values / np.pi
+    if "load" not in ds and stored_general(ds) is None:
+        return np.arange(0.0, turns[-1] + 1e-9, 2.0)
     if np.ptp(load) <= _ROUNDING:
         return np.empty(0)
-    period = turns < 2.0 - 1e-9
+    period = turns < turns[0] + 2.0 - 1e-9
     first = float(turns[period][np.argmax(load[period] >= load.max() - _ROUNDING)])
     return np.arange(first, turns[-1] + 1e-9, 2.0)
 
 
-def _draw_load(ax: Axes, turns: np.ndarray, load: np.ndarray, name: str) -> None:
+def _draw_load(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
+    load = load_trace(ds)
     ax.plot(turns, load, color="black", linewidth=1.0)
-    tops = _maxima(turns, load)
+    tops = _maxima(ds, load)
     ax.plot(tops, np.full(tops.size, load.max()), "v", color=_LOAD_COLOUR, markersize=5.0, clip_on=False)
     if abs(float(load.max()) - 1.0) <= _ROUNDING and abs(float(load.min()) + 1.0) <= _ROUNDING:
         ax.set_ylim(-1.25, 1.25)
     else:
         _in_sight(ax, load)
-    ax.set_ylabel(name)
+    ax.set_ylabel(load_of(ds) or "load / $P$")
 
 
 def _draw_contacts(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence[Trace]) -> list[Handle]:
@@ -118,9 +128,10 @@ def _draw_contacts(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence
         times, places = trace.stops
         if times.size:
             colour = trace.colour if trace.label else "black"
+            ax.plot(times / np.pi, places, "o", color=colour, markersize=_DOT, clip_on=False)
             label = "slip ends" if trace.elastic else "stop begins"
-            handles += ax.plot(
-                times / np.pi, places, "o", color=colour, markersize=4.5, clip_on=False, label=label
+            handles.append(
+                Line2D([], [], color="black", label=label, marker="o", linestyle="none", markersize=_DOT)
             )
     return distinct(handles)
 
@@ -158,14 +169,16 @@ def _friction_levels(ds: xr.Dataset, trace: Trace) -> tuple[dict[str, float], np
     levels = levels_of(ds, trace)
     if levels is None:
         return {}, None
-    index = f"_{{{trace.number}}}" if trace.label else ""
+    index = f"_{{{trace.number}}}" if trace.number else ""
     found = {rf"\beta{index}": levels.kinetic}
     if levels.static > levels.kinetic:
         found[rf"\mu{index}\beta{index}"] = levels.static
     return found, levels.factor
 
 
-def _draw_levels(ax: Axes, turns: np.ndarray, levels: np.ndarray, factor: np.ndarray | None, colour: str) -> None:
+def _draw_levels(
+    ax: Axes, turns: np.ndarray, levels: np.ndarray, factor: np.ndarray | None, colour: str
+) -> None:
     """Draw levels of friction, which follow the normal load."""
     for level in np.unique(levels):
         if factor is None:
@@ -194,10 +207,11 @@ def _draw_friction(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence
     ax.set_ylabel("friction / $P$")
 
 
-def _mark_stops(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray, traces: Sequence[Trace]) -> list[Handle]:
+def _mark_stops(
+    axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray, traces: Sequence[Trace]
+) -> list[Handle]:
     """Mark maxima of the load with dotted lines in all panels; shade stops of a single contact."""
-    load = load_trace(ds)
-    maxima = _maxima(turns, load) if load_of(ds) or "load" in ds else np.arange(0.0, turns[-1], 2.0)
+    maxima = _maxima(ds, load_trace(ds))
     inside = maxima[(maxima > 1e-9) & (maxima < turns[-1] - 1e-9)]
     for ax in axes:
         for turn in inside:
@@ -288,22 +302,22 @@ def _panels(ds: xr.Dataset, traces: Sequence[Trace]) -> dict[str, float]:
     return {name: heights[name] for name, shown in there.items() if shown}
 
 
-def _new_axes(heights: Sequence[float], loop: bool) -> "AxesArray":
-    """Create a figure with panels from top to bottom, and one on their right if there is a loop."""
+def _new_axes(heights: Sequence[float], beside: bool) -> "AxesArray":
+    """Create a figure with panels from top to bottom, and one beside them if there is a loop."""
     height = 0.78 * sum(heights) + 0.9
-    if not loop:
+    if not beside:
         figure = new_figure(_WIDTH, height)
         return np.atleast_1d(figure.subplots(len(heights), 1, sharex=True, height_ratios=heights))
     figure = new_figure(_WIDTH + _LOOP_WIDTH, height)
-    grid = figure.add_gridspec(
-        len(heights), 2, height_ratios=heights, width_ratios=(_WIDTH, _LOOP_WIDTH)
-    )
+    grid = figure.add_gridspec(len(heights), 2, height_ratios=heights, width_ratios=(_WIDTH, _LOOP_WIDTH))
     traces = [figure.add_subplot(grid[0, 0])]
     for row in range(1, len(heights)):
         traces.append(figure.add_subplot(grid[row, 0], sharex=traces[0]))
     for ax in traces[:-1]:
         ax.tick_params(labelbottom=False)
-    return np.array([*traces, figure.add_subplot(grid[:, 1])], dtype=object)
+    loop = figure.add_subplot(grid[:, 1])
+    loop.set_box_aspect(1.0)
+    return np.array([*traces, loop], dtype=object)
 
 
 def check_can_be_seen(ds: xr.Dataset, names: Iterable[str]) -> None:
@@ -365,7 +379,7 @@ def _draw_traces(axes: dict[str, Axes], ds: xr.Dataset, traces: Sequence[Trace])
     turns = ds["tau"].values / np.pi
     handles = _mark_stops([*axes.values()], ds, turns, traces)
     if "load" in axes:
-        _draw_load(axes["load"], turns, load_trace(ds), load_of(ds) or "load / $P$")
+        _draw_load(axes["load"], ds, turns)
     handles += _draw_contacts(axes["z"], ds, turns, traces)
     if "stuck" in axes:
         _draw_stuck(axes["stuck"], turns, traces)

@@ -75,7 +75,7 @@ def levels_of(ds: xr.Dataset, trace: Trace) -> Levels | None:
     kinetic, static = group.friction(beta, mu)
     tau = ds["tau"].values
     normal = [(phasor * np.exp(1j * n * tau)).real for n, phasor in group.first.nu.items()]
-    return Levels(float(kinetic), float(static), 1.0 + sum(normal) if normal else None)
+    return Levels(float(kinetic), float(static), 1.0 + np.sum(normal, axis=0) if normal else None)
 
 
 def load_trace(ds: xr.Dataset) -> np.ndarray:

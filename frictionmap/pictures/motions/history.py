@@ -14,7 +14,7 @@ from ...errors import InputError
 from ...files.stored import stored_general
 from ..marks import spread
 from ..palette import CLASSES, LINES, STUCK, Shade
-from ..panels import Handle, distinct, given_axes, halo, legend_below, new_figure, title_figure
+from ..panels import Handle, given_axes, halo, legend_below, new_figure, title_figure
 from ..second_axes import in_brackets, on_the_right, time_on_top
 from ..shapes import check_holds, check_range, to_draw
 from ..words import caption, load_of, moves_base, name_of_contact
@@ -124,16 +124,19 @@ def _draw_contacts(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence
     handles: list[Handle] = [
         Line2D([], [], color=trace.colour, label=trace.label) for trace in traces if trace.label
     ]
+    kinds = []
     for trace in traces:
         times, places = trace.stops
         if times.size:
             colour = trace.colour if trace.label else "black"
             ax.plot(times / np.pi, places, "o", color=colour, markersize=_DOT, clip_on=False)
-            label = "slip ends" if trace.elastic else "stop begins"
-            handles.append(
-                Line2D([], [], color="black", label=label, marker="o", linestyle="none", markersize=_DOT)
-            )
-    return distinct(handles)
+            kinds.append("slip ends" if trace.elastic else "stop begins")
+    if kinds:
+        label = ", ".join(dict.fromkeys(kinds))
+        handles.append(
+            Line2D([], [], color="black", label=label, marker="o", linestyle="none", markersize=_DOT)
+        )
+    return handles
 
 
 def _draw_stuck(ax: Axes, turns: np.ndarray, traces: Sequence[Trace]) -> None:

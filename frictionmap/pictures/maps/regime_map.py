@@ -232,7 +232,7 @@ def _class_handles(panels: Sequence[xr.Dataset], cells: Sequence[Cells]) -> list
         label = legend_label(int(index), int(counts[index]), low, high, cells[0].by)
         handles.append(patch(label, CLASSES[index].colour))
     if counts[ONE_WAY]:
-        label = legend_label(ONE_WAY, int(counts[ONE_WAY]), low, high, cells[0].by)
+        label = legend_label(ONE_WAY, int(counts[ONE_WAY]), np.inf, -np.inf, cells[0].by)
         handles.append(patch(label, "white", ONE_WAY_HATCH))
     if counts[NOT_YET]:
         label = f"{NOT_YET_LABEL} ({counts[NOT_YET]:,})"

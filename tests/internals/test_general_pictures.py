@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_hex
 from matplotlib.lines import Line2D
@@ -76,9 +77,10 @@ def test_one_way_sliding_is_white_and_hatched():
     assert labels_of(axes) == ["one-way sliding"]
     assert (classes_of(axes) == palette.ONE_WAY).all()
     figure = axes[0].figure
-    figure.canvas.draw()
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
     box = axes[0].bbox
-    pixels = np.asarray(figure.canvas.buffer_rgba())[::-1][
+    pixels = np.asarray(canvas.buffer_rgba())[::-1][
         int(box.y0) + 3 : int(box.y1) - 3, int(box.x0) + 3 : int(box.x1) - 3, :3
     ]
     rows = pixels[:, 5].mean(axis=1)

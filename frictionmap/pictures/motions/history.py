@@ -129,8 +129,8 @@ def _draw_contacts(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence
         times, places = trace.stops
         if times.size:
             colour = trace.colour if trace.label else "black"
-            ax.plot(times / np.pi, places, "o", color=colour, markersize=_DOT, clip_on=False)
             kinds.append("slip ends" if trace.elastic else "stop begins")
+            ax.plot(times / np.pi, places, "o", color=colour, markersize=_DOT, clip_on=False, label=kinds[-1])
     if kinds:
         label = ", ".join(dict.fromkeys(kinds))
         handles.append(

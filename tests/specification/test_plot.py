@@ -12,21 +12,17 @@ import xarray as xr
 from layouts import assert_inside_and_apart, drawn
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from outputs import OF_ONE_CONTACT
 
 import frictionmap as fm
 from frictionmap import InputError, plot, regimes
-from frictionmap.datasets.labels import GENERAL_VARIABLES
 from frictionmap.files.reading import read
 from frictionmap.files.storage import write
-from frictionmap.model.settings import OUTPUTS
 from frictionmap.pictures.classes import classes
 from frictionmap.pictures.maps.boundary_map import areas
 from frictionmap.pictures.maps.raster import rasterise
 from frictionmap.pictures.maps.regime_map import CellImage
 from frictionmap.pictures.palette import CLASSES, MORE, ONE, colour_table
-
-#: Outputs of systems with one rigid contact under one harmonic load.
-OF_ONE_CONTACT = [name for name in OUTPUTS if name not in GENERAL_VARIABLES]
 
 MAGIC = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
 

@@ -40,14 +40,23 @@ FORMATS = (".png", ".pdf", ".svg")
 
 _FEATURES = ("natural_frequency", "held_frequency", "invariant_point")
 
+_GENERAL_BOUNDARIES = ("beta_stick_contact", "beta_noslip", "no_stop_begin", "no_stop_end")
+
 #: What pictures are made of, by the kind of file: no other variable need be read.
 PICTURED = {
     "map": frozenset(
-        ("regime", "stops_per_cycle", "status", "also_reachable", "period", *BOUNDARIES, *_FEATURES)
+        (
+            *("regime", "contact_regime", "status", "also_reachable", "period"),
+            *("stops_per_cycle", "slips_per_cycle", "slip_reversals_per_cycle"),
+            *(*BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES),
+        )
     ),
-    "boundaries": frozenset((*BOUNDARIES, *_FEATURES)),
+    "boundaries": frozenset((*BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES)),
     "response": frozenset(
-        ("regime", "stops_per_cycle", "period", "status", *HISTORY_VARIABLES, *HARMONIC_VARIABLES)
+        (
+            *("regime", "contact_regime", "stops_per_cycle", "slips_per_cycle", "period", "status"),
+            *(*HISTORY_VARIABLES, *HARMONIC_VARIABLES),
+        )
     ),
     "curves": CURVE_VARIABLES,
     "shares": frozenset(SHARES),

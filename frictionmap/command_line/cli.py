@@ -267,14 +267,17 @@ def _identify(options: Options) -> None:
 
 
 def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None) -> "xr.Dataset":
-    """Read the point of a file, or its shares over an axis, selected by the arguments; `only`: see `read`."""
+    """Read the point of a file, or its shares over an axis, selected by the arguments.
+
+    only : the variables to read for a picture; by default all, without those of each contact
+    """
     from ..files.reading import read
     from ..files.slices import parse_choices
     from ..probabilities import read_shares
 
     choices = parse_choices(options.at)
     if options.over is None:
-        return read(options.file, only, choices)
+        return read(options.file, only, choices, contacts=only is not None)
     return read_shares(options.file, options.over, choices)
 
 

@@ -242,7 +242,6 @@ CELL_VARIABLES = {
     "equivalent_damping": _of_cell(
         "equivalent viscous damping of the contact, c omega/k1",
         "work of friction over pi times the contact amplitude squared; NaN where stuck",
-        least=0.0,
     ),
     "contact_first_harmonic_amplitude": _of_cell(
         "amplitude of the first harmonic of the motion in the contact, over P/k1 (Y)", least=0.0
@@ -318,6 +317,16 @@ PER_CONTACT = (
     "equivalent_damping",
     "beta_stick_contact", *(name for name in GENERAL_VARIABLES if "dof" not in GENERAL_VARIABLES[name].dims),
 )  # fmt: skip
+
+#: Variables over time that have one row per contact where there are several.
+CONTACT_TRACES = ("z", "friction", "direction", "y")
+
+
+def with_contact(dims: tuple[str, ...]) -> tuple[str, ...]:
+    """Dimensions of a variable that has one value per contact: `contact` follows those of the cells."""
+    cell = tuple(dim for dim in dims if dim in CELL)
+    return (*cell, "contact", *dims[len(cell) :])
+
 
 _PLATEAU = "the load's phase, counted from its maximum; NaN where the maximum is not held over a stop"
 
@@ -694,9 +703,10 @@ IN_SI = {
 }
 LABELS = {**_RATIOS, **IN_SI}
 
-#: Coordinates along an axis: the axis in its SI unit.
+#: Coordinates along an axis: the axis in its SI unit; the contacts and their names.
 BESIDE = {
     "contact": Label(np.int64, "contact, counted from 1", ("contact",), least=1),
+    "contact_name": Label(np.str_, "name of the contact", ("contact",)),
     "frequency": Label(np.float64, "excitation frequency", ("r",), least=0.0, units="Hz"),
     "friction_force": Label(np.float64, "kinetic friction force", ("beta",), least=0.0, units="N"),
     "time": Label(np.float64, "time since a maximum of the load", ("tau",), least=0.0, units="s"),

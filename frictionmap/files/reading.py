@@ -13,7 +13,21 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
-from ..datasets.labels import BESIDE, CELL, COORDINATES, CURVES, LABELS, MARKS, labels_of
+from ..datasets.labels import (
+    BESIDE,
+    CELL,
+    CONTACT_TRACES,
+    COORDINATES,
+    CURVES,
+    LABELS,
+    MARKS,
+    MEASURE_OF,
+    OLDER_NAMES,
+    PER_CONTACT,
+    in_si,
+    labels_of,
+    with_contact,
+)
 from ..datasets.physical import in_si_too
 from ..datasets.schema import (
     check_structure,
@@ -31,16 +45,29 @@ from .slices import choose, further_axes
 
 __all__ = ["kind", "naming", "opened", "read", "standard_form"]
 
+_RATIOS_OF_CONTACTS = {
+    *PER_CONTACT,
+    *CONTACT_TRACES,
+    *(old for old, new in OLDER_NAMES["response"].items() if new in CONTACT_TRACES),
+}
+#: Variables that have one value per contact where there are several.
+_OF_CONTACTS = _RATIOS_OF_CONTACTS | {
+    in_si(name, measure) for name, measure in MEASURE_OF.items() if name in _RATIOS_OF_CONTACTS
+}
+
 
 def read(
     path: Path,
     only: Mapping[str, Collection[str]] | None = None,
     at: Mapping[str, float] | None = None,
+    *,
+    contacts: bool = False,
 ) -> xr.Dataset:
     """Read a file or a store that this package wrote, or a slice that xarray wrote (nothing is kept open).
 
     Of our variables those that `only` names for the file's kind, if they are there; by default all.  Of a
-    file with further axes the point `at` these values.
+    file with further axes the point `at` these values.  Of a file with several contacts, none of which `at`
+    names, what all contacts share; with `contacts` also the values of each contact.
 
     Returns
     -------
@@ -53,7 +80,7 @@ def read(
         The file cannot be read, is not ours, or holds what it must not; one line that names the file.
     """
     with opened(path) as ds:
-        ds = _load(path, ds, only, at or {})
+        ds = _load(path, ds, only, at or {}, contacts)
     with naming(path):
         return standard_form(ds)
 
@@ -150,15 +177,20 @@ def naming(path: Path) -> Iterator[None]:
 
 
 def _load(
-    path: Path, ds: xr.Dataset, only: Mapping[str, Collection[str]] | None, at: Mapping[str, float]
+    path: Path,
+    ds: xr.Dataset,
+    only: Mapping[str, Collection[str]] | None,
+    at: Mapping[str, float],
+    contacts: bool,
 ) -> xr.Dataset:
     """Load the wanted variables of a file, after all other checks."""
     in_store = MARKS in ds
     with naming(path):
-        if "contact" not in at and ds.sizes.get("contact", 0) > 1:
-            ds = ds.drop_dims("contact")  # what all contacts share; --at contact=2 has those of one
+        several = "contact" not in at and ds.sizes.get("contact", 0) > 1
+        if several and not contacts:
+            ds, several = ds.drop_dims("contact"), False
         if at or further_axes(ds):
-            ds = choose(ds, at)
+            ds = choose(ds, at, "contact" if several else None)
         if MARKS in ds and not ds[MARKS].values.all():  # boundaries of blocks to come are not known
             ds = ds.drop_vars([name for name in CURVES if name in ds])
         check_structure(ds)
@@ -183,7 +215,8 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
     one value again; dimensions come in their order (mu, r, beta, dof, harmonic, part), axes increase, types
     and attributes are those of `labels`.  A response is of one cell: its mu, r and beta are numbers.
     Variables may be missing; those that are not ours are left out; those under an older name only have the
-    current one, too.  Values are not copied where they are well as they are.
+    current one, too.  Variables with one value per contact have the dimension `contact`; a single contact
+    that was chosen is a number.  Values are not copied where they are well as they are.
 
     Parameters
     ----------
@@ -208,18 +241,33 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
     ds = ds.set_coords([name for name in (*COORDINATES, *BESIDE) if name in ds.data_vars])
     if what == "response":
         ds = ds.squeeze([dim for dim in CELL if ds.sizes.get(dim) == 1])
+    if ds.sizes.get("contact") == 1:
+        ds = ds.squeeze("contact")
     ds = _increasing(ds)
     variables: dict[str, xr.Variable] = {}
     used: set[str] = set()
     for name in labels_of(what):
         if name in ds.variables:
-            dims = standard_dims(name, what)
+            dims = _dims_here(ds, name, what)
             values = checked_values(name, placed(ds, name, dims), what)
-            variables[name] = label_variable(name, values, what)
+            variables[name] = _labelled(name, values, dims, what)
             used.update(dims)
     if what in ("map", "curves"):
         used.update(CELL)  # also if what there is depends on frequency only
     return xr.Dataset(variables, coords=_axes(ds, what, used) | _beside(ds, what, used), attrs=ds.attrs)
+
+
+def _dims_here(ds: xr.Dataset, name: str, what: str) -> tuple[str, ...]:
+    """Dimensions of a variable in a dataset; `contact` is one of them if it has one value per contact."""
+    dims = standard_dims(name, what)
+    return with_contact(dims) if name in _OF_CONTACTS and "contact" in ds[name].dims else dims
+
+
+def _labelled(name: str, values: np.ndarray, dims: tuple[str, ...], what: str) -> xr.Variable:
+    """Label values over dimensions that may contain `contact`, which no label has."""
+    if "contact" not in dims:
+        return label_variable(name, values, what)
+    return xr.Variable(dims, values, label_variable(name, values.max(axis=dims.index("contact")), what).attrs)
 
 
 def _increasing(ds: xr.Dataset) -> xr.Dataset:
@@ -250,11 +298,13 @@ def _check_increasing(name: str, values: np.ndarray) -> None:
 
 
 def _beside(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:
-    """Axes in SI units that accompany the axes in use."""
+    """Axes in SI units that accompany the axes in use; contacts and their names."""
     beside = {}
     for name in BESIDE:
         dims = standard_dims(name, what)
-        if name in ds.variables and (set(dims) <= used or not dims):
+        if dims == ("contact",) and name in ds.variables and ds[name].ndim == 0:
+            beside[name] = coordinate(name, checked_values(name, ds[name].values))
+        elif name in ds.variables and (set(dims) <= used or not dims):
             beside[name] = coordinate(name, checked_values(name, placed(ds, name, dims), what))
     return beside
 

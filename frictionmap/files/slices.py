@@ -97,12 +97,13 @@ def choose(ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None
         else:
             rows[dim] = [int(found[0])]  # an axis yet
     part = ds.isel({**point, **rows})
-    return part.assign_attrs(_of_point(ds, point)) if point else part
+    parameters = {dim: place for dim, place in point.items() if dim != "contact"}  # it is one system still
+    return part.assign_attrs(_of_point(ds, parameters)) if parameters else part
 
 
 def _further(ds: xr.Dataset, name: str, further: Sequence[str]) -> bool:
     """Whether a coordinate holds numbers along one further axis."""
-    return ds[name].ndim == 1 and ds[name].dims[0] in further
+    return ds[name].ndim == 1 and ds[name].dims[0] in further and ds[name].dtype.kind in "iuf"
 
 
 def _found(ds: xr.Dataset, name: str, value: float) -> tuple[str, np.ndarray]:

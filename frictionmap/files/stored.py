@@ -3,6 +3,7 @@
 import xarray as xr
 
 from ..errors import InputError
+from ..model.general import General
 from ..model.settings import Solver
 from ..model.system import System
 from .config import parse, system_in
@@ -17,6 +18,15 @@ def stored_system(ds: xr.Dataset) -> System | None:
     """
     system = system_in(str(ds.attrs.get("config", "")))
     return None if system is None or system.general is not None else system
+
+
+def stored_general(ds: xr.Dataset) -> General | None:
+    """Contacts and loads of a system with several contacts, springs, belts or harmonics, from `config`.
+
+    None of other systems, and where `config` does not say.
+    """
+    system = system_in(str(ds.attrs.get("config", "")))
+    return None if system is None else system.general
 
 
 def stored_excitation(ds: xr.Dataset) -> str | None:

@@ -12,6 +12,9 @@ _SAMPLES = 8
 #: Steps to the phase of a maximum.
 _REFINED = 6
 
+#: Amplitude over P/k1 at or below which a contact rests.
+_ROUNDING = 1e-12
+
 
 def parts(phasors: np.ndarray) -> np.ndarray:
     """Real and imaginary parts as a last dimension."""
@@ -90,8 +93,8 @@ def phase_values(steps: Steps) -> dict[str, np.ndarray]:
     x = steps.modal.phi @ steps.at("q", tau)
     found = np.full(count, np.nan)
     for i in range(count):
-        place = tau[np.argmax(np.abs(x[i]))]
-        step = tau[1]
+        largest = np.argmax(np.abs(x[i]))
+        place, step = tau[largest], tau[1]
         for _ in range(_REFINED):
             around = place + 1e-4 * step * np.array([-1.0, 0.0, 1.0])
             v = steps.modal.phi[i] @ steps.at("q", around, 1)
@@ -100,14 +103,15 @@ def phase_values(steps: Steps) -> dict[str, np.ndarray]:
                 break
             place += float(np.clip(-v[1] / bend, -step, step))
         if abs(x[i]).max() > 0.0:
-            found[i] = np.mod(place + np.pi, 2.0 * np.pi) - np.pi
+            half = np.pi if x[i, largest] < 0.0 else 0.0  # a minimum counts as a maximum half a period later
+            found[i] = np.mod(place + half + np.pi, 2.0 * np.pi) - np.pi
     return {"phase_lag": found}
 
 
 def equivalent(steps: Steps, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Equivalent stiffness and damping of each contact, from F_1/Z_1; NaN where it rests."""
     z, f = found["contact_harmonic"][:, 1], found["friction_harmonic"][:, 1]
-    moves = np.abs(z) > 0.0
+    moves = np.abs(z) > _ROUNDING
     ratio = np.where(moves, f / np.where(moves, z, 1.0), np.nan)
     return {"equivalent_stiffness": ratio.real, "equivalent_damping": ratio.imag}
 

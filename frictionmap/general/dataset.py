@@ -89,7 +89,7 @@ def _per_contact(name: str, system: System, found: Cells, beta: np.ndarray) -> n
         return np.where(np.isfinite(high - low), 0.5 * (low + high), np.nan)
     if name == "sliding_distance":
         return found.distance
-    return found.works if name == "work_friction" else found.wall_works
+    return np.maximum(found.works, 0.0) if name == "work_friction" else found.wall_works
 
 
 def _values(name: str, system: System, found: Cells, beta: np.ndarray) -> np.ndarray:

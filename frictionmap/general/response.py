@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from ..datasets.labels import LABELS, OLDER_NAMES, PER_CONTACT
+from ..datasets.labels import CONTACT_TRACES, LABELS, OLDER_NAMES, PER_CONTACT
 from ..datasets.variables import coordinate, label_variable
 from ..model.general import General
 from ..model.settings import HARMONICS, Solver
@@ -16,9 +16,6 @@ from .cycle import cycle_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
 from .problem import general_of
 from .steps import Steps, steps_of
-
-#: Variables over time with one row per contact.
-_TRACES = ("z", "friction", "direction", "y")
 
 
 def _overall(found: list[int]) -> int:
@@ -151,7 +148,7 @@ def general_response(
     count = general.count
     variables: dict[str, xr.Variable] = {}
     for name, values in traces.items():
-        if name in _TRACES:
+        if name in CONTACT_TRACES:
             variables[name] = _trace(name, values, count)
         else:
             variables[name] = label_variable(name, values)

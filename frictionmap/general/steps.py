@@ -170,9 +170,11 @@ def cell_steps(
     offset = general_of(system).offset
     x = np.linalg.solve(system.modes.stiffness, offset)
     shift = np.concatenate(([group.vector @ x for group in general_of(system).groups], x))
+    works = record.works / period
+    works[0] = np.maximum(works[0], 0.0)  # of a contact that hardly slides, rounding may be negative
     return Steps(
         problem, modal, friction, float(problem.r[i]), begins[own], lengths[own], h,
         record.steps[:count][own],
         record.patterns[:count][own][:, :-1].astype(np.int8), counts, period, found.multiplier, found.cycles,
-        record.lowest + shift, record.highest + shift, record.works / period, record.distance / period,
+        record.lowest + shift, record.highest + shift, works, record.distance / period,
     )  # fmt: skip

@@ -53,8 +53,11 @@ UNRESOLVED, STUCK, CONTINUOUS, ONE, MORE, NON_INTEGER, UNCOUNTED, NO_STOPS = 0, 
 #: Cells of blocks that are not yet in a store: not painted; the background is dotted.
 NOT_YET = len(CLASSES)
 NOT_YET_LABEL, NOT_YET_HATCH = "not computed yet", "..."
-#: Number of classes, including cells not yet computed.
-COUNT = NOT_YET + 1
+#: Cells of systems with a belt: white like continuous motion, and hatched.
+ONE_WAY = NOT_YET + 1
+ONE_WAY_LABEL, ONE_WAY_HATCH = "one-way sliding", "---"
+#: Number of classes, including cells not yet computed and one-way sliding.
+COUNT = ONE_WAY + 1
 
 #: Hatching marks several possible regimes in all pictures.
 HATCH = "////"
@@ -67,6 +70,15 @@ STICK: LineStyle = {
     "linestyle": (0, (4, 2)),
     "label": r"$\beta_\mathrm{stick}$",
 }
+NO_SLIP: LineStyle = {**STICK, "label": r"$\beta_\mathrm{no\,slip}$"}
+STICK_CONTACT: LineStyle = {**STICK, "label": r"$\beta_\mathrm{stick}$ of the contact, others held"}
+LIM_CONTACT: LineStyle = {**LIM, "label": r"$\beta_\mathrm{lim}$ of all contacts"}
+FURTHER: LineStyle = {
+    "color": "black",
+    "linewidth": 1.1,
+    "linestyle": (0, (1.5, 1.2)),
+    "label": "ends of further ranges without stops",
+}
 MODAL: LineStyle = {
     "color": "#cc1f03",
     "linewidth": 1.2,
@@ -78,10 +90,11 @@ MODAL: LineStyle = {
 LINES = ("#2b4fa6", "#bd7f50", "#00162c", "#48b2d1", "#cc1f03", "#2880b8")
 
 #: Line styles of response curves, by regime.
-REGIME_LINES: dict[int, Literal["-"] | tuple[int, tuple[float, float]]] = {
+REGIME_LINES: dict[int, Literal["-"] | tuple[int, tuple[float, ...]]] = {
     regimes.CONTINUOUS: "-",
     regimes.STICK_SLIP: (0, (3.5, 1.5)),
     regimes.PERMANENT_STICKING: (0, (1, 1.5)),
+    regimes.ONE_WAY_SLIDING: (0, (7, 1.5, 1, 1.5)),
 }
 LIMIT: LineStyle = {
     "color": "black",
@@ -104,7 +117,7 @@ def sequence(number: int) -> list[str]:
 
 
 def colour_table() -> np.ndarray:
-    """Red, green, blue and opacity of the classes, 0 to 255; further rows, transparent, for no cell."""
+    """Red, green, blue and opacity of the classes, 0 to 255; transparent what is hatched, or no cell."""
     table = np.zeros((COUNT + 1, 4), dtype=np.uint8)
     for row, look in zip(table, CLASSES, strict=False):
         row[:] = [int(look.colour[k : k + 2], 16) for k in (1, 3, 5)] + [255]

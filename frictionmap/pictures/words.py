@@ -27,6 +27,19 @@ def _times(repeated: re.Match) -> str:
     return f"{repeated[0].count(',') + 1} × {repeated[1]}"
 
 
+def name_of_contact(ds: xr.Dataset) -> str:
+    """Name of the contact that was chosen of several, such as "contact 2 (joint)"; empty if there is none."""
+    if "contact" not in ds.coords or ds["contact"].ndim:
+        return ""
+    name = f" ({ds['contact_name'].item()})" if "contact_name" in ds.coords else ""
+    return f"contact {int(ds['contact'])}{name}"
+
+
+def title_of_map(ds: xr.Dataset) -> str:
+    """Title of a map: its own, and the contact that was chosen."""
+    return ", ".join(filter(None, (str(ds.attrs.get("title", "")), name_of_contact(ds))))
+
+
 def moves_base(ds: xr.Dataset) -> bool:
     """Whether the system has base excitation."""
     return stored_excitation(ds) == "base"

@@ -4,13 +4,13 @@ import time
 
 import numpy as np
 import pytest
+from outputs import OF_ONE_CONTACT
 
 import frictionmap as fm
 from benchmarks.measures.own_entry import own_entry
 from frictionmap import regimes
 from frictionmap._kernels.engine.march import steady_state
 from frictionmap._kernels.engine.motion import at_frequency, contact_at, forget_neighbour, start
-from frictionmap.model.settings import OUTPUTS
 from frictionmap.steady.cells import Cells, limits
 
 LEAST = 1e-6
@@ -100,7 +100,7 @@ def test_random_cells_of_the_whole_range_end_with_all_outputs():
         system, r, beta, mu, zeta = random_cell(rng, k)
         cycles, begin = (10, 2000)[k % 4 == 3], ("rest", "moving")[k % 2]
         began = time.perf_counter()
-        fm.sweep(system, [r], [beta], mu, outputs=OUTPUTS, cycles=cycles, start=begin)
+        fm.sweep(system, [r], [beta], mu, outputs=OF_ONE_CONTACT, cycles=cycles, start=begin)
         assert time.perf_counter() - began < WALL, (r, beta, mu, zeta)
 
 
@@ -149,7 +149,9 @@ def test_friction_below_the_rounding_of_the_load_counts_as_none():
         r = np.array([1e-4, 0.3, 0.8, 2.7])
         load = fm.boundaries(system, r).beta_stick.values[0]
         for k, ratio in enumerate(r):
-            ds = fm.sweep(system, [ratio], [1e-18 * load[k]], 1.5, outputs=[*OUTPUTS[:8], "also_reachable"])
+            ds = fm.sweep(
+                system, [ratio], [1e-18 * load[k]], 1.5, outputs=[*OF_ONE_CONTACT[:8], "also_reachable"]
+            )
             none = fm.sweep(system, [ratio], [0.0], 1.5)
             assert ds.regime.item() == regimes.CONTINUOUS
             assert ds.also_reachable.item() == 1 << regimes.CONTINUOUS

@@ -12,12 +12,12 @@ import xarray as xr
 from layouts import assert_inside_and_apart, drawn
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from outputs import OF_ONE_CONTACT
 
 import frictionmap as fm
 from frictionmap import InputError, plot, regimes
 from frictionmap.files.reading import read
 from frictionmap.files.storage import write
-from frictionmap.model.settings import OUTPUTS
 from frictionmap.pictures.classes import classes
 from frictionmap.pictures.maps.boundary_map import areas
 from frictionmap.pictures.maps.raster import rasterise
@@ -31,7 +31,7 @@ MAGIC = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
 def tiny_map():
     """Both regimes of sliding, sticking, r = 0; two mu."""
     r, beta = np.linspace(0.0, 2.0, 9), np.linspace(0.0, 1.25, 11)
-    return fm.sweep(fm.System(), r, beta, [1.0, 1.5], outputs=OUTPUTS)
+    return fm.sweep(fm.System(), r, beta, [1.0, 1.5], outputs=OF_ONE_CONTACT)
 
 
 @pytest.fixture(scope="module")

@@ -7,6 +7,7 @@ import mutants
 import numpy as np
 import pytest
 import xarray as xr
+from outputs import OF_ONE_CONTACT
 
 import frictionmap as fm
 from frictionmap import InputError
@@ -14,7 +15,6 @@ from frictionmap.datasets.labels import BESIDE, COORDINATES, LABELS
 from frictionmap.files.reading import read, standard_form
 from frictionmap.files.storage import write
 from frictionmap.files.summary import describe_file
-from frictionmap.model.settings import OUTPUTS
 from frictionmap.plot import PICTURED
 
 TWO = fm.System(mass_ratios=[1.0, 0.5], stiffness_ratios=[1.0, 2.0], damping_ratios=0.02)
@@ -33,7 +33,12 @@ def datasets():
     return {
         "shares": fm.shares(uncertain, "sample"),
         "map": fm.sweep(
-            TWO, [0.0, 0.3, 0.5, 2.0], [0.0, 0.05, 0.5, 2.0, 5.0], [1.0, 1.5], outputs=OUTPUTS, units=UNITS
+            TWO,
+            [0.0, 0.3, 0.5, 2.0],
+            [0.0, 0.05, 0.5, 2.0, 5.0],
+            [1.0, 1.5],
+            outputs=OF_ONE_CONTACT,
+            units=UNITS,
         ),
         "curves": fm.curves(
             TWO,

@@ -11,7 +11,7 @@ from ..grids import HIGH
 from ..palette import HELD, LIMIT, LineStyle
 from ..panels import Handle
 from ..second_axes import on_the_right
-from ..words import moves_base
+from ..words import moves_base, name_of_contact
 from .axes import CUT, CUT_LOG, Panel, Picture, about_cut, about_peaks, in_rows, over_r, scale_of
 from .families import Family
 from .invariants import Invariant, invariant_points
@@ -74,6 +74,7 @@ class MotionColumn(NamedTuple):
     limit: Curve | None  # at beta_lim; one row, or one per line
     held: Curve | None  # with the contact held
     invariant: Invariant
+    regime: np.ndarray  # (lines, r)
 
 
 def _pair(family: Family, names: tuple[str, str], **chosen: int) -> Curve | None:
@@ -109,15 +110,23 @@ def _of_mass(family: Family, quantity: str, index: int) -> MotionColumn | None:
         limit=_pair(family, names.limit, dof=index),
         held=held,
         invariant=invariant_points(family, quantity, number),
+        regime=family.regime,
     )
 
 
-def _of_contact(family: Family, quantity: str) -> MotionColumn | None:
+def _of_contacts(family: Family, quantity: str) -> list[MotionColumn]:
+    """A column for each contact of which the dataset has an amplitude."""
+    name = NAMES[quantity].contact[0]
+    return [_of_contact(one, quantity) for one in family.contacts(name)] if name in family.cells else []
+
+
+def _of_contact(family: Family, quantity: str) -> MotionColumn:
     own = _pair(family, NAMES[quantity].contact)
-    if own is None:
-        return None
+    assert own is not None
     stop = _stop(family, NAMES[quantity].contact_stop)
-    return MotionColumn("contact", *own, stop, None, None, invariant_points(family, quantity, None))
+    title = name_of_contact(family.cells) or "contact"
+    invariant = invariant_points(family, quantity, None)
+    return MotionColumn(title, *own, stop, None, None, invariant, family.regime)
 
 
 def _alike(one: np.ndarray, other: np.ndarray) -> bool:
@@ -127,16 +136,15 @@ def _alike(one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def _motions(family: Family, quantity: str) -> list[MotionColumn]:
-    """The masses, and the contact unless a mass moves with it; or the contact alone."""
+    """The masses, and the contacts that no mass moves with; or the contacts alone."""
     if quantity == "contact":
-        contact = _of_contact(family, "amplitude")
-        return [contact] if contact is not None else []
+        return _of_contacts(family, "amplitude")
     masses = [_of_mass(family, quantity, index) for index in range(family.cells.sizes.get("dof", 0))]
     found = [mass for mass in masses if mass is not None]
-    contact = _of_contact(family, quantity)
-    if contact is None or any(_alike(mass.size, contact.size) for mass in found):
-        return found
-    return [*found, contact]
+    contacts = _of_contacts(family, quantity)
+    return found + [
+        contact for contact in contacts if not any(_alike(mass.size, contact.size) for mass in found)
+    ]
 
 
 def _draw_reference(ax: Axes, x: np.ndarray, rows: np.ndarray, style: LineStyle, top: float | None) -> Line2D:
@@ -151,7 +159,7 @@ def _draw_amplitude(ax: Axes, motion: MotionColumn, family: Family, top: float) 
     """Draw the upper panel of a column; return entries for the legend."""
     x = family.cells["r"].values
     handles: list[Handle] = []
-    for row, regime, colour in zip(motion.size, family.regime, family.colours, strict=True):
+    for row, regime, colour in zip(motion.size, motion.regime, family.colours, strict=True):
         draw_curve(ax, x, row, regime, colour, top)
     for curve, style in ((motion.limit, LIMIT), (motion.held, HELD)):
         if curve is not None:
@@ -171,7 +179,7 @@ def _draw_phase(ax: Axes, motion: MotionColumn, family: Family) -> list[Handle]:
     x = family.cells["r"].values
     assert motion.phase is not None
     handles: list[Handle] = []
-    for row, regime, colour in zip(motion.phase, family.regime, family.colours, strict=True):
+    for row, regime, colour in zip(motion.phase, motion.regime, family.colours, strict=True):
         draw_curve(ax, x, row, regime, colour, None)
     if motion.stop is not None and np.isfinite(motion.stop[0]).any():
         for begin, end, colour in zip(*motion.stop, family.colours, strict=True):

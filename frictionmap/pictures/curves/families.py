@@ -32,10 +32,26 @@ class Family(NamedTuple):
         values = self.cells[name].isel(chosen)
         return np.atleast_2d(values.transpose(*({self.line} & set(values.dims)), "r").values)
 
+    def contacts(self, name: str) -> list["Family"]:
+        """The family with the values of each contact that a variable has; itself if there is one contact."""
+        if "contact" not in self.cells[name].dims:
+            return [self]
+        own = [self.cells.isel(contact=k) for k in range(self.cells.sizes["contact"])]
+        return [self._replace(cells=cells, regime=_regime_of(cells, self.line, self.regime)) for cells in own]
+
     @property
     def beta(self) -> np.ndarray:
         """Friction ratio of every line."""
         return np.broadcast_to(self.cells["beta"].values, (len(self.labels),))
+
+
+def _regime_of(cells: xr.Dataset, line: str, otherwise: np.ndarray) -> np.ndarray:
+    """Regime of every point, (lines, r): of the contact that was chosen, or of all."""
+    names = ["regime"] if "contact" in cells.dims else ["contact_regime", "regime"]
+    for name in names:
+        if name in cells:
+            return cells[name].transpose(line, "r").values
+    return otherwise
 
 
 def _one_of(symbol: str, values: np.ndarray) -> str:
@@ -56,9 +72,7 @@ def family_of(ds: xr.Dataset) -> Family:
     values = ds[line].values
     cells = ds.isel({other: 0})
     shape = values.size, ds.sizes["r"]
-    regime = np.full(shape, regimes.CONTINUOUS)
-    if "regime" in cells:
-        regime = cells["regime"].transpose(line, "r").values
+    regime = _regime_of(cells, line, np.full(shape, regimes.CONTINUOUS))
     return Family(
         cells=cells,
         r=r,

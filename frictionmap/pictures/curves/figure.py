@@ -33,7 +33,13 @@ CURVE_QUANTITIES: dict[str, tuple[str, ...]] = {
 
 #: All variables from which curves are drawn.
 CURVE_VARIABLES = frozenset(
-    ("regime", *MOTION_VARIABLES, *(name for names in CURVE_QUANTITIES.values() for name in names))
+    (
+        "regime",
+        "contact_regime",
+        "slips_per_cycle",
+        *MOTION_VARIABLES,
+        *(name for names in CURVE_QUANTITIES.values() for name in names),
+    )
 )
 
 #: Largest number of lines in a picture that can be distinguished.
@@ -129,8 +135,9 @@ def plot_curves(
     else:
         axes = given_axes(ax, len(panels), "one for each panel")
     others = [handle for panel, one in zip(panels, axes, strict=True) for handle in panel(one)]
+    elastic = "slips_per_cycle" in ds and "stops_per_cycle" not in ds
     lines = [] if quantity == "harmonics" else _line_handles(family)
-    handles = [*lines, *regime_handles(family.regime), *distinct(others)]
+    handles = [*lines, *regime_handles(family.regime, elastic), *distinct(others)]
     if ax is None:
         figure = axes[0].figure
         assert isinstance(figure, Figure)

@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 
 from ..palette import sequence
 from ..panels import Handle
+from ..words import name_of_contact
 from .axes import Panel, Picture, Row, in_rows, over_r
 from .families import Family
 from .lines import draw_curve
@@ -37,7 +38,7 @@ def levels_of(values: np.ndarray) -> np.ndarray:
 
 
 def _motion_levels(family: Family) -> list[tuple[str, np.ndarray]]:
-    """Names and levels, (lines, r, harmonic), of the masses, and of the contact unless a mass equals it."""
+    """Names and levels, (lines, r, harmonic), of the masses, and of the contacts that no mass equals."""
     order = (family.line, "r", "harmonic", "part")
     found = []
     if "displacement_harmonic" in family.cells:
@@ -45,9 +46,11 @@ def _motion_levels(family: Family) -> list[tuple[str, np.ndarray]]:
         numbers = family.cells["dof"].values
         found = [(f"mass {k}", levels_of(part)) for k, part in zip(numbers, values, strict=True)]
     if "contact_harmonic" in family.cells:
-        own = levels_of(family.cells["contact_harmonic"].transpose(*order).values)
-        if not any(np.allclose(own[..., 2:], part[..., 2:], equal_nan=True) for _, part in found):
-            found.append(("contact", own))
+        masses = [part for _, part in found]
+        for one in family.contacts("contact_harmonic"):
+            own = levels_of(one.cells["contact_harmonic"].transpose(*order).values)
+            if not any(np.allclose(own[..., 2:], part[..., 2:], equal_nan=True) for part in masses):
+                found.append((name_of_contact(one.cells) or "contact", own))
     return found
 
 

@@ -69,12 +69,13 @@ def draw_band(ax: Axes, x: np.ndarray, begin: np.ndarray, end: np.ndarray, colou
         ax.fill_between(x, low + turn, high + turn, color=colour, alpha=_BAND, linewidth=0.0)
 
 
-def regime_handles(regime: np.ndarray) -> list[Handle]:
-    """Legend entries of the regimes that occur."""
+def regime_handles(regime: np.ndarray, elastic: bool = False) -> list[Handle]:
+    """Legend entries of the regimes that occur; `elastic`: of contacts with a spring."""
     words = {
         regimes.CONTINUOUS: "continuous",
-        regimes.STICK_SLIP: "stick-slip",
-        regimes.PERMANENT_STICKING: "permanent sticking",
+        regimes.STICK_SLIP: "slips" if elastic else "stick-slip",
+        regimes.PERMANENT_STICKING: "no slip" if elastic else "permanent sticking",
+        regimes.ONE_WAY_SLIDING: "one-way sliding",
     }
     return [
         Line2D([], [], color="#606060", linewidth=1.3, linestyle=REGIME_LINES[code], label=word)

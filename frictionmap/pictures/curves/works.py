@@ -1,11 +1,14 @@
 """Work, distances and forces per cycle over frequency, one panel each."""
 
+from typing import NamedTuple
+
 import numpy as np
 from matplotlib.axes import Axes
 
 from ...datasets.labels import MEASURE_OF
 from ..panels import Handle
 from ..second_axes import on_the_right
+from ..words import name_of_contact
 from .axes import Panel, Picture, Scale, about_cut, about_peaks, in_rows, over_r, scale_of
 from .families import Family
 from .lines import draw_curve
@@ -15,6 +18,7 @@ SCALARS = {
     "energy": {
         "work_input": "work of the load / $(P^2/k_1)$",
         "work_friction": "work of friction / $(P^2/k_1)$",
+        "work_wall": "work of the belt / $(P^2/k_1)$",
         "work_damping": "work of dampers / $(P^2/k_1)$",
         "sliding_distance": "sliding distance / $(P/k_1)$",
         "equivalent_damping": r"equivalent damping $c_\mathrm{eq}\omega/k_1$",
@@ -36,27 +40,46 @@ def _cut(values: np.ndarray) -> float:
     return _ABOVE * float(np.quantile(positive, 1.0 - _BEYOND)) if positive.size else 1.0
 
 
-def scalar_picture(family: Family, quantity: str, log: bool) -> Picture:
-    """Panels of a quantity; the work of dampers only if it is not zero."""
-    rows = {name: family.rows(name) for name in SCALARS[quantity] if name in family.cells}
-    if "work_damping" in rows and not np.nansum(rows["work_damping"]) > 0.0:
-        del rows["work_damping"]
+class Scalar(NamedTuple):
+    """Content of a panel: a number of every cell, or of one contact."""
 
-    def panel(name: str, values: np.ndarray, scale: Scale) -> Panel:
+    name: str
+    contact: str  # empty if there is only one
+    values: np.ndarray  # (lines, r)
+    regime: np.ndarray  # (lines, r)
+
+
+def _scalars(family: Family, quantity: str) -> list[Scalar]:
+    """Panels of a quantity; the work of dampers only if it is not zero."""
+    found = [
+        Scalar(name, name_of_contact(one.cells), one.rows(name), one.regime)
+        for name in SCALARS[quantity]
+        if name in family.cells
+        for one in family.contacts(name)
+    ]
+    return [one for one in found if one.name != "work_damping" or np.nansum(one.values) > 0.0]
+
+
+def scalar_picture(family: Family, quantity: str, log: bool) -> Picture:
+    """Panels of a quantity, one for each contact if it has one value per contact."""
+    scalars = _scalars(family, quantity)
+
+    def panel(one: Scalar, scale: Scale) -> Panel:
         def draw(ax: Axes) -> list[Handle]:
-            over_r(ax, family, "", SCALARS[quantity][name])
-            for row, regime, colour in zip(values, family.regime, family.colours, strict=True):
+            over_r(ax, family, one.contact, SCALARS[quantity][one.name])
+            for row, regime, colour in zip(one.values, one.regime, family.colours, strict=True):
                 draw_curve(ax, family.cells["r"].values, row, regime, colour, scale.top)
-            scale.apply(ax, values)
-            if name in MEASURE_OF:
-                on_the_right(ax, family.cells, MEASURE_OF[name], SCALARS[quantity][name].split(" / ")[0])
+            scale.apply(ax, one.values)
+            if one.name in MEASURE_OF:
+                name = SCALARS[quantity][one.name].split(" / ")[0]
+                on_the_right(ax, family.cells, MEASURE_OF[one.name], name)
             return []
 
         return draw
 
-    scales = {name: scale_of(family, [values], _cut(values), log) for name, values in rows.items()}
+    scales = [scale_of(family, [one.values], _cut(one.values), log) for one in scalars]
     remarks = ["work and distances per cycle of the load"] if quantity == "energy" else []
-    if any(about_cut(scales[name], [values]) for name, values in rows.items()):
+    if any(about_cut(scale, [one.values]) for scale, one in zip(scales, scalars, strict=True)):
         remarks.append("peaks cut off")
-    panels = [panel(name, values, scales[name]) for name, values in rows.items()]
+    panels = [panel(one, scale) for scale, one in zip(scales, scalars, strict=True)]
     return Picture(in_rows(panels, []), 2.9, [*remarks, *about_peaks(family)])

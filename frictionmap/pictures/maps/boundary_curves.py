@@ -13,7 +13,7 @@ from ...model.system import System
 from ...theory.boundary_curves import find_curves
 from ..grids import HIGH, Grid
 
-BOUNDARIES = ("beta_lim", "beta_stick")
+BOUNDARIES = ("beta_lim", "beta_stick", "beta_stick_contact", "beta_noslip")
 
 #: Samples over the width of a picture, a few per pixel.
 _SAMPLES = 4000
@@ -27,6 +27,9 @@ _MOST_STEPS = 1e6
 
 #: Share of the axis, about a line's width, below which two curves look the same.
 _LINE = 0.004
+
+#: Relative rounding error of boundaries.
+_ROUNDING = 1e-9
 
 
 def _affordable(r: np.ndarray, system: System) -> np.ndarray:
@@ -70,11 +73,52 @@ def _computed(stored: dict[str, np.ndarray], panel: xr.Dataset, r: Grid, top: fl
 def boundary_curves(panel: xr.Dataset, r: Grid, top: float) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Frequencies and finite values of the boundaries in the map of one mu, for an axis up to `top`.
 
-    A single value extends over its cell.
+    A single value extends over its cell.  A contact that was chosen has a beta_stick of its own.
     """
-    stored = {name: panel[name].values for name in BOUNDARIES if name in panel}
+    stored = {
+        name: panel[name].values for name in BOUNDARIES if name in panel and "contact" not in panel[name].dims
+    }
+    if "beta_stick_contact" in stored:
+        stored.pop("beta_stick", None)
+    stored = {name: values for name, values in stored.items() if not np.isinf(values).all()}  # as on a belt
     if r.values.size == 1:
         curves = {name: (r.edges, np.repeat(values, 2)) for name, values in stored.items()}
     else:
         curves = _computed(stored, panel, r, top) or {n: (r.values, v) for n, v in stored.items()}
     return {name: (x, np.minimum(values, HIGH * top)) for name, (x, values) in curves.items()}
+
+
+def further_ends(panel: xr.Dataset, r: Grid, top: float) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Ends of the ranges of beta without stops beyond the first one, whose end is beta_lim.
+
+    Each value extends over its cell: such ranges may exist at a single frequency.  Ranges too narrow to be
+    seen on an axis up to `top` are left out.
+    """
+    return [through_cells(r, end) for ends in further_ranges(panel, top) for end in ends]
+
+
+def further_ranges(panel: xr.Dataset, top: float) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Begin and end of the ranges of beta without stops beyond the first one, over r; NaN where none is."""
+    if not {"no_stop_begin", "beta_stick"} <= set(panel):
+        return []
+    begins, ends = (
+        panel[name].transpose("interval", "r").values[1:] for name in ("no_stop_begin", "no_stop_end")
+    )
+    all_stick = panel["beta_stick"].values * (1.0 - _ROUNDING)
+    # what lasts for ever and begins where all contacts can stick is no motion
+    seen = (ends - begins > _LINE * top) & (np.isfinite(ends) | (begins < all_stick))
+    return [
+        (np.where(row, begin, np.nan), np.where(row, np.minimum(end, HIGH * top), np.nan))
+        for row, begin, end in zip(seen, begins, ends, strict=True)
+        if row.any()
+    ]
+
+
+def through_cells(r: Grid, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A curve with gaps (NaN), from edge to edge of each of its cells; shapes (3 n,)."""
+    known = np.where(np.isfinite(values), values, np.nan)
+    between = 0.5 * (known[1:] + known[:-1])
+    ends = np.append(np.nan, between), np.append(between, np.nan)
+    at_edges = [np.where(np.isnan(end), known, end) for end in ends]
+    x = np.stack((r.edges[:-1], r.values, r.edges[1:]), axis=-1)
+    return x.ravel(), np.stack((at_edges[0], known, at_edges[1]), axis=-1).ravel()

@@ -9,8 +9,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..features import features_of, mark_features
-from ..grids import Grid
-from ..palette import CLASSES, CONTINUOUS, HATCH, HATCH_COLOUR, LIM, MODAL, STICK, STUCK, UNCOUNTED
+from ..grids import HIGH, Grid
+from ..palette import (  # fmt: skip
+    CLASSES,
+    CONTINUOUS,
+    FURTHER,
+    HATCH,
+    HATCH_COLOUR,
+    LIM,
+    MODAL,
+    NO_SLIP,
+    STICK,
+    STUCK,
+    UNCOUNTED,
+)
 from ..panels import (
     Handle,
     distinct,
@@ -25,12 +37,16 @@ from ..panels import (
 from ..second_axes import frequency_on_top, on_the_right
 from ..shapes import check_holds, panels_of, to_draw
 from ..words import caption
+from .boundary_curves import further_ranges, through_cells
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
 
 #: Height of the axis over the largest value, and over the largest beta_lim where beta_stick has poles.
 _ABOVE, _ABOVE_LIM = 1.15, 2.0
+
+#: Height of the axis over the median of beta_noslip.
+_ABOVE_MEDIAN = 4.0
 
 
 class Areas(NamedTuple):
@@ -63,6 +79,14 @@ def top_of(lim: np.ndarray, stick: np.ndarray) -> float:
     return float(min(_ABOVE * finite.max(initial=0.1), _ABOVE_LIM * lim.max(initial=0.05)))
 
 
+def _top_of_elastic(noslip: np.ndarray) -> float:
+    """Upper end of the axis of beta for elastic contacts: resonances leave the picture at the top."""
+    finite = noslip[np.isfinite(noslip)]
+    if not finite.size:
+        return 1.0
+    return float(min(_ABOVE * finite.max(), _ABOVE_MEDIAN * np.median(finite))) or 1.0
+
+
 def _over(r: Grid, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A curve over frequency; a single value extends over its cell."""
     return (r.values, values) if r.values.size > 1 else (r.edges, np.repeat(values, 2))
@@ -71,6 +95,35 @@ def _over(r: Grid, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _differ(lim: np.ndarray, modal: np.ndarray, top: float) -> bool:
     """Whether two curves differ by more than a line's width anywhere in the picture."""
     return bool((np.abs(np.minimum(lim, top) - np.minimum(modal, top)) > 0.004 * top).any())
+
+
+def _draw_further(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
+    """Draw ranges without stops beyond beta_lim."""
+    handles: list[Handle] = []
+    for begin, end in further_ranges(panel, top):
+        (x, low), (_, high) = through_cells(r, begin), through_cells(r, end)
+        ax.fill_between(x, low, high, color=CLASSES[CONTINUOUS].colour, linewidth=0.0)
+        for ends in (low, high):
+            handles += ax.plot(x, ends, path_effects=halo(), **FURTHER)
+    return handles
+
+
+def _draw_elastic(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
+    """Draw one mu of elastic contacts: they slip below beta_noslip."""
+    x, end = _over(r, panel["beta_noslip"].values)
+    drawn = np.minimum(end, top)
+    ax.fill_between(x, 0.0, drawn, color=CLASSES[UNCOUNTED].colour, linewidth=0.0)
+    ax.fill_between(x, drawn, top, color=CLASSES[STUCK].colour, linewidth=0.0)
+    handles: list[Handle] = [*ax.plot(x, np.minimum(end, HIGH * top), path_effects=halo(), **NO_SLIP)]
+    _finish(ax, panel, r, top)
+    return handles + mark_features(ax, features_of(panel), r)
+
+
+def _finish(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> None:
+    name_axes(ax, r, float(panel["mu"]))
+    ax.set_ylim(0.0, top)
+    frequency_on_top(ax, panel)
+    on_the_right(ax, panel, "force")
 
 
 def _draw(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
@@ -89,17 +142,20 @@ def _draw(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
     if (high > low).any():
         ax.fill_between(x, low, high, facecolor="white", edgecolor=HATCH_COLOUR, hatch=HATCH, linewidth=0.0)
         handles.append(patch("continuous or stuck: the initial state decides", "white", HATCH))
+    handles += _draw_further(ax, panel, r, top)
     curves = [("beta_lim", LIM), ("beta_stick", STICK)]
     if "beta_lim_modal" in panel and _differ(panel["beta_lim"].values, panel["beta_lim_modal"].values, top):
         curves.append(("beta_lim_modal", MODAL))
     for name, style in curves:
         rim = [] if style is MODAL else halo()  # it often coincides with beta_lim, which must stay visible
         handles += ax.plot(*_over(r, panel[name].values), path_effects=rim, **style)
-    name_axes(ax, r, float(panel["mu"]))
-    ax.set_ylim(0.0, top)
-    frequency_on_top(ax, panel)
-    on_the_right(ax, panel, "force")
+    _finish(ax, panel, r, top)
     return handles + mark_features(ax, features_of(panel), r)
+
+
+def _elastic_handles() -> list[Handle]:
+    """Legend entries of the areas of elastic contacts."""
+    return [patch(word, CLASSES[index].colour) for index, word in ((UNCOUNTED, "slips"), (STUCK, "no slip"))]
 
 
 def _area_handles(mu: np.ndarray) -> list[Handle]:
@@ -139,12 +195,13 @@ def plot_boundaries(
     """Draw the boundaries over frequency, one panel for each mu, with a common axis of beta.
 
     Continuous motion is possible below `beta_lim`, permanent sticking at or above `beta_stick`; where both
-    are possible, the area is hatched.
+    are possible, the area is hatched.  Contacts with a spring slip below `beta_noslip`.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        Result of `boundaries`, or a map: any dataset with `beta_lim` and `beta_stick`.
+        Result of `boundaries`, or a map: any dataset with `beta_lim` and `beta_stick`, or with
+        `beta_noslip`.
     ax : matplotlib axes, or an array of them, optional
         Axes to draw into, one for each mu; the legend is placed below the last of them (save the figure with
         ``bbox_inches="tight"``).  Without it a figure is created.
@@ -159,14 +216,19 @@ def plot_boundaries(
         The dataset has no boundaries, or the number of axes differs from the number of mu.
     """
     ds = to_draw(ds, "plot_boundaries", "boundaries", "map")
-    check_holds(ds, ("beta_lim", "beta_stick"), "its boundaries")
+    elastic = "beta_noslip" in ds
+    if not elastic:
+        check_holds(ds, ("beta_lim", "beta_stick"), "its boundaries")
     r, panels = Grid(ds["r"].values), panels_of(ds)
     title = str(ds.attrs.get("title", ""))
     axes = panel_grid(len(panels), title) if ax is None else given_axes(ax, len(panels), "one for each mu")
-    top = top_of(ds["beta_lim"].values, ds["beta_stick"].values)
-    handles = _area_handles(ds["mu"].values)
+    if elastic:
+        draw, top, handles = _draw_elastic, _top_of_elastic(ds["beta_noslip"].values), _elastic_handles()
+    else:
+        draw, top = _draw, top_of(ds["beta_lim"].values, ds["beta_stick"].values)
+        handles = _area_handles(ds["mu"].values)
     for panel_ax, panel in zip(axes, panels, strict=True):
-        handles += _draw(panel_ax, panel, r, top)
+        handles += draw(panel_ax, panel, r, top)
     handles = distinct(handles)
     if ax is None:
         figure = axes[0].figure

@@ -114,6 +114,12 @@ def stripes(pixels: tuple[int, int], spacing: float, width: float) -> np.ndarray
     return np.clip(0.5 * width + 0.5 - off_line, 0.0, 1.0)
 
 
+def level_stripes(pixels: tuple[int, int], spacing: float, width: float) -> np.ndarray:
+    """Darkness of each pixel under level stripes, 0 to 1, shape (width, height); lengths in pixels."""
+    off_line = np.abs(np.mod(np.arange(pixels[1]), spacing) - 0.5 * spacing)
+    return np.broadcast_to(np.clip(0.5 * width + 0.5 - off_line, 0.0, 1.0), pixels)
+
+
 def paint(raster: np.ndarray, table: np.ndarray) -> np.ndarray:
     """Convert a raster to an image of colours, first row at the bottom; `table` is `colour_table()`."""
     return np.ascontiguousarray(table[raster.T])

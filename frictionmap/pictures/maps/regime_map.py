@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ...errors import InputError
-from ..classes import classes, count, legend_label, stops_range
+from ..classes import Counted, classes, count, counted, legend_label, stops_range
 from ..features import features_of, mark_features
 from ..grids import Grid
 from ..marks import COARSE, rare_classes, rings, room_for, trace
@@ -22,15 +22,21 @@ from ..palette import (  # fmt: skip
     CLASSES,
     CONTINUOUS,
     COUNT,
+    FURTHER,
     HATCH,
     HATCH_COLOUR,
     LIM,
+    LIM_CONTACT,
     MORE,
+    NO_SLIP,
     NON_INTEGER,
     NOT_YET,
     NOT_YET_HATCH,
     NOT_YET_LABEL,
+    ONE_WAY,
+    ONE_WAY_HATCH,
     STICK,
+    STICK_CONTACT,
     STUCK,
     colour_table,
 )
@@ -48,17 +54,23 @@ from ..panels import (  # fmt: skip
 )
 from ..second_axes import frequency_on_top, on_the_right
 from ..shapes import panels_of, to_draw
-from ..words import caption
-from .boundary_curves import boundary_curves
-from .raster import paint, rasterise, shade, stripes
+from ..words import caption, title_of_map
+from .boundary_curves import boundary_curves, further_ends
+from .raster import level_stripes, paint, rasterise, shade, stripes
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
 
-_STYLES = {"beta_lim": LIM, "beta_stick": STICK}
+_STYLES = {
+    "beta_lim": LIM,
+    "beta_stick": STICK,
+    "beta_stick_contact": STICK_CONTACT,
+    "beta_noslip": NO_SLIP,
+}
 
 #: Stripes: distance and width [inch].
 _SPACING, _STRIPE = 0.085, 0.012
+_HATCHING = int(HATCH_COLOUR[1:3], 16), int(HATCH_COLOUR[3:5], 16), int(HATCH_COLOUR[5:7], 16)
 
 
 @dataclass(frozen=True)
@@ -69,6 +81,7 @@ class Cells:
     beta: Grid
     found: np.ndarray  # classes, (r, beta)
     several: np.ndarray | None  # whether several regimes are possible, (r, beta)
+    by: Counted
 
     @cached_property
     def counts(self) -> np.ndarray:
@@ -85,9 +98,10 @@ def _several(panel: xr.Dataset) -> np.ndarray | None:
     return several.astype(np.uint8) if several.any() else None
 
 
-def cells_of(panel: xr.Dataset) -> Cells:
-    """The cells of a map of one mu, dims (r, beta)."""
-    return Cells(Grid(panel["r"].values), Grid(panel["beta"].values), classes(panel), _several(panel))
+def cells_of(panel: xr.Dataset, by: Counted | None = None) -> Cells:
+    """The cells of a map of one mu, dims (r, beta); `by`: what their classes count."""
+    by = by or counted(panel)
+    return Cells(Grid(panel["r"].values), Grid(panel["beta"].values), classes(panel, by), _several(panel), by)
 
 
 class CellImage(Artist):
@@ -106,7 +120,10 @@ class CellImage(Artist):
         left, bottom = round(left), round(bottom)
         size = max(1, round((right - left) * scale)), max(1, round((top - bottom) * scale))
         edges = self._edges(scale, left, bottom)
-        image = paint(rasterise(self.cells.found, *edges, size, COUNT), colour_table())
+        raster = rasterise(self.cells.found, *edges, size, COUNT)
+        image = paint(raster, colour_table())
+        if self.cells.counts[ONE_WAY]:
+            self._hatch_one_way(image, raster == ONE_WAY, scale)
         if self.cells.several is not None:
             self._hatch(image, rasterise(self.cells.several, *edges, size, 2) == 1, scale)
         gc = renderer.new_gc()
@@ -127,9 +144,14 @@ class CellImage(Artist):
     def _hatch(self, image: np.ndarray, several: np.ndarray, scale: float) -> None:
         assert self.axes is not None
         inch = scale * self.axes.figure.dpi
-        red, green, blue = (int(HATCH_COLOUR[k : k + 2], 16) for k in (1, 3, 5))
-        darkness = stripes(several.shape, _SPACING * inch, _STRIPE * inch) * several
-        shade(image, darkness, (red, green, blue))
+        shade(image, stripes(several.shape, _SPACING * inch, _STRIPE * inch) * several, _HATCHING)
+
+    def _hatch_one_way(self, image: np.ndarray, where: np.ndarray, scale: float) -> None:
+        """Paint one-way sliding white with level stripes, also where cells not computed are dotted."""
+        assert self.axes is not None
+        inch = scale * self.axes.figure.dpi
+        image[where.T] = 255
+        shade(image, level_stripes(where.shape, _SPACING * inch, _STRIPE * inch) * where, _HATCHING)
 
 
 def _name_regions(ax: Axes, cells: Cells, curves: Iterable[tuple[np.ndarray, np.ndarray]]) -> None:
@@ -138,11 +160,12 @@ def _name_regions(ax: Axes, cells: Cells, curves: Iterable[tuple[np.ndarray, np.
     coarse = rasterise(cells.found, x_edges, y_edges, (COARSE, COARSE), COUNT)
     for x, y in curves:
         coarse[trace(cells.r.share(x), cells.beta.share(y))] = COUNT
-    for index in (STUCK, CONTINUOUS):
-        place = room_for(coarse == index, CLASSES[index].label, size_of(ax))
+    for index in (STUCK, CONTINUOUS, ONE_WAY):
+        name = cells.by.labels[index]
+        place = room_for(coarse == index, name, size_of(ax))
         if place:
             ax.text(
-                *place, CLASSES[index].label, transform=ax.transAxes, ha="center", va="center", fontsize=9,
+                *place, name, transform=ax.transAxes, ha="center", va="center", fontsize=9,
                 path_effects=halo(3.0),
             )  # fmt: skip
 
@@ -178,7 +201,10 @@ def draw_map(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
     frequency_on_top(ax, panel)
     on_the_right(ax, panel, "force")
     for name, curve in curves.items():
-        handles += ax.plot(*curve, path_effects=halo(), **_STYLES[name])
+        style = LIM_CONTACT if name == "beta_lim" and "beta_stick_contact" in curves else _STYLES[name]
+        handles += ax.plot(*curve, path_effects=halo(), **style)
+    for ends in further_ends(panel, cells.r, cells.beta.limits[1]):
+        handles += ax.plot(*ends, path_effects=halo(), **FURTHER)
     if cells.several is not None:
         handles.append(
             Patch(
@@ -199,11 +225,15 @@ def _class_handles(panels: Sequence[xr.Dataset], cells: Sequence[Cells]) -> list
         low, high = np.inf, -np.inf
         if index in (MORE, NON_INTEGER):
             ends = [
-                stops_range(part.found, panel["stops_per_cycle"].values, int(index))
+                stops_range(part.found, panel[part.by.variable].values, int(index))
                 for panel, part in zip(panels, cells, strict=True)
             ]
             low, high = min(e[0] for e in ends), max(e[1] for e in ends)
-        handles.append(patch(legend_label(int(index), int(counts[index]), low, high), CLASSES[index].colour))
+        label = legend_label(int(index), int(counts[index]), low, high, cells[0].by)
+        handles.append(patch(label, CLASSES[index].colour))
+    if counts[ONE_WAY]:
+        label = legend_label(ONE_WAY, int(counts[ONE_WAY]), np.inf, -np.inf, cells[0].by)
+        handles.append(patch(label, "white", ONE_WAY_HATCH))
     if counts[NOT_YET]:
         label = f"{NOT_YET_LABEL} ({counts[NOT_YET]:,})"
         handles.append(Patch(facecolor="none", edgecolor=HATCH_COLOUR, hatch=NOT_YET_HATCH, label=label))
@@ -224,6 +254,9 @@ def plot_regimes(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray") -> "AxesArray
 
 def plot_regimes(ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" = None) -> "Axes | AxesArray":
     """Draw a regime map: stops per cycle in discrete colours, with the boundaries over it.
+
+    Contacts with a spring are coloured by their slip reversals or slips.  Of several contacts the regime of
+    all is drawn, or one that was chosen with ``ds.sel(contact=2)``.
 
     The legend shows the number of cells of each class.  Circles mark cells of classes too rare to be seen.
     If the map contains `also_reachable`, cells that can reach several regimes are hatched.  Where several
@@ -247,12 +280,13 @@ def plot_regimes(ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" 
         The dataset has neither output or is not a map, or the number of axes differs from the number of mu.
     """
     ds = to_draw(ds, "plot_regimes", "map")
-    if "regime" not in ds and "stops_per_cycle" not in ds:
+    by = counted(ds)
+    if "regime" not in ds and by.variable not in ds:
         raise InputError("a map must hold regime or stops_per_cycle to be drawn; got neither")
     panels = panels_of(ds)
-    title = str(ds.attrs.get("title", ""))
+    title = title_of_map(ds)
     axes = panel_grid(len(panels), title) if ax is None else given_axes(ax, len(panels), "one for each mu")
-    cells = [cells_of(panel) for panel in panels]
+    cells = [cells_of(panel, by) for panel in panels]
     others: list[Handle] = []
     for panel_ax, panel, part in zip(axes, panels, cells, strict=True):
         others += draw_map(panel_ax, panel, part) + _ring(panel_ax, part)

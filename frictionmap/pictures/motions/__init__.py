@@ -1,9 +1,11 @@
 """Pictures of one steady state.
 
-=======  =========================================
+=======  =====================================================
 module   what is in it
-=======  =========================================
+=======  =====================================================
+traces   motion, stops and friction levels of every contact
+loops    friction over the motion in the contacts
 history  motion, friction force and events in time
 orbit    phase portrait, friction loop, harmonics
-=======  =========================================
+=======  =====================================================
 """

@@ -11,12 +11,15 @@ from matplotlib.patches import Patch
 
 from ... import regimes
 from ...errors import InputError
+from ...files.stored import stored_general
 from ..marks import spread
 from ..palette import CLASSES, LINES, STUCK, Shade
 from ..panels import Handle, given_axes, halo, legend_below, new_figure, title_figure
 from ..second_axes import in_brackets, on_the_right, time_on_top
 from ..shapes import check_holds, check_range, to_draw
-from ..words import caption, load_of, moves_base
+from ..words import caption, load_of, moves_base, name_of_contact
+from .loops import draw_loop
+from .traces import Trace, levels_of, load_trace, traces_of
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -25,16 +28,21 @@ if TYPE_CHECKING:
 #: Height of the panels: load, motion in the contact, masses, friction.
 _HEIGHTS = {"load": 1.0, "z": 2.4, "masses": 3.0, "friction": 2.2}
 
+#: Height of a row of the panel that shows when each of several contacts is stuck.
+_BAR = 0.3
+
+#: Width of the traces, and of the hysteresis loop beside them [inch].
+_WIDTH, _LOOP_WIDTH = 7.2, 4.4
+
 #: Labels next to lines: least distance as a share of the panel's height, and largest number.
 _GAP, MOST_LABELS = 0.09, 11
 
 #: Largest range of a motion that counts as constant.
 _ROUNDING = 1e-9
 
-#: Variables of the events; without one of these the starts of stops are not marked.
-_EVENTS = ("event_tau", "event_direction", "event_z")
-
 _SHADE: Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.55, "linewidth": 0.0}
+#: Size of the marks of events.
+_DOT = 4.5
 _LOAD_COLOUR = "#cc1f03"
 
 _REGIME_WORDS = {
@@ -42,6 +50,12 @@ _REGIME_WORDS = {
     regimes.PERMANENT_STICKING: "permanent sticking",
     regimes.STICK_SLIP: "stick-slip",
     regimes.CONTINUOUS: "continuous",
+    regimes.ONE_WAY_SLIDING: "one-way sliding",
+}
+_ELASTIC_WORDS = _REGIME_WORDS | {
+    regimes.PERMANENT_STICKING: "no slip",
+    regimes.STICK_SLIP: "slips",
+    regimes.CONTINUOUS: "slips without rest",
 }
 
 
@@ -73,26 +87,68 @@ def _in_sight(ax: Axes, values: np.ndarray) -> None:
     ax.set_ylim(0.5 * (low + high) - half, 0.5 * (low + high) + half)
 
 
-def _draw_load(ax: Axes, turns: np.ndarray, name: str) -> None:
-    ax.plot(turns, np.cos(np.pi * turns), color="black", linewidth=1.0)
-    tops = np.arange(0.0, turns[-1] + 1e-9, 2.0)
-    ax.plot(tops, np.ones(tops.size), "v", color=_LOAD_COLOUR, markersize=5.0, clip_on=False)
-    ax.set_ylim(-1.25, 1.25)
-    ax.set_ylabel(name)
+def _maxima(ds: xr.Dataset, load: np.ndarray) -> np.ndarray:
+    """Where the load is largest, tau/pi, once per period; none for a load that is constant.
+
+    The phase of every load of one harmonic is counted from its maximum.
+    """
+    turns = ds["tau"].values / np.pi
+    if "load" not in ds and stored_general(ds) is None:
+        return np.arange(0.0, turns[-1] + 1e-9, 2.0)
+    if np.ptp(load) <= _ROUNDING:
+        return np.empty(0)
+    period = turns < turns[0] + 2.0 - 1e-9
+    first = float(turns[period][np.argmax(load[period] >= load.max() - _ROUNDING)])
+    return np.arange(first, turns[-1] + 1e-9, 2.0)
 
 
-def _draw_contact(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> list[Handle]:
-    z = ds["z"].values
-    ax.plot(turns, z, color=LINES[0])
-    _in_sight(ax, z)
+def _draw_load(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
+    load = load_trace(ds)
+    ax.plot(turns, load, color="black", linewidth=1.0)
+    tops = _maxima(ds, load)
+    ax.plot(tops, np.full(tops.size, load.max()), "v", color=_LOAD_COLOUR, markersize=5.0, clip_on=False)
+    if abs(float(load.max()) - 1.0) <= _ROUNDING and abs(float(load.min()) + 1.0) <= _ROUNDING:
+        ax.set_ylim(-1.25, 1.25)
+    else:
+        _in_sight(ax, load)
+    ax.set_ylabel(load_of(ds) or "load / $P$")
+
+
+def _draw_contacts(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence[Trace]) -> list[Handle]:
+    """Draw the motion in every contact, with the starts of its stops."""
+    for trace in traces:
+        ax.plot(turns, trace.z, color=trace.colour)
+    _in_sight(ax, np.concatenate([trace.z for trace in traces]))
     ax.set_ylabel("contact\n" r"$z$ / $(P/k_1)$")
     on_the_right(ax, ds, "length", "$z$")
-    begins = ds["event_direction"].values == 0 if set(_EVENTS) <= set(ds) else np.zeros(0, dtype=bool)
-    if not begins.any():
-        return []
-    times, places = ds["event_tau"].values[begins] / np.pi, ds["event_z"].values[begins]
-    marks = ax.plot(times, places, "o", color="black", markersize=4.5, clip_on=False, label="stop begins")
-    return [*marks]
+    handles: list[Handle] = [
+        Line2D([], [], color=trace.colour, label=trace.label) for trace in traces if trace.label
+    ]
+    kinds = []
+    for trace in traces:
+        times, places = trace.stops
+        if times.size:
+            colour = trace.colour if trace.label else "black"
+            kinds.append("slip ends" if trace.elastic else "stop begins")
+            ax.plot(times / np.pi, places, "o", color=colour, markersize=_DOT, clip_on=False, label=kinds[-1])
+    if kinds:
+        label = ", ".join(dict.fromkeys(kinds))
+        handles.append(
+            Line2D([], [], color="black", label=label, marker="o", linestyle="none", markersize=_DOT)
+        )
+    return handles
+
+
+def _draw_stuck(ax: Axes, turns: np.ndarray, traces: Sequence[Trace]) -> None:
+    """Draw a bar for each contact while it is stuck."""
+    for row, trace in enumerate(traces):
+        ax.fill_between(
+            turns, row - 0.36, row + 0.36, where=trace.stuck.tolist(), color=trace.colour, linewidth=0.0
+        )
+    ax.set_yticks(range(len(traces)), [str(trace.number) for trace in traces])
+    ax.set_ylim(len(traces) - 0.5, -0.5)
+    slips = any(trace.elastic for trace in traces)
+    ax.set_ylabel("no slip" if slips else "stuck", rotation=0, ha="right", va="center")
 
 
 def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
@@ -111,38 +167,99 @@ def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     )
 
 
-def _draw_friction(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
-    """Draw the friction force between its kinetic and static levels."""
-    friction, beta, mu = ds["friction"].values, float(ds["beta"]), float(ds["mu"])
-    ax.plot(turns, friction, color="black", linewidth=1.2)
-    names = {beta: r"\beta", mu * beta: r"\mu\beta"} if mu > 1.0 else {beta: r"\beta"}
-    levels = np.array([sign * level for level in names for sign in (1.0, -1.0)])
-    texts = [f"${sign}{name}$" for name in names.values() for sign in ("", "-")]
+def _friction_levels(ds: xr.Dataset, trace: Trace) -> tuple[dict[str, float], np.ndarray | None]:
+    """Levels of friction by their symbols, and the factor of the normal load."""
+    levels = levels_of(ds, trace)
+    if levels is None:
+        return {}, None
+    index = f"_{{{trace.number}}}" if trace.number else ""
+    found = {rf"\beta{index}": levels.kinetic}
+    if levels.static > levels.kinetic:
+        found[rf"\mu{index}\beta{index}"] = levels.static
+    return found, levels.factor
+
+
+def _draw_levels(
+    ax: Axes, turns: np.ndarray, levels: np.ndarray, factor: np.ndarray | None, colour: str
+) -> None:
+    """Draw levels of friction, which follow the normal load."""
     for level in np.unique(levels):
-        ax.axhline(level, color="#606060", linewidth=0.9, linestyle=":")
-    _in_sight(ax, np.concatenate((friction, levels)))
+        if factor is None:
+            ax.axhline(level, color=colour, linewidth=0.9, linestyle=":")
+        else:
+            ax.plot(turns, level * factor, color=colour, linewidth=0.9, linestyle=":")
+
+
+def _draw_friction(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence[Trace]) -> None:
+    """Draw the friction force of every contact between its kinetic and static levels."""
+    places, texts, colours, seen = [], [], [], []
+    for trace in traces:
+        colour = trace.colour if trace.label else "black"
+        ax.plot(turns, trace.friction, color=colour, linewidth=1.2)
+        names, factor = _friction_levels(ds, trace)
+        levels = np.array([sign * level for level in names.values() for sign in (1.0, -1.0)])
+        _draw_levels(ax, turns, levels, factor, trace.colour if trace.label else "#606060")
+        places += [*(levels if factor is None else levels * factor[-1])]
+        texts += [f"${sign}{name}$" for name in names for sign in ("", "-")]
+        colours += [colour] * levels.size
+        seen += [trace.friction, levels if factor is None else np.outer(levels, factor).ravel()]
+    together = np.concatenate(seen)
+    _in_sight(ax, together[np.isfinite(together)])
     on_the_right(ax, ds, "force", "friction")
-    _label_beside(ax, levels, texts, ["black"] * len(texts))
+    _label_beside(ax, np.array(places), texts, colours)
     ax.set_ylabel("friction / $P$")
 
 
-def _mark_stops(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray) -> list[Handle]:
-    """Shade stops, and mark maxima of the load with dotted lines, in all panels."""
-    stopped = ds["direction"].values == 0
+def _mark_stops(
+    axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray, traces: Sequence[Trace]
+) -> list[Handle]:
+    """Mark maxima of the load with dotted lines in all panels; shade stops of a single contact."""
+    maxima = _maxima(ds, load_trace(ds))
+    inside = maxima[(maxima > 1e-9) & (maxima < turns[-1] - 1e-9)]
     for ax in axes:
-        transform = ax.get_xaxis_transform()
-        ax.fill_between(turns, 0, 1, where=stopped.tolist(), transform=transform, zorder=0.5, **_SHADE)
-        for turn in np.arange(2.0, turns[-1] - 1e-9, 2.0):
+        for turn in inside:
             ax.axvline(turn, color=_LOAD_COLOUR, linewidth=1.0, linestyle=(0, (1, 2)), zorder=0.7)
-    stuck = int(ds["regime"]) == regimes.PERMANENT_STICKING if "regime" in ds else bool(stopped.all())
-    handles: list[Handle] = []
-    if stopped.any():
-        handles.append(Patch(**_SHADE, label="permanent sticking" if stuck else "stop"))
-    load = "maximum of the load (of the base's motion)" if moves_base(ds) else "maximum of the load"
+    handles = _shade_stops(axes, ds, turns, traces[0]) if len(traces) == 1 else []
+    words = "maximum of the load (of the base's motion)" if moves_base(ds) else "maximum of the load"
     handles.append(
-        Line2D([], [], color=_LOAD_COLOUR, label=load, marker="v", markersize=5.0, linestyle=(0, (1, 2)))
+        Line2D([], [], color=_LOAD_COLOUR, label=words, marker="v", markersize=5.0, linestyle=(0, (1, 2)))
     )
     return handles
+
+
+def _shade_stops(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray, trace: Trace) -> list[Handle]:
+    """Shade the stops of a single contact in all panels."""
+    for ax in axes:
+        transform = ax.get_xaxis_transform()
+        ax.fill_between(turns, 0, 1, where=trace.stuck.tolist(), transform=transform, zorder=0.5, **_SHADE)
+    if not trace.stuck.any():
+        return []
+    if trace.elastic:
+        return [Patch(**_SHADE, label="no slip")]
+    regime = _regime_of(ds)
+    stuck = regime == regimes.PERMANENT_STICKING if regime is not None else bool(trace.stuck.all())
+    return [Patch(**_SHADE, label="permanent sticking" if stuck else "stop")]
+
+
+def _regime_of(ds: xr.Dataset) -> int | None:
+    """Regime of a steady state: of the contact that was chosen, or of all; None if the file has none."""
+    names = ["regime"] if "contact" in ds.dims else ["contact_regime", "regime"]
+    return next((int(ds[name]) for name in names if name in ds), None)
+
+
+def _counts(ds: xr.Dataset) -> str:
+    """Numbers of stops, or of slips, per cycle of all contacts; empty if there are none."""
+    found: list[tuple[str, str]] = []
+    names = {"stops_per_cycle": "stops", "slips_per_cycle": "slips"}
+    rows = {word: np.atleast_1d(ds[name].values) for name, word in names.items() if name in ds}
+    for of_contact in zip(*rows.values(), strict=True):
+        known = [(f"{n:.4g}", word) for n, word in zip(of_contact, rows, strict=True) if np.isfinite(n)]
+        found += known[:1] or [("0", "stops")]
+    if not any(number != "0" for number, _ in found):
+        return ""
+    if len({word for _, word in found}) == 1:
+        return f", {' and '.join(number for number, _ in found)} {found[0][1]} per cycle"
+    return f", {' and '.join(f'{number} {word}' for number, word in found)} per cycle"
 
 
 def title_of(ds: xr.Dataset) -> str:
@@ -151,31 +268,59 @@ def title_of(ds: xr.Dataset) -> str:
     cell = ", ".join(
         f"{symbol} = {float(ds[name]):.6g}{in_brackets(ds, name)}" for name, symbol in symbols.items()
     )
-    if "regime" not in ds:
+    contact = name_of_contact(ds)
+    if contact:
+        cell = f"{cell}, {contact}"
+    regime = _regime_of(ds)
+    if regime is None:
         return cell
-    words = _REGIME_WORDS[int(ds["regime"])]
-    stops = float(ds["stops_per_cycle"]) if "stops_per_cycle" in ds else 0.0
-    counted = f", {stops:.4g} stops per cycle" if stops > 0 else ""
+    elastic = all(trace.elastic for trace in traces_of(ds)) if "z" in ds and "friction" in ds else False
+    words = (_ELASTIC_WORDS if elastic else _REGIME_WORDS)[regime]
+    counted = _counts(ds)
     if "status" in ds and int(ds["status"]) in regimes.WITHOUT_PERIOD:
         return f"{cell}: {words}{counted}, irregular, excerpt"
     period = int(ds["period"]) if "period" in ds else 1
     return f"{cell}: {words}{counted}" + (f", period {period}" if period > 1 else "")
 
 
-def contact_is_a_mass(ds: xr.Dataset) -> bool:
-    """Whether a mass moves with the contact."""
-    return any(np.allclose(x, ds["z"].values, rtol=0.0, atol=1e-12) for x in ds["x"].values)
+def is_a_mass(ds: xr.Dataset, trace: Trace) -> bool:
+    """Whether a mass moves with a contact."""
+    return any(np.allclose(x, trace.z, rtol=0.0, atol=1e-12) for x in ds["x"].values)
 
 
-def _panels(ds: xr.Dataset) -> list[str]:
-    """Panels of a steady state; a single mass that moves with its contact has no panel of its own."""
-    same = ds.sizes["dof"] == 1 and contact_is_a_mass(ds)
-    loaded = load_of(ds) is not None
-    return [
-        name
-        for name, there in (("load", loaded), ("z", True), ("masses", not same), ("friction", True))
-        if there
-    ]
+def _panels(ds: xr.Dataset, traces: Sequence[Trace]) -> dict[str, float]:
+    """Panels of a steady state, and their heights.
+
+    A single mass that moves with its contact has no panel of its own.
+    """
+    same = ds.sizes["dof"] == 1 and any(is_a_mass(ds, trace) for trace in traces)
+    there = {
+        "load": "load" in ds or load_of(ds) is not None,
+        "z": True,
+        "stuck": len(traces) > 1,
+        "masses": not same,
+        "friction": True,
+    }
+    heights = {**_HEIGHTS, "stuck": _BAR * (len(traces) + 1)}
+    return {name: heights[name] for name, shown in there.items() if shown}
+
+
+def _new_axes(heights: Sequence[float], beside: bool) -> "AxesArray":
+    """Create a figure with panels from top to bottom, and one beside them if there is a loop."""
+    height = 0.78 * sum(heights) + 0.9
+    if not beside:
+        figure = new_figure(_WIDTH, height)
+        return np.atleast_1d(figure.subplots(len(heights), 1, sharex=True, height_ratios=heights))
+    figure = new_figure(_WIDTH + _LOOP_WIDTH, height)
+    grid = figure.add_gridspec(len(heights), 2, height_ratios=heights, width_ratios=(_WIDTH, _LOOP_WIDTH))
+    traces = [figure.add_subplot(grid[0, 0])]
+    for row in range(1, len(heights)):
+        traces.append(figure.add_subplot(grid[row, 0], sharex=traces[0]))
+    for ax in traces[:-1]:
+        ax.tick_params(labelbottom=False)
+    loop = figure.add_subplot(grid[:, 1])
+    loop.set_box_aspect(1.0)
+    return np.array([*traces, loop], dtype=object)
 
 
 def check_can_be_seen(ds: xr.Dataset, names: Iterable[str]) -> None:
@@ -189,7 +334,8 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
     """Draw one steady state in time: load, motion in the contact, every mass, friction force.
 
     Stops are shaded and their starts marked; masses are numbered; the levels of kinetic and static friction
-    are labelled.
+    are labelled.  Several contacts have one colour each, and bars show when each is stuck.  For contacts with
+    a spring the hysteresis loop is drawn beside the traces.
 
     Parameters
     ----------
@@ -197,7 +343,8 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
         Result of `response`.
     ax : array of matplotlib axes, optional
         Axes to draw into, from top to bottom: load (unless loads are given mass by mass), motion in the
-        contact, masses (unless a single mass moves with the contact), friction force.
+        contact, bars of several contacts, masses (unless a single mass moves with the contact), friction
+        force, hysteresis loop (if a contact has a spring).
 
     Returns
     -------
@@ -212,26 +359,38 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
     ds = to_draw(ds, "plot_response", "response")
     check_holds(ds, ("z", "x", "friction", "direction"), "its motion")
     check_can_be_seen(ds, ("z", "x", "friction"))
-    names = _panels(ds)
+    traces = traces_of(ds)
+    heights = _panels(ds, traces)
+    elastic = [trace for trace in traces if trace.elastic]
+    names = [*heights, *["hysteresis loop"] * bool(elastic)]
     if ax is None:
-        heights = [_HEIGHTS[name] for name in names]
-        figure = new_figure(7.2, 0.78 * sum(heights) + 0.9)
-        axes = figure.subplots(len(names), 1, sharex=True, height_ratios=heights)
+        axes = _new_axes([*heights.values()], bool(elastic))
     else:
         axes = given_axes(ax, len(names), f"for {', '.join(names)}")
-    turns = ds["tau"].values / np.pi
-    handles = _mark_stops(axes, ds, turns)
-    by_name = dict(zip(names, axes, strict=True))
-    if "load" in by_name:
-        _draw_load(by_name["load"], turns, load_of(ds) or "")
-    handles += _draw_contact(by_name["z"], ds, turns)
-    if "masses" in by_name:
-        _draw_masses(by_name["masses"], ds, turns)
-    _draw_friction(by_name["friction"], ds, turns)
-    axes[-1].set_xlabel(r"$\tau/\pi$")
-    axes[-1].set_xlim(turns[0], turns[-1])
-    time_on_top(axes[0], ds)
+    over_tau, beside = axes[: len(heights)], axes[len(heights) :]
+    handles = _draw_traces(dict(zip(heights, over_tau, strict=True)), ds, traces)
+    for one in beside:
+        draw_loop(one, ds, elastic)
     if ax is None:
         title_figure(axes[0].figure, title_of(ds))
         legend_below(axes[0].figure, handles, caption(ds))
     return axes
+
+
+def _draw_traces(axes: dict[str, Axes], ds: xr.Dataset, traces: Sequence[Trace]) -> list[Handle]:
+    """Draw the panels over tau; return entries for the legend."""
+    turns = ds["tau"].values / np.pi
+    handles = _mark_stops([*axes.values()], ds, turns, traces)
+    if "load" in axes:
+        _draw_load(axes["load"], ds, turns)
+    handles += _draw_contacts(axes["z"], ds, turns, traces)
+    if "stuck" in axes:
+        _draw_stuck(axes["stuck"], turns, traces)
+    if "masses" in axes:
+        _draw_masses(axes["masses"], ds, turns)
+    _draw_friction(axes["friction"], ds, turns, traces)
+    first, last = next(iter(axes.values())), axes["friction"]
+    last.set_xlabel(r"$\tau/\pi$")
+    last.set_xlim(turns[0], turns[-1])
+    time_on_top(first, ds)
+    return handles

@@ -11,15 +11,19 @@ from matplotlib.lines import Line2D
 from ..curves.harmonics import LOWEST, levels_of
 from ..palette import LINES
 from ..panels import Handle, given_axes, legend_below, table_of_panels
-from ..second_axes import length_on_top, on_the_right
+from ..second_axes import length_on_top
 from ..shapes import check_holds, to_draw
 from ..words import caption
-from .history import MOST_LABELS, check_can_be_seen, contact_is_a_mass, title_of
+from .history import MOST_LABELS, check_can_be_seen, is_a_mass, title_of
+from .loops import CONTACT_COLOUR, draw_loop
+from .traces import traces_of
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
 
-_CONTACT_COLOUR = "black"
+
+#: Marker of the contacts where there are several: their colours are those of masses, too.
+_CONTACT_MARKER = "s"
 
 
 def _colours(ds: xr.Dataset) -> list[str]:
@@ -36,26 +40,34 @@ def _draw_portrait(ax: Axes, ds: xr.Dataset) -> None:
     length_on_top(ax, ds, "displacement")
 
 
-def _draw_loop(ax: Axes, ds: xr.Dataset) -> None:
-    """Draw friction over the motion in the contact; the loop encloses the work of friction."""
-    ax.plot(ds["z"].values, ds["friction"].values, color=_CONTACT_COLOUR, linewidth=1.2)
-    ax.set_xlabel(r"motion in the contact $z$ / $(P/k_1)$")
-    ax.set_ylabel("friction / $P$")
-    ax.set_title("friction loop", fontsize=10)
-    length_on_top(ax, ds, "motion in the contact")
-    on_the_right(ax, ds, "force", "friction")
+def _draw_loops(ax: Axes, ds: xr.Dataset) -> None:
+    draw_loop(ax, ds, traces_of(ds))
+
+
+def _contact_levels(ds: xr.Dataset) -> list[tuple[np.ndarray, str]]:
+    """Harmonics and colours of the contacts that no mass moves with."""
+    if "contact_harmonic" not in ds:
+        return []
+    values = ds["contact_harmonic"].values
+    several = values if "contact" in ds["contact_harmonic"].dims else values[np.newaxis]
+    return [
+        (levels_of(one), trace.colour if trace.label else CONTACT_COLOUR)
+        for one, trace in zip(several, traces_of(ds), strict=True)
+        if not is_a_mass(ds, trace)
+    ]
 
 
 def _draw_spectrum(ax: Axes, ds: xr.Dataset) -> None:
     """Draw harmonics as stems, those of several motions side by side."""
     motions = [*zip(levels_of(ds["displacement_harmonic"].values), _colours(ds), strict=True)]
-    if "contact_harmonic" in ds and not contact_is_a_mass(ds):
-        motions.append((levels_of(ds["contact_harmonic"].values), _CONTACT_COLOUR))
+    masses = len(motions)
+    motions += _contact_levels(ds)
     for k, (levels, colour) in enumerate(motions):
         n = np.flatnonzero(levels >= LOWEST)
         beside = n + 0.6 * (k + 0.5) / len(motions) - 0.3
         ax.vlines(beside, LOWEST, levels[n], color=colour, linewidth=1.0)
-        ax.plot(beside, levels[n], "o", color=colour, markersize=3.5)
+        marker = _CONTACT_MARKER if k >= masses and "contact" in ds.dims else "o"
+        ax.plot(beside, levels[n], marker, color=colour, markersize=3.5)
     ax.set_ylim(LOWEST, None)
     ax.set_xlabel("harmonic $n$")
     ax.set_ylabel("dB re first harmonic")
@@ -66,7 +78,13 @@ def _handles(ds: xr.Dataset) -> list[Handle]:
     """Legend entries of the masses, the first ones if there are many, and of the contact."""
     named = zip(ds["dof"].values[:MOST_LABELS], _colours(ds), strict=False)
     handles: list[Handle] = [Line2D([], [], color=colour, label=f"mass {k}") for k, colour in named]
-    return [*handles, Line2D([], [], color=_CONTACT_COLOUR, label="contact")]
+    traces = traces_of(ds)
+    if not traces[0].label:
+        return [*handles, Line2D([], [], color=CONTACT_COLOUR, label="contact")]
+    return handles + [
+        Line2D([], [], color=trace.colour, label=trace.label, marker=_CONTACT_MARKER, markersize=3.5)
+        for trace in traces
+    ]
 
 
 def plot_orbit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":
@@ -95,7 +113,7 @@ def plot_orbit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -
     ds = to_draw(ds, "plot_orbit", "response")
     check_holds(ds, ("x", "v", "z", "friction"), "its orbit")
     check_can_be_seen(ds, ("x", "v", "z", "friction"))
-    draw = [_draw_portrait, _draw_loop]
+    draw = [_draw_portrait, _draw_loops]
     if "displacement_harmonic" in ds:
         draw.append(_draw_spectrum)
     if ax is None:

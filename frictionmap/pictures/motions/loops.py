@@ -1,0 +1,25 @@
+"""Friction over the motion in the contacts."""
+
+from collections.abc import Sequence
+
+import xarray as xr
+from matplotlib.axes import Axes
+
+from ..second_axes import length_on_top, on_the_right
+from .traces import Trace
+
+#: Colour of the only contact.
+CONTACT_COLOUR = "black"
+
+
+def draw_loop(ax: Axes, ds: xr.Dataset, traces: Sequence[Trace]) -> None:
+    """Draw friction over the motion in the contacts; a loop encloses the work of friction."""
+    for trace in traces:
+        ax.plot(trace.z, trace.friction, color=trace.colour if trace.label else CONTACT_COLOUR, linewidth=1.2)
+    ax.set_xlabel(r"motion in the contact $z$ / $(P/k_1)$")
+    ax.set_ylabel("friction / $P$")
+    ax.set_title(
+        "hysteresis loop" if all(trace.elastic for trace in traces) else "friction loop", fontsize=10
+    )
+    length_on_top(ax, ds, "motion in the contact")
+    on_the_right(ax, ds, "force", "friction")

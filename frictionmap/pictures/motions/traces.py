@@ -1,0 +1,89 @@
+"""Motion of every contact in time, its stops and the levels of its friction force."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ...files.stored import stored_general
+from ..palette import LINES
+from ..words import name_of_contact
+
+#: Variables of the events; without one of these the starts of stops are not marked.
+_EVENTS = ("event_tau", "event_direction", "event_z")
+
+
+class Trace(NamedTuple):
+    """One contact of a steady state; events and values over tau."""
+
+    number: int  # of the contact, from 1; 0 if there is only one
+    label: str  # in the legend; empty if there is only one
+    colour: str
+    z: np.ndarray
+    friction: np.ndarray
+    stuck: np.ndarray  # bool
+    elastic: bool
+    stops: tuple[np.ndarray, np.ndarray]  # phases at which stops begin, and z there
+
+
+def _stops(ds: xr.Dataset, number: int) -> tuple[np.ndarray, np.ndarray]:
+    """Where stops of a contact begin: phases and z."""
+    if not set(_EVENTS) <= set(ds):
+        return np.empty(0), np.empty(0)
+    begins = ds["event_direction"].values == 0
+    if "event_contact" in ds and number:
+        begins &= ds["event_contact"].values == number
+    return ds["event_tau"].values[begins], ds["event_z"].values[begins]
+
+
+def _trace(ds: xr.Dataset, number: int, colour: str, label: str) -> Trace:
+    """The only contact, or one that was chosen."""
+    elastic = "y" in ds and bool(np.isfinite(ds["y"].values).any())
+    stuck = ds["direction"].values == 0 if "direction" in ds else np.zeros(ds.sizes["tau"], dtype=bool)
+    return Trace(
+        number, label, colour, ds["z"].values, ds["friction"].values, stuck, elastic, _stops(ds, number)
+    )
+
+
+def traces_of(ds: xr.Dataset) -> list[Trace]:
+    """Motion of every contact of a response."""
+    if "contact" not in ds.dims:
+        number = int(ds["contact"]) if "contact" in ds.coords else 0
+        return [_trace(ds, number, LINES[0], "")]
+    contacts = [ds.isel(contact=k) for k in range(ds.sizes["contact"])]
+    return [
+        _trace(one, int(one["contact"]), LINES[k % len(LINES)], name_of_contact(one))
+        for k, one in enumerate(contacts)
+    ]
+
+
+class Levels(NamedTuple):
+    """Kinetic and static friction of a contact, and the factor of its normal load over tau."""
+
+    kinetic: float
+    static: float
+    factor: np.ndarray | None  # None: constant
+
+
+def levels_of(ds: xr.Dataset, trace: Trace) -> Levels | None:
+    """Friction levels of a contact; None for one of several in a file without its system."""
+    beta, mu = float(ds["beta"]), float(ds["mu"])
+    general = stored_general(ds)
+    if general is None:
+        return None if trace.number else Levels(beta, mu * beta, None)
+    group = general.groups[max(trace.number, 1) - 1]
+    kinetic, static = group.friction(beta, mu)
+    tau = ds["tau"].values
+    normal = [(phasor * np.exp(1j * n * tau)).real for n, phasor in group.first.nu.items()]
+    return Levels(float(kinetic), float(static), 1.0 + np.sum(normal, axis=0) if normal else None)
+
+
+def load_trace(ds: xr.Dataset) -> np.ndarray:
+    """Load over tau, or the motion of the base that stands in its place."""
+    if "load" in ds:
+        return ds["load"].values
+    general = stored_general(ds)
+    tau = ds["tau"].values
+    if general is None or not general.base:
+        return np.cos(tau)
+    return np.sum([(phasor * np.exp(1j * n * tau)).real for n, phasor in general.base.items()], axis=0)

@@ -61,7 +61,11 @@ def _stuck(system: System, asked: CurveSettings, r: float) -> dict[str, np.ndarr
     if "amplitude" in asked.quantities:
         values["amplitude"] = np.where(finite, np.maximum(high, -low), np.inf)
         values["peak_to_peak"] = np.where(finite, high - low, np.inf)
-        values["contact_amplitude"] = values["contact_peak_to_peak"] = np.zeros(general.count)
+        z = np.array([group.vector for group in general.groups]) @ x
+        z[~general.elastic] = 0.0
+        z_high, z_low = largest(orders, z), -largest(orders, -z)
+        values["contact_amplitude"] = np.maximum(z_high, -z_low)
+        values["contact_peak_to_peak"] = z_high - z_low
     if "first_harmonic" in asked.quantities and 1 in motions:
         first = np.where(finite, motions[1][0], np.inf)
         values["first_harmonic_amplitude"] = np.abs(first)

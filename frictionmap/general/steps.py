@@ -98,8 +98,9 @@ class Steps:
         elastic = bool(self.problem.spring[j])
         if self.counts[STUCK if elastic else STOPS, j]:
             return regimes.STICK_SLIP
-        one_way = elastic or (self.problem.belt[j] != 0.0 and not self.counts[TURNS, j])
-        return regimes.ONE_WAY_SLIDING if one_way else regimes.CONTINUOUS
+        if self.problem.belt[j] != 0.0 and not self.counts[TURNS, j]:
+            return regimes.ONE_WAY_SLIDING
+        return regimes.STICK_SLIP if elastic else regimes.CONTINUOUS
 
     def per_cycle(self, j: int) -> dict[str, float]:
         """Numbers of a contact per period of the load."""

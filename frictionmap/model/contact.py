@@ -136,7 +136,8 @@ def _of_contact(k: int, error: InputError) -> InputError:
     key = "cannot use "
     if text.startswith(key):
         return InputError(f"{key}contacts[{k}].{text.removeprefix(key)}")
-    return InputError(f"contacts[{k}].{text}")
+    named = f"contacts[{k}].{text}"
+    return InputError(named)
 
 
 def checked_contacts(given: object) -> tuple[Contact, ...]:

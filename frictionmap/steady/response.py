@@ -150,7 +150,7 @@ def response(
     labelled |= {
         name: label_variable(name, CELL_VARIABLES[name].dtype(value)) for name, value in found.summary.items()
     }
-    labelled |= _further(request, [name for name in solver.outputs if name not in labelled])
+    labelled |= _further(request, [name for name in solver.outputs if name not in labelled])  # type: ignore[misc]
     coords = {name: coordinate(name, values) for name, values in {**own, **cell}.items()}
     ds = xr.Dataset(labelled, coords=coords)  # all at once: piece by piece took a third of the time
     ds = stamp(ds, "response", _TITLE, system, cell, solver, units=units)

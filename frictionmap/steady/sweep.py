@@ -138,8 +138,8 @@ def regime_map(
     only = [name for name in solver.outputs if name in GENERAL_VARIABLES]
     if only:
         raise InputError(
-            f"cannot compute {only[0]} for one rigid contact under one harmonic load; give contacts, "
-            f"load_harmonics, wall_velocity, normal_load or contact_stiffness, or omit it"
+            f"cannot compute {only[0]} for one rigid contact under one harmonic load: it needs contacts, "
+            f"load_harmonics, wall_velocity, normal_load or contact_stiffness; omit it"
         )
     found, curves = solve_map(system, axes, solver, threads, progress, watch)
     variables = {name: label_variable(name, values) for name, values in found.items()}

@@ -21,7 +21,7 @@ from frictionmap.command_line.cli import main
 from frictionmap.command_line.completion import completion
 from frictionmap.examples import TRUTHS, starting_rig
 from frictionmap.files.json_schema import map_schema
-from frictionmap.files.keys import KEYS
+from frictionmap.files.keys import GENERAL_KEYS, KEYS
 from frictionmap.files.template import starting_configuration
 from frictionmap.identify.rigs.configuration import KINDS, load_rig
 from frictionmap.identify.rigs.keys import rig_keys, rig_schema
@@ -257,7 +257,11 @@ def test_keys_of_rigs_are_those_of_their_kinds(kind):
     assert set(tables["data"]) == {"kind", "file", "columns", "missing", *of.data}
     assert set(tables["known"]) == {*of.parameters, *of.known}
     assert set(tables.get("fit", ())) == {*of.fit, *(["free"] if of.parameters else [])}
-    systems = {"record": RECORD_SYSTEM, "sweep": SWEEP_SYSTEM, "forced": [key.name for key in KEYS["system"]]}
+    systems = {
+        "record": RECORD_SYSTEM,
+        "sweep": SWEEP_SYSTEM,
+        "forced": [key.name for key in KEYS["system"] if key not in GENERAL_KEYS],
+    }
     assert set(tables.get("system", ())) == set(systems.get(kind, ()))
     assert of.system == ("system" in tables)
 

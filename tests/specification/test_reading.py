@@ -11,7 +11,7 @@ from outputs import OF_ONE_CONTACT
 
 import frictionmap as fm
 from frictionmap import InputError
-from frictionmap.datasets.labels import BESIDE, COORDINATES, LABELS
+from frictionmap.datasets.labels import BESIDE, COORDINATES, GENERAL_VARIABLES, LABELS, MEASURE_OF, in_si
 from frictionmap.files.reading import read, standard_form
 from frictionmap.files.storage import write
 from frictionmap.files.summary import describe_file
@@ -77,9 +77,15 @@ def test_what_is_computed_is_in_standard_form(datasets, kind):
 
 
 def test_every_variable_is_in_the_examples(datasets):
-    """So that the tests below see all of the schema."""
+    """So that the tests below see all of the schema; see test_general_systems for the others."""
     known = {name for ds in datasets.values() for name in ds.variables}
-    assert known >= set(LABELS) | set(COORDINATES) | set(BESIDE)
+    of_contacts = {
+        *GENERAL_VARIABLES, "beta_stick_contact", "limiting_contact", "beta_noslip", "no_stop_begin",
+        "no_stop_end", "wall_velocity_lim", "y", "load", "event_contact", "contact",
+    }  # fmt: skip
+    of_contacts |= {in_si(name, MEASURE_OF[name]) for name in of_contacts if name in MEASURE_OF}
+    assert known | of_contacts >= set(LABELS) | set(COORDINATES) | set(BESIDE)
+    assert not known & of_contacts
 
 
 SLICES = {
@@ -197,8 +203,8 @@ REFUSED = [
     ("map", lambda ds: ds.assign_coords(r=[0, 1, 2, np.nan]), r"r must be finite, .*; got nan at \[3\]"),
     ("map", lambda ds: ds.assign_coords(r=["a", "b", "c", "d"]), "r must be numbers; got type str"),
     ("map", lambda ds: ds.stack(c=("r", "beta")).reset_index("c"), r"r must have the dimensions .*\(c\)"),
-    ("map", lambda ds: ds.where(ds.r > 0.1), r"regime must be one of -1, 0, 1, 2; got nan at \[0, 0, 0\]"),
-    ("map", lambda ds: ds.assign(regime=ds.regime + 0.5), "regime must be one of -1, 0, 1, 2; got"),
+    ("map", lambda ds: ds.where(ds.r > 0.1), r"regime must be one of -1, 0, 1, 2, 3; got nan at \[0, 0, 0\]"),
+    ("map", lambda ds: ds.assign(regime=ds.regime + 0.5), "regime must be one of -1, 0, 1, 2, 3; got"),
     ("map", lambda ds: ds.assign(regime=ds.regime + 100), "regime must be one of .* got 102 at"),
     ("map", lambda ds: ds.assign(regime=ds.regime.astype("i4") + 256), "regime must be one of .* got 258 at"),
     ("map", lambda ds: ds.assign(status=ds.status + 99), "status must be one of 0, 1, 2.*; got"),

@@ -69,7 +69,7 @@ def _regime_of(problem, counts, j):
     if counts[MOVED, j] == 0.0:
         return PERMANENT_STICKING
     if problem.spring[j] != 0.0:
-        if counts[STUCK, j] == 0.0:
+        if counts[STUCK, j] == 0.0 and problem.belt[j] != 0.0:
             return ONE_WAY_SLIDING
         return STICK_SLIP
     if counts[STOPS, j] > 0.0:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
-from .follow import NEAREST_STOP, STOPS
+from .follow import MOVED, NEAREST_STOP, STOPS
 from .problem import make_row, make_work, set_row
 from .record import RANGES, make_record
 from .return_map import make_return
@@ -82,6 +82,8 @@ def _try(problem, i, row, search, beta, near, friction, memories, kept, k):
     kept[k, 0] = 0.0
     for j in range(contacts):
         kept[k, 0] += memory.counts[STOPS, j]
+        if memory.counts[MOVED, j] == 0.0:
+            kept[k, 0] += 1.0  # it sticks permanently
         kept[k, 1 + j] = memory.counts[NEAREST_STOP, j]
     return True
 

@@ -81,7 +81,7 @@ def test_every_variable_is_in_the_examples(datasets):
     known = {name for ds in datasets.values() for name in ds.variables}
     of_contacts = {
         *GENERAL_VARIABLES, "beta_stick_contact", "limiting_contact", "beta_noslip", "no_stop_begin",
-        "no_stop_end", "wall_velocity_lim", "y", "load", "event_contact", "contact",
+        "no_stop_end", "wall_velocity_lim", "y", "load", "event_contact", "contact", "contact_name",
     }  # fmt: skip
     of_contacts |= {in_si(name, MEASURE_OF[name]) for name in of_contacts if name in MEASURE_OF}
     assert known | of_contacts >= set(LABELS) | set(COORDINATES) | set(BESIDE)

@@ -431,7 +431,7 @@ CURVES = {
     ),
     "limiting_contact": Label(np.int64, "contact that decides beta_stick", CURVE, least=1),
     "beta_noslip": Label(
-        np.float64, "friction ratio from which no elastic contact slips", CURVE, least=0.0, inf=True
+        np.float64, "friction ratio from which no elastic contact slips", ("r",), least=0.0, inf=True
     ),
     "no_stop_begin": Label(
         np.float64,

@@ -4,11 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .. import checks
 from .._kernels.engine.policies import MOVING_START_CAP
 from .._kernels.general.no_stop import Search, fill_no_stop
 from .._kernels.general.problem import Problem
 from ..model.system import System
 from .held import largest, least_static_friction, stick_scales
+from .jobs import Watch, run_jobs
 from .problem import ModalSystem, general_of, problem_of
 
 #: Intervals without stops that are looked for.
@@ -78,10 +80,13 @@ def sliding_states(problem: Problem, r: np.ndarray, size: float) -> np.ndarray:
     return np.ascontiguousarray(np.stack((response.real.sum(axis=2), velocity.real.sum(axis=2)), axis=1))
 
 
-def find_boundaries(system: System, r: np.ndarray, mu: np.ndarray, stops: bool = True) -> Boundaries:
-    """Find the boundaries over r.
+def find_boundaries(
+    system: System, r: np.ndarray, mu: np.ndarray, threads: int | None = None, watch: Watch | None = None
+) -> Boundaries:
+    """Find the boundaries over r; the intervals without stops take the longest.
 
-    stops : whether to look for the intervals without stops, which takes the longest
+    threads : number of threads; default: all processors of the process
+    watch : called repeatedly; an exception raised by it ends the search
     """
     general = general_of(system)
     needed = least_static_friction(system, r)
@@ -89,7 +94,7 @@ def find_boundaries(system: System, r: np.ndarray, mu: np.ndarray, stops: bool =
     stick = by_contact.max(axis=2)
     shape = (mu.size, r.size, INTERVALS)
     begins, ends = np.full(shape, np.nan), np.full(shape, np.nan)
-    if stops and not general.elastic.any():
+    if not general.elastic.any():
         loads = sum(float(np.abs(vector).max()) for vector in general.forces.values())
         loads += sum(abs(u) for u in general.base.values())
         problem, _ = problem_of(system, r)
@@ -97,7 +102,11 @@ def find_boundaries(system: System, r: np.ndarray, mu: np.ndarray, stops: bool =
         highest = stick[:, :].max(axis=0)
         top = np.where(np.isfinite(highest) & (highest > 0.0), highest, _HIGHEST * loads)
         search = Search(kinetic, static, top, sliding_states(problem, r, 1.0), _CYCLES, _TOLERANCE)
-        fill_no_stop(problem, search, begins, ends, np.zeros(1, np.uint8))
+
+        def job(i: int, cancel: np.ndarray) -> None:
+            fill_no_stop(i, i + 1, problem, search, begins, ends, cancel)
+
+        run_jobs(r.size, job, checks.threads(threads), watch=watch)
     first = np.where(begins[:, :, 0] == 0.0, ends[:, :, 0], 0.0)
     first = np.where(np.isnan(begins[:, :, 0]), 0.0, first)
     return Boundaries(

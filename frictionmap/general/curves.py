@@ -1,6 +1,6 @@
 """Response curves of general systems, cell by cell."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
@@ -15,6 +15,7 @@ from .boundaries import find_boundaries
 from .cycle import equivalent, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
 from .held import held_forces, largest
+from .jobs import Progress
 from .problem import general_of, problem_of
 from .response import is_wanted, scalars
 from .steps import Steps, cell_steps
@@ -88,7 +89,7 @@ def _variable(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
 
 def general_curves(
     system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings,
-    progress: Callable[[int, int], None] | None,
+    progress: Progress | None,
 ) -> xr.Dataset:  # fmt: skip
     """Compute the response curves of a general system over the axes mu, r and beta; see `curves`."""
     for quantity in asked.quantities:

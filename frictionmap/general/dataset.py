@@ -1,6 +1,6 @@
 """Maps and boundaries of general systems as labelled variables."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
@@ -14,6 +14,7 @@ from ..model.general import General
 from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import Boundaries
+from .jobs import Progress, Watch
 from .maps import solve_cells
 from .problem import general_of
 
@@ -107,7 +108,11 @@ def boundary_variables(system: System, limits: Boundaries) -> dict[str, xr.Varia
     general = general_of(system)
     count = general.count
     if general.elastic.any():
-        return {"beta_noslip": label_variable("beta_noslip", limits.beta_stick)}
+        elastic = limits.beta_stick_contact[0][:, general.elastic]  # mu is 1 there
+        none = {"beta_noslip": label_variable("beta_noslip", elastic.max(axis=1))}
+        if general.elastic.all():
+            return none
+        return none | {"beta_stick": label_variable("beta_stick", limits.beta_stick)}
     found = {
         "beta_lim": limits.beta_lim,
         "beta_stick": limits.beta_stick,
@@ -139,7 +144,7 @@ def contact_coordinates(system: System) -> dict[str, xr.Variable]:
 
 def general_map(
     system: System, axes: Mapping[str, np.ndarray], solver: Solver, threads: int | None,
-    progress: Callable[[int, int], None] | None, watch: Callable[[], None] | None,
+    progress: Progress | None, watch: Watch | None,
 ) -> xr.Dataset:  # fmt: skip
     """Compute outputs, `status` and boundaries of a general system over the axes mu, r and beta."""
     general = general_of(system)

@@ -1,7 +1,6 @@
 """Maps of general systems: cells computed row by row on several threads, as labelled variables."""
 
-from collections.abc import Callable, Mapping
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -12,10 +11,8 @@ from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import Boundaries, find_boundaries, friction_lines, rest_states, sliding_states
 from .held import held_forces, largest
+from .jobs import Progress, Watch, run_jobs
 from .problem import general_of, problem_of
-
-#: Seconds between two looks at whether the computation should end.
-_WATCHED = 0.02
 
 
 def _allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
@@ -28,30 +25,6 @@ def _allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
         np.full(shape, regimes.CLOSED_FORM, np.int8), np.zeros(shape, np.int32), np.zeros(shape, np.int16),
         np.full(shape, np.nan), np.full(per_contact, regimes.UNRESOLVED, np.int8), *numbers, *ranges,
     )  # fmt: skip
-
-
-def _run(
-    rows: int, job: Callable[[int, np.ndarray], None], threads: int,
-    progress: Callable[[int, int], None] | None, watch: Callable[[], None] | None,
-) -> None:  # fmt: skip
-    """Run a job per row on a pool of threads; this thread only waits, so that it receives an interrupt."""
-    cancel = np.zeros(1, np.uint8)
-    pool = ThreadPoolExecutor(threads)
-    running = {pool.submit(job, row, cancel) for row in range(rows)}
-    try:
-        while running:
-            ended, running = wait(running, _WATCHED if watch else None, return_when=FIRST_COMPLETED)
-            for future in ended:
-                future.result()
-            if progress is not None and ended:
-                progress(rows - len(running), rows)
-            if watch is not None:
-                watch()
-    except BaseException:
-        cancel[0] = 1  # the kernel checks it at every cell
-        raise
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
 
 
 def _put_r_zero(found: Cells, at_zero: int, beta: np.ndarray, stick: np.ndarray) -> None:
@@ -87,14 +60,14 @@ def _put_stuck(system: System, r: np.ndarray, found: Cells, masses: int) -> None
 
 def solve_cells(
     system: System, axes: Mapping[str, np.ndarray], solver: Solver, threads: int,
-    progress: Callable[[int, int], None] | None, watch: Callable[[], None] | None, masses: bool,
+    progress: Progress | None, watch: Watch | None, masses: bool,
 ) -> tuple[Cells, Boundaries]:  # fmt: skip
     """Compute all cells of a grid, and the boundaries over r.
 
     masses : whether displacements of the masses are wanted, after those in the contacts
     """
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]
-    limits = find_boundaries(system, r, mu)
+    limits = find_boundaries(system, r, mu, threads, watch)
     problem, modal = problem_of(system, r)
     general = general_of(system)
     kinetic, static = friction_lines(system, mu)
@@ -113,7 +86,7 @@ def solve_cells(
     def job(row: int, cancel: np.ndarray) -> None:
         fill_rows(row, row + 1, problem, grid, found, outputs, cancel)
 
-    _run(mu.size * r.size, job, threads, progress, watch)
+    run_jobs(mu.size * r.size, job, threads, progress, watch)
     for at_zero in np.flatnonzero(r == 0.0):
         _put_r_zero(found, int(at_zero), beta, limits.beta_stick)
     _put_stuck(system, r, found, count)

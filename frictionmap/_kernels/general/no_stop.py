@@ -113,11 +113,12 @@ def _end(problem, i, row, search, m, inside, outside, friction, memories, kept):
 
 
 @entry
-def fill_no_stop(problem, search, begins, ends, cancel):
-    """Fill the intervals of beta in which no contact stops.
+def fill_no_stop(first, last, problem, search, begins, ends, cancel):
+    """Fill the intervals of beta in which no contact stops, at the frequencies first..last-1.
 
     Parameters
     ----------
+    first, last : range of r
     problem : Problem
     search : Search
     begins, ends : (n_mu, n_r, intervals) filled, NaN where there are fewer
@@ -129,7 +130,7 @@ def fill_no_stop(problem, search, begins, ends, cancel):
     friction = Friction(np.empty(contacts), np.empty(contacts))
     kept = np.zeros((NODES + 2, 1 + contacts))
     memories = (work, memory, ring, record)
-    for i in range(problem.r.size):
+    for i in range(first, last):
         if cancel[0] != 0:
             return
         if problem.r[i] == 0.0:

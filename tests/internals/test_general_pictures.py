@@ -38,7 +38,7 @@ def a_map(**variables):
     cells = {}
     for name, values in variables.items():
         table = np.asarray(values)[np.newaxis]
-        cells[name] = (dims[table.ndim], table)
+        cells[name] = ("r", values) if name == "beta_noslip" else (dims[table.ndim], table)
     if any("contact" in dims for dims, _ in cells.values()):
         coords |= {"contact": [1, 2], "contact_name": ("contact", ["wall", "joint"])}
     return xr.Dataset(cells, coords=coords)

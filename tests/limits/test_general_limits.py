@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from general_systems import KINDS, reference
 
 import frictionmap as fm
 
@@ -247,3 +248,18 @@ def test_stiff_contacts_approach_the_rigid_one():
         errors.append(abs(found.contact_amplitude.item() - wanted.contact_amplitude.item()))
         assert found.slip_reversals_per_cycle.item() == 2.0
     assert 50.0 < errors[0] / errors[1] < 200.0
+
+
+def test_partial_sticking_begins_at_half_the_range_of_the_force():
+    """A contact rests beside others that slide from this friction on (contacts.md 2)."""
+    for row in reference("contacts.json")["partial"]:
+        given = {key: np.array(row[name]) for key, name in (("M", "M"), ("K", "K"), ("C", "C1"))}
+        for factor, regime in ((1.0 - 1e-3, 1), (1.0 + 1e-3, 0)):
+            contacts = []
+            for (kind, *masses), beta in zip(row["contacts"], row["beta_of_the_others"], strict=True):
+                force = factor * row["beta_stick_partial"] if beta is None else beta
+                contacts.append(fm.Contact(KINDS[kind], masses, force=force))
+            system = fm.System(matrices=given, frequency_scale=1.0, contacts=contacts, load_mass=row["load"])
+            ds = fm.sweep(system, [row["r"]], [0.0], outputs=["regime"])
+            found = ds.contact_regime.sel(contact=row["held_contact"]).item()
+            assert found == regime, (row["id"], factor)

@@ -138,7 +138,7 @@ def _arrives_too(problem, row, work, law, j):
 
 
 @kernel
-def _stop_exactly(problem, row, work, law):
+def stop_exactly(problem, row, work):
     """Take the rounding error of their velocities from the participants; `work.held` lists them."""
     modes, channels = problem.push.shape
     contacts = work.sense.size
@@ -211,7 +211,7 @@ def settle(problem, row, friction, tau, work, law, arrived, released):
         return False
     for j in range(contacts):
         law[7, j] = law[1, j]
-    _stop_exactly(problem, row, work, law)
+    stop_exactly(problem, row, work)
     if released >= 0:
         law[5, released] = 1.0
         work.sense[released] = 1 if law[1, released] > 0.0 else -1

@@ -9,11 +9,14 @@ from .crossings import NONE, approach, first_zero, value_at
 from .problem import LONG, TERMS, WIDTH
 from .series import first_contact_row
 
-NOTHING, RANGES, STEPS = 0, 1, 2
+NOTHING, RANGES, STEPS, FORCES = 0, 1, 2, 3
 
 _SLOPE, _VALUE = 5, 6  # rows of the scratch
 
 _ROUNDING = 2.0**-50
+
+#: Turns of a force in one step, at most.
+_MOST_TURNS = 16
 
 #: Nodes and weights on [0, 1]: exact to rounding for products of two series of a step.
 _LEGENDRE = np.polynomial.legendre.leggauss(14)
@@ -33,6 +36,7 @@ class Record(NamedTuple):
     steps: np.ndarray  # (most, rows, WIDTH) the series of every step
     patterns: np.ndarray  # (most, N + 1) sense of every contact, then the length of the step in x
     count: np.ndarray  # (1,) steps there were; more than `most` do not fit
+    forces: np.ndarray  # (2, N) lowest and highest force of every contact, where FORCES are kept
 
 
 @entry
@@ -44,6 +48,7 @@ def make_record(problem, masses, most):
     return Record(
         np.zeros(1, np.int64), np.zeros(size), np.zeros(size), np.zeros(contacts), np.zeros((2, contacts)),
         masses, np.zeros((most, rows, WIDTH)), np.zeros((most, contacts + 1)), np.zeros(1, np.int64),
+        np.zeros((2, contacts)),
     )  # fmt: skip
 
 
@@ -57,6 +62,8 @@ def clear_record(record):
         record.distance[j] = 0.0
         record.works[0, j] = 0.0
         record.works[1, j] = 0.0
+        record.forces[0, j] = np.inf
+        record.forces[1, j] = -np.inf
     record.count[0] = 0
 
 
@@ -178,8 +185,40 @@ def _keep_step(work, end, record):
 
 
 @kernel
+def _keep_forces(problem, work, end, record):
+    """Include the forces of the present step, at its ends and where they turn."""
+    contacts = problem.spring.size
+    first = first_contact_row(problem)
+    series, scratch = work.series, work.scratch
+    for j in range(contacts):
+        at = first + 2 * contacts + j
+        x = 0.0
+        sign = 1.0
+        for _ in range(_MOST_TURNS):
+            value = value_at(series, at, x)
+            record.forces[0, j] = min(record.forces[0, j], value)
+            record.forces[1, j] = max(record.forces[1, j], value)
+            if x >= end:
+                break
+            if x == 0.0:
+                sign = 1.0 if series[at, 1] >= 0.0 else -1.0
+                for k in range(TERMS - 1):
+                    scratch[_SLOPE, k] = sign * (k + 1.0) * series[at, k + 1]
+                scratch[_SLOPE, TERMS - 1] = 0.0
+                x = min(first_zero(scratch, _SLOPE), end)
+            else:
+                sign = -sign
+                x = min(_next_turn(series, at, x, sign, scratch), end)
+                if x == NONE:
+                    x = end
+
+
+@kernel
 def record_step(problem, row, work, end, record):
     """Include the present step, up to `end` in x."""
+    if record.active[0] == FORCES:
+        _keep_forces(problem, work, end, record)
+        return
     if record.active[0] == STEPS:
         _keep_step(work, end, record)
     modes = problem.push.shape[0]

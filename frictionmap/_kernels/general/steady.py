@@ -7,20 +7,22 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from ..structure.newton import solve_linear, spectral_radius
-from .follow import FOLLOWED, follow
-from .pattern import begin
-from .problem import make_row, make_work, padded, set_row
-from .record import NOTHING, STEPS, clear_record, make_record
+from .follow import FOLLOWED, STUCK, follow
+from .pattern import begin, stop_exactly
+from .problem import make_row, make_work, padded, set_channels, set_row
+from .record import FORCES, NOTHING, STEPS, clear_record, make_record
 from .return_map import (
     SECTION,
     fill_newton,
     go_round,
     make_return,
     motion_size,
+    put_state,
     return_distance,
     take_state,
     take_step,
 )
+from .series import factor_held
 
 REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED = 0, 1, 2, 3
 
@@ -46,6 +48,10 @@ _RETURNED = 1e-9
 _MEASURED = 1e-11
 _MOST_REPEATED = 2
 
+#: Friction of a contact that is held, and attempts of Newton's method after which contacts are held.
+_WITHOUT_LIMIT = 1e200
+_CREEPS = 6
+
 #: A multiplier above this is not that of a motion that attracts.
 _STABLE = 1.0 + 1e-9
 
@@ -56,6 +62,7 @@ class Ring(NamedTuple):
     states: np.ndarray  # (RING, 3, ...)
     senses: np.ndarray  # (RING, N)
     count: np.ndarray  # (1,) states kept so far
+    friction: np.ndarray  # (2, N) friction of contacts while they are held
 
 
 class Steady(NamedTuple):
@@ -73,7 +80,7 @@ def make_ring(problem):
     contacts, modes = problem.chi.shape
     return Ring(
         np.zeros((RING, 3, padded(max(modes, contacts)))), np.zeros((RING, contacts), np.int64),
-        np.zeros(1, np.int64),
+        np.zeros(1, np.int64), np.zeros((2, contacts)),
     )  # fmt: skip
 
 
@@ -210,6 +217,107 @@ def _far(problem, row, memory, ring):
 
 
 @kernel
+def _hold_some(problem, row, friction, share, work, memory, kept):
+    """Hold the contacts that were stuck for more than a share of the last way; how many.
+
+    Parameters
+    ----------
+    problem, row : Problem, Row
+    friction : Friction; what it was goes to `kept` (2, N)
+    share : of the time followed
+    work, memory : Work, Return; `memory.start` is changed
+    """
+    whole = 0.0
+    for j in range(memory.senses.size):
+        whole = max(whole, memory.counts[STUCK, j])
+    put_state(memory.start, memory.senses, work)
+    count = 0
+    for j in range(memory.senses.size):
+        kept[0, j], kept[1, j] = friction.kinetic[j], friction.static[j]
+        if whole > 0.0 and memory.counts[STUCK, j] > share * whole:
+            friction.kinetic[j] = friction.static[j] = _WITHOUT_LIMIT
+            work.sense[j] = 0
+            count += 1
+    if count > 0:
+        set_channels(problem, row, SECTION, work.series)
+        if not factor_held(problem, row, work):
+            return 0
+        stop_exactly(problem, row, work)
+        take_state(work, memory.start, memory.senses, 1.0)
+    return count
+
+
+@kernel
+def _let_go(friction, kept):
+    """Give the contacts the friction back that they had."""
+    for j in range(friction.kinetic.size):
+        friction.kinetic[j], friction.static[j] = kept[0, j], kept[1, j]
+
+
+@kernel
+def _can_rest(problem, row, friction, work, memory, record, kept):
+    """Whether half the range of the force of every contact held is within its friction (contacts.md 2).
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction, with contacts held
+    work, memory, record : Work, Return, Record
+    kept : (2, N) the friction of the contacts
+    """
+    clear_record(record)
+    record.active[0] = FORCES
+    go_round(problem, row, friction, 2, work, memory, record, False)
+    record.active[0] = NOTHING
+    for j in range(memory.senses.size):
+        if friction.kinetic[j] == _WITHOUT_LIMIT:
+            for d in range(problem.push.shape[1]):
+                if problem.normal[j, d] != 0.0:
+                    return False
+            if 0.5 * (record.forces[1, j] - record.forces[0, j]) > kept[0, j]:
+                return False
+    return True
+
+
+@kernel
+def _by_holding(problem, row, friction, base, tolerance, work, memory, ring, record):
+    """Find the steady state of contacts that creep: held, they rest, or show where to begin.
+
+    A contact whose load hardly exceeds its limit slides ever less each cycle, and no motion gets to the end
+    of that.  Where it rests, `friction` is such that it does; its place depends on the start.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    base : half periods of the return map
+    tolerance : see `find`
+    work, memory, ring, record : Work, Return, Ring, Record
+
+    Returns
+    -------
+    (found, cycles) : whether the state in `memory.start` is the steady state; periods followed
+    """
+    kept = ring.friction
+    cycles = 0.0
+    for share in (0.98, 0.5):
+        _last_kept(memory, ring)
+        go_round(problem, row, friction, 2, work, memory, record, False)
+        cycles += 1.0
+        if _hold_some(problem, row, friction, share, work, memory, kept) == 0:
+            continue
+        status, more = _newton(problem, row, friction, base, tolerance, work, memory, record)
+        cycles += more
+        if status == REPEATS and _can_rest(problem, row, friction, work, memory, record, kept):
+            return True, cycles + 1.0
+        _let_go(friction, kept)
+        if status == REPEATS:
+            status, more = _newton(problem, row, friction, base, tolerance, work, memory, record)
+            cycles += more
+            if status == REPEATS:
+                return True, cycles
+    return False, cycles
+
+
+@kernel
 def find(problem, row, friction, cycles, tolerance, work, memory, ring, record):
     """Find the steady state that the motion from `memory.start` reaches.
 
@@ -248,6 +356,14 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record):
                     return Steady(REPEATS, least, spent + more, multiplier)
             pause += 1
             wait = pause
+            if unique and pause in (_CREEPS, 2 * _CREEPS):
+                settled, more = _by_holding(
+                    problem, row, friction, base, tolerance, work, memory, ring, record
+                )
+                spent += more
+                if settled:
+                    multiplier = _multiplier(problem, base, work, memory)
+                    return Steady(REPEATS, base, spent, multiplier)
             _last_kept(memory, ring)
         code = go_round(problem, row, friction, base, work, memory, record, False)
         spent += 0.5 * base

@@ -222,10 +222,10 @@ def _hold_some(problem, row, friction, share, work, memory, kept):
 
     Parameters
     ----------
-    problem, row : Problem, Row
-    friction : Friction; what it was goes to `kept` (2, N)
+    problem, row, friction : Problem, Row, Friction
     share : of the time followed
     work, memory : Work, Return; `memory.start` is changed
+    kept : (2, N) filled with the friction before
     """
     whole = 0.0
     for j in range(memory.senses.size):

@@ -9,6 +9,7 @@ errors         the exceptions of the package
 version        version number of the package
 regimes        codes of regime, origin and status, their names and meanings
 checks         checks of input, whose messages name the valid range
+jobs           jobs on a pool of threads
 packages       optional packages (extras), and the message if one is missing
 mat_files      arrays from MAT files of all versions
 structures     matrices from files of finite-element programs, and their reduction

@@ -86,8 +86,8 @@ class Solved:
         )
         self.resolved = self.found.status == REPEATS
         self.period = halves // 2
-        self.highest = self.record.highest[:count], self.record.highest[count:]
-        self.lowest = self.record.lowest[:count], self.record.lowest[count:]
+        lowest, highest = self.record.ranges
+        self.highest, self.lowest = ((ends[:count], ends[count:]) for ends in (highest, lowest))
 
 
 def matrices(gamma, kappa, zeta):

@@ -4,7 +4,6 @@
 module      what is in it
 ==========  =====================================================================================
 problem     a system over r as arrays for the kernels
-jobs        jobs on a pool of threads
 held        forces in contacts that do not slide, and the boundaries that follow from them
 boundaries  boundaries over r: permanent sticking, no stops, belts that pull one way
 maps        the cells of a map, on several threads

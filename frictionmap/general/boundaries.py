@@ -8,9 +8,9 @@ from .. import checks
 from .._kernels.engine.policies import MOVING_START_CAP
 from .._kernels.general.no_stop import Search, fill_no_stop
 from .._kernels.general.problem import Problem
+from ..jobs import Job, Watch, run_jobs
 from ..model.system import System
-from .held import largest, least_static_friction, stick_scales
-from .jobs import Watch, run_jobs
+from .held import belt_limit, least_static_friction, stick_scales
 from .problem import ModalSystem, general_of, problem_of
 
 #: Intervals without stops that are looked for.
@@ -99,39 +99,20 @@ def find_boundaries(
         loads += sum(abs(u) for u in general.base.values())
         problem, _ = problem_of(system, r)
         kinetic, static = friction_lines(system, mu)
-        highest = stick[:, :].max(axis=0)
+        highest = stick.max(axis=0)
         top = np.where(np.isfinite(highest) & (highest > 0.0), highest, _HIGHEST * loads)
         search = Search(kinetic, static, top, sliding_states(problem, r, 1.0), _CYCLES, _TOLERANCE)
-
-        def job(i: int, cancel: np.ndarray) -> None:
-            fill_no_stop(i, i + 1, problem, search, begins, ends, cancel)
-
-        run_jobs(r.size, job, checks.threads(threads), watch=watch)
+        cancel = np.zeros(1, np.uint8)
+        jobs: list[Job] = [
+            (fill_no_stop, (i, i + 1, problem, search, begins, ends, cancel)) for i in range(r.size)
+        ]
+        try:
+            run_jobs(jobs, checks.threads(threads), lambda _: None, watch)
+        except BaseException:
+            cancel[0] = 1  # the kernel checks it at every frequency
+            raise
     first = np.where(begins[:, :, 0] == 0.0, ends[:, :, 0], 0.0)
     first = np.where(np.isnan(begins[:, :, 0]), 0.0, first)
     return Boundaries(
-        stick, by_contact, first, begins, ends, _belt_limit(system, r), by_contact.argmax(axis=2) + 1
+        stick, by_contact, first, begins, ends, belt_limit(system, r), by_contact.argmax(axis=2) + 1
     )
-
-
-def _belt_limit(system: System, r: np.ndarray) -> np.ndarray:
-    """Belt velocity from which the contact slides one way: largest speed of the linear motion, (n_r,)."""
-    general = general_of(system)
-    if general.count > 1 or not general.groups[0].first.wall_velocity:
-        return np.full(r.size, np.nan)
-    phasors = []
-    orders = sorted({*general.forces, *general.base})
-    modal = system.modes
-    n = system.n
-    for order in orders:
-        square = (order * r)[:, np.newaxis, np.newaxis]
-        matrix = modal.stiffness - square**2 * modal.mass + 1j * square * modal.damping
-        right = np.zeros((r.size, n), dtype=complex)
-        right[:] = general.forces.get(order, 0.0)
-        u = general.base.get(order, 0.0)
-        right += u * modal.stiffness.sum(axis=1)
-        with np.errstate(all="ignore"):
-            x = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
-        phasors.append(1j * order * (x @ general.groups[0].vector))
-    sign = np.sign(general.groups[0].first.wall_velocity)
-    return largest(np.array(orders, dtype=float), sign * np.stack(phasors, axis=-1))

@@ -9,14 +9,14 @@ from .. import regimes
 from ..datasets.labels import LABELS, OLDER_NAMES, PER_CONTACT, labels_of
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError, NoSteadyState
+from ..jobs import Progress
 from ..model.settings import CurveSettings, Solver
 from ..model.system import System
 from .boundaries import find_boundaries
 from .cycle import equivalent, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
-from .held import held_forces, largest
-from .jobs import Progress
-from .problem import general_of, problem_of
+from .held import held_forces, held_ranges
+from .problem import general_of, problem_of, static_offset
 from .response import is_wanted, scalars
 from .steps import Steps, cell_steps
 
@@ -53,22 +53,19 @@ def _stuck(system: System, asked: CurveSettings, r: float) -> dict[str, np.ndarr
     general = general_of(system)
     values = {"regime": np.array(regimes.PERMANENT_STICKING), "status": np.array(regimes.RESOLVED),
               "period": np.array(1), "contact_regime": np.zeros(general.count)}  # fmt: skip
-    _, motions = held_forces(system, np.array([r]))
-    x = np.stack([motion[0] for motion in motions.values()], axis=-1)
-    orders = np.array(list(motions), dtype=float)
-    finite = np.isfinite(x).all(axis=-1)
-    x = np.where(finite[:, np.newaxis], x, 0.0)
-    high, low = largest(orders, x), -largest(orders, -x)
+    low, high = (
+        ends[0] + np.concatenate(static_offset(system)) for ends in held_ranges(system, np.array([r]))
+    )
+    moduli, ranges = np.maximum(high, -low), high - low
     if "amplitude" in asked.quantities:
-        values["amplitude"] = np.where(finite, np.maximum(high, -low), np.inf)
-        values["peak_to_peak"] = np.where(finite, high - low, np.inf)
-        z = np.array([group.vector for group in general.groups]) @ x
-        z[~general.elastic] = 0.0
-        z_high, z_low = largest(orders, z), -largest(orders, -z)
-        values["contact_amplitude"] = np.maximum(z_high, -z_low)
-        values["contact_peak_to_peak"] = z_high - z_low
+        rigid = ~general.elastic
+        for name, table in (("amplitude", moduli), ("peak_to_peak", ranges)):
+            values[name] = table[general.count :]
+            values[f"contact_{name}"] = np.where(rigid, 0.0, table[: general.count])
+    _, motions = held_forces(system, np.array([r]))
     if "first_harmonic" in asked.quantities and 1 in motions:
-        first = np.where(finite, motions[1][0], np.inf)
+        first = motions[1][0]
+        finite = np.isfinite(first)
         values["first_harmonic_amplitude"] = np.abs(first)
         values["first_harmonic_phase"] = np.where(finite, -np.angle(np.where(finite, first, 1.0)), np.nan)
     return values

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from .._kernels.general.return_map import SECTION
 from ..model.system import System
-from .problem import general_of
+from .problem import general_of, static_offset
 from .steps import Steps
 
 #: Samples per period and step among which the largest displacement is looked for.
@@ -27,12 +28,11 @@ def _lag(phasors: np.ndarray) -> np.ndarray:
 
 def harmonic_values(system: System, steps: Steps, highest: int) -> dict[str, np.ndarray]:
     """Harmonics 0 to `highest` of masses, contacts and friction forces."""
-    general = general_of(system)
-    offset = np.linalg.solve(system.modes.stiffness, general.offset)
+    offset_z, offset_x = static_offset(system)
     x = steps.modal.phi @ steps.harmonics("q", highest)
-    x[:, 0] += offset
+    x[:, 0] += offset_x
     z, f = steps.harmonics("z", highest), steps.harmonics("f", highest)
-    z[:, 0] += np.array([group.vector for group in general.groups]) @ offset
+    z[:, 0] += offset_z
     return {"displacement_harmonic": x, "contact_harmonic": z, "friction_harmonic": f}
 
 
@@ -41,7 +41,7 @@ def _damping_work(system: System, steps: Steps) -> float:
     nodes, weights = np.polynomial.legendre.leggauss(16)
     x = 0.5 * (1.0 + nodes) * (steps.lengths[:, np.newaxis] / steps.h)
     series = steps.series[:, steps.rows("q")]
-    velocity = steps._values(series[:, :, np.newaxis, :], x[:, np.newaxis, :], 1)
+    velocity = steps.values(series[:, :, np.newaxis, :], x[:, np.newaxis, :], 1)
     damping = steps.problem.damping
     if system.damping_reference == "base":
         velocity = steps.modal.phi @ velocity - _base_velocity(system, steps, x)[:, np.newaxis, :]
@@ -52,8 +52,6 @@ def _damping_work(system: System, steps: Steps) -> float:
 
 
 def _base_velocity(system: System, steps: Steps, x: np.ndarray) -> np.ndarray:
-    from .._kernels.general.return_map import SECTION
-
     tau = SECTION + steps.begins[:, np.newaxis] + x * steps.h
     found = np.zeros_like(tau)
     for order, phasor in general_of(system).base.items():

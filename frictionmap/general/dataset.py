@@ -10,11 +10,11 @@ from .._kernels.general.fill import Cells
 from ..datasets.labels import GENERAL_VARIABLES, LABELS, PER_CONTACT, attributes
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError
+from ..jobs import Progress, Watch
 from ..model.general import General
 from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import Boundaries
-from .jobs import Progress, Watch
 from .maps import solve_cells
 from .problem import general_of
 

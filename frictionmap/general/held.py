@@ -14,7 +14,7 @@ import numpy as np
 
 from ..model.general import General
 from ..model.system import System
-from .problem import general_of, modal_system, springs
+from .problem import general_of, springs
 
 #: Samples per period of the highest harmonic where extremes are looked for, and steps that refine them.
 _SAMPLES = 16
@@ -27,31 +27,44 @@ _MOST_STEPS = 60
 _RESONANT = 1e-14
 
 
+def _linear(
+    system: System, stiffness: np.ndarray, order: int, r: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Dynamic stiffness (n_r, n, n) and load (n_r, n) of a harmonic, without forces in contacts."""
+    general, modes = general_of(system), system.modes
+    square = (order * r)[:, np.newaxis]
+    matrix = stiffness - square[:, np.newaxis] ** 2 * modes.mass + 1j * square[:, np.newaxis] * modes.damping
+    load = np.zeros((r.size, system.n), dtype=complex)
+    load += general.forces.get(order, 0.0)
+    u = general.base.get(order, 0.0)
+    load += u * modes.stiffness.sum(axis=1)
+    if system.damping_reference == "base":
+        load += 1j * square * u * modes.damping.sum(axis=1)
+    return matrix, load
+
+
+def _orders(general: General) -> list[int]:
+    """Orders of the harmonics that move the structure."""
+    return sorted({*general.forces, *general.base})
+
+
 def held_forces(system: System, r: np.ndarray) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
     """Forces F_n (n_r, N) in the contacts and displacements X_n (n_r, n), by order; inf at a resonance."""
-    general, modal = general_of(system), modal_system(system)
-    n = system.n
-    elastic = general.elastic
-    vectors = np.array([group.vector for group in general.groups])
+    general = general_of(system)
+    n, elastic, vectors = system.n, general.elastic, general.vectors
     moved = np.array([float(group.base) for group in general.groups])
     kt = springs(general)
     w = vectors[~elastic].T
-    stiffness = modal.stiffness + (vectors.T * kt) @ vectors
+    stiffness = system.modes.stiffness + (vectors.T * kt) @ vectors
     forces, motions = {}, {}
-    for order in sorted({*general.forces, *general.base}):
+    for order in _orders(general):
         matrix = np.zeros((r.size, n + w.shape[1], n + w.shape[1]), dtype=complex)
-        square = (order * r)[:, np.newaxis, np.newaxis]
-        matrix[:, :n, :n] = stiffness - square**2 * modal.mass + 1j * square * modal.viscous
-        matrix[:, :n, n:], matrix[:, n:, :n] = w, w.T
         right = np.zeros((r.size, n + w.shape[1]), dtype=complex)
-        right[:, :n] = general.forces.get(order, 0.0)
+        matrix[:, :n, :n], right[:, :n] = _linear(system, stiffness, order, r)
+        matrix[:, :n, n:], matrix[:, n:, :n] = w, w.T
         u = general.base.get(order, 0.0)
-        if u:
-            right[:, :n] += u * modal.stiffness.sum(axis=1)
-            if system.damping_reference == "base":
-                right[:, :n] += 1j * square[:, 0] * u * modal.viscous.sum(axis=1)
-            right[:, :n] += u * (vectors.T * kt) @ moved
-            right[:, n:] = u * moved[~elastic]
+        right[:, :n] += u * (vectors.T * kt) @ moved
+        right[:, n:] = u * moved[~elastic]
         found = _solved(matrix, right)
         x = found[:, :n]
         force = np.empty((r.size, general.count), dtype=complex)
@@ -59,6 +72,47 @@ def held_forces(system: System, r: np.ndarray) -> tuple[dict[int, np.ndarray], d
         force[:, elastic] = kt[elastic] * (x @ vectors[elastic].T - u * moved[elastic])
         forces[order], motions[order] = force, x
     return forces, motions
+
+
+def held_ranges(system: System, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest displacements in the contacts, then of the masses, (n_r, N + n), all held.
+
+    Infinite at a resonance; 0 in rigid contacts.
+    """
+    general = general_of(system)
+    _, motions = held_forces(system, r)
+    orders = np.array(list(motions), dtype=float)
+    x = np.stack(list(motions.values()), axis=-1)  # (n_r, n, H)
+    z = np.einsum("jn,rnh->rjh", general.vectors, x)
+    for j, group in enumerate(general.groups):
+        if group.base:
+            z[:, j] -= np.array([general.base.get(int(n), 0.0) for n in orders])
+        if group.first.stiffness is None:
+            z[:, j] = 0.0
+    both = np.concatenate((z, x), axis=1)
+    finite = np.isfinite(both).all(axis=-1)
+    both = np.where(finite[..., np.newaxis], both, 0.0)
+    high, low = largest(orders, both), -largest(orders, -both)
+    return np.where(finite, low, -np.inf), np.where(finite, high, np.inf)
+
+
+def belt_limit(system: System, r: np.ndarray) -> np.ndarray:
+    """Belt velocity from which the only contact slides one way, (n_r,): the largest speed without friction.
+
+    NaN where there is no belt.
+    """
+    general = general_of(system)
+    if general.count > 1 or not general.groups[0].first.wall_velocity:
+        return np.full(r.size, np.nan)
+    orders = _orders(general)
+    speeds = []
+    for order in orders:
+        matrix, load = _linear(system, system.modes.stiffness, order, r)
+        with np.errstate(all="ignore"):
+            x = np.linalg.solve(matrix, load[..., np.newaxis])[..., 0]
+        speeds.append(1j * order * (x @ general.vectors[0]))
+    sign = np.sign(general.groups[0].first.wall_velocity)
+    return largest(np.array(orders, dtype=float), sign * np.stack(speeds, axis=-1))
 
 
 def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:

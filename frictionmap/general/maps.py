@@ -1,5 +1,6 @@
 """Maps of general systems: cells computed row by row on several threads, as labelled variables."""
 
+import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -7,12 +8,12 @@ import numpy as np
 from .. import regimes
 from .._kernels.engine.policies import MOVING_START
 from .._kernels.general.fill import Cells, Grid, fill_rows
+from ..jobs import Job, Progress, Watch, run_jobs
 from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import Boundaries, find_boundaries, friction_lines, rest_states, sliding_states
-from .held import held_forces, largest
-from .jobs import Progress, Watch, run_jobs
-from .problem import general_of, problem_of
+from .held import held_ranges
+from .problem import general_of, problem_of, static_offset
 
 
 def _allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
@@ -36,26 +37,13 @@ def _put_r_zero(found: Cells, at_zero: int, beta: np.ndarray, stick: np.ndarray)
         found.contact_regime[m, at_zero] = found.regime[m, at_zero][:, np.newaxis]
 
 
-def _put_stuck(system: System, r: np.ndarray, found: Cells, masses: int) -> None:
+def _put_stuck(system: System, r: np.ndarray, found: Cells) -> None:
     """Fill displacements of cells that closed forms prove to stick: those of the held structure."""
-    general = general_of(system)
-    _, motions = held_forces(system, r)
-    orders = np.array(list(motions), dtype=float)
-    x = np.stack(list(motions.values()), axis=-1)  # (n_r, n, H)
-    z = np.einsum("jn,rnh->rjh", np.array([group.vector for group in general.groups]), x)
-    for j, group in enumerate(general.groups):
-        if group.base:
-            z[:, j] -= np.array([general.base.get(int(n), 0.0) for n in orders])
-        if group.first.stiffness is None:
-            z[:, j] = 0.0
-    both = np.concatenate((z, x), axis=1) if masses else z
-    finite = np.isfinite(both).all(axis=-1)
-    both = np.where(finite[..., np.newaxis], both, 0.0)
-    high = np.where(finite, largest(orders, both), np.inf)
-    low = -np.where(finite, largest(orders, -both), np.inf)
+    low, high = held_ranges(system, r)
     stuck = (found.regime == regimes.PERMANENT_STICKING) & (found.origin == regimes.CLOSED_FORM)
     m, i, b = np.nonzero(stuck)
-    found.highest[m, i, b], found.lowest[m, i, b] = high[i], low[i]
+    kept = found.lowest.shape[-1]  # contacts, and masses where they are wanted
+    found.highest[m, i, b], found.lowest[m, i, b] = high[i, :kept], low[i, :kept]
 
 
 def solve_cells(
@@ -82,25 +70,32 @@ def solve_cells(
     count = system.n if masses else 0
     found = _allocate((mu.size, r.size, beta.size), general.count, count)
     outputs = np.ascontiguousarray(modal.phi) if masses else np.empty((0, modal.phi.shape[1]))
+    cancel = np.zeros(1, np.uint8)
+    rows = range(mu.size * r.size)
+    jobs: list[Job] = [(fill_rows, (row, row + 1, problem, grid, found, outputs, cancel)) for row in rows]
+    ended = itertools.count(1)
 
-    def job(row: int, cancel: np.ndarray) -> None:
-        fill_rows(row, row + 1, problem, grid, found, outputs, cancel)
+    def done(_: int) -> None:
+        if progress is not None:
+            progress(next(ended), len(rows))
 
-    run_jobs(mu.size * r.size, job, threads, progress, watch)
+    try:
+        run_jobs(jobs, threads, done, watch)
+    except BaseException:
+        cancel[0] = 1  # the kernel checks it at every cell
+        raise
     for at_zero in np.flatnonzero(r == 0.0):
         _put_r_zero(found, int(at_zero), beta, limits.beta_stick)
-    _put_stuck(system, r, found, count)
+    _put_stuck(system, r, found)
     _put_offset(system, found, count)
     return found, limits
 
 
 def _put_offset(system: System, found: Cells, masses: int) -> None:
     """Add the displacements under constant loads."""
-    general = general_of(system)
-    if not general.offset.any():
+    if not general_of(system).offset.any():
         return
-    x = np.linalg.solve(system.modes.stiffness, general.offset)
-    moved = np.array([group.vector @ x for group in general.groups])
-    shift = np.concatenate((moved, x)) if masses else moved
+    z, x = static_offset(system)
+    shift = np.concatenate((z, x)) if masses else z
     for table in (found.lowest, found.highest):
         table += shift

@@ -49,7 +49,7 @@ def modal_system(system: System) -> ModalSystem:
     damping = phi.T @ modes.damping @ phi
     if modes.participating_coupling() is None:  # C does not couple modes: the rest is rounding error
         damping = np.diag(2.0 * modes.zeta * w)
-    vectors = np.array([group.vector for group in general.groups])
+    vectors = general.vectors
     chi = vectors @ phi
     small = (
         64.0 * np.finfo(float).eps * np.linalg.norm(phi, axis=0) * np.linalg.norm(vectors, axis=1)[:, None]
@@ -111,6 +111,13 @@ def _symmetric(general: General) -> bool:
     return all(n % 2 == 1 for n in loads) and all(n % 2 == 0 for n in normal) and not belts
 
 
+def static_offset(system: System) -> tuple[np.ndarray, np.ndarray]:
+    """Displacements in the contacts (N,) and of the masses (n,) under the constant loads."""
+    general = general_of(system)
+    x = np.linalg.solve(system.modes.stiffness, general.offset)
+    return general.vectors @ x, x
+
+
 def springs(general: General) -> np.ndarray:
     """Stiffness of every contact, 0 where it is rigid, (N,)."""
     return np.array([group.first.stiffness or 0.0 for group in general.groups])
@@ -133,10 +140,10 @@ def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
     modal = modal_system(system)
     channels, orders = channels_of(system, modal), general.orders
     phasors = _phasors(channels, orders, r)
-    rates = _rates(modal, springs(general), orders, r)
+    spring = springs(general)
+    rates = _rates(modal, spring, orders, r)
     _refuse_low(rates, r)
     push = modal.phi.T @ np.array([channel.push for channel in channels]).T
-    spring = springs(general)
     load = np.abs(push[np.newaxis]) @ np.hypot(phasors[:, 0], phasors[:, 1]).sum(axis=2)[:, :, np.newaxis]
     sizes = (load[:, :, 0] / (modal.squares + (r * r)[:, np.newaxis])).max(axis=1)
     problem = Problem(

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
+from .._kernels.general.return_map import SECTION
 from ..datasets.labels import CONTACT_TRACES, LABELS, OLDER_NAMES, PER_CONTACT
 from ..datasets.variables import coordinate, label_variable
 from ..model.general import General
@@ -14,7 +15,7 @@ from ..model.system import System
 from .boundaries import find_boundaries
 from .cycle import cycle_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
-from .problem import general_of
+from .problem import general_of, static_offset
 from .steps import Steps, steps_of
 
 
@@ -30,14 +31,12 @@ def _overall(found: list[int]) -> int:
 def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarray]:
     """Motion of masses and contacts over tau, and the forces in the contacts."""
     general, modal = general_of(system), steps.modal
-    offset = np.linalg.solve(system.modes.stiffness, general.offset)
-    vectors = np.array([group.vector for group in general.groups])
-    z = steps.at("z", tau) + (vectors @ offset)[:, np.newaxis]
+    offset_z, offset_x = static_offset(system)
+    z = steps.at("z", tau) + offset_z[:, np.newaxis]
     friction = steps.at("f", tau)
-    since = np.mod(tau - _section(), 2.0 * np.pi * steps.period)
-    k = np.clip(np.searchsorted(steps.begins, since, side="right") - 1, 0, steps.begins.size - 1)
+    k, _ = steps.places(tau)
     found = {
-        "x": modal.phi @ steps.at("q", tau) + offset[:, np.newaxis],
+        "x": modal.phi @ steps.at("q", tau) + offset_x[:, np.newaxis],
         "v": modal.phi @ steps.at("q", tau, 1),
         "z": z,
         "friction": friction,
@@ -58,17 +57,11 @@ def _load(general: General, tau: np.ndarray) -> np.ndarray:
     return sum((p * np.exp(1j * n * tau)).real for n, p in phasors.items()) + np.zeros_like(tau)
 
 
-def _section() -> float:
-    from .._kernels.general.return_map import SECTION
-
-    return SECTION
-
-
 def _events(system: System, steps: Steps) -> dict[str, np.ndarray]:
     """Where a contact begins to slide or to stop, in order of time."""
     changed = steps.senses != np.roll(steps.senses, 1, axis=0)
     k, j = np.nonzero(changed)
-    tau = np.mod(steps.begins[k] + _section(), 2.0 * np.pi * steps.period)
+    tau = np.mod(steps.begins[k] + SECTION, 2.0 * np.pi * steps.period)
     order = np.argsort(tau, kind="stable")
     k, j, tau = k[order], j[order], tau[order]
     z = steps.series[:, steps.rows("z"), 0]

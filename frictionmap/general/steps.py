@@ -16,7 +16,7 @@ from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines, rest_states, sliding_states
 from .held import least_static_friction
-from .problem import ModalSystem, general_of, problem_of
+from .problem import ModalSystem, problem_of, static_offset
 
 #: Steps that are kept at first; four times as many where they do not suffice.
 _FIRST = 512
@@ -62,14 +62,19 @@ class Steps:
             "f": slice(first + 2 * count, first + 3 * count),
         }[name]  # fmt: skip
 
-    def at(self, name: str, tau: np.ndarray, order: int = 0) -> np.ndarray:
-        """Values at phases tau, (rows, tau.size); `order` 1 for the derivative by tau."""
+    def places(self, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The step that each phase lies in, and the place x in it."""
         since = np.mod(tau - SECTION, 2.0 * np.pi * self.period)
         k = np.clip(np.searchsorted(self.begins, since, side="right") - 1, 0, self.begins.size - 1)
-        x = (since - self.begins[k]) / self.h
-        return self._values(self.series[k, self.rows(name)], x[:, np.newaxis], order).T
+        return k, (since - self.begins[k]) / self.h
 
-    def _values(self, series: np.ndarray, x: np.ndarray, order: int) -> np.ndarray:
+    def at(self, name: str, tau: np.ndarray, order: int = 0) -> np.ndarray:
+        """Values at phases tau, (rows, tau.size); `order` 1 for the derivative by tau."""
+        k, x = self.places(tau)
+        return self.values(self.series[k, self.rows(name)], x[:, np.newaxis], order).T
+
+    def values(self, series: np.ndarray, x: np.ndarray, order: int) -> np.ndarray:
+        """Values of series at x, or with `order` 1 derivatives by tau."""
         value = np.zeros(series.shape[:-1])
         slope = np.zeros(series.shape[:-1])
         for n in range(LONG - 1, -1, -1):
@@ -82,7 +87,7 @@ class Steps:
         nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
         x = 0.5 * (1.0 + nodes) * (self.lengths[:, np.newaxis] / self.h)  # (steps, nodes)
         series = self.series[:, self.rows(name)]
-        values = self._values(series[:, :, np.newaxis, :], x[:, np.newaxis, :], 0)  # (steps, rows, nodes)
+        values = self.values(series[:, :, np.newaxis, :], x[:, np.newaxis, :], 0)  # (steps, rows, nodes)
         tau = SECTION + self.begins[:, np.newaxis] + x * self.h
         weight = 0.5 * weights * self.lengths[:, np.newaxis]
         orders = np.arange(highest + 1)
@@ -168,14 +173,12 @@ def cell_steps(
     lengths = record.patterns[:count, -1] * h
     begins = np.concatenate(([0.0], np.cumsum(lengths)[:-1]))
     own = lengths > 0.0
-    offset = general_of(system).offset
-    x = np.linalg.solve(system.modes.stiffness, offset)
-    shift = np.concatenate(([group.vector @ x for group in general_of(system).groups], x))
+    shift = np.concatenate(static_offset(system))
     works = record.works / period
     works[0] = np.maximum(works[0], 0.0)  # of a contact that hardly slides, rounding may be negative
     return Steps(
         problem, modal, friction, float(problem.r[i]), begins[own], lengths[own], h,
         record.steps[:count][own],
         record.patterns[:count][own][:, :-1].astype(np.int8), counts, period, found.multiplier, found.cycles,
-        record.lowest + shift, record.highest + shift, works, record.distance / period,
+        record.ranges[0] + shift, record.ranges[1] + shift, works, record.distance / period,
     )  # fmt: skip

@@ -145,6 +145,11 @@ class General:
         return len(self.groups)
 
     @property
+    def vectors(self) -> np.ndarray:
+        """The vectors c of the contacts, (N, n)."""
+        return np.array([group.vector for group in self.groups])
+
+    @property
     def orders(self) -> tuple[int, ...]:
         """Orders of all harmonics, of normal loads too."""
         normal = {n for group in self.groups for n in group.first.nu}

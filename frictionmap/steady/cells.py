@@ -4,7 +4,6 @@ One mass is the structure with one mode, but a stop leaves only one number of it
 motion of its own (`_kernels.engine`), ten times faster.
 """
 
-from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
@@ -19,6 +18,7 @@ from .._kernels.engine.one_mass import OneMassSystem
 from .._kernels.engine.quantities import Quantities
 from .._kernels.engine.records import Limits
 from ..datasets.labels import CELL_VARIABLES
+from ..jobs import Job
 from ..model.settings import Solver
 from ..model.system import System
 from ..theory.boundary_curves import OneMass, many_mode_curves, one_mass_curves
@@ -32,8 +32,6 @@ _FREE_PERIODS = 4000.0
 
 #: Outputs about the growth of a disturbance.
 _EXPONENT = ("lyapunov_exponent", "lyapunov_exponent_error")
-
-Job = tuple[Callable[..., None], tuple]
 
 
 def limits(solver: Solver) -> Limits:

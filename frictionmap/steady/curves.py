@@ -12,13 +12,14 @@ from .. import checks
 from ..datasets.labels import OLDER_NAMES
 from ..datasets.physical import with_units
 from ..datasets.variables import coordinate, label_variable, stamp
+from ..jobs import Progress, Watch
 from ..model.settings import CurveSettings, Output, Quantity, Solver, SolverSettings, curve_settings, merged
 from ..model.system import System
 from ..theory.boundaries import boundary_variables, held_variables
 from ..theory.boundary_curves import Curves
 from ..theory.limit_curves import limit_variables
 from ..units.scales import Units, scales_of
-from .maps import Progress, Watch, checked_axes, compute
+from .maps import checked_axes, compute
 from .quantity_data import PARTS, VARIABLES, quantity_request, read_result
 from .refinement import reduction_check
 

@@ -1,10 +1,8 @@
 """The cells of a map: decide which of them need integration, and compute them in parallel."""
 
 from collections import namedtuple
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -15,12 +13,13 @@ from .._kernels.engine.fill import RESTART, OpenCells
 from .._kernels.engine.policies import NO_FRICTION
 from ..datasets.labels import CELL, CELL_VARIABLES
 from ..errors import InputError
+from ..jobs import Job, Progress, Watch, run_jobs
 from ..model.settings import Solver
 from ..model.system import System
 from ..theory.boundary_curves import Curves
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales
-from .cells import Cells, Job
+from .cells import Cells
 from .quantity_data import QuantityRequest, quantity_request, read_result
 
 #: Cells per job: some milliseconds of work, so that all threads finish together, progress is visible and an
@@ -37,14 +36,6 @@ _DECIDED, FOLLOWED, SEARCHED_UNIQUE, SEARCHED = 2, 100, 25, 800
 #: Outputs with an array in a map: all but those that are read from the results over a cycle.
 _NAMES = tuple(name for name, label in CELL_VARIABLES.items() if label.needs != "cycle")
 Arrays = namedtuple("Arrays", _NAMES)  # type: ignore[misc]
-
-Progress = Callable[[int, int], None]
-
-#: Called repeatedly while cells are computed; an exception raised by it ends the computation.
-Watch = Callable[[], None]
-
-#: Seconds between two calls of `Watch`.
-_WATCHED = 0.02
 
 
 @dataclass(frozen=True)
@@ -127,31 +118,6 @@ def allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> An
     return Arrays(*arrays)
 
 
-def _run(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None) -> None:
-    """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
-
-    This thread only waits, so that it receives an interrupt at once.
-    """
-    pool = ThreadPoolExecutor(threads)
-    running: dict[Future, int] = {}
-    waiting = iter(enumerate(jobs))
-    try:
-        while True:
-            for index, (function, arguments) in islice(waiting, 2 * threads - len(running)):
-                running[pool.submit(function, *arguments)] = index
-            if not running:
-                return
-            pause = None if watch is None else _WATCHED
-            ended = wait(running, pause, return_when=FIRST_COMPLETED).done
-            for future in sorted(ended, key=running.__getitem__):  # in the order of submission, for progress
-                future.result()
-                done(running.pop(future))
-            if watch is not None:
-                watch()
-    finally:
-        pool.shutdown(wait=not running, cancel_futures=True)
-
-
 def _fill(
     cells: Cells, work: Plan, shape: tuple[int, int, int], unique: np.ndarray, out: Any, threads: int,
     progress: Progress | None, watch: Watch | None,
@@ -185,8 +151,8 @@ def _fill(
             progress(spent, total)
 
     try:
-        _run(jobs, threads, done, watch)
-        _run(cells.exponents(out, cancel), threads, lambda _: None, watch)
+        run_jobs(jobs, threads, done, watch)
+        run_jobs(cells.exponents(out, cancel), threads, lambda _: None, watch)
     except BaseException:
         cancel[0] = 1  # the kernels check it at every event
         raise

@@ -12,12 +12,13 @@ from ..datasets.labels import GENERAL_VARIABLES, NAMES
 from ..datasets.physical import with_units
 from ..datasets.variables import coordinate, coordinate_of_study, label_variable, stamp
 from ..errors import InputError
+from ..jobs import Progress, Watch
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
 from ..theory.boundaries import boundary_variables
 from ..units.scales import Units, scales_of
-from .maps import Progress, Watch, checked_axes, solve_map
+from .maps import checked_axes, solve_map
 from .refinement import reduction_check
 
 

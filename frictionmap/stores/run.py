@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..files.places import claimed_folder
-from ..steady.maps import Progress
+from ..jobs import Progress
 from .store import Store, check_same, cut_of, make_store, remove_strays
 from .study import Batch, Cut, Study
 

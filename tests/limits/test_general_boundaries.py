@@ -181,3 +181,25 @@ def test_a_belt_faster_than_the_motion_pulls_one_way():
     assert pulled == pytest.approx([0.0, 0.1, 1.0, 10.0], rel=1e-12)
     slow = fm.System(damping_ratios=0.05, load_harmonics=load, wall_velocity=0.98 * limit)
     assert fm.sweep(slow, [r], [0.1, 1.0]).regime.values.ravel().tolist() != [3, 3]
+
+
+def test_the_limit_of_a_belt_counts_dampers_of_the_base():
+    base = {"excitation": "base", "damping_reference": "base", "damping_ratios": 0.3}
+    limit = fm.boundaries(fm.System(wall_velocity=0.1, **base), [1.3]).wall_velocity_lim.item()
+    regimes = [
+        fm.sweep(fm.System(wall_velocity=share * limit, **base), [1.3], [0.2]).regime.item()
+        for share in (1.0002, 0.9998)
+    ]
+    assert regimes[0] == fm.regimes.ONE_WAY_SLIDING != regimes[1]
+
+
+def test_curves_and_maps_of_a_held_spring_agree():
+    """On a wall that moves with the base, where the spring is strained by both motions."""
+    system = fm.System("joined-base-wall", contact_stiffness=2.0, damping_ratios=0.1)
+    names = ["contact_amplitude", "amplitude"]
+    ds = fm.sweep(system, [0.7], [5.0], outputs=["regime", *names])
+    assert ds.regime.item() == 0
+    curves = fm.curves(system, [0.7], [5.0], quantities=["amplitude"])
+    for name in names:
+        assert np.array_equal(curves[name], ds[name]), name
+    assert abs(ds.contact_amplitude.item() - ds.amplitude.item()) > 0.1

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compiler import kernel
 from ..compiler.vectors import LANES, LEADING, delayed, filled, least, load, magnitude, mask_above, total
-from .problem import TERMS, WIDTH
+from .problem import LONG, TERMS, WIDTH
 
 #: Powers of the nodes 1/8, 2/8, ..., 1: row k holds the k-th powers.
 _POWERS = np.array([[((i + 1.0) / LANES) ** k for i in range(LANES)] for k in range(TERMS)])
@@ -95,9 +95,9 @@ def first_zero(series, at):
 
 @kernel
 def value_at(series, at, x):
-    """Value of a series."""
+    """Value of a series; those with fewer than LONG terms have zeros after them."""
     value = 0.0
-    for k in range(TERMS - 1, -1, -1):
+    for k in range(LONG - 1, -1, -1):
         value = value * x + series[at, k]
     return value
 

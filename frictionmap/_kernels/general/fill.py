@@ -111,9 +111,9 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
         out.distance[m, i, b, j] = record.distance[j] / period
         out.works[m, i, b, j] = record.works[0, j] / period
         out.wall_works[m, i, b, j] = record.works[1, j] / period
-    for k in range(record.lowest.size):
-        out.lowest[m, i, b, k] = record.lowest[k]
-        out.highest[m, i, b, k] = record.highest[k]
+    for k in range(record.ranges.shape[1]):
+        out.lowest[m, i, b, k] = record.ranges[0, k]
+        out.highest[m, i, b, k] = record.ranges[1, k]
     if most == PERMANENT_STICKING:
         return PERMANENT_STICKING
     if least >= CONTINUOUS:

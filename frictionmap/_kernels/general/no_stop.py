@@ -142,21 +142,21 @@ def fill_no_stop(first, last, problem, search, begins, ends, cancel):
             near = _try(problem, i, row, search, beta, near, friction, memories, kept, k)
         for m in range(search.static.shape[0]):
             count = 0
-            last = _margin(search, m, _node(search.top[i], 0), kept, 0)
-            if last > 0.0:
+            margin = _margin(search, m, _node(search.top[i], 0), kept, 0)
+            if margin > 0.0:
                 begins[m, i, 0] = 0.0
             for k in range(1, NODES + 1):
                 before, here = _node(search.top[i], k - 1), _node(search.top[i], k)
                 now = _margin(search, m, here, kept, k)
-                if last > 0.0 and now <= 0.0 and count < begins.shape[2]:
+                if margin > 0.0 and now <= 0.0 and count < begins.shape[2]:
                     ends[m, i, count] = _end(
                         problem, i, row, search, m, before, here, friction, memories, kept
                     )
                     count += 1
-                if last <= 0.0 and now > 0.0 and count < begins.shape[2]:
+                if margin <= 0.0 and now > 0.0 and count < begins.shape[2]:
                     begins[m, i, count] = _end(
                         problem, i, row, search, m, here, before, friction, memories, kept
                     )
-                last = now
-            if last > 0.0 and count < begins.shape[2]:
+                margin = now
+            if margin > 0.0 and count < begins.shape[2]:
                 ends[m, i, count] = math.inf

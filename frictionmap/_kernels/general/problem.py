@@ -89,7 +89,7 @@ class Work(NamedTuple):
     tangent: np.ndarray  # (size, S) derivatives of the state by that at the section; size = 2 m + N
     columns: np.ndarray  # (LONG, m, S) their series
     forces: np.ndarray  # (N, S) the derivatives of the forces
-    watched: np.ndarray  # (S,) the derivatives of what is watched at an event
+    watched: np.ndarray  # (S,) the derivatives of the watched quantity at an event
 
 
 @kernel

@@ -13,10 +13,8 @@ NOTHING, RANGES, STEPS, FORCES = 0, 1, 2, 3
 
 _SLOPE, _VALUE = 5, 6  # rows of the scratch
 
+#: Sum of all variations of a series, relative to its size, that is rounding error of its terms.
 _ROUNDING = 2.0**-50
-
-#: Turns of a force in one step, at most.
-_MOST_TURNS = 16
 
 #: Nodes and weights on [0, 1]: exact to rounding for products of two series of a step.
 _LEGENDRE = np.polynomial.legendre.leggauss(14)
@@ -27,9 +25,8 @@ _WEIGHTS = 0.5 * _LEGENDRE[1]
 class Record(NamedTuple):
     """Extremes of the displacements in N contacts, then of the n masses."""
 
-    active: np.ndarray  # (1,) int: NOTHING, RANGES or STEPS: what is kept
-    lowest: np.ndarray  # (N + n,)
-    highest: np.ndarray  # (N + n,)
+    active: np.ndarray  # (1,) int: NOTHING, RANGES, STEPS or FORCES
+    ranges: np.ndarray  # (2, N + n) lowest and highest
     distance: np.ndarray  # (N,) sliding distances
     works: np.ndarray  # (2, N) work of friction, and of the walls that move at constant velocity
     masses: np.ndarray  # (n, m) displacement of the masses per mode
@@ -46,7 +43,7 @@ def make_record(problem, masses, most):
     size = contacts + masses.shape[0]
     rows = problem.push.shape[0] + problem.push.shape[1] + 4 * contacts
     return Record(
-        np.zeros(1, np.int64), np.zeros(size), np.zeros(size), np.zeros(contacts), np.zeros((2, contacts)),
+        np.zeros(1, np.int64), np.zeros((2, size)), np.zeros(contacts), np.zeros((2, contacts)),
         masses, np.zeros((most, rows, WIDTH)), np.zeros((most, contacts + 1)), np.zeros(1, np.int64),
         np.zeros((2, contacts)),
     )  # fmt: skip
@@ -55,9 +52,9 @@ def make_record(problem, masses, most):
 @kernel
 def clear_record(record):
     """Begin a record."""
-    for i in range(record.lowest.size):
-        record.lowest[i] = np.inf
-        record.highest[i] = -np.inf
+    for i in range(record.ranges.shape[1]):
+        record.ranges[0, i] = np.inf
+        record.ranges[1, i] = -np.inf
     for j in range(record.distance.size):
         record.distance[j] = 0.0
         record.works[0, j] = 0.0
@@ -68,18 +65,10 @@ def clear_record(record):
 
 
 @kernel
-def displacement_at(series, at, x):
-    """Value of a displacement."""
-    value = 0.0
-    for k in range(LONG - 1, -1, -1):
-        value = value * x + series[at, k]
-    return value
-
-
-@kernel
-def _include(record, i, value):
-    record.lowest[i] = min(record.lowest[i], value)
-    record.highest[i] = max(record.highest[i], value)
+def _include(ends, i, value):
+    """Widen range i of `ends` (2, ...) to include a value."""
+    ends[0, i] = min(ends[0, i], value)
+    ends[1, i] = max(ends[1, i], value)
 
 
 @kernel
@@ -108,21 +97,21 @@ def _is_still(series, at, size):
 
 
 @kernel
-def _keep_range(series, at, end, size, i, record, scratch):
-    """Include a displacement of the present step.
+def _keep_range(series, at, end, size, ends, i, scratch):
+    """Include a displacement or a force of the present step in its range.
 
     Parameters
     ----------
     series, at : series and the row of the displacement
     end : end of the step in x
-    size : size of the motion
-    i : place in the record
-    record, scratch : Record, scratch
+    size : size beside which its variation may be rounding error
+    ends, i : lowest and highest values (2, ...), and the place in them
+    scratch : scratch
     """
-    _include(record, i, series[at, 0])
+    _include(ends, i, series[at, 0])
     if _is_still(series, at, size):
         return
-    _include(record, i, displacement_at(series, at, end))
+    _include(ends, i, value_at(series, at, end))
     sign = 1.0
     for k in range(1, LONG):
         if series[at, k] != 0.0:
@@ -137,7 +126,7 @@ def _keep_range(series, at, end, size, i, record, scratch):
         scratch[_SLOPE, k] = sign * (k + shift + 1.0) * series[at, k + shift + 1]
     x = first_zero(scratch, _SLOPE)
     while x < end:
-        _include(record, i, displacement_at(series, at, x))
+        _include(ends, i, value_at(series, at, x))
         sign = -sign
         x = _next_turn(series, at, x, sign, scratch)
 
@@ -186,31 +175,11 @@ def _keep_step(work, end, record):
 
 @kernel
 def _keep_forces(problem, work, end, record):
-    """Include the forces of the present step, at its ends and where they turn."""
+    """Include the forces of the present step."""
     contacts = problem.spring.size
     first = first_contact_row(problem)
-    series, scratch = work.series, work.scratch
     for j in range(contacts):
-        at = first + 2 * contacts + j
-        x = 0.0
-        sign = 1.0
-        for _ in range(_MOST_TURNS):
-            value = value_at(series, at, x)
-            record.forces[0, j] = min(record.forces[0, j], value)
-            record.forces[1, j] = max(record.forces[1, j], value)
-            if x >= end:
-                break
-            if x == 0.0:
-                sign = 1.0 if series[at, 1] >= 0.0 else -1.0
-                for k in range(TERMS - 1):
-                    scratch[_SLOPE, k] = sign * (k + 1.0) * series[at, k + 1]
-                scratch[_SLOPE, TERMS - 1] = 0.0
-                x = min(first_zero(scratch, _SLOPE), end)
-            else:
-                sign = -sign
-                x = min(_next_turn(series, at, x, sign, scratch), end)
-                if x == NONE:
-                    x = end
+        _keep_range(work.series, first + 2 * contacts + j, end, 0.0, record.forces, j, work.scratch)
 
 
 @kernel
@@ -226,7 +195,7 @@ def record_step(problem, row, work, end, record):
     first = first_contact_row(problem)
     series, scratch = work.series, work.scratch
     for j in range(contacts):
-        _keep_range(series, first + j, end, row.numbers[2], j, record, scratch)
+        _keep_range(series, first + j, end, row.numbers[2], record.ranges, j, scratch)
     _keep_works(problem, row, work, end, record, first)
     for i in range(record.masses.shape[0]):
         for k in range(LONG):
@@ -235,4 +204,4 @@ def record_step(problem, row, work, end, record):
             share = record.masses[i, m]
             for k in range(LONG):
                 scratch[_VALUE, k] += share * series[m, k]
-        _keep_range(scratch, _VALUE, end, row.numbers[2], contacts + i, record, scratch)
+        _keep_range(scratch, _VALUE, end, row.numbers[2], record.ranges, contacts + i, scratch)

@@ -1,0 +1,41 @@
+"""Jobs on a pool of threads: kernels release the interpreter lock, so that they run side by side."""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from itertools import islice
+
+#: A function and its arguments.
+Job = tuple[Callable[..., None], tuple]
+
+Progress = Callable[[int, int], None]
+
+#: Called repeatedly while cells are computed; an exception raised by it ends the computation.
+Watch = Callable[[], None]
+
+#: Seconds between two calls of `Watch`.
+_WATCHED = 0.02
+
+
+def run_jobs(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None) -> None:
+    """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
+
+    This thread only waits, so that it receives an interrupt at once.
+    """
+    pool = ThreadPoolExecutor(threads)
+    running: dict[Future, int] = {}
+    waiting = iter(enumerate(jobs))
+    try:
+        while True:
+            for index, (function, arguments) in islice(waiting, 2 * threads - len(running)):
+                running[pool.submit(function, *arguments)] = index
+            if not running:
+                return
+            pause = None if watch is None else _WATCHED
+            ended = wait(running, pause, return_when=FIRST_COMPLETED).done
+            for future in sorted(ended, key=running.__getitem__):  # in the order of submission, for progress
+                future.result()
+                done(running.pop(future))
+            if watch is not None:
+                watch()
+    finally:
+        pool.shutdown(wait=not running, cancel_futures=True)

@@ -1,6 +1,7 @@
 """Command line of the benchmarks: one sub-command per benchmark; see the docstring of the package."""
 
 import argparse
+import math
 import os
 import subprocess
 import sys
@@ -44,10 +45,13 @@ def _run(name: str, quick: bool, results: Path, **more: Path) -> float:
 
 
 def _run_apart(name: str, _: bool, results: Path) -> float:
-    """Run one of several benchmarks in a process of its own: memory and caches of another would count."""
+    """Run one of several benchmarks in a process of its own: memory and caches of another would count.
+
+    One that fails stops none of the others; its seconds are nan.
+    """
     began = time.perf_counter()
-    subprocess.run([sys.executable, "-m", __package__, name, "--results", str(results)], check=True)
-    return time.perf_counter() - began
+    done = subprocess.run([sys.executable, "-m", __package__, name, "--results", str(results)])
+    return math.nan if done.returncode else time.perf_counter() - began
 
 
 def main() -> None:
@@ -88,7 +92,9 @@ def main() -> None:
     seconds = {name: run(name, options.quick, results, **more) for name in names}
     print()
     for name, taken in seconds.items():
-        print(f"{name:10} took {taken:6.1f} s")
+        print(f"{name:10} failed" if math.isnan(taken) else f"{name:10} took {taken:6.1f} s")
+    if any(map(math.isnan, seconds.values())):
+        sys.exit(1)
 
 
 if __name__ == "__main__":

@@ -267,8 +267,8 @@ class System:
             given = getattr(self, name)
             if isinstance(given, bool) or given != default:  # True == 1.0
                 raise InputError(
-                    f"cannot use {name} without matrices: its units are those of the first mass and spring; "
-                    f"omit it"
+                    f"cannot use {name} = {given!r} without matrices: its units are those of the first mass "
+                    f"and spring; omit it"
                 )
         masses = _ratios((1.0,) if self.mass_ratios is None else self.mass_ratios, "mass_ratios")
         springs = _ratios(

@@ -182,9 +182,9 @@ map good.toml --set system.contact=joined-base-wall --set system.excitation=forc
 map good.toml --set system.rayleigh=[0,0.1]
     cannot use system.rayleigh without matrices: a chain needs no such key; omit it
 map good.toml --set system.frequency_scale=2
-    cannot use system.frequency_scale without matrices: its units are those of the first mass and spring; omit it
+    cannot use system.frequency_scale = 2 without matrices: its units are those of the first mass and spring; omit it
 map good.toml --set system.stiffness_scale=2
-    cannot use system.stiffness_scale without matrices: its units are those of the first mass and spring; omit it
+    cannot use system.stiffness_scale = 2 without matrices: its units are those of the first mass and spring; omit it
 map good.toml --set system.decouple=0.1
     cannot use system.decouple without matrices: a chain needs no such key; omit it
 map good.toml --set system.matrices=none.npz

@@ -215,11 +215,11 @@ BAD_SYSTEMS = {
     ),
     "a frequency scale of a chain": (
         {"frequency_scale": 2.0},
-        ["frequency_scale without matrices"],
+        ["frequency_scale = 2.0 without matrices"],
     ),
     "a stiffness scale of a chain": (
         {"stiffness_scale": 2.0},
-        ["stiffness_scale without matrices"],
+        ["stiffness_scale = 2.0 without matrices"],
     ),
     "a damping ratio too few": (
         {**FRAME, "damping_ratios": [0.1, 0.2]},
@@ -483,7 +483,7 @@ def test_arrays_of_any_kind_are_lists():
 
 @pytest.mark.filterwarnings("error")
 def test_scales_that_are_none():
-    with pytest.raises(fm.InputError, match=r"^cannot use stiffness_scale without matrices"):
+    with pytest.raises(fm.InputError, match=r"^cannot use stiffness_scale = True without matrices"):
         fm.System(stiffness_scale=True)
     with pytest.raises(
         fm.InputError, match=r"^frequency_scale and stiffness_scale must leave M with entries"

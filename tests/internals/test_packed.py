@@ -45,18 +45,23 @@ def _fill(outer, factor):
     return _sum_of(outer.inner)
 
 
-@entry
-def _filled(outer, factor):
+@kernel
+def _pack_and_fill(outer, factor):
     return _fill(packed(outer), factor)
 
 
 @entry
+def _filled(outer, factor):
+    return _pack_and_fill(outer, factor)
+
+
+@entry
 def _own(n):
-    """Keep arrays alive that nothing else refers to."""
-    own = packed(Outer(Inner(np.ones(n), 0.5, True), np.zeros(n, np.int64), n))
-    other = np.full(n, 7.0)  # it would lie where arrays lay that are gone
-    total = _fill(own, 2.0)
-    return total + other[0]
+    """Fill arrays that nothing else refers to."""
+    total = 0.0
+    for _ in range(3):
+        total += _pack_and_fill(Outer(Inner(np.ones(n), 0.5, True), np.zeros(n, np.int64), n), 2.0)
+    return total
 
 
 @pytest.mark.parametrize("flag", [True, False])
@@ -75,4 +80,4 @@ def test_references_are_counted():
     for _ in range(5):
         _filled(outer, 1.0)
     assert (sys.getrefcount(values), sys.getrefcount(counts)) == before
-    assert [_own(1000) for _ in range(20)] == [0.5 * 2500.0 + 7.0] * 20
+    assert [_own(1000) for _ in range(20)] == [3 * 0.5 * 2500.0] * 20

@@ -20,9 +20,12 @@ _Group = TypeVar("_Group", bound=tuple)
 def packed(group: _Group) -> _Group:
     """Return a named tuple for kernels to pass on; valid until the calling function returns.
 
-    Its attributes are those of the tuple; a named tuple in it is passed on by its address as well.  Nothing
+    Its attributes are those of the tuple; a named tuple in it is passed on by its address as well; a tuple
+    that is packed already is returned as it is.  Nothing
     can replace an attribute, so that a kernel reads it once and not in every turn of a loop.  For the same
     reason `packed` must not be called in a loop: all its turns would share one place in memory.
+
+    Only kernels call it: references of the arrays are not counted, and the entry that made them keeps them.
     """
     return group
 
@@ -47,26 +50,12 @@ class _Address(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: _Packed) -> None:
         super().__init__(manager, kind, manager[kind.group].get_data_type().as_pointer())
 
-    def traverse(self, builder: Any) -> list:
-        """Let numba count the references of the arrays that the tuple holds; none before there is one."""
-        model = self._dmm[self._fe_type.group]
-
-        def content(address: ir.Value) -> ir.Value:
-            held = cgutils.alloca_once_value(builder, ir.Constant(model.get_value_type(), None))
-            with builder.if_then(cgutils.is_not_null(builder, address)):
-                builder.store(model.load_from_data_pointer(builder, address), held)
-            return builder.load(held)
-
-        return [(self._fe_type.group, content)]
-
-    def inner_models(self) -> list:
-        """The models of what numba counts references of."""
-        return [self._dmm[self._fe_type.group]]
-
 
 @type_callable(packed)
 def _type_of_packed(_: Any) -> Any:
     def typed(group: Any) -> Any:
+        if isinstance(group, _Packed):
+            return group
         return _Packed(group) if isinstance(group, types.BaseNamedTuple) else None
 
     return typed
@@ -81,8 +70,12 @@ def _write_packed(context: Any, builder: ir.IRBuilder, signature: Any, arguments
     # What `_read` reads is declared as constant, so that LLVM may read it at any time.  The address therefore
     # comes out of an instruction (an empty one) of which LLVM knows only that it follows the stores above.
     kind = ir.FunctionType(memory.type, [memory.type])
-    address = builder.asm(kind, "", "=r,0,~{memory}", [memory], side_effect=True)
-    return impl_ret_borrowed(context, builder, signature.return_type, address)
+    return builder.asm(kind, "", "=r,0,~{memory}", [memory], side_effect=True)
+
+
+@lower_builtin(packed, _Packed)
+def _keep_packed(context: Any, builder: ir.IRBuilder, signature: Any, arguments: tuple) -> ir.Value:
+    return arguments[0]
 
 
 @infer_getattr
@@ -104,7 +97,7 @@ def _write_attribute(
     member = kind.group[index]
     place = cgutils.gep_inbounds(builder, address, 0, index)
     if isinstance(member, types.BaseNamedTuple):
-        return impl_ret_borrowed(context, builder, _Packed(member), place)
+        return place
     return impl_ret_borrowed(context, builder, member, _read(context, builder, member, place))
 
 

@@ -23,11 +23,10 @@ from ...regimes import (
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from .follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
-from .problem import make_row, make_work, padded, set_row
-from .record import RANGES, make_record
-from .return_map import make_return
+from .problem import padded, set_row
+from .record import RANGES
 from .series import Friction
-from .steady import NO_REPEAT, REPEATS, find, from_rest, make_ring, measure
+from .steady import NO_REPEAT, REPEATS, find, from_rest, make_tools, measure
 
 #: A start is moved on by this many steps between the last two cells at most.
 _FARTHEST = 3.0
@@ -231,25 +230,18 @@ def _begin_ahead(beta, trail, memory):
             memory.start[part, i] = trail.states[0, part, i] + ahead * step
 
 
-@entry
-def fill_rows(first, last, problem, grid, out, masses, cancel):
-    """Fill rows first..last-1 of the (mu, r) grid; stop soon after cancel[0] is set.
+@kernel
+def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
+    """Fill rows; see `fill_rows`.
 
     Parameters
     ----------
-    first, last : range of rows; no row depends on another
-    problem : Problem
-    grid : Grid
-    out : Cells, unresolved
-    masses : (n, m) displacement of the masses per mode; n = 0 where they are not asked for
-    cancel : (1,) set by another thread to end the computation
+    first, last, problem, grid, out, cancel : see `fill_rows`
+    tools, trail, friction : Tools, Trail, Friction; their content does not matter
     """
-    problem, grid, out = packed(problem), packed(grid), packed(out)
-    row, work, memory = packed(make_row(problem)), packed(make_work(problem)), packed(make_return(problem))
-    ring, record = packed(make_ring(problem)), packed(make_record(problem, masses, 0))
-    trail = packed(make_trail(problem))
-    contacts = problem.spring.size
-    friction = packed(Friction(np.empty(contacts), np.empty(contacts)))
+    problem, grid, out, tools = packed(problem), packed(grid), packed(out), packed(tools)
+    trail, friction = packed(trail), packed(friction)
+    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
     n_r = problem.r.size
     for index in range(first, last):
         m, i = index // n_r, index % n_r
@@ -268,7 +260,9 @@ def fill_rows(first, last, problem, grid, out, masses, cancel):
                 _begin_ahead(grid.beta[b], trail, memory)
             else:
                 from_rest(problem, row, friction, grid.starts[i], work, memory, record)
-            found = find(problem, row, friction, grid.cycles, grid.tolerance, work, memory, ring, record)
+            found = find(
+                problem, row, friction, grid.cycles, grid.tolerance, work, memory, tools.ring, record
+            )
             measured = 0, math.nan
             if found.status == REPEATS:
                 measured = measure(problem, row, friction, found.halves, work, memory, record, RANGES)
@@ -276,3 +270,22 @@ def fill_rows(first, last, problem, grid, out, masses, cancel):
             else:
                 trail.count[0] = 0
             _store(problem, out, m, i, b, found, measured, memory.counts, record)
+
+
+@entry
+def fill_rows(first, last, problem, grid, out, masses, cancel):
+    """Fill rows first..last-1 of the (mu, r) grid; stop soon after cancel[0] is set.
+
+    Parameters
+    ----------
+    first, last : range of rows; no row depends on another
+    problem : Problem
+    grid : Grid
+    out : Cells, unresolved
+    masses : (n, m) displacement of the masses per mode; n = 0 where they are not asked for
+    cancel : (1,) set by another thread to end the computation
+    """
+    tools, trail = make_tools(problem, masses, 0), make_trail(problem)
+    contacts = problem.spring.size
+    friction = Friction(np.empty(contacts), np.empty(contacts))
+    _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel)

@@ -8,11 +8,10 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from .follow import MOVED, NEAREST_STOP, STOPS
-from .problem import make_row, make_work, set_row
-from .record import NOTHING, make_record
-from .return_map import make_return
+from .problem import set_row
+from .record import NOTHING
 from .series import Friction
-from .steady import REPEATS, find, from_rest, make_ring, measure
+from .steady import REPEATS, find, from_rest, make_tools, measure
 
 #: Nodes in beta at which the motion is tried: so many in geometric progression from _LOWEST of the top up,
 #: then equally spaced ones.
@@ -132,26 +131,18 @@ def _end(problem, i, row, search, m, inside, outside, friction, memories, kept):
     return inside
 
 
-@entry
-def fill_no_stop(first, last, problem, search, begins, ends, cancel):
-    """Fill the intervals of beta in which no contact stops, at the frequencies first..last-1.
+@kernel
+def _fill(first, last, problem, search, begins, ends, tools, friction, kept, cancel):
+    """Fill the intervals; see `fill_no_stop`.
 
     Parameters
     ----------
-    first, last : range of r
-    problem : Problem
-    search : Search
-    begins, ends : (n_mu, n_r, intervals) filled, NaN where there are fewer
-    cancel : (1,) set by another thread to end the computation
+    first, last, problem, search, begins, ends, cancel : see `fill_no_stop`
+    tools, friction : Tools, Friction; their content does not matter
+    kept : see `_try`
     """
-    problem, search = packed(problem), packed(search)
-    row, work, memory = packed(make_row(problem)), packed(make_work(problem)), packed(make_return(problem))
-    ring = packed(make_ring(problem))
-    record = packed(make_record(problem, np.empty((0, problem.squares.size)), 0))
-    contacts = problem.spring.size
-    friction = packed(Friction(np.empty(contacts), np.empty(contacts)))
-    kept = np.zeros((NODES + 2, 1 + contacts))
-    memories = (work, memory, ring, record)
+    problem, search, tools, friction = packed(problem), packed(search), packed(tools), packed(friction)
+    row, memories = tools.row, (tools.work, tools.memory, tools.ring, tools.record)
     for i in range(first, last):
         if cancel[0] != 0:
             return
@@ -182,3 +173,22 @@ def fill_no_stop(first, last, problem, search, begins, ends, cancel):
                 margin = now
             if margin > 0.0 and count < begins.shape[2]:
                 ends[m, i, count] = math.inf
+
+
+@entry
+def fill_no_stop(first, last, problem, search, begins, ends, cancel):
+    """Fill the intervals of beta in which no contact stops, at the frequencies first..last-1.
+
+    Parameters
+    ----------
+    first, last : range of r
+    problem : Problem
+    search : Search
+    begins, ends : (n_mu, n_r, intervals) filled, NaN where there are fewer
+    cancel : (1,) set by another thread to end the computation
+    """
+    tools = make_tools(problem, np.empty((0, problem.squares.size)), 0)
+    contacts = problem.spring.size
+    friction = Friction(np.empty(contacts), np.empty(contacts))
+    kept = np.zeros((NODES + 2, 1 + contacts))
+    _fill(first, last, problem, search, begins, ends, tools, friction, kept, cancel)

@@ -10,9 +10,10 @@ from ..compiler.packed import packed
 from ..structure.newton import solve_linear, spectral_radius
 from .follow import BEFORE, FOLLOWED, STUCK, follow
 from .pattern import begin, stop_exactly
-from .problem import SECTION, make_row, make_work, padded, set_channels, set_row, state_size
-from .record import FORCES, NOTHING, RANGES, STEPS, clear_record, make_record, mirror
+from .problem import SECTION, Row, Work, make_row, make_work, padded, set_channels, set_row, state_size
+from .record import FORCES, NOTHING, RANGES, STEPS, Record, clear_record, make_record, mirror
 from .return_map import (
+    Return,
     fill_newton,
     go_round,
     make_return,
@@ -67,6 +68,16 @@ class Ring(NamedTuple):
     friction: np.ndarray  # (2, N) friction of contacts while they are held
 
 
+class Tools(NamedTuple):
+    """The memory that steady states are found in."""
+
+    row: Row
+    work: Work
+    memory: Return
+    ring: Ring
+    record: Record
+
+
 class Steady(NamedTuple):
     """The steady state of a cell."""
 
@@ -82,6 +93,15 @@ def make_ring(problem):
     return Ring(
         np.zeros((RING, 3, padded(max(modes, contacts)))), np.zeros((RING, contacts), np.int64),
         np.zeros(1, np.int64), np.zeros((2, contacts)),
+    )  # fmt: skip
+
+
+@entry
+def make_tools(problem, masses, most):
+    """Allocate the memory, for a record of `most` steps; `masses` (n, m): see `make_record`."""
+    return Tools(
+        make_row(problem), make_work(problem), make_return(problem), make_ring(problem),
+        make_record(problem, masses, most),
     )  # fmt: skip
 
 
@@ -461,6 +481,33 @@ def from_rest(problem, row, friction, state, work, memory, record):
     take_state(work, memory.start, memory.senses, 1.0)
 
 
+@kernel
+def _one(problem, i, friction, state, cycles, tolerance, tools):
+    """Find the steady state of one cell, and record it.
+
+    Parameters
+    ----------
+    problem, i, friction, state, cycles, tolerance : see `one_steady_state`
+    tools : Tools
+
+    Returns
+    -------
+    Steady, half periods, multiplier
+    """
+    problem, friction, tools = packed(problem), packed(friction), packed(tools)
+    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    set_row(problem, i, row)
+    from_rest(problem, row, friction, state, work, memory, record)
+    found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record)
+    halves, multiplier = 2, math.nan
+    if found.status == REPEATS:
+        halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, STEPS)
+    else:
+        record.active[0] = STEPS
+        go_round(problem, row, friction, halves, work, memory, record, False)
+    return found, halves, multiplier
+
+
 @entry
 def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, most):
     """Find the steady state of one cell, with the series of its steps.
@@ -479,17 +526,6 @@ def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, mos
     Steady, half periods that the steps cover (two if there is no steady state), multiplier, counts (see
     `follow`), Record, h
     """
-    problem, friction = packed(problem), packed(friction)
-    kept = make_record(problem, masses, most)
-    row, work, memory = packed(make_row(problem)), packed(make_work(problem)), packed(make_return(problem))
-    ring, record = packed(make_ring(problem)), packed(kept)
-    set_row(problem, i, row)
-    from_rest(problem, row, friction, state, work, memory, record)
-    found = find(problem, row, friction, cycles, tolerance, work, memory, ring, record)
-    halves, multiplier = 2, math.nan
-    if found.status == REPEATS:
-        halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, STEPS)
-    else:
-        record.active[0] = STEPS
-        go_round(problem, row, friction, halves, work, memory, record, False)
-    return found, halves, multiplier, memory.counts, kept, row.numbers[0]
+    tools = make_tools(problem, masses, most)
+    found, halves, multiplier = _one(problem, i, friction, state, cycles, tolerance, tools)
+    return found, halves, multiplier, tools.memory.counts, tools.record, tools.row.numbers[0]

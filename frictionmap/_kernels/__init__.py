@@ -13,7 +13,6 @@ boundary           response functions V, U, G, H, S of one mass and of structure
 one_mass           scan step, events, return map and sliding orbit of one mass
 structure          the same for any structure, with its oscillators and states
 general            any number of contacts, springs in contacts, belts, periodic loads
-many_harmonics     one mass under a load of several harmonics, for measured records
 engine             solver of cells: recurrence, periodic orbits, outputs, stability, coexistence
 =================  =====================================================================================
 """

@@ -31,7 +31,10 @@ class SteadyMotion(NamedTuple):
 
 
 def _problem(r: float, zeta: float, load: np.ndarray) -> Problem:
-    """r^2 q'' + 2 zeta r q' + q + f = Re sum load_n e^{i n tau}, n >= 1."""
+    """r^2 q'' + 2 zeta r q' + q + f = Re sum load_n e^{i n tau}, n >= 1.
+
+    Whole periods even where half of one would do: a mass that rests stays where it began.
+    """
     orders = np.flatnonzero(load[1:]) + 1 if load[1:].any() else np.array([1])
     phasors = load[orders] if load[1:].any() else np.zeros(1, dtype=complex)
     damping = 2.0 * zeta
@@ -41,7 +44,7 @@ def _problem(r: float, zeta: float, load: np.ndarray) -> Problem:
     return Problem(
         np.ones(1), np.full((1, 1), damping), False, _ONE, _ONE, _NONE, _NONE, np.zeros(1), np.zeros(1),
         orders.astype(float), np.array([r]), parts,
-        np.array([max(fastest, float(orders[-1]))]), np.array([size or 1.0]), bool((orders % 2 == 1).all()),
+        np.array([max(fastest, float(orders[-1]))]), np.array([size or 1.0]), False,
     )  # fmt: skip
 
 

@@ -104,7 +104,9 @@ PUBLIC = {
     ("numba", "config"), ("numba", "njit"), ("numba", "types"), ("numba.extending", "overload"),
     ("numba.core", "event"), ("llvmlite", "ir"), ("numba.extending", "lower_builtin"),
     ("numba.extending", "models"), ("numba.extending", "register_model"),
-    ("numba.extending", "type_callable"),
+    ("numba.extending", "type_callable"), ("numba.extending", "infer_getattr"),
+    ("numba.extending", "lower_getattr_generic"),
+    ("numba.core.typing.templates", "AttributeTemplate"),  # of which `infer_getattr` registers a class
 }  # fmt: skip
 
 

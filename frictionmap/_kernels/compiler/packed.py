@@ -9,12 +9,19 @@ from typing import Any, TypeVar
 
 from llvmlite import ir
 from numba import types
-from numba.core import cgutils
-from numba.core.imputils import impl_ret_borrowed
-from numba.core.typing.templates import AttributeTemplate, infer_getattr
-from numba.extending import lower_builtin, lower_getattr_generic, models, register_model, type_callable
+from numba.core.typing.templates import AttributeTemplate
+from numba.extending import (
+    infer_getattr,
+    lower_builtin,
+    lower_getattr_generic,
+    models,
+    register_model,
+    type_callable,
+)
 
 _Group = TypeVar("_Group", bound=tuple)
+
+_INT = ir.IntType(32)
 
 
 def packed(group: _Group) -> _Group:
@@ -65,7 +72,8 @@ def _type_of_packed(_: Any) -> Any:
 def _write_packed(context: Any, builder: ir.IRBuilder, signature: Any, arguments: tuple) -> ir.Value:
     (group,) = arguments
     model = context.data_model_manager[signature.args[0]]
-    memory = cgutils.alloca_once(builder, model.get_data_type())
+    with builder.goto_entry_block():
+        memory = builder.alloca(model.get_data_type())
     builder.store(model.as_data(builder, group), memory)
     # What `_read` reads is declared as constant, so that LLVM may read it at any time.  The address therefore
     # comes out of an instruction (an empty one) of which LLVM knows only that it follows the stores above.
@@ -95,10 +103,13 @@ def _write_attribute(
 ) -> ir.Value:
     index = kind.group.fields.index(name)
     member = kind.group[index]
-    place = cgutils.gep_inbounds(builder, address, 0, index)
+    place = builder.gep(address, [ir.Constant(_INT, 0), ir.Constant(_INT, index)], inbounds=True)
     if isinstance(member, types.BaseNamedTuple):
         return place
-    return impl_ret_borrowed(context, builder, member, _read(context, builder, member, place))
+    value = _read(context, builder, member, place)
+    if context.enable_nrt:  # plain numba counts references in all functions
+        context.nrt.incref(builder, member, value)
+    return value
 
 
 def _read(context: Any, builder: ir.IRBuilder, kind: Any, place: ir.Value) -> ir.Value:

@@ -40,6 +40,9 @@ _SAME = 5e-2
 _MOST_STEPS = 12
 _LESS = 0.5
 
+#: Largest step, over the size of the motion: beyond, the equations are singular (an undamped resonance).
+_LARGEST = 1e10
+
 #: A step below this is the last one: the next would be of the size of its square.  `measure` looks after it.
 _LAST = 1e-7
 
@@ -214,7 +217,10 @@ def _newton(problem, row, friction, halves, tolerance, work, memory, record):
         fill_newton(problem, halves, work, memory)
         if not solve_linear(memory.matrix, memory.right, size):
             return NO_REPEAT, cycles
-        if take_step(problem, row, memory) <= max(tolerance, _LAST):
+        step = take_step(problem, row, memory)
+        if not step <= _LARGEST:
+            return NO_REPEAT, cycles
+        if step <= max(tolerance, _LAST):
             return REPEATS, cycles
     return NO_REPEAT, cycles
 

@@ -60,6 +60,7 @@ _CREEPS = 6
 
 #: A multiplier above this is not that of a motion that attracts.
 _STABLE = 1.0 + 1e-9
+_STABLE_PRECISION = 0.01
 
 
 class Ring(NamedTuple):
@@ -169,8 +170,8 @@ def _radius_of_two(matrix):
 
 
 @kernel
-def _multiplier(problem, halves, work, memory):
-    """Largest modulus of the multipliers, without those of contacts that rest."""
+def _multiplier(problem, halves, precision, work, memory):
+    """Largest modulus of the multipliers, without those of contacts that rest; see `spectral_radius`."""
     size = state_size(problem)
     fill_newton(problem, halves, work, memory)
     if halves % 2 == 1:  # a place where a contact rests becomes its mirror image
@@ -180,7 +181,7 @@ def _multiplier(problem, halves, work, memory):
             memory.matrix[a, b] = (1.0 if a == b else 0.0) - memory.matrix[a, b]
     if size == 2:
         return _radius_of_two(memory.matrix)
-    return spectral_radius(memory.matrix, size, work.tangent, 0.0)
+    return spectral_radius(memory.matrix, size, work.tangent, precision)
 
 
 @kernel
@@ -267,7 +268,7 @@ def _attracts(problem, row, halves, work, memory, ring):
     halves : half periods after which it returns
     work, memory, ring : Work, Return, Ring
     """
-    if _multiplier(problem, halves, work, memory) > _STABLE:
+    if _multiplier(problem, halves, _STABLE_PRECISION, work, memory) > _STABLE:
         return False
     return _far(problem, row, memory, ring) <= _SAME
 
@@ -447,18 +448,21 @@ def measure(problem, row, friction, halves, work, memory, record, what):
 
     Returns
     -------
-    (followed, multiplier) : half periods followed, and the largest modulus of the multipliers over `halves`
+    (followed, multiplier) : half periods followed, and the largest modulus of the multipliers over `halves`,
+        NaN where NOTHING is kept
     """
     both = halves if halves % 2 == 0 or what == NOTHING or what == RANGES else 2 * halves
     multiplier = math.nan
     for repeat in range(_MOST_REPEATED):
         clear_record(record)
         record.active[0] = what
-        go_round(problem, row, friction, both, work, memory, record, True)
+        go_round(problem, row, friction, both, work, memory, record, what != NOTHING)
         record.active[0] = NOTHING
-        multiplier = _multiplier(problem, both, work, memory) ** (halves / both)
-        off = return_distance(problem, row, memory)
-        if off <= _MEASURED * min(1.0, abs(1.0 - multiplier)) or repeat == _MOST_REPEATED - 1:
+        most = _MEASURED
+        if what != NOTHING:
+            multiplier = _multiplier(problem, both, 0.0, work, memory) ** (halves / both)
+            most *= min(1.0, abs(1.0 - multiplier))
+        if return_distance(problem, row, memory) <= most or repeat == _MOST_REPEATED - 1:
             break
         _newton(problem, row, friction, halves, _MEASURED, work, memory, record)
     if both % 2 == 1:

@@ -20,7 +20,7 @@ _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Maps, curves, motions": ("sweep", "boundaries", "curves", "response", "continuous_motion", "shares"),
     "Pictures": (
         "plot_regimes", "plot_boundaries", "plot_curves", "plot_response", "plot_orbit", "plot_fit",
-        "plot_shares", "explore",
+        "plot_shares", "plot_forces", "explore",
     ),
     "Errors, and others": ("InputError", "NoSteadyState"),
 }  # fmt: skip

@@ -14,6 +14,7 @@ from .pictures.curves.figure import CURVE_VARIABLES, plot_curves
 from .pictures.curves.harmonics import HARMONIC_VARIABLES
 from .pictures.fits.figure import plot_fit
 from .pictures.maps.boundary_map import plot_boundaries
+from .pictures.maps.force_map import plot_forces
 from .pictures.maps.regime_map import plot_regimes
 from .pictures.maps.share_map import plot_shares
 from .pictures.motions.history import plot_response
@@ -29,6 +30,7 @@ __all__ = [
     "plot_boundaries",
     "plot_curves",
     "plot_fit",
+    "plot_forces",
     "plot_orbit",
     "plot_regimes",
     "plot_response",
@@ -93,9 +95,15 @@ def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
     return valid[quantity](ds)
 
 
-def save_picture(ds: xr.Dataset, path: Path, quantity: str | None = None, *, log: bool = False) -> None:
-    """Draw a dataset of any kind into a file; drawn first, as on a full disk matplotlib fails in odd ways."""
+def save_picture(
+    ds: xr.Dataset, path: Path, quantity: str | None = None, *, log: bool = False, against: str | None = None
+) -> None:
+    """Draw a dataset of any kind into a file; drawn first, as on a full disk matplotlib fails in odd ways.
+
+    against : draw maps along this further axis as one, see `plot_forces`
+    """
     drawn = BytesIO()
-    figure = _draw(ds, quantity, log)[0].figure
+    axes = plot_forces(ds, against) if against else _draw(ds, quantity, log)
+    figure = axes[0].figure
     figure.savefig(drawn, format=path.suffix[1:].lower(), dpi=_DPI)
     path.write_bytes(drawn.getbuffer())

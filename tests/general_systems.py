@@ -81,7 +81,7 @@ class Solved:
         if "state" in further:
             start = np.asarray(further["state"], dtype=float)
         kinetic, static = (np.asarray(values, dtype=float) for values in friction)
-        self.found, halves, self.counts, self.record, _ = one_steady_state(
+        self.found, halves, self.multiplier, self.counts, self.record, _ = one_steady_state(
             problem, 0, Friction(kinetic, static), start, 2000.0, 1e-12, np.ascontiguousarray(phi), 0
         )
         self.resolved = self.found.status == REPEATS

@@ -190,6 +190,25 @@ def _takes_over(sub: argparse.ArgumentParser, what: str) -> None:
     sub.add_argument("--over", metavar="NAME", action=_Once, help=text)
 
 
+def _takes_against(sub: argparse.ArgumentParser) -> None:
+    text = "draw two contacts at one frequency over beta and this further axis, e.g. contacts_2_force"
+    sub.add_argument("--against", metavar="NAME", action=_Once, help=text)
+
+
+def _takes_picture(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("file", metavar="FILE", type=Path, help="file to draw: FILE.nc, or a store FILE.zarr")
+    _takes_output(sub, "PICTURE", ".png, .pdf or .svg (default: FILE.png in the current folder)")
+    text = (
+        "quantity to draw; response curves: amplitude (with the phase), first_harmonic, contact, harmonics, "
+        "energy or transmitted_force (default: the first available); a response: history (default) or orbit"
+    )
+    sub.add_argument("--quantity", metavar="NAME", action=_Once, help=text)
+    _takes_choices(sub)
+    _takes_over(sub, "draw")
+    _takes_against(sub)
+    sub.add_argument("--log", action="store_true", help="logarithmic amplitude axis for response curves")
+
+
 def _takes_page(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("config", metavar="CONFIG.toml", type=Path, help="configuration of the map to explore")
     _takes_overrides(sub)
@@ -250,16 +269,7 @@ def build_parser() -> argparse.ArgumentParser:
     sub = command("identify", "friction, damping and natural frequency from measured data", text)
     _takes_config(sub, "RIG", "configuration of the measured data and the fit", "data.window=[0.5,4]")
     sub = command("plot", "picture of any output file", "Draw any file written by the other commands.")
-    sub.add_argument("file", metavar="FILE", type=Path, help="file to draw: FILE.nc, or a store FILE.zarr")
-    _takes_output(sub, "PICTURE", ".png, .pdf or .svg (default: FILE.png in the current folder)")
-    text = (
-        "quantity to draw; response curves: amplitude (with the phase), first_harmonic, contact, harmonics, "
-        "energy or transmitted_force (default: the first available); a response: history (default) or orbit"
-    )
-    sub.add_argument("--quantity", metavar="NAME", action=_Once, help=text)
-    _takes_choices(sub)
-    _takes_over(sub, "draw")
-    sub.add_argument("--log", action="store_true", help="logarithmic amplitude axis for response curves")
+    _takes_picture(sub)
     text = "Write a map, or a slice of one, as NetCDF or as a table (CSV)."
     sub = command("export", "map or slice as NetCDF or CSV", text)
     sub.add_argument("file", metavar="FILE", type=Path, help="file to read: FILE.nc, or a store FILE.zarr")

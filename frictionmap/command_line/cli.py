@@ -281,15 +281,33 @@ def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None)
     return read_shares(options.file, options.over, choices)
 
 
+def _maps_along(options: Options, names: Collection[str]) -> "xr.Dataset":
+    """Read the maps of a file along one of its further axes, with the values that a picture needs."""
+    from ..files.reading import opened
+    from ..files.slices import choose, parse_choices
+
+    for given, name in ((options.over, "--over"), (options.quantity, "--quantity"), (options.log, "--log")):
+        if given:
+            raise InputError(f"cannot use {name} with --against: it draws what two contacts do; omit {name}")
+    with opened(options.file) as ds:
+        part = choose(ds, parse_choices(options.at), options.against, contacts=True)
+        return part[[name for name in part.data_vars if name in names]].load()
+
+
 def _plot(options: Options) -> None:
     from ..files.places import claimed
     from ..plot import PICTURED, check_picture, save_picture
 
-    ds = _chosen(options, PICTURED)
+    along = options.against is not None
+    ds = _maps_along(options, PICTURED["map"]) if along else _chosen(options, PICTURED)
     path = options.output or Path(f"{options.file.stem}.png")
     check_picture(path)
     with claimed(path, options.overwrite, [options.file]) as output:
-        output.fill(lambda scratch: save_picture(ds, scratch, options.quantity, log=options.log))
+        output.fill(
+            lambda scratch: save_picture(
+                ds, scratch, options.quantity, log=options.log, against=options.against
+            )
+        )
     if not options.quiet:
         _print(f"wrote {path}")
 

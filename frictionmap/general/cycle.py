@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .._kernels.general.return_map import SECTION
+from .._kernels.general.problem import SECTION
 from ..model.system import System
 from .problem import general_of, static_offset
 from .steps import Steps

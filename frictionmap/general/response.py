@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from .._kernels.general.return_map import SECTION
+from .._kernels.general.problem import SECTION
 from ..datasets.labels import CONTACT_TRACES, LABELS, OLDER_NAMES, PER_CONTACT
 from ..datasets.variables import coordinate, label_variable
 from ..model.general import General

@@ -7,8 +7,7 @@ import numpy as np
 from .. import regimes
 from .._kernels.engine.policies import MOVING_START
 from .._kernels.general.follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
-from .._kernels.general.problem import LONG, Problem
-from .._kernels.general.return_map import SECTION
+from .._kernels.general.problem import LONG, SECTION, Problem
 from .._kernels.general.series import Friction
 from .._kernels.general.steady import REPEATS, one_steady_state
 from ..errors import NoSteadyState
@@ -155,7 +154,7 @@ def cell_steps(
     most = _FIRST
     phi = np.ascontiguousarray(modal.phi)
     while True:
-        found, halves, counts, record, h = one_steady_state(
+        found, halves, multiplier, counts, record, h = one_steady_state(
             problem, i, friction, start, float(solver.cycles), solver.tolerance, phi, most
         )
         if found.status != REPEATS:
@@ -179,6 +178,6 @@ def cell_steps(
     return Steps(
         problem, modal, friction, float(problem.r[i]), begins[own], lengths[own], h,
         record.steps[:count][own],
-        record.patterns[:count][own][:, :-1].astype(np.int8), counts, period, found.multiplier, found.cycles,
+        record.patterns[:count][own][:, :-1].astype(np.int8), counts, period, multiplier, found.cycles,
         record.ranges[0] + shift, record.ranges[1] + shift, works, record.distance / period,
     )  # fmt: skip

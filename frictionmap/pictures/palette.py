@@ -86,6 +86,21 @@ MODAL: LineStyle = {
     "label": r"lower bound of $\beta_\mathrm{lim}$, sum of modal maxima",
 }
 
+#: Colours of two contacts, 3 times the state of the first plus that of the second: it sticks, sticks and
+#: slips, slides.  Both alike: grey, black, white; bluish where the first one moves less, else brownish.
+PAIRS = (
+    "#c4c4c4", "#3a9cc2", "#c9e6f7",
+    "#a8743a", "#00121f", "#23509e",
+    "#e0a032", "#4f230a", "#ffffff",
+)  # fmt: skip
+UNRESOLVED_PAIR = "#cc1f03"
+PARTIAL: LineStyle = {
+    "color": "black",
+    "linewidth": 1.3,
+    "linestyle": (0, (1.5, 1.2)),
+    "label": "one contact sticks, the other moves",
+}
+
 #: Colours of the lines of masses, used in turn; the lines are numbered.
 LINES = ("#2b4fa6", "#bd7f50", "#00162c", "#48b2d1", "#cc1f03", "#2880b8")
 

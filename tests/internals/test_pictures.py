@@ -86,6 +86,14 @@ def test_classes_that_can_meet_look_different(who, least):
     assert apart[worst] > least, worst
 
 
+@pytest.mark.parametrize(
+    ("who", "least"), [("trichromat", 10.0), ("protanope", 8.0), ("deuteranope", 7.0), ("grey", 5.0)]
+)
+def test_classes_of_two_contacts_look_different(who, least):
+    colours = [to_rgb(colour) for colour in (*palette.PAIRS, palette.UNRESOLVED_PAIR)]
+    assert min(difference(a, b, who) for a, b in combinations(colours, 2)) > least
+
+
 def lightness(label):
     return float(lab(linear(COLOURS[label]))[0])
 

@@ -1,6 +1,7 @@
 """Compilation of kernels: the decorators, and what they rely on inside numba.
 
-Kernels import `kernel`, `inner_kernel`, `entry` and `by_class` from here, and vectors from `vectors`.
+Kernels import `kernel`, `inner_kernel`, `entry` and `by_class` from here, vectors from `vectors` and `packed`
+from `packed`.
 
 ==============  =====================================================================================
 module          what is in it
@@ -17,6 +18,7 @@ cache           (fast) compiled kernels on disk, with a digest
 fast            the default: each kernel is compiled once, called by name, kept on disk
 decorators      the four decorators; chooses one of the three compilers above
 vectors         vectors of eight numbers that kernels compute with at once
+packed          named tuples that kernels pass on by their address
 ==============  =====================================================================================
 
 docs/compiler.md lists the private names, why each is needed, and what happens if one is missing.

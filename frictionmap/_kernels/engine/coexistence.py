@@ -17,6 +17,7 @@ import numpy as np
 
 from ...regimes import CONTINUOUS, NOT_REACHED, PERMANENT_STICKING, STICK_SLIP
 from ..compiler import entry, kernel
+from ..compiler.packed import packed
 from .march import steady_state
 from .motion import at_frequency, bring_back, contact_at, forget_neighbour, keep_state, on_continuous, start
 from .policies import ABOVE, AROUND, EIGHTHS, NO_FRICTION, RUNGS
@@ -352,6 +353,36 @@ def _fill_still(row, no_load, beta, reachable, sliding_limit):
         sliding_limit[m, i] = row.stick
 
 
+@kernel
+def _fill_row(row, beta, motion, system, around, above, limits, out, cancel):
+    """Fill one row; whether it was not cancelled.
+
+    Parameters
+    ----------
+    row : Row
+    beta : friction ratios
+    motion : a kind of motion
+    around, above : Ladder, scratch
+    system, limits, out, cancel : see `fill_reachable`
+    """
+    motion, system, around, above = packed(motion), packed(system), packed(around), packed(above)
+    reachable, sliding_limit = out.also_reachable, out.sliding_limit
+    row.left[0] = _ROW_SHARE * limits.steps
+    if row.mu > 1.0 and (sliding_limit.size or _any_open(row, beta)):
+        _fill_ladders(motion, system, row, around, above, limits, cancel)
+    on_ladders = row.left[0]
+    for j in range(beta.size if reachable.size else 0):
+        if cancel[0] != 0:
+            return False
+        row.left[0] = _CELL_SHARE * limits.steps
+        found = _reachable(motion, system, row, beta[j], around, above, limits, cancel)
+        reachable[row.m, row.i, j] = found
+    if sliding_limit.size:
+        row.left[0] = on_ladders
+        sliding_limit[row.m, row.i] = _sliding_limit(motion, system, row, above, limits, cancel)
+    return True
+
+
 @entry
 def fill_reachable(first, last, axes, lim, stick, no_load, system, limits, out, cancel):
     """Fill `out.also_reachable` and `out.sliding_limit` for rows first..last-1 of the (mu, r) grid.
@@ -367,28 +398,15 @@ def fill_reachable(first, last, axes, lim, stick, no_load, system, limits, out, 
     out : named tuple of output arrays; those that are not requested have size 0
     cancel : (1,) set by another thread to end the computation
     """
-    reachable, sliding_limit = out.also_reachable, out.sliding_limit
-    beta, n_r = axes.beta, axes.r.size
+    n_r = axes.r.size
     around, above = _make_ladder(EIGHTHS, AROUND), _make_ladder(RUNGS, ABOVE)
     left = np.empty(1)
     for place in range(first, last):
         m, i = place // n_r, place % n_r
         row = Row(m, i, axes.mu[m], lim[m, i], stick[m, i], left)
         if axes.r[i] == 0.0:
-            _fill_still(row, no_load[i], beta, reachable, sliding_limit)
+            _fill_still(row, no_load[i], axes.beta, out.also_reachable, out.sliding_limit)
             continue
         motion = at_frequency(system, i)
-        left[0] = _ROW_SHARE * limits.steps
-        if row.mu > 1.0 and (sliding_limit.size or _any_open(row, beta)):
-            _fill_ladders(motion, system, row, around, above, limits, cancel)
-        on_ladders = left[0]
-        for j in range(beta.size if reachable.size else 0):
-            if cancel[0] != 0:
-                return
-            left[0] = _CELL_SHARE * limits.steps
-            reachable[m, i, j] = _reachable(
-                motion, system, row, beta[j], around, above, limits, cancel
-            )  # fmt: skip
-        if sliding_limit.size:
-            left[0] = on_ladders
-            sliding_limit[m, i] = _sliding_limit(motion, system, row, above, limits, cancel)
+        if not _fill_row(row, axes.beta, motion, system, around, above, limits, out, cancel):
+            return

@@ -5,17 +5,28 @@ Its size is the energy norm, brought back to 1 at every event.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from ...regimes import IRREGULAR
 from ..compiler import entry, kernel
+from ..compiler.packed import packed
 from ..structure.events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
-from ..structure.newton import free_motion, make_workspace, through_event
-from ..structure.oscillators import FELL, make_scratch
-from ..structure.state import W, make_structure
+from ..structure.newton import Workspace, free_motion, make_workspace, through_event
+from ..structure.oscillators import FELL, Scratch, make_scratch
+from ..structure.state import StructureAtFrequency, W, make_structure
 from .cycle_log import mean_and_error
 from .records import TURN, stops_at, turns_at
+
+
+class Tools(NamedTuple):
+    """The structure at one frequency, and the memory of its motions."""
+
+    st: StructureAtFrequency
+    work: Workspace
+    scratch: Scratch
+    tangent: np.ndarray  # (2n, 1)
 
 
 @kernel
@@ -95,6 +106,34 @@ def _exponent(growth):
     return mean_and_error(growth, 0, 0, count)
 
 
+@kernel
+def _fill_exponent(place, axes, starts, moves, out, growth, tools):
+    """Fill the exponent of one cell.
+
+    Parameters
+    ----------
+    place : indices of mu, r and beta
+    axes, starts, moves, out : see `fill_exponents`
+    growth : (cycles, 1) zeros
+    tools : Tools
+    """
+    tools = packed(tools)
+    st, work, scratch, tangent = tools.st, tools.work, tools.scratch, tools.tangent
+    m, i, j = place
+    state = work.middle
+    for k in range(st.n):
+        state[0, k] = starts.coordinates[i, k]
+        state[1, k] = starts.velocity[i, k] / st.rate
+        tangent[k, 0] = tangent[st.n + k, 0] = 1.0
+    beta = axes.beta[j]
+    _rescaled(st, tangent)
+    phase = (starts.cos[i], starts.sin[i])
+    if _follow_growth(st, beta, axes.mu[m] * beta, state, phase, moves, growth, tangent, work, scratch):
+        found = _exponent(growth)
+        out.lyapunov_exponent[m, i, j] = found.value
+        out.lyapunov_exponent_error[m, i, j] = found.error
+
+
 @entry
 def fill_exponents(row, axes, common, starts, moves, out, cancel):
     """Fill the exponents of the irregular cells of a row, whose motions are followed once more.
@@ -114,23 +153,10 @@ def fill_exponents(row, axes, common, starts, moves, out, cancel):
         return
     st = make_structure(common.model, common.loads, i, axes.r[i], common.steps)
     n = st.n
-    work, scratch = make_workspace(n), make_scratch(n)
-    tangent = np.empty((2 * n, 1))
+    tools = Tools(st, make_workspace(n), make_scratch(n), np.empty((2 * n, 1)))
     for j in range(axes.beta.size):
         if cancel[0] != 0:
             return
-        if out.status[m, i, j] != IRREGULAR:
-            continue
-        state = work.middle
-        for k in range(n):
-            state[0, k] = starts.coordinates[i, k]
-            state[1, k] = starts.velocity[i, k] / st.rate
-            tangent[k, 0] = tangent[n + k, 0] = 1.0
-        growth = np.zeros((out.cycles[m, i, j], 1))
-        beta = axes.beta[j]
-        _rescaled(st, tangent)
-        phase = (starts.cos[i], starts.sin[i])
-        if _follow_growth(st, beta, axes.mu[m] * beta, state, phase, moves, growth, tangent, work, scratch):
-            found = _exponent(growth)
-            out.lyapunov_exponent[m, i, j] = found.value
-            out.lyapunov_exponent_error[m, i, j] = found.error
+        if out.status[m, i, j] == IRREGULAR:
+            growth = np.zeros((out.cycles[m, i, j], 1))
+            _fill_exponent((m, i, j), axes, starts, moves, out, growth, tools)

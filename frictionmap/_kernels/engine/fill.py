@@ -7,12 +7,14 @@ import numpy as np
 
 from ...regimes import CLOSED_FORM, CONTINUOUS, PERMANENT_STICKING, RESOLVED
 from ..compiler import entry, kernel
+from ..compiler.packed import packed
 from ..continuous_motion import continuous_amplitude
 from .further import requested_at, write_continuous, write_orbit, write_stuck
 from .march import steady_state
-from .measure import orbit_table
+from .measure import measure
 from .motion import at_frequency, contact_at, forget_neighbour, start
-from .records import continuous_cell, quasi_static_cell, stuck_cell
+from .records import continuous_cell, known_orbit, quasi_static_cell, stuck_cell
+from .segment_table import segment_columns
 
 #: Number of open cells of a row after which the search from the neighbour's orbit starts anew.  Jobs begin
 #: only there and at the start of rows, so that no result depends on how the map is divided into jobs.
@@ -92,6 +94,26 @@ def _store_continuous(out, m, i, last, axes, closed):
             out.contact_amplitude[m, i, j] = amplitude * load
 
 
+@kernel
+def _fill_closed_row(row, cells, axes, closed, out, further):
+    """Fill the cells of one row that closed forms decide; see `fill_closed`."""
+    cells, axes, closed = packed(cells), packed(axes), packed(closed)
+    out, further = packed(out), packed(further)
+    m = row // axes.r.size
+    i = row % axes.r.size
+    low, high, end = cells.low[row], cells.high[row], axes.beta.size
+    load = closed.load[i]
+    _store_continuous(out, m, i, low, axes, closed)
+    if axes.r[i] > 0.0:
+        for j in range(low):
+            write_continuous(further, m, j, axes.beta[j])
+    else:
+        store(out, m, i, low, high, quasi_static_cell(), load)
+    store(out, m, i, high, end, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
+    for j in range(high, end):
+        write_stuck(further, m, j)
+
+
 @entry
 def fill_closed(first, last, cells, axes, closed, out, requested):
     """Fill the cells that closed forms decide: continuous motion below the open cells, permanent sticking
@@ -108,22 +130,9 @@ def fill_closed(first, last, cells, axes, closed, out, requested):
     out : named tuple of arrays (n_mu, n_r, n_beta, ...), one for every output
     requested : Requested, see `further`
     """
-    n_r = axes.r.size
     for row in range(first, last):
-        m = row // n_r
-        i = row % n_r
-        low, high, end = cells.low[row], cells.high[row], axes.beta.size
-        load = closed.load[i]
-        further = requested_at(requested, i)
-        _store_continuous(out, m, i, low, axes, closed)
-        if axes.r[i] > 0.0:
-            for j in range(low):
-                write_continuous(further, m, j, axes.beta[j])
-        else:
-            store(out, m, i, low, high, quasi_static_cell(), load)
-        store(out, m, i, high, end, stuck_cell(CLOSED_FORM, RESOLVED, 0.0, 0.0, 1.0), load)
-        for j in range(high, end):
-            write_stuck(further, m, j)
+        further = requested_at(requested, row % axes.r.size)
+        _fill_closed_row(row, cells, axes, closed, out, further)
 
 
 @kernel
@@ -160,6 +169,37 @@ def _row_of(cells, cell):
     return low
 
 
+@kernel
+def _fill_cells(place, low, positions, axes, system, motion, limits, moving, out, further, cancel):
+    """Fill open cells of one row; stop soon after cancel[0] is set.
+
+    Parameters
+    ----------
+    place : indices of mu and r
+    low : index of the first open cell of the row
+    positions : range of cells, counted from there
+    axes, system, limits, moving, out, cancel : see `fill_open`
+    motion : a kind of motion
+    further : RequestedAtFrequency
+    """
+    axes, system, motion = packed(axes), packed(system), packed(motion)
+    out, further = packed(out), packed(further)
+    m, i = place
+    for position in range(positions[0], positions[1]):
+        if cancel[0] != 0:
+            return
+        if position % RESTART == 0:
+            forget_neighbour(motion)
+        j = low + position
+        beta, mu = axes.beta[j], axes.mu[m]
+        contact = contact_at(system, m, i, beta, mu)
+        contact_state = start(motion, system, i, contact, moving)
+        found = steady_state(motion, contact, contact_state, moving, limits, cancel)
+        store(out, m, i, j, j + 1, found, motion.load)
+        motion.scratch.left[0] = math.inf  # the orbit is known, so following it ends
+        _write_further(further, motion, contact, found, m, j, beta)
+
+
 @entry
 def fill_open(first, last, cells, axes, system, limits, moving, out, requested, cancel):
     """Fill cells first..last-1 of the list of open cells; stop soon after cancel[0] is set.
@@ -183,23 +223,39 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, requested, 
         m = row // n_r
         i = row % n_r
         begin = cells.ends[k - 1] if k > 0 else 0
-        motion = at_frequency(system, i)
-        further = requested_at(requested, i)
-        for position in range(cell - begin, min(last, cells.ends[k]) - begin):
-            if cancel[0] != 0:
-                return
-            if position % RESTART == 0:
-                forget_neighbour(motion)
-            j = cells.low[row] + position
-            beta, mu = axes.beta[j], axes.mu[m]
-            contact = contact_at(system, m, i, beta, mu)
-            contact_state = start(motion, system, i, contact, moving)
-            found = steady_state(motion, contact, contact_state, moving, limits, cancel)
-            store(out, m, i, j, j + 1, found, motion.load)
-            motion.scratch.left[0] = math.inf  # the orbit is known, so following it ends
-            _write_further(further, motion, contact, found, m, j, beta)
+        positions = cell - begin, min(last, cells.ends[k]) - begin
+        _fill_cells(
+            (m, i), cells.low[row], positions, axes, system, at_frequency(system, i), limits, moving, out,
+            requested_at(requested, i), cancel,
+        )  # fmt: skip
         cell = cells.ends[k]
         k += 1
+
+
+@kernel
+def _find_cell(system, motion, beta, mu, limits, moving, cancel):
+    """Find the steady state of the cell of `one_cell`; return its contact, and the cell.
+
+    Parameters
+    ----------
+    system, beta, mu, limits, moving, cancel : see `one_cell`, `fill_open`
+    motion : a kind of motion
+    """
+    system, motion = packed(system), packed(motion)
+    forget_neighbour(motion)
+    contact = contact_at(system, 0, 0, beta, mu)
+    contact_state = start(motion, system, 0, contact, moving)
+    found = steady_state(motion, contact, contact_state, moving, limits, cancel)
+    if found.slides > 0:
+        motion.scratch.left[0] = math.inf  # the orbit is known, so following it ends
+    return contact, found
+
+
+@kernel
+def _fill_table(motion, contact, found, table):
+    """Fill the segment table of the periodic orbit of a cell; return the number of its rows."""
+    orbit = known_orbit(found.contact_state, found.event, found.sign, found.slides)
+    return measure(packed(motion), contact, orbit, table).segments
 
 
 @entry
@@ -209,10 +265,6 @@ def one_cell(system, beta, mu, limits, moving):
     Returns (cell, table); the table has no rows where the contact sticks or a closed form gives the motion.
     """
     motion = at_frequency(system, 0)
-    forget_neighbour(motion)
-    contact = contact_at(system, 0, 0, beta, mu)
-    contact_state = start(motion, system, 0, contact, moving)
-    found = steady_state(motion, contact, contact_state, moving, limits, np.zeros(1, dtype=np.uint8))
-    if found.slides > 0:
-        motion.scratch.left[0] = math.inf  # the orbit is known, so following it ends
-    return found, orbit_table(motion, contact, found, system.modes)
+    contact, found = _find_cell(system, motion, beta, mu, limits, moving, np.zeros(1, dtype=np.uint8))
+    table = np.empty((2 * found.slides, segment_columns(system.modes)))
+    return found, table[: _fill_table(motion, contact, found, table)]

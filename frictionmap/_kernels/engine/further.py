@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import by_class, entry, kernel
+from ..compiler.packed import packed
 from ..structure.newton import Workspace, make_workspace
 from ..structure.oscillators import Scratch, make_scratch
 from ..structure.sliding_orbit import Continuous
@@ -229,19 +230,37 @@ def write_orbit(table, requested, motion, contact, found, m, j, beta):
 # For the only cell of a map: one entry per branch, so that only the branch in use is compiled.
 
 
+@kernel
+def _only_stuck(quantities):
+    """Write the quantities of a cell that sticks."""
+    stuck_quantities(packed(quantities), 0, 0)
+
+
+@kernel
+def _only_continuous(quantities, beta):
+    """Write the quantities of a cell on the continuous orbit."""
+    continuous_quantities(packed(quantities), 0, 0, beta)
+
+
+@kernel
+def _only_periodic(quantities, beta, table):
+    """Write the quantities of a cell with a segment table."""
+    periodic_quantities(packed(quantities), 0, 0, beta, table)
+
+
 @entry
 def stuck_cell_quantities(common, quantities):
     """Write the quantities of the only cell of a map, whose contact sticks."""
-    stuck_quantities(quantities_at(quantities, common, _common_at(common, 0)), 0, 0)
+    _only_stuck(quantities_at(quantities, common, _common_at(common, 0)))
 
 
 @entry
 def continuous_cell_quantities(common, quantities, beta):
     """Write the quantities of the only cell of a map, on the continuous orbit of the closed form."""
-    continuous_quantities(quantities_at(quantities, common, _common_at(common, 0)), 0, 0, beta)
+    _only_continuous(quantities_at(quantities, common, _common_at(common, 0)), beta)
 
 
 @entry
 def table_cell_quantities(common, quantities, beta, table):
     """Write the quantities of the only cell of a map, from its segment table."""
-    periodic_quantities(quantities_at(quantities, common, _common_at(common, 0)), 0, 0, beta, table)
+    _only_periodic(quantities_at(quantities, common, _common_at(common, 0)), beta, table)

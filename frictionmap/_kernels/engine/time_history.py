@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry
+from ..compiler import entry, kernel
+from ..compiler.packed import packed
 from ..structure.newton import copy_state
 from ..structure.oscillators import advance, expand
 from ..structure.state import contact_displacement, held_load, release
@@ -22,19 +23,15 @@ class Samples(NamedTuple):
     sense: np.ndarray  # (k,) int8
 
 
-@entry
-def sample_segments(st, beta, table, tau, samples, work, scratch):
-    """Fill `samples` with the motion at given times.
+@kernel
+def _sample(st, beta, table, tau, samples, work, scratch):
+    """Fill the samples; the parameters are those of `sample_segments`.
 
     Parameters
     ----------
-    st : StructureAtFrequency
-    beta : kinetic friction force
-    table : (segments, columns) segment table
-    tau : (k,) increasing times >= 0 since the first segment began
-    samples : Samples
-    work, scratch : Workspace, Scratch
+    st, beta, table, tau, samples, work, scratch : see `sample_segments`
     """
+    st, samples, work, scratch = packed(st), packed(samples), packed(work), packed(scratch)
     z, friction = samples.z, samples.friction
     j = 0
     for k in range(table.shape[0]):
@@ -71,3 +68,19 @@ def sample_segments(st, beta, table, tau, samples, work, scratch):
                 samples.coordinates[i, j] = row[SIGN] * work.start[0, i]
                 samples.velocities[i, j] = row[SIGN] * work.start[1, i] / st.h
             j += 1
+
+
+@entry
+def sample_segments(st, beta, table, tau, samples, work, scratch):
+    """Fill `samples` with the motion at given times.
+
+    Parameters
+    ----------
+    st : StructureAtFrequency
+    beta : kinetic friction force
+    table : (segments, columns) segment table
+    tau : (k,) increasing times >= 0 since the first segment began
+    samples : Samples
+    work, scratch : Workspace, Scratch
+    """
+    _sample(st, beta, table, tau, samples, work, scratch)

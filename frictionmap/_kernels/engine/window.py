@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ..compiler import entry, kernel
+from ..compiler.packed import packed
 from ..event_codes import NO_END, STUCK
 from ..structure.events import NO_RELEASE
 from .measure import measure
@@ -46,6 +47,35 @@ def _follow(motion, contact, contact_state, moves, duration):
     return events, contact_state, sign
 
 
+@kernel
+def _count_slides(motion, system, beta, mu, moving, before, duration):
+    """Follow the motion to the window, and through it to count its slides; it is then at its beginning.
+
+    Parameters
+    ----------
+    motion : a kind of motion
+    system, beta, mu, moving, before, duration : see `window_table`
+
+    Returns
+    -------
+    Contact, ContactState at the beginning, sign there, slides
+    """
+    system, motion = packed(system), packed(motion)
+    contact = contact_at(system, 0, 0, beta, mu)
+    contact_state = start(motion, system, 0, contact, moving)
+    _, contact_state, sign = _follow(motion, contact, contact_state, moving, before)
+    keep_state(motion, NOW)
+    slides, _, _ = _follow(motion, contact, contact_state, True, duration)
+    bring_back(motion, NOW)
+    return contact, contact_state, sign, slides
+
+
+@kernel
+def _fill_table(motion, contact, contact_state, sign, slides, table):
+    """Fill the segment table of the window; return the number of its rows."""
+    return measure(packed(motion), contact, known_orbit(contact_state, _NEVER, sign, slides), table).segments
+
+
 @entry
 def window_table(system, beta, mu, moving, before, duration):
     """Segment table of a motion from the time `before` on, over at least `duration`, both in tau.
@@ -54,12 +84,6 @@ def window_table(system, beta, mu, moving, before, duration):
     table has no rows where the contact sticks permanently.
     """
     motion = at_frequency(system, 0)
-    contact = contact_at(system, 0, 0, beta, mu)
-    contact_state = start(motion, system, 0, contact, moving)
-    _, contact_state, sign = _follow(motion, contact, contact_state, moving, before)
-    keep_state(motion, NOW)
-    slides, _, _ = _follow(motion, contact, contact_state, True, duration)
-    bring_back(motion, NOW)
+    contact, contact_state, sign, slides = _count_slides(motion, system, beta, mu, moving, before, duration)
     table = np.empty((2 * slides, segment_columns(system.modes)))
-    measured = measure(motion, contact, known_orbit(contact_state, _NEVER, sign, slides), table)
-    return table[: measured.segments]
+    return table[: _fill_table(motion, contact, contact_state, sign, slides, table)]

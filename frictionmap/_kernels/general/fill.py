@@ -21,12 +21,15 @@ from ...regimes import (
     TOO_MANY_EVENTS,
 )
 from ..compiler import entry, kernel
+from ..compiler.packed import packed
 from .follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
-from .problem import make_row, make_work, set_row
-from .record import RANGES, make_record
-from .return_map import make_return
+from .problem import padded, set_row
+from .record import RANGES
 from .series import Friction
-from .steady import NO_REPEAT, REPEATS, find, from_rest, make_ring, measure
+from .steady import NO_REPEAT, REPEATS, find, from_rest, make_tools, measure
+
+#: A start is moved on by this many steps between the last two cells at most.
+_FARTHEST = 3.0
 
 
 class Grid(NamedTuple):
@@ -39,6 +42,15 @@ class Grid(NamedTuple):
     starts: np.ndarray  # (n_r, 2, m) modes and their velocities at tau = 0
     cycles: float
     tolerance: float
+
+
+class Trail(NamedTuple):
+    """The steady states of the last two cells of a row, to begin the next one from."""
+
+    states: np.ndarray  # (2, 3, ...) the last one and the one before it
+    senses: np.ndarray  # (2, N)
+    beta: np.ndarray  # (2,)
+    count: np.ndarray  # (1,) int: how many there are
 
 
 class Cells(NamedTuple):
@@ -122,7 +134,7 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
 
 
 @kernel
-def _store(problem, out, m, i, b, found, halves, counts, record):
+def _store(problem, out, m, i, b, found, measured, counts, record):
     """Store a solved cell.
 
     Parameters
@@ -131,9 +143,10 @@ def _store(problem, out, m, i, b, found, halves, counts, record):
     out : Cells
     m, i, b : indices of mu, r and beta
     found : Steady
-    halves : half periods measured
+    measured : half periods measured, multiplier
     counts, record : counters of `follow`, Record
     """
+    halves, multiplier = measured
     out.cycles[m, i, b] = math.ceil(found.cycles)
     if found.status != REPEATS:
         out.status[m, i, b] = NOT_REACHED if found.status == NO_REPEAT else TOO_MANY_EVENTS
@@ -141,8 +154,8 @@ def _store(problem, out, m, i, b, found, halves, counts, record):
         return
     out.status[m, i, b] = RESOLVED
     out.origin[m, i, b] = PERIODIC_ORBIT
-    out.period[m, i, b] = halves // 2
-    out.multiplier[m, i, b] = found.multiplier
+    out.period[m, i, b] = found.halves if found.halves % 2 == 1 else found.halves // 2
+    out.multiplier[m, i, b] = multiplier
     out.regime[m, i, b] = _store_contacts(problem, out, m, i, b, counts, halves, record)
 
 
@@ -179,6 +192,87 @@ def _set_friction(grid, m, b, friction):
 
 
 @entry
+def make_trail(problem):
+    """Allocate the memory of the last two cells."""
+    contacts, modes = problem.chi.shape
+    return Trail(
+        np.zeros((2, 3, padded(max(modes, contacts)))), np.zeros((2, contacts), np.int64), np.zeros(2),
+        np.zeros(1, np.int64),
+    )  # fmt: skip
+
+
+@kernel
+def _remember(memory, beta, trail):
+    """Keep the steady state of a cell, and the one before it if it has the same pattern."""
+    same = trail.count[0] > 0
+    for j in range(memory.senses.size):
+        same = same and memory.senses[j] == trail.senses[0, j]
+        trail.senses[0, j] = memory.senses[j]
+    trail.count[0] = 2 if same else 1
+    trail.beta[1], trail.beta[0] = trail.beta[0], beta
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            trail.states[1, part, i] = trail.states[0, part, i]
+            trail.states[0, part, i] = memory.start[part, i]
+
+
+@kernel
+def _begin_ahead(beta, trail, memory):
+    """Move the start from the steady state of the last cell on to where those of the last two point."""
+    if trail.count[0] < 2:
+        return
+    ahead = (beta - trail.beta[0]) / (trail.beta[0] - trail.beta[1])
+    if not abs(ahead) <= _FARTHEST:
+        return
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            step = trail.states[0, part, i] - trail.states[1, part, i]
+            memory.start[part, i] = trail.states[0, part, i] + ahead * step
+
+
+@kernel
+def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
+    """Fill rows; see `fill_rows`.
+
+    Parameters
+    ----------
+    first, last, problem, grid, out, cancel : see `fill_rows`
+    tools, trail, friction : Tools, Trail, Friction; their content does not matter
+    """
+    problem, grid, out, tools = packed(problem), packed(grid), packed(out), packed(tools)
+    trail, friction = packed(trail), packed(friction)
+    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    n_r = problem.r.size
+    for index in range(first, last):
+        m, i = index // n_r, index % n_r
+        if problem.r[i] == 0.0:
+            continue
+        set_row(problem, i, row)
+        trail.count[0] = 0
+        for b in range(grid.beta.size):
+            if cancel[0] != 0:
+                return
+            if b >= grid.stuck_from[m, i]:
+                _store_stuck(out, m, i, b)
+                continue
+            unique = _set_friction(grid, m, b, friction)
+            if unique and trail.count[0] > 0:
+                _begin_ahead(grid.beta[b], trail, memory)
+            else:
+                from_rest(problem, row, friction, grid.starts[i], work, memory, record)
+            found = find(
+                problem, row, friction, grid.cycles, grid.tolerance, work, memory, tools.ring, record
+            )
+            measured = 0, math.nan
+            if found.status == REPEATS:
+                measured = measure(problem, row, friction, found.halves, work, memory, record, RANGES)
+                _remember(memory, grid.beta[b], trail)
+            else:
+                trail.count[0] = 0
+            _store(problem, out, m, i, b, found, measured, memory.counts, record)
+
+
+@entry
 def fill_rows(first, last, problem, grid, out, masses, cancel):
     """Fill rows first..last-1 of the (mu, r) grid; stop soon after cancel[0] is set.
 
@@ -191,29 +285,7 @@ def fill_rows(first, last, problem, grid, out, masses, cancel):
     masses : (n, m) displacement of the masses per mode; n = 0 where they are not asked for
     cancel : (1,) set by another thread to end the computation
     """
-    row, work, memory = make_row(problem), make_work(problem), make_return(problem)
-    ring, record = make_ring(problem), make_record(problem, masses, 0)
+    tools, trail = make_tools(problem, masses, 0), make_trail(problem)
     contacts = problem.spring.size
     friction = Friction(np.empty(contacts), np.empty(contacts))
-    n_r = problem.r.size
-    for index in range(first, last):
-        m, i = index // n_r, index % n_r
-        if problem.r[i] == 0.0:
-            continue
-        set_row(problem, i, row)
-        near = False
-        for b in range(grid.beta.size):
-            if cancel[0] != 0:
-                return
-            if b >= grid.stuck_from[m, i]:
-                _store_stuck(out, m, i, b)
-                continue
-            unique = _set_friction(grid, m, b, friction)
-            if not (near and unique):
-                from_rest(problem, row, friction, grid.starts[i], work, memory, record)
-            found = find(problem, row, friction, grid.cycles, grid.tolerance, work, memory, ring, record)
-            near = found.status == REPEATS
-            halves = 0
-            if near:
-                halves = measure(problem, row, friction, found.halves, work, memory, record, RANGES)
-            _store(problem, out, m, i, b, found, halves, memory.counts, record)
+    _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel)

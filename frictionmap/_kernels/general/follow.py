@@ -1,9 +1,13 @@
 """The motion from one phase of the load to another: steps, and the events that end them."""
 
+import math
+
 from ..compiler import inner_kernel, kernel
+from ..compiler.vectors import LANES, load, store
 from .crossings import NONE, first_zero, slope_at, value_at
+from .glide import can_glide, glide
 from .pattern import settle
-from .problem import TERMS
+from .problem import SECTION, TERMS, WIDTH
 from .record import record_step
 from .series import advance, expand, factor_held, first_contact_row
 from .tangent import advance_tangent, hold_tangent, through_event, watched_row
@@ -11,8 +15,8 @@ from .tangent import advance_tangent, hold_tangent, through_event, watched_row
 #: Phases of no length in a row after which the contacts chatter.
 _MOST_IMMEDIATE = 200
 
-#: Events per radian of the fastest part of the motion, at most.
-_MOST_EVENTS = 200.0
+#: Events in an interval of the load, at most.
+_MOST_EVENTS = 1000
 
 #: Loads within this share of their limit are at it together, for contacts with mu = 1.
 _AT_LIMIT = 1e-11
@@ -26,18 +30,20 @@ COUNT_ROWS = 9
 
 FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
 
+#: Parts of the time that are followed: half a period from the section or from half a period after it (0, 1),
+#: or what is before the section.
+BEFORE = -1
 
-@kernel
+
+@inner_kernel
 def _watch(series, source, sign, shift, scratch):
     """Copy sign times a series without its first terms, which are zero, to scratch[0]; return its zero."""
-    for k in range(TERMS - shift):
-        scratch[0, k] = sign * series[source, k + shift]
-    for k in range(TERMS - shift, TERMS):
-        scratch[0, k] = 0.0
+    for k in range(0, TERMS, LANES):
+        store(load(series, source * WIDTH + k + shift) * sign, scratch, k)
     return first_zero(scratch, 0)
 
 
-@kernel
+@inner_kernel
 def _within(series, force, nu, size, sign, shift, scratch):
     """Copy the distance of a force from one side of its range to scratch[0]; return its first zero.
 
@@ -50,10 +56,10 @@ def _within(series, force, nu, size, sign, shift, scratch):
     shift : number of leading terms that are zero by definition
     scratch : its row 0 is filled
     """
-    for k in range(TERMS - shift):
-        scratch[0, k] = size * series[nu, k + shift] - sign * series[force, k + shift]
-    for k in range(TERMS - shift, TERMS):
-        scratch[0, k] = 0.0
+    for k in range(0, TERMS, LANES):
+        at = k + shift
+        limit = load(series, nu * WIDTH + at) * size
+        store(limit - load(series, force * WIDTH + at) * sign, scratch, k)
     return first_zero(scratch, 0)
 
 
@@ -237,13 +243,58 @@ def _event(problem, row, friction, tau, work, law, counts, event, derive):
 
 
 @kernel
-def follow(problem, row, friction, start, span, work, law, counts, record, derive):
-    """Follow the motion from the phase `start` over `span`.
+def _cross(problem, row, friction, begin, interval, length, work, law, counts, record, derive):
+    """Follow the motion through one interval of the load, or a part of it.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
-    start, span : phase of the load at the beginning, and how far to follow
+    begin, interval : phase and number of the interval, see `set_channels`
+    length : length of the part, over that of the interval
+    work, law, counts, record, derive : see `follow`
+
+    Returns
+    -------
+    int : FOLLOWED, CHATTERS or UNDETERMINED
+    """
+    h = row.numbers[0]
+    x = 0.0
+    tau = begin
+    immediate = 0
+    for _ in range(_MOST_EVENTS):
+        rest = length - x
+        expand(problem, row, friction, tau, interval if x == 0.0 else -1, work, record.active[0] != 0)
+        event = _first_event(problem, friction, work, rest)
+        step = min(event[0], rest)
+        if record.active[0] != 0:
+            record_step(problem, row, work, step, record)
+        if derive and step > 0.0:
+            advance_tangent(problem, row, work, step)
+        _count_time(work, counts, step * h)
+        if step > 0.0:
+            advance(problem, row, step, work)
+            for j in range(work.fresh.size):
+                work.fresh[j] = 0
+        if event[1] < 0:
+            return FOLLOWED
+        x += step
+        tau = begin + x * h
+        immediate = immediate + 1 if step == 0.0 else 0
+        if immediate > _MOST_IMMEDIATE:
+            return CHATTERS
+        if not _event(problem, row, friction, tau, work, law, counts, event, derive):
+            return UNDETERMINED
+    return CHATTERS
+
+
+@kernel
+def follow(problem, row, friction, part, work, law, counts, record, derive):
+    """Follow the motion for half a period of the load, or from tau = 0 to the section.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    part : 0 or 1: the half period that begins at the section, or the one after it; BEFORE: from tau = 0
     work : Work; state and pattern are replaced by those at the end, and `tangent` is multiplied if `derive`
     law : (LAW_ROWS, N) scratch
     counts : (COUNT_ROWS, N) counters, increased
@@ -255,37 +306,25 @@ def follow(problem, row, friction, start, span, work, law, counts, record, deriv
     int : FOLLOWED, CHATTERS or UNDETERMINED
     """
     h = row.numbers[0]
-    time = 0.0
-    immediate = 0
+    work.clock[0] = math.nan
     if not factor_held(problem, row, work):
         return UNDETERMINED
     if derive:
         hold_tangent(problem, row, work)
-    for _ in range(int(_MOST_EVENTS * (span / h + 1.0))):
-        rest = (span - time) / h
-        end = min(1.0, rest)
-        expand(problem, row, friction, start + time, work)
-        event = _first_event(problem, friction, work, end)
-        x = min(event[0], end)
-        if record.active[0] != 0:
-            record_step(problem, row, work, x, record)
-        if derive and x > 0.0:
-            advance_tangent(problem, row, work, x)
-        _count_time(work, counts, x * h)
-        if x > 0.0:
-            advance(problem, row, x, work)
-            for j in range(work.fresh.size):
-                work.fresh[j] = 0
-        if event[1] < 0:
-            if rest <= 1.0:
-                return FOLLOWED
-            time += h
-            immediate = 0
+    intervals = row.intervals[0]
+    count = int(math.ceil(SECTION / h)) if part == BEFORE else intervals
+    glides = part != BEFORE and record.active[0] == 0 and can_glide(problem, row)
+    for k in range(count):
+        begin, interval, length = k * h, -1, min(1.0, SECTION / h - k)
+        if part != BEFORE:
+            interval = part * intervals + k
+            begin, length = SECTION + interval * h, 1.0
+        if glides and glide(problem, row, friction, interval, work):
+            _count_time(work, counts, h)
+            if derive:
+                advance_tangent(problem, row, work, 1.0)
             continue
-        time += x * h
-        immediate = immediate + 1 if x == 0.0 else 0
-        if immediate > _MOST_IMMEDIATE:
-            return CHATTERS
-        if not _event(problem, row, friction, start + time, work, law, counts, event, derive):
-            return UNDETERMINED
-    return CHATTERS
+        code = _cross(problem, row, friction, begin, interval, length, work, law, counts, record, derive)
+        if code != FOLLOWED:
+            return code
+    return FOLLOWED

@@ -6,18 +6,22 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
+from ..compiler.packed import packed
 from .follow import MOVED, NEAREST_STOP, STOPS
-from .problem import make_row, make_work, set_row
-from .record import RANGES, make_record
-from .return_map import make_return
+from .problem import set_row
+from .record import NOTHING
 from .series import Friction
-from .steady import REPEATS, find, from_rest, make_ring, measure
+from .steady import REPEATS, find, from_rest, make_tools, measure
 
 #: Nodes in beta at which the motion is tried: so many in geometric progression from _LOWEST of the top up,
-#: then equally spaced ones; and halvings of the interval around an end.
+#: then equally spaced ones.
 _GEOMETRIC, _EQUAL, _LOWEST = 32, 48, 1e-6
 NODES = _GEOMETRIC + _EQUAL
-_HALVINGS = 60
+
+#: Trials around an end at most, of which each third halves the interval; and the first distance of a trial
+#: from where the end should be, over that from the last trial inside.
+_TRIALS = 160
+_OFF = 0.01
 
 
 class Search(NamedTuple):
@@ -78,7 +82,7 @@ def _try(problem, i, row, search, beta, near, friction, memories, kept, k):
     kept[k, 0] = math.nan
     if found.status != REPEATS:
         return False
-    measure(problem, row, friction, found.halves, work, memory, record, RANGES)
+    measure(problem, row, friction, found.halves, work, memory, record, NOTHING)
     kept[k, 0] = 0.0
     for j in range(contacts):
         kept[k, 0] += memory.counts[STOPS, j]
@@ -92,6 +96,9 @@ def _try(problem, i, row, search, beta, near, friction, memories, kept, k):
 def _end(problem, i, row, search, m, inside, outside, friction, memories, kept):
     """End of an interval between a beta without stops and one with.
 
+    Where a turn becomes a stop, the margin goes to zero there: trials on both sides of where it should be
+    zero close in on it.  Where a slide begins to touch zero velocity, it does not: the interval is halved.
+
     Parameters
     ----------
     problem, i, row : Problem, index of r, Row
@@ -99,37 +106,43 @@ def _end(problem, i, row, search, m, inside, outside, friction, memories, kept):
     inside, outside : friction ratios without and with stops
     friction, memories, kept : see `_try`
     """
-    near = False
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (inside + outside)
-        if middle == inside or middle == outside:
+    near = _try(problem, i, row, search, inside, False, friction, memories, kept, NODES + 1)
+    margin = _margin(search, m, inside, kept, NODES + 1)
+    guess = math.nan
+    off = _OFF
+    for count in range(_TRIALS):
+        beta = guess + off * (guess - inside)
+        aimed = count % 3 < 2 and min(inside, outside) < beta < max(inside, outside)
+        if not aimed:
+            beta = 0.5 * (inside + outside)
+        if beta == inside or beta == outside:
             break
-        near = _try(problem, i, row, search, middle, near, friction, memories, kept, NODES + 1)
-        if _margin(search, m, middle, kept, NODES + 1) > 0.0:
-            inside = middle
+        near = _try(problem, i, row, search, beta, near, friction, memories, kept, NODES + 1)
+        now = _margin(search, m, beta, kept, NODES + 1)
+        if aimed and (now > 0.0) == (off < 0.0):
+            off *= -0.1
+        elif aimed:
+            off *= 10.0 if abs(off) < _OFF else -1.0
+        if now > 0.0:
+            guess = beta + now * (beta - inside) / (margin - now)
+            inside, margin = beta, now
         else:
-            outside = middle
+            outside = beta
     return inside
 
 
-@entry
-def fill_no_stop(first, last, problem, search, begins, ends, cancel):
-    """Fill the intervals of beta in which no contact stops, at the frequencies first..last-1.
+@kernel
+def _fill(first, last, problem, search, begins, ends, tools, friction, kept, cancel):
+    """Fill the intervals; see `fill_no_stop`.
 
     Parameters
     ----------
-    first, last : range of r
-    problem : Problem
-    search : Search
-    begins, ends : (n_mu, n_r, intervals) filled, NaN where there are fewer
-    cancel : (1,) set by another thread to end the computation
+    first, last, problem, search, begins, ends, cancel : see `fill_no_stop`
+    tools, friction : Tools, Friction; their content does not matter
+    kept : see `_try`
     """
-    row, work, memory = make_row(problem), make_work(problem), make_return(problem)
-    ring, record = make_ring(problem), make_record(problem, np.empty((0, problem.squares.size)), 0)
-    contacts = problem.spring.size
-    friction = Friction(np.empty(contacts), np.empty(contacts))
-    kept = np.zeros((NODES + 2, 1 + contacts))
-    memories = (work, memory, ring, record)
+    problem, search, tools, friction = packed(problem), packed(search), packed(tools), packed(friction)
+    row, memories = tools.row, (tools.work, tools.memory, tools.ring, tools.record)
     for i in range(first, last):
         if cancel[0] != 0:
             return
@@ -160,3 +173,22 @@ def fill_no_stop(first, last, problem, search, begins, ends, cancel):
                 margin = now
             if margin > 0.0 and count < begins.shape[2]:
                 ends[m, i, count] = math.inf
+
+
+@entry
+def fill_no_stop(first, last, problem, search, begins, ends, cancel):
+    """Fill the intervals of beta in which no contact stops, at the frequencies first..last-1.
+
+    Parameters
+    ----------
+    first, last : range of r
+    problem : Problem
+    search : Search
+    begins, ends : (n_mu, n_r, intervals) filled, NaN where there are fewer
+    cancel : (1,) set by another thread to end the computation
+    """
+    tools = make_tools(problem, np.empty((0, problem.squares.size)), 0)
+    contacts = problem.spring.size
+    friction = Friction(np.empty(contacts), np.empty(contacts))
+    kept = np.zeros((NODES + 2, 1 + contacts))
+    _fill(first, last, problem, search, begins, ends, tools, friction, kept, cancel)

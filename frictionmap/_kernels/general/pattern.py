@@ -6,6 +6,8 @@ f = beta sgn(a).  Contacts with mu > 1 are held first, and the one with the larg
 friction lets go, until none is above it.
 """
 
+import math
+
 import numpy as np
 
 from ..compiler import kernel
@@ -161,7 +163,7 @@ def _take_part(problem, row, friction, tau, work, law):
     """Decide which contacts take part in what follows an event (law[3]), and their friction there."""
     contacts = work.sense.size
     series, first = work.series, first_contact_row(problem)
-    set_channels(problem, row, tau, series)
+    set_channels(problem, row, tau, -1, work)
     for j in range(contacts):
         nu = 1.0
         for d in range(problem.push.shape[1]):
@@ -236,7 +238,8 @@ def begin(problem, row, friction, tau, work, law):
     """
     modes, channels = problem.push.shape
     contacts = work.sense.size
-    set_channels(problem, row, tau, work.series)
+    work.clock[0] = math.nan
+    set_channels(problem, row, tau, -1, work)
     for j in range(contacts):
         w = -row.numbers[0] * problem.belt[j]
         for m in range(modes):

@@ -14,14 +14,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry, inner_kernel, kernel
+from ..compiler import entry, kernel
 from ..compiler.vectors import LANES, filled, load, store
 
-#: Largest angle of the fastest part of the motion in one step [rad] ...
-TURN = 2.0
+#: Largest angle of the fastest part of the motion in one interval of the load [rad], a third of a turn ...
+TURN = 2.1
 
-#: ... for which series of forces with this many terms are exact to rounding: 2^24/24! = 3e-17.  Displacements
-#: have two more, because a force is their second derivative.
+#: ... for which series of forces with this many terms are exact to rounding: 2.1^24/24! = 9e-17.
+#: Displacements have two more, because a force is their second derivative.
 TERMS = 24
 LONG = TERMS + 2
 
@@ -30,6 +30,16 @@ INVERSE = np.array([1.0 / ((k + 1.0) * (k + 2.0)) for k in range(TERMS)])
 
 #: Numbers kept per series: a whole number of vectors.
 WIDTH = 32
+
+#: k + 1: factors of a derivative.
+NEXT = np.arange(1.0, WIDTH + 1.0)
+
+#: Phase of the load at which states are compared: events gather at the extremes of the load, away from here.
+SECTION = 0.37
+
+#: Intervals of a period whose load is kept, and patterns whose derivatives are.
+_KEPT_INTERVALS = 512
+_KEPT_PATTERNS = 64
 
 
 class Problem(NamedTuple):
@@ -52,10 +62,34 @@ class Problem(NamedTuple):
     symmetric: bool  # L(tau + pi) = -L(tau), nothing else breaks the mirror symmetry
 
 
-class Row(NamedTuple):
-    """The constants of one r, in units of the step; M is m, filled up with zeros to whole vectors."""
+class Parts(NamedTuple):
+    """Parts of the motion in an interval, see `glide`; P patterns, `size` coordinates of a state.
 
-    numbers: np.ndarray  # (3,) step length h, r, size
+    Units are these coordinates, then the friction forces of the contacts.
+    """
+
+    controls: np.ndarray  # (P N units, WIDTH) control points of what is watched in a contact, per unit
+    bounds: np.ndarray  # (P N units,) bounds on their error
+    ends: np.ndarray  # (P N, S) state at the end by the friction force of a contact
+    known: np.ndarray  # (P,) int: which pattern is there
+    load_controls: np.ndarray  # (P 2 K N, WIDTH) the same of the load
+    load_bounds: np.ndarray  # (P 2 K N,)
+    load_ends: np.ndarray  # (P 2 K, S)
+    loads_known: np.ndarray  # (P 2 K,) int: which pattern is there
+    unit: np.ndarray  # (N,) friction; scratch
+    kept: np.ndarray  # (3, ...) a state; scratch
+
+
+class Row(NamedTuple):
+    """The constants of one r, in units of the interval; M is m, filled up with zeros to whole vectors.
+
+    A period of the load has 2 K intervals of the length h, from the section on.  The derivatives of a motion
+    by its state at the beginning of an interval are the same for all intervals with one pattern; they are
+    filled where a motion has it for the first time.
+    """
+
+    numbers: np.ndarray  # (3,) length h of the intervals, r, size
+    intervals: np.ndarray  # (1,) int: K
     stiffness: np.ndarray  # (m,) h^2 w^2/r^2
     damping: np.ndarray  # (m, m) h C/r
     velocity_term: np.ndarray  # (TERMS, M) what term k + 1 of a mode adds to term k + 2, by its own damping
@@ -68,6 +102,12 @@ class Row(NamedTuple):
     cosines: np.ndarray  # (H, WIDTH) series of cos(n h x)
     sines: np.ndarray  # (H, WIDTH) series of sin(n h x)
     phasors: np.ndarray  # (2, D, H)
+    loads: np.ndarray  # (2 K D, WIDTH) series of the channels in every interval; none where there are many
+    patterns: np.ndarray  # (P,) int: pattern of every place in the tables below, plus 1; 0: none yet
+    columns: np.ndarray  # (P, LONG, m, S) series of the modes by the state; size = 2 m + N, or 2 m if rigid
+    onward: np.ndarray  # (P, size, S) the state at the end of the interval by that at its beginning
+    grips: np.ndarray  # (P, N, S) forces of rigid contacts that are held, by the state
+    parts: Parts
 
 
 class Work(NamedTuple):
@@ -86,10 +126,12 @@ class Work(NamedTuple):
     solve: np.ndarray  # (N + 1, N) factors of the mobility of held contacts; its last row is scratch
     held: np.ndarray  # (N + 1,) int: contacts held by a constraint; the last: how many
     scratch: np.ndarray  # (8, WIDTH)
-    tangent: np.ndarray  # (size, S) derivatives of the state by that at the section; size = 2 m + N
-    columns: np.ndarray  # (LONG, m, S) their series
+    clock: np.ndarray  # (1,) phase from which on the series of the channels are there; NaN for none
+    tangent: np.ndarray  # (size, S) derivatives of the state by that at the section
+    onward: np.ndarray  # (2, size, S) derivatives over a part of an interval; scratch
     forces: np.ndarray  # (N, S) the derivatives of the forces
     watched: np.ndarray  # (S,) the derivatives of the watched quantity at an event
+    units: np.ndarray  # (size + N,) the state, then the friction forces
 
 
 @kernel
@@ -98,17 +140,56 @@ def padded(n):
     return LANES * ((n + LANES - 1) // LANES)
 
 
+@kernel
+def state_size(problem):
+    """Number of coordinates of a state: modes, their velocities, and forces of springs if there are any."""
+    contacts, modes = problem.chi.shape
+    for j in range(contacts):
+        if problem.spring[j] != 0.0:
+            return 2 * modes + contacts
+    return 2 * modes
+
+
+@kernel
+def _intervals(problem, i):
+    """Intervals of half a period at r[i]."""
+    return int(math.ceil(math.pi * problem.rates[i] / TURN))
+
+
+@entry
+def _make_parts(problem, kept, most):
+    """Allocate the parts of `kept` patterns and at most `most` intervals of a period."""
+    contacts, modes = problem.chi.shape
+    size = state_size(problem)
+    units, loads = kept * contacts * (size + contacts), kept * most
+    return Parts(
+        np.zeros((units, WIDTH)), np.zeros(units), np.zeros((kept * contacts, size)),
+        np.zeros(kept, np.int64), np.empty((loads * contacts, WIDTH)), np.empty(loads * contacts),
+        np.empty((loads, size)), np.zeros(loads, np.int64), np.zeros(contacts),
+        np.zeros((3, padded(max(modes, contacts)))),
+    )  # fmt: skip
+
+
 @entry
 def make_row(problem):
     """Allocate the constants of one r."""
     contacts, modes = problem.chi.shape
     channels, harmonics = problem.push.shape[1], problem.orders.size
-    width = padded(modes)
+    width, size = padded(modes), state_size(problem)
+    most = 0
+    for i in range(problem.r.size):
+        count = 2 * _intervals(problem, i)
+        if count <= _KEPT_INTERVALS:
+            most = max(most, count)
+    kept = min(1 << contacts, _KEPT_PATTERNS)
     return Row(
-        np.empty(3), np.empty(modes), np.empty((modes, modes)), np.zeros((TERMS, width)),
-        np.zeros((TERMS, width)), np.zeros((modes, width)), np.zeros((channels, width)),
-        np.zeros((contacts, width)), np.zeros((contacts, width)), np.empty((contacts, contacts)),
-        np.zeros((harmonics, WIDTH)), np.zeros((harmonics, WIDTH)), np.empty((2, channels, harmonics)),
+        np.empty(3), np.zeros(1, np.int64), np.empty(modes), np.empty((modes, modes)),
+        np.zeros((TERMS, width)), np.zeros((TERMS, width)), np.zeros((modes, width)),
+        np.zeros((channels, width)), np.zeros((contacts, width)), np.zeros((contacts, width)),
+        np.empty((contacts, contacts)), np.zeros((harmonics, WIDTH)), np.zeros((harmonics, WIDTH)),
+        np.empty((2, channels, harmonics)), np.empty((most * channels, WIDTH)), np.zeros(kept, np.int64),
+        np.empty((kept, LONG, modes, padded(size))), np.empty((kept, size, padded(size))),
+        np.empty((kept, contacts, padded(size))), _make_parts(problem, kept, most),
     )  # fmt: skip
 
 
@@ -116,15 +197,15 @@ def make_row(problem):
 def make_work(problem):
     """Allocate the memory of one motion."""
     contacts, modes = problem.chi.shape
-    size = 2 * modes + contacts
+    size = state_size(problem)
     width = padded(modes)
     rows = padded(size)
     return Work(
         np.zeros((3, padded(max(modes, contacts)))), np.zeros(contacts, np.int64),
         np.zeros(contacts, np.int64), np.zeros((modes + problem.push.shape[1] + 4 * contacts + 1, WIDTH)),
         np.zeros((LONG, width)), np.zeros((contacts + 1, contacts)), np.zeros(contacts + 1, np.int64),
-        np.zeros((8, WIDTH)), np.zeros((size, rows)), np.zeros((LONG, modes, rows)),
-        np.zeros((contacts, rows)), np.zeros(rows),
+        np.zeros((8, WIDTH)), np.zeros(1), np.zeros((size, rows)), np.zeros((2, size, rows)),
+        np.zeros((contacts, rows)), np.zeros(rows), np.zeros(size + contacts),
     )  # fmt: skip
 
 
@@ -166,9 +247,31 @@ def _set_modes(problem, row, turn):
 
 
 @kernel
+def _fill_channels(problem, row, tau, series, first):
+    """Fill the series of the channels from the phase tau on, into `series` from row `first` on."""
+    channels = problem.push.shape[1]
+    for d in range(channels):
+        for k in range(0, WIDTH, LANES):
+            store(filled(0.0), series, (first + d) * WIDTH + k)
+    for n in range(problem.orders.size):
+        angle = problem.orders[n] * tau
+        c, s = math.cos(angle), math.sin(angle)
+        for d in range(channels):
+            even = row.phasors[0, d, n] * c + row.phasors[1, d, n] * s
+            odd = row.phasors[1, d, n] * c - row.phasors[0, d, n] * s
+            if even == 0.0 and odd == 0.0:
+                continue
+            for k in range(0, WIDTH, LANES):
+                at = (first + d) * WIDTH + k
+                wave = load(row.cosines, n * WIDTH + k) * even + load(row.sines, n * WIDTH + k) * odd
+                store(load(series, at) + wave, series, at)
+
+
+@kernel
 def set_row(problem, i, row):
     """Fill the constants of r[i]."""
-    h = TURN / problem.rates[i]
+    row.intervals[0] = _intervals(problem, i)
+    h = math.pi / row.intervals[0]
     row.numbers[0], row.numbers[1], row.numbers[2] = h, problem.r[i], problem.sizes[i]
     contacts, modes = problem.chi.shape
     _set_modes(problem, row, h / problem.r[i])
@@ -182,24 +285,34 @@ def set_row(problem, i, row):
         for d in range(problem.push.shape[1]):
             for n in range(problem.orders.size):
                 row.phasors[part, d, n] = problem.phasors[i, part, d, n]
+    for k in range(row.patterns.size):
+        row.patterns[k] = 0
+        row.parts.known[k] = 0
+    for k in range(row.parts.loads_known.size):
+        row.parts.loads_known[k] = 0
+    channels = problem.push.shape[1]
+    if 2 * row.intervals[0] * channels <= row.loads.shape[0]:
+        for k in range(2 * row.intervals[0]):
+            _fill_channels(problem, row, SECTION + k * h, row.loads, k * channels)
 
 
-@inner_kernel
-def set_channels(problem, row, tau, series):
-    """Fill the series of the channels from the phase tau on."""
+@kernel
+def set_channels(problem, row, tau, interval, work):
+    """Put the series of the channels from the phase tau on into the first rows of `work.series` after modes.
+
+    Parameters
+    ----------
+    problem, row : Problem, Row
+    tau : phase of the load
+    interval : of the row, if tau is its beginning; else -1
+    work : Work
+    """
+    if work.clock[0] == tau:
+        return
+    work.clock[0] = tau
     modes, channels = problem.push.shape
-    for d in range(channels):
-        for k in range(0, WIDTH, LANES):
-            store(filled(0.0), series, (modes + d) * WIDTH + k)
-    for n in range(problem.orders.size):
-        angle = problem.orders[n] * tau
-        c, s = math.cos(angle), math.sin(angle)
-        for d in range(channels):
-            even = row.phasors[0, d, n] * c + row.phasors[1, d, n] * s
-            odd = row.phasors[1, d, n] * c - row.phasors[0, d, n] * s
-            if even == 0.0 and odd == 0.0:
-                continue
-            for k in range(0, WIDTH, LANES):
-                at = (modes + d) * WIDTH + k
-                wave = load(row.cosines, n * WIDTH + k) * even + load(row.sines, n * WIDTH + k) * odd
-                store(load(series, at) + wave, series, at)
+    if interval < 0 or 2 * row.intervals[0] * channels > row.loads.shape[0]:
+        _fill_channels(problem, row, tau, work.series, modes)
+        return
+    for k in range(0, channels * WIDTH, LANES):
+        store(load(row.loads, interval * channels * WIDTH + k), work.series, modes * WIDTH + k)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
+from ..compiler.vectors import LANES, filled, load, magnitude, store, total
 from .crossings import NONE, approach, first_zero, value_at
 from .problem import LONG, TERMS, WIDTH
 from .series import first_contact_row
@@ -97,6 +98,16 @@ def _is_still(series, at, size):
 
 
 @kernel
+def _is_within(series, at, ends, i):
+    """Whether a series can nowhere in its step leave a range."""
+    varies = filled(0.0)
+    for k in range(0, WIDTH, LANES):
+        varies = varies + magnitude(load(series, at * WIDTH + k))
+    most = total(varies) - abs(series[at, 0])
+    return series[at, 0] + most <= ends[1, i] and series[at, 0] - most >= ends[0, i]
+
+
+@kernel
 def _keep_range(series, at, end, size, ends, i, scratch):
     """Include a displacement or a force of the present step in its range.
 
@@ -109,7 +120,7 @@ def _keep_range(series, at, end, size, ends, i, scratch):
     scratch : scratch
     """
     _include(ends, i, series[at, 0])
-    if _is_still(series, at, size):
+    if _is_within(series, at, ends, i) or _is_still(series, at, size):
         return
     _include(ends, i, value_at(series, at, end))
     sign = 1.0
@@ -132,31 +143,50 @@ def _keep_range(series, at, end, size, ends, i, scratch):
 
 
 @kernel
-def _integrate(series, a, b, end):
-    """Integrals over [0, end] of series a, of b, and of their product."""
-    of_a = 0.0
-    of_b = 0.0
-    of_both = 0.0
+def _integral(series, at, end):
+    """Integral over [0, end] of a series."""
+    sum_ = 0.0
+    for k in range(TERMS - 1, -1, -1):
+        sum_ = sum_ * end + series[at, k] / (k + 1.0)
+    return sum_ * end
+
+
+@kernel
+def _integral_of_product(series, a, b, end):
+    """Integral over [0, end] of the product of two series."""
+    sum_ = 0.0
     for i in range(_NODES.size):
-        value_a, value_b = value_at(series, a, end * _NODES[i]), value_at(series, b, end * _NODES[i])
-        of_a += _WEIGHTS[i] * value_a
-        of_b += _WEIGHTS[i] * value_b
-        of_both += _WEIGHTS[i] * value_a * value_b
-    return end * of_a, end * of_b, end * of_both
+        x = end * _NODES[i]
+        sum_ += _WEIGHTS[i] * value_at(series, a, x) * value_at(series, b, x)
+    return end * sum_
+
+
+@kernel
+def _varies(problem, j):
+    """Whether the normal load of a contact varies."""
+    varies = False
+    for d in range(problem.normal.shape[1]):
+        varies = varies or problem.normal[j, d] != 0.0
+    return varies
 
 
 @kernel
 def _keep_works(problem, row, work, end, record, first):
     """Add the sliding distances and works of the present step."""
     contacts = problem.spring.size
+    series = work.series
     for j in range(contacts):
-        if work.sense[j] == 0 and problem.belt[j] == 0.0:
-            continue
-        force, way, both = _integrate(work.series, first + 2 * contacts + j, first + contacts + j, end)
+        belt = row.numbers[0] * problem.belt[j]
+        force = first + 2 * contacts + j
         if work.sense[j] != 0:
+            way = value_at(series, first + j, end) - series[first + j, 0] - belt * end
             record.distance[j] += abs(way)
-            record.works[0, j] += both
-        record.works[1, j] -= force * row.numbers[0] * problem.belt[j]
+            if _varies(problem, j):
+                record.works[0, j] += _integral_of_product(series, force, first + contacts + j, end)
+            else:
+                record.works[0, j] += series[force, 0] * way
+        if belt != 0.0:
+            record.works[1, j] -= _integral(series, force, end) * belt
 
 
 @kernel
@@ -183,6 +213,14 @@ def _keep_forces(problem, work, end, record):
 
 
 @kernel
+def mirror(record):
+    """Widen the ranges by those of the half period that mirrors the one recorded."""
+    for i in range(record.ranges.shape[1]):
+        _include(record.ranges, i, -record.ranges[0, i])
+        _include(record.ranges, i, -record.ranges[1, i])
+
+
+@kernel
 def record_step(problem, row, work, end, record):
     """Include the present step, up to `end` in x."""
     if record.active[0] == FORCES:
@@ -195,13 +233,16 @@ def record_step(problem, row, work, end, record):
     first = first_contact_row(problem)
     series, scratch = work.series, work.scratch
     for j in range(contacts):
-        _keep_range(series, first + j, end, row.numbers[2], record.ranges, j, scratch)
+        if problem.spring[j] == 0.0 and problem.belt[j] == 0.0:  # at rest, or on its way in one direction
+            _include(record.ranges, j, series[first + j, 0])
+            _include(record.ranges, j, value_at(series, first + j, end))
+        else:
+            _keep_range(series, first + j, end, row.numbers[2], record.ranges, j, scratch)
     _keep_works(problem, row, work, end, record, first)
     for i in range(record.masses.shape[0]):
-        for k in range(LONG):
-            scratch[_VALUE, k] = 0.0
-        for m in range(modes):
-            share = record.masses[i, m]
-            for k in range(LONG):
-                scratch[_VALUE, k] += share * series[m, k]
+        for k in range(0, WIDTH, LANES):
+            place = filled(0.0)
+            for m in range(modes):
+                place = place + load(series, m * WIDTH + k) * record.masses[i, m]
+            store(place, scratch, _VALUE * WIDTH + k)
         _keep_range(scratch, _VALUE, end, row.numbers[2], record.ranges, contacts + i, scratch)

@@ -16,11 +16,8 @@ from .follow import (
     REVERSALS,
     follow,
 )
-from .problem import padded
+from .problem import padded, state_size
 from .tangent import identity
-
-#: Phase of the load at which states are compared: events gather at the extremes of the load, away from here.
-SECTION = 0.37
 
 
 class Return(NamedTuple):
@@ -40,7 +37,7 @@ class Return(NamedTuple):
 def make_return(problem):
     """Allocate the memory of the return map."""
     contacts, modes = problem.chi.shape
-    size = 2 * modes + contacts
+    size = state_size(problem)
     shape = (3, padded(max(modes, contacts)))
     return Return(
         np.zeros(shape), np.zeros(contacts, np.int64), np.zeros(shape), np.zeros(contacts, np.int64),
@@ -98,14 +95,12 @@ def go_round(problem, row, friction, halves, work, memory, record, derive):
     code = FOLLOWED
     for half in range(halves):
         if code == FOLLOWED:
-            begin = SECTION + math.pi * (half % 2)
-            code = follow(
-                problem, row, friction, begin, math.pi, work, memory.law, memory.counts, record, derive
-            )
-    for j in range(work.sense.size):  # the first slip follows the last one of the period before
-        if halves % 2 == 0 and memory.counts[FIRST_SENSE, j] * memory.counts[LAST_SENSE, j] < 0.0:
+            code = follow(problem, row, friction, half % 2, work, memory.law, memory.counts, record, derive)
+    sign = -1.0 if halves % 2 == 1 else 1.0
+    for j in range(work.sense.size):  # the first slip follows the last one of the time before
+        if memory.counts[FIRST_SENSE, j] * (sign * memory.counts[LAST_SENSE, j]) < 0.0:
             memory.counts[REVERSALS, j] += 1.0
-    take_state(work, memory.end, memory.end_senses, -1.0 if halves % 2 == 1 else 1.0)
+    take_state(work, memory.end, memory.end_senses, sign)
     return code
 
 
@@ -133,7 +128,7 @@ def return_distance(problem, row, memory):
 
 
 @kernel
-def _neutral_rows(problem, memory, matrix, weight):
+def neutral_rows(problem, memory, matrix, weight):
     """Add weight l^T l/|l|^2 for every contact that rests; the map keeps its place z (elastic: z - f/k)."""
     modes = problem.push.shape[0]
     for j in range(memory.senses.size):
@@ -150,9 +145,11 @@ def _neutral_rows(problem, memory, matrix, weight):
         for a in range(modes):
             for b in range(modes):
                 matrix[a, b] += weight * problem.chi[j, a] * problem.chi[j, b] / square
-            matrix[a, last] += weight * problem.chi[j, a] * force / square
-            matrix[last, a] += weight * problem.chi[j, a] * force / square
-        matrix[last, last] += weight * force * force / square
+            if force != 0.0:
+                matrix[a, last] += weight * problem.chi[j, a] * force / square
+                matrix[last, a] += weight * problem.chi[j, a] * force / square
+        if force != 0.0:
+            matrix[last, last] += weight * force * force / square
 
 
 @kernel
@@ -160,24 +157,24 @@ def fill_newton(problem, halves, work, memory):
     """Fill the linear equations of a Newton step; the derivatives are in `work.tangent`."""
     modes = problem.push.shape[0]
     contacts = memory.senses.size
-    size = 2 * modes + contacts
+    size = state_size(problem)
     sign = -1.0 if halves % 2 == 1 else 1.0
     for a in range(size):
         for b in range(size):
             memory.matrix[a, b] = -sign * work.tangent[a, b]
         memory.matrix[a, a] += 1.0
     for j in range(contacts):
-        if problem.spring[j] == 0.0:  # a rigid contact has no force of its own in the state
+        if size > 2 * modes and problem.spring[j] == 0.0:  # a rigid contact's force is no coordinate
             for a in range(size):
                 memory.matrix[2 * modes + j, a] = 0.0
                 memory.matrix[a, 2 * modes + j] = 0.0
             memory.matrix[2 * modes + j, 2 * modes + j] = 1.0
     if halves % 2 == 0:
-        _neutral_rows(problem, memory, memory.matrix, 1.0)
+        neutral_rows(problem, memory, memory.matrix, 1.0)
     for m in range(modes):
         memory.right[m] = memory.end[0, m] - memory.start[0, m]
         memory.right[modes + m] = memory.end[1, m] - memory.start[1, m]
-    for j in range(contacts):
+    for j in range(size - 2 * modes):
         memory.right[2 * modes + j] = memory.end[2, j] - memory.start[2, j]
 
 

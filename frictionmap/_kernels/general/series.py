@@ -11,10 +11,8 @@ import numpy as np
 
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store, total
-from .problem import INVERSE, LONG, TERMS, WIDTH, set_channels
-
-#: k + 1: factors of a derivative.
-_NEXT = np.arange(1.0, WIDTH + 1.0)
+from .crossings import value_at
+from .problem import INVERSE, LONG, NEXT, TERMS, WIDTH, set_channels
 
 
 class Friction(NamedTuple):
@@ -194,8 +192,11 @@ def _hold_term(problem, row, k, work, first):
 
 
 @inner_kernel
-def _contact_motion(problem, row, work, first):
-    """Fill the displacements in the contacts, and the velocities relative to their walls."""
+def _contact_motion(problem, row, work, first, whole):
+    """Fill the displacements in the contacts, and the velocities relative to their walls.
+
+    whole : for all contacts; else for those that slide
+    """
     modes, channels = problem.push.shape
     contacts = problem.spring.size
     series = work.series
@@ -203,6 +204,8 @@ def _contact_motion(problem, row, work, first):
         for m in range(modes):
             series[m, k] = work.moves[k, m]
     for j in range(contacts):
+        if work.sense[j] == 0 and not whole:
+            continue
         z, w = (first + j) * WIDTH, (first + contacts + j) * WIDTH
         for k in range(0, WIDTH, LANES):
             place = filled(0.0)
@@ -213,7 +216,7 @@ def _contact_motion(problem, row, work, first):
                     place = place - load(series, (modes + d) * WIDTH + k) * problem.base[j, d]
             store(place, series, z + k)
         for k in range(0, WIDTH - LANES, LANES):
-            store(load(series, z + k + 1) * load(_NEXT, k), series, w + k)
+            store(load(series, z + k + 1) * load(NEXT, k), series, w + k)
         series[first + contacts + j, 0] -= row.numbers[0] * problem.belt[j]
 
 
@@ -226,13 +229,21 @@ def _all_slide(work):
     return held == 0
 
 
-@inner_kernel
-def expand(problem, row, friction, tau, work):
-    """Fill the series of the step that begins at the phase tau with the state and pattern in `work`."""
+@kernel
+def expand(problem, row, friction, tau, interval, work, whole):
+    """Fill the series of the step that begins at the phase tau with the state and pattern in `work`.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    tau, interval : see `set_channels`
+    work : Work
+    whole : whether the motion in contacts that are held is wanted, too
+    """
     contacts = problem.spring.size
     width = row.chi.shape[1]
     first = first_contact_row(problem)
-    set_channels(problem, row, tau, work.series)
+    set_channels(problem, row, tau, interval, work)
     _normal_loads(problem, work.series, first)
     _known_forces(problem, friction, work, first)
     for m in range(0, width, LANES):
@@ -247,26 +258,29 @@ def expand(problem, row, friction, tau, work):
             _free_term(problem, row, k, work, first)
             if work.held[contacts] > 0:
                 _hold_term(problem, row, k, work, first)
-    _contact_motion(problem, row, work, first)
+    _contact_motion(problem, row, work, first, whole)
 
 
-@inner_kernel
+@kernel
 def advance(problem, row, x, work):
     """Move the state on by x <= 1 of the present step."""
     first = first_contact_row(problem)
     contacts = problem.spring.size
     width = row.chi.shape[1]
-    for m in range(0, width, LANES):
-        place = filled(0.0)
-        velocity = filled(0.0)
-        for k in range(LONG - 1, -1, -1):
-            velocity = velocity * x + place
-            place = place * x + load(work.moves, k * width + m)
-        store(place, work.state, m)
+    y = x * x
+    for m in range(0, width, LANES):  # even and odd terms apart: two short chains of operations
+        even = filled(0.0)
+        odd = filled(0.0)
+        even_slope = filled(0.0)
+        odd_slope = filled(0.0)
+        for k in range(LONG - 2, -1, -2):
+            even_slope = even_slope * y + even
+            odd_slope = odd_slope * y + odd
+            even = even * y + load(work.moves, k * width + m)
+            odd = odd * y + load(work.moves, (k + 1) * width + m)
+        velocity = odd + (even_slope * x + odd_slope * y) * 2.0
+        store(even + odd * x, work.state, m)
         store(velocity, work.state, work.state.shape[1] + m)
     for j in range(contacts):
         if problem.spring[j] != 0.0 and work.sense[j] == 0:
-            force = 0.0
-            for k in range(TERMS - 1, -1, -1):
-                force = force * x + work.series[first + 2 * contacts + j, k]
-            work.state[2, j] = force
+            work.state[2, j] = value_at(work.series, first + 2 * contacts + j, x)

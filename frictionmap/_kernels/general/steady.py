@@ -6,17 +6,19 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
+from ..compiler.packed import packed
 from ..structure.newton import solve_linear, spectral_radius
-from .follow import FOLLOWED, STUCK, follow
+from .follow import BEFORE, FOLLOWED, STUCK, follow
 from .pattern import begin, stop_exactly
-from .problem import make_row, make_work, padded, set_channels, set_row
-from .record import FORCES, NOTHING, STEPS, clear_record, make_record
+from .problem import SECTION, Row, Work, make_row, make_work, padded, set_channels, set_row, state_size
+from .record import FORCES, NOTHING, RANGES, STEPS, Record, clear_record, make_record, mirror
 from .return_map import (
-    SECTION,
+    Return,
     fill_newton,
     go_round,
     make_return,
     motion_size,
+    neutral_rows,
     put_state,
     return_distance,
     take_state,
@@ -38,18 +40,19 @@ _SAME = 5e-2
 _MOST_STEPS = 12
 _LESS = 0.5
 
-#: A step below this is the last one: the next would be of the size of its square.
-_LAST = 1e-9
+#: A step below this is the last one: the next would be of the size of its square.  `measure` looks after it.
+_LAST = 1e-7
 
 #: A steady state that is back to this share of its size after a part of its period has that period.
 _RETURNED = 1e-9
 
-#: Largest distance of a measured state from the one that it returns to, and measurements until then.
-_MEASURED = 1e-11
+#: Largest error of a measured state, which is its distance from the one that it returns to, over the share
+#: of a disturbance that a return takes away; and measurements until then.
+_MEASURED = 1e-12
 _MOST_REPEATED = 2
 
 #: Friction of a contact that is held, and attempts of Newton's method after which contacts are held.
-_WITHOUT_LIMIT = 1e200
+WITHOUT_LIMIT = 1e200
 _CREEPS = 6
 
 #: A multiplier above this is not that of a motion that attracts.
@@ -65,13 +68,22 @@ class Ring(NamedTuple):
     friction: np.ndarray  # (2, N) friction of contacts while they are held
 
 
+class Tools(NamedTuple):
+    """The memory that steady states are found in."""
+
+    row: Row
+    work: Work
+    memory: Return
+    ring: Ring
+    record: Record
+
+
 class Steady(NamedTuple):
     """The steady state of a cell."""
 
     status: int
     halves: int  # half periods after which it returns
     cycles: float  # periods followed
-    multiplier: float  # NaN where not computed
 
 
 @entry
@@ -81,6 +93,15 @@ def make_ring(problem):
     return Ring(
         np.zeros((RING, 3, padded(max(modes, contacts)))), np.zeros((RING, contacts), np.int64),
         np.zeros(1, np.int64), np.zeros((2, contacts)),
+    )  # fmt: skip
+
+
+@entry
+def make_tools(problem, masses, most):
+    """Allocate the memory, for a record of `most` steps; `masses` (n, m): see `make_record`."""
+    return Tools(
+        make_row(problem), make_work(problem), make_return(problem), make_ring(problem),
+        make_record(problem, masses, most),
     )  # fmt: skip
 
 
@@ -134,14 +155,28 @@ def _recurrence(row, memory, ring, base):
 
 
 @kernel
+def _radius_of_two(matrix):
+    """Largest modulus of the eigenvalues of a (2, 2) matrix."""
+    mean = 0.5 * (matrix[0, 0] + matrix[1, 1])
+    half = 0.5 * (matrix[0, 0] - matrix[1, 1])
+    square = half * half + matrix[0, 1] * matrix[1, 0]
+    if square >= 0.0:
+        return abs(mean) + math.sqrt(square)
+    return math.sqrt(mean * mean - square)
+
+
+@kernel
 def _multiplier(problem, halves, work, memory):
     """Largest modulus of the multipliers, without those of contacts that rest."""
-    modes = problem.push.shape[0]
-    size = 2 * modes + memory.senses.size
+    size = state_size(problem)
     fill_newton(problem, halves, work, memory)
+    if halves % 2 == 1:  # a place where a contact rests becomes its mirror image
+        neutral_rows(problem, memory, memory.matrix, -1.0)
     for a in range(size):
         for b in range(size):
             memory.matrix[a, b] = (1.0 if a == b else 0.0) - memory.matrix[a, b]
+    if size == 2:
+        return _radius_of_two(memory.matrix)
     return spectral_radius(memory.matrix, size, work.tangent, 0.0)
 
 
@@ -162,7 +197,7 @@ def _newton(problem, row, friction, halves, tolerance, work, memory, record):
     """
     last = math.inf
     cycles = 0.0
-    size = 2 * problem.push.shape[0] + memory.senses.size
+    size = state_size(problem)
     for _ in range(_MOST_STEPS):
         code = go_round(problem, row, friction, halves, work, memory, record, True)
         cycles += 0.5 * halves
@@ -217,6 +252,21 @@ def _far(problem, row, memory, ring):
 
 
 @kernel
+def _attracts(problem, row, halves, work, memory, ring):
+    """Whether the steady state found is stable, and the one that the motion goes to.
+
+    Parameters
+    ----------
+    problem, row : Problem, Row
+    halves : half periods after which it returns
+    work, memory, ring : Work, Return, Ring
+    """
+    if _multiplier(problem, halves, work, memory) > _STABLE:
+        return False
+    return _far(problem, row, memory, ring) <= _SAME
+
+
+@kernel
 def _hold_some(problem, row, friction, share, work, memory, kept):
     """Hold the contacts that were stuck for more than a share of the last way; how many.
 
@@ -235,11 +285,12 @@ def _hold_some(problem, row, friction, share, work, memory, kept):
     for j in range(memory.senses.size):
         kept[0, j], kept[1, j] = friction.kinetic[j], friction.static[j]
         if whole > 0.0 and memory.counts[STUCK, j] > share * whole:
-            friction.kinetic[j] = friction.static[j] = _WITHOUT_LIMIT
+            friction.kinetic[j] = friction.static[j] = WITHOUT_LIMIT
             work.sense[j] = 0
             count += 1
     if count > 0:
-        set_channels(problem, row, SECTION, work.series)
+        work.clock[0] = math.nan
+        set_channels(problem, row, SECTION, 0, work)
         if not factor_held(problem, row, work):
             return 0
         stop_exactly(problem, row, work)
@@ -269,7 +320,7 @@ def _can_rest(problem, row, friction, work, memory, record, kept):
     go_round(problem, row, friction, 2, work, memory, record, False)
     record.active[0] = NOTHING
     for j in range(memory.senses.size):
-        if friction.kinetic[j] == _WITHOUT_LIMIT:
+        if friction.kinetic[j] == WITHOUT_LIMIT:
             for d in range(problem.push.shape[1]):
                 if problem.normal[j, d] != 0.0:
                     return False
@@ -348,12 +399,9 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record):
         if halves > 0:
             status, more = _newton(problem, row, friction, halves, tolerance, work, memory, record)
             spent += more
-            if status == REPEATS:
-                multiplier = _multiplier(problem, halves, work, memory)
-                if unique or (multiplier <= _STABLE and _far(problem, row, memory, ring) <= _SAME):
-                    least, more = _least_period(problem, row, friction, halves, base, work, memory, record)
-                    multiplier **= least / halves
-                    return Steady(REPEATS, least, spent + more, multiplier)
+            if status == REPEATS and (unique or _attracts(problem, row, halves, work, memory, ring)):
+                least, more = _least_period(problem, row, friction, halves, base, work, memory, record)
+                return Steady(REPEATS, least, spent + more)
             pause += 1
             wait = pause
             if unique and pause in (_CREEPS, 2 * _CREEPS):
@@ -362,13 +410,12 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record):
                 )
                 spent += more
                 if settled:
-                    multiplier = _multiplier(problem, base, work, memory)
-                    return Steady(REPEATS, base, spent, multiplier)
+                    return Steady(REPEATS, base, spent)
             _last_kept(memory, ring)
         code = go_round(problem, row, friction, base, work, memory, record, False)
         spent += 0.5 * base
         if code != FOLLOWED:
-            return Steady(1 + code, 0, spent, math.nan)
+            return Steady(1 + code, 0, spent)
         for part in range(3):
             for i in range(memory.start.shape[1]):
                 memory.start[part, i] = memory.end[part, i]
@@ -376,37 +423,41 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record):
             memory.senses[j] = memory.end_senses[j]
         _keep(memory, ring)
         wait = max(wait - 1, 0)
-    return Steady(NO_REPEAT, 0, spent, math.nan)
+    return Steady(NO_REPEAT, 0, spent)
 
 
 @kernel
 def measure(problem, row, friction, halves, work, memory, record, what):
-    """Follow the steady state once more, whole periods of it, into `record` and `memory.counts`.
+    """Follow the steady state once more, into `record` and `memory.counts`.
 
-    Where it does not quite return, as the last step of Newton's method has changed the pattern, it is solved
-    once more.
+    Where it does not quite return, it is solved once more.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
     halves : half periods after which it returns
     work, memory, record : Work, Return, Record
-    what : RANGES or STEPS, what is kept
+    what : NOTHING, RANGES, STEPS or FORCES, what is kept; STEPS and FORCES are kept of whole periods
 
     Returns
     -------
-    int : number of half periods followed, an even one
+    (followed, multiplier) : half periods followed, and the largest modulus of the multipliers over `halves`
     """
-    both = halves if halves % 2 == 0 else 2 * halves
-    for _ in range(_MOST_REPEATED):
+    both = halves if halves % 2 == 0 or what == NOTHING or what == RANGES else 2 * halves
+    multiplier = math.nan
+    for repeat in range(_MOST_REPEATED):
         clear_record(record)
         record.active[0] = what
-        go_round(problem, row, friction, both, work, memory, record, False)
+        go_round(problem, row, friction, both, work, memory, record, True)
         record.active[0] = NOTHING
-        if return_distance(problem, row, memory) <= _MEASURED:
+        multiplier = _multiplier(problem, both, work, memory) ** (halves / both)
+        off = return_distance(problem, row, memory)
+        if off <= _MEASURED * min(1.0, abs(1.0 - multiplier)) or repeat == _MOST_REPEATED - 1:
             break
         _newton(problem, row, friction, halves, _MEASURED, work, memory, record)
-    return both
+    if both % 2 == 1:
+        mirror(record)
+    return both, multiplier
 
 
 @kernel
@@ -426,8 +477,35 @@ def from_rest(problem, row, friction, state, work, memory, record):
         work.state[2, j] = 0.0
     record.active[0] = NOTHING
     if begin(problem, row, friction, 0.0, work, memory.law):
-        follow(problem, row, friction, 0.0, SECTION, work, memory.law, memory.counts, record, False)
+        follow(problem, row, friction, BEFORE, work, memory.law, memory.counts, record, False)
     take_state(work, memory.start, memory.senses, 1.0)
+
+
+@kernel
+def _one(problem, i, friction, state, cycles, tolerance, tools):
+    """Find the steady state of one cell, and record it.
+
+    Parameters
+    ----------
+    problem, i, friction, state, cycles, tolerance : see `one_steady_state`
+    tools : Tools
+
+    Returns
+    -------
+    Steady, half periods, multiplier
+    """
+    problem, friction, tools = packed(problem), packed(friction), packed(tools)
+    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    set_row(problem, i, row)
+    from_rest(problem, row, friction, state, work, memory, record)
+    found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record)
+    halves, multiplier = 2, math.nan
+    if found.status == REPEATS:
+        halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, STEPS)
+    else:
+        record.active[0] = STEPS
+        go_round(problem, row, friction, halves, work, memory, record, False)
+    return found, halves, multiplier
 
 
 @entry
@@ -445,14 +523,9 @@ def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, mos
 
     Returns
     -------
-    Steady, half periods that the steps cover (0 without a steady state), counts (see `follow`), Record, h
+    Steady, half periods that the steps cover (two if there is no steady state), multiplier, counts (see
+    `follow`), Record, h
     """
-    row, work, memory = make_row(problem), make_work(problem), make_return(problem)
-    ring, record = make_ring(problem), make_record(problem, masses, most)
-    set_row(problem, i, row)
-    from_rest(problem, row, friction, state, work, memory, record)
-    found = find(problem, row, friction, cycles, tolerance, work, memory, ring, record)
-    halves = 0
-    if found.status == REPEATS:
-        halves = measure(problem, row, friction, found.halves, work, memory, record, STEPS)
-    return found, halves, memory.counts, record, row.numbers[0]
+    tools = make_tools(problem, masses, most)
+    found, halves, multiplier = _one(problem, i, friction, state, cycles, tolerance, tools)
+    return found, halves, multiplier, tools.memory.counts, tools.record, tools.row.numbers[0]

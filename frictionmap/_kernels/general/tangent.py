@@ -1,23 +1,26 @@
 """Derivatives of the motion by its state at the section, carried through steps and events.
 
-One rule serves every event: it is shifted in time by -(g J)/g', where g is the watched quantity, and for so
-long the motion follows its equation of after the event in place of that of before it.
+Between events a motion is linear: its derivatives over a step depend on the pattern and on the length of the
+step alone, not on the motion.  One rule serves every event: it is shifted in time by -(g J)/g', where g is
+the watched quantity, and for so long the motion follows its equation of after the event in place of that of
+before it.
 """
 
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
-from .problem import INVERSE, TERMS
+from .problem import INVERSE, LONG, TERMS, state_size
 
 
 @kernel
 def identity(problem, work):
     """Begin: the derivatives at the section itself; the force of an elastic contact that slips is given."""
-    for a in range(work.tangent.shape[0]):
+    size = state_size(problem)
+    for a in range(size):
         for b in range(work.tangent.shape[1]):
             work.tangent[a, b] = 1.0 if a == b else 0.0
     for j in range(work.sense.size):
-        if work.sense[j] != 0:
-            a = 2 * problem.push.shape[0] + j
+        a = 2 * problem.push.shape[0] + j
+        if work.sense[j] != 0 and a < size:
             work.tangent[a, a] = 0.0
 
 
@@ -40,109 +43,175 @@ def _solve_columns(work, right):
 
 
 @inner_kernel
-def _elastic_term(problem, row, work, k):
+def _elastic_term(problem, row, work, k, first):
     """Take the derivatives of the forces of elastic contacts that are held from term k + 2."""
     modes = problem.push.shape[0]
-    columns, size = work.columns, work.tangent.shape[1]
+    columns, size = row.columns, work.tangent.shape[1]
     inverse = INVERSE[k]
     for j in range(problem.spring.size):
         if problem.spring[j] == 0.0 or work.sense[j] != 0:
             continue
         for i in range(0, size, LANES):
-            force = load(work.tangent, (2 * modes + j) * size + i)
-            if k > 0:
-                force = filled(0.0)
-                for m in range(modes):
-                    place = load(columns, (k * modes + m) * size + i)
+            force = filled(0.0)
+            for m in range(modes):
+                if k > 0:
+                    place = load(columns, first + (k * modes + m) * size + i)
                     force = force + place * (problem.spring[j] * problem.chi[j, m])
             for m in range(modes):
-                at = ((k + 2) * modes + m) * size + i
+                at = first + ((k + 2) * modes + m) * size + i
                 store(load(columns, at) - force * (inverse * row.reaction[j, m]), columns, at)
 
 
 @inner_kernel
-def _free_columns(problem, row, work, k):
+def _own_force(problem, row, work, slot):
+    """Take from term 2 the forces that elastic contacts begin with, which are coordinates of the state."""
+    modes = problem.push.shape[0]
+    for j in range(problem.spring.size):
+        if problem.spring[j] != 0.0 and work.sense[j] == 0:
+            for m in range(modes):
+                row.columns[slot, 2, m, 2 * modes + j] -= INVERSE[0] * row.reaction[j, m]
+
+
+@inner_kernel
+def _free_columns(problem, row, work, k, first):
     """Fill term k + 2 of the columns without forces of held contacts."""
     modes = problem.push.shape[0]
-    columns, size = work.columns, work.tangent.shape[1]
+    columns, size = row.columns, work.tangent.shape[1]
     inverse = INVERSE[k]
     for m in range(modes):
         of_place, of_velocity = row.place_term[k, m], row.velocity_term[k, m]
         for i in range(0, size, LANES):
-            part = load(columns, (k * modes + m) * size + i) * of_place
-            part = part + load(columns, ((k + 1) * modes + m) * size + i) * of_velocity
+            part = load(columns, first + (k * modes + m) * size + i) * of_place
+            part = part + load(columns, first + ((k + 1) * modes + m) * size + i) * of_velocity
             if problem.coupled:
                 for other in range(modes):
                     rate = (k + 1.0) * inverse * row.damping[m, other]
-                    part = part - load(columns, ((k + 1) * modes + other) * size + i) * rate
-            store(part, columns, ((k + 2) * modes + m) * size + i)
+                    part = part - load(columns, first + ((k + 1) * modes + other) * size + i) * rate
+            store(part, columns, first + ((k + 2) * modes + m) * size + i)
 
 
 @inner_kernel
-def _holding_columns(problem, row, work, k):
+def _holding_columns(problem, row, work, k, first):
     """Fill the derivatives of the holding forces, over (k+1)(k+2), and take them from term k + 2."""
     modes = problem.push.shape[0]
-    columns, size = work.columns, work.tangent.shape[1]
+    columns, size = row.columns, work.tangent.shape[1]
     count = work.held[problem.spring.size]
     for a in range(count):
         j = work.held[a]
         for i in range(0, size, LANES):
             part = filled(0.0)
             for m in range(modes):
-                part = part + load(columns, ((k + 2) * modes + m) * size + i) * problem.chi[j, m]
+                part = part + load(columns, first + ((k + 2) * modes + m) * size + i) * problem.chi[j, m]
             store(part, work.forces, a * size + i)
     _solve_columns(work, work.forces)
     for a in range(count):
         j = work.held[a]
         for m in range(modes):
             for i in range(0, size, LANES):
-                at = ((k + 2) * modes + m) * size + i
+                at = first + ((k + 2) * modes + m) * size + i
                 part = load(work.forces, a * size + i) * row.reaction[j, m]
                 store(load(columns, at) - part, columns, at)
 
 
 @inner_kernel
-def _term(problem, row, work, k):
-    """Fill term k + 2 of the columns."""
-    _free_columns(problem, row, work, k)
-    _elastic_term(problem, row, work, k)
-    if work.held[problem.spring.size] > 0:
-        _holding_columns(problem, row, work, k)
+def _onward(problem, row, work, slot, x, table, at):
+    """Fill the derivatives over x of a step with the present pattern, from their series.
 
-
-@inner_kernel
-def _begin_columns(problem, work):
-    modes = problem.push.shape[0]
-    size = work.tangent.shape[1]
-    for i in range(0, modes * size, LANES):
-        store(load(work.tangent, i), work.columns, i)
-        store(load(work.tangent, modes * size + i), work.columns, modes * size + i)
-
-
-@inner_kernel
-def advance_tangent(problem, row, work, x):
-    """Carry the derivatives through x of the present step."""
-    modes = problem.push.shape[0]
-    columns, tangent = work.columns, work.tangent
-    size = tangent.shape[1]
-    _begin_columns(problem, work)
-    for k in range(TERMS):
-        _term(problem, row, work, k)
+    Parameters
+    ----------
+    problem, row, work : Problem, Row, Work
+    slot : place of the pattern in the row
+    x : length of the step
+    table, at : (..., size, S), and the place in it that is filled
+    """
+    modes, contacts = problem.push.shape[0], problem.spring.size
+    columns, size = row.columns, work.tangent.shape[1]
+    count = state_size(problem)
+    first = slot * LONG * modes * size
+    into = at * count * size
     for m in range(modes):
         for i in range(0, size, LANES):
             place = filled(0.0)
             velocity = filled(0.0)
-            for k in range(TERMS + 1, -1, -1):
+            for k in range(LONG - 1, -1, -1):
                 velocity = velocity * x + place
-                place = place * x + load(columns, (k * modes + m) * size + i)
-            store(place, tangent, m * size + i)
-            store(velocity, tangent, (modes + m) * size + i)
-    for j in range(problem.spring.size):
-        if problem.spring[j] != 0.0 and work.sense[j] == 0:
-            for m in range(modes):
-                stiffness = problem.spring[j] * problem.chi[j, m]
+                place = place * x + load(columns, first + (k * modes + m) * size + i)
+            store(place, table, into + m * size + i)
+            store(velocity, table, into + (modes + m) * size + i)
+    if count == 2 * modes:
+        return
+    for j in range(contacts):
+        for i in range(size):
+            force = 1.0 if i == 2 * modes + j else 0.0
+            if problem.spring[j] != 0.0 and work.sense[j] == 0:
+                for m in range(modes):
+                    moved = table[at, m, i] - (1.0 if i == m else 0.0)
+                    force += problem.spring[j] * problem.chi[j, m] * moved
+            table[at, 2 * modes + j, i] = force
+
+
+@kernel
+def _fill_pattern(problem, row, work, slot):
+    """Fill the derivatives of motions with the present pattern by the state at their beginning."""
+    modes, contacts = problem.push.shape[0], problem.spring.size
+    size = work.tangent.shape[1]
+    first = slot * LONG * modes * size
+    for m in range(modes):
+        for i in range(size):
+            row.columns[slot, 0, m, i] = 1.0 if i == m else 0.0
+            row.columns[slot, 1, m, i] = 1.0 if i == modes + m else 0.0
+    for k in range(TERMS):
+        _free_columns(problem, row, work, k, first)
+        if k == 0:
+            _own_force(problem, row, work, slot)
+        _elastic_term(problem, row, work, k, first)
+        if work.held[contacts] > 0:
+            _holding_columns(problem, row, work, k, first)
+        if k == 0:
+            for a in range(work.held[contacts]):
                 for i in range(size):
-                    tangent[2 * modes + j, i] += stiffness * (tangent[m, i] - columns[0, m, i])
+                    row.grips[slot, work.held[a], i] = 2.0 * work.forces[a, i]
+    _onward(problem, row, work, slot, 1.0, row.onward, slot)
+
+
+@kernel
+def pattern_slot(problem, row, work):
+    """Place of the present pattern in the tables of the row, filled if it is new there."""
+    pattern = 0
+    for j in range(work.sense.size):
+        if work.sense[j] == 0:
+            pattern += 1 << j
+    slot = pattern % row.patterns.size
+    if row.patterns[slot] != pattern + 1:
+        _fill_pattern(problem, row, work, slot)
+        row.patterns[slot] = pattern + 1
+    return slot
+
+
+@kernel
+def advance_tangent(problem, row, work, x):
+    """Carry the derivatives through x of the present step."""
+    slot = pattern_slot(problem, row, work)
+    if x == 1.0:
+        _multiply(problem, row.onward, slot, work)
+    else:
+        _onward(problem, row, work, slot, x, work.onward, 0)
+        _multiply(problem, work.onward, 0, work)
+
+
+@inner_kernel
+def _multiply(problem, table, at, work):
+    """Multiply the derivatives by those over a step, which are at this place of a table."""
+    count, size = state_size(problem), work.tangent.shape[1]
+    product = count * size  # the second half of the scratch
+    for i in range(0, size, LANES):
+        for a in range(count):
+            part = filled(0.0)
+            for b in range(count):
+                part = part + load(work.tangent, b * size + i) * table[at, a, b]
+            store(part, work.onward, product + a * size + i)
+        for a in range(count):
+            store(load(work.onward, product + a * size + i), work.tangent, a * size + i)
 
 
 @kernel
@@ -158,22 +227,18 @@ def watched_row(problem, row, work, j, sign, out):
     """
     modes = problem.push.shape[0]
     size = work.tangent.shape[1]
-    for i in range(size):
-        out[i] = 0.0
-    if sign == 0:
-        for m in range(modes):
-            for i in range(size):
-                out[i] += problem.chi[j, m] * work.tangent[modes + m, i]
-    elif problem.spring[j] != 0.0:
-        for i in range(size):
-            out[i] = -sign * work.tangent[2 * modes + j, i]
-    else:
-        _begin_columns(problem, work)
-        _term(problem, row, work, 0)
-        for a in range(work.held[problem.spring.size]):
-            if work.held[a] == j:
-                for i in range(size):
-                    out[i] = -2.0 * sign * work.forces[a, i]
+    slot = pattern_slot(problem, row, work) if sign != 0 else 0
+    for i in range(0, size, LANES):
+        part = filled(0.0)
+        if sign == 0:
+            for m in range(modes):
+                part = part + load(work.tangent, (modes + m) * size + i) * problem.chi[j, m]
+        elif problem.spring[j] != 0.0:
+            part = part - load(work.tangent, (2 * modes + j) * size + i) * float(sign)
+        else:
+            for b in range(state_size(problem)):
+                part = part - load(work.tangent, b * size + i) * (sign * row.grips[slot, j, b])
+        store(part, out, i)
 
 
 @kernel
@@ -193,8 +258,9 @@ def through_event(problem, row, work, drop, watched, slope):
         if drop[j] != 0.0:
             for m in range(modes):
                 factor = -row.reaction[j, m] * drop[j] / slope
-                for i in range(size):
-                    work.tangent[modes + m, i] += factor * watched[i]
+                for i in range(0, size, LANES):
+                    at = (modes + m) * size + i
+                    store(load(work.tangent, at) + load(watched, i) * factor, work.tangent, at)
         if problem.spring[j] != 0.0 and work.sense[j] != 0:
             for i in range(size):
                 work.tangent[2 * modes + j, i] = 0.0
@@ -207,15 +273,15 @@ def hold_tangent(problem, row, work):
     size = work.tangent.shape[1]
     count = work.held[problem.spring.size]
     for a in range(count):
-        for i in range(size):
-            work.forces[a, i] = 0.0
-        for m in range(modes):
-            chi = problem.chi[work.held[a], m]
-            for i in range(size):
-                work.forces[a, i] += chi * work.tangent[modes + m, i]
+        for i in range(0, size, LANES):
+            part = filled(0.0)
+            for m in range(modes):
+                part = part + load(work.tangent, (modes + m) * size + i) * problem.chi[work.held[a], m]
+            store(part, work.forces, a * size + i)
     _solve_columns(work, work.forces)
     for a in range(count):
         for m in range(modes):
             reaction = row.reaction[work.held[a], m]
-            for i in range(size):
-                work.tangent[modes + m, i] -= reaction * work.forces[a, i]
+            for i in range(0, size, LANES):
+                at = (modes + m) * size + i
+                store(load(work.tangent, at) - load(work.forces, a * size + i) * reaction, work.tangent, at)

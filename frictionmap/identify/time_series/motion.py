@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..._kernels.many_harmonics.steady import REPEATS, steady_motion
+from ...general.one_mass import steady_motion
 from ..signals.phasors import Phasors, harmonics_at
 
 PARAMETERS = ("f_n", "zeta", "x_F", "mu", "offset_x")
@@ -99,14 +99,13 @@ def motion(mass: Shaken, values: np.ndarray) -> Motion:
     moves = mass.contact == "joined-base-wall"
     q = mass.start[0] - offset - (float(mass.base.sum().real) if moves else 0.0)
     rate = (1j * np.arange(mass.base.size) * mass.base).sum().real if moves else 0.0
-    places = np.empty(mass.phases.size)
     found = steady_motion(
-        mass.frequency / f_n, zeta, friction, mu, load_harmonics(mass, f_n, zeta), q,
-        mass.start[1] - float(rate), mass.phases, places, _CYCLES,
+        mass.frequency / f_n, zeta, friction, mu, load_harmonics(mass, f_n, zeta),
+        (q, mass.start[1] - float(rate)), mass.phases, _CYCLES,
     )  # fmt: skip
-    by_sample = np.empty(places.size)
-    by_sample[mass.order] = places + offset + (harmonics_at(mass.base, mass.phases) if moves else 0.0)
-    return Motion(by_sample, found.status == REPEATS, found.stops, found.stuck, found.turn_load)
+    by_sample = np.empty(mass.phases.size)
+    by_sample[mass.order] = found.places + offset + (harmonics_at(mass.base, mass.phases) if moves else 0.0)
+    return Motion(by_sample, found.repeats, found.stops, found.stuck, found.turn_load)
 
 
 def inner(values: np.ndarray) -> np.ndarray:

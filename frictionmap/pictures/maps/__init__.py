@@ -8,5 +8,6 @@ boundary_curves  boundaries over a map, at the resolution of the picture
 regime_map       maps of regimes and stops
 boundary_map     maps of the boundaries alone
 share_map        maps of probabilities
+force_map        two contacts at one frequency, friction against friction
 ===============  =======================================================
 """

@@ -1,0 +1,112 @@
+"""Named tuples that kernels pass on by their address.
+
+numba passes every array of a named tuple as some seven numbers on the stack, and a motion has sixty arrays:
+a call would cost more than the kernel that it calls.  `packed` keeps a tuple in the memory of the function
+that calls it; kernels get its address, and read an array where they use it.
+"""
+
+from typing import Any, TypeVar
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.core.imputils import impl_ret_borrowed
+from numba.core.typing.templates import AttributeTemplate, infer_getattr
+from numba.extending import lower_builtin, lower_getattr_generic, models, register_model, type_callable
+
+_Group = TypeVar("_Group", bound=tuple)
+
+
+def packed(group: _Group) -> _Group:
+    """Return a named tuple for kernels to pass on; valid until the calling function returns.
+
+    Its attributes are those of the tuple; a named tuple in it is passed on by its address as well; a tuple
+    that is packed already is returned as it is.  Nothing
+    can replace an attribute, so that a kernel reads it once and not in every turn of a loop.  For the same
+    reason `packed` must not be called in a loop: all its turns would share one place in memory.
+
+    Only kernels call it: references of the arrays are not counted, and the entry that made them keeps them.
+    """
+    return group
+
+
+class _Packed(types.Type):
+    def __init__(self, group: types.BaseNamedTuple) -> None:
+        self.group = group
+        super().__init__(name=f"packed({group.name})")
+
+    @property
+    def key(self) -> Any:
+        return self.group
+
+    @property
+    def instance_class(self) -> type:
+        """The class of the tuple, as numba's type of the tuple has it."""
+        return self.group.instance_class  # type: ignore[no-any-return]
+
+
+@register_model(_Packed)
+class _Address(models.PrimitiveModel):
+    def __init__(self, manager: Any, kind: _Packed) -> None:
+        super().__init__(manager, kind, manager[kind.group].get_data_type().as_pointer())
+
+
+@type_callable(packed)
+def _type_of_packed(_: Any) -> Any:
+    def typed(group: Any) -> Any:
+        if isinstance(group, _Packed):
+            return group
+        return _Packed(group) if isinstance(group, types.BaseNamedTuple) else None
+
+    return typed
+
+
+@lower_builtin(packed, types.BaseNamedTuple)
+def _write_packed(context: Any, builder: ir.IRBuilder, signature: Any, arguments: tuple) -> ir.Value:
+    (group,) = arguments
+    model = context.data_model_manager[signature.args[0]]
+    memory = cgutils.alloca_once(builder, model.get_data_type())
+    builder.store(model.as_data(builder, group), memory)
+    # What `_read` reads is declared as constant, so that LLVM may read it at any time.  The address therefore
+    # comes out of an instruction (an empty one) of which LLVM knows only that it follows the stores above.
+    kind = ir.FunctionType(memory.type, [memory.type])
+    return builder.asm(kind, "", "=r,0,~{memory}", [memory], side_effect=True)
+
+
+@lower_builtin(packed, _Packed)
+def _keep_packed(context: Any, builder: ir.IRBuilder, signature: Any, arguments: tuple) -> ir.Value:
+    return arguments[0]
+
+
+@infer_getattr
+class _Attributes(AttributeTemplate):
+    key = _Packed
+
+    def generic_resolve(self, packed: _Packed, name: str) -> Any:
+        if name not in packed.group.fields:
+            return None
+        kind = packed.group[packed.group.fields.index(name)]
+        return _Packed(kind) if isinstance(kind, types.BaseNamedTuple) else kind
+
+
+@lower_getattr_generic(_Packed)
+def _write_attribute(
+    context: Any, builder: ir.IRBuilder, kind: _Packed, address: ir.Value, name: str
+) -> ir.Value:
+    index = kind.group.fields.index(name)
+    member = kind.group[index]
+    place = cgutils.gep_inbounds(builder, address, 0, index)
+    if isinstance(member, types.BaseNamedTuple):
+        return place
+    return impl_ret_borrowed(context, builder, member, _read(context, builder, member, place))
+
+
+def _read(context: Any, builder: ir.IRBuilder, kind: Any, place: ir.Value) -> ir.Value:
+    """Read a member of a tuple that never changes."""
+    block = builder.block
+    before = len(block.instructions)
+    value = context.data_model_manager[kind].load_from_data_pointer(builder, place)
+    for instruction in block.instructions[before:]:
+        if instruction.opname == "load":
+            instruction.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return value

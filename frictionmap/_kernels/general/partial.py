@@ -1,0 +1,63 @@
+"""Partial sticking: the force that holds one contact while the others move."""
+
+import math
+
+import numpy as np
+
+from ..compiler import entry, kernel
+from ..compiler.packed import packed
+from .problem import set_row
+from .record import FORCES
+from .series import Friction
+from .steady import REPEATS, WITHOUT_LIMIT, find, from_rest, make_tools, measure
+
+
+@kernel
+def _fill(problem, i, contact, lines, values, state, limits, tools, friction, out):
+    """Fill the forces; see `fill_holding_force`.
+
+    Parameters
+    ----------
+    problem, i, contact, lines, values, state, out : see `fill_holding_force`
+    limits : cycles, tolerance
+    tools, friction : Tools, Friction; their content does not matter
+    """
+    cycles, tolerance = limits
+    problem, tools, friction = packed(problem), packed(tools), packed(friction)
+    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    set_row(problem, i, row)
+    near = False
+    for k in range(values.size):
+        for j in range(lines.shape[0]):
+            force = WITHOUT_LIMIT if j == contact else lines[j, 0] * values[k] + lines[j, 1]
+            friction.kinetic[j] = force
+            friction.static[j] = force
+        if not near:
+            from_rest(problem, row, friction, state, work, memory, record)
+        found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record)
+        near = found.status == REPEATS
+        out[k] = math.nan
+        if near:
+            measure(problem, row, friction, found.halves, work, memory, record, FORCES)
+            out[k] = 0.5 * (record.forces[1, contact] - record.forces[0, contact])
+
+
+@entry
+def fill_holding_force(problem, i, contact, lines, values, state, cycles, tolerance, out):
+    """Fill half the range of the force that holds one contact, for mu = 1.
+
+    Parameters
+    ----------
+    problem, i : Problem, index of r
+    contact : contact that is held
+    lines : (N, 2) friction of contact j is lines[j, 0] value + lines[j, 1]
+    values : (n,) what the friction of the others is given by
+    state : (2, m) modes and their velocities q' at tau = 0
+    cycles, tolerance : see `steady.find`
+    out : (n,) filled; NaN where no steady state was found
+    """
+    contacts = lines.shape[0]
+    tools = make_tools(problem, np.empty((0, problem.squares.size)), 0)
+    friction = Friction(np.empty(contacts), np.empty(contacts))
+    limits = cycles, tolerance
+    _fill(problem, i, contact, lines, values, state, limits, tools, friction, out)

@@ -1,0 +1,85 @@
+"""One mass on a wall under a load of several harmonics: what measured records are compared with."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from .._kernels.general.follow import MOVED, NEAREST_STOP, STOPS, STUCK
+from .._kernels.general.problem import TURN, Problem
+from .._kernels.general.samples import fill_samples
+from .._kernels.general.series import Friction
+from .._kernels.general.steady import REPEATS, one_steady_state
+
+_TOLERANCE = 1e-12
+
+_ONE = np.ones((1, 1))
+_NONE = np.zeros((1, 1))
+
+#: Steps beyond those between events that are kept at first; four times as many where they do not suffice.
+_EVENTS = 64
+
+
+class SteadyMotion(NamedTuple):
+    """Steady state of one mass."""
+
+    repeats: bool  # whether there is one; if not, the rest is of the last period followed
+    places: np.ndarray  # displacements
+    stops: int  # a period
+    stuck: float  # share of the period
+    turn_load: float  # the least load over stiffness at a turn without a stop; infinite without one
+
+
+def _problem(r: float, zeta: float, load: np.ndarray) -> Problem:
+    """r^2 q'' + 2 zeta r q' + q + f = Re sum load_n e^{i n tau}, n >= 1."""
+    orders = np.flatnonzero(load[1:]) + 1 if load[1:].any() else np.array([1])
+    phasors = load[orders] if load[1:].any() else np.zeros(1, dtype=complex)
+    damping = 2.0 * zeta
+    fastest = 0.5 * (damping + math.sqrt(damping * damping + 4.0)) / r
+    size = float(np.abs(phasors).sum()) / (1.0 + r * r)
+    parts = np.stack((phasors.real, -phasors.imag))[np.newaxis, :, np.newaxis]
+    return Problem(
+        np.ones(1), np.full((1, 1), damping), False, _ONE, _ONE, _NONE, _NONE, np.zeros(1), np.zeros(1),
+        orders.astype(float), np.array([r]), parts,
+        np.array([max(fastest, float(orders[-1]))]), np.array([size or 1.0]), bool((orders % 2 == 1).all()),
+    )  # fmt: skip
+
+
+def steady_motion(
+    r: float, zeta: float, friction: float, mu: float, load: np.ndarray, start: tuple[float, float],
+    phases: np.ndarray, cycles: int,
+) -> SteadyMotion:  # fmt: skip
+    """Find the steady state that the motion from a state at tau = 0 reaches.
+
+    Parameters
+    ----------
+    r, zeta : frequency ratio > 0, damping ratio >= 0
+    friction, mu : kinetic friction over stiffness >= 0, static over kinetic friction >= 1
+    load : (N + 1,) complex harmonics 0, 1, ... of the load over stiffness, a length as the displacement
+    start : displacement and velocity over tau at tau = 0
+    phases : (n,) phases at which the displacement is wanted
+    cycles : periods allowed
+    """
+    problem = _problem(r, zeta, load)
+    offset = float(load[0].real)
+    state = np.array([[start[0] - offset], [start[1]]])
+    forces = Friction(np.array([friction]), np.array([mu * friction]))
+    most = int(4.0 * math.pi * problem.rates[0] / TURN) + _EVENTS
+    while True:
+        found, halves, _, counts, record, h = one_steady_state(
+            problem, 0, forces, state, float(cycles), _TOLERANCE, np.empty((0, 1)), most
+        )
+        count = int(record.count[0])
+        if count <= most:
+            break
+        most = 4 * count
+    period = halves // 2
+    places = np.empty(phases.size)
+    fill_samples(record.steps, record.patterns, count, 0, h, period, phases, places)
+    moves = counts[MOVED, 0] != 0.0
+    nearest = counts[NEAREST_STOP, 0]
+    return SteadyMotion(
+        found.status == REPEATS, places + offset, round(counts[STOPS, 0] / period),
+        counts[STUCK, 0] / (2.0 * math.pi * period) if moves else 1.0,
+        friction / nearest if nearest > 0.0 else math.inf,
+    )  # fmt: skip

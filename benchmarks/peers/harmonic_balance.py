@@ -118,7 +118,7 @@ def solve_row(balance, beta, stuck, found):
         if good:
             found[k] = state
         else:
-            found[k] = np.nan
+            found[k, :] = np.nan
             state[:] = stuck
 
 

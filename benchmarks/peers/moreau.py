@@ -96,7 +96,8 @@ def march(scheme, w, share, mobility, limits, loads, cycles):
     for cycle in range(cycles):
         last = cycle == cycles - 1
         if last:
-            ranges[0], ranges[1] = np.inf, -np.inf
+            ranges[0, :] = np.inf
+            ranges[1, :] = -np.inf
             _include(w, x, ranges)
         for k in range(loads.size):
             _free_velocity(scheme, x, v, loads[k], h, pull, new)

@@ -69,7 +69,7 @@ SCENES = {
     ONE: Scene(ContactBody(((1,),), _ONE_HARMONIC, 1, 0.05), (1.0,)),
     TWO: Scene(ContactBody(((1,),), _TWO_HARMONICS, 1, 0.05), (1.0,)),
     SQUARE: Scene(ContactBody(((1,),), square_wave(50), 1, 0.05), (1.0,)),
-    FIVE: Scene(ContactBody(((3,),), _THREE_HARMONICS, 5, 0.01), (1.0,)),
+    FIVE: Scene(ContactBody(((3,),), _THREE_HARMONICS, 5, 0.05), (1.0,)),
     E1: Scene(ContactBody(((1,), (1, 2)), _ONE_HARMONIC, 2, 0.01), (1.0, 0.3)),
     E2: Scene(ContactBody(((1,), (2, 3), (5,)), _ONE_HARMONIC, 5, 0.01), (1.0, 0.5, 0.25)),
     ELASTIC: Scene(ContactBody(((1,),), _ONE_HARMONIC, 1, 0.01), (1.0,), 3.0),

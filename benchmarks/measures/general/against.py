@@ -26,9 +26,9 @@ from .scenes import E1, E2, FIVE, ONE, SCENES, SQUARE, TWO, Scene
 COMPARED = (ONE, TWO, SQUARE, FIVE, E1, E2)
 _CELLS = {False: 3, True: 1}
 
-#: Periods that are marched: one mass; more masses, at most, by quick.
+#: Periods that are marched: one mass; more masses, at most.
 _THESIS = 200
-_MOST_PERIODS = {False: 100, True: 40}
+_MOST_PERIODS = 100
 _DECAYED, _EXTRA = 1e-10, 10
 
 #: Runs of frictionmap and of other solvers; a slow solver runs once.
@@ -81,7 +81,7 @@ class _Sample(NamedTuple):
     found: Found
 
 
-def _needed(multiplier: float) -> int:
+def periods_needed(multiplier: float) -> int:
     """Periods after which a disturbance has decayed, and some more."""
     if not multiplier > 0.0:
         return _EXTRA
@@ -103,8 +103,8 @@ def _sample(scene: Scene, quick: bool, rng: np.random.Generator) -> tuple[_Sampl
         solve()
         if not found.stops.sum() > 0.0:
             continue
-        needed = _needed(float(found.multiplier[0]))
-        if scene.body.masses > 1 and needed > _MOST_PERIODS[quick]:
+        needed = periods_needed(float(found.multiplier[0]))
+        if scene.body.masses > 1 and needed > _MOST_PERIODS:
             left_out += 1
             continue
         cells.append(cell)
@@ -194,7 +194,7 @@ def other_solvers(quick: bool) -> dict:
     for name in COMPARED:
         scene = SCENES[name]
         sample, left_out = _sample(scene, quick, rng)
-        needed = [_needed(float(value)) for value in sample.found.multiplier]
+        needed = [periods_needed(float(value)) for value in sample.found.multiplier]
         content[name] = {
             "cells": [cell._asdict() for cell in sample.cells],
             "cells left out, too many periods": left_out,

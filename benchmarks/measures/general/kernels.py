@@ -7,13 +7,13 @@ import numpy as np
 
 import frictionmap as fm
 from frictionmap import regimes
+from frictionmap._kernels.compiler.packed import packed
 from frictionmap._kernels.general.fill import Cells, Grid, fill_rows
 from frictionmap._kernels.general.follow import MOVED, STOPS
-from frictionmap._kernels.general.problem import make_row, make_work, set_row
-from frictionmap._kernels.general.record import RANGES, make_record
-from frictionmap._kernels.general.return_map import make_return
+from frictionmap._kernels.general.problem import set_row
+from frictionmap._kernels.general.record import RANGES
 from frictionmap._kernels.general.series import Friction
-from frictionmap._kernels.general.steady import REPEATS, find, from_rest, make_ring, measure
+from frictionmap._kernels.general.steady import REPEATS, find, from_rest, make_tools, measure
 from frictionmap.general.boundaries import friction_lines, rest_states
 from frictionmap.general.held import least_static_friction, stick_scales
 from frictionmap.general.maps import allocate
@@ -48,28 +48,27 @@ def map_row(system: fm.System, r: float, beta: np.ndarray) -> tuple[Callable[[],
 class Found(NamedTuple):
     """Steady states of single cells, mu = 1; nan where none was found."""
 
-    multiplier: np.ndarray  # (cells,)
+    multiplier: np.ndarray  # (cells,) over a period of the load
     stops: np.ndarray  # (cells, N) per period
     ranges: np.ndarray  # (cells, N) max z - min z; 0 where the contact sticks permanently
 
 
 @own_entry
-def _solve_cells(problem, forces, starts, cycles, tolerance, found):
+def _solve_cells(problem, forces, starts, tools, friction, found):
     """Solve cells k = 0, 1, ... at r[k], each from rest and with its constants computed again."""
-    row, work, memory = make_row(problem), make_work(problem), make_return(problem)
-    ring, record = make_ring(problem), make_record(problem, np.empty((0, problem.squares.size)), 0)
+    problem, tools, friction = packed(problem), packed(tools), packed(friction)
+    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
     contacts = problem.spring.size
-    friction = Friction(np.empty(contacts), np.empty(contacts))
     for k in range(problem.r.size):
         set_row(problem, k, row)
         for j in range(contacts):
             friction.kinetic[j] = friction.static[j] = forces[k, j]
         from_rest(problem, row, friction, starts[k], work, memory, record)
-        steady = find(problem, row, friction, cycles, tolerance, work, memory, ring, record)
+        steady = find(problem, row, friction, _CYCLES, _TOLERANCE, work, memory, tools.ring, record)
         if steady.status != REPEATS:
             continue
-        halves = measure(problem, row, friction, steady.halves, work, memory, record, RANGES)
-        found.multiplier[k] = steady.multiplier
+        halves, multiplier = measure(problem, row, friction, steady.halves, work, memory, record, RANGES)
+        found.multiplier[k] = multiplier ** (2.0 / steady.halves)
         for j in range(contacts):
             moved = memory.counts[MOVED, j] != 0.0
             found.stops[k, j] = memory.counts[STOPS, j] / (0.5 * halves) if moved else 0.0
@@ -79,10 +78,11 @@ def _solve_cells(problem, forces, starts, cycles, tolerance, found):
 def single_cells(system: fm.System, r: np.ndarray, forces: np.ndarray) -> tuple[Callable[[], None], Found]:
     """(solve, found) for cells with friction forces (cells, N), each at its own r, from rest."""
     problem, modal = problem_of(system, r)
-    starts = rest_states(system, modal, r)
-    count = forces.shape[1]
+    starts, count = rest_states(system, modal, r), forces.shape[1]
     found = Found(*(np.full(shape, np.nan) for shape in ((r.size,), (r.size, count), (r.size, count))))
-    return lambda: _solve_cells(problem, forces, starts, _CYCLES, _TOLERANCE, found), found
+    tools = make_tools(problem, np.empty((0, problem.squares.size)), 0)
+    friction = Friction(np.empty(count), np.empty(count))
+    return lambda: _solve_cells(problem, forces, starts, tools, friction, found), found
 
 
 def open_share(cells: Cells) -> np.ndarray:

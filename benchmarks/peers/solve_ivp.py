@@ -13,6 +13,9 @@ from .peer import Peer
 from .periodic_load import HarmonicsPeer
 from .switching import Event, SwitchingPeer, held_projections
 
+#: Longest step while nothing moves, in phases of the highest harmonic [rad].
+REST_STEP = 0.2
+
 
 def peer(body: Body, **settings) -> Peer:
     """Solver for a body."""
@@ -209,7 +212,9 @@ class HarmonicsSolveIvp(HarmonicsPeer):
 class ContactsSolveIvp(SwitchingPeer):
     """scipy.integrate.solve_ivp for several contacts: a phase ends at the first of its terminal events.
 
-    The events of a phase are the ends of its slides, and two limits of every held contact.
+    The events of a phase are the ends of its slides, and two limits of every held contact.  Where held
+    contacts leave nothing to move, the solver would step over whole periods of the load: its steps are
+    limited there.
     """
 
     name = "solve_ivp DOP853"
@@ -226,7 +231,7 @@ class ContactsSolveIvp(SwitchingPeer):
         self.phases: dict = {}
 
     def make_phase(self, senses):
-        """Right-hand side, its terminal events, and their meanings."""
+        """Right-hand side, its terminal events, their meanings, and the longest step."""
         n, r, load = self.n, self.r, self.load
         held = [j for j, sense in enumerate(senses) if sense == 0]
         projection, forces = held_projections(self.w[:, held])
@@ -252,7 +257,8 @@ class ContactsSolveIvp(SwitchingPeer):
             for sign in (1, -1):
                 events.append(self.release(j, sign, row, float(by_load), float(offset)))
                 meanings.append(Event(j, sign))
-        return rate, events, meanings
+        longest = REST_STEP / max(self.body.load) if len(held) == n else math.inf
+        return rate, events, meanings, longest
 
     def end_of_slide(self, j, sense):
         """Terminal event that ends the slide of contact j."""
@@ -281,8 +287,8 @@ class ContactsSolveIvp(SwitchingPeer):
         key = tuple(self.senses)
         if key not in self.phases:
             self.phases[key] = self.make_phase(key)
-        rate, events, meanings = self.phases[key]
-        answer = self.solve(rate, (theta, end), self.state, events=events, **self.settings)
+        rate, events, meanings, longest = self.phases[key]
+        answer = self.solve(rate, (theta, end), self.state, events=events, max_step=longest, **self.settings)
         if answer.status < 0:
             raise RuntimeError(f"solve_ivp: {answer.message}")
         self.state = answer.y[:, -1].copy()

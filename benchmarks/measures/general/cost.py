@@ -6,6 +6,7 @@ nearly every cell of the row is one.  The boundaries of the frequency are not pa
 """
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,8 +16,18 @@ from ...report.record import spread, table, timed
 from .kernels import map_row, open_share, stick_scale
 from .scenes import ONE, SCENES, SQUARE, many_contacts
 
-#: Rows, cells of a row, and rounds; by quick.
-_ROWS, _CELLS, _ROUNDS = {False: 20, True: 2}, {False: 200, True: 20}, {False: 7, True: 2}
+
+class _Count(NamedTuple):
+    """How much is computed."""
+
+    rows: int
+    cells: int  # of a row
+    rounds: int
+
+
+#: Scenes, and systems with many contacts, by quick.
+_SCENES = {False: _Count(20, 200, 5), True: _Count(2, 20, 2)}
+_OVER_CONTACTS = {False: _Count(8, 100, 3), True: _Count(2, 20, 1)}
 
 #: Cells of the row in which the range of stick-slip is looked for, and largest beta where it has no end.
 _COARSE, _LARGEST = 64, 4.0
@@ -59,12 +70,12 @@ def _rows(system: fm.System, frequencies: tuple[float, float], count: int, cells
     return found
 
 
-def _cell_cost(system: fm.System, frequencies: tuple[float, float], quick: bool) -> dict:
+def _cell_cost(system: fm.System, frequencies: tuple[float, float], count: _Count) -> dict:
     """Time per stick-slip cell of all rows, over rounds."""
-    rows = _rows(system, frequencies, _ROWS[quick], _CELLS[quick])
+    rows = _rows(system, frequencies, count.rows, count.cells)
     cells = int(sum(flags.sum() for _, flags in rows))
     seconds = []
-    for _ in range(_ROUNDS[quick]):
+    for _ in range(count.rounds):
         seconds.append(sum(timed(solve)[0] for solve, _ in rows) / cells)
     return {
         "rows": len(rows),
@@ -76,7 +87,9 @@ def _cell_cost(system: fm.System, frequencies: tuple[float, float], quick: bool)
 
 def cell_costs(quick: bool) -> dict:
     """Measure and print the time per cell of every scene."""
-    content = {name: _cell_cost(scene.system(), scene.frequencies, quick) for name, scene in SCENES.items()}
+    content = {
+        name: _cell_cost(scene.system(), scene.frequencies, _SCENES[quick]) for name, scene in SCENES.items()
+    }
     one = content[ONE]["seconds a cell"]["median"]
     content[SQUARE]["over one harmonic"] = content[SQUARE]["seconds a cell"]["median"] / one
     table(
@@ -92,7 +105,9 @@ def cell_costs(quick: bool) -> dict:
 
 def costs_over_contacts(quick: bool) -> dict:
     """Measure and print the time per cell of eight masses over the number of contacts."""
-    content = {str(count): _cell_cost(many_contacts(count), _MANY, quick) for count in _CONTACTS}
+    content = {
+        str(count): _cell_cost(many_contacts(count), _MANY, _OVER_CONTACTS[quick]) for count in _CONTACTS
+    }
     table(
         ("contacts, eight masses", "cells", "us a cell"),
         [

@@ -3,9 +3,9 @@ and the effect of invalid input, interrupts and damaged files.
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
-NAME is accuracy, peers, scaling, startup, stress, steady, structures, static, bound, faults, large, explore,
-coupling or coverage: each is a module of that name in `measures`.  It prints tables, and writes JSON and a
-figure.
+NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, static, bound, faults, large,
+explore, coupling or coverage: each is a module of that name in `measures`.  It prints tables, and writes JSON
+and a figure.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -21,6 +21,7 @@ figure.
   stress                       the numerical torture test against 40-digit arithmetic
   steady                       solved against marched, uniqueness for mu = 1, unresolved undamped cells
   structures                   time against the number of masses; five masses against other solvers
+  general                      several contacts, elastic contacts, periodic loads: cost, against other solvers
   static                       maps at mu > 1 against those of another checkout, in turn
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
   faults                       invalid input, interrupts, malformed files, damaged caches
@@ -31,7 +32,10 @@ figure.
 `peers/`                       other solvers: each for one mass and for chains of masses
   solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: many cells at a time
   fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean
+  moreau, harmonic_balance     several contacts by time stepping; an elastic contact by harmonic balance
   body, peer, one_mass, chain  problem, interface, and common code of these solvers
+  contacts, periodic_load,     the same for several contacts and loads of several harmonics
+  switching
   check                        comparison with a table of known steady states
 `references/`                  reference results without code of the package; the tests use them, too
   closed_forms                 boundaries and continuous motions in 40 digits, condition numbers
@@ -46,7 +50,8 @@ figure.
   figures                      figures, drawn without a display
   results_page                 the tables of docs/results.md, from the committed results
   quoted_errors                tables about errors; `quoted_faults`: about invalid input and interrupts;
-                               `quoted_coverage`: about the intervals of `identify`
+                               `quoted_coverage`: about the intervals of `identify`; `quoted_general`: about
+                               several contacts and periodic loads
   quoting                      format of the numbers
 `results/`                     the committed results; `results/local` has those of local runs
 =============================  ========================================================================

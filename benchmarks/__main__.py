@@ -25,6 +25,7 @@ BENCHMARKS = (
     "stress",
     "steady",
     "structures",
+    "general",
     "static",
     "bound",
     "faults",

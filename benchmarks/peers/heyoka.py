@@ -6,13 +6,21 @@ import numpy as np
 
 from .body import SLIDE_END, Body
 from .chain import ChainPeer
+from .contacts import ContactBody, ContactCell, ContactPeer
 from .one_mass import OneMassPeer
 from .peer import Peer
+from .periodic_load import HarmonicsPeer
+from .switching import Event, SwitchingPeer, held_projections
 
 
 def peer(body: Body, **settings) -> Peer:
     """Solver for a body."""
     return (OneMassHeyoka if body.masses == 1 else ChainHeyoka)(body, **settings)
+
+
+def contact_peer(body: ContactBody, **settings) -> ContactPeer:
+    """Solver for a body under a periodic load: one mass, or any number of masses and contacts."""
+    return (HarmonicsHeyoka if body.masses == 1 else ContactsHeyoka)(body, **settings)
 
 
 class OneMassHeyoka(OneMassPeer):
@@ -150,3 +158,136 @@ class ChainHeyoka(ChainPeer):
         if outcome == self.time_limit:
             return integrator.time, 0
         return integrator.time, (1 if int(outcome) == -1 else -1)
+
+
+def load_expression(heyoka, load):
+    """Load as a function of time."""
+    terms = []
+    for n, value in load.items():
+        if value.real:
+            terms.append(value.real * heyoka.cos(float(n) * heyoka.time))
+        if value.imag:
+            terms.append(-value.imag * heyoka.sin(float(n) * heyoka.time))
+    return heyoka.sum(terms)
+
+
+class HarmonicsHeyoka(HarmonicsPeer):
+    """heyoka's Taylor integrator for one mass under several harmonics, with the settings of `OneMassHeyoka`.
+
+    The load is part of the compiled program: the same for all cells of a body.
+    """
+
+    name = "heyoka"
+    package = "heyoka"
+
+    def __init__(self, body: ContactBody, fast_math=True, **options):
+        super().__init__(body)
+        heyoka = import_module("heyoka")
+        z, v = heyoka.make_vars("z", "v")
+        stiffness, damping, friction, drive = (heyoka.par[i] for i in range(4))
+        push = drive * load_expression(heyoka, body.load) - damping * v - stiffness * z - friction
+        slide_end = heyoka.t_event(v - SLIDE_END, direction=heyoka.event_direction.negative, cooldown=0.0)
+        self.integrator = heyoka.taylor_adaptive(
+            sys=[(z, v), (v, push)], state=[0.0, 0.0], t_events=[slide_end],
+            fast_math=fast_math, **options,
+        )  # fmt: skip
+        self.motion = self.integrator.state
+        self.numbers = self.integrator.pars
+        self.drive = 0.0
+
+    def prepare(self, r, beta):
+        """Take the numbers of one cell, divided by the inertia."""
+        self.drive = 1 / r**2
+        self.numbers[:3] = 1 / r**2, 2 * self.body.zeta / r, beta / r**2
+
+    def slide(self, theta, z, v, sign, end):
+        """Integrate one slide."""
+        integrator, motion = self.integrator, self.motion
+        motion[0] = sign * z
+        motion[1] = sign * v
+        self.numbers[3] = sign * self.drive
+        integrator.time = theta
+        integrator.propagate_until(end)
+        z, v = motion.tolist()
+        return integrator.time, sign * z, (sign * v if v > 0 else 0.0)
+
+
+class ContactsHeyoka(SwitchingPeer):
+    """heyoka's Taylor integrator for several contacts: one program per set of held contacts.
+
+    A program is compiled when a motion first visits its set.  Directions and friction forces are parameters.
+    """
+
+    name = "heyoka"
+    package = "heyoka"
+
+    def __init__(self, body: ContactBody, **options):
+        super().__init__(body)
+        self.heyoka = import_module("heyoka")
+        self.options = {"fast_math": True, **options}
+        self.time_limit = self.heyoka.taylor_outcome.time_limit
+        self.programs: dict = {}
+
+    def prepare(self, cell: ContactCell):
+        """Take the numbers of one cell; its r and 1/r^2 are parameters of every program."""
+        super().prepare(cell)
+        self.numbers = np.concatenate(([1.0 / cell.r**2, cell.r], self.beta))
+
+    def make_program(self, held):
+        """Integrator of the phases in which these contacts are held, and the contacts of its events."""
+        heyoka, n, count = self.heyoka, self.n, self.count
+        x = heyoka.make_vars(*(f"x{i}" for i in range(n)))
+        v = heyoka.make_vars(*(f"v{i}" for i in range(n)))
+        x, v = (x, v) if n > 1 else ([x], [v])
+        par = heyoka.par
+        square, r = par[0], par[1]
+        beta = [par[2 + j] for j in range(count)]
+        sense = [par[2 + count + j] for j in range(count)]
+        load = load_expression(heyoka, self.body.load)
+        pulls = []
+        for i in range(n):
+            terms = [load] if i == 0 else []
+            terms += [-self.stiffness[i, k] * x[k] for k in range(n) if self.stiffness[i, k]]
+            terms += [-self.damping[i, k] * (r * v[k]) for k in range(n) if self.damping[i, k]]
+            terms += [
+                -self.w[i, j] * (beta[j] * sense[j]) for j in range(count) if j not in held and self.w[i, j]
+            ]
+            pulls.append(heyoka.sum(terms))
+        projection, forces = held_projections(self.w[:, list(held)])
+
+        def combined(row, values):
+            return heyoka.sum([a * value for a, value in zip(row, values, strict=True) if abs(a) > 1e-14])
+
+        moved = [
+            (v[i], square * combined(projection[i], pulls) if np.abs(projection[i]).max() > 1e-14
+             else heyoka.expression(0.0))
+            for i in range(n)
+        ]  # fmt: skip
+        events, meanings = [], []
+        for j in range(count):
+            if j in held:
+                force = combined(forces[held.index(j)], pulls)
+                pairs = [(beta[j] - force, 1), (beta[j] + force, -1)]
+            else:
+                pairs = [(sense[j] * combined(self.w[:, j], v) - SLIDE_END, 0)]
+            for expression, direction in pairs:
+                down = heyoka.event_direction.negative
+                events.append(heyoka.t_event(expression, direction=down, cooldown=0.0))
+                meanings.append(Event(j, direction))
+        system = [*zip(x, v, strict=True), *moved]
+        return heyoka.taylor_adaptive(system, [0.0] * (2 * n), t_events=events, **self.options), meanings
+
+    def advance(self, theta, end):
+        """Integrate one phase."""
+        held = tuple(j for j, sense in enumerate(self.senses) if sense == 0)
+        if held not in self.programs:
+            self.programs[held] = self.make_program(held)
+        integrator, meanings = self.programs[held]
+        integrator.pars[:] = np.concatenate((self.numbers, self.senses))[: len(integrator.pars)]
+        integrator.state[:] = self.state
+        integrator.time = theta
+        outcome = integrator.propagate_until(end)[0]
+        self.state = np.array(integrator.state)
+        if outcome == self.time_limit:
+            return integrator.time, None
+        return integrator.time, meanings[-int(outcome) - 1]

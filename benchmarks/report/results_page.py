@@ -15,6 +15,7 @@ from .. import ROOT
 from .quoted_coverage import coverage_lines
 from .quoted_errors import accuracy_lines, steady_lines, stress_lines
 from .quoted_faults import faults_lines
+from .quoted_general import general_lines
 from .quoting import duration, markdown, rounded_off, two_digits
 
 PAGE = ROOT / "docs" / "results.md"
@@ -25,6 +26,7 @@ END = "<!-- end of the results -->"
 QUOTED = (
     "peers",
     "structures",
+    "general",
     "accuracy",
     "stress",
     "steady",
@@ -386,6 +388,8 @@ def block(results: Path) -> str:
     lines = [_machine(found)]
     if peers or structures:
         lines += _peer_lines(peers, structures)
+    if "general" in found:
+        lines += general_lines(found["general"])
     for name, quote in (("accuracy", accuracy_lines), ("stress", stress_lines), ("steady", steady_lines)):
         if name in found:
             lines += quote(found[name])

@@ -16,7 +16,7 @@ from .held import held_ranges
 from .problem import general_of, problem_of, static_offset
 
 
-def _allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
+def allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
     """Allocate unresolved cells."""
     per_contact = (*shape, contacts)
     numbers = [np.full(per_contact, np.nan) for _ in range(8)]
@@ -68,7 +68,7 @@ def solve_cells(
         starts = sliding_states(problem, r, MOVING_START)
     grid = Grid(beta, kinetic, static, stuck_from, starts, float(solver.cycles), solver.tolerance)
     count = system.n if masses else 0
-    found = _allocate((mu.size, r.size, beta.size), general.count, count)
+    found = allocate((mu.size, r.size, beta.size), general.count, count)
     outputs = np.ascontiguousarray(modal.phi) if masses else np.empty((0, modal.phi.shape[1]))
     cancel = np.zeros(1, np.uint8)
     rows = range(mu.size * r.size)

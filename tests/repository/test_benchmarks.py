@@ -85,6 +85,17 @@ def test_committed_peers_had_our_answers():
             assert one["cells with other stop counts"] == 0
 
 
+def test_committed_general_solvers_had_our_answers():
+    content = json.loads((RESULTS / "general.json").read_text())
+    for entry in content["other solvers"].values():
+        for name in ("solve_ivp DOP853", "heyoka"):
+            point = entry["methods"][name]["points"][-1]  # its most accurate setting
+            assert point["cells with other stop counts"] == point["cells that failed"] == 0
+            assert max(point["relative errors of ranges"]) < 1e-8
+    medians = [point["median relative error of Z"] for point in content["harmonic balance"]["points"]]
+    assert medians == sorted(medians, reverse=True)
+
+
 def test_committed_scaling_had_the_same_answers():
     content = json.loads((RESULTS / "scaling.json").read_text())
     assert content["threads"]["the same bits"]

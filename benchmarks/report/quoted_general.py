@@ -1,0 +1,157 @@
+"""Tables of docs/results.md about several contacts, elastic contacts and periodic loads."""
+
+import statistics
+from collections.abc import Iterator
+
+from .quoting import duration, markdown, rounded_off, two_digits
+
+_ERRORS, _WRONG = "relative errors of ranges", "cells with other stop counts"
+
+_SOLVERS = {
+    "solve_ivp DOP853": "`solve_ivp` (DOP853)",
+    "heyoka": "heyoka with events",
+    "Moreau-Jean": "Moreau-Jean time stepping",
+}
+
+
+def _seconds(entry: dict, key: str) -> str:
+    return duration(entry[key]["median"])
+
+
+def _cell_rows(general: dict) -> Iterator[tuple[str, ...]]:
+    """Time per cell and per frequency of every system."""
+    for name, entry in general["cells"].items():
+        boundaries = general["boundaries"][name]
+        yield name, _seconds(entry, "seconds a cell"), _seconds(boundaries, "seconds a frequency")
+
+
+def _map_rows(general: dict) -> Iterator[tuple[str, ...]]:
+    for name, entry in general["maps"].items():
+        share = entry["computed, one of"]
+        scaled = f", scaled from one of {share} rows" if share > 1 else ""
+        yield f"{name}{scaled}", _seconds(entry, "seconds, scaled to the whole")
+
+
+def _best(found: dict) -> dict | None:
+    """The point with the smallest median error."""
+    points = [point for point in found.get("points", ()) if point[_ERRORS]]
+    return min(points, key=lambda point: statistics.median(point[_ERRORS]), default=None)
+
+
+def _solver_rows(general: dict) -> Iterator[tuple[str, ...]]:
+    """Every solver at its most accurate setting."""
+    for name, entry in general["other solvers"].items():
+        for method, found in entry["methods"].items():
+            point = _best(found)
+            if point is None:
+                continue
+            setting = point[found["setting"]]
+            value = f"{setting:,g}" if setting >= 1 else rounded_off(setting)
+            yield (
+                name,
+                f"{_SOLVERS.get(method, method)}; {found['setting']} = {value}",
+                _seconds(entry, "our seconds a cell"),
+                _seconds(point, "seconds a cell"),
+                two_digits(point["ratio"]),
+                rounded_off(statistics.median(point[_ERRORS])),
+                f"{point[_WRONG]} of {len(entry['cells'])}",
+            )
+
+
+def _balance_rows(found: dict) -> Iterator[tuple[str, ...]]:
+    for point in found["points"]:
+        yield (
+            str(point["highest harmonic"]),
+            _seconds(point, "seconds a cell"),
+            two_digits(point["ratio"]),
+            rounded_off(point["median relative error of Z"]),
+            rounded_off(point["largest relative error of Z"]),
+            f"{point['cells that did not converge']} of {found['cells']}",
+        )
+
+
+def _shorter(general: dict) -> str:
+    """Sentence on one mass, whose cells need fewer periods than the other solvers march."""
+    ratios = []
+    for entry in general["other solvers"].values():
+        marched, needed = (
+            statistics.mean(entry[key])
+            for key in ("periods marched", "periods until a disturbance has decayed")
+        )
+        if marched > needed:
+            ratios.append(marched / needed)
+    if not ratios:
+        return ""
+    return (
+        "For one mass the other solvers march 200 periods, as in the thesis. That is "
+        f"{two_digits(min(ratios))} to {two_digits(max(ratios))} times the number of periods after which a "
+        "disturbance has decayed to 1e-10. A solver that ended there would reduce the ratios by this factor."
+    )
+
+
+def _notes(general: dict) -> Iterator[str]:
+    counts = list(general["contacts"].items())
+    least, most = (
+        f"{_seconds(entry, 'seconds a cell')} with {count}" for count, entry in (counts[0], counts[-1])
+    )
+    yield f"A stick-slip cell of eight masses takes {least} contact and {most} contacts."
+    square = next(entry for entry in general["cells"].values() if "over one harmonic" in entry)
+    yield (
+        "A cell under a square wave of 50 harmonics takes "
+        f"{two_digits(square['over one harmonic'])} times as long as one under a single harmonic."
+    )
+    yield (
+        "For more than one mass the other solvers are given the number of periods after which a disturbance "
+        "has decayed to 1e-10, and ten more."
+    )
+    if shorter := _shorter(general):
+        yield shorter
+    skipped = {
+        name: found["skipped"]
+        for entry in general["other solvers"].values()
+        for name, found in entry["methods"].items()
+        if "skipped" in found
+    }
+    for name, why in skipped.items():
+        yield f"Not measured: {name} ({why})."
+
+
+def general_lines(general: dict) -> list[str]:
+    """Lines of the section on several contacts, elastic contacts and periodic loads."""
+    balance = general["harmonic balance"]
+    return [
+        "",
+        "### Several contacts, elastic contacts and periodic loads",
+        "",
+        "Stick-slip cells at mu = 1 are computed in rows of a map, each from the steady state of its "
+        "neighbour. The boundaries of a frequency are computed once per row.",
+        *markdown(
+            ("system", "time per cell", "boundaries of one frequency"), list(_cell_rows(general))
+        ),
+        *markdown(("whole map, one thread", "time"), list(_map_rows(general))),
+        "",
+        "The next table compares single cells from rest with other solvers at their most accurate setting. "
+        "Errors are those of max z - min z in the contacts, relative to frictionmap.",
+        *markdown(
+            (
+                "stick-slip cell", "solver", "frictionmap", "other solver", "ratio", "error",
+                "different stop counts",
+            ),
+            list(_solver_rows(general)),
+        ),
+        "",
+        f"For an elastic contact, {balance['cells']:,} cells at kt = 3 were solved by harmonic balance with "
+        "alternating frequency and time, row by row as in a map. frictionmap takes "
+        f"{_seconds(balance, 'our seconds a cell')} per cell.",
+        *markdown(
+            (
+                "harmonics up to", "time per cell", "over frictionmap", "error of Z, median", "largest",
+                "not converged",
+            ),
+            list(_balance_rows(balance)),
+        ),
+        "",
+        *(f"- {note}" for note in _notes(general)),
+        "",
+        "![Several contacts, elastic contacts and periodic loads](../benchmarks/results/general.png)",
+    ]  # fmt: skip

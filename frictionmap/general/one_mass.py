@@ -33,7 +33,7 @@ class SteadyMotion(NamedTuple):
 def _problem(r: float, zeta: float, load: np.ndarray) -> Problem:
     """r^2 q'' + 2 zeta r q' + q + f = Re sum load_n e^{i n tau}, n >= 1.
 
-    Whole periods even where half of one would do: a mass that rests stays where it began.
+    Whole periods even where half of one suffices: a mass that rests stays where it began.
     """
     orders = np.flatnonzero(load[1:]) + 1 if load[1:].any() else np.array([1])
     phasors = load[orders] if load[1:].any() else np.zeros(1, dtype=complex)

@@ -13,7 +13,7 @@ from frictionmap._kernels.general.follow import MOVED, STOPS
 from frictionmap._kernels.general.problem import set_row
 from frictionmap._kernels.general.record import RANGES
 from frictionmap._kernels.general.series import Friction
-from frictionmap._kernels.general.steady import REPEATS, find, from_rest, make_tools, measure
+from frictionmap._kernels.general.steady import REPEATS, find, from_rest, make_tools, measure, steady_period
 from frictionmap.general.boundaries import friction_lines, rest_states
 from frictionmap.general.held import least_static_friction, stick_scales
 from frictionmap.general.maps import allocate
@@ -68,7 +68,7 @@ def _solve_cells(problem, forces, starts, tools, friction, found):
         if steady.status != REPEATS:
             continue
         halves, multiplier = measure(problem, row, friction, steady.halves, work, memory, record, RANGES)
-        found.multiplier[k] = multiplier ** (2.0 / steady.halves)
+        found.multiplier[k] = multiplier ** (1.0 / steady_period(steady.halves))
         for j in range(contacts):
             moved = memory.counts[MOVED, j] != 0.0
             found.stops[k, j] = memory.counts[STOPS, j] / (0.5 * halves) if moved else 0.0

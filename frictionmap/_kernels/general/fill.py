@@ -26,7 +26,7 @@ from .follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
 from .problem import padded, set_row
 from .record import RANGES
 from .series import Friction
-from .steady import NO_REPEAT, REPEATS, find, from_rest, make_tools, measure
+from .steady import NO_REPEAT, REPEATS, find, from_rest, make_tools, measure, steady_period
 
 #: A start is moved on by this many steps between the last two cells at most.
 _FARTHEST = 3.0
@@ -154,7 +154,7 @@ def _store(problem, out, m, i, b, found, measured, counts, record):
         return
     out.status[m, i, b] = RESOLVED
     out.origin[m, i, b] = PERIODIC_ORBIT
-    out.period[m, i, b] = found.halves if found.halves % 2 == 1 else found.halves // 2
+    out.period[m, i, b] = steady_period(found.halves)
     out.multiplier[m, i, b] = multiplier
     out.regime[m, i, b] = _store_contacts(problem, out, m, i, b, counts, halves, record)
 

@@ -434,6 +434,12 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record):
 
 
 @kernel
+def steady_period(halves):
+    """Periods of the load after which a motion repeats that returns, mirrored if odd, after half periods."""
+    return halves if halves % 2 == 1 else halves // 2
+
+
+@kernel
 def measure(problem, row, friction, halves, work, memory, record, what):
     """Follow the steady state once more, into `record` and `memory.counts`.
 
@@ -448,8 +454,8 @@ def measure(problem, row, friction, halves, work, memory, record, what):
 
     Returns
     -------
-    (followed, multiplier) : half periods followed, and the largest modulus of the multipliers over `halves`,
-        NaN where NOTHING is kept
+    (followed, multiplier) : half periods followed, and the largest modulus of the multipliers over the steady
+        period, NaN where NOTHING is kept
     """
     both = halves if halves % 2 == 0 or what == NOTHING or what == RANGES else 2 * halves
     multiplier = math.nan
@@ -460,14 +466,14 @@ def measure(problem, row, friction, halves, work, memory, record, what):
         record.active[0] = NOTHING
         most = _MEASURED
         if what != NOTHING:
-            multiplier = _multiplier(problem, both, 0.0, work, memory) ** (halves / both)
+            multiplier = _multiplier(problem, both, 0.0, work, memory)
             most *= min(1.0, abs(1.0 - multiplier))
         if return_distance(problem, row, memory) <= most or repeat == _MOST_REPEATED - 1:
             break
         _newton(problem, row, friction, halves, _MEASURED, work, memory, record)
     if both % 2 == 1:
         mirror(record)
-    return both, multiplier
+    return both, multiplier ** (steady_period(halves) * 2.0 / both)
 
 
 @kernel

@@ -6,7 +6,7 @@ one number a mass, stop after start, files that are there; and JSON has no diffe
 
 from typing import Any
 
-from ..model.variations import LISTS, NUMBERS
+from ..model.variations import CONTACT_NUMBERS, LISTS, NUMBERS
 from .keys import KEYS, TABLES, Key, Schema, axis, in_words, number, several
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -81,7 +81,8 @@ def _described(key: Key) -> dict[str, Any]:
 def _further_axes() -> dict[str, Any]:
     """[axes]: numbers of the system by their names, and names of what changes together."""
     numbers, lists = "|".join(NUMBERS), "|".join(LISTS)
-    indexed = rf"({lists})\[[1-9][0-9]*\]"
+    parts = "|".join(CONTACT_NUMBERS)
+    indexed = rf"({lists})\[[1-9][0-9]*\]|contacts\[[1-9][0-9]*\]\.({parts})"
     columns = {
         "type": "object", "minProperties": 1, "additionalProperties": False,
         "patternProperties": {f"^({numbers}|{indexed})$": several(number())},

@@ -244,7 +244,8 @@ def _values(variable: xr.DataArray) -> str:
     """The values of a short variable: codes by their names, others row by row."""
     label = LABELS[str(variable.name)]
     if label.codes and variable.ndim == 0:
-        return next(code.name for code in label.codes if code.value == int(variable))
+        codes = regimes.BELT_REGIMES if label.codes == regimes.REGIMES else label.codes
+        return next(code.name for code in codes if code.value == int(variable))
     if variable.ndim < 2:
         return _numbers(variable.values) or "none"
     return "; ".join(

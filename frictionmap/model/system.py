@@ -288,7 +288,10 @@ class System:
         for name in ("mass_ratios", "stiffness_ratios"):
             given = getattr(self, name)
             if given is not None:
-                raise InputError(f"cannot use {name} with matrices: both define the structure; omit one")
+                raise InputError(
+                    f"cannot use {name} = {checks.one_line(given)} with matrices: both define the structure; "
+                    f"omit one"
+                )
         given = self.matrices
         if isinstance(given, Matrices):
             if given.reduction is not None:

@@ -275,3 +275,38 @@ def test_partial_sticking_begins_at_half_the_range_of_the_force():
             ds = fm.sweep(system, [row["r"]], [0.0], outputs=["regime"])
             found = ds.contact_regime.sel(contact=row["held_contact"]).item()
             assert found == regime, (row["id"], factor)
+
+
+def bank(stiffness, ratios, **further):
+    """Two masses whose joint is a bank of elements with a spring in series."""
+    elements = [
+        fm.Contact("between-masses", (1, 2), stiffness=one, ratio=ratio)
+        for one, ratio in zip(stiffness, ratios, strict=True)
+    ]
+    return fm.System(
+        contacts=elements, mass_ratios=[1.0, 1.0], stiffness_ratios=[1.0, 0.1], damping_ratios=0.002,
+        load_mass=2, **further,
+    )  # fmt: skip
+
+
+def test_two_equal_elements_are_one_of_twice_the_size():
+    r, beta = np.linspace(0.45, 0.75, 16), [0.5, 1.5, 4.0]
+    outputs = ["regime", "contact_peak_to_peak", "slips_per_cycle", "slip_reversals_per_cycle", "status"]
+    two_of_them = fm.sweep(bank([2.0, 2.0], [0.5, 0.5]), r, beta, outputs=outputs)
+    one = fm.sweep(bank([4.0], [1.0]), r, beta, outputs=outputs)
+    assert (two_of_them.regime == one.regime).all()
+    for name in ("slips_per_cycle", "slip_reversals_per_cycle"):
+        for contact in range(2):
+            assert np.array_equal(two_of_them[name].isel(contact=contact), one[name]), name
+    ranges = two_of_them.contact_peak_to_peak.isel(contact=0)
+    assert np.allclose(ranges, one.contact_peak_to_peak, rtol=1e-9)
+
+
+def test_elements_of_a_bank_stop_slipping_together():
+    """Their velocities are one and the same, and reach zero at one instant."""
+    ds = fm.sweep(
+        bank([2.0, 2.0], [1.0 / 3.0, 2.0 / 3.0]), np.linspace(0.45, 0.75, 61), [1.5],
+        outputs=["regime", "slips_per_cycle"],
+    )  # fmt: skip
+    assert (ds.regime >= 0).all()
+    assert ds.slips_per_cycle.max() <= 8.0

@@ -83,6 +83,15 @@ def test_a_belt_has_a_regime_of_its_own(tmp_path, capsys):
     assert "2 one way sliding" in capsys.readouterr().out
 
 
+def test_a_motion_that_slides_one_way(tmp_path, capsys):
+    ds = written(tmp_path, BELT, "response", "--r", "3.0", "--beta", "0.2")
+    assert int(ds.regime) == fm.regimes.ONE_WAY_SLIDING
+    (path,) = tmp_path.glob("*.nc")
+    capsys.readouterr()
+    assert main(["info", str(path)]) == 0
+    assert "one_way_sliding" in capsys.readouterr().out.replace(" ", "_")
+
+
 def test_a_motion_of_two_contacts(tmp_path):
     ds = written(tmp_path, TWO_CONTACTS, "response", "--r", "0.5", "--beta", "0.5")
     assert ds.z.dims == ds.friction.dims == ds.direction.dims == ("contact", "tau")

@@ -216,7 +216,7 @@ map good.toml --set system.matrices={M=[[1,0],[0,1]],K=[[-2,0],[0,1]]}
 map good.toml --set system.matrices={M=[[1,0],[0,1]],K=[[2,-1],[1,1]]}
     system.matrices: K must be symmetric; got -1.0 at [0, 1] and 1.0 at [1, 0]
 map good.toml --set system.matrices={M=[[1]],K=[[1]]} --set system.mass_ratios=[1]
-    cannot use system.mass_ratios with matrices: both define the structure; omit one
+    cannot use system.mass_ratios = [1] with matrices: both define the structure; omit one
 map good.toml --set system.matrices={M=[[1]],K=[[1]],C=[[0.1]]} --set system.damping_ratios=0.1
     cannot use system.damping_ratios with matrices: C defines the damping; omit one
 map good.toml --set system.matrices={M=[[1]],K=[[1]]} --set system.rayleigh=[1]

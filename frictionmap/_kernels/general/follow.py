@@ -21,6 +21,9 @@ _MOST_EVENTS = 1000
 #: Loads within this share of their limit are at it together, for contacts with mu = 1.
 _AT_LIMIT = 1e-11
 
+#: A velocity within this share of its size is zero together with one that is.
+_TOGETHER = 1e-11
+
 #: Rows of `law` and `counts`.
 LAW_ROWS = 9
 STOPS, TURNS, STUCK, SLIPS, REVERSALS, LAST_SENSE, MOVED = 0, 1, 2, 3, 4, 5, 6
@@ -108,16 +111,35 @@ def _release_without_drop(problem, friction, work, x, contact, side):
 
 
 @kernel
-def _after_elastic(friction, work, contact, side):
-    """Change the pattern of an elastic contact."""
-    if side == 0:
-        work.state[2, contact] = work.sense[contact] * friction.kinetic[contact]
-        work.fresh[contact] = 2 * work.sense[contact]
-        work.sense[contact] = 0
-    else:
+def _comes_to_rest(work, w, sense, x):
+    """Whether a velocity is zero at x up to rounding error, and on its way down."""
+    size = 0.0
+    for k in range(TERMS):
+        size += abs(work.series[w, k])
+    if abs(value_at(work.series, w, x)) > _TOGETHER * size:
+        return False
+    return sense * slope_at(work.series, w, x) <= 0.0
+
+
+@kernel
+def _after_elastic(problem, friction, work, x, contact, side):
+    """Change the pattern of an elastic contact, and of all others that stop slipping with it.
+
+    Elements of a bank slip together, and so do contacts of a symmetric structure.
+    """
+    contacts = problem.spring.size
+    first_w = first_contact_row(problem) + contacts
+    if side != 0:
         work.state[2, contact] = side * friction.kinetic[contact]
         work.sense[contact] = side
         work.fresh[contact] = 0
+        return
+    for j in range(contacts):
+        slips = problem.spring[j] != 0.0 and work.sense[j] != 0
+        if j == contact or (slips and _comes_to_rest(work, first_w + j, work.sense[j], x)):
+            work.state[2, j] = work.sense[j] * friction.kinetic[j]
+            work.fresh[j] = 2 * work.sense[j]
+            work.sense[j] = 0
 
 
 @kernel
@@ -132,7 +154,7 @@ def _change_pattern(problem, row, friction, tau, work, law, x, contact, side):
     x, contact, side : the event, see `_first_event`
     """
     if problem.spring[contact] != 0.0:
-        _after_elastic(friction, work, contact, side)
+        _after_elastic(problem, friction, work, x, contact, side)
         return True
     if side != 0 and friction.static[contact] <= friction.kinetic[contact]:
         _release_without_drop(problem, friction, work, x, contact, side)

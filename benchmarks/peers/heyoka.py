@@ -200,16 +200,7 @@ class HarmonicsHeyoka(HarmonicsPeer):
         self.drive = 1 / r**2
         self.numbers[:3] = 1 / r**2, 2 * self.body.zeta / r, beta / r**2
 
-    def slide(self, theta, z, v, sign, end):
-        """Integrate one slide."""
-        integrator, motion = self.integrator, self.motion
-        motion[0] = sign * z
-        motion[1] = sign * v
-        self.numbers[3] = sign * self.drive
-        integrator.time = theta
-        integrator.propagate_until(end)
-        z, v = motion.tolist()
-        return integrator.time, sign * z, (sign * v if v > 0 else 0.0)
+    slide = OneMassHeyoka.slide
 
 
 class ContactsHeyoka(SwitchingPeer):

@@ -28,9 +28,9 @@ def packed(group: _Group) -> _Group:
     """Return a named tuple for kernels to pass on; valid until the calling function returns.
 
     Its attributes are those of the tuple; a named tuple in it is passed on by its address as well; a tuple
-    that is packed already is returned as it is.  Nothing
-    can replace an attribute, so that a kernel reads it once and not in every turn of a loop.  For the same
-    reason `packed` must not be called in a loop: all its turns would share one place in memory.
+    that is packed already is returned as it is.  Nothing can replace an attribute, so that a kernel reads it
+    once and not in every turn of a loop.  For the same reason `packed` must not be called in a loop: all its
+    turns would share one place in memory.
 
     Only kernels call it: references of the arrays are not counted, and the entry that made them keeps them.
     """

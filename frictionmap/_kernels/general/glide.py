@@ -36,7 +36,7 @@ def can_glide(problem, row):
 
 @kernel
 def _keep_controls(problem, row, work, linear, table, bounds, at, step):
-    """Keep the control points of what is watched in every contact, in rows at, at + step, ... of a table.
+    """Keep the control points of each quantity watched, in rows at, at + step, ... of a table.
 
     Parameters
     ----------
@@ -67,12 +67,12 @@ def _keep_end(problem, work, table, at):
 
 
 @kernel
-def _begin_with(problem, row, work, unit, q):
+def _begin_with(problem, work, unit, q):
     """Set one unit to 1, and all others and the load to zero.
 
     Parameters
     ----------
-    problem, row, work : Problem, Row, Work
+    problem, work : Problem, Work
     unit : Friction, replaced
     q : coordinate of the state, or after these the contact whose friction force is 1; -1: none
     """
@@ -108,7 +108,7 @@ def _fill_units(problem, row, work, unit, slot):
     for q in range(units):
         if q >= size and work.sense[q - size] == 0:
             continue
-        _begin_with(problem, row, work, unit, q)
+        _begin_with(problem, work, unit, q)
         expand(problem, row, unit, 0.0, -1, work, False)
         first = slot * contacts * units + q
         _keep_controls(problem, row, work, True, parts.controls, parts.bounds, first, units)
@@ -130,7 +130,7 @@ def _fill_load(problem, row, work, unit, interval, at):
     """
     contacts = problem.spring.size
     parts = row.parts
-    _begin_with(problem, row, work, unit, state_size(problem) + contacts)
+    _begin_with(problem, work, unit, state_size(problem) + contacts)
     work.clock[0] = math.nan
     expand(problem, row, unit, SECTION + interval * row.numbers[0], interval, work, False)
     _keep_controls(problem, row, work, False, parts.load_controls, parts.load_bounds, at * contacts, 1)
@@ -150,7 +150,7 @@ def _fill(problem, row, work, slot, interval, at):
     at : place of both
     """
     parts = row.parts
-    pattern = row.patterns[slot] * 2  # the senses of sliding contacts do not matter
+    pattern = row.patterns[slot]  # the senses of sliding contacts do not matter
     unit = packed(Friction(parts.unit, parts.unit))
     for part in range(3):
         for i in range(work.state.shape[1]):
@@ -235,7 +235,7 @@ def glide(problem, row, friction, interval, work):
     slot = pattern_slot(problem, row, work)
     at = slot * 2 * row.intervals[0] + interval
     parts = row.parts
-    if parts.loads_known[at] != 2 * row.patterns[slot] or parts.known[slot] != 2 * row.patterns[slot]:
+    if parts.loads_known[at] != row.patterns[slot] or parts.known[slot] != row.patterns[slot]:
         _fill(problem, row, work, slot, interval, at)
     _coordinates(problem, friction, work)
     units = size + contacts

@@ -68,7 +68,7 @@ class Parts(NamedTuple):
     Units are these coordinates, then the friction forces of the contacts.
     """
 
-    controls: np.ndarray  # (P N units, WIDTH) control points of what is watched in a contact, per unit
+    controls: np.ndarray  # (P N units, WIDTH) control points of the quantity watched in a contact, per unit
     bounds: np.ndarray  # (P N units,) bounds on their error
     ends: np.ndarray  # (P N, S) state at the end by the friction force of a contact
     known: np.ndarray  # (P,) int: which pattern is there

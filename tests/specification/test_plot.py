@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -409,6 +410,18 @@ def test_slices_are_drawn(tiny_map, chosen):
     axes = fm.plot_regimes(tiny_map.isel(chosen))
     assert len(axes) == (1 if "mu" in chosen else 2)
     drawn(axes[0].figure)
+
+
+@pytest.mark.parametrize("excerpt", [slice(0, 2), slice(40, 60)])
+def test_excerpts_of_a_motion_show_no_marks_from_outside(tiny_response, tmp_path, excerpt):
+    part = tiny_response.isel(tau=excerpt)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # of marks far outside, matplotlib says that the axes have no room
+        plot.save_picture(part, tmp_path / "excerpt.png", "history")
+    low, high = part.tau.values[[0, -1]] / np.pi
+    for ax in fm.plot_response(part):
+        marks = [line.get_xdata() for line in ax.lines if line.get_marker() in ("o", "v")]
+        assert all(low <= x <= high for line in marks for x in np.asarray(line))
 
 
 def test_datasets_the_wrong_way_round(tiny_map, tiny_boundaries, tiny_response):

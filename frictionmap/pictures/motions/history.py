@@ -88,13 +88,13 @@ def _in_sight(ax: Axes, values: np.ndarray) -> None:
 
 
 def _maxima(ds: xr.Dataset, load: np.ndarray) -> np.ndarray:
-    """Where the load is largest, tau/pi, once per period; none for a load that is constant.
+    """Where the load is largest in sight, tau/pi, once per period; none for a load that is constant.
 
     The phase of every load of one harmonic is counted from its maximum.
     """
     turns = ds["tau"].values / np.pi
     if "load" not in ds and stored_general(ds) is None:
-        return np.arange(0.0, turns[-1] + 1e-9, 2.0)
+        return np.arange(2.0 * np.ceil(turns[0] / 2.0 - 1e-9), turns[-1] + 1e-9, 2.0)
     if np.ptp(load) <= _ROUNDING:
         return np.empty(0)
     period = turns < turns[0] + 2.0 - 1e-9
@@ -106,7 +106,9 @@ def _draw_load(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     load = load_trace(ds)
     ax.plot(turns, load, color="black", linewidth=1.0)
     tops = _maxima(ds, load)
-    ax.plot(tops, np.full(tops.size, load.max()), "v", color=_LOAD_COLOUR, markersize=5.0, clip_on=False)
+    if tops.size:  # a line without points that is not clipped makes the layout fail
+        height = np.full(tops.size, load.max())
+        ax.plot(tops, height, "v", color=_LOAD_COLOUR, markersize=5.0, clip_on=False)
     if abs(float(load.max()) - 1.0) <= _ROUNDING and abs(float(load.min()) + 1.0) <= _ROUNDING:
         ax.set_ylim(-1.25, 1.25)
     else:

@@ -7,6 +7,7 @@ from pathlib import Path
 import frictionmap as fm
 from frictionmap import regimes
 from frictionmap.command_line.arguments import Command, described
+from frictionmap.datasets.design_labels import DESIGN
 from frictionmap.datasets.labels import LABELS, Label
 from frictionmap.datasets.provenance import value_text
 from frictionmap.files.keys import KEYS, TABLES, Key, in_words
@@ -17,10 +18,12 @@ from frictionmap.identify.rigs.keys import rig_keys
 #: The public names, grouped by purpose; a name in none of these groups is added to the last one.
 _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Systems and settings": ("System", "Contact", "PeriodicLoad", "Solver", "Units", "load_config"),
-    "Maps, curves, motions": ("sweep", "boundaries", "curves", "response", "continuous_motion", "shares"),
+    "Maps, curves, motions": (
+        "sweep", "boundaries", "borders", "curves", "response", "continuous_motion", "shares",
+    ),
     "Pictures": (
         "plot_regimes", "plot_boundaries", "plot_curves", "plot_response", "plot_orbit", "plot_fit",
-        "plot_shares", "plot_forces", "explore",
+        "plot_shares", "plot_forces", "plot_design", "explore",
     ),
     "Errors, and others": ("InputError", "NoSteadyState"),
 }  # fmt: skip
@@ -116,9 +119,15 @@ def variables() -> Iterator[str]:
     """Page of all variables that a file can contain."""
     yield "# Variables of files\n"
     yield "Variables without a unit are dimensionless. `frictionmap info` lists those that a file contains.\n"
+    yield from _labelled(LABELS)
+    yield "\n## Answers to design questions\n"
+    yield from _labelled(DESIGN)
+
+
+def _labelled(labels: Mapping[str, Label]) -> Iterator[str]:
     rows = (
         (f"`{name}`", ", ".join(label.dims), label.dtype.__name__, _with_unit(label))
-        for name, label in LABELS.items()
+        for name, label in labels.items()
     )
     yield from _table(("variable", "dimensions", "type", "content"), rows)
 
@@ -135,7 +144,11 @@ def api() -> Iterator[str]:
     """Page of the public names with their docstrings."""
     yield "Python API\n==========\n\n``import frictionmap as fm``"
     named = [name for names in _GROUPS.values() for name in names]
-    public = [name for name in fm.__all__ if name not in ("__version__", "features", "identify", "regimes")]
+    public = [
+        name
+        for name in fm.__all__
+        if name not in ("__version__", "design", "features", "identify", "regimes")
+    ]
     others = [name for name in public if name not in named]
     for title, names in _GROUPS.items():
         yield f"\n{title}\n{'-' * len(title)}\n"
@@ -143,7 +156,7 @@ def api() -> Iterator[str]:
         for name in (*names, *(others if last else ())):
             if name in public:
                 yield _documented("frictionmap", name)
-    for module in ("features", "identify"):
+    for module in ("design", "features", "identify"):
         yield f"\nfrictionmap.{module}\n{'-' * (12 + len(module))}\n"
         yield f".. automodule:: frictionmap.{module}\n   :no-members:\n" if module == "features" else ""
         for name in _public(module):

@@ -22,8 +22,10 @@ roots          search for all roots of functions with known poles
 features       high-frequency limits, peak thresholds, invariant points: features that need no map
 theory         closed forms over frequency: beta_lim, beta_stick, continuous motion
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map
+stop_counts    borders between numbers of stops per cycle, as exact curves
 files          configurations; output files, reading, writing; summaries in words
 probabilities  shares of the regimes over many samples of an uncertain structure
+design         which friction to choose: least peak, within a limit, without stops, stuck, margins
 stores         maps written block by block into a zarr store, by this process or by workers
 identify       measured data: tables, fits, estimates with their errors
 examples       synthetic measurements with known true values
@@ -45,7 +47,7 @@ from .errors import InputError, NoSteadyState
 from .version import __version__
 
 if TYPE_CHECKING:
-    from . import features, identify, regimes
+    from . import design, features, identify, regimes
     from .explorer.notebook import explore
     from .files.config import load_config
     from .model.contact import Contact
@@ -55,6 +57,7 @@ if TYPE_CHECKING:
     from .plot import (
         plot_boundaries,
         plot_curves,
+        plot_design,
         plot_fit,
         plot_forces,
         plot_orbit,
@@ -66,6 +69,7 @@ if TYPE_CHECKING:
     from .steady.curves import curves
     from .steady.response import response
     from .steady.sweep import sweep
+    from .stop_counts.dataset import borders
     from .theory.boundaries import boundaries
     from .theory.continuous_motion import continuous_motion
     from .units.scales import Units
@@ -79,15 +83,18 @@ __all__ = [
     "System",
     "Units",
     "__version__",
+    "borders",
     "boundaries",
     "continuous_motion",
     "curves",
+    "design",
     "explore",
     "features",
     "identify",
     "load_config",
     "plot_boundaries",
     "plot_curves",
+    "plot_design",
     "plot_fit",
     "plot_forces",
     "plot_orbit",
@@ -108,6 +115,7 @@ _HOME = {
     "Solver": "model.settings",
     "System": "model.system",
     "Units": "units.scales",
+    "borders": "stop_counts.dataset",
     "boundaries": "theory.boundaries",
     "continuous_motion": "theory.continuous_motion",
     "curves": "steady.curves",
@@ -115,6 +123,7 @@ _HOME = {
     "load_config": "files.config",
     "plot_boundaries": "plot",
     "plot_curves": "plot",
+    "plot_design": "plot",
     "plot_fit": "plot",
     "plot_forces": "plot",
     "plot_orbit": "plot",
@@ -132,7 +141,7 @@ def __dir__() -> list[str]:
 
 
 def __getattr__(name: str) -> object:
-    if name in ("features", "identify", "regimes"):
+    if name in ("design", "features", "identify", "regimes"):
         return import_module(f".{name}", __name__)
     if name in _HOME:
         value = getattr(import_module(f".{_HOME[name]}", __name__), name)

@@ -12,6 +12,7 @@ from .errors import InputError
 from .files.reading import kind
 from .pictures.curves.figure import CURVE_VARIABLES, plot_curves
 from .pictures.curves.harmonics import HARMONIC_VARIABLES
+from .pictures.designs.figure import plot_design
 from .pictures.fits.figure import plot_fit
 from .pictures.maps.boundary_map import plot_boundaries
 from .pictures.maps.force_map import plot_forces
@@ -29,6 +30,7 @@ __all__ = [
     "check_picture",
     "plot_boundaries",
     "plot_curves",
+    "plot_design",
     "plot_fit",
     "plot_forces",
     "plot_orbit",
@@ -53,7 +55,7 @@ PICTURED = {
             *(*BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES),
         )
     ),
-    "boundaries": frozenset((*BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES)),
+    "boundaries": frozenset(("border_r", "border_beta", *BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES)),
     "response": frozenset(
         (
             *("regime", "contact_regime", "stops_per_cycle", "slips_per_cycle", "period", "status"),
@@ -84,6 +86,7 @@ def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
         "response": {"history": plot_response, "orbit": plot_orbit},
         "estimates": {"fit": plot_fit},
         "shares": {"shares": plot_shares},
+        "design": {"design": plot_design},
     }
     valid = drawn_of[what]
     if log:

@@ -243,19 +243,7 @@ def build_parser() -> argparse.ArgumentParser:
     def command(name: str, text: str, description: str) -> argparse.ArgumentParser:
         return commands.add_parser(name, help=text, description=description)
 
-    text = "Determine the regime and the stops per cycle of every cell of a grid; write NetCDF."
-    sub = command("map", "regime of every cell of a grid", text)
-    _takes_config(sub, out="OUT.nc|OUT.zarr")
-    _takes_threads(sub)
-    _takes_yes(sub)
-    _takes_workers(sub)
-    text = "Compute amplitude, phase, harmonics and energy over frequency; write NetCDF."
-    sub = command("curves", "response curves: amplitude, phase, harmonics, energy", text)
-    _takes_config(sub)
-    _takes_threads(sub)
-    _takes_yes(sub)
-    text = "Compute the regime boundaries over frequency, without classifying cells; write NetCDF."
-    _takes_config(command("boundaries", "regime boundaries only", text))
+    _takes_grids(command)
     text = "Compute the time history of one steady state; write NetCDF."
     sub = command("response", "time history of one steady state", text)
     _takes_config(sub)
@@ -268,6 +256,40 @@ def build_parser() -> argparse.ArgumentParser:
     )
     sub = command("identify", "friction, damping and natural frequency from measured data", text)
     _takes_config(sub, "RIG", "configuration of the measured data and the fit", "data.window=[0.5,4]")
+    text = (
+        "Answer a design question: the friction with the least peak response, within a limit, without stops, "
+        "or stuck, or the margins of a working point; print the answer as a table; write NetCDF."
+    )
+    sub = command("design", "which friction to choose: least peak, within a limit, no stops, stuck", text)
+    _takes_config(sub, "CONFIG", "configuration with a table [design]", "design.band=[0.5,2]")
+    _takes_threads(sub)
+    _takes_files(command)
+    _takes_beginnings(command)
+    return parser
+
+
+def _takes_grids(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:
+    """Add the commands that compute a grid."""
+    text = "Determine the regime and the stops per cycle of every cell of a grid; write NetCDF."
+    sub = command("map", "regime of every cell of a grid", text)
+    _takes_config(sub, out="OUT.nc|OUT.zarr")
+    _takes_threads(sub)
+    _takes_yes(sub)
+    _takes_workers(sub)
+    text = "Compute amplitude, phase, harmonics and energy over frequency; write NetCDF."
+    sub = command("curves", "response curves: amplitude, phase, harmonics, energy", text)
+    _takes_config(sub)
+    _takes_threads(sub)
+    _takes_yes(sub)
+    text = "Compute the regime boundaries over frequency, without classifying cells; write NetCDF."
+    sub = command("boundaries", "regime boundaries only", text)
+    _takes_config(sub)
+    text = "also find the borders between numbers of stops for mu = 1, within the ranges of [grid]"
+    sub.add_argument("--borders", action="store_true", help=text)
+
+
+def _takes_files(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:
+    """Add the commands that read files of other commands."""
     sub = command("plot", "picture of any output file", "Draw any file written by the other commands.")
     _takes_picture(sub)
     text = "Write a map, or a slice of one, as NetCDF or as a table (CSV)."
@@ -279,8 +301,6 @@ def build_parser() -> argparse.ArgumentParser:
     sub = command("info", "summary of a file", "Summarise the contents of a file on one screen.")
     sub.add_argument("file", metavar="FILE", type=Path, help="file to read: FILE.nc, or a store FILE.zarr")
     _takes_choices(sub)
-    _takes_beginnings(command)
-    return parser
 
 
 def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:

@@ -111,6 +111,10 @@ def _boundaries(options: Options, config: "Config", output: "Output") -> None:
     from ..theory.boundaries import boundaries
 
     ds = boundaries(config.system, config.r, config.mu, units=config.units)
+    if options.borders:
+        from ..stop_counts.dataset import with_borders
+
+        ds = with_borders(ds, config.system, config.beta, config.units)
     output.fill(_finish(ds, config, options))
     _report(options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu", *describe_reduction(ds))
 
@@ -264,6 +268,28 @@ def _identify(options: Options) -> None:
         ds = identify(rig)
         output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
     _report(options, output, rig.title, *describe_estimates(ds))
+
+
+def _design(options: Options) -> None:
+    """Answer the question of a configuration; what is written reproduces the answer."""
+    from .._kernels.compiler.notices import listeners
+    from ..design.configuration import load_design
+    from ..files.designs import describe_design
+    from ..files.places import claimed
+    from ..files.storage import write_netcdf
+    from .progress import Progress
+
+    _refuse_store(options)
+    design = load_design(options.config, options.overrides, options.threads)
+    path = options.output or Path(f"{design.name}-design.nc")
+    with claimed(path, options.overwrite, design.files) as output:
+        with Progress(f"design question {design.question}", options.quiet) as progress:
+            listeners.append(progress.compiling)
+            ds = design.ask()
+            listeners.remove(progress.compiling)
+        ds.attrs |= {"title": design.title, "config": design.text}
+        output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
+    _report(options, output, f"{design.title}: {design.question}", *describe_design(ds))
 
 
 def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None) -> "xr.Dataset":
@@ -422,6 +448,7 @@ _COMMANDS: dict[str, Callable[[Options], None]] = {
     "plot": _plot,
     "info": _info,
     "identify": _identify,
+    "design": _design,
     "export": _export,
     "explore": _explore,
     "init": _init,

@@ -5,6 +5,7 @@ module           what is in it
 ===============  ==================================================================
 labels           names, dimensions, types, units and meanings of all variables
 estimate_labels  names, units and meanings of estimates from measured data
+design_labels    names, units and meanings of answers to design questions
 provenance       the history of a dataset, and the configuration that reproduces it
 variables        arrays as labelled variables, and datasets with their attributes
 schema           every variable checked against its label

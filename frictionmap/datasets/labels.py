@@ -29,6 +29,11 @@ LIMIT = (*CURVE, "dof")
 BOUNDARIES = ("beta_lim", "beta_lim_modal", "beta_stick")
 
 
+#: Kinds of borders between numbers of stops, see `stop_counts.orbits`.
+BORDER_KINDS = ("graze", "slip-in-stop", "turn/stop")
+_BORDER_POINT = ("border", "point")
+
+
 class Label(NamedTuple):
     """One variable: type, dimensions, description, and valid values."""
 
@@ -570,6 +575,25 @@ CURVES = {
         comment="undamped; those of the natural frequencies with the contact held leave its phase, too",
         least=0.0,
     ),
+    "border_r": Label(
+        np.float64,
+        "frequency ratios of borders between numbers of stops",
+        _BORDER_POINT,
+        comment="increasing along a border; padded with NaN",
+        least=0.0,
+        nan=True,
+    ),
+    "border_beta": Label(
+        np.float64,
+        "friction ratios of borders between numbers of stops",
+        _BORDER_POINT,
+        comment="mu = 1; padded with NaN",
+        least=0.0,
+        nan=True,
+    ),
+    "border_kind": Label(np.str_, "kind of the border", ("border",), texts=BORDER_KINDS),
+    "stops_below": Label(np.float32, "stops per cycle below the border", ("border",), least=0.0, nan=True),
+    "stops_above": Label(np.float32, "stops per cycle above the border", ("border",), least=0.0, nan=True),
     "beta_lim_high": Label(np.float64, "limit of beta_lim for r to infinity", ("mu",), least=0.0, inf=True),
     "beta_stick_high": Label(
         np.float64, "limit of beta_stick for r to infinity", ("mu",), least=0.0, inf=True
@@ -654,11 +678,11 @@ MEASURES = {
     "force": (
         "beta_lim", "beta_lim_modal", "beta_stick", "sliding_limit", "beta_lim_high", "beta_stick_high",
         "peak_threshold", "friction_harmonic", "transmitted_force", "transmitted_first_harmonic", "friction",
-        "beta_stick_contact", "beta_noslip", "no_stop_begin", "no_stop_end",
+        "beta_stick_contact", "beta_noslip", "no_stop_begin", "no_stop_end", "border_beta",
     ),
     "work": ("work_friction", "work_input", "work_damping", "work_wall"),
     "frequency": (
-        "natural_frequency", "held_frequency", "invariant_point", "mass_invariant_point",
+        "border_r", "natural_frequency", "held_frequency", "invariant_point", "mass_invariant_point",
         "invariant_first_harmonic", "contact_invariant_first_harmonic",
     ),
     "velocity": ("v",),

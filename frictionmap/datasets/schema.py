@@ -7,6 +7,7 @@ import xarray as xr
 
 from .. import checks
 from ..errors import InputError
+from .design_labels import DESIGN
 from .estimate_labels import ESTIMATE_TEXTS, ESTIMATES
 from .labels import (
     BESIDE,
@@ -32,9 +33,18 @@ TEXTS = (
 )  # fmt: skip
 
 
+#: Kinds of datasets with variables of their own.
+_OWN = {"estimates": ESTIMATES, "design": DESIGN}
+
+
+def is_own(what: str) -> bool:
+    """Whether a kind of dataset has variables of its own; it is small, and read whole."""
+    return what in _OWN
+
+
 def _labels_by_name(what: str) -> dict[str, Label]:
     """Labels of axes and variables of a kind of dataset."""
-    return ESTIMATES if what == "estimates" else {**COORDINATES, **BESIDE, **labels_of(what)}
+    return _OWN.get(what) or {**COORDINATES, **BESIDE, **labels_of(what)}
 
 
 def _is_history(ds: xr.Dataset, name: object) -> bool:
@@ -56,10 +66,12 @@ def _on_limit(name: object) -> bool:
 def kind(ds: xr.Dataset) -> str:
     """Kind of a dataset, or of a slice of one.
 
-    "map", "curves", "response", "boundaries", "estimates" or "shares".
+    "map", "curves", "response", "boundaries", "estimates", "shares" or "design".
     """
     if "estimate" in ds.variables:
         return "estimates"
+    if "question" in ds.variables:
+        return "design"
     if any(name in SHARES for name in ds.variables):
         return "shares"
     if any(_is_history(ds, name) for name in ds.variables):
@@ -111,7 +123,7 @@ def check_structure(ds: xr.Dataset, in_parts: bool = False) -> None:
         if key in ds.attrs:
             checks.number(ds.attrs[key], f"the attribute {key}", above=0.0)
     known = _labels_by_name(what)
-    if not any(name in LABELS or name == "estimate" for name in ds.variables):
+    if not is_own(what) and not any(name in LABELS for name in ds.variables):
         names = ", ".join(map(str, ds.variables)) or "none"
         raise InputError(
             f"cannot use the dataset: no frictionmap variable found, such as regime or beta_lim; got {names}"

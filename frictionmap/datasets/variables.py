@@ -35,7 +35,10 @@ def label_variable(name: str, values: np.ndarray | float, what: str = "") -> xr.
     label = labels_of(what)[name]
     if label.also and np.size(values) and np.max(values) > label.codes[-1].value:
         label = label._replace(codes=(*label.codes, *label.also))
-    return xr.Variable(label.dims[len(label.dims) - np.ndim(values) :], values, attributes(label))
+    attrs = attributes(label)
+    if label.dtype is np.str_:
+        attrs.pop("units")
+    return xr.Variable(label.dims[len(label.dims) - np.ndim(values) :], values, attrs)
 
 
 def stamp(

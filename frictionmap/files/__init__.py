@@ -12,6 +12,7 @@ places       output files: reserved before the computation, written completely o
 storage      datasets as NetCDF files
 slices       one point of further axes, selected from a file
 estimates    estimates: read, checked, summarised
+designs      answers to design questions: read, checked, summarised
 reading      files and stores read, and checked against the schema
 stored       system, excitation and initial state of a dataset
 summary      summary of a file, in words

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import ROUND_CEILING, Decimal
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -310,8 +310,23 @@ def system_in(text: str) -> System | None:
         return None
 
 
-def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None) -> Config:
-    name = path.stem
+class Common(NamedTuple):
+    """What all configurations of computations have."""
+
+    title: str
+    system: System
+    units: Units | None
+    files: tuple[Path, ...]  # that the configuration was read from
+
+
+def common_tables(tree: Mapping[str, object], path: Path) -> Common:
+    """Check the names of all tables; read the title, the system and the units.
+
+    Raises
+    ------
+    InputError
+        A key is unknown, missing, of the wrong type or out of range.  The message names the key.
+    """
     if "data" in tree and "grid" not in tree:
         raise InputError(
             "cannot compute from a configuration with [data]: it describes measured data; "
@@ -320,19 +335,25 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     for key in tree:
         if key not in _SECTIONS:
             raise unknown_key(key, "", tuple(_SECTIONS))
-    title = tree.get("title", name)
+    title = tree.get("title", path.stem)
     if not isinstance(title, str):
         raise InputError(f"title must be text; got {title!r}")
     if "system" not in tree:
         raise InputError("the configuration must have a table [system]; got none")
     described = _system_table(tree, path.parent)
     system = _build(System, described, "system")
-    solver = _build(Solver, _table(tree, "solver"), "solver")
-    curves = _build(curve_settings, _table(tree, "curves"), "curves")
-    further = _further_axes(tree)
-    variations = None if further is None else checked_variations(system, further)
     given = _table(tree, "units")
     units = _build(Units, given, "units") if given else None
+    return Common(title, system, units, (path, *_matrix_files(described)))
+
+
+def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None) -> Config:
+    title, system, units, files = common_tables(tree, path)
+    solver = _build(Solver, _table(tree, "solver"), "solver")
+    curves = _build(curve_settings, _table(tree, "curves"), "curves")
+    design_table(tree)
+    further = _further_axes(tree)
+    variations = None if further is None else checked_variations(system, further)
     grid = _grid(tree, scales_of(units, system, variations))
     counts = {key: _count(grid[key], f"grid.{key}") for key in ("mu", "r", "beta")}
     points = 1 if variations is None else variations.count
@@ -345,11 +366,15 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
         (variations or system).costs(axes["r"])
     except InputError as error:
         raise within("system", error) from None
-    files = (path, *_matrix_files(described))
     return Config(
-        title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, name, variations, files,
-        units,
+        title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, path.stem, variations,
+        files, units,
     )  # fmt: skip
+
+
+def design_table(tree: Mapping[str, object]) -> Mapping[str, object]:
+    """The table [design] of a configuration, its keys checked; its values belong to `design`."""
+    return _table(tree, "design")
 
 
 def _grid(tree: Mapping[str, object], scales: Scales) -> dict[str, Any]:

@@ -24,13 +24,19 @@ def check_export(path: Path) -> None:
 def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
     """Write a dataset; as CSV one row for every point of all its axes, with the names of codes.
 
-    Of estimates it is a row for every parameter; of shares every outcome and quantile has a column.
+    Of estimates it is a row for every parameter; of shares every outcome and quantile has a column; of the
+    result of a design question it is the curve that was searched.
     """
     if path.suffix.lower() == ".nc":
         write_netcdf(ds, path, command)
         return
     if kind(ds) == "estimates":
         ds[list(OF_PARAMETERS)].to_dataframe().to_csv(path)
+        return
+    if kind(ds) == "design":
+        over = next((axis for axis in ("beta_search", "r_search") if axis in ds.coords), None)
+        lines = [name for name in ds.data_vars if ds[name].dims == (over,)]
+        (ds[lines] if over else ds).to_dataframe().to_csv(path)
         return
     if kind(ds) == "shares":
         ds = _in_columns(_in_columns(ds, "outcome"), "quantile")

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple, get_args
 
 from .. import checks
+from ..datasets.design_labels import QUESTIONS
 from ..model.contact import CONTACTS, MOST_CONTACTS
 from ..model.periodic_load import MOST_HARMONICS
 from ..model.settings import (
@@ -377,6 +378,63 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         Key("harmonics", "highest harmonic; 0: none", whole(**RANGES["harmonics"]), _CURVES.harmonics),
     ),
+    "design": (
+        Key("question", "what to find", word(*QUESTIONS), QUESTIONS[0]),
+        Key(
+            "band",
+            "range of frequencies of the load",
+            several(either(number(above=0.0), with_unit("frequency")), 2, maxItems=2),
+            example="[0.3, 2.2]",
+            words="two frequency ratios > 0, increasing, or frequencies with units",
+        ),
+        Key(
+            "response",
+            "what is made small: amplitude or first_harmonic of a mass, contact (the displacement in it) or "
+            "transmitted_force",
+            table(
+                {
+                    "quantity": word("amplitude", "first_harmonic", "contact", "transmitted_force"),
+                    "mass": _DOF,
+                    "contact": whole(least=1),
+                }
+            ),
+            example='{ quantity = "amplitude", mass = 1 }',
+            words="{ quantity, mass or contact }",
+        ),
+        Key("mu", "static-to-kinetic friction ratio", number(least=1.0), 1.0),
+        Key(
+            "limit",
+            "for at-most: the largest response that is allowed, over P/k_1, or over P",
+            either(number(above=0.0), with_unit("length"), with_unit("force")),
+            example="4.0",
+            words="a number > 0, or a length or force with its unit",
+        ),
+        Key(
+            "spread",
+            "for robust: relative uncertainty of the friction, up and down",
+            number(least=0.0),
+            example="0.2",
+            words="a number from 0 to below 1",
+        ),
+        Key(
+            "beta",
+            "range of friction to search; for margin the friction of the working point",
+            either(
+                several(either(number(least=0.0), with_unit("force")), 2, maxItems=2),
+                number(above=0.0),
+                with_unit("force"),
+            ),
+            example="[0.02, 4.0]",
+            words="two friction ratios, increasing, or one; or forces with units",
+        ),
+        Key(
+            "r",
+            "for margin: the frequency of the working point",
+            either(number(above=0.0), with_unit("frequency")),
+            example="0.75",
+            words="a frequency ratio > 0, or a frequency with its unit",
+        ),
+    ),
     "units": (
         _unit("natural_frequency", "frequency at r = 1: sqrt(k_1/m_1)/(2 pi), or frequency_scale/(2 pi)"),
         _unit("load", "friction force at beta = 1: the load amplitude P, or k_1 Y for base excitation"),
@@ -397,6 +455,7 @@ TABLES = {
     "grid": "The grid of the map: r, beta, and one map per mu.",
     "solver": "How steady states are found, and the output variables.",
     "curves": "For `frictionmap curves` only, which takes a short list of beta.",
+    "design": "For `frictionmap design` only: which friction to choose.",
     "units": "Optional: reference values that convert ratios to Hz and N; [grid] may then use these units.",
     "axes": "Further axes: values of [system] that vary, one per axis, or several together from a CSV file.",
 }

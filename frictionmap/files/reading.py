@@ -33,6 +33,7 @@ from ..datasets.schema import (
     check_structure,
     checked_values,
     in_brackets,
+    is_own,
     kind,
     placed,
     standard_dims,
@@ -40,6 +41,7 @@ from ..datasets.schema import (
 )
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError
+from .designs import design_form
 from .estimates import estimates_form
 from .slices import choose, further_axes
 
@@ -162,7 +164,7 @@ def _from_the_file(error: Exception) -> bool:
 
 def _check_ours(path: Path, ds: xr.Dataset) -> None:
     source = ds.attrs.get("source", "not given")
-    ours = LABELS.keys() & ds.variables.keys() or kind(ds) == "estimates"
+    ours = LABELS.keys() & ds.variables.keys() or is_own(kind(ds))
     if not str(source).startswith("frictionmap") or not ours:
         raise InputError(f"cannot read {path}: its source is {source!r}; give a file written by frictionmap")
 
@@ -194,7 +196,7 @@ def _load(
         if MARKS in ds and not ds[MARKS].values.all():  # boundaries of blocks to come are not known
             ds = ds.drop_vars([name for name in CURVES if name in ds])
         check_structure(ds)
-    if kind(ds) == "estimates":  # small, and drawn of all that is there
+    if is_own(kind(ds)):  # small, and drawn of all that is there
         return ds.load()
     wanted = LABELS if only is None else only[kind(ds)]
     part = with_current_names(_ours(ds))
@@ -237,6 +239,8 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
     what = kind(ds)
     if what == "estimates":
         return estimates_form(ds)
+    if what == "design":
+        return design_form(ds)
     ds = with_current_names(_ours(ds))
     ds = ds.set_coords([name for name in (*COORDINATES, *BESIDE) if name in ds.data_vars])
     if what == "response":

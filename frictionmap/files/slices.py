@@ -9,7 +9,7 @@ import xarray as xr
 from .. import checks
 from ..datasets.labels import COORDINATES, labels_of
 from ..datasets.provenance import configuration
-from ..datasets.schema import kind
+from ..datasets.schema import is_own, kind
 from ..errors import InputError
 from ..model.variations import Axis, Variations
 from .config import Config, config_of
@@ -40,8 +40,8 @@ def parse_choices(texts: Sequence[str]) -> dict[str, float]:
 
 
 def further_axes(ds: xr.Dataset) -> list[str]:
-    """Dimensions of known variables beyond those of their labels; none for estimates."""
-    if kind(ds) == "estimates":
+    """Dimensions of known variables beyond those of their labels; none for estimates and designs."""
+    if is_own(kind(ds)):
         return []
     labels = labels_of(kind(ds))
     dims = (

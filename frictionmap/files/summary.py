@@ -10,6 +10,7 @@ from .. import regimes
 from ..datasets.labels import CELL, IN_SI, LABELS, OLDER_NAMES
 from ..datasets.physical import describe_scales
 from ..datasets.schema import TEXTS, kind
+from .designs import describe_design
 from .estimates import describe_estimates, source_of_data
 from .reading import standard_form
 from .slices import further_axes
@@ -118,7 +119,8 @@ def describe_file(ds: xr.Dataset) -> str:
     Parameters
     ----------
     ds : xarray.Dataset
-        A map, curves, a response, boundaries, estimates or shares, or a slice of one.
+        A map, curves, a response, boundaries, estimates, shares or the result of a design question, or a
+        slice of one.
 
     Raises
     ------
@@ -130,6 +132,8 @@ def describe_file(ds: xr.Dataset) -> str:
     lines = header_lines(ds, what)
     if what == "estimates":
         return "\n".join([*lines, *_estimates(ds)])
+    if what == "design":
+        return "\n".join([*lines, "answer", *(f"  {line}" for line in describe_design(ds))])
     lines += axis_lines(ds)
     listed = [name for name in ds.data_vars if _is_list(ds[name])]
     lines += _variables(ds, [str(name) for name in ds.data_vars if name not in listed])

@@ -14,7 +14,7 @@ from ..jobs import Progress, Watch
 from ..model.general import General
 from ..model.settings import Solver
 from ..model.system import System
-from .boundaries import Boundaries
+from .boundaries import Boundaries, find_boundaries
 from .maps import solve_cells
 from .problem import general_of
 
@@ -65,7 +65,7 @@ def contact_variable(name: str, values: np.ndarray, contacts: int) -> xr.Variabl
     return xr.Variable((*label.dims, "contact"), values, label_variable(name, values[..., 0]).attrs)
 
 
-def _per_contact(name: str, system: System, found: Cells, beta: np.ndarray) -> np.ndarray:
+def contact_values(name: str, system: System, found: Cells) -> np.ndarray:
     """Values of an output for every contact, (n_mu, n_r, n_beta, N)."""
     general = general_of(system)
     count = general.count
@@ -93,7 +93,8 @@ def _per_contact(name: str, system: System, found: Cells, beta: np.ndarray) -> n
     return np.maximum(found.works, 0.0) if name == "work_friction" else found.wall_works
 
 
-def _values(name: str, system: System, found: Cells, beta: np.ndarray) -> np.ndarray:
+def cell_values(name: str, system: System, found: Cells) -> np.ndarray:
+    """Values of an output for every cell, or for every mass, (n_mu, n_r, n_beta[, n])."""
     count = general_of(system).count
     if name not in _OF_MASSES:
         return getattr(found, name)
@@ -151,16 +152,18 @@ def general_map(
     refuse_static(general, axes["mu"])
     names = outputs_of(general, solver)
     masses = any(name in _OF_MASSES for name in names)
-    found, limits = solve_cells(system, axes, solver, checks.threads(threads), progress, watch, masses)
+    threads = checks.threads(threads)
+    limits = find_boundaries(system, axes["r"], axes["mu"], threads, watch)
+    found = solve_cells(system, axes, limits.beta_stick, solver, threads, progress, watch, masses)
     variables: dict[str, xr.Variable] = {}
     for name in names:
         if name in PER_CONTACT:
-            values = _per_contact(name, system, found, axes["beta"])
+            values = contact_values(name, system, found)
             variables[name] = contact_variable(
                 name, values.astype(LABELS[name].dtype, copy=False), general.count
             )
         else:
-            values = _values(name, system, found, axes["beta"])
+            values = cell_values(name, system, found)
             variables[name] = label_variable(name, values.astype(LABELS[name].dtype, copy=False))
     if any(group.first.wall_velocity for group in general.groups):
         label = LABELS["regime"]

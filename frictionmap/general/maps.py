@@ -11,7 +11,7 @@ from .._kernels.general.fill import Cells, Grid, fill_rows
 from ..jobs import Job, Progress, Watch, run_jobs
 from ..model.settings import Solver
 from ..model.system import System
-from .boundaries import Boundaries, find_boundaries, friction_lines, rest_states, sliding_states
+from .boundaries import friction_lines, rest_states, sliding_states
 from .held import held_ranges
 from .problem import general_of, problem_of, static_offset
 
@@ -47,21 +47,28 @@ def _put_stuck(system: System, r: np.ndarray, found: Cells) -> None:
 
 
 def solve_cells(
-    system: System, axes: Mapping[str, np.ndarray], solver: Solver, threads: int,
+    system: System, axes: Mapping[str, np.ndarray], beta_stick: np.ndarray, solver: Solver, threads: int,
     progress: Progress | None, watch: Watch | None, masses: bool,
-) -> tuple[Cells, Boundaries]:  # fmt: skip
-    """Compute all cells of a grid, and the boundaries over r.
+) -> Cells:  # fmt: skip
+    """Compute all cells of a grid.
 
+    Parameters
+    ----------
+    system : System
+    axes : mu, r and beta
+    beta_stick : (n_mu, n_r) boundary to permanent sticking
+    solver : Solver
+    threads : number of threads
+    progress, watch : as in `sweep`
     masses : whether displacements of the masses are wanted, after those in the contacts
     """
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]
-    limits = find_boundaries(system, r, mu, threads, watch)
     problem, modal = problem_of(system, r)
     general = general_of(system)
     kinetic, static = friction_lines(system, mu)
     unique = (static == kinetic).all(axis=(1, 2)) & (solver.skip == "exact")
     stuck_from = np.where(
-        unique[:, np.newaxis], np.searchsorted(beta, limits.beta_stick), beta.size
+        unique[:, np.newaxis], np.searchsorted(beta, beta_stick), beta.size
     )  # fmt: skip
     starts = rest_states(system, modal, r)
     if solver.start == "moving":
@@ -85,10 +92,10 @@ def solve_cells(
         cancel[0] = 1  # the kernel checks it at every cell
         raise
     for at_zero in np.flatnonzero(r == 0.0):
-        _put_r_zero(found, int(at_zero), beta, limits.beta_stick)
+        _put_r_zero(found, int(at_zero), beta, beta_stick)
     _put_stuck(system, r, found)
     _put_offset(system, found, count)
-    return found, limits
+    return found
 
 
 def _put_offset(system: System, found: Cells, masses: int) -> None:

@@ -16,5 +16,6 @@ maps         regimes, boundaries and probabilities over frequency and friction
 curves       response curves over frequency
 motions      one steady state: in time, as phase portrait, as friction loop
 fits         measured data with the fitted curves
+designs      answers to design questions
 ===========  ========================================================================
 """

@@ -86,6 +86,12 @@ MODAL: LineStyle = {
     "label": r"lower bound of $\beta_\mathrm{lim}$, sum of modal maxima",
 }
 
+BORDER: LineStyle = {
+    "color": "#00162c",
+    "linewidth": 0.8,
+    "label": "borders between numbers of stops",
+}
+
 #: Colours of two contacts, 3 times the state of the first plus that of the second: it sticks, sticks and
 #: slips, slides.  Both alike: grey, black, white; bluish where the first one moves less, else brownish.
 PAIRS = (

@@ -23,6 +23,11 @@ def frequency_on_top(ax: Axes, ds: xr.Dataset) -> None:
     _beside(ax, ds, "x", "frequency", _NAMES["frequency"], float(np.max(ds["r"].values)))
 
 
+def force_on_top(ax: Axes, ds: xr.Dataset) -> None:
+    """Add a force axis above a panel whose lower axis is beta and has its limits."""
+    _beside(ax, ds, "x", "force", _NAMES["force"], max(abs(limit) for limit in ax.get_xlim()))
+
+
 def time_on_top(ax: Axes, ds: xr.Dataset) -> None:
     """Add a time axis above a panel whose lower axis is tau/pi."""
     _beside(ax, ds, "x", "time", _NAMES["time"], float(np.max(ds["tau"].values)), np.pi)

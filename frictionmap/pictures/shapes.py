@@ -18,6 +18,7 @@ _MAKERS = {
     "response": "response returns, over tau",
     "estimates": "the functions of identify return, over parameter",
     "shares": "shares returns, over outcome, mu, r and beta",
+    "design": "the functions of design return",
 }
 _DRAWN_BY = {
     "map": "plot_regimes",
@@ -26,6 +27,7 @@ _DRAWN_BY = {
     "response": "plot_response",
     "estimates": "plot_fit",
     "shares": "plot_shares",
+    "design": "plot_design",
 }
 
 

@@ -11,7 +11,8 @@ maps             cells in parallel: which of them are decided by formula, progre
 refinement       change of the map of a reduced structure with twice as many modes
 sweep            `sweep`: maps of one system, or of many along further axes
 curves           `curves`: response curves over frequency
-points           first harmonics at a list of points (r, beta)
+scattered        cells at a list of points (r, beta)
+points           first harmonics at such points
 motion           one steady state in time, as arrays
 response         `response`: the same as a dataset
 cost             expected memory and time of a map

@@ -5,18 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import regimes
-from .._kernels.engine.fill import OpenCells
 from .._kernels.engine.quantities import LAG, MODULUS
 from ..model.settings import Solver, Start
 from ..model.system import System
 from ..theory.boundary_curves import Curves, find_curves
 from ..theory.half_waves import compliances, dynamic_amplification
-from .cells import Cells
-from .maps import allocate
 from .quantity_data import quantity_request
-
-#: Points computed at a time: arrays extend over all pairs of their frequencies and friction ratios.
-_AT_ONCE = 512
+from .scattered import AT_ONCE, allocate_at, follow
 
 
 class States(NamedTuple):
@@ -117,16 +112,12 @@ def _follow(system: System, points: _Points, start: Start, chosen: np.ndarray, s
     """Fill in the steady states reached from an initial state at the chosen points."""
     solver = Solver(start=start, outputs=("regime", "status"))
     request = quantity_request(("first_harmonic_amplitude", "first_harmonic_phase"))
-    for first in range(0, chosen.size, _AT_ONCE):
-        some = chosen[first : first + _AT_ONCE]
-        columns, column = np.unique(points.beta[some], return_inverse=True)
+    for first in range(0, chosen.size, AT_ONCE):
+        some = chosen[first : first + AT_ONCE]
         rows = np.arange(some.size)
-        cells = Cells(system, points.r[some], columns, np.array([points.mu]), solver, request)
-        out = allocate((1, some.size, columns.size), system.n, (*solver.outputs, "status"))
-        places = OpenCells(rows, rows + 1, column, column + 1)
-        fill, arguments = cells.opened(0, some.size, places, out, np.zeros(1, dtype=np.uint8))
-        fill(*arguments)
-        firsts = cells.results.firsts[0, rows, column, : system.n]
+        found = allocate_at(system, points.r[some], points.beta[some], points.mu, solver, request)
+        follow(found, rows)
+        firsts = found.cells.results.firsts[0, rows, found.column, : system.n]
         size, lag = firsts[..., MODULUS], firsts[..., LAG]
         states.phasors[some] = size * np.exp(-1j * np.where(size == 0.0, 0.0, lag))  # at rest: no lag
-        states.regime[some] = out.regime[0, rows, column]
+        states.regime[some] = found.out.regime[0, rows, found.column]

@@ -170,6 +170,7 @@ class Scales:
             missing = {
                 "frequency": "units.natural_frequency",
                 "force": "units.load, or units.base_amplitude with units.stiffness",
+                "length": "units.base_amplitude, or units.load with units.stiffness",
             }
             raise InputError(
                 f"cannot convert {name} = {checks.one_line(given)} to ratios: a reference value is missing; "

@@ -142,7 +142,7 @@ def test_the_page_takes_classes_and_their_colours_from_the_pictures():
 # Public names
 
 #: Public names that are modules by intent.
-MODULES = {"features", "identify", "regimes"}
+MODULES = {"design", "features", "identify", "regimes"}
 
 
 def test_public_names_stay_what_they_are_whatever_is_imported():

@@ -67,10 +67,11 @@ def test_every_key_and_output_is_told(manual):
 
 def test_every_public_name_is_told(manual):
     page = text(manual, "reference/api.html")
-    for name in set(fm.__all__) - {"__version__", "features", "identify", "regimes"}:
+    for name in set(fm.__all__) - {"__version__", "design", "features", "identify", "regimes"}:
         assert f'id="frictionmap.{name}"' in page, name
-    for name in fm.identify.__all__:
-        assert f'id="frictionmap.identify.{name}"' in page, name
+    for module in ("design", "identify"):
+        for name in getattr(fm, module).__all__:
+            assert f'id="frictionmap.{module}.{name}"' in page, name
     constants = [name for name in fm.regimes.__all__ if isinstance(getattr(fm.regimes, name), int)]
     assert constants
     for name in constants:

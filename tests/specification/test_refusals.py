@@ -48,7 +48,7 @@ map latin.toml
 map rig.toml
     cannot compute from a configuration with [data]: it describes measured data; use frictionmap identify
 map good.toml --set titel=x
-    unknown key 'titel' (did you mean title?); valid: title, system, grid, solver, curves, units, axes
+    unknown key 'titel' (did you mean title?); valid: title, system, grid, solver, curves, design, units, axes
 map good.toml --set title=1
     title must be text; got 1
 map good.toml --set system.contct=fixed-wall
@@ -373,6 +373,56 @@ map good.toml --set 'solver.steps=24 }, b = { c = 1'
     solver.steps must be a whole number; got '24 }, b = { c = 1'
 plot
     frictionmap plot: the following arguments are required: FILE (see frictionmap plot --help)
+
+# Design questions
+design good.toml
+    the configuration must have a table [design]; got none
+design question.toml --set design.qestion=stuck
+    unknown key 'design.qestion' (did you mean question?); valid: question, band, response, mu, limit, spread, beta, r
+design question.toml --set design.question=best
+    design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust; got 'best' (did you mean robust?)
+design good.toml --set design.question=stuck
+    design.band must be given for question stuck; got nothing
+design question.toml --set design.band=[1]
+    design.band must be two frequencies; got 1
+design question.toml --set design.band=[0,1]
+    design.band must be > 0; got 0
+design question.toml --set design.band=[2,1]
+    design.band must be increasing; got 1.0 at index 1
+design question.toml --set 'design.band=["1 Hz","2 Hz"]'
+    [design]: cannot convert band = ['1 Hz', '2 Hz'] to ratios: a reference value is missing; give units.natural_frequency
+design question.toml --set design.mu=0.9
+    design.mu must be >= 1; got 0.9
+design question.toml --set design.beta=[0.5]
+    design.beta must be two friction ratios; got 1
+design question.toml --set design.response=phase
+    design.response.quantity must be one of amplitude, first_harmonic, contact, transmitted_force; got 'phase'
+design question.toml --set design.response={mass=2}
+    design.response.mass must be <= 1; got 2
+design question.toml --set design.response={masses=1}
+    unknown key 'design.response.masses' (did you mean mass?); valid: quantity, mass, contact
+design question.toml --set design.response=1
+    design.response must be a table of quantity, mass, contact; got 1
+design question.toml --set design.response=first_harmonic --set system.contact_stiffness=2.0
+    cannot use design.response.quantity 'first_harmonic' with several contacts, springs, belts or loads of several harmonics: it is not computed; use one of amplitude, contact
+design question.toml --set design.question=robust --set design.spread=1
+    design.spread must be < 1; got 1
+design question.toml --set design.question=robust --set design.spread=0
+    design.spread must be > 0; got 0
+design question.toml --set design.question=at-most
+    design.limit must be given for question at-most; got nothing
+design question.toml --set design.question=at-most --set design.limit=0
+    design.limit must be > 0; got 0
+design question.toml --set design.question=at-most --set design.limit=0.01 --set system.contact=joined-base-wall --set system.excitation=base
+    design.limit must be >= 1, the least peak, at beta = ...; got 0.01
+design question.toml --set design.question=no-stop --set system.contact_stiffness=2.0
+    [design]: cannot find friction without stops with contact_stiffness: a spring in the contact has no such limit; use question stuck
+design question.toml --set design.question=margin --set design.r=0 --set design.beta=1
+    design.r must be > 0; got 0
+design question.toml --set design.question=margin --set design.beta=1
+    design.r must be given for question margin; got nothing
+design question.toml --set axes.damping_ratios=[0.1]
+    cannot run design with [axes]: [axes] is supported by `map` only; remove it
 
 # Measured data: configurations
 identify none.toml
@@ -724,6 +774,7 @@ def folder(tmp_path_factory):
     shutil.copy(ROOT / "configs/rigs/free-decay.csv", folder)
     for name, text in {
         "good.toml": "[system]\n[grid]\nr = 1.0\nbeta = { start = 0.0, stop = 1.0, step = 0.5 }\n",
+        "question.toml": "[system]\ndamping_ratios = 0.05\n[design]\nband = [0.5, 1.5]\n",
         "empty.toml": "",
         "typo.toml": "a =\n",
         "old.toml": "",

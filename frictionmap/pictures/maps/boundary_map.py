@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from ..features import features_of, mark_features
 from ..grids import HIGH, Grid
 from ..palette import (  # fmt: skip
+    BORDER,
     CLASSES,
     CONTINUOUS,
     FURTHER,
@@ -150,7 +151,17 @@ def _draw(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
         rim = [] if style is MODAL else halo()  # it often coincides with beta_lim, which must stay visible
         handles += ax.plot(*_over(r, panel[name].values), path_effects=rim, **style)
     _finish(ax, panel, r, top)
-    return handles + mark_features(ax, features_of(panel), r)
+    return handles + _draw_borders(ax, panel) + mark_features(ax, features_of(panel), r)
+
+
+def _draw_borders(ax: Axes, panel: xr.Dataset) -> list[Handle]:
+    """Draw the borders between numbers of stops, which are those of mu = 1."""
+    if not {"border_r", "border_beta"} <= set(panel) or float(panel["mu"]) != 1.0:
+        return []
+    lines: list[Handle] = []
+    for x, y in zip(panel["border_r"].values, panel["border_beta"].values, strict=True):
+        lines += ax.plot(x, y, **BORDER)
+    return lines[:1]
 
 
 def _elastic_handles() -> list[Handle]:

@@ -1,0 +1,23 @@
+"""Design questions: which friction gives the least response, keeps it in a limit, holds or never stops.
+
+===========  ==========================================================================================
+module       what is in it
+===========  ==========================================================================================
+extremes     maxima of functions of one variable, many at a time
+minimum      minima and crossings of curves with kinks
+band         the frequency band, and the frequencies at which curves over it are sampled
+limits       boundaries of the regimes over a band: their extremes and crossings
+responses    the response that a design is about, at points (r, beta) of any system
+performance  the largest response over the band as a function of friction, with its peaks
+task         checks of arguments, the range of friction that is searched
+least_peak   the friction with the least largest response, also where it is uncertain
+at_most      the ranges of friction in which the response stays within a limit
+answers      answers as datasets
+questions    `least_peak`, `robust`, `at_most`, `no_stop`, `stuck`, `margin`
+configuration  the table [design] of a configuration
+===========  ==========================================================================================
+"""
+
+from .questions import at_most, least_peak, margin, no_stop, robust, stuck
+
+__all__ = ["at_most", "least_peak", "margin", "no_stop", "robust", "stuck"]

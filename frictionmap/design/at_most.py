@@ -1,0 +1,46 @@
+"""The ranges of friction in which a response stays within a limit over a band."""
+
+import numpy as np
+
+from ..errors import InputError
+from .least_peak import Optimum, find_optimum, largest
+from .minimum import Points, changes, crossing
+from .performance import Performance
+from .task import Task
+
+
+def find_ranges(task: Task, curve: Performance, limit: float) -> tuple[Optimum, np.ndarray, np.ndarray]:
+    """Find all ranges of beta with M(beta) <= limit: the optimum, where they begin and where they end.
+
+    A range that reaches the lower end of the search begins there; one that reaches friction that holds over
+    the whole band has no end.
+
+    Raises
+    ------
+    InputError
+        The limit is below the least peak.
+    """
+    optimum = find_optimum(task, curve)
+    if limit < optimum.best.size:
+        raise InputError(
+            f"limit must be >= {optimum.best.size:.9g}, the least peak, at beta = {optimum.best.beta:.6g}; "
+            f"got {limit:g}"
+        )
+    points = optimum.points
+
+    def values(beta: np.ndarray) -> np.ndarray:
+        return largest(curve.at(beta))
+
+    ends = [crossing(values, points, int(k), limit) for k in changes(points, limit)]
+    allowed = points.size <= limit
+    begins_inside, ends_inside = bool(allowed[0]), bool(allowed[-1])
+    if begins_inside:
+        ends.insert(0, float(points.beta[0]))
+    if ends_inside:
+        ends.append(_last(task, points))
+    return optimum, np.array(ends[0::2]), np.array(ends[1::2])
+
+
+def _last(task: Task, points: Points) -> float:
+    """The end of a range that reaches the end of the search: none where everything holds from there on."""
+    return np.inf if points.beta[-1] >= task.stuck_from else float(points.beta[-1])

@@ -1,0 +1,113 @@
+"""The frequency band of a design, and the frequencies at which a curve over it is sampled."""
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.linalg import eigh, null_space
+
+from .. import checks
+from ..errors import InputError
+from ..model.system import System
+from ..units.axes import KINDS, ratios
+from ..units.scales import Scales
+
+#: Samples over a band, spaced in proportion.
+PEAK_SAMPLES, LIMIT_SAMPLES = 240, 1000
+
+#: Places of further samples around a natural frequency, in units of zeta times the frequency.
+_AROUND = np.array([-4.0, -2.0, -1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0, 2.0, 4.0])
+
+#: For this the damping ratio stands in where there is none.
+_LEAST_ZETA = 1e-3
+
+#: Largest number of contacts of which every combination is tried.
+_ALL_PATTERNS = 3
+
+#: Divisors of natural frequencies: beta_lim has dips at w/n.
+_MOST_DIVISORS = 60
+
+
+class Band(NamedTuple):
+    """A range of frequency ratios."""
+
+    low: float
+    high: float
+
+    def samples(self, count: int, further: np.ndarray) -> np.ndarray:
+        """Increasing frequencies from end to end: `count` in proportion, and further ones inside."""
+        inside = further[(further > self.low) & (further < self.high)]
+        even = np.geomspace(self.low, self.high, count)
+        even[[0, -1]] = self.low, self.high
+        return np.union1d(even, inside)
+
+
+def checked_band(band: Any, scales: Scales) -> Band:
+    """Check a band: two frequencies r1 < r2 above 0, which may have units."""
+    given = ratios(band, "band", KINDS["r"], scales)
+    ends = checks.axis(given, "band", least=0.0, most=checks.LARGEST_RATIO)
+    if ends.size != 2:
+        raise InputError(f"band must be two frequencies; got {ends.size}")
+    if ends[0] <= 0.0:
+        raise InputError(f"band must be > 0; got {ends[0]:g}")
+    return Band(float(ends[0]), float(ends[1]))
+
+
+def _patterns(count: int) -> Iterator[tuple[int, ...]]:
+    """Sets of contacts that are held: all sets of few contacts, else none, each alone, and all."""
+    sizes = range(count + 1) if count <= _ALL_PATTERNS else (0, 1, count)
+    for size in sizes:
+        yield from combinations(range(count), size)
+
+
+def _natural_frequencies(mass: np.ndarray, stiffness: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """Natural frequencies of a structure in which the displacements held (k, n) are 0."""
+    allowed = null_space(held) if len(held) else np.eye(len(mass))
+    if not allowed.shape[1]:
+        return np.empty(0)
+    squares = eigh(allowed.T @ stiffness @ allowed, allowed.T @ mass @ allowed, eigvals_only=True)
+    return np.sqrt(np.maximum(squares, 0.0))
+
+
+def natural_frequencies(system: System) -> np.ndarray:
+    """Natural frequency ratios with contacts free and held, in all combinations of few; increasing."""
+    modes, general = system.modes, system.general
+    mass, stiffness = modes.mass, modes.stiffness
+    vectors = np.atleast_2d(modes.contact)
+    springs: list[float | None] = [None]
+    if general is not None:
+        vectors, springs = general.vectors, [group.first.stiffness for group in general.groups]
+    found = []
+    for pattern in _patterns(len(springs)):
+        rigid = [j for j in pattern if springs[j] is None]
+        added = sum(
+            ((springs[j] or 0.0) * np.outer(vectors[j], vectors[j]) for j in pattern), 0.0 * stiffness
+        )
+        found.append(_natural_frequencies(mass, stiffness + added, vectors[rigid]))
+    return np.unique(np.concatenate(found))
+
+
+def _zeta(system: System) -> float:
+    return max(float(np.max(system.modes.zeta)), _LEAST_ZETA)
+
+
+def _clusters(frequencies: np.ndarray, zeta: float) -> np.ndarray:
+    """Samples around frequencies, close together where damping is small."""
+    places = frequencies[:, np.newaxis] * (1.0 + min(zeta, 0.2) * _AROUND)
+    return np.unique(places[places > 0.0])
+
+
+def peak_samples(system: System, band: Band) -> np.ndarray:
+    """Frequencies at which responses are sampled to find their peaks: close together at w/n of a load n."""
+    orders = np.array([1] if system.general is None else system.general.orders, dtype=float)
+    resonances = (natural_frequencies(system) / orders[:, np.newaxis]).ravel()
+    return band.samples(PEAK_SAMPLES, _clusters(resonances, _zeta(system)))
+
+
+def limit_samples(system: System, band: Band, count: int = LIMIT_SAMPLES) -> np.ndarray:
+    """Frequencies at which boundaries are sampled: beta_lim has dips of relative width zeta at w/n."""
+    natural = natural_frequencies(system)
+    divided = natural[np.newaxis] / np.arange(1.0, _MOST_DIVISORS + 1.0)[:, np.newaxis]
+    inside = divided[(divided > 0.5 * band.low) & (divided < 2.0 * band.high)]
+    return band.samples(count, _clusters(inside, _zeta(system)))

@@ -1,0 +1,117 @@
+"""Maxima of functions of one variable, many at a time: the vertex of a parabola, safeguarded."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+#: New points of a bracket: around the vertex of the parabola, at this share of the bracket.
+_ASIDE = 0.06
+
+#: Shares of a bracket that begins at its largest value.
+_FROM_AN_END = (0.02, 0.1, 0.3, 0.6)
+
+#: Rounds, at most; a kink is approached by a factor of 2 to 8 a round.
+_ROUNDS = 60
+
+#: A bracket ends where its values differ by less than this: of a smooth maximum the square of it is lost.
+_ALIKE = 1e-10
+
+#: Least width of a bracket, in units of rounding of its place.
+_NARROW = 8.0 * float(np.finfo(float).eps)
+
+#: f(which, x): values (k,) of the functions `which` (k,) at x (k,).
+Functions = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+class Brackets(NamedTuple):
+    """Places a <= m <= b, where m is the largest of three values; arrays (k,)."""
+
+    a: np.ndarray
+    m: np.ndarray
+    b: np.ndarray
+    at_a: np.ndarray
+    at_m: np.ndarray
+    at_b: np.ndarray
+
+
+def brackets_of(x: np.ndarray, values: np.ndarray) -> Brackets:
+    """Brackets of all local maxima of samples, values (n,) at increasing x (n,); of a plateau the first."""
+    padded = np.concatenate(([-np.inf], values, [-np.inf]))
+    place = np.flatnonzero((values > padded[:-2]) & (values >= padded[2:]))
+    before, after = np.maximum(place - 1, 0), np.minimum(place + 1, x.size - 1)
+    return Brackets(x[before], x[place], x[after], values[before], values[place], values[after])
+
+
+def joined(parts: list[Brackets]) -> Brackets:
+    """Brackets of several functions in one."""
+    return Brackets(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+
+
+def vertex(bracket: Brackets) -> np.ndarray:
+    """Place of the maximum of the parabola through each bracket; m where there is none inside."""
+    left, right = bracket.m - bracket.a, bracket.b - bracket.m
+    with np.errstate(all="ignore"):
+        down = (bracket.at_m - bracket.at_a) / left
+        up = (bracket.at_b - bracket.at_m) / right
+        bend = (up - down) / (left + right)
+        place = 0.5 * (bracket.a + bracket.m - down / bend)
+    inside = np.isfinite(place) & (place > bracket.a) & (place < bracket.b)
+    return np.where(inside, place, bracket.m)
+
+
+def _proposals(bracket: Brackets) -> np.ndarray:
+    """New places for each bracket, (k, 5)."""
+    width = bracket.b - bracket.a
+    u, aside = vertex(bracket), _ASIDE * width
+    inner = [u - aside, u, u + aside, 0.5 * (bracket.a + bracket.m), 0.5 * (bracket.m + bracket.b)]
+    found = np.stack(inner, axis=1)
+    for at_end, sign in ((bracket.a == bracket.m, 1.0), (bracket.b == bracket.m, -1.0)):
+        shares = [bracket.m + sign * share * width for share in (*_FROM_AN_END, 0.85)]
+        found = np.where(at_end[:, np.newaxis], np.stack(shares, axis=1), found)
+    return np.clip(found, bracket.a[:, np.newaxis], bracket.b[:, np.newaxis])
+
+
+def _narrowed(bracket: Brackets, places: np.ndarray, values: np.ndarray) -> Brackets:
+    """The largest of the old and new places of each bracket, and its neighbours."""
+    x = np.column_stack((bracket.a, bracket.m, bracket.b, places))
+    f = np.column_stack((bracket.at_a, bracket.at_m, bracket.at_b, values))
+    order = np.argsort(x, axis=1, kind="stable")
+    x, f = np.take_along_axis(x, order, axis=1), np.take_along_axis(f, order, axis=1)
+    rows, best = np.arange(len(x)), np.argmax(f, axis=1)
+    before, after = best.copy(), best.copy()
+    for _ in range(x.shape[1]):  # equal places are one
+        before = np.where((before > 0) & (x[rows, before] == x[rows, best]), before - 1, before)
+        after = np.where((after < x.shape[1] - 1) & (x[rows, after] == x[rows, best]), after + 1, after)
+    return Brackets(
+        x[rows, before], x[rows, best], x[rows, after], f[rows, before], f[rows, best], f[rows, after]
+    )
+
+
+def open_brackets(bracket: Brackets, alike: float = _ALIKE) -> np.ndarray:
+    """Indices of the brackets whose maximum is not known yet."""
+    finite = np.isfinite(bracket.at_m)
+    low = np.minimum(bracket.at_a, bracket.at_b)
+    with np.errstate(invalid="ignore"):
+        apart = bracket.at_m - low > alike * np.abs(bracket.at_m)
+    wide = bracket.b - bracket.a > _NARROW * np.abs(bracket.m)
+    return np.flatnonzero(finite & apart & wide)
+
+
+def sharpened(functions: Functions, bracket: Brackets) -> tuple[np.ndarray, np.ndarray]:
+    """Places and values of the maxima in brackets, function k in bracket k.
+
+    A value that is NaN is never the largest; one that is infinite is left as it is.
+    """
+    bracket = Brackets(*(array.copy() for array in bracket))
+    for _ in range(_ROUNDS):
+        which = open_brackets(bracket)
+        if not which.size:
+            break
+        part = Brackets(*(array[which] for array in bracket))
+        places = _proposals(part)
+        values = functions(np.repeat(which, places.shape[1]), places.ravel()).reshape(places.shape)
+        narrow = _narrowed(part, places, np.where(np.isnan(values), -np.inf, values))
+        for array, new in zip(bracket, narrow, strict=True):
+            array[which] = new
+    return bracket.m, bracket.at_m

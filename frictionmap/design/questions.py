@@ -1,0 +1,369 @@
+"""The design questions, as functions that return datasets."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .. import checks
+from ..errors import InputError
+from ..model.system import System
+from ..units.axes import KINDS, ratios
+from ..units.scales import Scales, Units, scales_of
+from .answers import answer
+from .at_most import find_ranges
+from .band import Band, checked_band, limit_samples, peak_samples
+from .least_peak import Minimum, Optimum, find_optimum, find_robust, largest
+from .limits import (
+    has_no_stop_limit,
+    largest_stick,
+    least_no_stop,
+    nearest_crossing,
+    no_stop_limit,
+    stick_limit,
+)
+from .performance import Performance
+from .responses import Responses
+from .task import Task, checked_task
+
+#: Relative changes of the friction at which the response is given beside the answer.
+_OFFSETS = np.array([-0.2, -0.02, 0.02, 0.2])
+
+#: Response curves of an answer, at these multiples of its friction; also without friction, and stuck.
+_CURVES = np.array([0.5, 1.0, 2.0])
+
+#: Peaks of an answer that are listed: those above this share of the largest one.
+_LISTED = 0.8
+
+#: Frequencies at which boundaries are given where each is found by following motions.
+_FEW = 60
+
+
+def least_peak(
+    system: System,
+    band: Any,
+    mass: int = 1,
+    mu: float = 1.0,
+    spread: float = 0.0,
+    *,
+    quantity: str = "amplitude",
+    contact: int = 1,
+    beta: Any = None,
+    threads: int | None = None,
+    units: Units | None = None,
+) -> xr.Dataset:
+    """Find the friction with the least largest response over a band of frequencies.
+
+    Parameters
+    ----------
+    system : System
+    band : array_like, shape (2,)
+        Frequency ratios from which and up to which the load acts, > 0; with units also frequencies.
+    mass : int
+        Mass whose response is made small, counted from 1.
+    mu : float
+        Ratio of static to kinetic friction [-], >= 1.  Above 1 the larger of the steady states that are
+        reached from rest and from a large sliding motion counts.
+    spread : float
+        Relative spread of the friction, 0 to below 1.  Above 0 the largest response between (1 - spread) and
+        (1 + spread) times the friction is made small, as `robust` does.
+    quantity : str
+        "amplitude" or "first_harmonic" of the mass, "contact": the displacement in a contact, or
+        "transmitted_force", the force on the ground.
+    contact : int
+        Contact of quantity "contact", counted from 1.
+    beta : array_like, shape (2,), optional
+        Range of friction ratios F/P to search; default: from 0 to 1.25 times the largest beta_stick of the
+        band.  Without damping it begins where all peaks in the band are finite.
+    threads : int, optional
+        Number of threads; default: all processors of the process.  The result does not depend on it.
+    units : Units, optional
+        Reference values that convert ratios to Hz and N, as in `sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        `beta`, the friction ratio; on `peak` the largest responses over frequency there, from the highest
+        down, with `peak_r`, `peak_regime` and `peak_stops`; `kind` of the optimum; `second_beta` and
+        `second_peak` of another minimum within 5 %; `peak_at_offset`, the response with 2 % and 20 % more and
+        less friction; `peak_of_beta` on `beta_search`, the performance curve; `beta_no_stop` and
+        `beta_stuck` of the band; `response_of_r` (curve, r_search), response curves.  With units also
+        `friction_force` [N], `peak_frequency` [Hz] and `peak_m` [m].
+
+    Raises
+    ------
+    InputError
+        An argument has the wrong type or is out of range, or nothing moves in the band.
+    NoSteadyState
+        Cells of the band have no periodic steady state: the largest response may be among them.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> chain = fm.System(
+    ...     contact_masses=[2], mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.01
+    ... )
+    >>> ds = fm.design.least_peak(chain, band=[0.3, 2.2])
+    >>> round(ds.beta.item(), 4), round(ds.peak.values[0], 9), str(ds.kind.values)
+    (1.4019, 2.727102937, 'smooth')
+    """
+    spread = _checked_spread(spread)
+    task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
+    curve = task.performance()
+    if spread > 0.0:
+        return _answer("robust", task, curve, find_robust(task, curve, spread), {"spread": spread})
+    return _answer("least-peak", task, curve, find_optimum(task, curve), {})
+
+
+def robust(
+    system: System,
+    band: Any,
+    spread: float = 0.2,
+    mass: int = 1,
+    mu: float = 1.0,
+    *,
+    quantity: str = "amplitude",
+    contact: int = 1,
+    beta: Any = None,
+    threads: int | None = None,
+    units: Units | None = None,
+) -> xr.Dataset:
+    """Find the friction whose worst response within its relative spread is least.
+
+    Parameters and results are those of `least_peak`; the peaks are those at the worse end of the spread.
+    """
+    if _checked_spread(spread) == 0.0:
+        raise InputError("spread must be > 0; got 0")
+    return least_peak(
+        system, band, mass, mu, spread, quantity=quantity, contact=contact, beta=beta, threads=threads,
+        units=units,
+    )  # fmt: skip
+
+
+def at_most(
+    system: System,
+    band: Any,
+    limit: Any,
+    mass: int = 1,
+    mu: float = 1.0,
+    *,
+    quantity: str = "amplitude",
+    contact: int = 1,
+    beta: Any = None,
+    threads: int | None = None,
+    units: Units | None = None,
+) -> xr.Dataset:
+    """Find all friction with which a response stays within a limit over a band of frequencies.
+
+    Parameters
+    ----------
+    limit : float or str
+        Largest response that is allowed, over P/k1 (Y), or of a force over P; with units also a length or a
+        force, such as "3 mm".
+    others
+        As in `least_peak`.
+
+    Returns
+    -------
+    xarray.Dataset
+        That of `least_peak`, with `interval_begin` and `interval_end` (interval): ranges of the friction
+        ratio.  A range may have no end: from `beta_stuck` on nothing changes.
+
+    Raises
+    ------
+    InputError
+        As `least_peak`; or the limit is below the least peak, which the message gives.
+    NoSteadyState
+        As `least_peak`.
+    """
+    task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
+    kind = "force" if quantity == "transmitted_force" else "length"
+    value = checks.number(_single(limit, "limit", kind, task.scales), "limit", above=0.0)
+    curve = task.performance()
+    optimum, begins, ends = find_ranges(task, curve, value)
+    ranges = {"interval": np.arange(1, begins.size + 1), "interval_begin": begins, "interval_end": ends}
+    return _answer("at-most", task, curve, optimum, {"limit": value}, ranges)
+
+
+def no_stop(system: System, band: Any, mu: float = 1.0, *, units: Units | None = None) -> xr.Dataset:
+    """Find the most friction without a stop anywhere in a band: the least beta_lim, theory.md 3.
+
+    Parameters
+    ----------
+    system, band, mu, units
+        As in `least_peak`.
+
+    Returns
+    -------
+    xarray.Dataset
+        `beta`, and `at_r`, the frequency that decides; `beta_lim_of_r` and `beta_stick_of_r` on `r_search`.
+
+    Raises
+    ------
+    InputError
+        An argument has the wrong type or is out of range, or all contacts have springs.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.design.no_stop(fm.System(damping_ratios=0.01), band=[0.3, 0.6])
+    >>> round(ds.beta.item(), 9), round(ds.at_r.item(), 9)
+    (0.005620882, 0.333310347)
+    """
+    checked, scales = _checked(system, band, mu, units)
+    beta, r = least_no_stop(system, checked, mu)
+    found = {"beta": beta, "at_r": r, "mu": mu, **_boundaries(system, checked, mu)}
+    return answer("no-stop", system, checked, found, {"mu": mu}, units, scales)
+
+
+def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = None) -> xr.Dataset:
+    """Find the least friction that holds over a band: the largest beta_stick, or beta_noslip, theory.md 4.
+
+    Parameters
+    ----------
+    system, band, mu, units
+        As in `least_peak`.
+
+    Returns
+    -------
+    xarray.Dataset
+        `beta`, infinite where a structure that is held resonates without damping, and `at_r`, the frequency
+        that decides; `beta_lim_of_r` and `beta_stick_of_r` on `r_search`.
+
+    Raises
+    ------
+    InputError
+        An argument has the wrong type or is out of range.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> fm.design.stuck(fm.System(contact="joined-base-wall"), band=[0.5, 1.5]).beta.item()
+    2.25
+    """
+    checked, scales = _checked(system, band, mu, units)
+    beta, r = largest_stick(system, checked, mu)
+    found = {"beta": beta, "at_r": r, "mu": mu, **_boundaries(system, checked, mu)}
+    return answer("stuck", system, checked, found, {"mu": mu}, units, scales)
+
+
+def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units | None = None) -> xr.Dataset:
+    """Find how far a working point is from the boundaries of its regime, in friction and in frequency.
+
+    Parameters
+    ----------
+    system, mu, units
+        As in `least_peak`.
+    r : float
+        Frequency ratio of the working point, > 0; with units also a frequency.
+    beta : float
+        Its friction ratio, > 0; with units also a force.
+
+    Returns
+    -------
+    xarray.Dataset
+        `beta_lim` and `beta_stick` at r, `margin_beta_lim` and `margin_beta_stick`: how much they are above
+        beta, relative to beta; `nearest_r_on_beta_lim` and `nearest_r_on_beta_stick`, the nearest frequencies
+        within a factor of ten at which a boundary is beta (NaN: none), `margin_r` and `margin_r_stick`: how
+        far they are, relative to r.
+
+    Raises
+    ------
+    InputError
+        An argument has the wrong type or is out of range.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.design.margin(fm.System(damping_ratios=0.01), r=0.75, beta=0.6)
+    >>> round(100 * ds.margin_beta_lim.item(), 6), round(100 * ds.margin_r.item(), 6)
+    (27.535839, -14.57624)
+    """
+    checks.instance(system, "system", System)
+    scales = scales_of(units, system)
+    r = checks.number(_single(r, "r", KINDS["r"], scales), "r", above=0.0, most=checks.LARGEST_RATIO)
+    beta = checks.number(_single(beta, "beta", KINDS["beta"], scales), "beta", above=0.0)
+    mu = checks.number(mu, "mu", least=1.0)
+    found: dict[str, Any] = {"at_r": r, "beta": beta, "mu": mu}
+    limits = {"beta_stick": (stick_limit, "margin_r_stick")}
+    if has_no_stop_limit(system):
+        limits["beta_lim"] = no_stop_limit, "margin_r"
+    for name, (limit, margin_r) in limits.items():
+        value = float(limit(system, np.array([r]), mu)[0])
+        nearest = nearest_crossing(limit, system, r, beta, mu)
+        found |= {name: value, f"margin_{name}": value / beta - 1.0}
+        found |= {f"nearest_r_on_{name}": nearest, margin_r: nearest / r - 1.0}
+    around = Band(r / 2.0, 2.0 * r)
+    found |= _boundaries(system, around, mu)
+    return answer("margin", system, around, found, {"r": r, "beta": beta, "mu": mu}, units, scales)
+
+
+def _single(given: Any, name: str, kind: str, scales: Scales) -> Any:
+    """A number, or one with a unit as a ratio."""
+    found = ratios(given, name, kind, scales)
+    return found[0] if isinstance(found, list) and not isinstance(given, list) else found
+
+
+def _checked_spread(spread: Any) -> float:
+    value = checks.number(spread, "spread", least=0.0)
+    if value >= 1.0:
+        raise InputError(f"spread must be < 1; got {value:g}")
+    return value
+
+
+def _checked(system: Any, band: Any, mu: Any, units: Units | None) -> tuple[Band, Scales]:
+    """Check the arguments of questions about boundaries."""
+    checks.instance(system, "system", System)
+    scales = scales_of(units, system)
+    checks.number(mu, "mu", least=1.0)
+    return checked_band(band, scales), scales
+
+
+def _boundaries(system: System, band: Band, mu: float) -> dict[str, np.ndarray]:
+    """The boundaries over a band, for pictures."""
+    r = limit_samples(system, band) if system.general is None else band.samples(_FEW, np.empty(0))
+    found = {"r_search": r, "beta_stick_of_r": stick_limit(system, r, mu)}
+    if has_no_stop_limit(system):
+        found["beta_lim_of_r"] = no_stop_limit(system, r, mu)
+    return found
+
+
+def _answer(
+    question: str, task: Task, curve: Performance, optimum: Optimum, asked: Mapping[str, Any],
+    further: Mapping[str, Any] | None = None,
+) -> xr.Dataset:  # fmt: skip
+    """Build the dataset of a question about the largest response."""
+    best, peaks = optimum.best, optimum.peaks
+    listed = peaks.size >= _LISTED * peaks.largest
+    r, size = peaks.r[listed], peaks.size[listed]
+    states = Responses(task.system, task.response, task.mu, task.threads).at(r, np.full(r.size, peaks.beta))
+    second = optimum.second or Minimum(np.nan, np.nan, "")
+    points = optimum.points
+    found = {
+        "beta": best.beta, "mu": task.mu, "kind": best.kind, "peak": size, "peak_r": r,
+        "peak_regime": states.regime, "peak_stops": states.stops,
+        "second_beta": second.beta, "second_peak": second.size,
+        "beta_search": points.beta, "peak_of_beta": points.size,
+        "unknown_of_beta": [curve.unknown.get(beta, 0) for beta in points.beta.tolist()],
+        "offset": _OFFSETS, "peak_at_offset": largest(curve.whole(best.beta * (1.0 + _OFFSETS))),
+        "beta_no_stop": least_no_stop(task.system, task.band, task.mu)[0]
+        if has_no_stop_limit(task.system) else np.nan,
+        "beta_stuck": task.stuck_from, **_response_curves(task, best.beta), **asked, **(further or {}),
+    }  # fmt: skip
+    if question == "robust":
+        found["peak"] = np.concatenate(([best.size], size[1:]))
+    keys = {"response": task.response.asked(), "mu": task.mu, "beta": [task.low, task.high], **asked}
+    return answer(question, task.system, task.band, found, keys, task.units, task.scales)
+
+
+def _response_curves(task: Task, beta: float) -> dict[str, np.ndarray]:
+    """Response curves at the answer, at half and twice its friction, without friction, and stuck."""
+    responses = Responses(task.system, task.response, task.mu, task.threads)
+    r = peak_samples(task.system, task.band)
+    levels = np.unique(np.concatenate(([0.0] if task.may_be_without_friction else [], beta * _CURVES)))
+    sizes = responses.on_grid(r, levels).size.T
+    if np.isfinite(task.stuck_from):
+        sizes = np.vstack((sizes, responses.on_grid(r, np.array([1.01 * task.stuck_from])).size.T))
+        levels = np.append(levels, np.inf)
+    return {"curve": levels, "r_search": r, "response_of_r": sizes}

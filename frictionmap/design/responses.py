@@ -1,0 +1,185 @@
+"""The response that a design is about, at points (r, beta), of any system."""
+
+from collections.abc import Sequence
+from typing import Any, Literal, NamedTuple, get_args
+
+import numpy as np
+
+from .. import checks, regimes
+from ..errors import InputError
+from ..general.dataset import cell_values, contact_values, refuse_static
+from ..general.held import least_static_friction, stick_scales
+from ..general.maps import solve_cells
+from ..model.settings import Output, Solver, Start
+from ..model.system import System
+from ..steady.maps import compute
+from ..steady.quantity_data import quantity_request, read_result
+from ..steady.scattered import AT_ONCE, scattered_cells
+
+#: What is made small: the largest displacement of a mass, its first harmonic, the largest displacement in a
+#: contact, or the largest force on the ground.
+ResponseQuantity = Literal["amplitude", "first_harmonic", "contact", "transmitted_force"]
+QUANTITIES: tuple[str, ...] = get_args(ResponseQuantity)
+_GENERAL = ("amplitude", "contact")
+
+#: Variables of cells over a cycle, by quantity.
+_OF_CYCLE = {"first_harmonic": "first_harmonic_amplitude", "transmitted_force": "transmitted_force"}
+_OUTPUTS: dict[str, Output] = {"amplitude": "amplitude", "contact": "contact_amplitude"}
+_ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "status")
+
+
+class Response(NamedTuple):
+    """A quantity of the steady state, over P/k1 (Y) or, of a force, over P."""
+
+    quantity: str
+    mass: int = 1  # counted from 1
+    contact: int = 1
+
+    def words(self) -> str:
+        """In words."""
+        if self.quantity == "contact":
+            return f"displacement in contact {self.contact}"
+        if self.quantity == "transmitted_force":
+            return "transmitted force"
+        what = "amplitude" if self.quantity == "amplitude" else "first harmonic"
+        return f"{what} of mass {self.mass}"
+
+    def asked(self) -> dict[str, Any]:
+        """As in a configuration."""
+        of_mass = {"mass": self.mass} if self.quantity in ("amplitude", "first_harmonic") else {}
+        of_contact = {"contact": self.contact} if self.quantity == "contact" else {}
+        return {"quantity": self.quantity, **of_mass, **of_contact}
+
+
+class Values(NamedTuple):
+    """Results at points or on a grid, all of one shape."""
+
+    size: np.ndarray  # the response; NaN where no steady state was found
+    regime: np.ndarray
+    stops: np.ndarray  # per cycle, the most of all contacts
+    status: np.ndarray
+
+
+def checked_response(system: System, quantity: object, mass: object, contact: object) -> Response:
+    """Check what a design is about."""
+    quantity = checks.choice(quantity, "quantity", QUANTITIES)
+    if system.general is not None and quantity not in _GENERAL:
+        raise InputError(
+            f"cannot use quantity {quantity!r} with several contacts, springs, belts or loads of several "
+            f"harmonics: it is not computed; use one of {', '.join(_GENERAL)}"
+        )
+    number = checks.whole(mass, "mass", least=1, most=int(system.dofs.numbers[-1]))
+    if number not in system.dofs.numbers:
+        kept = ", ".join(str(kept) for kept in system.dofs.numbers)
+        raise InputError(f"mass must be one of {kept}; got {number}")
+    contacts = 1 if system.general is None else system.general.count
+    return Response(quantity, number, checks.whole(contact, "contact", least=1, most=contacts))
+
+
+class Responses:
+    """The response at points, from both starts where the start may matter (mu > 1)."""
+
+    def __init__(self, system: System, response: Response, mu: float, threads: int | None) -> None:
+        self.system, self.response, self.mu = system, response, mu
+        self._threads = checks.threads(threads)
+        self._row = [*system.dofs.numbers].index(response.mass)
+        self._request = None
+        outputs = [*_ALWAYS]
+        if response.quantity in _OUTPUTS:
+            outputs.append(_OUTPUTS[response.quantity])
+        else:
+            self._request = quantity_request((_OF_CYCLE[response.quantity],))
+        if system.general is not None:
+            refuse_static(system.general, np.array([mu]))
+        starts: Sequence[Start] = ("rest",) if self._unique else ("rest", "moving")
+        self._solvers = [Solver(start=start, outputs=outputs) for start in starts]
+
+    @property
+    def _unique(self) -> bool:
+        """Whether every cell has one steady state."""
+        general = self.system.general
+        own = () if general is None else [group.first.mu for group in general.groups]
+        return self.mu == 1.0 and all(mu in (None, 1.0) for mu in own)
+
+    def on_grid(self, r: np.ndarray, beta: np.ndarray) -> Values:
+        """Values on a grid, (n_r, n_beta); r > 0 and beta >= 0 increase."""
+        axes = {"mu": np.array([self.mu]), "r": r, "beta": beta}
+        if self.system.general is not None:
+            return _largest([self._general(axes, solver) for solver in self._solvers])
+        parts = []
+        for solver in self._solvers:
+            cells, out = compute(self.system, axes, solver, self._request, self._threads, None)
+            parts.append(self._read(cells, out, (0,)))
+        return _largest(parts)
+
+    def at(self, r: np.ndarray, beta: np.ndarray) -> Values:
+        """Values at points r > 0 and beta >= 0, (k,)."""
+        if self.system.general is not None:
+            return self._general_at(r, beta)
+        chunks = [slice(first, first + AT_ONCE) for first in range(0, r.size, AT_ONCE)]
+        return _joined([self._scattered(r[chunk], beta[chunk]) for chunk in chunks])
+
+    def _scattered(self, r: np.ndarray, beta: np.ndarray) -> Values:
+        order = np.argsort(r, kind="stable")
+        parts = []
+        for solver in self._solvers:
+            found = scattered_cells(self.system, r[order], beta[order], self.mu, solver, self._request)
+            parts.append(self._read(found.cells, found.out, (0, np.arange(r.size), found.column)))
+        values = _largest(parts)
+        back = np.argsort(order, kind="stable")
+        return Values(*(array[back] for array in values))
+
+    def _read(self, cells: Any, out: Any, place: tuple) -> Values:
+        quantity = self.response.quantity
+        if quantity in _OF_CYCLE:
+            name = _OF_CYCLE[quantity]
+            size = read_result(name, cells.results)
+        else:
+            size = getattr(out, _OUTPUTS[quantity])
+        if size.ndim == 4:
+            size = size[..., self._row]
+        return Values(size[place], out.regime[place], out.stops_per_cycle[place], out.status[place])
+
+    def _general(self, axes: dict[str, np.ndarray], solver: Solver) -> Values:
+        general = self.system.general
+        assert general is not None
+        needed = least_static_friction(self.system, axes["r"])
+        stick = stick_scales(general, needed, axes["mu"]).max(axis=2)
+        found = solve_cells(self.system, axes, stick, solver, self._threads, None, None, masses=True)
+        if self.response.quantity == "amplitude":
+            size = cell_values("amplitude", self.system, found)[0, ..., self._row]
+        else:
+            size = contact_values("contact_amplitude", self.system, found)[0, ..., self.response.contact - 1]
+        stops = np.where(np.isnan(found.stops[0]), 0.0, found.stops[0]).max(axis=-1)
+        return Values(size, found.regime[0], stops, found.status[0])
+
+    def _general_at(self, r: np.ndarray, beta: np.ndarray) -> Values:
+        """Points of one beta at a time, as rows of a grid."""
+        found = Values(*(np.empty(r.size, kind) for kind in (float, np.int8, float, np.int8)))
+        for level in np.unique(beta):
+            which = np.flatnonzero(beta == level)
+            places, back = np.unique(r[which], return_inverse=True)
+            column = self.on_grid(places, np.array([level]))
+            for array, values in zip(found, column, strict=True):
+                array[which] = values[back, 0]
+        return found
+
+
+def _largest(parts: list[Values]) -> Values:
+    """The state with the largest response of several at each point; NaN where one was not found."""
+    if len(parts) == 1:
+        return parts[0]
+    sizes = np.stack([part.size for part in parts])
+    missing = np.isnan(sizes)
+    which = np.argmax(np.where(missing, np.inf, sizes), axis=0)
+    chosen = [np.choose(which, [part[k] for part in parts]) for k in range(len(Values._fields))]
+    return Values(*chosen)
+
+
+def _joined(parts: list[Values]) -> Values:
+    return Values(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+
+
+def unresolved(values: Values) -> np.ndarray:
+    """Where no steady state was found, or an irregular one that has no largest value."""
+    return np.isnan(values.size) | (values.regime == regimes.UNRESOLVED)

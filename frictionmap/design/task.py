@@ -1,0 +1,112 @@
+"""What every design question needs: the system, the band, the response, the range of friction."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from .. import checks
+from ..errors import InputError
+from ..features import peak_thresholds
+from ..model.system import System
+from ..units.axes import KINDS, ratios
+from ..units.scales import Scales, Units, scales_of
+from .band import Band, checked_band, limit_samples, peak_samples
+from .limits import largest_stick, stick_limit
+from .performance import Performance
+from .responses import Response, Responses, checked_response
+
+#: Friction ratios of a search: their number, and the share of the highest one at which they begin.
+SEARCHED, _LEAST_SHARE = 60, 1.0 / 500.0
+
+#: The search ends at this multiple of the largest finite boundary to sticking, so that its last friction
+#: ratios hold over the whole band; without damping, where that boundary has poles, at this multiple of its
+#: median.
+_ABOVE_STUCK, _ABOVE_MEDIAN = 1.25, 30.0
+
+
+@dataclass(frozen=True)
+class Task:
+    """A checked question about the largest response over a band."""
+
+    system: System
+    band: Band
+    response: Response
+    mu: float
+    low: float  # range of the friction ratio
+    high: float
+    threads: int | None
+    units: Units | None
+    scales: Scales
+
+    @cached_property
+    def stuck_from(self) -> float:
+        """Friction ratio that holds over the whole band."""
+        return largest_stick(self.system, self.band, self.mu)[0]
+
+    def performance(self) -> Performance:
+        """The performance curve."""
+        responses = Responses(self.system, self.response, self.mu, self.threads)
+        return Performance(responses, peak_samples(self.system, self.band))
+
+    def searched(self) -> np.ndarray:
+        """Friction ratios of the search, increasing."""
+        least = max(self.low, self.high * _LEAST_SHARE)
+        ladder = np.geomspace(least, self.high, SEARCHED)
+        ladder[[0, -1]] = least, self.high
+        begins = self.low == 0.0 and self.may_be_without_friction
+        return np.concatenate(([0.0], ladder)) if begins else ladder
+
+    @property
+    def may_be_without_friction(self) -> bool:
+        """Whether beta = 0 is a steady state of the engine: springs of contacts without friction are not."""
+        general = self.system.general
+        return general is None or not general.elastic.any()
+
+
+def checked_task(
+    system: Any, band: Any, response: tuple[Any, Any, Any], mu: Any, beta: Any, threads: int | None,
+    units: Units | None,
+) -> Task:  # fmt: skip
+    """Check the arguments that questions share.
+
+    response : quantity, mass, contact
+    beta : two friction ratios, or None: up to 1.25 times the largest beta_stick of the band
+    """
+    checks.instance(system, "system", System)
+    scales = scales_of(units, system)
+    found = checked_band(band, scales)
+    mu = checks.number(mu, "mu", least=1.0)
+    asked = checked_response(system, *response)
+    low, high = _range_of_friction(system, found, mu) if beta is None else _checked_range(beta, scales)
+    return Task(system, found, asked, mu, low, high, threads, units, scales)
+
+
+def _checked_range(beta: Any, scales: Scales) -> tuple[float, float]:
+    ends = checks.axis(ratios(beta, "beta", KINDS["beta"], scales), "beta", least=0.0)
+    if ends.size != 2:
+        raise InputError(f"beta must be two friction ratios; got {ends.size}")
+    return float(ends[0]), float(ends[1])
+
+
+def _range_of_friction(system: System, band: Band, mu: float) -> tuple[float, float]:
+    stick = stick_limit(system, limit_samples(system, band, 200), mu)
+    finite = stick[np.isfinite(stick) & (stick > 0.0)]
+    if not finite.size:
+        raise InputError("beta must be two friction ratios where beta_stick is infinite or 0; got none")
+    high = _ABOVE_STUCK * finite.max()
+    if not system.modes.damping.any():
+        high = min(high, _ABOVE_MEDIAN * float(np.median(finite)))
+    return _least_friction(system, band, high), float(high)
+
+
+def _least_friction(system: System, band: Band, high: float) -> float:
+    """Friction below which a response without damping is infinite at a resonance of the band, T(6.2)."""
+    modes = system.modes
+    if system.general is not None or modes.damping.any():
+        return 0.0
+    inside = (modes.w >= band.low) & (modes.w <= band.high)
+    thresholds = peak_thresholds(system)[inside]
+    below = thresholds[np.isfinite(thresholds) & (thresholds < high)]
+    return float(below.max(initial=0.0))

@@ -1,0 +1,146 @@
+"""How far an orbit is from what it says: minima of its slides, forces of its stops, ends of its slides."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from .orbits import GRAZE, SLIDE_END, SLIP, TURN, Condition, Motion, Sequence, inside, motion_of
+from .phases import Phases
+
+#: Samples of a piece: per period of the fastest part of the motion, and at least.
+_PER_PERIOD, _LEAST = 24, 16
+
+#: Relative violation below which an orbit is what it says: rounding, and the solved extreme of its border.
+_ROUNDING = 1e-8
+
+
+class Samples(NamedTuple):
+    """Velocity, or force, inside one piece."""
+
+    piece: int
+    tau: np.ndarray
+    values: np.ndarray  # slides: sense times r z'; stops: F/(mu beta)
+
+
+class Margin(NamedTuple):
+    """A border that an orbit is near, and how far from it: 0 on it, negative beyond it."""
+
+    condition: Condition
+    tau: float
+    value: float
+
+
+def _extent(sequence: Sequence, motion: Motion, piece: int) -> tuple[float, float]:
+    """Begin and end of a piece; the last one goes on as the first."""
+    begin, end = float(motion.times[piece][0]), float(motion.times[piece + 1][0])
+    if piece == sequence.events:
+        end += float(motion.times[1][0]) - sequence.start
+    return begin, end
+
+
+def sampled(phases: Phases, sequence: Sequence, motion: Motion, piece: int) -> Samples:
+    """Sample a piece of one orbit, ends included."""
+    begin, end = _extent(sequence, motion, piece)
+    r = float(motion.drive.r[0])
+    count = max(
+        _LEAST, math.ceil(_PER_PERIOD * (end - begin) * max(1.0, phases.fastest / r) / (2.0 * math.pi))
+    )
+    tau = np.linspace(begin, end, count + 1)
+    many = _repeated(motion, piece, tau.size)
+    states = inside(phases, sequence, many, piece, tau)
+    sense = sequence.senses[piece]
+    if sense == 0:
+        values = phases.force(many.drive, states, tau) / (sequence.mu * many.beta)
+    else:
+        values = sense * phases.velocity(states)
+    return Samples(piece, tau, values)
+
+
+def _repeated(motion: Motion, piece: int, count: int) -> Motion:
+    """One orbit as many cases, with the beginning of one piece only."""
+    drive = type(motion.drive)(*(np.repeat(array, count, axis=0) for array in motion.drive))
+    times, states = [np.empty(0)] * piece, [np.empty((0, 0))] * piece
+    times.append(np.repeat(motion.times[piece], count))
+    states.append(np.repeat(motion.states[piece], count, axis=0))
+    return Motion(drive, np.repeat(motion.beta, count), times, states)
+
+
+def _minima(values: np.ndarray) -> np.ndarray:
+    """Indices of interior local minima."""
+    return np.flatnonzero((values[1:-1] < values[:-2]) & (values[1:-1] <= values[2:])) + 1
+
+
+def margins(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> list[Margin]:
+    """All borders that an orbit is near, from the nearest on; unknowns: its event times, r and beta."""
+    motion = motion_of(phases, sequence, unknowns[np.newaxis, :-2], unknowns[-2:-1], unknowns[-1:])
+    found: list[Margin] = []
+    for piece in range(1, sequence.events + 1):
+        samples = sampled(phases, sequence, motion, piece)
+        found += _of_slide(samples) if sequence.senses[piece] else _of_stop(samples)
+    found += _of_ends(phases, sequence, motion)
+    return sorted(found, key=lambda margin: abs(margin.value))
+
+
+def _of_slide(samples: Samples) -> list[Margin]:
+    size = samples.values.max()
+    return [
+        Margin(Condition(GRAZE, samples.piece), float(samples.tau[k]), float(samples.values[k] / size))
+        for k in _minima(samples.values)
+    ]
+
+
+def _of_stop(samples: Samples) -> list[Margin]:
+    return [
+        Margin(
+            Condition(SLIP, samples.piece, sign), float(samples.tau[k]), float(1.0 - sign * samples.values[k])
+        )
+        for sign in (1, -1)
+        for k in _minima(-sign * samples.values)
+    ]
+
+
+def _end_force(phases: Phases, sequence: Sequence, motion: Motion, k: int) -> float:
+    """Force that would hold the contact at the end of slide k, against the slide, over beta."""
+    force = phases.force(motion.drive, motion.states[k + 1], motion.times[k + 1])[0]
+    return float(sequence.senses[k] * force / motion.beta[0])
+
+
+def _of_ends(phases: Phases, sequence: Sequence, motion: Motion) -> list[Margin]:
+    found = []
+    for k in range(sequence.events):
+        if sequence.senses[k]:
+            force = _end_force(phases, sequence, motion, k)
+            tau = float(motion.times[k + 1][0])
+            found.append(Margin(Condition(TURN, k), tau, 1.0 + force / sequence.mu))
+            if sequence.mu > 1.0:
+                found.append(Margin(Condition(SLIDE_END, k), tau, 1.0 - force))
+    return found
+
+
+def violation(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> float:
+    """How much an orbit is not what it says, relative: 0 if it is."""
+    times = unknowns[:-2]
+    edges = np.concatenate(([sequence.start], times, [sequence.end]))
+    if (np.diff(edges) <= 0.0).any() or unknowns[-1] <= 0.0 or unknowns[-2] <= 0.0:
+        return math.inf
+    motion = motion_of(phases, sequence, times[np.newaxis], unknowns[-2:-1], unknowns[-1:])
+    worst = 0.0
+    for piece in range(1, sequence.events + 1):
+        samples = sampled(phases, sequence, motion, piece)
+        if sequence.senses[piece]:
+            worst = max(worst, -float(samples.values[1:-1].min() / samples.values.max()))
+        else:
+            worst = max(worst, float(np.abs(samples.values[1:-1]).max()) - 1.0)
+    for k in range(sequence.events):
+        if sequence.senses[k]:
+            force = _end_force(phases, sequence, motion, k)
+            turns = sequence.senses[k + 1] != 0
+            over = force + sequence.mu if turns else max(-force - sequence.mu, force - 1.0)
+            worst = max(worst, over / sequence.mu)
+    return worst
+
+
+def is_physical(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> bool:
+    """Whether an orbit is what it says."""
+    return violation(phases, sequence, unknowns) <= _ROUNDING

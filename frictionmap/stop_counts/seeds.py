@@ -1,0 +1,106 @@
+"""Where borders are looked for: neighbouring cells with different numbers of stops, and their orbits."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import regimes
+from .._kernels.engine import segment_table
+from .._kernels.engine.fill import one_cell
+from ..model.settings import Solver
+from ..model.system import System
+from ..steady.cells import Cells, limits
+from ..steady.maps import compute
+from ..steady.scattered import AT_ONCE, scattered_cells
+from ..theory.boundary_curves import find_curves
+from .orbits import Sequence
+from .tracing import Window
+
+#: Cells of a map over r and beta, and the part of the beta that is spaced in proportion.
+_PROPORTIONAL = 0.3
+
+#: Bisections of a bracket in beta: to a relative width of 1e-5 and less.
+_BISECTIONS = 17
+
+_SOLVER = Solver(outputs=("regime", "stops_per_cycle", "status"))
+
+
+class Seeds(NamedTuple):
+    """Brackets in beta between cells with different numbers of stops; arrays (k,)."""
+
+    r: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    below: np.ndarray  # stops per cycle at low
+    above: np.ndarray
+
+
+def grid_of(window: Window, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies and friction ratios of a map: in proportion, the larger friction ratios evenly."""
+    r = np.geomspace(*window.r, count)
+    low, high = max(window.beta[0], 1e-3 * window.beta[1]), window.beta[1]
+    small = round(_PROPORTIONAL * count)
+    beta = np.union1d(np.geomspace(low, high, small), np.linspace(low, high, count - small))
+    return r, beta
+
+
+def counts_at(system: System, r: np.ndarray, beta: np.ndarray, mu: float) -> np.ndarray:
+    """Stops per cycle at points (k,); NaN where the contact sticks or there is no steady state."""
+    order = np.argsort(r, kind="stable")
+    found = np.empty(r.size)
+    for first in range(0, r.size, AT_ONCE):
+        which = order[first : first + AT_ONCE]
+        cells = scattered_cells(system, r[which], beta[which], mu, _SOLVER)
+        found[which] = cells.out.stops_per_cycle[0, np.arange(which.size), cells.column]
+    return found
+
+
+def seeds_of_map(system: System, window: Window, mu: float, count: int) -> Seeds:
+    """Brackets of all changes of the number of stops along beta in a map, narrowed."""
+    r, beta = grid_of(window, count)
+    axes = {"mu": np.array([mu]), "r": r, "beta": beta}
+    _, out = compute(system, axes, _SOLVER, None, None, None)
+    stops = np.where(out.status[0] == regimes.RESOLVED, out.stops_per_cycle[0], np.nan)
+    curves = find_curves(system, r, np.array([mu]))
+    changed = (stops[:, 1:] != stops[:, :-1]) & ~np.isnan(stops[:, 1:]) & ~np.isnan(stops[:, :-1])
+    for boundary in (curves.beta_lim[0], curves.beta_stick[0]):
+        limit = boundary[:, np.newaxis]
+        changed &= ~((beta[:-1] <= limit) & (limit <= beta[1:]))
+    i, j = np.nonzero(changed)
+    return _narrowed(system, mu, Seeds(r[i], beta[j], beta[j + 1], stops[i, j], stops[i, j + 1]))
+
+
+def _narrowed(system: System, mu: float, seeds: Seeds) -> Seeds:
+    """The same brackets, narrow; where a third number of stops lies between, that of the lower change."""
+    r, low, high, below, above = (array.copy() for array in seeds)
+    for _ in range(_BISECTIONS):
+        if not r.size:
+            break
+        middle = 0.5 * (low + high)
+        stops = counts_at(system, r, middle, mu)
+        known = ~np.isnan(stops)
+        lower = known & (stops == below)
+        low = np.where(lower, middle, low)
+        high, above = np.where(lower, high, middle), np.where(lower | ~known, above, stops)
+    return Seeds(r, low, high, below, above)
+
+
+def orbit_at(system: System, r: float, beta: float, mu: float) -> tuple[Sequence, np.ndarray] | None:
+    """Sequence of the steady state of a cell, and its event times, r and beta; None if it never stops."""
+    cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), _SOLVER)
+    cell, table = one_cell(cells.motion, beta, mu, limits(_SOLVER), False)
+    if cell.period == 0 or len(table) < 2:
+        return None
+    senses = (table[:, segment_table.SENSE] * table[:, segment_table.SIGN]).round().astype(int)
+    begins, lengths = table[:, segment_table.BEGIN], table[:, segment_table.LENGTH]
+    total = float(lengths.sum())
+    turn = np.pi * (table[0, segment_table.SIGN] < 0.0)
+    first = np.arctan2(table[0, segment_table.SIN], table[0, segment_table.COS]) + turn
+    halves = round(total / np.pi)
+    mirrored = halves % 2 == 1
+    longest = int(np.argmax(lengths))
+    back = -1 if mirrored else 1
+    ordered = (*senses[longest:].tolist(), *(back * senses[: longest + 1]).tolist())
+    times = np.concatenate((begins[longest + 1 :], total + begins[: longest + 1])) + first
+    start = float(first + begins[longest] + 0.5 * lengths[longest])
+    return Sequence(ordered, start, halves, mirrored, mu), np.array([*times, r, beta])

@@ -1,0 +1,180 @@
+"""The command `design`: what it prints and writes, its files and its pictures."""
+
+import tomllib
+
+import jsonschema
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import ROOT
+from layouts import assert_inside_and_apart
+
+import frictionmap as fm
+from frictionmap.command_line.cli import main
+from frictionmap.datasets.design_labels import DESIGN
+from frictionmap.design.configuration import load_design
+from frictionmap.files.json_schema import map_schema
+from frictionmap.files.reading import read, standard_form
+from frictionmap.files.summary import describe_file
+
+CONFIGS = sorted((ROOT / "configs" / "design").glob("*.toml"))
+SCHEMA = jsonschema.Draft202012Validator(map_schema())
+
+QUESTION = """\
+title = "A damper"
+[system]
+contact_masses = [2]
+mass_ratios = [1.0, 1.0]
+stiffness_ratios = [1.0, 1.0]
+damping_ratios = 0.05
+[units]
+natural_frequency = "2 Hz"
+load = "50 N"
+stiffness = "10 N/mm"
+[design]
+question = "{}"
+band = ["0.8 Hz", "4 Hz"]
+spread = 0.1
+limit = "14 mm"
+beta = {}
+r = "1.5 Hz"
+"""
+QUESTIONS = ("least-peak", "robust", "at-most", "no-stop", "stuck", "margin")
+
+
+def written(folder, question):
+    beta = '"20 N"' if question == "margin" else '["1 N", "200 N"]'
+    path = folder / f"{question}.toml"
+    path.write_text(QUESTION.format(question, beta))
+    return path
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory):
+    """The files that the command writes for all questions."""
+    folder = tmp_path_factory.mktemp("design")
+    found = {}
+    for question in QUESTIONS:
+        path = folder / f"{question}.nc"
+        assert main(["design", str(written(folder, question)), "-o", str(path), "--quiet"]) == 0
+        found[question] = path
+    return found
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_files_open_with_plain_xarray_and_read_back(answers, question):
+    with xr.open_dataset(answers[question]) as ds:
+        assert str(ds.question.values) == question
+        assert set(ds.variables) <= set(DESIGN)
+        assert ds.attrs["title"] == "A damper"
+        plain = ds.load()
+    ours = read(answers[question])
+    for name in plain.data_vars:
+        np.testing.assert_array_equal(ours[name].values, plain[name].values)
+    assert describe_file(ours).count("\n") < 40
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_the_configuration_in_a_file_asks_the_same(answers, question, tmp_path):
+    ds = read(answers[question])
+    again = tmp_path / "again.toml"
+    again.write_text(ds.attrs["config"])
+    found = load_design(again).ask()
+    np.testing.assert_array_equal(found.beta.values, ds.beta.values)
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_the_configuration_of_a_python_call_asks_the_same(question, tmp_path):
+    system = fm.System(damping_ratios=0.08, mass_ratios=[1, 1], stiffness_ratios=[1, 1], contact_masses=[2])
+    band = [0.4, 2.0]
+    calls = {
+        "least-peak": lambda: fm.design.least_peak(system, band),
+        "robust": lambda: fm.design.robust(system, band, 0.1),
+        "at-most": lambda: fm.design.at_most(system, band, 3.0),
+        "no-stop": lambda: fm.design.no_stop(system, band, 1.2),
+        "stuck": lambda: fm.design.stuck(system, band),
+        "margin": lambda: fm.design.margin(system, 0.8, 0.4),
+    }
+    ds = calls[question]()
+    path = tmp_path / "again.toml"
+    path.write_text(ds.attrs["config"])
+    np.testing.assert_allclose(load_design(path).ask().beta, ds.beta, rtol=1e-12)
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_pictures_and_tables(answers, question, tmp_path):
+    for ending in (".png", ".svg"):
+        path = tmp_path / f"answer{ending}"
+        assert main(["plot", str(answers[question]), "-o", str(path), "--quiet"]) == 0
+        assert path.stat().st_size > 5000
+    assert main(["export", str(answers[question]), "-o", str(tmp_path / "answer.csv"), "--quiet"]) == 0
+    assert len((tmp_path / "answer.csv").read_text().splitlines()) > 10
+    axes = fm.plot_design(read(answers[question]))
+    assert_inside_and_apart(axes[0].figure)
+
+
+def test_what_is_printed(answers, capsys, tmp_path):
+    path = written(tmp_path, "at-most")
+    assert main(["design", str(path), "-o", str(tmp_path / "a.nc")]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith(f"A damper: at-most; wrote {tmp_path / 'a.nc'}\n")
+    for words in (
+        "friction ratio beta",
+        " N)",
+        "least peak, amplitude of mass 1",
+        " mm)",
+        "with 2 % less friction",
+    ):
+        assert words in out
+    assert out.isascii()
+    assert main(["info", str(tmp_path / "a.nc")]) == 0
+    info = capsys.readouterr().out
+    assert "A damper [design]" in info
+    assert "friction ratio beta for at most" in info
+
+
+def test_units_and_ratios_in_the_file(answers):
+    ds = read(answers["at-most"])
+    np.testing.assert_allclose(ds.friction_force, 50.0 * ds.beta, rtol=1e-15)
+    np.testing.assert_allclose(ds.limit, 2.8, rtol=1e-15)  # 14 mm over 50 N / (10 N/mm)
+    np.testing.assert_allclose(ds.peak_m, 5e-3 * ds.peak, rtol=1e-15)
+    np.testing.assert_allclose(ds.interval_end_N, 50.0 * ds.interval_end, rtol=1e-15)
+
+
+def test_the_limit_holds_inside_the_range_and_not_outside(answers):
+    ds = read(answers["at-most"])
+    system = load_design_system(answers)
+    r = np.geomspace(0.4, 2.0, 1500)
+    inside = np.array([ds.interval_begin.values[0] * 1.0001, ds.interval_end.values[0] * 0.9999])
+    outside = np.array([ds.interval_begin.values[0] * 0.999, ds.interval_end.values[0] * 1.001])
+    for beta, holds in ((inside, True), (outside, False)):
+        found = fm.sweep(system, r, beta, outputs=["amplitude"]).amplitude.sel(dof=1).max("r")
+        assert ((found <= ds.limit.item()) == holds).all()
+
+
+def load_design_system(answers):
+    return fm.System(contact_masses=[2], mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.05)
+
+
+def test_slices_of_an_answer_are_read(answers):
+    ds = read(answers["least-peak"])
+    part = standard_form(ds.isel(peak=slice(0, 1), beta_search=slice(5, 20)))
+    assert part.sizes["beta_search"] == 15
+    wrong = ds.isel(beta_search=slice(None, None, -1))
+    with pytest.raises(fm.InputError, match="beta_search must be strictly increasing"):
+        standard_form(wrong)
+
+
+@pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
+def test_configurations_of_designs(path):
+    tree = tomllib.loads(path.read_text(encoding="utf-8"))
+    assert not list(SCHEMA.iter_errors(tree))
+    assert load_design(path).question == tree["design"]["question"]
+    assert fm.load_config(path).r.size > 10  # the same file is one of a map
+
+
+def test_a_working_point_is_drawn_where_it_is(answers):
+    ds = read(answers["margin"])
+    (ax,) = fm.plot_design(ds)
+    marks = [line.get_xydata() for line in ax.lines if line.get_marker() == "o"]
+    np.testing.assert_allclose(marks[0], [[ds.at_r.item(), ds.beta.item()]])

@@ -17,6 +17,9 @@ _PROMISING = 2.0
 #: Values of the curve that count as one: of a plateau, of two peaks at the optimum.
 _PLATEAU, _TWO_PEAKS = 1e-9, 1e-8
 
+#: A plateau extends at least over this relative range of friction.
+_WIDE = 1e-3
+
 #: A peak over the whole band above those that were followed by more than this was missed before.
 _MISSED = 1e-10
 
@@ -95,8 +98,17 @@ def _refined(curve: Performance, values: Callable, points: Points, k: int) -> tu
         (peaks,) = curve.whole(refined.beta[k : k + 1])
         points = points.with_more(refined.beta[k : k + 1], np.array([peaks.largest]))
     _refuse_unknown(curve, low, high)
+    if k + 1 < refined.beta.size and alike(refined.size[k : k + 2], _PLATEAU) and _is_wide(refined, k):
+        beta = plateau_begin(values, refined, k, _PLATEAU)
+        (peaks,) = curve.whole(np.array([beta]))
+        return Minimum(beta, peaks.largest, "plateau"), peaks
     minimum = Minimum(float(refined.beta[k]), peaks.largest, _kind(refined, k, peaks))
     return minimum, peaks
+
+
+def _is_wide(points: Points, k: int) -> bool:
+    """Whether the value at a point extends to the next one of the search, which a smooth minimum does not."""
+    return bool(points.beta[k + 1] > points.beta[k] * (1.0 + _WIDE))
 
 
 def _refuse_unknown(curve: Performance, low: float, high: float) -> None:
@@ -124,12 +136,7 @@ def find_optimum(task: Task, curve: Performance) -> Optimum:
         return largest(curve.at(beta))
 
     promising = [k for k in local_minima(points) if points.size[k] <= _PROMISING * points.size.min()]
-    found = []
-    for k in promising:
-        if _is_plateau(points, k):
-            found.append(_on_plateau(curve, values, points, k))
-            continue
-        found.append(_refined(curve, values, points, k))
+    found = [_refined(curve, values, points, k) for k in promising]
     found.sort(key=lambda one: one[0].size)
     best, peaks = found[0]
     curve.at(best.beta * _AROUND)
@@ -137,17 +144,6 @@ def find_optimum(task: Task, curve: Performance) -> Optimum:
     table = curve.table
     refined = Points(np.array([one.beta for one in table]), largest(table))
     return Optimum(best, peaks, others[0] if others else None, refined)
-
-
-def _is_plateau(points: Points, k: int) -> bool:
-    return k + 1 < points.beta.size and alike(points.size[k : k + 2], _PLATEAU)
-
-
-def _on_plateau(curve: Performance, values: Callable, points: Points, k: int) -> tuple[Minimum, Peaks]:
-    """The least friction ratio of a plateau."""
-    beta = plateau_begin(values, points, k, _PLATEAU)
-    (peaks,) = curve.whole(np.array([beta]))
-    return Minimum(beta, peaks.largest, "plateau"), peaks
 
 
 def _inner_maxima(curve: Performance, points: Points) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Borders between numbers of stops: points by independent programs, counts of cells beside them, whole maps."""
+"""Borders between numbers of stops: points by independent programs, cells beside them, whole maps."""
 
 import functools
 

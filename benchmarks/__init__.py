@@ -3,9 +3,9 @@ and the effect of invalid input, interrupts and damaged files.
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
-NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, static, bound, faults, large,
-explore, coupling or coverage: each is a module of that name in `measures`.  It prints tables, and writes JSON
-and a figure.
+NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, design, static, bound,
+faults, large, explore, coupling or coverage: each is a module of that name in `measures`.  It prints tables,
+and writes JSON and a figure.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -22,6 +22,7 @@ and a figure.
   steady                       solved against marched, uniqueness for mu = 1, unresolved undamped cells
   structures                   time against the number of masses; five masses against other solvers
   general                      several contacts, elastic contacts, periodic loads: cost, against other solvers
+  design                       design questions: time, against whole maps; borders of stop counts
   static                       maps at mu > 1 against those of another checkout, in turn
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
   faults                       invalid input, interrupts, malformed files, damaged caches
@@ -51,7 +52,7 @@ and a figure.
   results_page                 the tables of docs/results.md, from the committed results
   quoted_errors                tables about errors; `quoted_faults`: about invalid input and interrupts;
                                `quoted_coverage`: about the intervals of `identify`; `quoted_general`: about
-                               several contacts and periodic loads
+                               several contacts and periodic loads; `quoted_design`: about designs
   quoting                      format of the numbers
 `results/`                     the committed results; `results/local` has those of local runs
 =============================  ========================================================================

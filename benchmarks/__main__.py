@@ -26,6 +26,7 @@ BENCHMARKS = (
     "steady",
     "structures",
     "general",
+    "design",
     "static",
     "bound",
     "faults",

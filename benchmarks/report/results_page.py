@@ -13,6 +13,7 @@ from pathlib import Path
 
 from .. import ROOT
 from .quoted_coverage import coverage_lines
+from .quoted_design import design_lines
 from .quoted_errors import accuracy_lines, steady_lines, stress_lines
 from .quoted_faults import faults_lines
 from .quoted_general import general_lines
@@ -27,6 +28,7 @@ QUOTED = (
     "peers",
     "structures",
     "general",
+    "design",
     "accuracy",
     "stress",
     "steady",
@@ -390,6 +392,8 @@ def block(results: Path) -> str:
         lines += _peer_lines(peers, structures)
     if "general" in found:
         lines += general_lines(found["general"])
+    if "design" in found:
+        lines += design_lines(found["design"])
     for name, quote in (("accuracy", accuracy_lines), ("stress", stress_lines), ("steady", steady_lines)):
         if name in found:
             lines += quote(found[name])

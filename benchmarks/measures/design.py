@@ -13,9 +13,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 
 import frictionmap as fm
 
+from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, table, timed
 
 _ROUNDS = 3
@@ -124,7 +126,7 @@ def better_in_a_map(quick: bool) -> dict:
     return found
 
 
-def _gain(system: fm.System, band: np.ndarray, mass: int, ds: object, counts: tuple[int, int]) -> float:
+def _gain(system: fm.System, band: np.ndarray, mass: int, ds: xr.Dataset, counts: tuple[int, int]) -> float:
     """By how much the largest response of a map is lower than the answer, relative to it."""
     best, high = ds.beta.item(), float(ds.beta_search.values[-1])
     half = counts[1] // 2
@@ -149,12 +151,13 @@ _BORDERS = {
 }  # fmt: skip
 
 
-def borders(quick: bool) -> dict:
-    """Borders of three systems against their maps."""
-    found = {}
+def borders(quick: bool) -> tuple[dict, dict[str, xr.Dataset]]:
+    """Borders of three systems against their maps, and the borders themselves."""
+    found, curves = {}, {}
     for name, (system, wide, beta, narrow) in _BORDERS.items():
         r = narrow if quick else wide
         taken, ds = timed(lambda s=system, x=r, y=beta: fm.borders(s, x, y))
+        curves[name] = ds
         right, points = _counts_beside(system, ds)
         on, changes = _changes_on_borders(system, ds, r, beta, 150 if quick else 1000)
         found[name] = {
@@ -166,16 +169,33 @@ def borders(quick: bool) -> dict:
             f"{on} of {changes} changes of a map on a border",
             flush=True,
         )
-    return found
+    return found, curves
 
 
-def _border(ds: object, k: int) -> tuple[np.ndarray, np.ndarray]:
+def draw(curves: dict[str, xr.Dataset], path: Path) -> None:
+    """Draw the borders of all systems, by kind."""
+    colours = {"graze": "#2b4fa6", "slip-in-stop": "#bd7f50", "turn/stop": "#cc1f03"}
+    figure = new_figure(11.0, 4.2)
+    panels = figure.subplots(1, len(curves))
+    for ax, (name, ds) in zip(panels, curves.items(), strict=True):
+        for k, kind in enumerate(ds.border_kind.values.tolist()):
+            ax.loglog(*_border(ds, k), color=colours[kind], linewidth=0.9)
+        ax.set_title(f"{name}: {ds.sizes['border']} borders", fontsize=10)
+        ax.set_xlabel("frequency ratio $r$")
+    panels[0].set_ylabel("friction ratio $\\beta$")
+    for kind, colour in colours.items():
+        panels[-1].plot([], [], color=colour, label=kind)
+    panels[-1].legend(fontsize=8)
+    save_figure(figure, path)
+
+
+def _border(ds: xr.Dataset, k: int) -> tuple[np.ndarray, np.ndarray]:
     r, beta = ds.border_r.values[k], ds.border_beta.values[k]
     known = ~np.isnan(r)
     return r[known], beta[known]
 
 
-def _counts_beside(system: fm.System, ds: object) -> tuple[int, int]:
+def _counts_beside(system: fm.System, ds: xr.Dataset) -> tuple[int, int]:
     """Points in the middle of borders with the stated numbers of stops on both sides, and all of them."""
     right = points = 0
     for k in range(ds.sizes["border"]):
@@ -192,7 +212,7 @@ def _counts_beside(system: fm.System, ds: object) -> tuple[int, int]:
 
 
 def _changes_on_borders(
-    system: fm.System, ds: object, r: tuple[float, float], beta: tuple[float, float], count: int
+    system: fm.System, ds: xr.Dataset, r: tuple[float, float], beta: tuple[float, float], count: int
 ) -> tuple[int, int]:
     """Changes of the number of stops along beta in a map that lie on a border, and all of them."""
     x, y = np.linspace(*r, count), np.linspace(*beta, count)
@@ -215,7 +235,7 @@ def _crosses(curve: tuple[np.ndarray, np.ndarray], r: float, low: float, high: f
 
 
 def run(quick: bool, results: Path) -> dict:
-    """Measure, print and save."""
+    """Measure, print, save and draw."""
     with pinned():
         content = {
             "questions": times(quick),

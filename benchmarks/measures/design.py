@@ -237,10 +237,12 @@ def _crosses(curve: tuple[np.ndarray, np.ndarray], r: float, low: float, high: f
 def run(quick: bool, results: Path) -> dict:
     """Measure, print, save and draw."""
     with pinned():
+        found, curves = borders(quick)
         content = {
             "questions": times(quick),
             "random systems": better_in_a_map(quick),
-            "borders": borders(quick),
+            "borders": found,
         }
     save("design", content, results)
+    draw(curves, results / "design.png")
     return content

@@ -128,11 +128,11 @@ def crossing(curve: Curve, points: Points, k: int, limit: float) -> float:
 
 def plateau_begin(curve: Curve, points: Points, k: int, alike: float) -> float:
     """Least beta from which a curve is as low as at its k-th point, to the relative difference `alike`."""
-    if k == 0:
+    limit = points.size[k] * (1.0 + alike)
+    higher = np.flatnonzero(points.size[:k] > limit)
+    if not higher.size:
         return float(points.beta[0])
-    level = points.size[k]
-    limit = level + alike * abs(level)
-    return crossing(curve, points, k - 1, limit)
+    return crossing(curve, points, int(higher[-1]), limit)
 
 
 def alike(values: Sequence[float] | np.ndarray, tolerance: float) -> bool:

@@ -17,9 +17,6 @@ _PROMISING = 2.0
 #: Values of the curve that count as one: of a plateau, of two peaks at the optimum.
 _PLATEAU, _TWO_PEAKS = 1e-9, 1e-8
 
-#: A plateau extends at least over this relative range of friction.
-_WIDE = 1e-3
-
 #: A peak over the whole band above those that were followed by more than this was missed before.
 _MISSED = 1e-10
 
@@ -98,7 +95,7 @@ def _refined(curve: Performance, values: Callable, points: Points, k: int) -> tu
         (peaks,) = curve.whole(refined.beta[k : k + 1])
         points = points.with_more(refined.beta[k : k + 1], np.array([peaks.largest]))
     _refuse_unknown(curve, low, high)
-    if k + 1 < refined.beta.size and alike(refined.size[k : k + 2], _PLATEAU) and _is_wide(refined, k):
+    if k + 1 < refined.beta.size and alike(refined.size[[k, _index(refined, high)]], _PLATEAU):
         beta = plateau_begin(values, refined, k, _PLATEAU)
         (peaks,) = curve.whole(np.array([beta]))
         return Minimum(beta, peaks.largest, "plateau"), peaks
@@ -106,9 +103,9 @@ def _refined(curve: Performance, values: Callable, points: Points, k: int) -> tu
     return minimum, peaks
 
 
-def _is_wide(points: Points, k: int) -> bool:
-    """Whether the value at a point extends to the next one of the search, which a smooth minimum does not."""
-    return bool(points.beta[k + 1] > points.beta[k] * (1.0 + _WIDE))
+def _index(points: Points, beta: float) -> int:
+    """Index of a known place."""
+    return int(np.searchsorted(points.beta, beta))
 
 
 def _refuse_unknown(curve: Performance, low: float, high: float) -> None:

@@ -83,6 +83,13 @@ def test_every_variable_is_in_the_examples(datasets):
         *GENERAL_VARIABLES, "beta_stick_contact", "limiting_contact", "beta_noslip", "no_stop_begin",
         "no_stop_end", "wall_velocity_lim", "y", "load", "event_contact", "contact", "contact_name",
     }  # fmt: skip
+    of_contacts |= {
+        "border_r",
+        "border_beta",
+        "border_kind",
+        "stops_below",
+        "stops_above",
+    }  # test_borders_file
     of_contacts |= {in_si(name, MEASURE_OF[name]) for name in of_contacts if name in MEASURE_OF}
     assert known | of_contacts >= set(LABELS) | set(COORDINATES) | set(BESIDE)
     assert not known & of_contacts

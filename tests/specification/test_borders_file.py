@@ -1,0 +1,77 @@
+"""Borders between numbers of stops in files: written by `boundaries --borders`, read back, drawn."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import frictionmap as fm
+from frictionmap.command_line.cli import main
+from frictionmap.files.reading import read
+from frictionmap.files.summary import describe_file
+
+CONFIG = """\
+title = "Borders"
+[system]
+contact = "joined-base-wall"
+excitation = "base"
+[units]
+natural_frequency = "2 Hz"
+base_amplitude = "1 mm"
+stiffness = "2 N/mm"
+[grid]
+r = { start = 0.0, stop = 0.4, step = 0.01 }
+beta = { start = 0.0, stop = 0.05, step = 0.005 }
+mu = [1.0, 1.5]
+"""
+NAMES = ("border_r", "border_beta", "border_kind", "stops_below", "stops_above")
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("borders")
+    (folder / "b.toml").write_text(CONFIG.replace("start = 0.0, stop = 0.4", "start = 0.18, stop = 0.4"))
+    assert (
+        main(["boundaries", str(folder / "b.toml"), "--borders", "-o", str(folder / "b.nc"), "--quiet"]) == 0
+    )
+    return folder / "b.nc"
+
+
+def test_a_file_holds_borders_and_boundaries(path):
+    ds = read(path)
+    assert {*NAMES, "border_r_Hz", "border_beta_N", "beta_lim"} <= set(ds.data_vars)
+    with xr.open_dataset(path) as plain:
+        np.testing.assert_array_equal(plain.border_kind.values, ds.border_kind.values)
+        assert dict(plain.border_beta.sizes) == dict(ds.border_beta.sizes)
+    np.testing.assert_allclose(ds.border_r_Hz, 2.0 * ds.border_r, rtol=1e-15)
+    np.testing.assert_allclose(ds.border_beta_N, 2.0 * ds.border_beta, rtol=1e-15)
+    assert set(ds.border_kind.values) <= {"graze", "slip-in-stop", "turn/stop"}
+    assert "border_r" in describe_file(ds)
+
+
+def test_borders_lie_between_the_boundaries(path):
+    ds = read(path)
+    x, y = ds.border_r.values.ravel(), ds.border_beta.values.ravel()
+    x, y = x[~np.isnan(x)], y[~np.isnan(y)]
+    curves = fm.boundaries(fm.System(contact="joined-base-wall"), np.unique(x))
+    place = np.searchsorted(curves.r.values, x)
+    assert (y >= curves.beta_lim.values[0, place] * (1.0 - 1e-9)).all()
+    assert (y <= curves.beta_stick.values[0, place] * (1.0 + 1e-9)).all()
+
+
+def test_borders_are_drawn_for_mu_1_only(path):
+    axes = fm.plot_boundaries(read(path))
+    lines = [[line for line in ax.lines if line.get_linewidth() == 0.8] for ax in axes]
+    assert len(lines[0]) == read(path).sizes["border"]
+    assert not lines[1]
+
+
+def test_what_borders_need(path, capsys):
+    config = str(path.with_suffix(".toml"))
+    for more, words in (
+        (["--set", "grid.mu=[1.5]"], "mu must contain 1 for borders"),
+        (["--set", "grid.r=[0.01, 0.02]"], "grid.r must have two values >= 0.0625"),
+        (["--set", "system.contact_stiffness=2.0", "--set", "grid.mu=[1.0]"], "cannot find borders"),
+    ):
+        assert main(["boundaries", config, "--borders", "-o", str(path.parent / "x.nc"), *more]) == 2
+        assert words in capsys.readouterr().err
+        assert not (path.parent / "x.nc").exists()

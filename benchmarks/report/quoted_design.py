@@ -19,9 +19,9 @@ def design_lines(design: dict) -> Iterator[str]:
     kinds = ", ".join(f"{count} {kind}" for kind, count in random["kinds"].items())
     yield (
         f"- The least peaks of {random['systems']} random systems ({random['refused']} refused; {kinds}) "
-        f"were compared with maps of {frequencies:,} frequencies and {ratios} friction ratios. The largest "
-        "response of a map, which misses what lies between its frequencies, is lower by up to "
-        f"{rounded_off(random['largest gain'])} of the peak."
+        f"were compared with maps of {frequencies:,} frequencies and {ratios} friction ratios, with the "
+        "peaks of the three best friction ratios refined by finer maps. The best of these is lower than "
+        f"the answer by at most {rounded_off(max(random['largest gain'], 0.0))} of it."
     )
     yield ""
     yield "Borders between numbers of stops (mu = 1), against cells on both sides and against a map:"

@@ -14,7 +14,7 @@ from ..model.settings import Output, Solver, Start
 from ..model.system import System
 from ..steady.maps import compute
 from ..steady.quantity_data import quantity_request, read_result
-from ..steady.scattered import AT_ONCE, scattered_cells
+from ..steady.scattered import scattered_cells
 
 #: What is made small: the largest displacement of a mass, its first harmonic, the largest displacement in a
 #: contact, or the largest force on the ground.
@@ -25,6 +25,9 @@ _GENERAL = ("amplitude", "contact")
 #: Variables of cells over a cycle, by quantity.
 _OF_CYCLE = {"first_harmonic": "first_harmonic_amplitude", "transmitted_force": "transmitted_force"}
 _OUTPUTS: dict[str, Output] = {"amplitude": "amplitude", "contact": "contact_amplitude"}
+#: Points computed together, neighbours in beta: cells that formulas decide are filled for every beta between.
+_TOGETHER = 128
+
 _ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "status")
 
 
@@ -116,8 +119,11 @@ class Responses:
         """Values at points r > 0 and beta >= 0, (k,)."""
         if self.system.general is not None:
             return self._general_at(r, beta)
-        chunks = [slice(first, first + AT_ONCE) for first in range(0, r.size, AT_ONCE)]
-        return _joined([self._scattered(r[chunk], beta[chunk]) for chunk in chunks])
+        order = np.argsort(beta, kind="stable")
+        chunks = [order[first : first + _TOGETHER] for first in range(0, r.size, _TOGETHER)]
+        found = _joined([self._scattered(r[chunk], beta[chunk]) for chunk in chunks])
+        back = np.argsort(order, kind="stable")
+        return Values(*(array[back] for array in found))
 
     def _scattered(self, r: np.ndarray, beta: np.ndarray) -> Values:
         order = np.argsort(r, kind="stable")

@@ -27,8 +27,8 @@ _ROUNDS = 3
 GRID, QUICK_GRID = (1500, 150), (150, 30)
 RANDOM, QUICK_RANDOM = 50, 2
 
-#: Lowest columns of a map that are compared, and how often their peaks are refined.
-_LOWEST, _ZOOMS = 3, 4
+#: Lowest columns of a map that are compared, how many of their peaks, and how often these are refined.
+_LOWEST, _PEAKS, _ZOOMS = 3, 4, 4
 
 #: Relative distance from a border at which cells are compared, and from the ends of borders that is left out.
 _BESIDE, _ENDS = 1e-6, 0.02
@@ -134,6 +134,7 @@ def _gain(system: fm.System, band: np.ndarray, mass: int, ds: xr.Dataset, counts
     half = counts[1] // 2
     around = best or high / 500.0
     beta = np.union1d(np.geomspace(high / 500.0, high, half), np.linspace(0.5, 1.5, half) * around)
+    beta = beta[beta >= ds.beta_search.values[0]]  # less friction is not asked for
     r = np.geomspace(*band, counts[0])
     found = fm.sweep(system, r, beta, outputs=["amplitude"], threads=1).amplitude.isel(mu=0, dof=mass - 1)
     columns = np.nan_to_num(found.values, nan=np.inf)
@@ -146,9 +147,9 @@ def _gain(system: fm.System, band: np.ndarray, mass: int, ds: xr.Dataset, counts
 def _zoomed(system: fm.System, r: np.ndarray, beta: float, mass: int, column: np.ndarray) -> float:
     """Largest response at one beta: the local maxima of a column of a map, each by maps that are finer."""
     padded = np.concatenate(([-np.inf], column, [-np.inf]))
-    high = (column >= padded[:-2]) & (column >= padded[2:]) & (column >= 0.8 * column.max())
+    peaks = np.flatnonzero((column > padded[:-2]) & (column >= padded[2:]))
     largest = 0.0
-    for k in np.flatnonzero(high):
+    for k in peaks[np.argsort(-column[peaks])[:_PEAKS]]:
         low, up = r[max(k - 1, 0)], r[min(k + 1, r.size - 1)]
         for _ in range(_ZOOMS):
             places = np.linspace(low, up, 21)

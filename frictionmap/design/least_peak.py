@@ -136,7 +136,8 @@ def find_optimum(task: Task, curve: Performance) -> Optimum:
     found = [_refined(curve, values, points, k) for k in promising]
     found.sort(key=lambda one: one[0].size)
     best, peaks = found[0]
-    curve.at(best.beta * _AROUND)
+    around = best.beta * _AROUND
+    curve.at(around[(around >= points.beta[0]) & (around <= points.beta[-1])])
     others = [one for one, _ in found[1:] if one.size <= _SECOND * best.size]
     table = curve.table
     refined = Points(np.array([one.beta for one in table]), largest(table))

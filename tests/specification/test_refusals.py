@@ -377,8 +377,8 @@ plot
 # Design questions
 design good.toml
     the configuration must have a table [design]; got none
-design question.toml --set design.qestion=stuck
-    unknown key 'design.qestion' (did you mean question?); valid: question, band, response, mu, limit, spread, beta, r
+design question.toml --set design.quest=stuck
+    unknown key 'design.quest' (did you mean question?); valid: question, band, response, mu, limit, spread, beta, r
 design question.toml --set design.question=best
     design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust; got 'best' (did you mean robust?)
 design good.toml --set design.question=stuck

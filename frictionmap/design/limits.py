@@ -57,7 +57,7 @@ def has_no_stop_limit(system: System) -> bool:
     return system.general is None or not system.general.elastic.any()
 
 
-def _samples(system: System, band: Band) -> np.ndarray:
+def boundary_samples(system: System, band: Band) -> np.ndarray:
     """Frequencies at which beta_lim is sampled: closed forms cost little."""
     if system.general is None:
         return limit_samples(system, band)
@@ -66,7 +66,7 @@ def _samples(system: System, band: Band) -> np.ndarray:
 
 def least_no_stop(system: System, band: Band, mu: float) -> tuple[float, float]:
     """The most friction without a stop anywhere in a band, and the frequency that decides."""
-    r = _samples(system, band)
+    r = boundary_samples(system, band)
     bracket = brackets_of(r, -no_stop_limit(system, r, mu))
     low = bracket.at_m >= 2.0 * bracket.at_m.max()  # values are negative: other dips are far above
     bracket = type(bracket)(*(array[low] for array in bracket))
@@ -95,7 +95,7 @@ def largest_stick(system: System, band: Band, mu: float) -> tuple[float, float]:
 def nearest_crossing(limit: Limit, system: System, r: float, beta: float, mu: float) -> float:
     """The frequency next to r, within a factor of ten, at which a boundary is beta; NaN without one."""
     reach = Band(r / _REACH, r * _REACH)
-    samples = np.union1d(_samples(system, reach), [r])
+    samples = np.union1d(boundary_samples(system, reach), [r])
 
     def boundary(x: np.ndarray) -> np.ndarray:
         return limit(system, x, mu)

@@ -13,9 +13,10 @@ from ..units.axes import KINDS, ratios
 from ..units.scales import Scales, Units, scales_of
 from .answers import answer
 from .at_most import find_ranges
-from .band import Band, checked_band, limit_samples, peak_samples
+from .band import Band, checked_band, peak_samples
 from .least_peak import Minimum, Optimum, find_optimum, find_robust, largest
 from .limits import (
+    boundary_samples,
     has_no_stop_limit,
     largest_stick,
     least_no_stop,
@@ -35,9 +36,6 @@ _CURVES = np.array([0.5, 1.0, 2.0])
 
 #: Peaks of an answer that are listed: those above this share of the largest one.
 _LISTED = 0.8
-
-#: Frequencies at which boundaries are given where each is found by following motions.
-_FEW = 60
 
 
 def least_peak(
@@ -322,7 +320,7 @@ def _checked(system: Any, band: Any, mu: Any, units: Units | None) -> tuple[Band
 
 def _boundaries(system: System, band: Band, mu: float) -> dict[str, np.ndarray]:
     """The boundaries over a band, for pictures."""
-    r = limit_samples(system, band) if system.general is None else band.samples(_FEW, np.empty(0))
+    r = boundary_samples(system, band)
     found = {"r_search": r, "beta_stick_of_r": stick_limit(system, r, mu)}
     if has_no_stop_limit(system):
         found["beta_lim_of_r"] = no_stop_limit(system, r, mu)

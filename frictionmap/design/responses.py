@@ -8,13 +8,13 @@ import numpy as np
 from .. import checks, regimes
 from ..errors import InputError
 from ..general.dataset import cell_values, contact_values, refuse_static
-from ..general.held import least_static_friction, stick_scales
 from ..general.maps import solve_cells
 from ..model.settings import Output, Solver, Start
 from ..model.system import System
 from ..steady.maps import compute
 from ..steady.quantity_data import quantity_request, read_result
 from ..steady.scattered import scattered_cells
+from .limits import stick_limit
 
 #: What is made small: the largest displacement of a mass, its first harmonic, the largest displacement in a
 #: contact, or the largest force on the ground.
@@ -147,10 +147,7 @@ class Responses:
         return Values(size[place], out.regime[place], out.stops_per_cycle[place], out.status[place])
 
     def _general(self, axes: dict[str, np.ndarray], solver: Solver) -> Values:
-        general = self.system.general
-        assert general is not None
-        needed = least_static_friction(self.system, axes["r"])
-        stick = stick_scales(general, needed, axes["mu"]).max(axis=2)
+        stick = stick_limit(self.system, axes["r"], self.mu)[np.newaxis]
         found = solve_cells(self.system, axes, stick, solver, self._threads, None, None, masses=True)
         if self.response.quantity == "amplitude":
             size = cell_values("amplitude", self.system, found)[0, ..., self._row]

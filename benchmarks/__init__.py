@@ -1,11 +1,10 @@
-"""Benchmarks: accuracy, speed compared with other solvers, growth of the computing time, numerical limits,
-and the effect of invalid input, interrupts and damaged files.
+"""Benchmarks: accuracy, speed compared with other solvers, growth of the computing time, numerical limits.
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
 NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, design, static, bound,
-faults, large, explore, coupling or coverage: each is a module of that name in `measures`.  It prints tables,
-and writes JSON and a figure.
+large, explore, coupling or coverage: each is a module of that name in `measures`.  It prints tables, and
+writes JSON and a figure.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -25,7 +24,6 @@ and writes JSON and a figure.
   design                       design questions: time, against whole maps; borders of stop counts
   static                       maps at mu > 1 against those of another checkout, in turn
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
-  faults                       invalid input, interrupts, malformed files, damaged caches
   large                        stores: overhead, memory, workers, random variations, kills
   explore                      response times of the interactive page; `browser` finds a browser
   coupling                     error if the coupling of modes by damping is neglected
@@ -50,9 +48,9 @@ and writes JSON and a figure.
   record                       machine, versions, medians, tables; results as JSON; one processor
   figures                      figures, drawn without a display
   results_page                 the tables of docs/results.md, from the committed results
-  quoted_errors                tables about errors; `quoted_faults`: about invalid input and interrupts;
-                               `quoted_coverage`: about the intervals of `identify`; `quoted_general`: about
-                               several contacts and periodic loads; `quoted_design`: about designs
+  quoted_errors                tables about errors; `quoted_coverage`: about the intervals of `identify`;
+                               `quoted_general`: about several contacts and periodic loads;
+                               `quoted_design`: about designs
   quoting                      format of the numbers
 `results/`                     the committed results; `results/local` has those of local runs
 =============================  ========================================================================

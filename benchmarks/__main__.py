@@ -29,7 +29,6 @@ BENCHMARKS = (
     "design",
     "static",
     "bound",
-    "faults",
     "large",
     "explore",
     "coupling",
@@ -75,11 +74,11 @@ def main() -> None:
     parser.add_argument(
         "--package",
         type=Path,
-        help="faults: the checkout to try; static: one to compare with",
+        help="static: the checkout to compare with",
     )
     options = parser.parse_args()
-    if options.package and options.benchmarks not in (["faults"], ["static"]):
-        parser.error("--package goes with faults or static alone")
+    if options.package and options.benchmarks != ["static"]:
+        parser.error("--package goes with static alone")
     more = {"package": options.package} if options.package else {}
     if options.benchmarks == ["page"]:  # quotes what is there
         from .report.results_page import rewrite

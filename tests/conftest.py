@@ -21,7 +21,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 #: Files that take a minute or so, first: a worker that begins one of them last works on alone.
 LONGEST = (
-    "test_quick_benchmarks.py", "test_stores.py", "test_explore_page.py", "test_quick_faults.py",
+    "test_quick_benchmarks.py", "test_stores.py", "test_explore_page.py", "test_fuzz.py",
     "test_interrupts.py", "test_stores_cut.py",
 )  # fmt: skip
 
@@ -34,6 +34,11 @@ def _rows(name: str) -> tuple[dict, list[dict]]:
         pytest.skip(f"the reference values {name} are not at hand")
     content = json.loads(path.read_text())
     return content["systems"], content["rows"]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option of the trials with invalid input."""
+    parser.addoption("--whole", action="store_true", help="tests/fuzz: all trials, not some of every kind")
 
 
 def pytest_configure(config: pytest.Config) -> None:

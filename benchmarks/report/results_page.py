@@ -15,7 +15,6 @@ from .. import ROOT
 from .quoted_coverage import coverage_lines
 from .quoted_design import design_lines
 from .quoted_errors import accuracy_lines, steady_lines, stress_lines
-from .quoted_faults import faults_lines
 from .quoted_general import general_lines
 from .quoting import duration, markdown, rounded_off, two_digits
 
@@ -34,16 +33,12 @@ QUOTED = (
     "steady",
     "scaling",
     "startup",
-    "faults",
     "large",
     "coupling",
     "coverage",
     "explore",
     "static",
 )
-
-#: Results of `faults` for an earlier version, quoted for comparison.
-BEFORE = "faults-before"
 
 
 def _row(what: str, ours: float, theirs: float) -> tuple[str, ...]:
@@ -383,7 +378,7 @@ def block(results: Path) -> str:
     """Text of the page between the markers."""
     found = {
         name: json.loads((results / f"{name}.json").read_text(encoding="utf-8"))
-        for name in (*QUOTED, BEFORE)
+        for name in QUOTED
         if (results / f"{name}.json").is_file()
     }
     peers, structures = found.get("peers"), found.get("structures")
@@ -397,8 +392,6 @@ def block(results: Path) -> str:
     for name, quote in (("accuracy", accuracy_lines), ("stress", stress_lines), ("steady", steady_lines)):
         if name in found:
             lines += quote(found[name])
-    if "faults" in found:
-        lines += faults_lines(found["faults"], found.get(BEFORE))
     if "milliseconds" in found.get("explore", {}):  # there was a browser
         lines += _explore_lines(found["explore"])
     if "coupling" in found:

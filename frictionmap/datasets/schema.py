@@ -104,6 +104,24 @@ def standard_dims(name: str, what: str) -> tuple[str, ...]:
     return tuple(dim for dim in dims if dim not in CELL) if what == "response" else dims
 
 
+def _check_dimensions(ds: xr.Dataset) -> None:
+    """Check that no dimension has a single number of its name, and that contacts are numbered."""
+    for dim in ds.dims:
+        if dim in ds.variables and ds.variables[dim].ndim == 0:
+            raise InputError(f"{dim} must be an axis, as others have this dimension; got a single number")
+    for name in ("contact", "contact_name"):
+        if name in ds.variables and ds.variables[name].dims not in ((), ("contact",)):
+            raise InputError(
+                f"{name} must have the dimensions (contact); got {in_brackets(ds.variables[name].dims)}"
+            )
+    if "contact" in ds.dims:
+        numbers = ds.variables["contact"].values if "contact" in ds.variables else np.zeros(0)
+        if not numbers.size or np.unique(numbers).size < numbers.size:
+            raise InputError(
+                f"contact must be a coordinate with one number per contact; got {numbers.tolist() or 'none'}"
+            )
+
+
 def check_structure(ds: xr.Dataset, in_parts: bool = False) -> None:
     """Check names, types, sizes, units and codes; only values of axes are read.
 
@@ -122,6 +140,7 @@ def check_structure(ds: xr.Dataset, in_parts: bool = False) -> None:
     for key in SCALES.values():
         if key in ds.attrs:
             checks.number(ds.attrs[key], f"the attribute {key}", above=0.0)
+    _check_dimensions(ds)
     known = _labels_by_name(what)
     if not is_own(what) and not any(name in LABELS for name in ds.variables):
         names = ", ".join(map(str, ds.variables)) or "none"

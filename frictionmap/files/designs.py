@@ -30,6 +30,9 @@ def design_form(ds: xr.Dataset) -> xr.Dataset:
         if name in ds.variables:
             values = checked_values(name, placed(ds, name, label.dims), "design")
             variables[name] = xr.Variable(label.dims, values, ds[name].attrs)
+    for axis in ("peak", "beta_search"):
+        if axis in variables and variables[axis].size == 0:
+            raise InputError(f"{axis} must have at least one value; got none")
     for axis in ("beta_search", "r_search"):
         if axis in variables and (np.diff(variables[axis].values) <= 0.0).any():
             raise InputError(

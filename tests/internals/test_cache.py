@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numba
 import pytest
+from fuzz.machine import prepared
 
 import frictionmap as fm
-from benchmarks.measures.faults.machine import prepared
 from frictionmap._kernels.compiler import entry, folders, notices
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")

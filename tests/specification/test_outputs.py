@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from fuzz.machine import prepared
 
 import frictionmap as fm
-from benchmarks.measures.faults.machine import prepared
 from frictionmap import InputError
 from frictionmap.files import places as outputs
 from frictionmap.files import storage
@@ -415,8 +415,6 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 from frictionmap.files.places import claimed
-
-from benchmarks.measures.faults.machine import prepared
 
 def die(scratch):
     scratch.write_text("half")

@@ -71,7 +71,7 @@ def levels_of(ds: xr.Dataset, trace: Trace) -> Levels | None:
     """Friction levels of a contact; None for one of several in a file without its system."""
     beta, mu = float(ds["beta"]), float(ds["mu"])
     general = stored_general(ds)
-    if general is None:
+    if general is None or trace.number > len(general.groups):
         return None if trace.number else Levels(beta, mu * beta, None)
     group = general.groups[max(trace.number, 1) - 1]
     kinetic, static = group.friction(beta, mu)

@@ -26,6 +26,31 @@ CONFIG_TWO = CONFIG.replace(
     "damping_ratios", "mass_ratios = [1.0, 1.0]\nstiffness_ratios = [1.0, 1.0]\ndamping_ratios"
 )
 
+#: The same of two masses with two contacts, one of them elastic, and a design question.
+CONFIG_CONTACTS = (
+    CONFIG_TWO.replace('contact = "fixed-wall"\n', "")
+    .replace("mu = [1.0, 1.5]", "mu = [1.0]")
+    .replace(
+        "[grid]",
+        """[[system.contacts]]
+kind = "fixed-wall"
+masses = [1]
+
+[[system.contacts]]
+kind = "between-masses"
+masses = [1, 2]
+stiffness = 3.0
+ratio = 0.5
+
+[design]
+question = "least-peak"
+band = [0.5, 1.5]
+response = { quantity = "amplitude", mass = 2 }
+
+[grid]""",
+    )
+)
+
 OUTPUTS = (
     "regime", "stops_per_cycle", "contact_amplitude", "stuck_fraction", "period", "origin", "cycles",
     "status", "multiplier", "asymmetry", "also_reachable", "sliding_limit", "amplitude",

@@ -11,14 +11,15 @@ import tempfile
 import time
 from pathlib import Path
 
-from ... import ROOT
 from .machine import environment
 from .verdict import Said
 
-#: The package under trial is imported before this repository, which holds one too, comes onto the path.
+_TESTS = Path(__file__).resolve().parent.parent
+
+#: The package under trial is imported before the tests, beside which another one may lie, come onto the path.
 _START = (
     "import sys, frictionmap; sys.path.insert(0, sys.argv[1]); "
-    "from benchmarks.measures.faults.worker import serve; serve(int(sys.argv[2]))"
+    "from fuzz.worker import serve; serve(int(sys.argv[2]))"
 )
 
 
@@ -66,7 +67,7 @@ class Child:
             self._log = tempfile.TemporaryFile()  # noqa: SIM115 (closed in close)
             os.set_inheritable(self._log.fileno(), True)
             self._process = subprocess.Popen(
-                [sys.executable, "-c", _START, str(ROOT), str(self._log.fileno())],
+                [sys.executable, "-c", _START, str(_TESTS), str(self._log.fileno())],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=self._log,

@@ -1,4 +1,4 @@
-"""The benchmark of faults reports every fault: tried on a stand-in that does everything wrong."""
+"""The trials report every fault: tried on a stand-in that does everything wrong."""
 
 import random
 import shutil
@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from benchmarks.measures.faults import calls, configurations, interrupts, malformed, refusals, verdict
-from benchmarks.measures.faults.child import Child, Ended
-from benchmarks.measures.faults.folders import Change, snapshot
-from benchmarks.measures.faults.moments import Run
-from benchmarks.measures.faults.verdict import Family, Said
+from . import calls, configurations, interrupts, malformed, refusals, verdict
+from .child import Child, Ended
+from .folders import Change, snapshot
+from .moments import Run
+from .verdict import Family, Said
 
 #: A program whose first argument says how it goes wrong.
 STAND_IN = """

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from .child import Child, Ended
-from .folders import CONFIG, CONFIG_TWO, EVERYTHING
+from .folders import CONFIG, CONFIG_CONTACTS, CONFIG_TWO, EVERYTHING
 from .malformed import BYTES, SLICES, STRUCTURE, VALUES
 from .verdict import CRASH, HANG, UNSEEN, Family, Said, wrong_answer_or_refusal
 
@@ -27,6 +27,12 @@ _BASES: tuple[tuple[str, str, list[str]], ...] = (
     ("boundaries-two", CONFIG_TWO, ["boundaries"]),
     ("response", CONFIG, ["response", *_CELL]),
     ("response-two", CONFIG_TWO, ["response", *_CELL]),
+    ("curves", CONFIG, ["curves"]),
+    ("borders", CONFIG, ["boundaries", "--borders", "--set", "grid.mu=[1.0]"]),
+    ("contacts", CONFIG_CONTACTS, ["map"]),
+    ("contacts-curves", CONFIG_CONTACTS, ["curves"]),
+    ("contacts-response", CONFIG_CONTACTS, ["response", *_CELL[:4]]),
+    ("design", CONFIG_CONTACTS, ["design"]),
 )
 
 
@@ -34,7 +40,7 @@ def bases(child: Child, folder: Path, quick: bool) -> list[Path]:
     """Valid files, written by the tested package; in the quick form one of every kind."""
     folder.mkdir()
     found = []
-    for name, config, (verb, *rest) in _BASES[:: 3 if quick else 1]:
+    for name, config, (verb, *rest) in _BASES[:7:3] if quick else _BASES:
         (folder / "c.toml").write_text(config)
         path = folder / f"{name}.nc"
         said = child.main([verb, "c.toml", "-o", path.name, "--quiet", *rest], folder, limit=1800.0)

@@ -3,11 +3,12 @@
 import csv
 import re
 
-import mutants
 import numpy as np
 import pytest
 import xarray as xr
 from decays import Truth, synthetic
+from fuzz import malformed
+from fuzz.reading import refused
 from sweeps import swept
 
 import frictionmap as fm
@@ -155,7 +156,8 @@ def test_the_file_is_named(datasets, tmp_path, capsys):
     assert re.match(r"frictionmap: file .*wrong\.nc: standard_error must be finite", capsys.readouterr().err)
 
 
+@pytest.mark.parametrize("family", [malformed.STRUCTURE, malformed.VALUES])
 @pytest.mark.parametrize("kind", KINDS)
-def test_mutants_are_read_or_refused(files, kind, tmp_path):
-    """Variables, dimensions, types, sizes, values, attributes changed at random: an InputError, or well."""
-    assert 8 < mutants.refused(files[kind], tmp_path / "mutant.nc", KINDS.index(kind)) < 28
+def test_malformed_files_are_read_or_refused(files, kind, family):
+    """Other names, dimensions, types, attributes or values: well, or one line that names the file."""
+    assert 1 < refused(files[kind], family, 15) < 15

@@ -5,10 +5,11 @@ import re
 import warnings
 from pathlib import Path
 
-import mutants
 import numpy as np
 import pytest
 from decays import Truth, marched, synthetic
+from fuzz import malformed
+from fuzz.malformed import STRUCTURE, VALUES
 from layouts import assert_inside_and_apart, rendered, words_of
 from matplotlib.figure import Figure
 from records import Truth as Shaking
@@ -414,15 +415,16 @@ def test_sweeps_that_cannot_be_drawn(datasets, change, message):
         fm.plot_fit(change(datasets["sweep"]))
 
 
-def test_mutants_are_drawn_or_refused(datasets, tmp_path):
+def test_malformed_files_are_drawn_or_refused(datasets, tmp_path):
     """Files changed at random, as far as they can be read: a picture without a warning, or an InputError."""
     write(datasets["decay"], tmp_path / "decay.nc")
     write(datasets["sweep"], tmp_path / "sweep.nc")
-    rng, path, drawn = np.random.default_rng(1), tmp_path / "mutant.nc", 0
-    for index in range(30):
+    path, drawn = tmp_path / "malformed.nc", 0
+    for seed in range(30):
+        base, family = tmp_path / ("decay.nc", "sweep.nc")[seed % 2], (STRUCTURE, VALUES)[seed % 4 // 2]
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            mutants.write_mutant(rng, tmp_path / ("decay.nc", "sweep.nc")[index % 2], path)
+            malformed.make(base, family, seed, path)
         with contextlib.suppress(InputError):
             rendered(fm.plot_fit(read(path)))
             drawn += 1

@@ -15,7 +15,7 @@ HEADER = (
     "lowest coverage",
     "largest error over s.e.",
     "s.e. over Cramer-Rao bound",
-    "time per fit",
+    "processor time per fit",
 )
 
 #: Keys of the standard error over the Cramer-Rao bound, and of an error over its standard error.
@@ -30,7 +30,7 @@ def _share(part: int, whole: int) -> str:
 def _cells(kind: str, name: str, case: dict) -> tuple[str, ...]:
     parameters = case["parameters"]
     beginning = f"`{kind}`", name, str(case["seeds"]), str(case["refused"]), str(case["warned"])
-    end = duration(case["seconds a fit"]["median"])
+    end = duration(case["processor seconds a fit"]["median"])
     if not parameters:
         return (*beginning, "-", "-", "-", "-", end)
     least = min(parameters, key=lambda one: parameters[one]["coverage"])

@@ -49,7 +49,7 @@ class Trial(NamedTuple):
     """Result of one fit."""
 
     seed: int
-    seconds: float
+    seconds: float  # processor time: whatever else the machine does, it counts the work of the fit
     refusal: str | None  # why there is no answer, numbers left out
     warnings: tuple[str, ...]  # numbers left out
     estimates: dict[str, Estimate]
@@ -62,15 +62,15 @@ def robust(fit: Callable[..., xr.Dataset]) -> dict[str, str]:
 
 def attempt(made: Made, seed: int) -> Trial:
     """Fit and compare; an exception other than a refusal is a defect, recorded with its name."""
-    began = time.perf_counter()
+    began = time.process_time()
     try:
         ds = made.fit()
     except fm.InputError as error:
-        return Trial(seed, time.perf_counter() - began, _reason(str(error)), (), {})
+        return Trial(seed, time.process_time() - began, _reason(str(error)), (), {})
     except Exception as error:  # one defect must not end the benchmark
         reason = f"{type(error).__name__}: {_reason(str(error))}"
-        return Trial(seed, time.perf_counter() - began, reason, (), {})
-    seconds = time.perf_counter() - began
+        return Trial(seed, time.process_time() - began, reason, (), {})
+    seconds = time.process_time() - began
     warnings = tuple(dict.fromkeys(_reason(one) for one in ds.attrs["warnings"].split("; ") if one))
     return Trial(seed, seconds, None, warnings, _compared(ds, made))
 

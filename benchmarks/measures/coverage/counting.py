@@ -33,7 +33,7 @@ def row(trials: list[Trial]) -> dict:
         "refusals": dict(Counter(trial.refusal for trial in trials if trial.refusal).most_common()),
         "warned": sum(bool(trial.warnings) for trial in answered),
         "warnings": dict(Counter(words for trial in answered for words in trial.warnings).most_common()),
-        "seconds a fit": spread([trial.seconds for trial in trials]),
+        "processor seconds a fit": spread([trial.seconds for trial in trials]),
         "parameters": {name: _parameter(name, answered) for name in names},
     }
 

@@ -31,6 +31,7 @@ DESIGN_AXES = {
     "r_search": _r("frequency ratios, searched", _OVER_R),
     "offset": Label(np.float64, "relative change of the friction", ("offset",), least=-1.0),
     "interval": Label(np.int64, "interval, counted from 1", ("interval",), least=1),
+    "sample": Label(np.int64, "sample of the structure, counted from 1", ("sample",), least=1),
     "curve": _beta(f"{_FRICTION} of a response curve; infinite: stuck", ("curve",)),
 }  # fmt: skip
 
@@ -54,6 +55,10 @@ ANSWERS = {
                             least=0.0, inf=True, nan=True),
     "second_beta": _beta("friction ratio of the second-best minimum within 5 %", nan=True),
     "second_peak": Label(np.float64, f"{_RESPONSE}, at the second-best minimum", (), least=0.0, nan=True),
+    "quantile": Label(np.float64, "share of the samples whose response is at most that of the answer", (),
+                      least=0.0, most=1.0),
+    "peak_of_sample": Label(np.float64, f"{_RESPONSE}, of each sample at the answer", ("sample",), least=0.0,
+                            inf=True),
     "spread": Label(np.float64, "relative spread of the friction", (), least=0.0, most=1.0),
     "limit": Label(np.float64, "largest response that is allowed", (), least=0.0),
     "beta_no_stop": _beta("largest friction ratio without a stop anywhere in the band", nan=True),

@@ -11,6 +11,7 @@ responses    the response that a design is about, at points (r, beta) of any sys
 performance  the largest response over the band as a function of friction, with its peaks
 task         checks of arguments, the range of friction that is searched
 least_peak   the friction with the least largest response, also where it is uncertain
+samples      the same for samples of an uncertain structure: a quantile of their curves
 at_most      the ranges of friction in which the response stays within a limit
 answers      answers as datasets
 questions    `least_peak`, `robust`, `at_most`, `no_stop`, `stuck`, `margin`
@@ -19,5 +20,6 @@ configuration  the table [design] of a configuration
 """
 
 from .questions import at_most, least_peak, margin, no_stop, robust, stuck
+from .samples import Samples
 
-__all__ = ["at_most", "least_peak", "margin", "no_stop", "robust", "stuck"]
+__all__ = ["Samples", "at_most", "least_peak", "margin", "no_stop", "robust", "stuck"]

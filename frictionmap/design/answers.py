@@ -26,6 +26,8 @@ _TITLES = {
     "margin": "Margins of a working point",
 }
 
+_OF_SAMPLES = "Friction with the least peak for a share of samples"
+
 
 def _variable(name: str, value: Any) -> xr.Variable:
     label = DESIGN[name]
@@ -39,7 +41,7 @@ def _variable(name: str, value: Any) -> xr.Variable:
 
 def answer(
     question: str, system: System, band: Band, values: Mapping[str, Any], asked: Mapping[str, Any],
-    units: Units | None, scales: Scales,
+    units: Units | None, scales: Scales, study: Mapping[str, Any] | None = None,
 ) -> xr.Dataset:  # fmt: skip
     """Build the dataset of an answer.
 
@@ -52,13 +54,16 @@ def answer(
     asked : further keys of the table [design] that ask the same question
     units : Units, or None
     scales : Scales
+    study : axes of the samples, as `sweep` takes them
     """
     found = {"question": question, **values, **_in_units(question, values, asked, scales)}
     variables = {name: _variable(name, value) for name, value in found.items()}
     coords = {name: variables.pop(name) for name in DESIGN_AXES if name in variables}
     r = np.array([band.low, band.high])
     function = f"design.{question.replace('-', '_')}"
-    ds = stamp(xr.Dataset(variables, coords), function, _TITLES[question], system, {"r": r}, units=units)
+    ds = stamp(
+        xr.Dataset(variables, coords), function, _TITLES[question], system, {"r": r}, study=study, units=units
+    )
     table = {"question": question, "band": [band.low, band.high], **asked}
     lines = [f"{key} = {value_text(value)}" for key, value in table.items()]
     ds.attrs["config"] += "\n".join(["", "[design]", *lines, ""])

@@ -5,11 +5,11 @@ import numpy as np
 from ..errors import InputError
 from .least_peak import Optimum, find_optimum, largest
 from .minimum import Points, changes, crossing
-from .performance import Performance
+from .performance import PerformanceCurve
 from .task import Task
 
 
-def find_ranges(task: Task, curve: Performance, limit: float) -> tuple[Optimum, np.ndarray, np.ndarray]:
+def find_ranges(task: Task, curve: PerformanceCurve, limit: float) -> tuple[Optimum, np.ndarray, np.ndarray]:
     """Find all ranges of beta with M(beta) <= limit: the optimum, where they begin and where they end.
 
     A range that reaches the lower end of the search begins there; one that reaches friction that holds over

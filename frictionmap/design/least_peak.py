@@ -8,7 +8,7 @@ import numpy as np
 from ..errors import InputError, NoSteadyState
 from .extremes import Brackets, brackets_of, sharpened
 from .minimum import Points, alike, local_minima, lowest, lowest_of, plateau_begin
-from .performance import Peaks, Performance
+from .performance import Peaks, PerformanceCurve
 from .task import Task
 
 #: Local minima of the samples that are refined: those below this multiple of the lowest one.
@@ -52,7 +52,7 @@ def largest(peaks: list[Peaks]) -> np.ndarray:
     return np.array([one.largest for one in peaks])
 
 
-def sampled(task: Task, curve: Performance) -> Points:
+def sampled(task: Task, curve: PerformanceCurve) -> Points:
     """The performance curve at the friction ratios of the search.
 
     Raises
@@ -82,7 +82,7 @@ def bracket(points: Points, k: int) -> tuple[float, float]:
     return float(points.beta[max(k - 1, 0)]), float(points.beta[min(k + 1, points.beta.size - 1)])
 
 
-def _refined(curve: Performance, values: Callable, points: Points, k: int) -> tuple[Minimum, Peaks]:
+def _refined(curve: PerformanceCurve, values: Callable, points: Points, k: int) -> tuple[Minimum, Peaks]:
     """The local minimum next to point k of some, refined until a look at the whole band adds no peak."""
     low, high = bracket(points, k)
     for _ in range(_AGAIN):
@@ -108,7 +108,7 @@ def _index(points: Points, beta: float) -> int:
     return int(np.searchsorted(points.beta, beta))
 
 
-def _refuse_unknown(curve: Performance, low: float, high: float) -> None:
+def _refuse_unknown(curve: PerformanceCurve, low: float, high: float) -> None:
     """Refuse an optimum next to cells that have no known response: theirs may be larger."""
     near = {beta: count for beta, count in curve.unknown.items() if low <= beta <= high}
     if near:
@@ -119,7 +119,7 @@ def _refuse_unknown(curve: Performance, low: float, high: float) -> None:
         )
 
 
-def find_optimum(task: Task, curve: Performance) -> Optimum:
+def find_optimum(task: Task, curve: PerformanceCurve) -> Optimum:
     """Find the least of the performance curve of a task.
 
     Raises
@@ -144,7 +144,7 @@ def find_optimum(task: Task, curve: Performance) -> Optimum:
     return Optimum(best, peaks, others[0] if others else None, refined)
 
 
-def _inner_maxima(curve: Performance, points: Points) -> tuple[np.ndarray, np.ndarray]:
+def _inner_maxima(curve: PerformanceCurve, points: Points) -> tuple[np.ndarray, np.ndarray]:
     """Places and values of the local maxima of a performance curve, without its ends."""
     found = brackets_of(points.beta, np.where(np.isinf(points.size), np.finfo(float).max, points.size))
     inside = (found.a < found.m) & (found.m < found.b)
@@ -157,7 +157,7 @@ def _inner_maxima(curve: Performance, points: Points) -> tuple[np.ndarray, np.nd
     return sharpened(values, chosen) if chosen.m.size else (np.empty(0), np.empty(0))
 
 
-def find_robust(task: Task, curve: Performance, spread: float) -> Optimum:
+def find_robust(task: Task, curve: PerformanceCurve, spread: float) -> Optimum:
     """Find the least over beta of the largest of M between beta (1 - spread) and beta (1 + spread)."""
     points = sampled(task, curve)
     places, sizes = _inner_maxima(curve, points)

@@ -6,12 +6,12 @@ of its friction ratios peaks are sought around those of its neighbours only.
 
 import math
 from bisect import bisect
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from .extremes import Brackets, brackets_of, joined, sharpened
-from .responses import Responses, unresolved
+from .responses import Responses, Values, unresolved
 
 #: Peaks below this share of the largest one are not followed.
 _FOLLOWED = 0.5
@@ -27,11 +27,43 @@ class Peaks(NamedTuple):
     beta: float
     r: np.ndarray
     size: np.ndarray
+    owner: np.ndarray | None = None  # of several structures the one of each peak
 
     @property
     def largest(self) -> float:
         """M(beta)."""
         return float(self.size[0])
+
+    def above(self, least: float) -> "Peaks":
+        """The peaks of at least this size."""
+        kept = self.size >= least
+        return Peaks(
+            self.beta, self.r[kept], self.size[kept], None if self.owner is None else self.owner[kept]
+        )
+
+
+class PerformanceCurve(Protocol):
+    """M(beta) of one structure, or of several."""
+
+    @property
+    def table(self) -> list[Peaks]:
+        """All peaks that were computed, by increasing beta."""
+
+    @property
+    def unknown(self) -> dict[float, int]:
+        """Number of cells without a known response, at the beta where there are any: M is infinite there."""
+
+    def whole(self, beta: np.ndarray) -> list[Peaks]:
+        """Peaks at increasing beta (n_beta,), from samples over the whole band."""
+
+    def at(self, beta: np.ndarray) -> list[Peaks]:
+        """Peaks at increasing beta (n_beta,), near those of the neighbours in the table."""
+
+    def forget(self, low: float, high: float) -> None:
+        """Drop the entries of the table between two friction ratios, because a peak was missed there."""
+
+    def states(self, peaks: Peaks) -> Values:
+        """The responses at peaks."""
 
 
 class Performance:
@@ -40,13 +72,21 @@ class Performance:
     def __init__(self, responses: Responses, r: np.ndarray) -> None:
         self._responses, self._r = responses, r
         self._table: list[Peaks] = []
-        #: number of cells without a known response, at the beta where there are any: M is infinite there
-        self.unknown: dict[float, int] = {}
+        self._unknown: dict[float, int] = {}
 
     @property
     def table(self) -> list[Peaks]:
         """All peaks that were computed, by increasing beta."""
         return self._table
+
+    @property
+    def unknown(self) -> dict[float, int]:
+        """Number of cells without a known response, by beta."""
+        return self._unknown
+
+    def states(self, peaks: Peaks) -> Values:
+        """The responses at peaks."""
+        return self._responses.at(peaks.r, np.full(peaks.r.size, peaks.beta))
 
     def whole(self, beta: np.ndarray) -> list[Peaks]:
         """Peaks at increasing beta (n_beta,), from samples over the whole band."""
@@ -72,7 +112,7 @@ class Performance:
     def _known(self, size: np.ndarray, wrong: np.ndarray, beta: np.ndarray) -> np.ndarray:
         columns = wrong.any(axis=0)
         for level, count in zip(beta[columns].tolist(), wrong.sum(axis=0)[columns].tolist(), strict=True):
-            self.unknown[level] = max(count, self.unknown.get(level, 0))
+            self._unknown[level] = max(count, self._unknown.get(level, 0))
         return np.where(columns, np.inf, size)
 
     def _brackets(self, r: np.ndarray, size: np.ndarray) -> Brackets:

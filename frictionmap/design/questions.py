@@ -24,8 +24,9 @@ from .limits import (
     no_stop_limit,
     stick_limit,
 )
-from .performance import Performance
+from .performance import PerformanceCurve
 from .responses import Responses
+from .samples import SampledPerformance, Samples, sample_values, sampled
 from .task import Task, checked_task
 
 #: Relative changes of the friction at which the response is given beside the answer.
@@ -43,7 +44,7 @@ def least_peak(
     band: Any,
     mass: int = 1,
     mu: float = 1.0,
-    spread: float = 0.0,
+    spread: float | Samples = 0.0,
     *,
     quantity: str = "amplitude",
     contact: int = 1,
@@ -63,9 +64,10 @@ def least_peak(
     mu : float
         Ratio of static to kinetic friction [-], >= 1.  Above 1 the larger of the steady states that are
         reached from rest and from a large sliding motion counts.
-    spread : float
+    spread : float or design.Samples
         Relative spread of the friction, 0 to below 1.  Above 0 the largest response between (1 - spread) and
-        (1 + spread) times the friction is made small, as `robust` does.
+        (1 + spread) times the friction is made small, as `robust` does.  With samples of an uncertain
+        structure their quantile of the largest response is made small.
     quantity : str
         "amplitude" or "first_harmonic" of the mass, "contact": the displacement in a contact, or
         "transmitted_force", the force on the ground.
@@ -106,8 +108,10 @@ def least_peak(
     >>> round(ds.beta.item(), 4), round(ds.peak.values[0], 9), str(ds.kind.values)
     (1.4019, 2.727102937, 'smooth')
     """
-    spread = _checked_spread(spread)
     task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
+    if isinstance(spread, Samples):
+        return _answer_for_samples(task, spread, widen=beta is None)
+    spread = _checked_spread(spread)
     curve = task.performance()
     if spread > 0.0:
         return _answer("robust", task, curve, find_robust(task, curve, spread), {"spread": spread})
@@ -117,7 +121,7 @@ def least_peak(
 def robust(
     system: System,
     band: Any,
-    spread: float = 0.2,
+    spread: float | Samples = 0.2,
     mass: int = 1,
     mu: float = 1.0,
     *,
@@ -127,11 +131,14 @@ def robust(
     threads: int | None = None,
     units: Units | None = None,
 ) -> xr.Dataset:
-    """Find the friction whose worst response within its relative spread is least.
+    """Find the friction whose worst response within its relative spread, or over samples, is least.
 
     Parameters and results are those of `least_peak`; the peaks are those at the worse end of the spread.
+    With `design.Samples` they are those of the sample at the quantile; `peak_of_sample` on `sample` is the
+    largest response of each, `beta_no_stop` and `beta_stuck` hold for all samples, and the response curves
+    are those of the nominal structure.
     """
-    if _checked_spread(spread) == 0.0:
+    if not isinstance(spread, Samples) and _checked_spread(spread) == 0.0:
         raise InputError("spread must be > 0; got 0")
     return least_peak(
         system, band, mass, mu, spread, quantity=quantity, contact=contact, beta=beta, threads=threads,
@@ -328,31 +335,40 @@ def _boundaries(system: System, band: Band, mu: float) -> dict[str, np.ndarray]:
 
 
 def _answer(
-    question: str, task: Task, curve: Performance, optimum: Optimum, asked: Mapping[str, Any],
-    further: Mapping[str, Any] | None = None,
+    question: str, task: Task, curve: PerformanceCurve, optimum: Optimum,
+    asked: Mapping[str, Any], further: Mapping[str, Any] | None = None,
+    study: Mapping[str, Any] | None = None,
 ) -> xr.Dataset:  # fmt: skip
     """Build the dataset of a question about the largest response."""
     best, peaks = optimum.best, optimum.peaks
-    listed = peaks.size >= _LISTED * peaks.largest
-    r, size = peaks.r[listed], peaks.size[listed]
-    states = Responses(task.system, task.response, task.mu, task.threads).at(r, np.full(r.size, peaks.beta))
+    listed = peaks.above(_LISTED * peaks.largest)
+    states = curve.states(listed)
     second = optimum.second or Minimum(np.nan, np.nan, "")
     points = optimum.points
     found = {
-        "beta": best.beta, "mu": task.mu, "kind": best.kind, "peak": size, "peak_r": r,
+        "beta": best.beta, "mu": task.mu, "kind": best.kind, "peak": listed.size, "peak_r": listed.r,
         "peak_regime": states.regime, "peak_stops": states.stops,
         "second_beta": second.beta, "second_peak": second.size,
         "beta_search": points.beta, "peak_of_beta": points.size,
         "unknown_of_beta": [curve.unknown.get(beta, 0) for beta in points.beta.tolist()],
         "offset": _OFFSETS, "peak_at_offset": largest(curve.whole(best.beta * (1.0 + _OFFSETS))),
-        "beta_no_stop": least_no_stop(task.system, task.band, task.mu)[0]
-        if has_no_stop_limit(task.system) else np.nan,
-        "beta_stuck": task.stuck_from, **_response_curves(task, best.beta), **asked, **(further or {}),
+        "beta_no_stop": task.no_stop_up_to, "beta_stuck": task.stuck_from,
+        **_response_curves(task, best.beta), **asked, **(further or {}),
     }  # fmt: skip
-    if question == "robust":
-        found["peak"] = np.concatenate(([best.size], size[1:]))
+    if "spread" in asked:
+        found["peak"] = np.concatenate(([best.size], listed.size[1:]))
     keys = {"response": task.response.asked(), "mu": task.mu, "beta": [task.low, task.high], **asked}
-    return answer(question, task.system, task.band, found, keys, task.units, task.scales)
+    return answer(question, task.system, task.band, found, keys, task.units, task.scales, study)
+
+
+def _answer_for_samples(task: Task, samples: Samples, *, widen: bool) -> xr.Dataset:
+    """Build the dataset of the friction that is best for a quantile of samples."""
+    task, tasks = sampled(task, samples, widen=widen)
+    curve = SampledPerformance(tasks, samples.quantile)
+    optimum = find_optimum(task, curve)
+    further = sample_values(tasks, curve, optimum.best.beta)
+    study = samples.of(task.system).described
+    return _answer("robust", task, curve, optimum, {"quantile": samples.quantile}, further, study)
 
 
 def _response_curves(task: Task, beta: float) -> dict[str, np.ndarray]:

@@ -121,7 +121,7 @@ class Responses:
             return self._general_at(r, beta)
         order = np.argsort(beta, kind="stable")
         chunks = [order[first : first + _TOGETHER] for first in range(0, r.size, _TOGETHER)]
-        found = _joined([self._scattered(r[chunk], beta[chunk]) for chunk in chunks])
+        found = joined_values([self._scattered(r[chunk], beta[chunk]) for chunk in chunks])
         back = np.argsort(order, kind="stable")
         return Values(*(array[back] for array in found))
 
@@ -179,7 +179,8 @@ def _largest(parts: list[Values]) -> Values:
     return Values(*chosen)
 
 
-def _joined(parts: list[Values]) -> Values:
+def joined_values(parts: list[Values]) -> Values:
+    """Values of several groups of points in one."""
     return Values(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
 
 

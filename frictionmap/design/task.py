@@ -13,7 +13,7 @@ from ..model.system import System
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales, Units, scales_of
 from .band import Band, checked_band, limit_samples, peak_samples
-from .limits import largest_stick, stick_limit
+from .limits import has_no_stop_limit, largest_stick, least_no_stop, stick_limit
 from .performance import Performance
 from .responses import Response, Responses, checked_response
 
@@ -44,6 +44,12 @@ class Task:
     def stuck_from(self) -> float:
         """Friction ratio that holds over the whole band."""
         return largest_stick(self.system, self.band, self.mu)[0]
+
+    @cached_property
+    def no_stop_up_to(self) -> float:
+        """Largest friction ratio without a stop anywhere in the band; NaN where there is no such limit."""
+        has_one = has_no_stop_limit(self.system)
+        return least_no_stop(self.system, self.band, self.mu)[0] if has_one else float("nan")
 
     def performance(self) -> Performance:
         """The performance curve."""
@@ -79,7 +85,7 @@ def checked_task(
     found = checked_band(band, scales)
     mu = checks.number(mu, "mu", least=1.0)
     asked = checked_response(system, *response)
-    low, high = _range_of_friction(system, found, mu) if beta is None else _checked_range(beta, scales)
+    low, high = range_of_friction(system, found, mu) if beta is None else _checked_range(beta, scales)
     return Task(system, found, asked, mu, low, high, threads, units, scales)
 
 
@@ -90,7 +96,14 @@ def _checked_range(beta: Any, scales: Scales) -> tuple[float, float]:
     return float(ends[0]), float(ends[1])
 
 
-def _range_of_friction(system: System, band: Band, mu: float) -> tuple[float, float]:
+def range_of_friction(system: System, band: Band, mu: float) -> tuple[float, float]:
+    """Range of the friction ratio in which the response over a band changes.
+
+    Raises
+    ------
+    InputError
+        The boundary to sticking is infinite or 0 over the whole band.
+    """
     stick = stick_limit(system, limit_samples(system, band, 200), mu)
     finite = stick[np.isfinite(stick) & (stick > 0.0)]
     if not finite.size:

@@ -352,7 +352,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     solver = _build(Solver, _table(tree, "solver"), "solver")
     curves = _build(curve_settings, _table(tree, "curves"), "curves")
     design_table(tree)
-    further = _further_axes(tree)
+    further = further_axes(tree)
     variations = None if further is None else checked_variations(system, further)
     grid = _grid(tree, scales_of(units, system, variations))
     counts = {key: _count(grid[key], f"grid.{key}") for key in ("mu", "r", "beta")}
@@ -389,8 +389,11 @@ def _grid(tree: Mapping[str, object], scales: Scales) -> dict[str, Any]:
     return grid
 
 
-def _further_axes(tree: Mapping[str, object]) -> dict[str, Any] | None:
-    """The table [axes] as `sweep` takes it: numbers, or for a dimension of several keys a mapping of them."""
+def further_axes(tree: Mapping[str, object]) -> dict[str, Any] | None:
+    """The table [axes] as `sweep` takes it; None without it.
+
+    Numbers, or for a dimension of several keys a mapping of them.
+    """
     if "axes" not in tree:
         return None
     axes: dict[str, Any] = {}

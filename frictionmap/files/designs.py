@@ -77,6 +77,10 @@ def _of_peaks(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
     yield f"least peak, {response}", f"{float(ds['peak'][0]):.10g}{length}{kind}"
     for k in range(min(ds.sizes["peak"], _SHOWN)):
         yield ("peaks" if k == 0 else ""), _peak(ds, k)
+    if {"quantile", "peak_of_sample"} <= set(ds.variables):
+        sizes = ds["peak_of_sample"].values
+        share = f"{100.0 * float(ds['quantile']):g} %"
+        yield "samples", f"{sizes.size}; {share} of them stay below the peak, all below {sizes.max():.6g}"
     for one, value in zip(_offsets(ds), _changes(ds), strict=True):
         yield f"with {abs(one):.0%} {'less' if one < 0.0 else 'more'} friction".replace("%", " %"), value
     if "second_beta" in ds and np.isfinite(float(ds["second_beta"])):

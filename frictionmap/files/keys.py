@@ -417,6 +417,13 @@ KEYS: dict[str, tuple[Key, ...]] = {
             words="a number from 0 to below 1",
         ),
         Key(
+            "quantile",
+            "for robust with samples in [axes]: share of the samples whose response the answer is for",
+            number(above=0.0),
+            0.95,
+            words="a number above 0, up to 1",
+        ),
+        Key(
             "beta",
             "range of friction to search; for margin the friction of the working point",
             either(

@@ -196,6 +196,49 @@ def test_robust_is_the_worst_of_its_spread():
     assert grid.max() <= ds.peak.values[0] * (1.0 + 1e-9)
 
 
+VARIED = {
+    "mass_ratios[2]": [0.93, 1.0, 1.02, 1.05, 0.97],
+    "stiffness_ratios[2]": [1.03, 1.0, 0.95, 1.08, 1.01],
+    "damping_ratios": [0.02, 0.03, 0.025, 0.022, 0.028],
+}
+
+
+def structures():
+    """The samples of `VARIED`, built by hand."""
+    for mass, stiffness, zeta in zip(*VARIED.values(), strict=True):
+        yield fm.System(
+            contact_masses=[2], mass_ratios=[1, mass], stiffness_ratios=[1, stiffness], damping_ratios=zeta
+        )
+
+
+@pytest.mark.parametrize(("quantile", "rank"), [(0.8, 3), (1.0, 4), (0.5, 2)])
+def test_a_quantile_of_samples(quantile, rank):
+    """No friction of a grid gives a lower quantile; that of the answer is that of maps over the band."""
+    nominal, band = fm.System(**CHAIN, damping_ratios=0.02), [0.3, 2.2]
+    ds = fm.design.robust(nominal, band, fm.design.Samples({"sample": VARIED}, quantile))
+    beta = ds.beta.item() * np.array([0.8, 0.9, 0.95, 0.98, 1.0, 1.02, 1.05, 1.1, 1.25])
+    sizes = np.array([largest_on_a_grid(one, band, beta, 1, 3000).max(axis=0) for one in structures()])
+    ranked = np.sort(sizes, axis=0)[rank]
+    assert ranked.min() >= ds.peak.values[0] * (1.0 - 1e-4)  # maps miss peaks by as much
+    assert ranked[4] == pytest.approx(ds.peak.values[0], rel=1e-4)
+    assert ds.peak_of_sample.values == pytest.approx(sizes[:, 4], rel=1e-4)
+    assert ds.beta_stuck.item() == max(fm.design.stuck(one, band).beta.item() for one in structures())
+    assert ds.beta_no_stop.item() == min(fm.design.no_stop(one, band).beta.item() for one in structures())
+
+
+def test_one_sample_is_a_structure():
+    for k, structure in enumerate(structures()):
+        one = {key: values[k : k + 1] for key, values in VARIED.items()}
+        nominal, band = fm.System(**CHAIN, damping_ratios=0.02), [0.3, 2.2]
+        ds = fm.design.robust(nominal, band, fm.design.Samples({"sample": one}))
+        alone = fm.design.least_peak(structure, band)
+        assert ds.peak.values == pytest.approx(alone.peak.values, rel=1e-12)
+        assert ds.beta.item() == pytest.approx(alone.beta.item(), rel=1e-6)
+        assert ds.kind.item() == alone.kind.item()
+        if k == 1:
+            break
+
+
 def test_static_friction_counts_both_starts():
     """With mu > 1 the answer holds from rest and from a large sliding motion."""
     system, band = fm.System(**CHAIN, damping_ratios=0.05), [0.7, 1.9]

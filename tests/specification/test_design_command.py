@@ -101,6 +101,23 @@ def test_the_configuration_of_a_python_call_asks_the_same(question, tmp_path):
     np.testing.assert_allclose(load_design(path).ask().beta, ds.beta, rtol=1e-12)
 
 
+SAMPLES = {"mass_ratios[2]": [0.95, 1.0, 1.04], "stiffness_ratios[2]": [1.0, 1.05, 0.97]}
+
+
+def test_samples_by_a_configuration_and_a_call_are_the_same(tmp_path, capsys):
+    system = fm.System(damping_ratios=0.05, mass_ratios=[1, 1], stiffness_ratios=[1, 1], contact_masses=[2])
+    ds = fm.design.robust(system, [0.6, 2.0], fm.design.Samples({"sample": SAMPLES}, 0.6))
+    path = tmp_path / "samples.toml"
+    path.write_text(ds.attrs["config"])
+    assert main(["design", str(path), "-o", str(tmp_path / "samples.nc")]) == 0
+    assert "samples" in capsys.readouterr().out
+    found = read(tmp_path / "samples.nc")
+    np.testing.assert_array_equal(found.peak_of_sample, ds.peak_of_sample)
+    assert (found.beta, found["quantile"]) == (ds.beta, 0.6)
+    axes = fm.plot_design(found)
+    assert_inside_and_apart(axes[0].figure)
+
+
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_pictures_and_tables(answers, question, tmp_path):
     for ending in (".png", ".svg"):

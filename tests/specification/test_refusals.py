@@ -378,7 +378,7 @@ plot
 design good.toml
     the configuration must have a table [design]; got none
 design question.toml --set design.quest=stuck
-    unknown key 'design.quest' (did you mean question?); valid: question, band, response, mu, limit, spread, beta, r
+    unknown key 'design.quest' (did you mean question?); valid: question, band, response, mu, limit, spread, quantile, beta, r
 design question.toml --set design.question=best
     design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust; got 'best' (did you mean robust?)
 design good.toml --set design.question=stuck
@@ -422,7 +422,13 @@ design question.toml --set design.question=margin --set design.r=0 --set design.
 design question.toml --set design.question=margin --set design.beta=1
     design.r must be given for question margin; got nothing
 design question.toml --set axes.damping_ratios=[0.1]
-    cannot run design with [axes]: [axes] is supported by `map` only; remove it
+    design.question must be robust in a configuration with [axes], whose points are samples; got least-peak
+design question.toml --set design.question=robust --set axes.damping_ratios=[0.1] --set design.spread=0.1
+    design.spread must not be given beside [axes]: samples take its place; got 0.1
+design question.toml --set design.question=robust --set axes.damping_ratios=[0.1] --set design.quantile=1.5
+    design.quantile must be <= 1; got 1.5
+design question.toml --set design.question=robust --set design.quantile=0.9
+    design.quantile must go with samples in [axes]; got 0.9 without them
 
 # Measured data: configurations
 identify none.toml

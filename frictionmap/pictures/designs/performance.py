@@ -43,12 +43,17 @@ def draw_performance(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     top = max(_RESPONSE_SHOWN * least, 1.5 * limit) or float(size[np.isfinite(size)].max())
     handles = _draw_ranges(ax, ds, right)
     ax.plot(beta, np.minimum(size, HIGH * top), color="black", linewidth=1.4)
-    handles.append(Line2D([], [], color="black", linewidth=1.4, label="largest response over the band"))
+    handles.append(Line2D([], [], color="black", linewidth=1.4, label=_curve_label(ds)))
     ax.plot([best], [least], "o", color=_ANSWER, markersize=6.0, zorder=4.0)
     kind = f" ({ds['kind'].values})" if "kind" in ds else ""
     handles.append(
         Line2D([], [], color=_ANSWER, marker="o", linestyle="none", label=f"least: β = {best:.4g}{kind}")
     )
+    if "peak_of_sample" in ds:
+        sizes = ds["peak_of_sample"].values
+        ax.plot(np.full(sizes.size, best), sizes, "_", color=_ANSWER, markersize=9.0, zorder=3.0)
+        label = f"{sizes.size} samples at this friction"
+        handles.append(Line2D([], [], color=_ANSWER, marker="_", linestyle="none", label=label))
     if limit:
         ax.axhline(limit, color=_LIMIT, linewidth=1.1, linestyle=(0, (4, 2)))
         handles.append(Line2D([], [], color=_LIMIT, linestyle=(0, (4, 2)), label=f"limit {limit:.4g}"))
@@ -59,6 +64,12 @@ def draw_performance(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     force_on_top(ax, ds)
     on_the_right(ax, ds, _measure_of(ds))
     return handles
+
+
+def _curve_label(ds: xr.Dataset) -> str:
+    if "quantile" not in ds:
+        return "largest response over the band"
+    return f"largest response over the band, {100.0 * float(ds['quantile']):g} % quantile of the samples"
 
 
 def _draw_ranges(ax: Axes, ds: xr.Dataset, right: float) -> list[Handle]:
@@ -74,7 +85,7 @@ def _draw_ranges(ax: Axes, ds: xr.Dataset, right: float) -> list[Handle]:
     if {"interval_begin", "interval_end"} <= set(ds):
         for low, high in zip(ds["interval_begin"].values, ds["interval_end"].values, strict=True):
             shade(float(low), float(high), _ASIDE, "within the limit")
-    else:
+    elif "quantile" not in ds:
         spread = float(ds["spread"]) if "spread" in ds else _TOLERANCE
         shade(best * (1.0 - spread), best * (1.0 + spread), _ASIDE, f"friction ± {100.0 * spread:g} %")
     if "beta_no_stop" in ds and np.isfinite(float(ds["beta_no_stop"])):

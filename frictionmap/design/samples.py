@@ -1,0 +1,155 @@
+"""Performance of uncertain structures: the quantile over samples of the largest response over a band."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from .. import checks
+from ..errors import InputError
+from ..model.system import System
+from ..model.variations import Variations, checked_variations
+from .least_peak import largest
+from .performance import Peaks
+from .responses import Values, joined_values
+from .task import Task, range_of_friction
+
+#: Samples whose responses at the quantile agree to this relative difference both count.
+_ALIKE = 1e-8
+
+
+@dataclass(frozen=True)
+class Samples:
+    """An uncertain structure: samples of its parameters, and which share of them an answer is for.
+
+    Parameters
+    ----------
+    axes : mapping
+        As in `sweep`: values of parameters, such as {"sample": {"mass_ratios[2]": [...], "damping_ratios":
+        [...]}} for parameters that vary together.  Every point is a sample.
+    quantile : float
+        Share of the samples whose response is at most the answer's, above 0, up to 1.
+
+    Raises
+    ------
+    InputError
+        The quantile is out of range.
+    """
+
+    axes: Mapping[str, Any] | Variations
+    quantile: float = 0.95
+
+    def __post_init__(self) -> None:
+        value = checks.number(self.quantile, "quantile", above=0.0)
+        if value > 1.0:
+            raise InputError(f"quantile must be <= 1; got {value:g}")
+
+    def of(self, system: System) -> Variations:
+        """The variations of a system."""
+        return checked_variations(system, self.axes)
+
+
+class SampledPerformance:
+    """The quantile over samples of M(beta), with the peaks of the sample that is there.
+
+    It answers as `Performance` does.  The quantile is the value of one sample: the least that at least the
+    share `quantile` of the samples do not exceed.  It has a kink where it passes to another sample.
+    """
+
+    def __init__(self, tasks: list[Task], quantile: float) -> None:
+        self._curves = [task.performance() for task in tasks]
+        self._rank = max(0, math.ceil(quantile * len(tasks)) - 1)
+        self._table: dict[float, Peaks] = {}
+
+    @property
+    def unknown(self) -> dict[float, int]:
+        """Number of cells of all samples without a known response, by beta."""
+        found: dict[float, int] = {}
+        for curve in self._curves:
+            for beta, count in curve.unknown.items():
+                found[beta] = found.get(beta, 0) + count
+        return found
+
+    @property
+    def table(self) -> list[Peaks]:
+        """All peaks that were computed, by increasing beta."""
+        return [self._table[beta] for beta in sorted(self._table)]
+
+    def whole(self, beta: np.ndarray) -> list[Peaks]:
+        """Peaks at increasing beta (n_beta,), from samples over the whole band."""
+        return self._chosen([curve.whole(beta) for curve in self._curves])
+
+    def at(self, beta: np.ndarray) -> list[Peaks]:
+        """Peaks at increasing beta (n_beta,), near those of the neighbours in the tables."""
+        return self._chosen([curve.at(beta) for curve in self._curves])
+
+    def forget(self, low: float, high: float) -> None:
+        """Drop the entries of the tables between two friction ratios."""
+        for curve in self._curves:
+            curve.forget(low, high)
+        self._table = {beta: one for beta, one in self._table.items() if not low < beta < high}
+
+    def states(self, peaks: Peaks) -> Values:
+        """The responses at peaks, each of its sample."""
+        assert peaks.owner is not None
+        return joined_values(
+            [
+                self._curves[owner].states(Peaks(peaks.beta, peaks.r[k : k + 1], peaks.size[k : k + 1]))
+                for k, owner in enumerate(peaks.owner.tolist())
+            ]
+        )
+
+    def of_samples(self, beta: float) -> np.ndarray:
+        """M of every sample at a friction ratio, (samples,)."""
+        return np.array([largest(curve.whole(np.array([beta])))[0] for curve in self._curves])
+
+    def _chosen(self, found: list[list[Peaks]]) -> list[Peaks]:
+        """The peaks at the quantile, of those of every sample at each beta."""
+        chosen = []
+        for at_beta in zip(*found, strict=True):
+            sizes = np.array([peaks.largest for peaks in at_beta])
+            place = np.argsort(sizes, kind="stable")[self._rank]
+            level = sizes[place]
+            with np.errstate(invalid="ignore"):  # infinite less infinite: that sample alone
+                near = np.abs(sizes - level) <= _ALIKE * level
+            owners = np.union1d(np.flatnonzero(near), place)
+            peaks = _in_one([at_beta[owner] for owner in owners], owners)
+            self._table[peaks.beta] = peaks
+            chosen.append(peaks)
+        return chosen
+
+
+def _in_one(parts: list[Peaks], owners: np.ndarray) -> Peaks:
+    """Peaks of several samples, from the highest down."""
+    r, size = np.concatenate([one.r for one in parts]), np.concatenate([one.size for one in parts])
+    owner = np.repeat(owners, [one.r.size for one in parts])
+    order = np.argsort(-size, kind="stable")
+    return Peaks(parts[0].beta, r[order], size[order], owner[order])
+
+
+def sampled(task: Task, samples: Samples, *, widen: bool) -> tuple[Task, list[Task]]:
+    """The question of a nominal structure for its samples, and that of each sample.
+
+    widen : whether the range of friction is to be wide enough for all samples
+    """
+    variations = samples.of(task.system)
+    systems = [variations.at(point) for point in variations.points()]
+    low, high = task.low, task.high
+    if widen:
+        ranges = [range_of_friction(system, task.band, task.mu) for system in systems]
+        low, high = (max(ends) for ends in zip(*ranges, strict=True))
+    return replace(task, low=low, high=high), [
+        replace(task, system=system, low=low, high=high) for system in systems
+    ]
+
+
+def sample_values(tasks: list[Task], curve: SampledPerformance, beta: float) -> dict[str, Any]:
+    """What an answer says about its samples."""
+    return {
+        "sample": np.arange(1, len(tasks) + 1),
+        "peak_of_sample": curve.of_samples(beta),
+        "beta_no_stop": min(task.no_stop_up_to for task in tasks),
+        "beta_stuck": max(task.stuck_from for task in tasks),
+    }

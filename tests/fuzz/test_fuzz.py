@@ -9,12 +9,16 @@ from conftest import ROOT
 from . import caches, calls, interrupts, moments, mutants, places, races, refusals
 from .child import Child
 from .machine import environment
-from .verdict import SLOW, Family
+from .verdict import SLOW, UNSEEN, Family
 
 pytestmark = pytest.mark.slow
 
 #: What `--whole` tries at least, by the beginning of the names of families.
 LEAST = {"bad c": 300, "bad Python": 200, "interrupts": 100, "malformed": 5000, "damaged": 11}
+
+#: Share of damaged files whose changed numbers may pass unseen: a number that stands alone, outside the
+#: compressed arrays, has no checksum.
+UNSEEN_SHARE = 0.002
 
 
 @pytest.fixture(scope="module")
@@ -47,8 +51,10 @@ def check(families: list[Family], quick: bool) -> None:
             f"{family.name}: {family.tried} tried; wrong: {dict(family.wrong)}; apart: {dict(family.named)}"
         )
     for family in families:
-        wrong = set(family.wrong) - {SLOW} if quick else set(family.wrong)  # a busy machine is slow
-        assert not wrong, (family.name, dict(family.wrong), family.examples)
+        excused = {SLOW} if quick else set()  # a busy machine is slow
+        if family.wrong[UNSEEN] <= UNSEEN_SHARE * family.tried:
+            excused.add(UNSEEN)
+        assert not set(family.wrong) - excused, (family.name, dict(family.wrong), family.examples)
     names = [family.name for family in families]
     for beginning, least in {} if quick else LEAST.items():
         tried = sum(family.tried for family in families if family.name.startswith(beginning))

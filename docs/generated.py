@@ -22,8 +22,8 @@ _GROUPS: Mapping[str, tuple[str, ...]] = {
         "sweep", "boundaries", "borders", "curves", "response", "continuous_motion", "shares",
     ),
     "Pictures": (
-        "plot_regimes", "plot_boundaries", "plot_curves", "plot_response", "plot_orbit", "plot_fit",
-        "plot_shares", "plot_forces", "plot_design", "explore",
+        "plot_regimes", "plot_quantity", "plot_boundaries", "plot_curves", "plot_response", "plot_orbit",
+        "plot_fit", "plot_shares", "plot_forces", "plot_design", "explore",
     ),
     "Errors, and others": ("InputError", "NoSteadyState"),
 }  # fmt: skip

@@ -1,12 +1,14 @@
 """Pictures: regime maps, boundaries, response curves, one response in time."""
 
 from collections.abc import Callable
+from collections.abc import Set as AbstractSet
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import xarray as xr
 
+from .checks import nearest
 from .datasets.labels import BOUNDARIES, HISTORY_VARIABLES, SHARES
 from .errors import InputError
 from .files.reading import kind
@@ -16,10 +18,13 @@ from .pictures.designs.figure import plot_design
 from .pictures.fits.figure import plot_fit
 from .pictures.maps.boundary_map import plot_boundaries
 from .pictures.maps.force_map import plot_forces
+from .pictures.maps.quantity_map import plot_quantity, quantities_of
 from .pictures.maps.regime_map import plot_regimes
 from .pictures.maps.share_map import plot_shares
 from .pictures.motions.history import plot_response
 from .pictures.motions.orbit import plot_orbit
+from .pictures.options import FigureOptions
+from .pictures.styles import settings_of, written
 
 if TYPE_CHECKING:
     from .pictures.panels import AxesArray
@@ -28,12 +33,14 @@ __all__ = [
     "FORMATS",
     "PICTURED",
     "check_picture",
+    "pictured",
     "plot_boundaries",
     "plot_curves",
     "plot_design",
     "plot_fit",
     "plot_forces",
     "plot_orbit",
+    "plot_quantity",
     "plot_regimes",
     "plot_response",
     "plot_shares",
@@ -66,7 +73,12 @@ PICTURED = {
     "shares": frozenset(SHARES),
 }
 
-_DPI = 160
+
+def pictured(quantity: str | None) -> dict[str, AbstractSet[str]]:
+    """Variables to read for a picture, by the kind of file; of maps also the quantity to draw."""
+    if quantity is None:
+        return {**PICTURED}
+    return {**PICTURED, "map": PICTURED["map"] | {quantity}}
 
 
 def check_picture(path: Path) -> None:
@@ -75,12 +87,14 @@ def check_picture(path: Path) -> None:
         raise InputError(f"-o must end in {', '.join(FORMATS)}; got {path}")
 
 
-def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
+def _draw(ds: xr.Dataset, quantity: str | None, log: bool, **options: Unpack[FigureOptions]) -> "AxesArray":
     """Draw a dataset of any kind; without a quantity, the first one available."""
     what = kind(ds)
     if what == "curves":
-        return plot_curves(ds, quantity, log=log)
-    drawn_of: dict[str, dict[str, Callable[[xr.Dataset], AxesArray]]] = {
+        return plot_curves(ds, quantity, log=log, **options)
+    if what == "map" and quantity in quantities_of(ds):
+        return plot_quantity(ds, str(quantity), log=log, **options)
+    drawn_of: dict[str, dict[str, Callable[..., AxesArray]]] = {
         "map": {"regimes": plot_regimes},
         "boundaries": {"boundaries": plot_boundaries},
         "response": {"history": plot_response, "orbit": plot_orbit},
@@ -90,23 +104,50 @@ def _draw(ds: xr.Dataset, quantity: str | None, log: bool) -> "AxesArray":
     }
     valid = drawn_of[what]
     if log:
-        raise InputError(f"cannot draw {what} with log: it applies to response curves only; omit log")
+        raise InputError(
+            f"cannot draw {what} with log: it applies to response curves and quantities of maps; omit log"
+        )
     if quantity is None:
         quantity = next(iter(valid))
     if quantity not in valid:
-        raise InputError(f"unknown quantity {quantity!r} in a file of kind {what}; valid: {', '.join(valid)}")
-    return valid[quantity](ds)
+        there = [*valid, *(quantities_of(ds) if what == "map" else [])]
+        hint = nearest(quantity, there)
+        raise InputError(
+            f"unknown quantity {quantity!r} in a file of kind {what}{hint}; valid: {', '.join(there)}"
+        )
+    return valid[quantity](ds, **options)
 
 
 def save_picture(
-    ds: xr.Dataset, path: Path, quantity: str | None = None, *, log: bool = False, against: str | None = None
+    ds: xr.Dataset,
+    path: Path,
+    quantity: str | None = None,
+    *,
+    log: bool = False,
+    against: str | None = None,
+    style: Path | None = None,
+    **options: Unpack[FigureOptions],
 ) -> None:
     """Draw a dataset of any kind into a file; drawn first, as on a full disk matplotlib fails in odd ways.
 
-    against : draw maps along this further axis as one, see `plot_forces`
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Any result.
+    path : Path
+        File to write: .png, .pdf or .svg.
+    quantity : str, optional
+        What to draw; by default the first quantity available.
+    log : bool
+        Logarithmic axis of amplitudes, or scale of colours.
+    against : str, optional
+        Draw maps along this further axis as one, see `plot_forces`.
+    style : Path, optional
+        Settings of matplotlib, a file FILE.mplstyle.
+    options : keyword arguments of the functions that draw
     """
     drawn = BytesIO()
-    axes = plot_forces(ds, against) if against else _draw(ds, quantity, log)
-    figure = axes[0].figure
-    figure.savefig(drawn, format=path.suffix[1:].lower(), dpi=_DPI)
+    with settings_of(style):
+        axes = plot_forces(ds, against, **options) if against else _draw(ds, quantity, log, **options)
+        written(axes[0].figure, drawn, path.suffix[1:].lower(), options.get("dpi"))
     path.write_bytes(drawn.getbuffer())

@@ -11,6 +11,7 @@ from ..version import __version__
 
 __all__ = [
     "CONTACTS",
+    "FIGURE",
     "QUANTITIES",
     "RIGS",
     "SHELLS",
@@ -34,7 +35,7 @@ RIGS = ("free-decay", "forced", "record", "sweep")
 #: Shells that shtab knows; repeated here as the above, and compared by the same test.
 SHELLS = ("bash", "zsh", "tcsh", "fish", "powershell")
 
-#: Quantities of response curves and of responses that `plot` draws, compared by the same test.
+#: Quantities of response curves, of responses and of maps that `plot` draws, compared by the same test.
 QUANTITIES = (
     "amplitude",
     "first_harmonic",
@@ -44,6 +45,14 @@ QUANTITIES = (
     "transmitted_force",
     "history",
     "orbit",
+    "regimes",
+    *("contact_amplitude", "stuck_fraction", "period", "cycles", "multiplier", "asymmetry", "amplitude"),
+    *("sliding_distance", "work_friction", "work_input", "work_damping", "equivalent_damping"),
+)
+
+#: Options of pictures, compared by the same test.
+FIGURE = (
+    *("size", "dpi", "legend", "caption", "title", "xlim", "ylim", "panels", "mass", "beta", "point", "box"),
 )
 
 _DESCRIPTION = """\
@@ -200,13 +209,56 @@ def _takes_picture(sub: argparse.ArgumentParser) -> None:
     _takes_output(sub, "PICTURE", ".png, .pdf or .svg (default: FILE.png in the current folder)")
     text = (
         "quantity to draw; response curves: amplitude (with the phase), first_harmonic, contact, harmonics, "
-        "energy or transmitted_force (default: the first available); a response: history (default) or orbit"
+        "energy or transmitted_force (default: the first available); a response: history (default) or orbit; "
+        "a map: regimes (default), or an output with a number in every cell, e.g. contact_amplitude"
     )
     sub.add_argument("--quantity", metavar="NAME", action=_Once, help=text)
     _takes_choices(sub)
     _takes_over(sub, "draw")
     _takes_against(sub)
-    sub.add_argument("--log", action="store_true", help="logarithmic amplitude axis for response curves")
+    text = "logarithmic axis of amplitudes of response curves; logarithmic colours of a quantity of a map"
+    sub.add_argument("--log", action="store_true", help=text)
+    _takes_figure(sub)
+
+
+def _takes_figure(sub: argparse.ArgumentParser) -> None:
+    """Add the options of pictures for a publication; they are those of the functions that draw."""
+    group = sub.add_argument_group("figure")
+    text = "width, or width and height, on paper: 85mm, 3.3in, '85mm x 60mm'; text has at least 7 pt"
+    group.add_argument("--size", metavar="SIZE", action=_Once, help=text)
+    text = "pixels per inch (default: 160); in PDF and SVG only maps of more than 10,000 cells are pixels"
+    group.add_argument("--dpi", metavar="N", type=float, action=_Once, help=text)
+    switch = argparse.BooleanOptionalAction
+    group.add_argument("--legend", action=switch, help="draw the legend, or leave it out (default: draw)")
+    text = "draw the caption above the legend, or leave it out (default: draw)"
+    group.add_argument("--caption", action=switch, help=text)
+    text = "title in place of the one in the file; '' for none"
+    group.add_argument("--title", metavar="TEXT", action=_Once, help=text)
+    for axis in ("x", "y"):
+        text = f"limits of the {axis} axis of the first panel and of panels with the same axis"
+        group.add_argument(f"--{axis}lim", metavar=("A", "B"), nargs=2, type=float, action=_Once, help=text)
+    text = "panels to draw, counted from 1 in reading order, e.g. 1,3"
+    group.add_argument("--panels", metavar="LIST", type=_list_of(int), action=_Once, help=text)
+    text = "masses to draw, e.g. 1,5 (curves, responses, quantities of masses)"
+    group.add_argument("--mass", metavar="LIST", type=_list_of(int), action=_Once, help=text)
+    text = "friction ratios whose response curves are drawn, e.g. 0.2,0.5 (the nearest ones in the file)"
+    group.add_argument("--beta", metavar="LIST", type=_list_of(float), action=_Once, help=text)
+    text = "mark a working point on a map or on boundaries"
+    group.add_argument("--point", metavar=("R", "BETA"), nargs=2, type=float, action=_Once, help=text)
+    text = "half-widths of the uncertainty of --point, drawn as a box"
+    group.add_argument("--box", metavar=("DR", "DBETA"), nargs=2, type=float, action=_Once, help=text)
+    text = "settings of matplotlib for this picture: fonts, lines, colours of quantities"
+    group.add_argument("--style", metavar="FILE.mplstyle", type=Path, action=_Once, help=text)
+
+
+def _list_of(number: Callable[[str], float]) -> Callable[[str], list[float]]:
+    """Convert numbers separated by commas."""
+
+    def convert(text: str) -> list[float]:
+        return [number(part) for part in text.split(",")]
+
+    convert.__name__ = "list of numbers separated by commas"  # its name in argparse's errors
+    return convert
 
 
 def _takes_page(sub: argparse.ArgumentParser) -> None:
@@ -360,7 +412,8 @@ def described() -> Iterator[Command]:
 
 def _described(action: argparse.Action) -> Argument:
     takes_value = action.nargs != 0
-    metavar = str(action.metavar or action.dest.upper()) if takes_value else ""
+    metavar = " ".join(action.metavar) if isinstance(action.metavar, tuple) else action.metavar
+    metavar = str(metavar or action.dest.upper()) if takes_value else ""
     choices = tuple(str(choice) for choice in action.choices or ())
     return Argument(tuple(action.option_strings), metavar, choices, str(action.help))
 

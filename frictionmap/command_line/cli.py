@@ -7,10 +7,10 @@ import sys
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError, NoSteadyState
-from .arguments import CONTACTS, QUANTITIES, Options, build_parser, one_line, parse
+from .arguments import CONTACTS, FIGURE, QUANTITIES, Options, build_parser, one_line, parse
 from .interrupts import before_exit
 
 if TYPE_CHECKING:
@@ -322,16 +322,23 @@ def _maps_along(options: Options, names: Collection[str]) -> "xr.Dataset":
 
 def _plot(options: Options) -> None:
     from ..files.places import claimed
-    from ..plot import PICTURED, check_picture, save_picture
+    from ..plot import check_picture, pictured, save_picture
 
-    along = options.against is not None
-    ds = _maps_along(options, PICTURED["map"]) if along else _chosen(options, PICTURED)
     path = options.output or Path(f"{options.file.stem}.png")
     check_picture(path)
+    names, along = pictured(options.quantity), options.against is not None
+    ds = _maps_along(options, names["map"]) if along else _chosen(options, names)
+    given: Any = {name: getattr(options, name) for name in FIGURE if getattr(options, name) is not None}
     with claimed(path, options.overwrite, [options.file]) as output:
         output.fill(
             lambda scratch: save_picture(
-                ds, scratch, options.quantity, log=options.log, against=options.against
+                ds,
+                scratch,
+                options.quantity,
+                log=options.log,
+                against=options.against,
+                style=options.style,
+                **given,
             )
         )
     if not options.quiet:

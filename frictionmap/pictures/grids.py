@@ -5,9 +5,14 @@ from functools import cached_property
 
 import numpy as np
 
+from ..errors import InputError
+
 #: A grid is logarithmic if the ratios of its points agree to this relative tolerance and their differences do
 #: not.
 _EVEN = 0.02
+
+#: Cells that are kept beyond each limit of an axis.
+_BEYOND = 3
 
 
 def _is_even(steps: np.ndarray) -> bool:
@@ -30,6 +35,7 @@ class Grid:
     """One axis of a map: grid points, and the cells around them."""
 
     values: np.ndarray  # increasing
+    shown: tuple[float, float] | None = None  # limits of the drawn axis, if not those of the values
 
     @cached_property
     def logarithmic(self) -> bool:
@@ -55,9 +61,16 @@ class Grid:
 
     @cached_property
     def limits(self) -> tuple[float, float]:
-        """Limits of the drawn axis: its end points, or the edges of a single cell."""
+        """Limits of the drawn axis: those asked for, or its end points, or the edges of a single cell."""
+        if self.shown is not None:
+            return self.shown
         first, last = (self.values if self.values.size > 1 else self.edges)[[0, -1]]
         return float(first), float(last)
+
+    def part(self) -> slice:
+        """The cells within the limits, and some beyond, so that the axis stays what it is."""
+        first, last = np.searchsorted(self.values, self.limits)
+        return slice(max(0, int(first) - _BEYOND), int(last) + _BEYOND)
 
     def share(self, values: np.ndarray) -> np.ndarray:
         """Position of values on the drawn axis: 0 at its start, 1 at its end."""
@@ -69,3 +82,22 @@ class Grid:
         low, high = self._warp(np.array(self.limits))
         place = low + share * (high - low)
         return np.exp(place) if self.logarithmic else place
+
+
+def limited(name: str, values: np.ndarray, limits: tuple[float, float] | None) -> Grid:
+    """Return the axis of r or beta with these limits, or with its own.
+
+    Raises
+    ------
+    InputError
+        No cell is within the limits, or they are not > 0 on a logarithmic axis.
+    """
+    grid = Grid(values, limits)
+    if limits is None:
+        return grid
+    if grid.logarithmic and limits[0] <= 0.0:
+        raise InputError(f"limits of {name} must be > 0 on a logarithmic axis; got {limits[0]:g}")
+    if limits[1] < values[0] or limits[0] > values[-1]:
+        ends = f"{values[0]:.4g} to {values[-1]:.4g}"
+        raise InputError(f"limits of {name} must overlap {ends}; got {limits[0]:g}, {limits[1]:g}")
+    return grid

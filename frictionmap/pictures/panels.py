@@ -1,5 +1,6 @@
 """Figures, panels, axes and legends."""
 
+import re
 import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -13,6 +14,8 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 
 from ..errors import InputError
 from .grids import Grid
+from .options import current
+from .sizes import figure_size, height_is_free, points
 from .words import balanced
 
 if TYPE_CHECKING:
@@ -25,8 +28,15 @@ Handle = Line2D | Patch
 #: Largest number of panels of a figure; more would be unreadable and exceed the memory.
 MOST_PANELS = 60
 
+#: Size of the texts of legends [points]; width of a letter and height of a line per point [inch].
 _LEGEND_SIZE = 8.0
-_LETTER, _LINE = 0.0078 * _LEGEND_SIZE, 0.021 * _LEGEND_SIZE  # [inch]
+_LETTER, _LINE = 0.0078, 0.021
+
+#: Width of the mark of an entry with the gap between two columns of a legend, also in small figures [inch].
+_MARK, _SMALL_MARK = 0.55, 0.4
+
+#: Height of the labels below axes [inch], and largest share of a figure that a legend below axes may take.
+_LABELS, _MOST_LEGEND = 0.45, 0.5
 
 
 def halo(width: float = 2.6) -> list[AbstractPathEffect]:
@@ -43,7 +53,11 @@ def _shown_by_itself() -> bool:
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Create an empty figure, size in inches; where pyplot is in use, one that it displays."""
+    """Create an empty figure; where pyplot is in use, one that it displays.
+
+    width, height : size by default [inch]; see `figure_size`
+    """
+    width, height = figure_size(width, height)
     if _shown_by_itself():
         import matplotlib.pyplot as plt
 
@@ -53,8 +67,10 @@ def new_figure(width: float, height: float) -> Figure:
 
 def title_figure(figure: Figure, title: str) -> None:
     """Set the title of a figure, wrapped into balanced lines."""
-    wrapped = balanced(title, int(11 * figure.get_figwidth()))
-    figure.suptitle(wrapped, fontsize=11, parse_math=False)  # dollar signs are literal
+    given = current().title
+    title, size = title if given is None else given, points(11.0, "figure.titlesize")
+    wrapped = balanced(title, int(121.0 / size * figure.get_figwidth()))
+    figure.suptitle(wrapped, fontsize=size, parse_math=False)  # dollar signs are literal
 
 
 def panel_grid(panels: int, title: str) -> "AxesArray":
@@ -64,9 +80,13 @@ def panel_grid(panels: int, title: str) -> "AxesArray":
             f"a file must hold at most {MOST_PANELS} mu to be drawn; got {panels}: "
             "draw some of them with frictionmap.plot_regimes(ds.sel(mu=...))"
         )
-    columns = 2 if panels in (2, 4) else min(panels, 3)
-    rows = -(-panels // columns)
-    grid = table_of_panels(rows, columns, 3.9, title).ravel()
+    columns = current().columns(2 if panels in (2, 4) else min(panels, 3))
+    return grid_of_panels(panels, columns, 3.9, title)
+
+
+def grid_of_panels(panels: int, columns: int, height: float, title: str) -> "AxesArray":
+    """Create panels of a new figure, row by row, each `height` inches tall; shape (panels,)."""
+    grid = table_of_panels(-(-panels // columns), columns, height, title).ravel()
     for spare in grid[panels:]:
         spare.remove()
     return grid[:panels]
@@ -104,7 +124,7 @@ def name_axes(ax: Axes, r: Grid, mu: float) -> None:
     ax.set_xlim(*r.limits)
     ax.set_xlabel(r"frequency ratio $r$")
     ax.set_ylabel(r"friction ratio $\beta$")
-    ax.set_title(rf"$\mu$ = {mu:g}", fontsize=10)
+    ax.set_title(rf"$\mu$ = {mu:g}", fontsize=points(10.0, "axes.titlesize"))
 
 
 def patch(label: str, colour: str, hatch: str | None = None) -> Patch:
@@ -121,33 +141,63 @@ def distinct(handles: Sequence[Handle]) -> list[Handle]:
 
 
 def _columns(handles: Sequence[Handle], width: float) -> int:
+    """Number of columns of equal width that a legend has room for."""
+    letter = _LETTER * points(_LEGEND_SIZE, "legend.fontsize")
     longest = max((len(str(handle.get_label()).replace("\\mathrm", "")) for handle in handles), default=1)
-    return max(1, min(len(handles), int(width / (longest * _LETTER + 0.55))))
+    return max(1, min(len(handles), int(width / (longest * letter + _MARK))))
+
+
+def _narrow_columns(handles: Sequence[Handle], width: float) -> int:
+    """Number of columns that a legend has room for, each as wide as its widest entry."""
+    letter = _LETTER * points(_LEGEND_SIZE, "legend.fontsize")
+    labels = [re.sub(r"\\mathrm|[${}_]", "", str(handle.get_label())) for handle in handles]
+    widths = [len(re.sub(r"\\\w+", "x", label)) * letter + _SMALL_MARK for label in labels]
+    for columns in range(len(handles), 1, -1):
+        parts = np.array_split(widths, columns)  # as matplotlib fills the columns
+        if sum(float(part.max()) for part in parts) <= width:
+            return columns
+    return 1
 
 
 def legend_below(figure: Figure, handles: Sequence[Handle], caption: str) -> None:
-    """Add a legend under the panels with a caption above it; the figure grows by its height."""
-    width = figure.get_figwidth() - 0.4
-    columns = _columns(handles, width)
-    heading = balanced(caption, int(width / _LETTER))
-    lines = heading.count("\n") + 1 + -(-len(handles) // columns)
-    figure.set_figheight(figure.get_figheight() + _LINE * lines + 0.2)
+    """Add a legend under the panels with a caption above it; the figure grows by its height.
+
+    The options of the picture may leave out both, or keep the height of the figure.
+    """
+    options, size = current(), points(_LEGEND_SIZE, "legend.fontsize")
+    handles, caption = handles if options.legend else [], caption if options.caption else ""
+    if not handles and not caption:
+        return
+    width = figure.get_figwidth() - (0.4 if options.size is None else 0.1)
+    columns = (_columns if options.size is None else _narrow_columns)(handles, width)
+    heading = balanced(caption, int(width / (_LETTER * size)))
+    if height_is_free():
+        lines = heading.count("\n") + 1 + -(-len(handles) // columns)
+        figure.set_figheight(figure.get_figheight() + _LINE * size * lines + 0.2)
     legend = figure.legend(
         handles=list(handles),
-        fontsize=_LEGEND_SIZE,
+        fontsize=size,
         loc="outside lower center",
         ncols=columns,
         title=heading,
-        title_fontsize=_LEGEND_SIZE,
+        title_fontsize=size,
     )
     legend.get_title().set_parse_math(False)
     legend.get_title().set_horizontalalignment("center")
 
 
 def legend_under(ax: Axes, handles: Sequence[Handle]) -> None:
-    """Add a legend under axes given by the caller; inside them it would cover results."""
-    width = size_of(ax)[0]
-    ax.legend(
-        handles=list(handles), fontsize=_LEGEND_SIZE, loc="upper center", bbox_to_anchor=(0.5, -0.16),
-        ncols=_columns(handles, width),
+    """Add a legend under axes given by the caller; inside them it would cover results.
+
+    Where a layout of the caller's figure would have to squeeze the axes for it, it is left out.
+    """
+    if not current().legend:
+        return
+    width, height = size_of(ax)
+    legend = ax.legend(
+        handles=list(handles), fontsize=points(_LEGEND_SIZE, "legend.fontsize"), loc="upper center",
+        bbox_to_anchor=(0.5, -max(0.16, _LABELS / height)), ncols=_columns(handles, width),
     )  # fmt: skip
+    box, room = legend.get_window_extent(), ax.figure.bbox
+    if ax.figure.get_layout_engine() and (box.width > room.width or box.height > _MOST_LEGEND * room.height):
+        legend.remove()

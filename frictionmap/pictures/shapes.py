@@ -7,6 +7,7 @@ import xarray as xr
 
 from ..errors import InputError
 from ..files.reading import kind, standard_form
+from .options import Options, current
 
 #: Largest value that can be drawn: axes are wider than their data, and their ends must be finite.
 _LARGEST = 1e300
@@ -30,6 +31,15 @@ _DRAWN_BY = {
     "design": "plot_design",
 }
 
+#: Options that only some functions take.
+_MAPS = ("plot_regimes", "plot_quantity", "plot_boundaries")
+_OPTIONS_OF = {
+    "mass": ("plot_curves", "plot_response", "plot_orbit", "plot_quantity"),
+    "beta": ("plot_curves",),
+    "point": _MAPS,
+    "box": _MAPS,
+}
+
 
 def to_draw(ds: object, function: str, *valid: str) -> xr.Dataset:
     """Convert a dataset to its standard form, if it is of a kind that a function draws."""
@@ -39,7 +49,33 @@ def to_draw(ds: object, function: str, *valid: str) -> xr.Dataset:
     found = kind(ds)
     if found not in valid:
         raise InputError(f"{wanted}; got one such as {_MAKERS[found]} (use {_DRAWN_BY[found]})")
-    return standard_form(ds)
+    check_options(function)
+    return _selected(standard_form(ds), current())
+
+
+def check_options(function: str) -> None:
+    """Refuse options that do not apply to what a function draws."""
+    for name, valid in _OPTIONS_OF.items():
+        if getattr(current(), name) and function not in valid:
+            raise InputError(
+                f"cannot use {name} with {function}: it applies to {', '.join(valid)}; omit {name}"
+            )
+
+
+def _selected(ds: xr.Dataset, options: Options) -> xr.Dataset:
+    """The masses and friction ratios that the options ask for."""
+    if options.mass and "dof" in ds.dims:
+        there = ds["dof"].values.tolist()
+        for number in options.mass:
+            if number not in there:
+                raise InputError(f"mass must be one of {', '.join(map(str, there))}; got {number}")
+        ds = ds.sel(dof=sorted(set(options.mass)))
+    elif options.mass:
+        raise InputError("cannot choose a mass: the dataset has no values of each mass; omit mass")
+    if options.beta:
+        there = ds["beta"].values
+        ds = ds.isel(beta=sorted({int(np.argmin(np.abs(there - beta))) for beta in options.beta}))
+    return ds
 
 
 def check_holds(ds: xr.Dataset, names: Iterable[str], what: str) -> None:

@@ -16,7 +16,7 @@ from frictionmap.files.storage import write_netcdf
 from frictionmap.pictures import classes, palette
 from frictionmap.pictures.grids import Grid
 from frictionmap.pictures.maps.boundary_curves import further_ranges, through_cells
-from frictionmap.pictures.maps.regime_map import CellImage
+from frictionmap.pictures.maps.regime_map import RegimeImage
 from frictionmap.pictures.motions.history import plot_response
 from frictionmap.pictures.motions.traces import load_trace, traces_of
 
@@ -61,7 +61,7 @@ def labels_of(axes):
 
 
 def classes_of(axes):
-    (image,) = [artist for artist in axes[0].get_children() if isinstance(artist, CellImage)]
+    (image,) = [artist for artist in axes[0].get_children() if isinstance(artist, RegimeImage)]
     return image.cells.found
 
 

@@ -16,9 +16,18 @@ from hypothesis import strategies as st
 from test_cli import BAD_CONFIGURATIONS, listing, toml
 
 from frictionmap import InputError, load_config
-from frictionmap.command_line.arguments import CONTACTS, QUANTITIES, RIGS, SHELLS, build_parser, described
+from frictionmap.command_line.arguments import (
+    CONTACTS,
+    FIGURE,
+    QUANTITIES,
+    RIGS,
+    SHELLS,
+    build_parser,
+    described,
+)
 from frictionmap.command_line.cli import main
 from frictionmap.command_line.completion import completion
+from frictionmap.datasets.labels import CELL_VARIABLES
 from frictionmap.examples import TRUTHS, starting_rig
 from frictionmap.files.json_schema import map_schema
 from frictionmap.files.keys import GENERAL_KEYS, KEYS
@@ -29,6 +38,7 @@ from frictionmap.identify.rigs.record import SYSTEM_KEYS as RECORD_SYSTEM
 from frictionmap.identify.rigs.sweep import SYSTEM_KEYS as SWEEP_SYSTEM
 from frictionmap.model import system
 from frictionmap.pictures.curves.figure import CURVE_QUANTITIES
+from frictionmap.pictures.options import FigureOptions
 
 MAPS = sorted([*(ROOT / "configs").glob("*.toml"), *(ROOT / "configs" / "studies").glob("*.toml")])
 RIG_FILES = sorted((ROOT / "configs" / "rigs").glob("*.toml"))
@@ -123,7 +133,10 @@ def test_words_of_the_command_line_are_those_of_the_program():
     assert CONTACTS == system.CONTACTS
     assert tuple(KINDS) == RIGS
     assert set(shtab.SUPPORTED_SHELLS) >= set(SHELLS)
-    assert (*CURVE_QUANTITIES, "history", "orbit") == QUANTITIES
+    of_maps = QUANTITIES[QUANTITIES.index("regimes") + 1 :]
+    assert (*CURVE_QUANTITIES, "history", "orbit", "regimes", *of_maps) == QUANTITIES
+    assert all(not CELL_VARIABLES[name].codes for name in of_maps)
+    assert FigureOptions.__annotations__.keys() == set(FIGURE)
 
 
 # schema

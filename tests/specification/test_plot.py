@@ -22,7 +22,7 @@ from frictionmap.files.storage import write
 from frictionmap.pictures.classes import classes
 from frictionmap.pictures.maps.boundary_map import areas
 from frictionmap.pictures.maps.raster import rasterise
-from frictionmap.pictures.maps.regime_map import CellImage
+from frictionmap.pictures.maps.regime_map import RegimeImage
 from frictionmap.pictures.palette import CLASSES, MORE, ONE, colour_table
 
 MAGIC = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
@@ -375,7 +375,7 @@ def test_boundaries_of_many_masses_cost_little_however_far_the_axis_reaches_down
 
 def raster_of(ax, size=(90, 70)):
     """The classes that a panel shows."""
-    (image,) = (artist for artist in ax.get_children() if isinstance(artist, CellImage))
+    (image,) = (artist for artist in ax.get_children() if isinstance(artist, RegimeImage))
     x, y = (
         n * grid.share(grid.edges) for n, grid in zip(size, (image.cells.r, image.cells.beta), strict=True)
     )

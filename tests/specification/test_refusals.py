@@ -312,7 +312,53 @@ plot map.nc -o map.gif
 plot map.nc --quantity amplitude
     unknown quantity 'amplitude' in a file of kind map; valid: regimes
 plot map.nc --log
-    cannot draw map with log: it applies to response curves only; omit log
+    cannot draw map with log: it applies to response curves and quantities of maps; omit log
+plot map.nc --size 85
+    size must be a width such as 85mm or 3.3in, or a width and a height such as 85mm x 60mm, from 1 to 80 inches; got '85'
+plot map.nc --size 1mm
+    size must be a width such as 85mm or 3.3in, or a width and a height such as 85mm x 60mm, from 1 to 80 inches; got '1mm'
+plot map.nc --dpi 1
+    dpi must be >= 20; got 1.0
+plot map.nc --xlim 1 0
+    xlim must be increasing; got 1, 0
+plot map.nc --ylim 0 nan
+    ylim must be two finite numbers; got 0, nan
+plot map.nc --xlim 5 6
+    limits of r must overlap 0.5 to 1; got 5, 6
+plot map.nc --panels 2
+    panels must be 1 to 1; got 2
+plot map.nc --panels 0
+    panels must be >= 1; got 0
+plot map.nc --panels x
+    frictionmap plot: argument --panels: invalid list of numbers separated by commas value: 'x' (see frictionmap plot --help)
+plot map.nc --mass 1
+    cannot use mass with plot_regimes: it applies to plot_curves, plot_response, plot_orbit, plot_quantity; omit mass
+plot map.nc --beta 0.5
+    cannot use beta with plot_regimes: it applies to plot_curves; omit beta
+plot map.nc --point 3 0.5
+    point must lie within r = 0.5 to 1 and beta = 0.5 to 1; got 3, 0.5
+plot map.nc --box 0.1 0.1
+    cannot use box without point: it is the uncertainty of a point; give point
+plot map.nc --point 0.75 0.75 --box -0.1 0.1
+    box must be half-widths >= 0; got -0.1, 0.1
+plot map.nc --style none.mplstyle
+    cannot read style none.mplstyle: No such file or directory; give a file of settings of matplotlib
+plot map.nc --style good.toml
+    style must be a file that ends in .mplstyle; got good.toml
+fm.plot_regimes(MAP, size=(1.0,))
+    size must be two numbers; got (1.0,)
+fm.plot_regimes(MAP, legend=1)
+    legend must be True or False; got 1
+fm.plot_regimes(MAP, title=1)
+    title must be text; got 1
+fm.plot_regimes(MAP, panels=[])
+    panels must have at least one value; got none
+fm.plot_regimes(MAP, sise="85mm")
+    unknown option 'sise' (did you mean size?); valid: size, dpi, legend, caption, title, xlim, ylim, panels, mass, beta, point, box
+fm.plot_regimes(MAP, ax=np, size="85mm")
+    cannot use size with ax: the axes have a figure already; set its size
+fm.plot_quantity(MAP, "amplitud")
+    unknown quantity 'amplitud' of a map; valid: none
 export map.nc -o map.txt
     -o must end in .nc or .csv; got map.txt
 explore good.toml --port 99999

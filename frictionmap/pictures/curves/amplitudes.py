@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 
 from ..features import frequencies_of, mark_features
 from ..grids import HIGH
+from ..options import current
 from ..palette import HELD, LIMIT, LineStyle
 from ..panels import Handle
 from ..second_axes import on_the_right
@@ -141,7 +142,7 @@ def _motions(family: Family, quantity: str) -> list[MotionColumn]:
         return _of_contacts(family, "amplitude")
     masses = [_of_mass(family, quantity, index) for index in range(family.cells.sizes.get("dof", 0))]
     found = [mass for mass in masses if mass is not None]
-    contacts = _of_contacts(family, quantity)
+    contacts = [] if current().mass else _of_contacts(family, quantity)
     return found + [
         contact for contact in contacts if not any(_alike(mass.size, contact.size) for mass in found)
     ]

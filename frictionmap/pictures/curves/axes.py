@@ -6,8 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 
+from ..options import current
 from ..panels import Handle
 from ..second_axes import frequency_on_top
+from ..sizes import points
 from .families import Family
 from .invariants import infinite_resonances
 
@@ -86,7 +88,7 @@ def over_r(ax: Axes, family: Family, title: str, name: str) -> None:
     ax.set_xlim(*family.r.limits)
     ax.set_xlabel(r"frequency ratio $r$")
     ax.set_ylabel(name)
-    ax.set_title(title, fontsize=10)
+    ax.set_title(title, fontsize=points(10.0, "axes.titlesize"))
     frequency_on_top(ax, family.cells)
 
 
@@ -94,9 +96,10 @@ def in_rows(panels: list[Panel], below: list[Panel]) -> list[Row]:
     """Arrange panels in rows of two or three, each with another below it; a single one has the other beside
     it.
     """
-    if len(panels) == len(below) == 1:
+    room = current().columns(_COLUMNS)
+    if len(panels) == len(below) == 1 < room:
         return [[panels[0], below[0]]]
-    columns = 2 if len(panels) == 4 else min(len(panels), _COLUMNS)
+    columns = min(room, 2 if len(panels) == 4 else len(panels))
     rows: list[Row] = []
     for first in range(0, len(panels), columns):
         for part in filter(None, (panels, below)):

@@ -1,7 +1,7 @@
 """Pictures of response curves over frequency: amplitude and phase, harmonics, energy."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import xarray as xr
 from matplotlib.axes import Axes
@@ -9,11 +9,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...errors import InputError
+from ..drawing import with_options
+from ..options import FigureOptions, current
 from ..panels import MOST_PANELS, Handle, distinct, given_axes, legend_below, legend_under, table_of_panels
 from ..shapes import to_draw
 from ..words import caption
 from .amplitudes import MOTION_VARIABLES, NAMES, motion_picture
-from .axes import Picture
+from .axes import Picture, in_rows
 from .families import Family, family_of
 from .harmonics import HARMONIC_VARIABLES, spectrum_picture
 from .lines import regime_handles
@@ -85,12 +87,14 @@ def _title(ds: xr.Dataset, family: Family) -> str:
     return ", ".join(filter(None, (str(ds.attrs.get("title", "")), family.chosen)))
 
 
+@with_options
 def plot_curves(
     ds: xr.Dataset,
     quantity: str | None = None,
     *,
     log: bool = False,
     ax: "Sequence[Axes] | AxesArray | None" = None,
+    **options: Unpack[FigureOptions],
 ) -> "AxesArray":
     """Draw response curves over frequency, one colour for each friction ratio.
 
@@ -129,7 +133,9 @@ def plot_curves(
     family = family_of(ds)
     _check_lines(family)
     picture = _picture(family, quantity, log)
-    panels = [panel for row in picture.rows for panel in row if panel is not None]
+    panels = current().chosen(panel for row in picture.rows for panel in row if panel is not None)
+    if current().panels:
+        picture = picture._replace(rows=in_rows([*panels], []))
     if ax is None:
         axes = _new_axes(picture, len(panels), _title(ds, family))
     else:

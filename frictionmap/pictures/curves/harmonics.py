@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from ..options import current
 from ..palette import sequence
 from ..panels import Handle
 from ..words import name_of_contact
@@ -45,7 +46,7 @@ def _motion_levels(family: Family) -> list[tuple[str, np.ndarray]]:
         values = family.cells["displacement_harmonic"].transpose("dof", *order).values
         numbers = family.cells["dof"].values
         found = [(f"mass {k}", levels_of(part)) for k, part in zip(numbers, values, strict=True)]
-    if "contact_harmonic" in family.cells:
+    if "contact_harmonic" in family.cells and not current().mass:
         masses = [part for _, part in found]
         for one in family.contacts("contact_harmonic"):
             own = levels_of(one.cells["contact_harmonic"].transpose(*order).values)
@@ -101,6 +102,6 @@ def spectrum_picture(family: Family) -> Picture:
 
     panels: list[Row] = [[panel(spectrum) for spectrum in row] for row in rows]
     remarks = [f"harmonics below {LOWEST:g} dB are not shown"]
-    if len(panels[0]) == 1:
-        panels = in_rows([panel(row[0]) for row in rows], [])
+    if len(panels[0]) == 1 or len(panels[0]) > current().columns(len(panels[0])):
+        panels = in_rows([one for row in panels for one in row if one is not None], [])
     return Picture(panels, 2.6, remarks)

@@ -1,11 +1,13 @@
 """`plot_design`: the picture of the result of a design question."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import xarray as xr
 from matplotlib.axes import Axes
 
+from ..drawing import with_options
+from ..options import FigureOptions, current
 from ..panels import distinct, given_axes, legend_below, new_figure, title_figure
 from ..shapes import check_holds, to_draw
 from ..words import caption
@@ -19,7 +21,12 @@ if TYPE_CHECKING:
 _WIDTH, _HEIGHT = 5.4, 4.0
 
 
-def plot_design(ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":
+@with_options
+def plot_design(
+    ds: xr.Dataset,
+    ax: "Axes | Sequence[Axes] | AxesArray | None" = None,
+    **options: Unpack[FigureOptions],
+) -> "AxesArray":
     """Draw the result of a design question.
 
     Of questions about the largest response: the performance curve, largest response over friction, with the
@@ -47,16 +54,15 @@ def plot_design(ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" =
     of_peaks = "peak_of_beta" in ds
     names = ("peak_of_beta", "peak", "response_of_r", "curve") if of_peaks else ("r_search",)
     check_holds(ds, names, "its answer")
-    count = 2 if of_peaks else 1
+    draw = current().chosen([draw_performance, draw_responses] if of_peaks else [draw_limits])
     if ax is None:
-        figure = new_figure(_WIDTH * count, _HEIGHT)
-        axes = figure.subplots(1, count, squeeze=False).ravel()
+        columns = current().columns(len(draw))
+        rows = -(-len(draw) // columns)
+        figure = new_figure(_WIDTH * columns, _HEIGHT * rows)
+        axes = figure.subplots(rows, columns, squeeze=False).ravel()
     else:
-        axes = given_axes(ax, count, "for an answer")
-    if of_peaks:
-        handles = [*draw_performance(axes[0], ds), *draw_responses(axes[1], ds)]
-    else:
-        handles = draw_limits(axes[0], ds)
+        axes = given_axes(ax, len(draw), "for an answer")
+    handles = [handle for panel, one in zip(draw, axes, strict=True) for handle in panel(one, ds)]
     if ax is None:
         title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
         legend_below(axes[0].figure, distinct(handles), caption(ds))

@@ -1,7 +1,7 @@
 """Pictures of fits to measured data: which of them is drawn, and their layout."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import xarray as xr
 from matplotlib.axes import Axes
@@ -9,6 +9,8 @@ from matplotlib.figure import Figure
 
 from ...errors import InputError
 from ...files.estimates import estimates_in_short, verdict_in_words
+from ..drawing import with_options
+from ..options import FigureOptions, current
 from ..panels import distinct, given_axes, legend_below, legend_under, new_figure, title_figure
 from ..shapes import check_holds, check_range, to_draw
 from .chain import chain_picture, is_chain
@@ -27,7 +29,12 @@ if TYPE_CHECKING:
 _REST = 0.6
 
 
-def plot_fit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":
+@with_options
+def plot_fit(
+    ds: xr.Dataset,
+    ax: "Sequence[Axes] | AxesArray | None" = None,
+    **options: Unpack[FigureOptions],
+) -> "AxesArray":
     """Picture of a fit to measured data: samples over the fitted curve, residuals below.
 
     A free decay has its turning points, their envelope and the place of rest; forced responses have the
@@ -59,7 +66,7 @@ def plot_fit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> 
     check_range(ds, names)
     if ds.sizes["sample"] < 1:
         raise InputError("a dataset must have at least one sample for its fit to be drawn; got none")
-    picture = _picture(ds)
+    picture = _picture(ds).chosen(current())
     panels = picture.all
     axes = _new_axes(picture, ds) if ax is None else given_axes(ax, len(panels), "one for each panel")
     handles = distinct([handle for panel, one in zip(panels, axes, strict=True) for handle in panel(one)])

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from ...errors import InputError
 from ...identify.chain.two_masses import log_amplitude
 from ..panels import Handle
+from ..sizes import points
 from .data import FITTED, Samples, check_logarithms, draw_data, draw_residuals, samples_of
 from .picture import FitPicture
 from .samples import RESIDUALS, VALUES
@@ -80,5 +81,5 @@ def _name_frequency(ax: Axes, name: str, place: float) -> None:
     ax.axvline(place, color="#606060", linewidth=0.9, linestyle=":", zorder=0.7)
     ax.annotate(
         f"${name[0]}_{name[1]}$", (place, 1.0), xycoords=("data", "axes fraction"), xytext=(3, -11),
-        textcoords="offset points", fontsize=9,
+        textcoords="offset points", fontsize=points(9.0),
     )  # fmt: skip

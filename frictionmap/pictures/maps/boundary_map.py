@@ -1,15 +1,17 @@
 """Pictures of the boundaries: the possible steady states over frequency and friction."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple, overload
+from typing import TYPE_CHECKING, NamedTuple, Unpack, overload
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..drawing import with_options
 from ..features import features_of, mark_features
-from ..grids import HIGH, Grid
+from ..grids import HIGH, Grid, limited
+from ..options import FigureOptions, current
 from ..palette import (  # fmt: skip
     BORDER,
     CLASSES,
@@ -39,6 +41,7 @@ from ..second_axes import frequency_on_top, on_the_right
 from ..shapes import check_holds, panels_of, to_draw
 from ..words import caption
 from .boundary_curves import further_ranges, through_cells
+from .working_point import mark_point
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -189,19 +192,24 @@ def _reading(mu: np.ndarray) -> str:
 
 
 @overload
-def plot_boundaries(ds: xr.Dataset, ax: None = None) -> "AxesArray": ...
+def plot_boundaries(ds: xr.Dataset, ax: None = None, **options: Unpack[FigureOptions]) -> "AxesArray": ...
 
 
 @overload
-def plot_boundaries(ds: xr.Dataset, ax: Axes) -> Axes: ...
+def plot_boundaries(ds: xr.Dataset, ax: Axes, **options: Unpack[FigureOptions]) -> Axes: ...
 
 
 @overload
-def plot_boundaries(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray") -> "AxesArray": ...
-
-
 def plot_boundaries(
-    ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" = None
+    ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray", **options: Unpack[FigureOptions]
+) -> "AxesArray": ...
+
+
+@with_options
+def plot_boundaries(
+    ds: xr.Dataset,
+    ax: "Axes | Sequence[Axes] | AxesArray | None" = None,
+    **options: Unpack[FigureOptions],
 ) -> "Axes | AxesArray":
     """Draw the boundaries over frequency, one panel for each mu, with a common axis of beta.
 
@@ -230,7 +238,7 @@ def plot_boundaries(
     elastic = "beta_noslip" in ds
     if not elastic:
         check_holds(ds, ("beta_lim", "beta_stick"), "its boundaries")
-    r, panels = Grid(ds["r"].values), panels_of(ds)
+    r, panels = limited("r", ds["r"].values, current().xlim), current().chosen(panels_of(ds))
     title = str(ds.attrs.get("title", ""))
     axes = panel_grid(len(panels), title) if ax is None else given_axes(ax, len(panels), "one for each mu")
     if elastic:
@@ -238,8 +246,9 @@ def plot_boundaries(
     else:
         draw, top = _draw, top_of(ds["beta_lim"].values, ds["beta_stick"].values)
         handles = _area_handles(ds["mu"].values)
+    top = limits[1] if (limits := current().ylim) else top
     for panel_ax, panel in zip(axes, panels, strict=True):
-        handles += draw(panel_ax, panel, r, top)
+        handles += [*draw(panel_ax, panel, r, top), *mark_point(panel_ax)]
     handles = distinct(handles)
     if ax is None:
         figure = axes[0].figure

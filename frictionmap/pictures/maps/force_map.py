@@ -1,6 +1,6 @@
 """Maps of friction against friction: two contacts at one frequency, each with a friction of its own."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 import xarray as xr
@@ -17,9 +17,13 @@ from ...files.slices import further_axes
 from ...general.boundaries import friction_lines
 from ...general.partial import has_limits, holding_force
 from ...model.system import System
+from ..drawing import with_options
 from ..grids import Grid
+from ..options import FigureOptions
 from ..palette import LIM, PAIRS, PARTIAL, STICK, UNRESOLVED_PAIR
 from ..panels import Handle, halo, legend_below, new_figure, patch, title_figure
+from ..shapes import check_options
+from ..sizes import points
 from ..words import system_words
 
 if TYPE_CHECKING:
@@ -31,7 +35,8 @@ _SAMPLES = 200
 _STATES = ("sticks", "sticks and slips", "slides")
 
 
-def plot_forces(ds: xr.Dataset, over: str | None = None) -> "AxesArray":
+@with_options
+def plot_forces(ds: xr.Dataset, over: str | None = None, **options: Unpack[FigureOptions]) -> "AxesArray":
     """Draw maps of two contacts at one frequency: the friction of one against the beta of the grid.
 
     Nine colours show what each of both contacts does.  For mu = 1 the curves from which one of them sticks
@@ -55,6 +60,7 @@ def plot_forces(ds: xr.Dataset, over: str | None = None) -> "AxesArray":
     InputError
         The dataset has no such axis, more than one r or mu, or other than two contacts.
     """
+    check_options("plot_forces")
     ds, over = _checked(ds, over)
     first, second = ds["contact_regime"].values[..., 0], ds["contact_regime"].values[..., 1]
     found = _classes(first, second)
@@ -67,7 +73,7 @@ def plot_forces(ds: xr.Dataset, over: str | None = None) -> "AxesArray":
     number = int(over.split("_")[1])
     ax.set_xlabel(r"friction ratio $\beta$" + _of(names, 3 - number))
     ax.set_ylabel(str(ds[over].attrs.get("long_name", over)) + _of(names, number))
-    ax.set_title(rf"$\mu$ = {float(ds['mu'][0]):g}", fontsize=10)
+    ax.set_title(rf"$\mu$ = {float(ds['mu'][0]):g}", fontsize=points(10.0, "axes.titlesize"))
     handles = _curves(ax, ds, over, beta, force)
     ax.set_xlim(*beta.limits)
     ax.set_ylim(*force.limits)

@@ -3,21 +3,21 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Unpack, overload
 
 import numpy as np
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backend_bases import RendererBase
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ...errors import InputError
 from ..classes import Counted, classes, count, counted, legend_label, stops_range
+from ..drawing import with_options
 from ..features import features_of, mark_features
-from ..grids import Grid
+from ..grids import Grid, limited
 from ..marks import COARSE, rare_classes, rings, room_for, trace
+from ..options import FigureOptions, current
 from ..palette import (  # fmt: skip
     CLASSES,
     CONTINUOUS,
@@ -54,9 +54,12 @@ from ..panels import (  # fmt: skip
 )
 from ..second_axes import frequency_on_top, on_the_right
 from ..shapes import panels_of, to_draw
+from ..sizes import points
 from ..words import caption, title_of_map
 from .boundary_curves import boundary_curves, further_ends
+from .cell_image import CellImage
 from .raster import level_stripes, paint, rasterise, shade, stripes
+from .working_point import mark_point
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -67,6 +70,11 @@ _STYLES = {
     "beta_stick_contact": STICK_CONTACT,
     "beta_noslip": NO_SLIP,
 }
+
+Curves = dict[str, tuple[np.ndarray, np.ndarray]]
+
+#: Share of a frame that is left of it between title, labels and legend of a small figure.
+_FRAME = 0.85
 
 #: Stripes: distance and width [inch].
 _SPACING, _STRIPE = 0.085, 0.012
@@ -98,60 +106,54 @@ def _several(panel: xr.Dataset) -> np.ndarray | None:
     return several.astype(np.uint8) if several.any() else None
 
 
-def cells_of(panel: xr.Dataset, by: Counted | None = None) -> Cells:
-    """The cells of a map of one mu, dims (r, beta); `by`: what their classes count."""
+def cells_of(panel: xr.Dataset, by: Counted | None = None, axes: tuple[Grid, Grid] | None = None) -> Cells:
+    """The cells of a map of one mu, dims (r, beta).
+
+    by : what their classes count
+    axes : of r and beta, if their limits are not those of the cells
+    """
     by = by or counted(panel)
-    return Cells(Grid(panel["r"].values), Grid(panel["beta"].values), classes(panel, by), _several(panel), by)
+    r, beta = axes or (Grid(panel["r"].values), Grid(panel["beta"].values))
+    return Cells(r, beta, classes(panel, by), _several(panel), by)
 
 
-class CellImage(Artist):
-    """Cells in colours, rasterised for the pixels of each drawing so that no feature is lost at any size."""
+def in_view(ds: xr.Dataset) -> tuple[xr.Dataset, tuple[Grid, Grid]]:
+    """The cells within the limits of the picture, and the axes of r and beta."""
+    shown = {"r": current().xlim, "beta": current().ylim}
+    grids = {name: limited(name, ds[name].values, limits) for name, limits in shown.items()}
+    ds = ds.isel({name: grid.part() for name, grid in grids.items() if grid.shown})
+    return ds, (Grid(ds["r"].values, shown["r"]), Grid(ds["beta"].values, shown["beta"]))
+
+
+class RegimeImage(CellImage):
+    """Cells in the colours of their classes."""
 
     def __init__(self, cells: Cells) -> None:
-        super().__init__()
+        super().__init__(cells.r, cells.beta)
         self.cells = cells
-        self.set_zorder(0.5)
 
-    def draw(self, renderer: RendererBase) -> None:
-        """Draw the cells in view."""
-        assert self.axes is not None
-        scale = renderer.get_image_magnification()
-        left, bottom, right, top = self.axes.bbox.extents
-        left, bottom = round(left), round(bottom)
-        size = max(1, round((right - left) * scale)), max(1, round((top - bottom) * scale))
-        edges = self._edges(scale, left, bottom)
+    def image(self, edges: tuple[np.ndarray, np.ndarray], size: tuple[int, int], inch: float) -> np.ndarray:
+        """Paint the most frequent class of every pixel, with stripes over several regimes."""
         raster = rasterise(self.cells.found, *edges, size, COUNT)
         image = paint(raster, colour_table())
         if self.cells.counts[ONE_WAY]:
-            self._hatch_one_way(image, raster == ONE_WAY, scale)
+            _hatch_one_way(image, raster == ONE_WAY, inch)
         if self.cells.several is not None:
-            self._hatch(image, rasterise(self.cells.several, *edges, size, 2) == 1, scale)
-        gc = renderer.new_gc()
-        gc.set_clip_rectangle(self.axes.bbox)
-        renderer.draw_image(gc, left, bottom, image)
-        gc.restore()
+            where = rasterise(self.cells.several, *edges, size, 2) == 1
+            shade(image, stripes(where.shape, _SPACING * inch, _STRIPE * inch) * where, _HATCHING)
+        return image
 
-    def _edges(self, scale: float, left: float, bottom: float) -> tuple[np.ndarray, np.ndarray]:
-        """Edges of the cells in pixels."""
-        assert self.axes is not None
-        x, y = self.cells.r.edges, self.cells.beta.edges
-        inside = self.axes.viewLim.x0, self.axes.viewLim.y0
-        to_pixels = self.axes.transData.transform
-        across = to_pixels(np.column_stack((x, np.full(x.size, inside[1]))))[:, 0]
-        up = to_pixels(np.column_stack((np.full(y.size, inside[0]), y)))[:, 1]
-        return (across - left) * scale, (up - bottom) * scale
+    def colours(self) -> np.ndarray | None:
+        """Return the colours of the classes; stripes need pixels."""
+        if self.cells.counts[ONE_WAY] or self.cells.several is not None:
+            return None
+        return colour_table()[self.cells.found]
 
-    def _hatch(self, image: np.ndarray, several: np.ndarray, scale: float) -> None:
-        assert self.axes is not None
-        inch = scale * self.axes.figure.dpi
-        shade(image, stripes(several.shape, _SPACING * inch, _STRIPE * inch) * several, _HATCHING)
 
-    def _hatch_one_way(self, image: np.ndarray, where: np.ndarray, scale: float) -> None:
-        """Paint one-way sliding white with level stripes, also where cells not computed are dotted."""
-        assert self.axes is not None
-        inch = scale * self.axes.figure.dpi
-        image[where.T] = 255
-        shade(image, level_stripes(where.shape, _SPACING * inch, _STRIPE * inch) * where, _HATCHING)
+def _hatch_one_way(image: np.ndarray, where: np.ndarray, inch: float) -> None:
+    """Paint one-way sliding white with level stripes, also where cells not computed are dotted."""
+    image[where.T] = 255
+    shade(image, level_stripes(where.shape, _SPACING * inch, _STRIPE * inch) * where, _HATCHING)
 
 
 def _name_regions(ax: Axes, cells: Cells, curves: Iterable[tuple[np.ndarray, np.ndarray]]) -> None:
@@ -160,12 +162,15 @@ def _name_regions(ax: Axes, cells: Cells, curves: Iterable[tuple[np.ndarray, np.
     coarse = rasterise(cells.found, x_edges, y_edges, (COARSE, COARSE), COUNT)
     for x, y in curves:
         coarse[trace(cells.r.share(x), cells.beta.share(y))] = COUNT
+    width, height = (side * 9.0 / points(9.0) for side in size_of(ax))
+    if current().size is not None:  # the frame will be smaller than it is yet
+        width, height = _FRAME * width, _FRAME * height
     for index in (STUCK, CONTINUOUS, ONE_WAY):
         name = cells.by.labels[index]
-        place = room_for(coarse == index, name, size_of(ax))
+        place = room_for(coarse == index, name, (width, height))
         if place:
             ax.text(
-                *place, name, transform=ax.transAxes, ha="center", va="center", fontsize=9,
+                *place, name, transform=ax.transAxes, ha="center", va="center", fontsize=points(9.0),
                 path_effects=halo(3.0),
             )  # fmt: skip
 
@@ -187,24 +192,31 @@ def _ring(ax: Axes, cells: Cells) -> list[Handle]:
     return [drawn]
 
 
-def draw_map(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
-    """Draw one mu without rings; return the entries for the legend that are not classes."""
-    ax.add_artist(CellImage(cells))
-    if cells.counts[NOT_YET]:
-        ax.patch.set(hatch=NOT_YET_HATCH, edgecolor=HATCH_COLOUR)
-    curves = boundary_curves(panel, cells.r, cells.beta.limits[1])
+def draw_frame(ax: Axes, panel: xr.Dataset, axes: tuple[Grid, Grid]) -> tuple[list[Handle], Curves]:
+    """Draw the axes and the boundaries of one mu; return entries for the legend, and the curves."""
+    r, beta = axes
+    curves = boundary_curves(panel, r, beta.limits[1])
     handles: list[Handle] = []
-    name_axes(ax, cells.r, float(panel["mu"]))
-    if cells.beta.logarithmic:
+    name_axes(ax, r, float(panel["mu"]))
+    if beta.logarithmic:
         ax.set_yscale("log")
-    ax.set_ylim(*cells.beta.limits)
+    ax.set_ylim(*beta.limits)
     frequency_on_top(ax, panel)
     on_the_right(ax, panel, "force")
     for name, curve in curves.items():
         style = LIM_CONTACT if name == "beta_lim" and "beta_stick_contact" in curves else _STYLES[name]
         handles += ax.plot(*curve, path_effects=halo(), **style)
-    for ends in further_ends(panel, cells.r, cells.beta.limits[1]):
+    for ends in further_ends(panel, r, beta.limits[1]):
         handles += ax.plot(*ends, path_effects=halo(), **FURTHER)
+    return handles, curves
+
+
+def draw_map(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
+    """Draw one mu without rings; return the entries for the legend that are not classes."""
+    ax.add_artist(RegimeImage(cells))
+    if cells.counts[NOT_YET]:
+        ax.patch.set(hatch=NOT_YET_HATCH, edgecolor=HATCH_COLOUR)
+    handles, curves = draw_frame(ax, panel, (cells.r, cells.beta))
     if cells.several is not None:
         handles.append(
             Patch(
@@ -241,18 +253,25 @@ def _class_handles(panels: Sequence[xr.Dataset], cells: Sequence[Cells]) -> list
 
 
 @overload
-def plot_regimes(ds: xr.Dataset, ax: None = None) -> "AxesArray": ...
+def plot_regimes(ds: xr.Dataset, ax: None = None, **options: Unpack[FigureOptions]) -> "AxesArray": ...
 
 
 @overload
-def plot_regimes(ds: xr.Dataset, ax: Axes) -> Axes: ...
+def plot_regimes(ds: xr.Dataset, ax: Axes, **options: Unpack[FigureOptions]) -> Axes: ...
 
 
 @overload
-def plot_regimes(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray") -> "AxesArray": ...
+def plot_regimes(
+    ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray", **options: Unpack[FigureOptions]
+) -> "AxesArray": ...
 
 
-def plot_regimes(ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" = None) -> "Axes | AxesArray":
+@with_options
+def plot_regimes(
+    ds: xr.Dataset,
+    ax: "Axes | Sequence[Axes] | AxesArray | None" = None,
+    **options: Unpack[FigureOptions],
+) -> "Axes | AxesArray":
     """Draw a regime map: stops per cycle in discrete colours, with the boundaries over it.
 
     Contacts with a spring are coloured by their slip reversals or slips.  Of several contacts the regime of
@@ -283,13 +302,14 @@ def plot_regimes(ds: xr.Dataset, ax: "Axes | Sequence[Axes] | AxesArray | None" 
     by = counted(ds)
     if "regime" not in ds and by.variable not in ds:
         raise InputError("a map must hold regime or stops_per_cycle to be drawn; got neither")
-    panels = panels_of(ds)
+    ds, grids = in_view(ds)
+    panels = current().chosen(panels_of(ds))
     title = title_of_map(ds)
     axes = panel_grid(len(panels), title) if ax is None else given_axes(ax, len(panels), "one for each mu")
-    cells = [cells_of(panel, by) for panel in panels]
+    cells = [cells_of(panel, by, grids) for panel in panels]
     others: list[Handle] = []
     for panel_ax, panel, part in zip(axes, panels, cells, strict=True):
-        others += draw_map(panel_ax, panel, part) + _ring(panel_ax, part)
+        others += draw_map(panel_ax, panel, part) + _ring(panel_ax, part) + mark_point(panel_ax)
     handles = _class_handles(panels, cells) + distinct(others)
     if ax is None:
         figure = axes[0].figure

@@ -1,6 +1,6 @@
 """Pictures of probabilities: the share of the samples of an uncertain structure in each regime."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 import xarray as xr
@@ -8,10 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
+from ..drawing import with_options
 from ..grids import Grid
-from ..panels import Handle, distinct, halo, legend_below, name_axes, table_of_panels
+from ..options import FigureOptions, current
+from ..panels import Handle, distinct, grid_of_panels, halo, legend_below, name_axes
 from ..second_axes import frequency_on_top, on_the_right
 from ..shapes import check_holds, to_draw
+from ..sizes import points
 from ..words import system_words
 
 if TYPE_CHECKING:
@@ -27,7 +30,8 @@ _BOUNDARIES = {"beta_lim": "-", "beta_stick": (0, (4, 2))}
 _SYMBOLS = {"beta_lim": r"$\beta_\mathrm{lim}$", "beta_stick": r"$\beta_\mathrm{stick}$"}
 
 
-def plot_shares(ds: xr.Dataset) -> "AxesArray":
+@with_options
+def plot_shares(ds: xr.Dataset, **options: Unpack[FigureOptions]) -> "AxesArray":
     """Draw the result of `shares`: one panel for each mu and regime, with quantiles of the boundaries.
 
     Parameters
@@ -50,23 +54,25 @@ def plot_shares(ds: xr.Dataset) -> "AxesArray":
     seen = share["outcome"].values[(share.values > 0.0).any(axis=(1, 2, 3))].tolist()
     there = [name for name in _OUTCOMES if name in (seen or share["outcome"].values)]
     title = str(ds.attrs.get("title", ""))
-    axes = table_of_panels(ds.sizes["mu"], len(there), 3.6, title)
+    panels = current().chosen((m, name) for m in range(ds.sizes["mu"]) for name in there)
+    columns = current().columns(min(len(there), len(panels)))
+    axes = grid_of_panels(len(panels), columns, 3.6, title)
     r, beta = Grid(ds["r"].values), Grid(ds["beta"].values)
     handles: list[Handle] = []
-    for m, row in enumerate(axes):
-        for ax, name in zip(row, there, strict=True):
-            mesh = _fill(ax, share.sel(outcome=name).isel(mu=m).values, r, beta)
-            name_axes(ax, r, float(ds["mu"][m]))
-            frequency_on_top(ax, ds)
-            on_the_right(ax, ds, "force")
-            ax.set_title(f"{name.replace('_', ' ')}, {ax.get_title()}", fontsize=10)
-            handles += _lines(ax, ds.isel(mu=m), r, beta)
-    figure = axes[0, 0].figure
+    for ax, (m, name) in zip(axes, panels, strict=True):
+        mesh = _fill(ax, share.sel(outcome=name).isel(mu=m).values, r, beta)
+        name_axes(ax, r, float(ds["mu"][m]))
+        frequency_on_top(ax, ds)
+        on_the_right(ax, ds, "force")
+        words = f"{name.replace('_', ' ')}, {ax.get_title()}"
+        ax.set_title(words, fontsize=points(10.0, "axes.titlesize"))
+        handles += _lines(ax, ds.isel(mu=m), r, beta)
+    figure = axes[0].figure
     assert isinstance(figure, Figure)
     figure.colorbar(mesh, ax=axes, label="share of the samples", shrink=0.8)
     words = f"{ds.attrs.get('samples', 0):,} samples around {system_words(ds)}"
     legend_below(figure, distinct(handles), words)
-    return axes.ravel()
+    return axes
 
 
 def _fill(ax: Axes, values: np.ndarray, r: Grid, beta: Grid) -> QuadMesh:

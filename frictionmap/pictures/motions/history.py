@@ -1,7 +1,7 @@
 """Pictures of one steady state in time."""
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 import xarray as xr
@@ -12,11 +12,14 @@ from matplotlib.patches import Patch
 from ... import regimes
 from ...errors import InputError
 from ...files.stored import stored_general
+from ..drawing import with_options
 from ..marks import spread
+from ..options import FigureOptions, current
 from ..palette import CLASSES, LINES, STUCK, Shade
 from ..panels import Handle, given_axes, halo, legend_below, new_figure, title_figure
 from ..second_axes import in_brackets, on_the_right, time_on_top
 from ..shapes import check_holds, check_range, to_draw
+from ..sizes import points
 from ..words import caption, load_of, moves_base, name_of_contact
 from .loops import draw_loop
 from .traces import Trace, levels_of, load_trace, traces_of
@@ -33,6 +36,9 @@ _BAR = 0.3
 
 #: Width of the traces, and of the hysteresis loop beside them [inch].
 _WIDTH, _LOOP_WIDTH = 7.2, 4.4
+
+#: Name of the panel beside the traces.
+_LOOP = "hysteresis loop"
 
 #: Labels next to lines: least distance as a share of the panel's height, and largest number.
 _GAP, MOST_LABELS = 0.09, 11
@@ -72,7 +78,7 @@ def _label_beside(ax: Axes, places: np.ndarray, texts: Sequence[str], colours: S
     for height, text, colour in zip(beside, texts, colours, strict=True):
         ax.annotate(
             text, (1.0, height), xycoords="axes fraction", textcoords="offset points",
-            va="center", fontsize=8, color=colour, **aside,
+            va="center", fontsize=points(8.0), color=colour, **aside,
         )  # fmt: skip
 
 
@@ -310,6 +316,8 @@ def _panels(ds: xr.Dataset, traces: Sequence[Trace]) -> dict[str, float]:
 def _new_axes(heights: Sequence[float], beside: bool) -> "AxesArray":
     """Create a figure with panels from top to bottom, and one beside them if there is a loop."""
     height = 0.78 * sum(heights) + 0.9
+    if beside and (not heights or current().columns(2) == 1):
+        return _with_loop_below(heights)
     if not beside:
         figure = new_figure(_WIDTH, height)
         return np.atleast_1d(figure.subplots(len(heights), 1, sharex=True, height_ratios=heights))
@@ -325,6 +333,19 @@ def _new_axes(heights: Sequence[float], beside: bool) -> "AxesArray":
     return np.array([*traces, loop], dtype=object)
 
 
+def _with_loop_below(heights: Sequence[float]) -> "AxesArray":
+    """Create a figure with panels from top to bottom, and that of the loop below them."""
+    figure = new_figure(_WIDTH, 0.78 * sum(heights) + 0.9 + _LOOP_WIDTH)
+    traces: list[Axes] = []
+    loop = _LOOP_WIDTH / 0.78
+    grid = figure.add_gridspec(len(heights) + 1, 1, height_ratios=(*heights, loop))
+    for row in range(len(heights)):
+        traces.append(figure.add_subplot(grid[row, 0], sharex=traces[0] if traces else None))
+    for ax in traces[:-1]:
+        ax.tick_params(labelbottom=False)
+    return np.array([*traces, figure.add_subplot(grid[-1, 0])], dtype=object)
+
+
 def check_can_be_seen(ds: xr.Dataset, names: Iterable[str]) -> None:
     """Refuse a single instant, and variables beyond the range of an axis."""
     if ds.sizes["tau"] < 2:
@@ -332,7 +353,12 @@ def check_can_be_seen(ds: xr.Dataset, names: Iterable[str]) -> None:
     check_range(ds, names)
 
 
-def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":
+@with_options
+def plot_response(
+    ds: xr.Dataset,
+    ax: "Sequence[Axes] | AxesArray | None" = None,
+    **options: Unpack[FigureOptions],
+) -> "AxesArray":
     """Draw one steady state in time: load, motion in the contact, every mass, friction force.
 
     Stops are shaded and their starts marked; masses are numbered; the levels of kinetic and static friction
@@ -364,13 +390,15 @@ def plot_response(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None
     traces = traces_of(ds)
     heights = _panels(ds, traces)
     elastic = [trace for trace in traces if trace.elastic]
-    names = [*heights, *["hysteresis loop"] * bool(elastic)]
+    names = current().chosen([*heights, *[_LOOP] * bool(elastic)])
+    heights = {name: height for name, height in heights.items() if name in names}
+    elastic = elastic if _LOOP in names else []
     if ax is None:
         axes = _new_axes([*heights.values()], bool(elastic))
     else:
         axes = given_axes(ax, len(names), f"for {', '.join(names)}")
     over_tau, beside = axes[: len(heights)], axes[len(heights) :]
-    handles = _draw_traces(dict(zip(heights, over_tau, strict=True)), ds, traces)
+    handles = _draw_traces(dict(zip(heights, over_tau, strict=True)), ds, traces) if heights else []
     for one in beside:
         draw_loop(one, ds, elastic)
     if ax is None:
@@ -385,13 +413,16 @@ def _draw_traces(axes: dict[str, Axes], ds: xr.Dataset, traces: Sequence[Trace])
     handles = _mark_stops([*axes.values()], ds, turns, traces)
     if "load" in axes:
         _draw_load(axes["load"], ds, turns)
-    handles += _draw_contacts(axes["z"], ds, turns, traces)
+    if "z" in axes:
+        handles += _draw_contacts(axes["z"], ds, turns, traces)
     if "stuck" in axes:
         _draw_stuck(axes["stuck"], turns, traces)
     if "masses" in axes:
         _draw_masses(axes["masses"], ds, turns)
-    _draw_friction(axes["friction"], ds, turns, traces)
-    first, last = next(iter(axes.values())), axes["friction"]
+    if "friction" in axes:
+        _draw_friction(axes["friction"], ds, turns, traces)
+    over_tau = [*axes.values()]
+    first, last = over_tau[0], over_tau[-1]
     last.set_xlabel(r"$\tau/\pi$")
     last.set_xlim(turns[0], turns[-1])
     time_on_top(first, ds)

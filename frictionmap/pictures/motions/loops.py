@@ -6,6 +6,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from ..second_axes import length_on_top, on_the_right
+from ..sizes import points
 from .traces import Trace
 
 #: Colour of the only contact.
@@ -18,8 +19,7 @@ def draw_loop(ax: Axes, ds: xr.Dataset, traces: Sequence[Trace]) -> None:
         ax.plot(trace.z, trace.friction, color=trace.colour if trace.label else CONTACT_COLOUR, linewidth=1.2)
     ax.set_xlabel(r"motion in the contact $z$ / $(P/k_1)$")
     ax.set_ylabel("friction / $P$")
-    ax.set_title(
-        "hysteresis loop" if all(trace.elastic for trace in traces) else "friction loop", fontsize=10
-    )
+    title = "hysteresis loop" if all(trace.elastic for trace in traces) else "friction loop"
+    ax.set_title(title, fontsize=points(10.0, "axes.titlesize"))
     length_on_top(ax, ds, "motion in the contact")
     on_the_right(ax, ds, "force", "friction")

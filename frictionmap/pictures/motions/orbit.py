@@ -1,7 +1,7 @@
 """Pictures of one steady state without time axis: phase portrait, friction loop, harmonics."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 import xarray as xr
@@ -9,10 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from ..curves.harmonics import LOWEST, levels_of
+from ..drawing import with_options
+from ..options import FigureOptions, current
 from ..palette import LINES
-from ..panels import Handle, given_axes, legend_below, table_of_panels
+from ..panels import Handle, given_axes, grid_of_panels, legend_below
 from ..second_axes import length_on_top
 from ..shapes import check_holds, to_draw
+from ..sizes import points
 from ..words import caption
 from .history import MOST_LABELS, check_can_be_seen, is_a_mass, title_of
 from .loops import CONTACT_COLOUR, draw_loop
@@ -36,7 +39,7 @@ def _draw_portrait(ax: Axes, ds: xr.Dataset) -> None:
         ax.plot(x, v, color=colour, linewidth=1.2)
     ax.set_xlabel(r"displacement $x$ / $(P/k_1)$")
     ax.set_ylabel(r"velocity $x'$ / $(P/k_1)$")
-    ax.set_title("phase portrait", fontsize=10)
+    ax.set_title("phase portrait", fontsize=points(10.0, "axes.titlesize"))
     length_on_top(ax, ds, "displacement")
 
 
@@ -71,7 +74,7 @@ def _draw_spectrum(ax: Axes, ds: xr.Dataset) -> None:
     ax.set_ylim(LOWEST, None)
     ax.set_xlabel("harmonic $n$")
     ax.set_ylabel("dB re first harmonic")
-    ax.set_title("harmonics", fontsize=10)
+    ax.set_title("harmonics", fontsize=points(10.0, "axes.titlesize"))
 
 
 def _handles(ds: xr.Dataset) -> list[Handle]:
@@ -87,7 +90,12 @@ def _handles(ds: xr.Dataset) -> list[Handle]:
     ]
 
 
-def plot_orbit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -> "AxesArray":
+@with_options
+def plot_orbit(
+    ds: xr.Dataset,
+    ax: "Sequence[Axes] | AxesArray | None" = None,
+    **options: Unpack[FigureOptions],
+) -> "AxesArray":
     """Draw one steady state without time axis.
 
     The panels show velocity over displacement of every mass, friction over the motion in the contact and,
@@ -116,8 +124,10 @@ def plot_orbit(ds: xr.Dataset, ax: "Sequence[Axes] | AxesArray | None" = None) -
     draw = [_draw_portrait, _draw_loops]
     if "displacement_harmonic" in ds:
         draw.append(_draw_spectrum)
+    draw = current().chosen(draw)
     if ax is None:
-        axes = table_of_panels(1, len(draw), 3.6, title_of(ds)).ravel()
+        columns = current().columns(len(draw))
+        axes = grid_of_panels(len(draw), columns, 3.6, title_of(ds))
     else:
         axes = given_axes(ax, len(draw), "one for each panel")
     for one, panel in zip(axes, draw, strict=True):

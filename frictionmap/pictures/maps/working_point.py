@@ -1,0 +1,39 @@
+"""A working point on a map, and the box of its uncertainty."""
+
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
+
+from ...errors import InputError
+from ..options import current
+from ..panels import Handle, halo
+
+_MARK: dict[str, Any] = {
+    "marker": "X", "markersize": 9.0, "markerfacecolor": "white", "markeredgecolor": "black",
+    "markeredgewidth": 1.1, "linestyle": "none",
+}  # fmt: skip
+_BOX: dict[str, Any] = {"facecolor": "none", "edgecolor": "black", "linewidth": 1.1}
+
+
+def mark_point(ax: Axes) -> list[Handle]:
+    """Draw the point and the box of the options, if given; return entries for the legend."""
+    point, box = current().point, current().box
+    if point is None:
+        return []
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    if not (left <= point[0] <= right and low <= point[1] <= high):
+        raise InputError(
+            f"point must lie within r = {left:.4g} to {right:.4g} and beta = {low:.4g} to {high:.4g}; "
+            f"got {point[0]:g}, {point[1]:g}"
+        )
+    handles: list[Handle] = []
+    if box is not None:
+        corner = point[0] - box[0], point[1] - box[1]
+        sides = 2.0 * box[0], 2.0 * box[1]
+        ax.add_patch(Rectangle(corner, *sides, zorder=4.4, path_effects=halo(2.6), **_BOX))
+        handles.append(Patch(label=f"uncertainty: r ± {box[0]:g}, β ± {box[1]:g}", **_BOX))
+    ax.plot(*point, zorder=4.5, **_MARK)
+    label = f"working point: r = {point[0]:g}, β = {point[1]:g}"
+    return [Line2D([], [], label=label, **_MARK), *handles]

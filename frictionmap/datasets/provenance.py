@@ -155,7 +155,7 @@ def _general_keys(system: "System") -> dict[str, object]:
         found |= {"contact": None, "contact_masses": (1,)}
         found["contacts"] = [_contact_keys(one) for one in contacts_of(system)]
     else:
-        one = _contact_keys(general.groups[0].first)
+        one = _contact_keys(contacts_of(system)[0])
         found["contact_stiffness"] = one.get("stiffness")
         found["wall_velocity"] = one.get("wall_velocity")
         found["normal_load"] = one.get("normal_load")
@@ -179,6 +179,7 @@ def _contact_keys(contact: "Contact") -> dict[str, object]:
     own = {
         key: getattr(contact, key) for key in ("name", "ratio", "force", "mu", "stiffness", "wall_velocity")
     }
+    own = {key: list(value) if isinstance(value, tuple) else value for key, value in own.items()}
     normal = [{"n": n, "re": value.real, "im": value.imag} for n, value in contact.nu.items()]
     found = {"kind": contact.kind, "masses": list(contact.masses), **own, "normal_load": normal or None}  # type: ignore[arg-type]
     return {

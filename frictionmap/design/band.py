@@ -77,7 +77,7 @@ def natural_frequencies(system: System) -> np.ndarray:
     vectors = np.atleast_2d(modes.contact)
     springs: list[float | None] = [None]
     if general is not None:
-        vectors, springs = general.vectors, [group.first.stiffness for group in general.groups]
+        vectors, springs = general.vectors, [group.stiffness for group in general.groups]
     found = []
     for pattern in _patterns(len(springs)):
         rigid = [j for j in pattern if springs[j] is None]

@@ -153,6 +153,9 @@ _HARMONIC = {
 }  # fmt: skip
 _NORMAL = several(table({name: valid for name, valid in _HARMONIC.items() if name != "mass"}, ("n",)))
 
+_ELEMENTS = several(number(above=0.0), maxItems=MOST_CONTACTS)
+_SPRING = either(number(above=0.0), _ELEMENTS)
+
 #: Keys of [system] for several contacts, springs in contacts, belts and periodic loads.
 GENERAL_KEYS = (
     Key(
@@ -187,8 +190,9 @@ GENERAL_KEYS = (
     Key(
         "contact_stiffness",
         "stiffness of a spring in series with the contact, over k_1; without it: rigid",
-        number(above=0.0),
+        _SPRING,
         example="3.0",
+        words="a number > 0, or a list of them: a bank of elements that share the friction equally",
     ),
     Key("wall_velocity", "velocity of the wall (a belt) over omega P/k_1", number(), example="0.2"),
     Key(
@@ -206,11 +210,11 @@ GENERAL_KEYS = (
                 {
                     "kind": word(*CONTACTS),
                     "masses": several(_DOF, maxItems=2),
-                    "ratio": number(least=0.0),
-                    "force": number(least=0.0),
+                    "ratio": either(number(least=0.0), _ELEMENTS),
+                    "force": either(number(least=0.0), _ELEMENTS),
                     "mu": number(least=1.0),
                     "name": _NAME,
-                    "stiffness": number(above=0.0),
+                    "stiffness": _SPRING,
                     "wall_velocity": number(),
                     "normal_load": _NORMAL,
                 },
@@ -218,7 +222,8 @@ GENERAL_KEYS = (
             maxItems=MOST_CONTACTS,
         ),
         example='[{ kind = "fixed-wall", masses = [1] }, { kind = "between-masses", masses = [1, 2] }]',
-        words="a list of { kind, masses, ratio or force, mu, name, stiffness, wall_velocity, normal_load }",
+        words="a list of { kind, masses, ratio or force, mu, name, stiffness, wall_velocity, normal_load }; "
+        "lists of stiffness and ratio or force make a bank of elements",
     ),
 )
 

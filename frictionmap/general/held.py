@@ -87,7 +87,7 @@ def held_ranges(system: System, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     for j, group in enumerate(general.groups):
         if group.base:
             z[:, j] -= np.array([general.base.get(int(n), 0.0) for n in orders])
-        if group.first.stiffness is None:
+        if group.stiffness is None:
             z[:, j] = 0.0
     both = np.concatenate((z, x), axis=1)
     finite = np.isfinite(both).all(axis=-1)

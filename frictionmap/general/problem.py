@@ -120,7 +120,7 @@ def static_offset(system: System) -> tuple[np.ndarray, np.ndarray]:
 
 def springs(general: General) -> np.ndarray:
     """Stiffness of every contact, 0 where it is rigid, (N,)."""
-    return np.array([group.first.stiffness or 0.0 for group in general.groups])
+    return np.array([group.stiffness or 0.0 for group in general.groups])
 
 
 def _refuse_low(rates: np.ndarray, r: np.ndarray) -> None:

@@ -1,7 +1,7 @@
 """A friction contact of a system that has several, or one with a spring, a belt or a varying normal load."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -12,7 +12,7 @@ from .periodic_load import scalar_harmonics
 
 CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 
-#: Contacts of a system at most.
+#: Contacts of a system at most, each element of a bank as one.
 MOST_CONTACTS = 8
 
 
@@ -27,16 +27,18 @@ class Contact:
         base, or between two masses.
     masses : int, str or sequence of them
         The mass in contact, or the two masses, A < B, counted from 1.
-    ratio : float
-        Its friction force is this multiple of the grid's beta [-], >= 0.
-    force : float, optional
+    ratio : float or sequence of float
+        Its friction force is this multiple of the grid's beta [-], >= 0.  The elements of a bank share it
+        equally; a list, > 0, has one value per element.
+    force : float or sequence of float, optional
         Instead of `ratio`: its own friction ratio F/P [-], >= 0, which the grid does not change.
     mu : float, optional
         Its static-to-kinetic friction ratio [-], >= 1; default: that of the grid.
     name : str, optional
         Default: the kind and the masses, such as "between-masses 2-3".
-    stiffness : float, optional
+    stiffness : float or sequence of float, optional
         Stiffness k_t/k_1 [-] of a spring in series with the slider, > 0 (Jenkins element); default: rigid.
+        A list makes a bank of as many elements in parallel (Iwan model).
     wall_velocity : float
         Velocity of the wall over omega P/k_1 [-]; "fixed-wall" only.
     normal_load : mapping or sequence, optional
@@ -51,11 +53,11 @@ class Contact:
 
     kind: Literal["fixed-wall", "joined-base-wall", "between-masses"] = "fixed-wall"
     masses: int | str | Sequence[int | str] = (1,)
-    ratio: float | None = None
-    force: float | None = None
+    ratio: float | Sequence[float] | None = None
+    force: float | Sequence[float] | None = None
     mu: float | None = None
     name: str | None = None
-    stiffness: float | None = None
+    stiffness: float | Sequence[float] | None = None
     wall_velocity: float = 0.0
     normal_load: Any = None
     nu: Mapping[int, complex] = field(init=False, repr=False, compare=False, default_factory=dict)
@@ -73,9 +75,10 @@ class Contact:
             ("stiffness", {"above": 0.0}),
         ):  # fmt: skip
             if getattr(self, name) is not None:
-                self._set(name, checks.number(getattr(self, name), name, **ends))
+                self._set(name, numbers(getattr(self, name), name, **ends))
         if self.ratio is None and self.force is None:
             self._set("ratio", 1.0)
+        self._check_bank()
         self._set("wall_velocity", checks.number(self.wall_velocity, "wall_velocity"))
         if self.wall_velocity and self.kind != "fixed-wall":
             raise InputError(
@@ -96,6 +99,22 @@ class Contact:
     def _set(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
 
+    def _check_bank(self) -> None:
+        """Refuse friction per element without as many elements."""
+        for name in ("ratio", "force"):
+            given = getattr(self, name)
+            if not isinstance(given, tuple):
+                continue
+            if not isinstance(self.stiffness, tuple):
+                raise InputError(
+                    f"{name} must be one number unless stiffness is a list, with one value per element; "
+                    f"got {list(given)}"
+                )
+            if len(given) != len(self.stiffness):
+                raise InputError(
+                    f"{name} must have as many values as stiffness ({len(self.stiffness)}); got {len(given)}"
+                )
+
     def _check_normal_load(self) -> None:
         if self.nu and self.stiffness is not None:
             raise InputError(
@@ -113,6 +132,37 @@ class Contact:
     def label(self) -> str:
         """Its name, or its kind and masses."""
         return self.name or f"{self.kind} {'-'.join(map(str, self.masses))}"  # type: ignore[arg-type]
+
+    @property
+    def elements(self) -> tuple["Contact", ...]:
+        """The contacts of one spring that a bank consists of; the contact itself if it is none."""
+        if not isinstance(self.stiffness, tuple):
+            return (self,)
+        count = len(self.stiffness)
+        return tuple(
+            replace(
+                self, name=f"{self.label}, element {k + 1}", stiffness=self.stiffness[k],
+                ratio=_share(self.ratio, k, count), force=_share(self.force, k, count),
+            )
+            for k in range(count)
+        )  # fmt: skip
+
+
+def _share(friction: Any, k: int, count: int) -> float | None:
+    """Friction of element k of a bank."""
+    if friction is None:
+        return None
+    return friction[k] if isinstance(friction, tuple) else friction / count
+
+
+def numbers(given: Any, name: str, **ends: float) -> float | tuple[float, ...]:
+    """Check a number in a range, or a list of numbers > 0."""
+    listed = isinstance(given, Sequence) and not isinstance(given, (str, bytes))
+    if not listed and not (checks.is_array(given) and checks.array(given, name).ndim):
+        return checks.number(given, name, **ends)
+    if len(given) == 0:
+        raise InputError(f"{name} must have at least one value; got none")
+    return tuple(checks.number(one, f"{name}[{k}]", above=0.0) for k, one in enumerate(given))
 
 
 def least_value(harmonics: Mapping[int, complex]) -> float:

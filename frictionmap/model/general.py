@@ -16,7 +16,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from ..structures.dofs import Dofs
-from .contact import Contact, checked_contacts
+from .contact import MOST_CONTACTS, Contact, checked_contacts
 from .periodic_load import (
     DEFAULT_HARMONICS,
     ENTRY_KEYS,
@@ -64,7 +64,7 @@ class Definition(Protocol):
     def contacts(self) -> Any: ...
 
     @property
-    def contact_stiffness(self) -> float | None: ...
+    def contact_stiffness(self) -> float | Sequence[float] | None: ...
 
     @property
     def wall_velocity(self) -> float: ...
@@ -102,7 +102,7 @@ class Definition(Protocol):
 
 @dataclass(frozen=True)
 class Group:
-    """A contact, or several parallel ones that act as one."""
+    """A contact, several parallel rigid ones that act as one, or an element of a bank."""
 
     members: tuple[Contact, ...]
     vector: np.ndarray  # (n,) c
@@ -114,6 +114,11 @@ class Group:
         return self.members[0]
 
     @property
+    def stiffness(self) -> float | None:
+        """Stiffness of its spring over k1; None if it is rigid."""
+        return self.first.stiffness  # type: ignore[return-value]
+
+    @property
     def name(self) -> str:
         """Names of the members."""
         return " + ".join(member.label for member in self.members)
@@ -123,7 +128,7 @@ class Group:
         kinetic: Any = 0.0
         static: Any = 0.0
         for one in self.members:
-            own = one.ratio * beta if one.force is None else one.force  # type: ignore[operator]
+            own: Any = one.ratio * beta if one.force is None else one.force  # type: ignore[operator]
             kinetic = kinetic + own
             elastic = one.stiffness is not None
             static = static + own * (1.0 if elastic else mu if one.mu is None else one.mu)
@@ -158,7 +163,7 @@ class General:
     @property
     def elastic(self) -> np.ndarray:
         """Whether each contact has a spring, (N,) bool."""
-        return np.array([group.first.stiffness is not None for group in self.groups])
+        return np.array([group.stiffness is not None for group in self.groups])
 
     @property
     def merged(self) -> str:
@@ -211,7 +216,7 @@ def refuse_general(system: Definition, what: str) -> None:
 
 
 def contacts_of(system: Definition) -> tuple[Contact, ...]:
-    """The contacts of a system, in either form."""
+    """The contacts of a system, in either form; banks as one contact each."""
     if system.contacts is not None:
         return system.contacts
     own = {
@@ -257,10 +262,14 @@ def vector_of(contact: Contact, dofs: Dofs, name: str) -> np.ndarray:
 
 
 def _groups(system: Definition) -> tuple[Group, ...]:
-    """The contacts of a system, parallel rigid ones merged."""
+    """The contacts of a system, banks as their elements, parallel rigid ones merged."""
     found: list[Group] = []
     contacts = contacts_of(system)
-    for k, contact in enumerate(contacts, 1):
+    elements = [(k, element) for k, one in enumerate(contacts, 1) for element in one.elements]
+    if len(elements) > MOST_CONTACTS:
+        key = "contact_stiffness" if system.contacts is None else "contacts"
+        raise InputError(f"{key} must have at most {MOST_CONTACTS} elements in all; got {len(elements)}")
+    for k, contact in elements:
         name = f"contacts[{k}]" if system.contacts is not None else "contact"
         base = int(contact.kind == "joined-base-wall")
         if base and system.excitation != "base":
@@ -286,7 +295,7 @@ def _groups(system: Definition) -> tuple[Group, ...]:
 
 def _refuse_loops(groups: Sequence[Group]) -> None:
     """Refuse rigid contacts whose vectors are linearly dependent, by name."""
-    rigid = [k for k, group in enumerate(groups) if group.first.stiffness is None]
+    rigid = [k for k, group in enumerate(groups) if group.stiffness is None]
     if not rigid:
         return
     w = np.array([groups[k].vector for k in rigid])

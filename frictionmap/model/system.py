@@ -16,7 +16,7 @@ from ..structures.craig_bampton import Reduce, checked_reduce
 from ..structures.dofs import Dofs
 from ..structures.reduction import Reduction, reduce_structure
 from ..structures.structure import Structure, read_structure
-from .contact import CONTACTS, Contact
+from .contact import CONTACTS, Contact, numbers
 from .coupled_modes import CoupledModel, coupled_model
 from .decoupling import Decoupling
 from .general import (
@@ -219,7 +219,7 @@ class System:
     rayleigh: Sequence[float] | None = None
     decouple: float | None = None
     contacts: Sequence[Contact | Mapping[str, Any]] | None = None
-    contact_stiffness: float | None = None
+    contact_stiffness: float | Sequence[float] | None = None
     wall_velocity: float = 0.0
     normal_load: Any = None
     load_harmonics: Mapping[int, Any] | Sequence[Mapping[str, Any]] | PeriodicLoad | None = None
@@ -236,6 +236,8 @@ class System:
             self._check_chain()
         else:
             self._check_matrices()
+        if self.contact_stiffness is not None:
+            self._set("contact_stiffness", numbers(self.contact_stiffness, "contact_stiffness", above=0.0))
         self._set("contacts", check_contacts(self))
         self._check_contact()
         self._check_load()

@@ -117,6 +117,51 @@ def test_an_elastic_contact(tmp_path):
     assert not {"stops_per_cycle", "beta_lim", "beta_stick"} & set(ds.data_vars)
 
 
+BANKS = [
+    ({"stiffness": [3.0, 0.7, 1.1], "ratio": [0.2, 0.5, 0.3]}, [{"ratio": b} for b in (0.2, 0.5, 0.3)]),
+    ({"stiffness": [3.0, 0.7, 1.1], "ratio": 0.8}, [{"ratio": 0.8 / 3}] * 3),
+    ({"stiffness": np.array([3.0, 0.7, 1.1])}, [{"ratio": 1 / 3}] * 3),
+    ({"stiffness": (3.0, 0.7, 1.1), "force": [0.1, 0.2, 0.3]}, [{"force": b} for b in (0.1, 0.2, 0.3)]),
+]
+
+
+@pytest.mark.parametrize(("given", "written_out"), BANKS)
+def test_a_bank_is_its_elements_to_the_bit(given, written_out):
+    """With a rigid contact beside it; the elements count as contacts, and have names."""
+    wall = fm.Contact("fixed-wall", 2, ratio=0.4)
+    chain = {"mass_ratios": [1.0, 0.8], "stiffness_ratios": [1.0, 0.6], "damping_ratios": 0.02}
+    bank = fm.Contact(masses=1, name="joint", **given)
+    elements = [
+        fm.Contact(masses=1, name=f"joint, element {k}", stiffness=kt, **own)
+        for k, (kt, own) in enumerate(zip((3.0, 0.7, 1.1), written_out, strict=True), 1)
+    ]
+    asked = ["regime", "slips_per_cycle", "contact_amplitude", "amplitude", "elastic_fraction"]
+    one, other = (
+        fm.sweep(fm.System(contacts=contacts, **chain), [0.5, 0.9], [0.3, 1.0], outputs=asked)
+        for contacts in ([bank, wall], [*elements, wall])
+    )
+    assert one.contact_name.values.tolist()[1] == "joint, element 2"
+    assert one.drop_attrs().equals(other.drop_attrs())
+    assert hash(bank) == hash(fm.Contact(masses=1, name="joint", **given))
+
+
+def test_a_bank_in_the_form_of_one_contact(tmp_path):
+    """beta is shared equally; the file says what makes it again."""
+    text = BELT.replace("wall_velocity = 0.3", "contact_stiffness = [3.0, 0.7]")
+    ds = written(tmp_path, text, "map")
+    entry = "[[system.contacts]]\nmasses = [1]\nratio = 0.5\nstiffness = "
+    head, grid = BELT.replace("wall_velocity = 0.3\n", "").split("[grid]")
+    both = written(tmp_path, f"{head}{entry}3.0\n{entry}0.7\n[grid]{grid}", "map")
+    bank = written(tmp_path, f"{head}{entry.replace('0.5', '[0.5, 0.5]')}[3.0, 0.7]\n[grid]{grid}", "map")
+    assert ds.slips_per_cycle.equals(both.drop_vars("contact_name").assign_coords(ds.coords).slips_per_cycle)
+    for one in (ds, bank):
+        (tmp_path / "again.toml").write_text(one.attrs["config"])
+        again = fm.load_config(tmp_path / "again.toml")
+        same = fm.sweep(again.system, again.r, again.beta, again.mu)
+        assert same.equals(one[list(same.data_vars)])
+        assert ds.contact_name.values.tolist() == ["fixed-wall 1, element 1", "fixed-wall 1, element 2"]
+
+
 def test_friction_of_one_contact_as_a_further_axis(tmp_path):
     text = TWO_CONTACTS + '[axes]\n"contacts[2].force" = [0.1, 0.2]\n'
     ds = written(tmp_path, text, "map")
@@ -205,6 +250,24 @@ REFUSED = [
     ({"contacts": [WALL], "contact": "joined-base-wall"}, "cannot use contact with contacts"),
     ({"contacts": LOOP, **THREE}, "cannot use contacts 1, 2, 3 together: they close a loop"),
     ({"contact_stiffness": -1.0}, "stiffness must be > 0; got -1"),
+    ({"contact_stiffness": [1.0, 0.0]}, "contact_stiffness[1] must be > 0; got 0"),
+    ({"contact_stiffness": []}, "contact_stiffness must have at least one value; got none"),
+    ({"contact_stiffness": [1.0] * 9}, "contact_stiffness must have at most 8 elements in all; got 9"),
+    ({"contact_stiffness": [1.0, 2.0], "normal_load": {2: 0.1}}, "cannot use normal_load with stiffness"),
+    ({"contacts": [{**WALL, "ratio": [1, 2]}]}, "contacts[1].ratio must be one number unless stiffness is"),
+    (
+        {"contacts": [{**WALL, "stiffness": [1, 2], "ratio": [1]}]},
+        "contacts[1].ratio must have as many values as stiffness (2); got 1",
+    ),
+    ({"contacts": [{**WALL, "stiffness": [1, -2]}]}, "contacts[1].stiffness[1] must be > 0; got -2"),
+    (
+        {"contacts": [{**WALL, "stiffness": [1, 2], "force": [1, 0]}]},
+        "contacts[1].force[1] must be > 0; got 0",
+    ),
+    (
+        {"contacts": [{**WALL, "stiffness": [1.0] * 5}, {**WALL, "stiffness": [2.0] * 4}]},
+        "contacts must have at most 8 elements in all; got 9",
+    ),
     ({"contact_stiffness": 1.0, "normal_load": {2: 0.1}}, "cannot use normal_load with stiffness"),
     ({"normal_load": {1: 1.5}}, "normal_load must leave 1 + normal_load(tau) >= 0"),
     ({"wall_velocity": 0.1, "contact": "joined-base-wall"}, "wall_velocity must be 0 for joined-base-wall"),

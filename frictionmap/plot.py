@@ -51,6 +51,8 @@ FORMATS = (".png", ".pdf", ".svg")
 
 _FEATURES = ("natural_frequency", "held_frequency", "invariant_point")
 
+_BORDERS = ("border_r", "border_beta")
+
 _GENERAL_BOUNDARIES = ("beta_stick_contact", "beta_noslip", "no_stop_begin", "no_stop_end")
 
 #: What pictures are made of, by the kind of file: no other variable need be read.
@@ -59,10 +61,10 @@ PICTURED = {
         (
             *("regime", "contact_regime", "status", "also_reachable", "period"),
             *("stops_per_cycle", "slips_per_cycle", "slip_reversals_per_cycle"),
-            *(*BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES),
+            *(*_BORDERS, *BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES),
         )
     ),
-    "boundaries": frozenset(("border_r", "border_beta", *BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES)),
+    "boundaries": frozenset((*_BORDERS, *BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES)),
     "response": frozenset(
         (
             *("regime", "contact_regime", "stops_per_cycle", "slips_per_cycle", "period", "status"),

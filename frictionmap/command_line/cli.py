@@ -53,11 +53,19 @@ def _map(options: Options, config: "Config", output: "Output") -> None:
     def run(progress: "Progress") -> "xr.Dataset":
         if cells >= _MANY and not options.quiet:
             progress.say(f"{cells:,} cells need about {_cost(options, config)}", always=True)
-        return sweep(config.system, config.r, config.beta, config.mu, solver=config.solver,
-                     axes=config.variations, threads=options.threads, progress=progress,
-                     units=config.units)  # fmt: skip
+        ds = sweep(config.system, config.r, config.beta, config.mu, solver=config.solver,
+                   axes=config.variations, threads=options.threads, progress=progress,
+                   units=config.units)  # fmt: skip
+        return _with_borders(ds, config) if config.borders else ds
 
     _fill_cells(options, config, output, f"map of {cells:,} cells", run)
+
+
+def _with_borders(ds: "xr.Dataset", config: "Config") -> "xr.Dataset":
+    """Add the borders between numbers of stops in the window of [grid]."""
+    from ..stop_counts.dataset import with_borders
+
+    return with_borders(ds, config.system, config.beta, config.units)
 
 
 def _curves(options: Options, config: "Config", output: "Output") -> None:
@@ -111,10 +119,8 @@ def _boundaries(options: Options, config: "Config", output: "Output") -> None:
     from ..theory.boundaries import boundaries
 
     ds = boundaries(config.system, config.r, config.mu, units=config.units)
-    if options.borders:
-        from ..stop_counts.dataset import with_borders
-
-        ds = with_borders(ds, config.system, config.beta, config.units)
+    if options.borders or config.borders:
+        ds = _with_borders(ds, config)
     output.fill(_finish(ds, config, options))
     _report(options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu", *describe_reduction(ds))
 
@@ -188,6 +194,11 @@ def _store(options: Options) -> None:
 
     config = load_config(options.config, options.overrides, lambda *_: None)  # a block is all that is held
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
+    if config.borders:
+        raise InputError(
+            f"cannot write borders between numbers of stops into {options.output}: a store has cells only; "
+            "use -o with a name that ends in .nc"
+        )
     study = study_of(config.system, config.variations, axes, config.solver, config.units)
     find_cut = functools.partial(cut_by_cost, workers=options.workers or 0, threads=options.threads)
     with Progress(f"map of {study.cells:,} cells", options.quiet) as progress:

@@ -14,7 +14,7 @@ from .. import checks
 from ..datasets.provenance import to_toml
 from ..errors import InputError
 from ..model.periodic_load import WAVEFORMS
-from ..model.settings import CurveSettings, Solver, curve_settings
+from ..model.settings import BORDERS, CurveSettings, Solver, curve_settings
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
 from ..units.axes import KINDS, Ladder, grid_ratios
@@ -67,6 +67,7 @@ class Config:
     variations: Variations | None = None  # along further axes
     files: tuple[Path, ...] = ()  # that it was read from
     units: Units | None = None  # what r = 1 and beta = 1 are
+    borders: bool = False  # whether borders between numbers of stops are asked for
 
 
 #: Called with the numbers of values of mu, r and beta and of points along further axes, the system and the
@@ -349,7 +350,8 @@ def common_tables(tree: Mapping[str, object], path: Path) -> Common:
 
 def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None) -> Config:
     title, system, units, files = common_tables(tree, path)
-    solver = _build(Solver, _table(tree, "solver"), "solver")
+    settings, borders = _without_borders(_table(tree, "solver"))
+    solver = _build(Solver, settings, "solver")
     curves = _build(curve_settings, _table(tree, "curves"), "curves")
     design_table(tree)
     further = further_axes(tree)
@@ -368,13 +370,24 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
         raise within("system", error) from None
     return Config(
         title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, path.stem, variations,
-        files, units,
+        files, units, borders,
     )  # fmt: skip
 
 
 def design_table(tree: Mapping[str, object]) -> Mapping[str, object]:
     """The table [design] of a configuration, its keys checked; its values belong to `design`."""
     return _table(tree, "design")
+
+
+def _without_borders(solver: Mapping[str, object]) -> tuple[dict[str, object], bool]:
+    """The table [solver] without outputs that are no variables of cells, and whether there are some."""
+    settings, outputs = dict(solver), solver.get("outputs")
+    if not isinstance(outputs, list) or not any(name in BORDERS for name in outputs):
+        return settings, False
+    settings["outputs"] = [name for name in outputs if name not in BORDERS]
+    if not settings["outputs"]:
+        del settings["outputs"]
+    return settings, True
 
 
 def _grid(tree: Mapping[str, object], scales: Scales) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from ..datasets.design_labels import QUESTIONS
 from ..model.contact import CONTACTS, MOST_CONTACTS
 from ..model.periodic_load import MOST_HARMONICS
 from ..model.settings import (
+    BORDERS,
     GENERAL_OUTPUTS,
     OUTPUTS,
     RANGES,
@@ -369,8 +370,8 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         Key(
             "outputs",
-            "output variables of every cell",
-            several(word(*OUTPUTS, *GENERAL_OUTPUTS)),
+            "output variables of every cell; border_r: also the borders between numbers of stops",
+            several(word(*OUTPUTS, *GENERAL_OUTPUTS, *BORDERS)),
             list(_SOLVER.outputs),
         ),
     ),

@@ -51,6 +51,9 @@ GeneralOutput = Literal[
 ]
 GENERAL_OUTPUTS: tuple[str, ...] = get_args(GeneralOutput)
 
+#: Variables of the borders between numbers of stops.
+BORDERS = ("border_r", "border_beta", "border_kind", "stops_below", "stops_above")
+
 #: Quantities of response curves, in the order of the file.
 Quantity = Literal[
     "amplitude", "phase", "first_harmonic", "energy", "harmonics", "transmitted_force", "distortion"

@@ -60,7 +60,7 @@ def test_the_wheel_holds_the_package_and_nothing_else(built):
     sources = {
         path.relative_to(ROOT).as_posix()
         for path in (ROOT / "frictionmap").rglob("*")
-        if path.is_file() and path.suffix not in (".pyc", ".nbi", ".nbc")
+        if path.is_file() and "__pycache__" not in path.parts
     }
     assert names == sources
     assert "frictionmap/py.typed" in names

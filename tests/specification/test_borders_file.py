@@ -75,3 +75,26 @@ def test_what_borders_need(path, capsys):
         assert main(["boundaries", config, "--borders", "-o", str(path.parent / "x.nc"), *more]) == 2
         assert words in capsys.readouterr().err
         assert not (path.parent / "x.nc").exists()
+
+
+@pytest.mark.parametrize("command", ["map", "boundaries"])
+def test_borders_may_be_an_output(command, path, tmp_path):
+    """Asked for by name in [solver], they are those of --borders, in a map as well, and are drawn."""
+    text = path.with_suffix(".toml").read_text()
+    asked = tmp_path / "asked.toml"
+    asked.write_text(text + '[solver]\noutputs = ["regime", "border_r"]\n')
+    assert main([command, str(asked), "-o", str(tmp_path / "a.nc"), "--quiet"]) == 0
+    ds, known = read(tmp_path / "a.nc"), read(path)
+    for name in NAMES:
+        np.testing.assert_array_equal(ds[name].values, known[name].values)
+    draw = fm.plot_regimes if command == "map" else fm.plot_boundaries
+    drawn = [line for line in draw(ds)[0].lines if line.get_label() == "borders between numbers of stops"]
+    assert len(drawn) == ds.sizes["border"] > 0
+    assert not [line for line in draw(ds)[1].lines if line.get_label() == "borders between numbers of stops"]
+
+
+def test_a_store_has_no_borders(path, tmp_path, capsys):
+    asked = tmp_path / "asked.toml"
+    asked.write_text(path.with_suffix(".toml").read_text() + '[solver]\noutputs = ["regime", "border_r"]\n')
+    assert main(["map", str(asked), "-o", str(tmp_path / "a.zarr"), "--quiet"]) == 2
+    assert "cannot write borders between numbers of stops into" in capsys.readouterr().err

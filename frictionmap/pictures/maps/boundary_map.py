@@ -13,7 +13,6 @@ from ..features import features_of, mark_features
 from ..grids import HIGH, Grid, limited
 from ..options import FigureOptions, current
 from ..palette import (  # fmt: skip
-    BORDER,
     CLASSES,
     CONTINUOUS,
     FURTHER,
@@ -41,6 +40,7 @@ from ..second_axes import frequency_on_top, on_the_right
 from ..shapes import check_holds, panels_of, to_draw
 from ..words import caption
 from .boundary_curves import further_ranges, through_cells
+from .stop_borders import draw_borders
 from .working_point import mark_point
 
 if TYPE_CHECKING:
@@ -154,17 +154,7 @@ def _draw(ax: Axes, panel: xr.Dataset, r: Grid, top: float) -> list[Handle]:
         rim = [] if style is MODAL else halo()  # it often coincides with beta_lim, which must stay visible
         handles += ax.plot(*_over(r, panel[name].values), path_effects=rim, **style)
     _finish(ax, panel, r, top)
-    return handles + _draw_borders(ax, panel) + mark_features(ax, features_of(panel), r)
-
-
-def _draw_borders(ax: Axes, panel: xr.Dataset) -> list[Handle]:
-    """Draw the borders between numbers of stops, which are those of mu = 1."""
-    if not {"border_r", "border_beta"} <= set(panel) or float(panel["mu"]) != 1.0:
-        return []
-    lines: list[Handle] = []
-    for x, y in zip(panel["border_r"].values, panel["border_beta"].values, strict=True):
-        lines += ax.plot(x, y, **BORDER)
-    return lines[:1]
+    return handles + draw_borders(ax, panel) + mark_features(ax, features_of(panel), r)
 
 
 def _elastic_handles() -> list[Handle]:

@@ -59,6 +59,7 @@ from ..words import caption, title_of_map
 from .boundary_curves import boundary_curves, further_ends
 from .cell_image import CellImage
 from .raster import level_stripes, paint, rasterise, shade, stripes
+from .stop_borders import draw_borders
 from .working_point import mark_point
 
 if TYPE_CHECKING:
@@ -224,6 +225,7 @@ def draw_map(ax: Axes, panel: xr.Dataset, cells: Cells) -> list[Handle]:
                 label="several regimes: the initial state decides",
             )
         )  # fmt: skip
+    handles += draw_borders(ax, panel, over_cells=True)
     handles += mark_features(ax, features_of(panel), cells.r)
     _name_regions(ax, cells, curves.values())
     return handles

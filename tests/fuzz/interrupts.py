@@ -29,13 +29,14 @@ _HANGS = 5.0
 _MOMENTS = {False: (5, 3), True: (1, 0)}
 
 #: Verbs of the quick form.
-_QUICK = ("map",)
+_QUICK = ("map", "plot")
 
 #: How a run may end: by the signal itself, with the status for interrupts, or it was through.
 _STATUSES = {
     "SIGINT": (130, -signal.SIGINT, 0),
     "SIGINT twice": (130, -signal.SIGINT, 0),
     "SIGTERM": (130, 143, -signal.SIGTERM, 0),
+    "SIGHUP": (130, -signal.SIGHUP, 0),
     "SIGKILL": (-signal.SIGKILL, 0),
 }
 

@@ -121,6 +121,7 @@ def wait_for_new(folder: Path, known: set[str], until: float) -> bool:
 SIGNALS: dict[str, tuple[signal.Signals, ...]] = {
     "SIGINT": (signal.SIGINT,),
     "SIGTERM": (signal.SIGTERM,),
+    "SIGHUP": (signal.SIGHUP,),
     "SIGKILL": (signal.SIGKILL,),
     "SIGINT twice": (signal.SIGINT, signal.SIGINT),
 }

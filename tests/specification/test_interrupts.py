@@ -1,8 +1,7 @@
-"""Interrupts of the program: at any moment, of any command, the end comes soon and nothing is left."""
+"""Interrupts of the program: the end comes soon and nothing is left; at random moments: tests/fuzz."""
 
 import contextlib
 import os
-import random
 import re
 import signal
 import subprocess
@@ -33,12 +32,11 @@ NOTHING = "frictionmap: interrupted; nothing was written"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A configuration and a map; the kernels are compiled."""
+    """A configuration and its boundaries; the kernels are compiled."""
     folder = tmp_path_factory.mktemp("interrupts")
     (folder / "large.toml").write_text(CONFIG)
     few = ["--set", "grid.r=[0.3, 0.8]", "--set", "grid.beta=[0.1, 0.5]"]
     run(folder, "map", "large.toml", "-o", "small.nc", *few)
-    run(folder, "response", "large.toml", "--r", "0.3", "--beta", "0.5", "-o", "response.nc")
     run(folder, "boundaries", "large.toml", "-o", "boundaries.nc")
     return folder
 
@@ -52,12 +50,10 @@ def start(folder, *arguments, **options):
 
 
 def run(folder, *arguments):
-    """Seconds that a whole run takes."""
-    began = time.perf_counter()
+    """Run the program to its end."""
     process = start(folder, *arguments)
     assert process.communicate(timeout=10 * HANG) is not None
     assert process.returncode == 0
-    return time.perf_counter() - began
 
 
 def wait_until_caught(process, number):
@@ -81,51 +77,7 @@ def listing(folder):
 COMMANDS = {
     "map": ["map", "large.toml", "--quiet", "-o", "new.nc"],
     "boundaries": ["boundaries", "large.toml", "-o", "new.nc"],
-    "response": ["response", "large.toml", "--r", "0.3", "--beta", "0.5", "-o", "new.nc"],
-    "plot": ["plot", "small.nc", "-o", "new.png"],
-    "info": ["info", "small.nc"],
-    "replacing": ["map", "large.toml", "--quiet", "--overwrite", "-o", "small.nc"],
 }
-
-
-@pytest.fixture(scope="module")
-def seconds(folder, tmp_path_factory):
-    """Seconds that each command takes."""
-    elsewhere = tmp_path_factory.mktemp("measured")
-    for path in folder.iterdir():
-        (elsewhere / path.name).write_bytes(path.read_bytes())
-    found = {}
-    for name, command in COMMANDS.items():
-        if name != "replacing":  # which takes as long as the map
-            found[name] = run(elsewhere, *command)
-        for new in ("new.nc", "new.png"):
-            (elsewhere / new).unlink(missing_ok=True)
-    return found | {"replacing": found["map"]}
-
-
-@pytest.mark.parametrize("command", COMMANDS)
-def test_at_a_random_moment(folder, seconds, command):
-    """In any third of its time: the program was done, or nothing has changed; it says which."""
-    rng = random.Random(command)
-    before = listing(folder)
-    for third, name in enumerate(rng.sample(["SIGINT", "SIGTERM", "SIGHUP"], 3)):
-        process = start(folder, *COMMANDS[command])
-        # Python itself catches SIGINT from its start; the program registers SIGTERM after it
-        wait_until_caught(process, signal.SIGTERM if name == "SIGINT" else getattr(signal, name))
-        time.sleep(seconds[command] * (third + rng.random()) / 3.0)
-        process.send_signal(getattr(signal, name))
-        _, err = process.communicate(timeout=HANG)
-        if process.returncode == 0:
-            assert "interrupted" not in err
-        else:
-            assert process.returncode == 130
-            if "had been written" not in err:
-                assert err == f"{NOTHING}\n"
-                assert listing(folder) == before
-        for new in set(listing(folder)) - set(before):
-            assert new == COMMANDS[command][-1]
-            (folder / new).unlink()
-        (folder / "small.nc").write_bytes(before["small.nc"])
 
 
 #: A write that takes as long as it likes and holds the interpreter's lock of no file, as netCDF's does.

@@ -353,8 +353,8 @@ fm.plot_regimes(MAP, title=1)
     title must be text; got 1
 fm.plot_regimes(MAP, panels=[])
     panels must have at least one value; got none
-fm.plot_regimes(MAP, sise="85mm")
-    unknown option 'sise' (did you mean size?); valid: size, dpi, legend, caption, title, xlim, ylim, panels, mass, beta, point, box
+fm.plot_regimes(MAP, seize="85mm")
+    unknown option 'seize' (did you mean size?); valid: size, dpi, legend, caption, title, xlim, ylim, panels, mass, beta, point, box
 fm.plot_regimes(MAP, ax=np, size="85mm")
     cannot use size with ax: the axes have a figure already; set its size
 fm.plot_quantity(MAP, "amplitud")

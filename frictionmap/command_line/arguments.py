@@ -56,7 +56,7 @@ FIGURE = (
 )
 
 _DESCRIPTION = """\
-Exact regime maps of a vibrating structure with one dry-friction contact: does the contact slide
+Exact regime maps of a vibrating structure with dry-friction contacts: does a contact slide
 continuously, stick and slip, or stay stuck, for each frequency ratio r, friction ratio beta and
 static-to-kinetic ratio mu?"""
 

@@ -129,7 +129,7 @@ class _DampedModes(NamedTuple):
 
 @dataclass(frozen=True)
 class System:
-    """A linear structure with one dry-friction contact, excited at one frequency.
+    """A linear structure with dry-friction contacts under a periodic load.
 
     The structure is a chain of masses and springs, defined by ratios, or any linear structure, defined by M
     and K.  In a chain spring 1 connects mass 1 to the ground (or to the base), spring i connects mass i to
@@ -188,6 +188,25 @@ class System:
         With a C that couples the undamped modes: replace C by its diagonal in modal coordinates, if this
         changes linear responses, with the contact free or held, by no more than this relative error in the
         range of r.
+    contacts : sequence of Contact or mapping, optional
+        Instead of contact and contact_masses: 1 to 8 contacts, each with its own friction.
+    contact_stiffness : float or sequence of float, optional
+        Stiffness k_t over k_1 [-], > 0, of a spring in series with the contact; default: rigid.  Several are a
+        bank of elements in parallel, as in `Contact`.
+    wall_velocity : float
+        Velocity of a fixed wall over omega P/k_1 [-], as of a belt.
+    normal_load : mapping or sequence of mapping, optional
+        Harmonics of the normal load, as in `Contact`.
+    load_harmonics : mapping, sequence of mapping, or PeriodicLoad, optional
+        Instead of load_mass: harmonics of the load [P] by their order n, as phasors on all n masses, or as
+        {"n", "mass", "amplitude", "phase_deg"}; without "mass" those of the base motion.
+    load_file : path, optional
+        The same as a table with the header n, mass, amplitude, phase_deg.
+    waveform : str or path, optional
+        "square", "sawtooth", "triangle", or a CSV file of one period, acting on load_mass, with so many
+        `harmonics`.
+    load_offset : sequence of float, optional
+        Constant forces [P] on all n masses; they move positions only.
 
     Raises
     ------
@@ -196,7 +215,8 @@ class System:
 
     Notes
     -----
-    Dimensionless equations of motion: theory.md 1; T(5.4), (5.8) for chains, T(2.12), (3.3) for one mass.
+    Dimensionless equations of motion: theory.md 1, in general 11; T(5.4), (5.8) for chains, T(2.12), (3.3)
+    for one mass.
         With base excitation the load is p = K ones, which is e_1 for a chain; with damping relative to the
         base i r C1 ones is added, so that p = 1 + 2 i zeta r for one mass.
     """

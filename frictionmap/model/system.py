@@ -191,8 +191,8 @@ class System:
     contacts : sequence of Contact or mapping, optional
         Instead of contact and contact_masses: 1 to 8 contacts, each with its own friction.
     contact_stiffness : float or sequence of float, optional
-        Stiffness k_t over k_1 [-], > 0, of a spring in series with the contact; default: rigid.  Several are a
-        bank of elements in parallel, as in `Contact`.
+        Stiffness k_t over k_1 [-], > 0, of a spring in series with the contact; default: rigid.  Several are
+        a bank of elements in parallel, as in `Contact`.
     wall_velocity : float
         Velocity of a fixed wall over omega P/k_1 [-], as of a belt.
     normal_load : mapping or sequence of mapping, optional

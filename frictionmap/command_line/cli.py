@@ -382,11 +382,11 @@ def _export(options: Options) -> None:
 
 
 def _info(options: Options) -> None:
+    from ..files.in_json import summary_json
     from ..files.reading import opened, read
     from ..files.slices import choose, parse_choices
     from ..files.studies import describe_study, is_study
     from ..files.summary import describe_file
-    from ..files.in_json import summary_json
 
     if options.json:
         with opened(options.file) as ds:

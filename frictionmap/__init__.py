@@ -31,6 +31,7 @@ identify       measured data: tables, fits, estimates with their errors
 examples       synthetic measurements with known true values
 pictures       pictures of maps, curves, motions and fits; colours of the regimes
 plot           the functions `plot_...`, and the choice of the picture for a file
+accessor       `ds.friction`: names of regimes, cells of one regime, pictures
 explorer       the map in a browser: a server for this machine, and the page
 command_line   the command line: arguments, commands, completion, progress, interrupts
 __main__       the program as a process: streams, exit status
@@ -40,6 +41,7 @@ The names in `__all__` and the contents of files may be extended but not changed
 and files that rely on them.  Everything that begins with an underscore, such as `_kernels`, may change.
 """
 
+import sys
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -139,6 +141,12 @@ _HOME = {
 }
 
 
+def _register() -> None:
+    """Add the accessor `friction` to datasets; not before something else has loaded xarray, which is slow."""
+    if "xarray" in sys.modules:
+        import_module(".accessor", __name__)
+
+
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
 
@@ -149,5 +157,9 @@ def __getattr__(name: str) -> object:
     if name in _HOME:
         value = getattr(import_module(f".{_HOME[name]}", __name__), name)
         globals()[name] = value
+        _register()
         return value
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+_register()

@@ -33,6 +33,7 @@ __all__ = [
     "FORMATS",
     "PICTURED",
     "check_picture",
+    "draw",
     "pictured",
     "plot_boundaries",
     "plot_curves",
@@ -89,7 +90,9 @@ def check_picture(path: Path) -> None:
         raise InputError(f"-o must end in {', '.join(FORMATS)}; got {path}")
 
 
-def _draw(ds: xr.Dataset, quantity: str | None, log: bool, **options: Unpack[FigureOptions]) -> "AxesArray":
+def draw(
+    ds: xr.Dataset, quantity: str | None = None, *, log: bool = False, **options: Unpack[FigureOptions]
+) -> "AxesArray":
     """Draw a dataset of any kind; without a quantity, the first one available."""
     what = kind(ds)
     if what == "curves":
@@ -150,6 +153,6 @@ def save_picture(
     """
     drawn = BytesIO()
     with settings_of(style):
-        axes = plot_forces(ds, against, **options) if against else _draw(ds, quantity, log, **options)
+        axes = plot_forces(ds, against, **options) if against else draw(ds, quantity, log=log, **options)
         written(axes[0].figure, drawn, path.suffix[1:].lower(), options.get("dpi"))
     path.write_bytes(drawn.getbuffer())

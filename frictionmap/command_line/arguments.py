@@ -1,9 +1,10 @@
 """Command-line arguments: every command with its options and help texts."""
 
 import argparse
+import difflib
 from argparse import Action, ArgumentParser
 from argparse import Namespace as Options
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
@@ -15,6 +16,7 @@ __all__ = [
     "QUANTITIES",
     "RIGS",
     "SHELLS",
+    "STREAM",
     "Action",
     "Argument",
     "ArgumentParser",
@@ -22,9 +24,11 @@ __all__ = [
     "Options",
     "build_parser",
     "described",
+    "help_on",
     "one_line",
     "parse",
     "subcommands",
+    "unknown_command",
 ]
 
 #: Valid contacts of `System` and kinds of data of `identify`.  They are repeated here because importing them
@@ -55,6 +59,9 @@ FIGURE = (
     *("size", "dpi", "legend", "caption", "title", "xlim", "ylim", "panels", "mass", "beta", "point", "box"),
 )
 
+#: Output "-": standard output.
+STREAM = Path("-")
+
 _DESCRIPTION = """\
 Exact regime maps of a vibrating structure with dry-friction contacts: does a contact slide
 continuously, stick and slip, or stay stuck, for each frequency ratio r, friction ratio beta and
@@ -74,6 +81,18 @@ def one_line(message: object) -> str:
     return " ".join(str(message).split())
 
 
+def nearest(word: str, valid: Iterable[str]) -> str:
+    """Return ' (did you mean ...?)' if a valid word is similar, else ''; importing `checks` would be slow."""
+    found = difflib.get_close_matches(word, list(valid), n=1, cutoff=0.7)
+    return f" (did you mean {found[0]}?)" if found else ""
+
+
+def unknown_command(word: str, valid: Iterable[str]) -> str:
+    """Return the message for a command that does not exist."""
+    valid = list(valid)
+    return f"unknown command {word!r}{nearest(word, valid)}; valid: {', '.join(valid)}"
+
+
 class _Parser(argparse.ArgumentParser):
     """Parser with one-line errors that accepts no abbreviated options: --over is not --overwrite."""
 
@@ -82,6 +101,22 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {one_line(message)} (see {self.prog} --help)\n")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse an unknown command, naming the nearest one."""
+        if isinstance(action, argparse._SubParsersAction) and value not in action.choices:
+            self.exit(2, f"{self.prog}: {unknown_command(value, action.choices)}\n")
+        super()._check_value(action, value)
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse; refuse unknown options, naming the nearest one of the command."""
+        found, unknown = self.parse_known_args(args, namespace)
+        if unknown:
+            sub = subcommands(self).choices[found.command]
+            valid = [flag for action in sub._actions for flag in action.option_strings if flag[:2] == "--"]
+            hints = [nearest(word.partition("=")[0], valid) for word in unknown if word[:2] == "--"]
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{next(filter(None, hints), '')}")
+        return found
 
 
 class _Once(argparse.Action):
@@ -100,6 +135,11 @@ def _file(text: str) -> Path:
     if text in ("", "-") or (text.endswith(("/", "\\")) and not text.rstrip("/\\").endswith(".zarr")):
         raise argparse.ArgumentTypeError(f"must be the name of a file; got {text!r}")
     return Path(text)
+
+
+def _file_or_stream(text: str) -> Path:
+    """Check the name of an output that may also be "-", standard output."""
+    return STREAM if text == "-" else _file(text)
 
 
 def _threads(text: str) -> int:
@@ -136,8 +176,10 @@ def _address(text: str) -> str:
     return text
 
 
-def _takes_output(sub: argparse.ArgumentParser, metavar: str, text: str) -> None:
-    sub.add_argument("-o", dest="output", metavar=metavar, type=_file, action=_Once, help=text)
+def _takes_output(
+    sub: argparse.ArgumentParser, metavar: str, text: str, convert: Callable[[str], Path] = _file
+) -> None:
+    sub.add_argument("-o", dest="output", metavar=metavar, type=convert, action=_Once, help=text)
     _takes_replacement(sub)
 
 
@@ -289,7 +331,7 @@ def build_parser() -> argparse.ArgumentParser:
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--version", action="version", version=f"frictionmap {__version__}")
+    parser.add_argument("-V", "--version", action="version", version=f"frictionmap {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     def command(name: str, text: str, description: str) -> argparse.ArgumentParser:
@@ -347,12 +389,18 @@ def _takes_files(command: Callable[[str, str, str], argparse.ArgumentParser]) ->
     text = "Write a map, or a slice of one, as NetCDF or as a table (CSV)."
     sub = command("export", "map or slice as NetCDF or CSV", text)
     sub.add_argument("file", metavar="FILE", type=Path, help="file to read: FILE.nc, or a store FILE.zarr")
-    _takes_output(sub, "OUT", "OUT.nc or OUT.csv (default: FILE.csv in the current folder)")
+    text = "OUT.nc or OUT.csv, or - for CSV on standard output (default: FILE.csv in the current folder)"
+    _takes_output(sub, "OUT", text, _file_or_stream)
     _takes_choices(sub)
     _takes_over(sub, "write")
-    sub = command("info", "summary of a file", "Summarise the contents of a file on one screen.")
+    _takes_info(command("info", "summary of a file", "Summarise the contents of a file on one screen."))
+
+
+def _takes_info(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("file", metavar="FILE", type=Path, help="file to read: FILE.nc, or a store FILE.zarr")
     _takes_choices(sub)
+    text = "print the summary as JSON, for scripts: dimensions, ranges of axes, variables, numbers of cells"
+    sub.add_argument("--json", action="store_true", help=text)
 
 
 def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:
@@ -370,6 +418,9 @@ def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser
     text = "Print the JSON Schema of configurations, with which editors complete and check them."
     sub = command("schema", "JSON schema of configurations, for editors", text)
     sub.add_argument("--rig", action="store_true", help="schema of configurations for identify")
+    sub = command("help", "help on a command", "Show the help of a command, or of the program.")
+    text = "command to explain (default: all commands in short)"
+    sub.add_argument("verb", metavar="COMMAND", nargs="?", help=text)
     text = "Print the completion script of a shell, to be loaded when the shell starts."
     sub = command("completion", "shell completion for bash, zsh, tcsh, fish or PowerShell", text)
     sub.add_argument("shell", choices=SHELLS, metavar="SHELL", help=f"one of {', '.join(SHELLS)}")
@@ -416,6 +467,15 @@ def _described(action: argparse.Action) -> Argument:
     metavar = str(metavar or action.dest.upper()) if takes_value else ""
     choices = tuple(str(choice) for choice in action.choices or ())
     return Argument(tuple(action.option_strings), metavar, choices, str(action.help))
+
+
+def help_on(verb: str | None) -> str | None:
+    """Return the help of a command, or of the program; None if there is no such command."""
+    parser = build_parser()
+    if verb is None:
+        return parser.format_help()
+    sub = subcommands(parser).choices.get(verb)
+    return sub.format_help() if sub else None
 
 
 def parse(arguments: Sequence[str]) -> Options:

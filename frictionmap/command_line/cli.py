@@ -10,7 +10,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError, NoSteadyState
-from .arguments import CONTACTS, FIGURE, QUANTITIES, Options, build_parser, one_line, parse
+from .arguments import (
+    CONTACTS,
+    FIGURE,
+    QUANTITIES,
+    STREAM,
+    Options,
+    build_parser,
+    help_on,
+    one_line,
+    parse,
+    subcommands,
+    unknown_command,
+)
 from .interrupts import before_exit
 
 if TYPE_CHECKING:
@@ -25,6 +37,9 @@ if TYPE_CHECKING:
 
 #: Beginnings of --at that a shell completes: the further axes in most frequent use.
 _FURTHER_AXES = ("damping_ratios=", "mass_ratios_2=", "stiffness_ratios_2=", "sample=")
+
+#: Endings of NetCDF files; none is taken for one, too.
+_NETCDF = (".nc", ".nc4", "")
 
 #: Number of cells from which the expected cost of a map is printed.
 _MANY = 3_000_000
@@ -153,7 +168,7 @@ def _compute(options: Options) -> None:
     if options.command == "map" and _is_store(options):
         _store(options)
         return
-    _refuse_store(options)
+    _refuse_ending(options)
     config = load_config(options.config, options.overrides, None if room and options.yes else room)
     ending = "" if options.command == "map" else f"-{options.command}"
     if config.variations is not None and options.command != "map":
@@ -177,9 +192,14 @@ def _is_store(options: Options) -> bool:
     return stored
 
 
-def _refuse_store(options: Options) -> None:
-    if options.output is not None and options.output.suffix == ".zarr":
-        raise InputError(f"cannot write {options.output}: only `map` can write a .zarr store; use another -o")
+def _refuse_ending(options: Options) -> None:
+    """Refuse an output that does not end as NetCDF, before any work."""
+    path = options.output
+    if path is None or path.suffix.lower() in _NETCDF or path == options.config:
+        return
+    if path.suffix == ".zarr":
+        raise InputError(f"cannot write {path}: only `map` can write a .zarr store; use another -o")
+    raise InputError(f"-o must end in {'.nc or .zarr' if options.command == 'map' else '.nc'}; got {path}")
 
 
 def _store(options: Options) -> None:
@@ -272,7 +292,7 @@ def _identify(options: Options) -> None:
     from ..files.storage import write_netcdf
     from ..identify.rigs.configuration import identify, load_rig
 
-    _refuse_store(options)
+    _refuse_ending(options)
     rig = load_rig(options.config, options.overrides)
     path = options.output or Path(f"{rig.name}-identify.nc")
     with claimed(path, options.overwrite, rig.files) as output:
@@ -290,7 +310,7 @@ def _design(options: Options) -> None:
     from ..files.storage import write_netcdf
     from .progress import Progress
 
-    _refuse_store(options)
+    _refuse_ending(options)
     design = load_design(options.config, options.overrides, options.threads)
     path = options.output or Path(f"{design.name}-design.nc")
     with claimed(path, options.overwrite, design.files) as output:
@@ -357,9 +377,12 @@ def _plot(options: Options) -> None:
 
 
 def _export(options: Options) -> None:
-    from ..files.export import check_export, write_export
+    from ..files.export import check_export, csv_of, write_export
     from ..files.places import claimed
 
+    if options.output == STREAM:
+        _print(csv_of(_chosen(options)).rstrip("\n"))
+        return
     path = options.output or Path(f"{options.file.stem}.csv")
     check_export(path)
     with claimed(path, options.overwrite, [options.file]) as output:
@@ -370,12 +393,16 @@ def _export(options: Options) -> None:
 
 
 def _info(options: Options) -> None:
-    from ..files.reading import read
-    from ..files.slices import parse_choices
+    from ..files.in_json import summary_json
+    from ..files.reading import opened, read
+    from ..files.slices import choose, parse_choices
     from ..files.studies import describe_study, is_study
     from ..files.summary import describe_file
 
-    if not options.at and is_study(options.file):
+    if options.json:
+        with opened(options.file) as ds:
+            _print(summary_json(choose(ds, parse_choices(options.at)) if options.at else ds))
+    elif not options.at and is_study(options.file):
         _print(describe_study(options.file))
     else:
         _print(describe_file(read(options.file, at=parse_choices(options.at))))
@@ -421,6 +448,13 @@ def _schema(options: Options) -> None:
     else:
         from ..files.json_schema import map_schema as schema
     _print(json.dumps(schema(), indent=2))
+
+
+def _help(options: Options) -> None:
+    text = help_on(options.verb)
+    if text is None:
+        raise InputError(unknown_command(options.verb, subcommands(build_parser()).choices))
+    _print(text.rstrip("\n"))
 
 
 def _completion(options: Options) -> None:
@@ -472,6 +506,7 @@ _COMMANDS: dict[str, Callable[[Options], None]] = {
     "init": _init,
     "schema": _schema,
     "completion": _completion,
+    "help": _help,
 }
 
 

@@ -16,6 +16,7 @@ designs      answers to design questions: read, checked, summarised
 reading      files and stores read, and checked against the schema
 stored       system, excitation and initial state of a dataset
 summary      summary of a file, in words
+in_json      summary of a file as JSON, for scripts
 studies      summaries of files with further axes, and of stores
 export       slices of files as NetCDF or as a table
 ===========  ===============================================================================

@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -22,22 +23,30 @@ def check_export(path: Path) -> None:
 
 
 def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
-    """Write a dataset; as CSV one row for every point of all its axes, with the names of codes.
+    """Write a dataset as NetCDF or as `csv_of` returns it."""
+    if path.suffix.lower() == ".nc":
+        write_netcdf(ds, path, command)
+    else:
+        _table(ds).to_csv(path)
+
+
+def csv_of(ds: xr.Dataset) -> str:
+    """Return a dataset as CSV, with the names of codes."""
+    return str(_table(ds).to_csv(lineterminator="\n"))
+
+
+def _table(ds: xr.Dataset) -> Any:
+    """Data frame with a row for every point of all axes of a dataset.
 
     Of estimates it is a row for every parameter; of shares every outcome and quantile has a column; of the
     result of a design question it is the curve that was searched.
     """
-    if path.suffix.lower() == ".nc":
-        write_netcdf(ds, path, command)
-        return
     if kind(ds) == "estimates":
-        ds[list(OF_PARAMETERS)].to_dataframe().to_csv(path)
-        return
+        return ds[list(OF_PARAMETERS)].to_dataframe()
     if kind(ds) == "design":
         over = next((axis for axis in ("beta_search", "r_search") if axis in ds.coords), None)
         lines = [name for name in ds.data_vars if ds[name].dims == (over,)]
-        (ds[lines] if over else ds).to_dataframe().to_csv(path)
-        return
+        return (ds[lines] if over else ds).to_dataframe()
     if kind(ds) == "shares":
         ds = _in_columns(_in_columns(ds, "outcome"), "quantile")
     table = {}
@@ -47,7 +56,7 @@ def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
             table[name] = _in_words(variable)
     wide = xr.Dataset(table)
     checks.cells(1, 1, math.prod(wide.sizes.values()), name="a table")
-    wide.to_dataframe(dim_order=[dim for dim in dims if dim in wide.dims]).to_csv(path)
+    return wide.to_dataframe(dim_order=[dim for dim in dims if dim in wide.dims])
 
 
 def _in_columns(ds: xr.Dataset, dim: str) -> xr.Dataset:

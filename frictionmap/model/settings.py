@@ -6,6 +6,7 @@ from typing import Any, Literal, TypedDict, get_args
 
 from .. import checks
 from ..errors import InputError
+from .html import as_table
 
 #: Outputs of a map, in the order of the file; described in `labels.CELL_VARIABLES`.
 Output = Literal[
@@ -128,6 +129,10 @@ class Solver:
                 f"outputs must name at least one of {', '.join((*OUTPUTS, *GENERAL_OUTPUTS))}; got none"
             )
         object.__setattr__(self, "outputs", tuple(dict.fromkeys(self.outputs)))
+
+    def _repr_html_(self) -> str:
+        rows = {field.name: getattr(self, field.name) for field in fields(self)}
+        return as_table("Solver", rows | {"outputs": ", ".join(self.outputs)})
 
 
 class SolverSettings(TypedDict, total=False):

@@ -27,6 +27,7 @@ from .general import (
     format_orders,
     general_of,
 )
+from .html import as_table
 from .matrices import Matrices, full_matrices, reduced_matrices
 from .modes import (
     ModalModel,
@@ -115,6 +116,10 @@ def _load(values: object, n: int) -> tuple[complex, ...]:
 def _format_values(values: Sequence[complex]) -> str:
     """Format numbers, separated by commas; real ones without their imaginary part."""
     return ", ".join(f"{value.real if value.imag == 0.0 else value:g}" for value in values)
+
+
+#: Natural frequencies that a notebook shows.
+_FREQUENCIES_SHOWN = 10
 
 
 class _DampedModes(NamedTuple):
@@ -640,6 +645,15 @@ class System:
             )
         words = (self._describe_contact(), self._describe_load(), self._describe_damping())
         return "; ".join((self._describe_structure(), *words))
+
+    def _repr_html_(self) -> str:
+        frequencies = [f"{w:.5g}" for w in self.modes.w[:_FREQUENCIES_SHOWN]]
+        more = ", ..." * (self.modes.w.size > _FREQUENCIES_SHOWN)
+        rows = {
+            "description": self.describe(),
+            "natural frequencies (r)": f"{', '.join(frequencies)}{more}",
+        }
+        return as_table("System", rows)
 
     def _describe_structure(self) -> str:
         if isinstance(self.matrices, Matrices):

@@ -7,6 +7,7 @@ from typing import Any
 
 from .. import checks
 from ..errors import InputError
+from ..model.html import as_table
 from ..model.system import System
 from ..model.variations import Variations
 from .quantities import quantity
@@ -138,6 +139,9 @@ class Units:
     def given(self) -> dict[str, str]:
         """Given values, as in a configuration."""
         return {field.name: text for field in fields(self) if (text := getattr(self, field.name)) is not None}
+
+    def _repr_html_(self) -> str:
+        return as_table("Units", {name.replace("_", " "): text for name, text in self.given.items()})
 
 
 @dataclass(frozen=True)

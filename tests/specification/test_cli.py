@@ -1,5 +1,6 @@
 """The command line: every message, every exit status, and what is and is not left in the folder."""
 
+import json
 import os
 import re
 import shlex
@@ -328,8 +329,9 @@ OUTPUT_COMMANDS = [
 @pytest.mark.parametrize("command", OUTPUT_COMMANDS)
 def test_outputs_that_cannot_be_written(folder, capsys, command):
     assert status_of("map good.toml -o ours.nc --quiet") == 0
-    (folder / "dir.png").mkdir()
-    (folder / "old.png").write_text("old")
+    for ending in ("png", "nc"):
+        (folder / f"dir.{ending}").mkdir()
+        (folder / f"old.{ending}").write_text("old")
     for output, words in (
         ("none/out.png", ["-o must be in an existing folder", "none/out.png"]),
         ("good.toml/out.png", ["-o must be in an existing folder", "good.toml/out.png"]),
@@ -340,12 +342,15 @@ def test_outputs_that_cannot_be_written(folder, capsys, command):
         ("old.png", ["old.png: it already exists", "--overwrite"]),
         ("x" * 300 + ".png", ["cannot write x", "too long"]),
     ):
+        if not command.startswith("plot"):
+            output, words = output.replace(".png", ".nc"), [word.replace(".png", ".nc") for word in words]
         assert_refused(capsys, folder, [*command.split(), "-o", output], *words)
-        if output != "old.png":
+        if not output.startswith("old."):
             assert_refused(capsys, folder, [*command.split(), "-o", output, "--overwrite"], *words)
     if hasattr(os, "mkfifo"):  # stands for /dev/null, which a test must not endanger
-        os.mkfifo(folder / "pipe.png")
-        assert_refused(capsys, folder, f"{command} -o pipe.png --overwrite", "-o must be an ordinary file")
+        pipe = "pipe.png" if command.startswith("plot") else "pipe.nc"
+        os.mkfifo(folder / pipe)
+        assert_refused(capsys, folder, f"{command} -o {pipe} --overwrite", "-o must be an ordinary file")
 
 
 @pytest.mark.parametrize("command", OUTPUT_COMMANDS)
@@ -357,7 +362,8 @@ def test_no_output_is_an_input(folder, capsys, command):
     (folder / "ours.png").symlink_to("ours.nc")
     (folder / "link").symlink_to("good.toml")
     (folder / "hard").hardlink_to(folder / "frame.npz")
-    names = ["ours.png"] if command.startswith("plot") else ["good.toml", "link", "frame.npz", "hard"]
+    (folder / "same.nc").symlink_to("good.toml")
+    names = ["ours.png"] if command.startswith("plot") else ["same.nc", "link", "hard"]
     for name in names:
         for overwrite in ([], ["--overwrite"]):
             words = [f"cannot write {name}: it is the input file"]
@@ -571,7 +577,7 @@ def test_response_takes_the_mu_of_its_configuration(folder):
     assert float(xr.load_dataset("good-response.nc").mu) == 1.0
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["map", "--help"], ["--version"]])
+@pytest.mark.parametrize("arguments", [["--help"], ["map", "--help"], ["--version"], ["-V"], ["help"]])
 def test_help_and_version(capsys, arguments):
     assert status_of(arguments) == 0
     out, err = capsys.readouterr()
@@ -580,6 +586,40 @@ def test_help_and_version(capsys, arguments):
     if arguments == ["--help"]:
         for command in ("map", "boundaries", "response", "plot", "info"):
             assert re.search(rf"^ +{command}\b", out, re.MULTILINE)
+
+
+def test_help_on_a_command_is_its_own_help(capsys):
+    assert status_of(["help", "map"]) == 0
+    said = capsys.readouterr().out
+    assert status_of(["map", "--help"]) == 0
+    assert said == capsys.readouterr().out
+
+
+def test_a_summary_for_scripts(folder, capsys):
+    assert status_of("map good.toml -o ours.nc --quiet") == 0
+    capsys.readouterr()
+    assert status_of("info ours.nc --json") == 0
+    found = json.loads(capsys.readouterr().out)
+    ds = xr.load_dataset("ours.nc")
+    assert found["kind"] == "map"
+    assert found["sizes"] == dict(ds.sizes)
+    assert found["axes"]["r"]["first"] == ds.r[0]
+    assert found["axes"]["beta"]["last"] == ds.beta[-1]
+    assert sum(found["cells"].values()) == ds.regime.size
+    assert found["cells"]["continuous"] == int((ds.regime == 2).sum())
+    assert found["variables"]["regime"]["dimensions"] == ["mu", "r", "beta"]
+    assert status_of(["info", "ours.nc", "--json", "--at", f"r={float(ds.r[1])!r}"]) == 0
+    assert json.loads(capsys.readouterr().out)["sizes"]["r"] == 1
+
+
+def test_csv_on_standard_output_is_that_of_the_file(folder, capsys):
+    assert status_of("map good.toml -o ours.nc --quiet") == 0
+    assert status_of("export ours.nc -o ours.csv --quiet") == 0
+    capsys.readouterr()
+    before = sorted(folder.iterdir())
+    assert status_of("export ours.nc -o -") == 0
+    assert capsys.readouterr().out == (folder / "ours.csv").read_text()
+    assert sorted(folder.iterdir()) == before
 
 
 # On a terminal: progress and Ctrl-C

@@ -127,7 +127,7 @@ def test_a_figure_of_one_column_by_one_command(draw, kind):
 def test_text_of_a_small_figure_is_readable_and_apart(files, kind):
     ds = read(files / f"{kind}.nc", plot.pictured(None), contacts=True)
     options = {"mass": 1} if kind == "curves" else {}
-    figure = plot._draw(ds, None, False, size="85mm", **options)[0].figure
+    figure = plot.draw(ds, size="85mm", **options)[0].figure
     assert figure.get_figwidth() == pytest.approx(WIDTH)
     texts = seen(figure)
     assert len(texts) > 10

@@ -91,9 +91,10 @@ def test_the_quantity_of_a_file_that_has_one_picture_only(orbit, tmp_path):
     ds = fm.boundaries(fm.System(), [0.5, 1.5])
     with pytest.raises(InputError, match=r"^unknown quantity 'orbit' in .*; valid: boundaries$"):
         plot.save_picture(ds, path, "orbit")
-    with pytest.raises(
-        InputError, match=r"^cannot draw boundaries with log: it applies to response curves only; omit log$"
-    ):
+    message = (
+        r"^cannot draw boundaries with log: it applies to response curves and quantities of maps; omit log$"
+    )
+    with pytest.raises(InputError, match=message):
         plot.save_picture(ds, path, log=True)
 
 

@@ -361,6 +361,22 @@ fm.plot_quantity(MAP, "amplitud")
     unknown quantity 'amplitud' of a map; valid: none
 export map.nc -o map.txt
     -o must end in .nc or .csv; got map.txt
+map good.toml -o map.txt
+    -o must end in .nc or .zarr; got map.txt
+curves good.toml -o curves.csv
+    -o must end in .nc; got curves.csv
+identify rig.toml -o rig.json
+    -o must end in .nc; got rig.json
+design question.toml -o answer.txt
+    -o must end in .nc; got answer.txt
+polt map.nc
+    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, plot, export, info, init, schema, help, completion
+help polt
+    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, plot, export, info, init, schema, help, completion
+map good.toml --thread 2
+    unrecognized arguments: --thread 2 (did you mean --threads?) (see frictionmap --help)
+plot map.nc --no-legends
+    unrecognized arguments: --no-legends (did you mean --no-legend?) (see frictionmap --help)
 explore good.toml --port 99999
     frictionmap explore: argument --port: must be 0 to 65535; got 99999 (see frictionmap explore --help)
 explore good.toml --export page.pdf
@@ -394,7 +410,7 @@ response good.toml --r -1 --beta 1
 boundaries good.toml --threads 2
     unrecognized arguments: --threads 2 (see frictionmap --help)
 map good.toml --over
-    unrecognized arguments: --over (see frictionmap --help)
+    unrecognized arguments: --over (did you mean --overwrite?) (see frictionmap --help)
 map good.toml --threads 1 --threads 2
     frictionmap map: argument --threads: must be given once (see frictionmap map --help)
 response good.toml --r 1 --r 2 --beta 1

@@ -1,0 +1,85 @@
+"""
+Figures for a publication
+=========================
+
+One picture of each kind, 85 mm wide, as a column of a journal. Above each picture stands the command that
+draws it from a file. The Python code below it draws the same. The guide on figures lists all options.
+"""
+
+import numpy as np
+from picture_data import CONFIGS, computed
+
+import frictionmap as fm
+from frictionmap.design.configuration import load_design
+from frictionmap.identify.rigs.configuration import identify, load_rig
+
+# %%
+# A map, with the working point of a machine and the box of its uncertainty:
+#
+# .. code-block:: sh
+#
+#    frictionmap plot fig-3-12.nc --size 85mm --panels 1 --point 1.6 1.2 --box 0.1 0.2 --no-caption -o map.pdf
+one = computed("fig-3-12")
+fm.plot_regimes(one, size="85mm", panels=1, point=(1.6, 1.2), box=(0.1, 0.2), caption=False)
+
+# %%
+# Part of the same map:
+#
+# .. code-block:: sh
+#
+#    frictionmap plot fig-3-12.nc --size 85mm --panels 2 --xlim 0.2 0.9 --ylim 0 0.5 --no-caption -o part.pdf
+fm.plot_regimes(one, size="85mm", panels=2, xlim=(0.2, 0.9), ylim=(0.0, 0.5), caption=False)
+
+# %%
+# The amplitude in the contact, an output of the map. Grey cells are stuck:
+#
+# .. code-block:: sh
+#
+#    frictionmap plot amplitudes.nc --size 85mm --quantity contact_amplitude --log -o amplitudes.pdf
+damped = fm.System(damping_ratios=0.05)
+r, beta = np.linspace(0.2, 2.0, 181), np.linspace(0.01, 1.2, 120)
+amplitudes = fm.sweep(damped, r, beta, outputs=["regime", "contact_amplitude"])
+fm.plot_quantity(amplitudes, "contact_amplitude", log=True, size="85mm")
+
+# %%
+# Boundaries:
+#
+# .. code-block:: sh
+#
+#    frictionmap plot boundaries.nc --size 85mm -o boundaries.pdf
+fm.plot_boundaries(fm.boundaries(damped, r, [1.0]), size="85mm")
+
+# %%
+# A response curve of one of five masses, for two friction ratios:
+#
+# .. code-block:: sh
+#
+#    frictionmap plot fig-6-8-curves.nc --size 85mm --mass 1 --panels 1 -o curve.pdf
+fm.plot_curves(computed("fig-6-8"), size="85mm", mass=1, panels=1)
+
+# %%
+# A motion, and its phase portrait:
+#
+# .. code-block:: sh
+#
+#    frictionmap plot motion.nc --size 85mm -o motion.pdf
+#    frictionmap plot motion.nc --size 85mm --quantity orbit --panels 1 --no-legend -o portrait.pdf
+motion = fm.response(fm.System(), 0.3, 0.5)
+fm.plot_response(motion, size="85mm")
+fm.plot_orbit(motion, size="85mm", panels=1, legend=False)
+
+# %%
+# A fit to a free decay:
+#
+# .. code-block:: sh
+#
+#    frictionmap plot free-decay-identify.nc --size 85mm -o fit.pdf
+fm.plot_fit(identify(load_rig(CONFIGS / "rigs/free-decay.toml")), size="85mm")
+
+# %%
+# A design question: the largest response over friction, with the friction that makes it least.
+#
+# .. code-block:: sh
+#
+#    frictionmap plot brace-damper-design.nc --size 85mm --panels 1 -o design.pdf
+fm.plot_design(load_design(CONFIGS / "design/brace-damper.toml", []).ask(), size="85mm", panels=1)

@@ -1,0 +1,55 @@
+"""Summary of a file as JSON, for scripts."""
+
+import json
+
+import numpy as np
+import xarray as xr
+
+from ..datasets.labels import LABELS
+from ..datasets.schema import kind
+
+#: Attributes of a file that the summary repeats.
+_ATTRIBUTES = ("title", "system", "source", "history")
+
+
+def summary_json(ds: xr.Dataset) -> str:
+    """Return the kind of a file, its sizes, axes, variables and numbers of cells per regime, as JSON.
+
+    An axis has its number of values, first and last value, and unit; a variable has its dimensions, type,
+    meaning and unit.
+    """
+    found = {
+        "kind": kind(ds),
+        **{name: str(ds.attrs[name]) for name in _ATTRIBUTES if name in ds.attrs},
+        "sizes": {str(name): int(size) for name, size in ds.sizes.items()},
+        "axes": {str(name): _axis(ds[name]) for name in ds.dims if name in ds.coords},
+        "variables": {str(name): _variable(variable) for name, variable in ds.data_vars.items()},
+    }
+    if "regime" in ds:
+        found["cells"] = _cells(ds["regime"])
+    return json.dumps(found, indent=2, ensure_ascii=False)
+
+
+def _axis(values: xr.DataArray) -> dict[str, object]:
+    first, last = (values.values[index].item() for index in (0, -1))
+    return {"size": int(values.size), "first": first, "last": last, "units": values.attrs.get("units", "1")}
+
+
+def _variable(variable: xr.DataArray) -> dict[str, object]:
+    return {
+        "dimensions": [str(dim) for dim in variable.dims],
+        "type": str(variable.dtype),
+        "meaning": str(variable.attrs.get("long_name", "")),
+        "units": str(variable.attrs.get("units", "1")),
+    }
+
+
+def _cells(regime: xr.DataArray) -> dict[str, int]:
+    """Number of cells of every regime that occurs."""
+    codes = (*LABELS["regime"].codes, *LABELS["regime"].also)
+    counts = dict.fromkeys((code.name for code in codes), 0)
+    for k in range(regime.shape[0]):  # a store may be larger than the memory
+        values = regime[k].values
+        for code in codes:
+            counts[code.name] += int(np.count_nonzero(values == code.value))
+    return {name: count for name, count in counts.items() if count}

@@ -1,0 +1,14 @@
+"""Short descriptions of objects for notebooks, as HTML."""
+
+from collections.abc import Mapping
+from html import escape
+
+
+def as_table(title: str, rows: Mapping[str, object]) -> str:
+    """Return a table with a title and a row for each name and value."""
+    cells = "".join(
+        f'<tr><th style="text-align:left">{escape(name)}</th>'
+        f'<td style="text-align:left">{escape(str(value))}</td></tr>'
+        for name, value in rows.items()
+    )
+    return f"<table><caption><b>{escape(title)}</b></caption>{cells}</table>"

@@ -1,0 +1,103 @@
+"""`ds.friction`, and descriptions of objects in notebooks."""
+
+import subprocess
+import sys
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+import xarray as xr
+
+import frictionmap as fm
+from frictionmap import InputError
+
+TWO = fm.System(mass_ratios=[1.0, 2.0], stiffness_ratios=[1.0, 1.0])
+
+
+@pytest.fixture(scope="module")
+def mapped():
+    return fm.sweep(fm.System(), np.linspace(0.2, 1.5, 14), np.linspace(0.1, 1.2, 12), [1.0, 1.5])
+
+
+def test_names_of_regimes(mapped):
+    labels = mapped.friction.labels
+    assert labels.dims == mapped.regime.dims
+    codes = {"permanent-sticking": 0, "stick-slip": 1, "continuous": 2}
+    assert set(np.unique(labels)) == set(codes)
+    for name, code in codes.items():
+        assert ((labels == name) == (mapped.regime == code)).all()
+    assert labels.sel(mu=1.0, r=0.5, beta=1.2, method="nearest").item() == "permanent-sticking"
+
+
+@pytest.mark.parametrize("name", ["stick-slip", "stick_slip", "stick slip"])
+def test_cells_of_a_regime(mapped, name):
+    found = mapped.friction.where_regime(name)
+    there = (mapped.regime == 1).values
+    assert (np.isfinite(found.stops_per_cycle.values) == there).all()
+    assert (found.contact_amplitude.values[there] == mapped.contact_amplitude.values[there]).all()
+    assert found.beta_lim.equals(mapped.beta_lim)
+
+
+def test_pictures(mapped):
+    figures = [
+        axes[0].figure for axes in (mapped.friction.plot(size="85mm"), fm.plot_regimes(mapped, size="85mm"))
+    ]
+    assert figures[0].get_size_inches().tolist() == figures[1].get_size_inches().tolist()
+    axes = mapped.friction.plot("contact_amplitude", log=True)
+    assert isinstance(axes[0].figure.axes[-1].collections[-1].norm, mpl.colors.LogNorm)
+
+
+def test_refusals(mapped):
+    with pytest.raises(InputError, match=r"^unknown regime 'stuck' .*; valid: unresolved, "):
+        mapped.friction.where_regime("stuck")
+    with pytest.raises(InputError, match=r"^unknown regime 3; valid: "):
+        mapped.friction.where_regime(3)
+    with pytest.raises(InputError, match=r"^cannot find regimes: the dataset has no variable regime; "):
+        _ = mapped.drop_vars("regime").friction.labels
+
+
+@pytest.mark.parametrize(
+    "imports",
+    [
+        "import xarray as xr; import frictionmap as fm",
+        "import frictionmap as fm; import xarray as xr; fm.sweep",
+    ],
+)
+def test_datasets_from_files_have_it_too(imports):
+    code = f"{imports}; print(xr.Dataset({{'regime': ('x', [1])}}).friction.labels.item())"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=300, check=True
+    )
+    assert done.stdout == "stick-slip\n"
+
+
+def test_it_is_registered_once():
+    assert xr.Dataset.friction.__module__ == "frictionmap.accessor"
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (
+            fm.System(mass_ratios=[1.0, 2.0], stiffness_ratios=[1.0, 1.0]),
+            ["System", "chain of 2 masses (1, 2)"],
+        ),
+        (fm.Solver(cycles=77, outputs=["regime", "period"]), ["Solver", "77", "regime, period"]),
+        (fm.Units(natural_frequency="4.2 Hz", load="3 N"), ["Units", "4.2 Hz", "3 N"]),
+    ],
+)
+def test_notebooks_show_what_an_object_is(given, words):
+    html = given._repr_html_()
+    assert html.startswith("<table>")
+    assert all(word in html for word in words)
+    assert "None" not in html
+
+
+def test_natural_frequencies_of_a_system():
+    assert ", ".join(f"{w:.5g}" for w in TWO.modes.w) in TWO._repr_html_()
+
+
+def test_texts_are_escaped():
+    units = fm.Units(natural_frequency="4.2 Hz")
+    object.__setattr__(units, "load", "<b>")
+    assert "&lt;b&gt;" in units._repr_html_()

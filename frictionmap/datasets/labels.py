@@ -300,6 +300,15 @@ GENERAL_VARIABLES = {
         most=1.0,
         nan=True,
     ),
+    "least_slip": Label(
+        np.float64,
+        "least sliding distance of a single slip of an elastic contact, over P/k1 (Y)",
+        CELL,
+        comment="over the steady period; the distance per excitation period where it slips throughout, 0 "
+        "where it does not slip, NaN for a rigid contact and where unresolved",
+        least=0.0,
+        nan=True,
+    ),
     "equivalent_stiffness": _range_of(
         "equivalent stiffness of the contact over k1",
         comment="real part of the first harmonic of the friction force over that of the motion",
@@ -673,7 +682,7 @@ MEASURES = {
         "contact_amplitude", "amplitude", "sliding_distance", "contact_first_harmonic_amplitude",
         "first_harmonic_amplitude", "displacement_harmonic", "contact_harmonic", "rms", "held_response",
         "limit_amplitude", "limit_first_harmonic_amplitude", "x", "z", "event_z", "contact_peak_to_peak",
-        "contact_midpoint", "peak_to_peak", "midpoint",
+        "contact_midpoint", "peak_to_peak", "midpoint", "least_slip",
     ),
     "force": (
         "beta_lim", "beta_lim_modal", "beta_stick", "sliding_limit", "beta_lim_high", "beta_stick_high",

@@ -80,6 +80,8 @@ def contact_values(name: str, system: System, found: Cells) -> np.ndarray:
         return np.where(rests | ~rigid, np.nan, table)
     if name in ("slips_per_cycle", "slip_reversals_per_cycle"):
         return np.where(rigid, np.nan, found.slips if name == "slips_per_cycle" else found.reversals)
+    if name == "least_slip":
+        return np.where(rigid, np.nan, found.least_slip)
     if name in ("stuck_fraction", "elastic_fraction"):
         return np.where(rigid if name == "elastic_fraction" else ~rigid, np.nan, found.stuck)
     if name == "contact_amplitude":

@@ -19,7 +19,7 @@ from .problem import general_of, problem_of, static_offset
 def allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
     """Allocate unresolved cells."""
     per_contact = (*shape, contacts)
-    numbers = [np.full(per_contact, np.nan) for _ in range(8)]
+    numbers = [np.full(per_contact, np.nan) for _ in range(9)]
     ranges = [np.full((*shape, contacts + masses), np.nan) for _ in range(2)]
     return Cells(
         np.full(shape, regimes.UNRESOLVED, np.int8), np.full(shape, regimes.NOT_COMPUTED, np.int8),

@@ -73,6 +73,7 @@ def _events(system: System, steps: Steps) -> dict[str, np.ndarray]:
 
 def scalars(system: System, steps: Steps) -> dict[str, np.ndarray]:
     """Numbers of a steady state: of all, (), of each contact, (N,), of each mass, (n,)."""
+    general = general_of(system)
     count = steps.contacts
     of_contacts = [steps.per_cycle(j) for j in range(count)]
     found: dict[str, np.ndarray] = {
@@ -98,6 +99,7 @@ def scalars(system: System, steps: Steps) -> dict[str, np.ndarray]:
         "cycles": np.array(int(np.ceil(steps.cycles))),
         "origin": np.array(regimes.PERIODIC_ORBIT),
         "sliding_distance": steps.distance,
+        "least_slip": np.where(general.elastic, steps.least_slip, np.nan),
         "work_friction": steps.works[0],
         "work_wall": steps.works[1],
     }
@@ -122,7 +124,7 @@ def is_wanted(name: str, general: General) -> bool:
     """Whether a number says something about contacts of these kinds."""
     if name in ("stops_per_cycle", "turns_per_cycle", "stuck_fraction"):
         return not general.elastic.all()
-    if name.startswith(("slip_", "slips", "elastic")):
+    if name.startswith(("slip_", "slips", "elastic", "least_slip")):
         return bool(general.elastic.any())
     if name == "work_wall":
         return any(group.first.wall_velocity for group in general.groups)

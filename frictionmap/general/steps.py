@@ -8,6 +8,7 @@ from .. import regimes
 from .._kernels.engine.policies import MOVING_START
 from .._kernels.general.follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
 from .._kernels.general.problem import LONG, SECTION, Problem
+from .._kernels.general.record import LEAST_SLIP
 from .._kernels.general.series import Friction
 from .._kernels.general.steady import REPEATS, one_steady_state
 from ..errors import NoSteadyState
@@ -45,6 +46,7 @@ class Steps:
     highest: np.ndarray
     works: np.ndarray  # (2, N) per period of the load
     distance: np.ndarray  # (N,)
+    least_slip: np.ndarray  # (N,)
 
     @property
     def contacts(self) -> int:
@@ -180,4 +182,5 @@ def cell_steps(
         record.steps[:count][own],
         record.patterns[:count][own][:, :-1].astype(np.int8), counts, period, multiplier, found.cycles,
         record.ranges[0] + shift, record.ranges[1] + shift, works, record.distance / period,
+        np.where(counts[MOVED] > 0.0, record.slips[LEAST_SLIP], 0.0),
     )  # fmt: skip

@@ -44,6 +44,7 @@ GeneralOutput = Literal[
     "slips_per_cycle",
     "slip_reversals_per_cycle",
     "elastic_fraction",
+    "least_slip",
     "contact_peak_to_peak",
     "contact_midpoint",
     "peak_to_peak",

@@ -24,7 +24,7 @@ from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from .follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
 from .problem import padded, set_row
-from .record import RANGES
+from .record import LEAST_SLIP, RANGES
 from .series import Friction
 from .steady import NO_REPEAT, REPEATS, find, from_rest, make_tools, measure, steady_period
 
@@ -68,6 +68,7 @@ class Cells(NamedTuple):
     stuck: np.ndarray
     slips: np.ndarray
     reversals: np.ndarray
+    least_slip: np.ndarray
     distance: np.ndarray
     works: np.ndarray  # of friction
     wall_works: np.ndarray  # of walls at constant velocity
@@ -120,6 +121,7 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
         if counts[MOVED, j] == 0.0:
             out.stuck[m, i, b, j] = 1.0
         out.reversals[m, i, b, j] = counts[REVERSALS, j] / period
+        out.least_slip[m, i, b, j] = record.slips[LEAST_SLIP, j]
         out.distance[m, i, b, j] = record.distance[j] / period
         out.works[m, i, b, j] = record.works[0, j] / period
         out.wall_works[m, i, b, j] = record.works[1, j] / period
@@ -175,6 +177,7 @@ def _store_stuck(out, m, i, b):
         out.stuck[m, i, b, j] = 1.0
         out.slips[m, i, b, j] = 0.0
         out.reversals[m, i, b, j] = 0.0
+        out.least_slip[m, i, b, j] = 0.0
         out.distance[m, i, b, j] = 0.0
         out.works[m, i, b, j] = 0.0
         out.wall_works[m, i, b, j] = 0.0

@@ -14,6 +14,9 @@ NOTHING, RANGES, STEPS, FORCES = 0, 1, 2, 3
 
 _SLOPE, _VALUE = 5, 6  # rows of the scratch
 
+#: Rows of `slips`.
+LEAST_SLIP, _PRESENT, _EDGE = 0, 1, 2
+
 #: Sum of all variations of a series, relative to its size, that is rounding error of its terms.
 _ROUNDING = 2.0**-50
 
@@ -29,6 +32,7 @@ class Record(NamedTuple):
     active: np.ndarray  # (1,) int: NOTHING, RANGES, STEPS or FORCES
     ranges: np.ndarray  # (2, N + n) lowest and highest
     distance: np.ndarray  # (N,) sliding distances
+    slips: np.ndarray  # (3, N) sliding distances of single slips, see `_keep_slip`
     works: np.ndarray  # (2, N) work of friction, and of the walls that move at constant velocity
     masses: np.ndarray  # (n, m) displacement of the masses per mode
     steps: np.ndarray  # (most, rows, WIDTH) the series of every step
@@ -44,9 +48,9 @@ def make_record(problem, masses, most):
     size = contacts + masses.shape[0]
     rows = problem.push.shape[0] + problem.push.shape[1] + 4 * contacts
     return Record(
-        np.zeros(1, np.int64), np.zeros((2, size)), np.zeros(contacts), np.zeros((2, contacts)),
-        masses, np.zeros((most, rows, WIDTH)), np.zeros((most, contacts + 1)), np.zeros(1, np.int64),
-        np.zeros((2, contacts)),
+        np.zeros(1, np.int64), np.zeros((2, size)), np.zeros(contacts), np.zeros((3, contacts)),
+        np.zeros((2, contacts)), masses, np.zeros((most, rows, WIDTH)), np.zeros((most, contacts + 1)),
+        np.zeros(1, np.int64), np.zeros((2, contacts)),
     )  # fmt: skip
 
 
@@ -58,6 +62,9 @@ def clear_record(record):
         record.ranges[1, i] = -np.inf
     for j in range(record.distance.size):
         record.distance[j] = 0.0
+        record.slips[LEAST_SLIP, j] = np.inf
+        record.slips[_PRESENT, j] = 0.0
+        record.slips[_EDGE, j] = np.inf
         record.works[0, j] = 0.0
         record.works[1, j] = 0.0
         record.forces[0, j] = np.inf
@@ -171,6 +178,39 @@ def _varies(problem, j):
 
 
 @kernel
+def _keep_slip(record, j):
+    """End the present slip of an elastic contact that is elastic.
+
+    The first slip may have begun before the record: its length so far is kept apart, and is infinite until
+    the contact has been elastic once.
+    """
+    slips = record.slips
+    if slips[_EDGE, j] == np.inf:
+        slips[_EDGE, j] = slips[_PRESENT, j]
+    elif slips[_PRESENT, j] > 0.0:
+        slips[LEAST_SLIP, j] = min(slips[LEAST_SLIP, j], slips[_PRESENT, j])
+    slips[_PRESENT, j] = 0.0
+
+
+@kernel
+def join_slips(record, halves):
+    """Join the last slip of a period with the first one; record.slips[LEAST_SLIP] is then the least of all.
+
+    It is 0 where there is none, and the distance per period of the load where a contact slips throughout.
+    """
+    slips = record.slips
+    for j in range(slips.shape[1]):
+        if slips[_EDGE, j] == np.inf:
+            slips[LEAST_SLIP, j] = 2.0 * slips[_PRESENT, j] / halves
+            continue
+        joined = slips[_EDGE, j] + slips[_PRESENT, j]
+        if joined > 0.0:
+            slips[LEAST_SLIP, j] = min(slips[LEAST_SLIP, j], joined)
+        if slips[LEAST_SLIP, j] == np.inf:
+            slips[LEAST_SLIP, j] = 0.0
+
+
+@kernel
 def _keep_works(problem, row, work, end, record, first):
     """Add the sliding distances and works of the present step."""
     contacts = problem.spring.size
@@ -181,10 +221,13 @@ def _keep_works(problem, row, work, end, record, first):
         if work.sense[j] != 0:
             way = value_at(series, first + j, end) - series[first + j, 0] - belt * end
             record.distance[j] += abs(way)
+            record.slips[_PRESENT, j] += abs(way)
             if _varies(problem, j):
                 record.works[0, j] += _integral_of_product(series, force, first + contacts + j, end)
             else:
                 record.works[0, j] += series[force, 0] * way
+        elif problem.spring[j] != 0.0:
+            _keep_slip(record, j)
         if belt != 0.0:
             record.works[1, j] -= _integral(series, force, end) * belt
 

@@ -11,7 +11,7 @@ from ..structure.newton import solve_linear, spectral_radius
 from .follow import BEFORE, FOLLOWED, STUCK, follow
 from .pattern import begin, stop_exactly
 from .problem import SECTION, Row, Work, make_row, make_work, padded, set_channels, set_row, state_size
-from .record import FORCES, NOTHING, RANGES, STEPS, Record, clear_record, make_record, mirror
+from .record import FORCES, NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
 from .return_map import (
     Return,
     fill_newton,
@@ -471,6 +471,7 @@ def measure(problem, row, friction, halves, work, memory, record, what):
         if return_distance(problem, row, memory) <= most or repeat == _MOST_REPEATED - 1:
             break
         _newton(problem, row, friction, halves, _MEASURED, work, memory, record)
+    join_slips(record, both)
     if both % 2 == 1:
         mirror(record)
     return both, multiplier ** (steady_period(halves) * 2.0 / both)

@@ -336,3 +336,20 @@ def test_curves_of_a_belt():
     ds = fm.curves(system, [1.0, 2.5, 3.0], [0.5], quantities=["amplitude", "energy"])
     assert "one-way sliding" in labels_of(fm.plot_curves(ds))
     assert any("belt" in ax.get_ylabel() for ax in fm.plot_curves(ds, "energy"))
+
+
+def test_a_contact_without_its_number_has_no_marks_of_others():
+    """Marks of another contact may lie far outside; the picture then has no room for its axes."""
+    system = fm.System(
+        mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.05,
+        contacts=[fm.Contact("fixed-wall", 1), fm.Contact("between-masses", (1, 2), ratio=0.5)],
+    )  # fmt: skip
+    ds = fm.response(system, 0.4, 0.2)
+    for k in range(2):
+        (chosen,) = [fm.plot_response(ds.isel(contact=k, drop=True))]
+        marks = [line for ax in chosen.ravel() for line in ax.lines if line.get_marker() == "o"]
+        assert not [line for line in marks if np.size(line.get_xdata())]
+        (known,) = [fm.plot_response(ds.isel(contact=k))]
+        marks = [line for ax in known.ravel() for line in ax.lines if line.get_marker() == "o"]
+        starts = (ds.event_contact == k + 1) & (ds.event_direction == 0)
+        assert sum(np.size(line.get_xdata()) for line in marks) == int(starts.sum())

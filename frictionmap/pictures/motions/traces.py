@@ -27,12 +27,17 @@ class Trace(NamedTuple):
 
 
 def _stops(ds: xr.Dataset, number: int) -> tuple[np.ndarray, np.ndarray]:
-    """Where stops of a contact begin: phases and z; of an excerpt, those inside it."""
-    if not set(_EVENTS) <= set(ds):
+    """Where stops of a contact begin: phases and z; of an excerpt, those inside it.
+
+    Without the number of the contact nothing is known of events of several.
+    """
+    of_contact = ds["event_contact"].values if "event_contact" in ds else None
+    unknown = of_contact is not None and not number and np.unique(of_contact).size > 1
+    if unknown or not set(_EVENTS) <= set(ds):
         return np.empty(0), np.empty(0)
     begins = ds["event_direction"].values == 0
-    if "event_contact" in ds and number:
-        begins &= ds["event_contact"].values == number
+    if of_contact is not None and number:
+        begins &= of_contact == number
     tau = ds["tau"].values
     begins &= (ds["event_tau"].values >= tau.min()) & (ds["event_tau"].values <= tau.max())
     return ds["event_tau"].values[begins], ds["event_z"].values[begins]

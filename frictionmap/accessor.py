@@ -1,4 +1,4 @@
-"""`ds.friction`: names of regimes, cells of one regime, and pictures, as an accessor of xarray datasets.
+"""`ds.frictionmap`: names of regimes, cells of one regime, and pictures, as an accessor of xarray datasets.
 
 It is registered when xarray and this package are both loaded and one of its functions is used.
 """
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _NAMES = {code.value: code.name.replace("_", "-") for code in regimes.BELT_REGIMES}
 
 
-@xr.register_dataset_accessor("friction")
+@xr.register_dataset_accessor("frictionmap")
 class FrictionAccessor:
     """What a dataset of this package shows, in words and pictures.
 

@@ -161,7 +161,7 @@ def api() -> Iterator[str]:
         yield f".. automodule:: frictionmap.{module}\n   :no-members:\n" if module == "features" else ""
         for name in _public(module):
             yield _documented(f"frictionmap.{module}", name)
-    title = "ds.fm"
+    title = "ds.frictionmap"
     yield f"\n{title}\n{'-' * len(title)}\n"
     yield ".. autoclass:: frictionmap.accessor.FrictionAccessor\n   :members:\n"
     yield from _codes()

@@ -1,4 +1,4 @@
-"""Exact regime maps of vibrating structures with dry-friction contacts.
+"""Exact regime maps of vibrating structures with one dry-friction contact.
 
 The rows follow the flow of data: a module imports only from rows above its own.
 
@@ -31,7 +31,7 @@ identify       measured data: tables, fits, estimates with their errors
 examples       synthetic measurements with known true values
 pictures       pictures of maps, curves, motions and fits; colours of the regimes
 plot           the functions `plot_...`, and the choice of the picture for a file
-accessor       `ds.fm`: names of regimes, cells of one regime, pictures
+accessor       `ds.frictionmap`: names of regimes, cells of one regime, pictures
 explorer       the map in a browser: a server for this machine, and the page
 command_line   the command line: arguments, commands, completion, progress, interrupts
 __main__       the program as a process: streams, exit status
@@ -142,7 +142,7 @@ _HOME = {
 
 
 def _register() -> None:
-    """Add the accessor `fm` to datasets; not before something else has loaded xarray, which is slow."""
+    """Add the accessor `frictionmap` to datasets, once something else has loaded xarray, which is slow."""
     if "xarray" in sys.modules:
         import_module(".accessor", __name__)
 

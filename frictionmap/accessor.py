@@ -1,6 +1,6 @@
-"""`ds.fm`: names of regimes, cells of one regime, and pictures, as an accessor of xarray datasets.
+"""`ds.frictionmap`: names of regimes, cells of one regime, and pictures, as an accessor of xarray datasets.
 
-It is registered when xarray and this package are both loaded and one of its functions is used.  Its name is not `friction`: that is a variable of responses.
+It is registered when xarray and this package are both loaded and one of its functions is used.
 """
 
 from typing import TYPE_CHECKING, Unpack
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _NAMES = {code.value: code.name.replace("_", "-") for code in regimes.BELT_REGIMES}
 
 
-@xr.register_dataset_accessor("fm")
+@xr.register_dataset_accessor("frictionmap")
 class FrictionAccessor:
     """What a dataset of this package shows, in words and pictures.
 

@@ -1,4 +1,4 @@
-"""`ds.fm`, and descriptions of objects in notebooks."""
+"""`ds.frictionmap`, and descriptions of objects in notebooks."""
 
 import subprocess
 import sys
@@ -20,7 +20,7 @@ def mapped():
 
 
 def test_names_of_regimes(mapped):
-    labels = mapped.fm.labels
+    labels = mapped.frictionmap.labels
     assert labels.dims == mapped.regime.dims
     codes = {"permanent-sticking": 0, "stick-slip": 1, "continuous": 2}
     assert set(np.unique(labels)) == set(codes)
@@ -31,7 +31,7 @@ def test_names_of_regimes(mapped):
 
 @pytest.mark.parametrize("name", ["stick-slip", "stick_slip", "stick slip"])
 def test_cells_of_a_regime(mapped, name):
-    found = mapped.fm.where_regime(name)
+    found = mapped.frictionmap.where_regime(name)
     there = (mapped.regime == 1).values
     assert (np.isfinite(found.stops_per_cycle.values) == there).all()
     assert (found.contact_amplitude.values[there] == mapped.contact_amplitude.values[there]).all()
@@ -39,21 +39,20 @@ def test_cells_of_a_regime(mapped, name):
 
 
 def test_pictures(mapped):
-    figures = [
-        axes[0].figure for axes in (mapped.fm.plot(size="85mm"), fm.plot_regimes(mapped, size="85mm"))
-    ]
+    both = mapped.frictionmap.plot(size="85mm"), fm.plot_regimes(mapped, size="85mm")
+    figures = [axes[0].figure for axes in both]
     assert figures[0].get_size_inches().tolist() == figures[1].get_size_inches().tolist()
-    axes = mapped.fm.plot("contact_amplitude", log=True)
+    axes = mapped.frictionmap.plot("contact_amplitude", log=True)
     assert isinstance(axes[0].figure.axes[-1].collections[-1].norm, mpl.colors.LogNorm)
 
 
 def test_refusals(mapped):
     with pytest.raises(InputError, match=r"^unknown regime 'stuck' .*; valid: unresolved, "):
-        mapped.fm.where_regime("stuck")
+        mapped.frictionmap.where_regime("stuck")
     with pytest.raises(InputError, match=r"^unknown regime 3; valid: "):
-        mapped.fm.where_regime(3)
+        mapped.frictionmap.where_regime(3)
     with pytest.raises(InputError, match=r"^cannot find regimes: the dataset has no variable regime; "):
-        _ = mapped.drop_vars("regime").fm.labels
+        _ = mapped.drop_vars("regime").frictionmap.labels
 
 
 @pytest.mark.parametrize(
@@ -64,15 +63,17 @@ def test_refusals(mapped):
     ],
 )
 def test_datasets_from_files_have_it_too(imports):
-    code = f"{imports}; print(xr.Dataset({{'regime': ('x', [1])}}).fm.labels.item())"
+    code = f"{imports}; print(xr.Dataset({{'regime': ('x', [1])}}).frictionmap.labels.item())"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=300, check=True
     )
     assert done.stdout == "stick-slip\n"
 
 
-def test_it_is_registered_once():
-    assert xr.Dataset.fm.__module__ == "frictionmap.accessor"
+def test_the_friction_force_of_a_motion_keeps_its_name():
+    ds = fm.response(fm.System(), 0.3, 0.5)
+    assert isinstance(ds.friction, xr.DataArray)
+    assert ds.frictionmap.labels.item() == "stick-slip"
 
 
 @pytest.mark.parametrize(

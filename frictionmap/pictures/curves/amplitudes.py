@@ -200,6 +200,11 @@ def _phase_limits(shown: list[MotionColumn]) -> tuple[float, float]:
     return _TICK * float(np.floor(together.min(initial=0.0) / _TICK)), 180.0
 
 
+def _tick(ends: tuple[float, float]) -> float:
+    """Spacing of ticks on an axis of phases [degrees]; twice as wide where a small figure has a long axis."""
+    return 2.0 * _TICK if current().size is not None and ends[1] - ends[0] > 5.0 * _TICK else _TICK
+
+
 def _about_gaps(shown: list[MotionColumn]) -> list[str]:
     """Reason for missing phases, unless a band explains it."""
     why = "no phase where the largest displacement lasts throughout a stop, or the period is not one"
@@ -236,7 +241,7 @@ def motion_picture(family: Family, quantity: str, log: bool) -> Picture:
         def draw(ax: Axes) -> list[Handle]:
             over_r(ax, family, motion.title, "phase lag [°]")
             ax.set_ylim(*ends)
-            ax.set_yticks(np.arange(ends[0], 181.0, _TICK))
+            ax.set_yticks(np.arange(180.0, ends[0] - 1.0, -_tick(ends))[::-1])
             return _draw_phase(ax, motion, family)
 
         return draw

@@ -24,6 +24,7 @@ def check_export(path: Path) -> None:
 def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
     """Write a dataset; as CSV one row for every point of all its axes, with the names of codes.
 
+    What every contact has is one column for each, such as stops_per_cycle_2.
     Of estimates it is a row for every parameter; of shares every outcome and quantile has a column; of the
     result of a design question it is the curve that was searched.
     """
@@ -40,11 +41,13 @@ def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
         return
     if kind(ds) == "shares":
         ds = _in_columns(_in_columns(ds, "outcome"), "quantile")
-    table = {}
+    table: dict[str, xr.DataArray] = {}
     dims = [str(name) for name in COORDINATES if name in ds.dims]
     for name, variable in ds.data_vars.items():
         if set(variable.dims) <= set(dims):
-            table[name] = _in_words(variable)
+            table[str(name)] = _in_words(variable)
+        elif set(variable.dims) - set(dims) == {"contact"}:
+            table |= _of_contacts(str(name), _in_words(variable))
     wide = xr.Dataset(table)
     checks.cells(1, 1, math.prod(wide.sizes.values()), name="a table")
     wide.to_dataframe(dim_order=[dim for dim in dims if dim in wide.dims]).to_csv(path)
@@ -60,6 +63,12 @@ def _in_columns(ds: xr.Dataset, dim: str) -> xr.Dataset:
         for k, value in enumerate(ds[dim].values):
             columns[f"{name}_{value}"] = variable.isel({dim: k}, drop=True)
     return xr.Dataset(columns)
+
+
+def _of_contacts(name: str, variable: xr.DataArray) -> dict[str, xr.DataArray]:
+    """A variable of every contact as one of each, by the numbers of the contacts."""
+    numbers = range(1, variable.sizes["contact"] + 1)
+    return {f"{name}_{k}": variable.isel({"contact": k - 1}, drop=True) for k in numbers}
 
 
 def _in_words(variable: xr.DataArray) -> xr.DataArray:

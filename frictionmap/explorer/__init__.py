@@ -3,9 +3,17 @@
 =================  ===========================================================================================
 module             what is in it
 =================  ===========================================================================================
+scene_parts        sliders, contacts and boundaries that a page offers
+general_scene      what can be changed of a system with several contacts, springs or belts
 scene              subject of a page: system, initial view, parameters that can be changed
-views              one view: changed system, ranges of r and beta, mu; its map, in pieces
+views              one view: changed system, ranges of r and beta, mu; quantities of its cells
+general_lines      boundaries of systems with several contacts, springs, belts or periodic loads
+lines              boundaries of a view: values, and how the page draws them
+general_views      maps of such systems: quantities, classes, cells
+pieces             pieces of a map for the page: cells, classes, quantities, boundaries
+general_cell       one cell of such a system: its motion, contact by contact
 cell               one cell: its motion, and that from another initial state
+general_cut        response curves through a view of such a system
 cut                response curves through a view
 queries            queries of the page, checked like a configuration
 packets            binary packets for the page

@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import regimes
 from ..errors import NoSteadyState
+from ..model.general import refuse_general
 from ..model.settings import Output, Start
 from ..model.system import System
 from ..pictures.classes import of_cells
@@ -74,6 +75,10 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
     """
     view.check(r)
     follower.watch()
+    if view.system.general is not None:
+        from .general_cell import general_motion  # this module is needed for few systems
+
+        return general_motion(view, r, beta)
     # what a map is asked for beside the motion would take as long again
     solver = replace(view.solver, outputs=("regime",))
     try:
@@ -195,6 +200,7 @@ def others(view: View, r: float, beta: float, follower: Follower) -> Packet:
     The header has `start`, the other one, `same`, `summary` and the `reachable` regimes; the arrays
     `multiplier` and, of another motion, what `motion` has of it.
     """
+    refuse_general(view.system, "compare initial states")
     view.check(r)
     start = _STARTS[view.solver.start]
     there = replace(view, solver=replace(view.solver, start=start))
@@ -239,6 +245,9 @@ def rehearse(view: View, follower: Follower) -> None:
     With mu = 1, where every motion is found at once.
     """
     view, r = replace(view, mu=1.0), view.r[0] + _ASIDE * (view.r[1] - view.r[0])
+    if view.system.general is not None:
+        motion(view, r, 0.5 * sum(view.beta), follower)
+        return
     limits = find_curves(view.system, np.array([r]), np.array([1.0]))
     lim, stick = limits.beta_lim.item(), limits.beta_stick.item()
     if not math.isfinite(stick):  # held, it resonates: nothing sticks there

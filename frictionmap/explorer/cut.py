@@ -26,6 +26,10 @@ def cut(
     `limit`, those at beta_lim.
     """
     view.check(None if along == "r" else at)
+    if view.system.general is not None:
+        from .general_cut import general_cut  # this module is needed for few systems
+
+        return general_cut(view, along, at, count, follower)
     place = middles(getattr(view, along), count, "count")
     pieces: list[dict[str, np.ndarray]] = []
     for first in range(0, count, _AT_ONCE):

@@ -99,18 +99,24 @@ def sizes(scene: Scene, view: View, quantity: CellQuantity, piece: Piece) -> dic
     scales = scales_of(scene.units, view.system)
     outputs = _solver(view, quantity).outputs
     masses = view.system.n if "amplitude" in outputs else 1
+    general = view.system.general
+    contacts = 1 if general is None else general.count
 
     def copies(name: str) -> int:
         """Number of variables: the ratio, and its value in SI units if known."""
         return 1 + (name in MEASURE_OF and scales.of(MEASURE_OF[name]) is not None)
 
     axes = sum(1 + (scales.of(measure) is not None) for measure in ("frequency", "force"))
-    numbers = axes + len(("mu",)) + (masses > 1) + sum(map(copies, (*outputs, *BOUNDARIES)))
+    several = (contacts - 1) * len(outputs)
+    numbers = axes + len(("mu",)) + (masses > 1) + several + sum(map(copies, (*outputs, *BOUNDARIES)))
     floats = sum(
-        copies(name) * (masses if name == "amplitude" else 1) for name in outputs if name not in _CODES
+        copies(name) * (masses if name == "amplitude" else contacts) for name in outputs if name not in _CODES
     )
     cells = piece.columns * piece.rows
-    return {"csv": _PER_NUMBER * numbers * masses * cells, "nc": _PER_FILE + _PER_FLOAT * floats * cells}
+    return {
+        "csv": _PER_NUMBER * numbers * masses * cells,
+        "nc": _PER_FILE + _PER_FLOAT * floats * cells,
+    }
 
 
 def saved_map(

@@ -9,8 +9,9 @@ from .. import checks
 from ..errors import InputError
 from ..model.settings import Start
 from .cut import Along
+from .pieces import quantities_of
 from .scene import Scene, checked_range
-from .views import MOST_PIXELS, CellQuantity, Piece, View, quantities
+from .views import MOST_PIXELS, CellQuantity, Piece, View
 
 #: Keys of a query; a page of many masses has some tens.
 _MOST_KEYS = 100
@@ -52,6 +53,7 @@ def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
         beta=_range(given, "beta", scene.beta),
         mu=checks.number(number(given["mu"], "mu"), "mu", least=1.0) if "mu" in given else scene.mu,
         solver=replace(scene.solver, start=start),  # type: ignore[arg-type]
+        contact=scene.shown_contact(given.get("contact", "")),
     )
     return Query(view, given)
 
@@ -124,7 +126,7 @@ def piece_of(query: Query) -> tuple[CellQuantity, Piece]:
     columns, rows = _whole(given, "columns"), _whole(given, "rows")
     piece = Piece(columns, rows, _whole(given, "first", 0), _whole(given, "last", columns))
     piece.check()
-    known = quantities(query.view.system)
+    known = quantities_of(query.view)
     key = checks.choice(given.get("quantity", known[0].key), "quantity", tuple(one.key for one in known))
     return next(one for one in known if one.key == key), piece
 

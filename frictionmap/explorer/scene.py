@@ -5,18 +5,19 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import combinations
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from ..model.general import refuse_general
 from ..model.settings import Solver, Start
 from ..model.system import CONTACTS, System
-from ..model.variations import Number
+from ..model.variations import named_number
 from ..units.axes import KINDS, ratios
 from ..units.scales import Units, scales_of
+from .general_scene import chosen_contact, contact_choices, contact_sliders
+from .scene_parts import Contact, Slider
 
 if TYPE_CHECKING:
     from ..files.config import Config
@@ -30,26 +31,6 @@ _KEPT = 32
 
 #: Ratios of a slider to the value that it begins with; where a slider for mu, and one for zeta, ends.
 _RATIO, _MOST_MU, _MOST_ZETA = 10.0, 3.0, 1.0
-
-
-class Slider(NamedTuple):
-    """A number that can be changed; its key is that of a further axis of a configuration, or mu."""
-
-    key: str
-    label: str
-    least: float
-    most: float
-    value: float
-    scale: str  # how the slider runs from least to most: "linear", "square" (fine near least) or "log"
-
-
-class Contact(NamedTuple):
-    """A contact that can be chosen."""
-
-    key: str
-    label: str
-    kind: str
-    masses: tuple[int | str, ...]
 
 
 @dataclass(frozen=True)
@@ -66,7 +47,6 @@ class Scene:
     units: Units | None = None
 
     def __post_init__(self) -> None:
-        refuse_general(self.system, "explore the map")
         object.__setattr__(self, "changed", lru_cache(_KEPT)(self._changed))
 
     @property
@@ -78,13 +58,24 @@ class Scene:
     def sliders(self) -> tuple[Slider, ...]:
         """Parameters that can be changed by sliders."""
         mu = Slider("mu", "μ", 1.0, max(_MOST_MU, 2.0 * self.mu), self.mu, "linear")
-        return (mu, *_of_damping(self.system), *_of_ratios(self.system))
+        general = self.system.general
+        if general is None:
+            return (mu, *_of_damping(self.system), *_of_ratios(self.system))
+        first = () if general.elastic.all() else (mu,)  # at break-away a spring would jump
+        own = contact_sliders(self.system)
+        return (*first, *_of_damping(self.system), *own, *_of_ratios(self.system))
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
-        """Contacts that the system can have, its own first."""
+        """Contacts that the system can have, its own first; of a general one, those that can be shown."""
+        if self.system.general is not None:
+            return contact_choices(self.system)
         own = _contact(self.system.contact, tuple(self.system.contact_masses), self.system.n)
         return (own, *(other for other in _others(self.system) if other.key != own.key))
+
+    def shown_contact(self, key: str) -> int | None:
+        """Contact of a general system that is shown, counted from 0; None: all together."""
+        return None if self.system.general is None else chosen_contact(key)
 
     def _changed(self, contact: str, numbers: tuple[tuple[str, float], ...]) -> System:
         """Change the contact and numbers of the system; contact "": unchanged.
@@ -98,21 +89,16 @@ class Scene:
         if contact and contact != self.contacts[0].key:
             keys = tuple(known.key for known in self.contacts)
             checks.choice(contact, "contact", keys)
-            system = _with_contact(system, self.contacts[keys.index(contact)])
+            if system.general is None:
+                system = _with_contact(system, self.contacts[keys.index(contact)])
         changed: dict[str, Any] = {}
         for text, value in numbers:
-            number = number_of(text)
+            number = named_number(text, "slider")
             before = changed.get(number.key, getattr(system, number.key))
             changed[number.key] = number.put_into(before, value)
         return replace(system, **changed)  # at once: one alone may make no sense
 
     changed: Any = None  # `_changed`, with what it found kept
-
-
-def number_of(key: str) -> Number:
-    """The number of a system that a slider moves."""
-    name, _, place = key.rstrip("]").partition("[")
-    return Number(name, int(place) if place else None)
 
 
 def _damped_alike(system: System) -> bool:

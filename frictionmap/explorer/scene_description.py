@@ -1,5 +1,6 @@
 """Description of a scene for the page: names, ranges, parameters that can be changed, colours."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,10 @@ from ..theory.refinement import boundary_check
 from ..units.scales import scales_of
 from ..units.table import UNITS, handy_unit
 from ..version import __version__
+from .lines import lines_of
+from .pieces import marks, quantities_of
 from .scene import Scene
-from .views import View, marks, quantities
+from .views import View
 
 #: Frequencies of the range shown at which boundaries of a reduced structure are compared with finer ones.
 _COMPARED = 60
@@ -59,12 +62,39 @@ def description(scene: Scene, view: View) -> dict[str, Any]:
     system = view.system
     return {
         "system": "; ".join((system.describe(), *_costs(view))),
-        "quantities": [
-            {"key": one.key, "label": one.label, "scale": one.scale} for one in quantities(system)
-        ],
+        "quantities": offered_quantities(view),
         "marks": marks(system),
+        "lines": [line._asdict() for line in lines_of(view)],
+        **_classes(view),
         **units_of(scene, view),
     }
+
+
+def _classes(view: View) -> dict[str, Any]:
+    """Names and colours of the classes, what they count, and the contact that they are of."""
+    if view.system.general is None:
+        return {"classes": [look._asdict() for look in CLASSES], "events": "stops", "contact": ""}
+    from .general_views import counted_of, general_looks  # these modules are needed for few systems
+
+    name = "" if view.contact is None else view.system.general.groups[view.contact].name
+    looks = [look._asdict() for look in general_looks(view)]
+    return {"classes": looks, "events": counted_of(view).events, "contact": name}
+
+
+def _contacts(scene: Scene, view: View) -> list[dict[str, Any]]:
+    """The contacts that can be chosen; those of a general system each with its quantities."""
+    choices = [{"key": contact.key, "label": contact.label} for contact in scene.contacts]
+    if view.system.general is None or len(choices) == 1:
+        return choices
+    views = [replace(view, contact=scene.shown_contact(contact.key)) for contact in scene.contacts]
+    return [
+        {**choice, "quantities": offered_quantities(one)} for choice, one in zip(choices, views, strict=True)
+    ]
+
+
+def offered_quantities(view: View) -> list[dict[str, str]]:
+    """Quantities that can colour the cells of a view, for the page."""
+    return [{"key": one.key, "label": one.label, "scale": one.scale} for one in quantities_of(view)]
 
 
 def describe_scene(scene: Scene, view: View) -> dict[str, Any]:
@@ -78,7 +108,7 @@ def describe_scene(scene: Scene, view: View) -> dict[str, Any]:
         "mu": scene.mu,
         "start": scene.solver.start,
         "sliders": [slider._asdict() for slider in scene.sliders],
-        "contacts": [{"key": contact.key, "label": contact.label} for contact in scene.contacts],
-        "classes": [look._asdict() for look in CLASSES],
-        **description(scene, view),
+        "contacts": _contacts(scene, view),
+        "general": view.system.general is not None,
+        **{key: value for key, value in description(scene, view).items() if key != "contact"},
     }

@@ -105,7 +105,7 @@ class Page:
     def warm(self) -> None:
         """Import the computing modules, which takes longer than the browser needs to load the page."""
         try:
-            from . import cell, cut, queries, scene_description, views  # noqa: F401
+            from . import cell, cut, pieces, queries, scene_description  # noqa: F401
 
             self.jobs.listen()
         finally:
@@ -113,12 +113,13 @@ class Page:
 
     def rehearse(self) -> None:
         """Compute a small map and motions, so that their kernels are compiled before the page needs them."""
-        from . import cell, queries, views
+        from . import cell, pieces, queries
+        from .views import Piece
 
         self._warm.wait()
         with contextlib.suppress(InputError, Outdated), self.jobs.enter("rehearsal") as job:
             view = queries.read_query(self.scene, "").view
-            views.piece_of_map(view, views.quantities(view.system)[0], views.Piece(2, 2, 0, 2), job)
+            pieces.piece_of_map(view, pieces.quantities_of(view)[0], Piece(2, 2, 0, 2), job)
             cell.rehearse(view, job)
 
     def answer(self, target: str, gone: Callable[[], bool]) -> Answer:
@@ -160,8 +161,8 @@ class Page:
 
     def _map(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
+        from .pieces import piece_of_map
         from .scene_description import description
-        from .views import piece_of_map
 
         query = queries.read_query(self.scene, text, queries.PIECE)
         quantity, piece = queries.piece_of(query)

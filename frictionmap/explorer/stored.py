@@ -16,14 +16,17 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from ..errors import InputError
+from ..model.system import System
+from .lines import line_names
+from .pieces import classes_of, quantities_of, solve_piece, values_of
 from .queries import read_query
 from .scene import Scene, Slider
 from .scene_description import describe_scene, description
 from .server import page_files
-from .views import CellQuantity, Follower, Piece, View, classes_of, quantities, solve_piece, values_of
+from .views import CellQuantity, Follower, Piece, View
 
-#: Cells of every map, each way: of one mass, and of structures, whose cells take some hundred times as long
-#: where mu is above 1.
+#: Cells of every map, each way: of one mass with one contact; of others, whose cells take up to some hundred
+#: times as long.
 _CELLS = {False: (360, 270), True: (180, 135)}
 
 #: Places of each slider: two sliders are moved together, further ones by themselves.
@@ -113,12 +116,18 @@ def _stepped(values: np.ndarray, log: bool) -> dict[str, Any]:
     return {"low": low, "high": high, "log": log, "steps": _deflated(steps.astype(np.uint8))}
 
 
+def _cells(system: System) -> tuple[int, int]:
+    """Cells of every map of a system, each way."""
+    return _CELLS[system.n > 1 or system.general is not None]
+
+
 def _map(view: View, offered: tuple[CellQuantity, ...], follower: Follower) -> dict[str, Any]:
     """The map of a view, with all quantities."""
-    columns, rows = _CELLS[view.system.n > 1]
+    columns, rows = _cells(view.system)
     found = solve_piece(view, offered, Piece(columns, rows, 0, columns), follower)
-    header, arrays = classes_of(found)
-    limits = np.concatenate((arrays["beta_lim"], arrays["beta_stick"]))
+    names = line_names(view)
+    header, arrays = classes_of(found, names)
+    limits = np.concatenate([arrays[name] for name in names])
     with np.errstate(divide="ignore", invalid="ignore"):
         values = {
             quantity.key: _stepped(values_of(found, quantity).astype(float), quantity.scale == "log")
@@ -138,7 +147,7 @@ def _content(scene: Scene, progress: MapProgress) -> dict[str, Any]:
     """Content of a saved page."""
     kept = _kept(scene.sliders)
     first = read_query(scene, "")
-    offered = quantities(scene.system)
+    offered = quantities_of(first.view)
     maps, count = {}, len(kept.points)
     systems: list[dict[str, Any]] = []  # few of them: not all sliders change them
     for done, point in enumerate(kept.points):
@@ -150,7 +159,7 @@ def _content(scene: Scene, progress: MapProgress) -> dict[str, Any]:
             systems.append(about)
         maps[_name(kept, point)] = {**of_map, "about": systems.index(about)}
         progress(done + 1, count)
-    columns, rows = _CELLS[scene.system.n > 1]
+    columns, rows = _cells(scene.system)
     own = tuple(slider.value for slider in scene.sliders)
     return {
         "scene": describe_scene(scene, first.view),

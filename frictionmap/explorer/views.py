@@ -1,26 +1,17 @@
-"""One view: the changed system, ranges of r and beta, mu; its map, computed in pieces."""
+"""One view: the changed system, ranges of r and beta, mu."""
 
-import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, NamedTuple, Protocol, cast
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from ..model.settings import Output, Solver
+from ..model.settings import Solver
 from ..model.system import System
-from ..pictures.classes import of_cells, stops_range
-from ..pictures.palette import MORE, NON_INTEGER
-from ..steady.maps import solve_map
-from ..theory.boundary_curves import find_curves
 
 #: Pixels of a picture each way, and together: those of the largest screens.
 MOST_PIXELS, MOST_CELLS = 8192, 2**25
-
-#: Frequencies of a kind that are marked.
-_MOST_MARKS = 200
 
 #: Masses whose amplitudes are offered one by one.
 _OFFERED_MASSES = 12
@@ -47,13 +38,17 @@ _QUANTITIES = (
 
 def quantities(system: System) -> tuple[CellQuantity, ...]:
     """Quantities that can colour the cells of maps of a system."""
-    amplitudes = tuple(
+    return (*_QUANTITIES[:2], *amplitude_quantities(system), *_QUANTITIES[2:])
+
+
+def amplitude_quantities(system: System) -> tuple[CellQuantity, ...]:
+    """Amplitudes of the masses."""
+    return tuple(
         CellQuantity(
             f"amplitude_{number}", f"amplitude of {name_of_mass(system, number)}", "amplitude", "log", row
         )
         for row, number in enumerate(system.dofs.numbers[:_OFFERED_MASSES])
     )
-    return (*_QUANTITIES[:2], *amplitudes, *_QUANTITIES[2:])
 
 
 def name_of_mass(system: System, number: int) -> str:
@@ -70,6 +65,7 @@ class View:
     beta: tuple[float, float]
     mu: float
     solver: Solver
+    contact: int | None = None  # of a system with several, counted from 0; None: all together
 
     def check(self, r: float | None = None) -> None:
         """Refuse a range, or a frequency, at which the error of a reduced structure exceeds its limit."""
@@ -121,72 +117,3 @@ class Follower(Protocol):
     def watch(self) -> None: ...
 
     def progress(self, done: float, total: float) -> None: ...
-
-
-def solve_piece(
-    view: View, wanted: Sequence[CellQuantity], piece: Piece, follower: Follower
-) -> dict[str, np.ndarray]:
-    """The cells of a piece as `sweep` gives them, (columns, rows): regime, stops per cycle, the quantities.
-
-    And over its columns `beta_lim` and `beta_stick`.
-    """
-    piece.check()
-    view.check()
-    asked = (quantity.output for quantity in wanted if quantity.output)
-    outputs = tuple(dict.fromkeys(("regime", "stops_per_cycle", *asked)))
-    solver = replace(view.solver, outputs=cast(tuple[Output, ...], outputs))
-    axes = view.axes(piece.columns, piece.rows)
-    axes["r"] = axes["r"][piece.first : piece.last]
-    found, curves = solve_map(view.system, axes, solver, None, follower.progress, follower.watch)
-    found |= {"beta_lim": curves.beta_lim, "beta_stick": curves.beta_stick}
-    return {name: values[0] for name, values in found.items()}  # of the only mu
-
-
-def classes_of(found: Mapping[str, np.ndarray]) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """Classes of the cells of a piece and the boundaries over it, for the page.
-
-    `stops` are the smallest and largest numbers of stops of classes that comprise several.  Arrays: `classes`
-    (columns, rows), indices into the palette; `beta_lim` and `beta_stick` (columns,).
-    """
-    stops = found["stops_per_cycle"]
-    classes = of_cells(found["regime"], stops)
-    limits = {name: found[name] for name in ("beta_lim", "beta_stick")}
-    ranges = {index: stops_range(classes, stops, index) for index in (MORE, NON_INTEGER)}
-    counted = {str(index): ends for index, ends in ranges.items() if ends[0] <= ends[1]}
-    return {"stops": counted}, {"classes": classes, **limits}
-
-
-def values_of(found: Mapping[str, np.ndarray], quantity: CellQuantity) -> np.ndarray:
-    """A quantity of the cells of a piece, float32 (columns, rows)."""
-    values = found[quantity.output]
-    return (values if quantity.row is None else values[..., quantity.row]).astype(np.float32)
-
-
-def piece_of_map(
-    view: View, quantity: CellQuantity, piece: Piece, follower: Follower, lines: int = 0
-) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """A piece of a picture for the page: `classes_of`, and `values` of the quantity if it has some.
-
-    The header contains the `seconds` of the computation, from which the page estimates that of finer maps.
-
-    lines : points of the boundaries over the whole view, finer than coarse cells: `line_lim`, `line_stick`
-    """
-    began = time.perf_counter()
-    found = solve_piece(view, [quantity], piece, follower)
-    seconds = time.perf_counter() - began
-    header, arrays = classes_of(found)
-    if quantity.output:
-        arrays["values"] = values_of(found, quantity)
-    if lines:
-        curves = find_curves(view.system, middles(view.r, lines, "lines"), np.array([view.mu]))
-        arrays |= {"line_lim": curves.beta_lim[0], "line_stick": curves.beta_stick[0]}
-    return {"first": piece.first, "last": piece.last, "seconds": seconds, **header}, arrays
-
-
-def marks(system: System) -> dict[str, list[float]]:
-    """Marked frequencies of a system."""
-    modes = system.modes
-    known = {"natural frequency": modes.w}
-    if system.n > 1:
-        known["natural frequency, contact held"] = modes.held_frequencies()
-    return {name: places[:_MOST_MARKS].tolist() for name, places in known.items()}

@@ -38,6 +38,7 @@ def csv_of(ds: xr.Dataset) -> str:
 def _table(ds: xr.Dataset) -> Any:
     """Data frame with a row for every point of all axes of a dataset.
 
+    What every contact has is one column for each, such as stops_per_cycle_2.
     Of estimates it is a row for every parameter; of shares every outcome and quantile has a column; of the
     result of a design question it is the curve that was searched.
     """
@@ -49,11 +50,13 @@ def _table(ds: xr.Dataset) -> Any:
         return (ds[lines] if over else ds).to_dataframe()
     if kind(ds) == "shares":
         ds = _in_columns(_in_columns(ds, "outcome"), "quantile")
-    table = {}
+    table: dict[str, xr.DataArray] = {}
     dims = [str(name) for name in COORDINATES if name in ds.dims]
     for name, variable in ds.data_vars.items():
         if set(variable.dims) <= set(dims):
-            table[name] = _in_words(variable)
+            table[str(name)] = _in_words(variable)
+        elif set(variable.dims) - set(dims) == {"contact"}:
+            table |= _of_contacts(str(name), _in_words(variable))
     wide = xr.Dataset(table)
     checks.cells(1, 1, math.prod(wide.sizes.values()), name="a table")
     return wide.to_dataframe(dim_order=[dim for dim in dims if dim in wide.dims])
@@ -69,6 +72,12 @@ def _in_columns(ds: xr.Dataset, dim: str) -> xr.Dataset:
         for k, value in enumerate(ds[dim].values):
             columns[f"{name}_{value}"] = variable.isel({dim: k}, drop=True)
     return xr.Dataset(columns)
+
+
+def _of_contacts(name: str, variable: xr.DataArray) -> dict[str, xr.DataArray]:
+    """A variable of every contact as one of each, by the numbers of the contacts."""
+    numbers = range(1, variable.sizes["contact"] + 1)
+    return {f"{name}_{k}": variable.isel({"contact": k - 1}, drop=True) for k in numbers}
 
 
 def _in_words(variable: xr.DataArray) -> xr.DataArray:

@@ -238,8 +238,10 @@ def _axis(name: object, values: object) -> Axis:
         if not columns or len(set(sizes.values())) > 1:
             words = ", ".join(f"{key} {size}" for key, size in sizes.items()) or "none"
             raise InputError(f"axes.{name} must have as many values of every key; got {words}")
-        return Axis(name, tuple(_number(key, f"axes.{name}") for key in columns), tuple(columns.values()))
-    number = _number(name, "axes")
+        return Axis(
+            name, tuple(named_number(key, f"axes.{name}") for key in columns), tuple(columns.values())
+        )
+    number = named_number(name, "axes")
     column = checks.axis(values, f"axes.{name}", least=-np.inf)
     return Axis(number.dimension, (number,), (column,))
 
@@ -255,7 +257,8 @@ def _column(name: str, values: object) -> np.ndarray:
     return column.astype(float)
 
 
-def _number(key: object, where: str) -> Number:
+def named_number(key: object, where: str) -> Number:
+    """The number of a system that a key names; `where` begins the message about another key."""
     if key in NUMBERS:
         return Number(str(key), None)
     matched = _INDEXED.fullmatch(key) if isinstance(key, str) else None

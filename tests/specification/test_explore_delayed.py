@@ -11,7 +11,7 @@ from browser import DONE, MOVE, WAIT, colours, page_of, point, repainted, wanted
 from pages import TWO_MASSES, scene_from, served
 
 import frictionmap as fm
-from frictionmap.explorer import stored, views
+from frictionmap.explorer import pieces, stored
 from frictionmap.pictures.classes import classes
 from frictionmap.pictures.palette import CLASSES
 
@@ -153,8 +153,8 @@ class Gate:
 
 def test_a_half_filled_map_is_not_counted(browser, one, monkeypatch):
     """A picture is saved when a coarse map is there, and the first piece of a finer one."""
-    gate = Gate(views.piece_of_map, seconds=2.0)
-    monkeypatch.setattr(views, "piece_of_map", gate)
+    gate = Gate(pieces.piece_of_map, seconds=2.0)
+    monkeypatch.setattr(pieces, "piece_of_map", gate)
     with page_of(browser, f"{one.url}#mu=1.5", viewport=SMALL) as page:
         page.evaluate(f"({WRITTEN})()")
         size = colours(page).shape[:2]

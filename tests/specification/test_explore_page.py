@@ -63,7 +63,8 @@ FORESEEN = """async ([ofCell, ofColumn]) => {
     const share = (at) => 1 - (1 - at / columns) ** 4;
     return (share(last) - share(first)) * (columns * rows * ofCell + columns * ofColumn);
   };
-  const source = { fixed: null, map: async (view, scene, { columns, rows, first, last }) => ({
+  const source = { fixed: null, live: false, map: async (view, scene, { columns, rows, first, last }) => ({
+    about: { lines: [] },
     classes: new Uint8Array((last - first) * rows), beta_lim: new Float64Array(last - first),
     beta_stick: new Float64Array(last - first), seconds: spent(columns, rows, first, last) }) };
   const view = { r: [0, 1], beta: [0, 1], mu: 1.5, quantity: 'regime', start: 'rest', contact: '' };

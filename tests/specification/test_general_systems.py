@@ -298,7 +298,6 @@ NOT_OFFERED = [
     (lambda s: fm.continuous_motion(s, 1.0, 0.1), "cannot compute the continuous motion"),
     (lambda s: fm.features.peak_thresholds(s), "cannot compute peak thresholds"),
     (lambda s: fm.identify.friction_ratio(1.0, 20.0, system=s), "cannot identify friction"),
-    (lambda s: fm.explore(s, r=(0.1, 2.0), beta=(0.0, 1.0)), "cannot explore the map"),
     (lambda s: fm.sweep(s, [1e-6], [0.1]), "r must be 0, or >="),
 ]
 

@@ -37,8 +37,9 @@ export class Controls {
       this.#starts();
     }
     const shown = scene.sliders.filter((slider) => !fixed || fixed.values[slider.key]);
-    for (const slider of shown.filter((one) => one.scale !== "log")) this.#slider(form, slider);
-    const ratios = shown.filter((one) => one.scale === "log");
+    const ofStructure = ({ key }) => /^(mass|stiffness)_ratios/.test(key);
+    for (const slider of shown.filter((one) => !ofStructure(one))) this.#slider(form, slider);
+    const ratios = shown.filter(ofStructure);
     if (ratios.length) this.#ratios(ratios);
     if (!fixed) this.#cuts();
   }

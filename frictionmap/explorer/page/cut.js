@@ -62,6 +62,7 @@ export class CutPanel {
   #lines(x) {
     const { curves } = this;
     const ink = colour("ink");
+    if (curves.contacts) return this.#ofContacts(x, ink);
     if (this.select.value === "work") return [{ x, y: curves.work_friction, colour: ink, width: 2, name: "energy per cycle" }];
     if (this.select.value === "phase") return [{ x, y: curves.contact_phase, colour: ink, width: 2, name: "z" }];
     const lines = [];
@@ -75,6 +76,18 @@ export class CutPanel {
     lines.push({ x, y: curves.contact_amplitude, colour: ink, width: 2.2, dash: masses === 1 ? [6, 4] : undefined, name: "z, contact" });
     if (curves.held) lines.push({ x: [], y: [], colour: "#888", dash: [2, 3], name: "contact held" });
     return lines;
+  }
+
+  /** Lines of all contacts that are shown, after those of the masses. */
+  #ofContacts(x, ink) {
+    const { curves } = this;
+    const name = { amplitude: "contact_amplitude", work: "work_friction", phase: "contact_phase" }[this.select.value];
+    const several = curves.contacts.length > 1;
+    const lines = curves.contacts.map((contact, k) => ({ x, y: row(curves[name], k), width: 2, name: several ? contact : "contact",
+      colour: several ? massColour(k % DRAWN) : ink, dash: this.select.value === "amplitude" && several ? [6, 4] : undefined }));
+    if (this.select.value !== "amplitude") return lines;
+    const masses = Math.min(curves.amplitude.shape[0], DRAWN);
+    return [...Array.from({ length: masses }, (_, k) => ({ x, y: row(curves.amplitude, k), colour: massColour(k), width: 1.5, name: masses === 1 ? "mass" : `x${curves.dofs[k]}` })), ...lines];
   }
 
   #range(lines) {

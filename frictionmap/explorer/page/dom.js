@@ -23,12 +23,17 @@ export function paragraph(text) {
   return make("p", {}, ...lowered(text));
 }
 
-/** Text with subscripts for β_lim and β_stick. */
+/** Text with subscripts for β_lim, β_stick and β_noslip. */
 export function lowered(text) {
-  return text.split(/_(lim|stick)\b/).map((piece, k) => (k % 2 ? make("sub", {}, piece) : piece));
+  return text.split(/_(lim|stick|noslip)\b/).map((piece, k) => (k % 2 ? make("sub", {}, piece) : piece));
 }
 
 /** A row of a table: a name and a value, a number or words. */
 export function tableRow(name, value, kind = "number") {
   return make("tr", {}, make("th", {}, ...lowered(name)), make("td", { className: kind }, value));
+}
+
+/** A row that heads those after it. */
+export function groupRow(name) {
+  return make("tr", { className: "group" }, make("th", { colSpan: 2 }, name));
 }

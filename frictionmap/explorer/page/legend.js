@@ -3,18 +3,24 @@
 import { short } from "./axes.js";
 import { CLASS, rampColour } from "./colours.js";
 import { keyLine, make } from "./dom.js";
-import { LINES } from "./plate.js";
 
 /** Name of a class, with the range of stops if it comprises several numbers. */
 function nameOf(picture, index, look) {
   const ends = picture.stops[index];
   if (!ends) return look.label;
   const range = ends[0] === ends[1] ? short(ends[0]) : `${short(ends[0])} to ${short(ends[1])}`;
-  return index === CLASS.more ? `${range} stops` : `non-integer, ${range} stops`;
+  const { events } = picture.about;
+  return index === CLASS.more ? `${range} ${events}` : `non-integer, ${range} ${events}`;
 }
 
 function swatch(ink) {
   return make("i", { style: { background: ink } });
+}
+
+/** Style of a line of the legend, like that of its dashes. */
+function styleOf([length]) {
+  if (!length) return "solid";
+  return length > 3 ? "dashed" : "dotted";
 }
 
 /** Share of cells in words. */
@@ -24,7 +30,8 @@ function percent(share) {
 }
 
 /** Entries of the classes of a picture: all, or those that a quantity has no number for. */
-export function classesOf(picture, classes) {
+export function classesOf(picture) {
+  const { classes } = picture.about;
   const counts = picture.counts();
   const all = counts.reduce((sum, count) => sum + count, 0);
   const shown = picture.values ? [CLASS.stuck, CLASS.unresolved] : [...counts.keys()];
@@ -34,13 +41,13 @@ export function classesOf(picture, classes) {
 }
 
 /** Lay out the legend of a picture. */
-export function legend(element, picture, classes) {
+export function legend(element, picture) {
   const entries = picture.scale ? [scaleEntry(picture.quantity.label, picture.scale)] : [];
-  for (const { index, dash, meaning } of Object.values(LINES)) {
-    const name = make("span", {}, "β", make("sub", {}, index));
-    entries.push(make("span", {}, keyLine("currentColor", name, dash.length ? "dashed" : "solid"), meaning));
+  for (const { lower, dashes, meaning } of picture.boundaries) {
+    const name = make("span", {}, ...(lower ? ["β", make("sub", {}, lower)] : []));
+    entries.push(make("span", {}, keyLine("currentColor", name, styleOf(dashes)), meaning));
   }
-  entries.push(...classesOf(picture, classes).map(({ colour, text }) => make("span", {}, swatch(colour), text)));
+  entries.push(...classesOf(picture).map(({ colour, text }) => make("span", {}, swatch(colour), text)));
   for (const [name, places] of Object.entries(picture.about.marks)) {
     if (places.length) entries.push(make("span", {}, make("span", {}, name.includes("held") ? "▽" : "▼"), name));
   }

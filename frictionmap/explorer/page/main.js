@@ -136,6 +136,7 @@ class Page {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#redraw());
     new ResizeObserver(() => this.#onSize()).observe(this.map.stage);
     setInterval(() => this.#lookAtWaiting(), PATIENCE);
+    this.controls.offer("quantity", this.quantities, this.view);
     this.update(true);
   }
 
@@ -209,7 +210,7 @@ class Page {
 
   #onControl(change) {
     if (!change.number) {
-      this.change(change);
+      this.change({ ...change, ...this.#quantityOf(change) });
       return;
     }
     const [key, value] = change.number;
@@ -219,6 +220,15 @@ class Page {
     const { view, note } = this.#inFile({ ...this.view, numbers, mu: key === "mu" ? value : this.view.mu }, key);
     this.change({ mu: view.mu, numbers: view.numbers });
     this.#note(note);
+  }
+
+  /** Another quantity, where a newly chosen contact does not have that of the view. */
+  #quantityOf({ contact }) {
+    const offered = this.scene.contacts.find(({ key }) => key === contact)?.quantities;
+    if (!offered) return {};
+    this.quantities = offered;
+    this.controls.offer("quantity", offered, this.view);
+    return offered.some(({ key }) => key === this.view.quantity) ? {} : { quantity: offered[0].key };
   }
 
   /** The nearest view for which a saved page has a map, and a note on what was changed; a live page has all maps. */
@@ -254,12 +264,16 @@ class Page {
   #onAddress() {
     if (location.hash === this.hash) return;
     this.#readAddress();
+    this.controls.offer("quantity", this.quantities, this.view);
     this.update(true);
   }
 
   /** Read the view from the address; messages about errors in it are shown until the view changes. */
   #readAddress() {
-    const known = { ...this.scene, quantities: this.quantities };
+    const { scene } = this;
+    const chosen = (this.source.live && new URLSearchParams(location.hash.slice(1)).get("contact")) || scene.contacts[0].key;
+    this.quantities = scene.contacts.find(({ key }) => key === chosen)?.quantities ?? this.quantities;
+    const known = { ...scene, quantities: this.quantities };
     const { view: asked, wrong } = viewOf(location.hash, known, this.source.fixed?.values);
     const { view, note } = this.#inFile(asked);
     this.view = view;
@@ -277,7 +291,7 @@ class Page {
     this.map.show(found);
     if (found.whole) {
       part("system").textContent = found.about.system;
-      legend(part("legend"), found, this.scene.classes);
+      legend(part("legend"), found);
       if (this.#resized) this.update(); // second axes take room
     }
     const cell = found.view.cell ?? this.pointed;
@@ -430,7 +444,7 @@ class Page {
     this.motion.show(motion, this.scene.classes[motion.class], kept, this.#motionKey(view, cell));
     this.#markOutdated();
     requestAnimationFrame(() => part("motion").dispatchEvent(new CustomEvent("painted", { detail: { r: motion.r, beta: motion.beta } })));
-    this.rest(motion, view, cell);
+    if (motion.others !== false) this.rest(motion, view, cell);
   }
 
   /** Wait for a motion; if it takes long, remove the one of another cell meanwhile. */

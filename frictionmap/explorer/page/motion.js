@@ -2,7 +2,8 @@
 
 import { DRAWN, colour, massColour, short } from "./axes.js";
 import { around, draw } from "./chart.js";
-import { keyLine, make, paragraph, tableRow } from "./dom.js";
+import { bandsOf, drawContacts, layOut, timeOf } from "./contacts.js";
+import { groupRow, keyLine, make, paragraph, tableRow } from "./dom.js";
 import { row } from "./packet.js";
 
 const REGIMES = {
@@ -31,6 +32,7 @@ const TEMPLATE = `
   </div>
   <figure class="moves"><figcaption class="spectrum-names"></figcaption>
     <canvas class="spectrum" role="img" aria-label="harmonics of displacement and friction force"></canvas></figure>
+  <div class="contacts" hidden></div>
   <div class="others" hidden></div>
   <table><tbody></tbody></table>`;
 
@@ -68,18 +70,27 @@ export class MotionPanel {
     [this.motion, this.other, this.asked] = [motion, null, asked];
     const none = "none" in motion;
     this.#part("h2 i").style.background = look.colour;
-    this.#part(".regime").textContent = none ? REGIMES.unresolved : REGIMES[motion.regime];
+    this.#part(".regime").textContent = none ? REGIMES.unresolved : REGIMES[motion.regime] ?? motion.regime;
     const { frequency, force } = motion.physical;
     const place = `r = ${short(motion.r)}${inUnits(motion.r, frequency)}, β = ${short(motion.beta)}${inUnits(motion.beta, force)}`;
-    this.#part(".where").textContent = `${kept ? "selected: " : ""}${place}`;
+    this.#part(".where").textContent = `${kept ? "selected: " : ""}${place}${motion.contact ? `; ${motion.contact}` : ""}`;
     this.#part(".words").replaceChildren(...(none ? [motion.none] : [...motion.summary, motion.comment]).filter(Boolean).map(paragraph));
-    for (const figure of this.panel.querySelectorAll(".moves")) figure.hidden = none;
+    const several = !none && motion.contacts?.length > 0;
+    for (const figure of this.panel.querySelectorAll(".moves")) figure.hidden = none || several;
+    this.#part(".contacts").hidden = !several;
+    if (several) layOut(this.#part(".contacts"), motion);
     this.#part(".others").hidden = true;
-    this.#part("tbody").replaceChildren(...(none ? [] : motion.entries.map((entry, k) => this.#entry(entry, motion.numbers[k]))));
+    this.#part("tbody").replaceChildren(...(none ? [] : motion.entries.flatMap((entry, k, all) => this.#entry(entry, motion.numbers[k], all[k - 1]))));
     if (!none) this.draw();
   }
 
-  #entry(entry, value) {
+  /** Rows of a number: a heading first, where it begins those of a contact. */
+  #entry(entry, value, before) {
+    const heading = entry.group && entry.group !== before?.group ? [groupRow(entry.group)] : [];
+    return [...heading, this.#numberRow(entry, value)];
+  }
+
+  #numberRow(entry, value) {
     const { units } = this.motion;
     const unit = { length: units.length, energy: units.energy }[entry.unit] ?? entry.unit;
     const physical = this.motion.physical[{ length: "length", energy: "work" }[entry.unit]];
@@ -111,6 +122,10 @@ export class MotionPanel {
   /** Draw again, in the current colours and size. */
   draw() {
     if (!this.motion?.tau) return;
+    if (this.motion.contacts?.length) {
+      drawContacts(this.#part(".contacts"), this.motion);
+      return;
+    }
     const names = this.#drawTime();
     this.#drawLoops();
     const harmonics = this.#drawSpectrum();
@@ -120,18 +135,8 @@ export class MotionPanel {
 
   /** Times in excitation periods, and stops as bands behind them. */
   #time() {
-    const { tau, direction } = this.motion;
-    const time = Float32Array.from(tau, (value) => value / (2 * Math.PI));
-    const bands = [];
-    let from = null;
-    for (let k = 0; k <= direction.length; k += 1) {
-      const stuck = k < direction.length && direction[k] === 0;
-      if (stuck && from === null) from = time[k];
-      if (!stuck && from !== null) {
-        bands.push({ from, to: time[Math.min(k, time.length - 1)], colour: colour("stop") });
-        from = null;
-      }
-    }
+    const time = timeOf(this.motion);
+    const bands = bandsOf(this.motion.direction, time);
     return { time, bands };
   }
 
@@ -170,7 +175,7 @@ export class MotionPanel {
     const names = [];
     for (let k = 0; k < masses; k += 1) names.push(keyLine(massColour(k), masses === 1 ? "x, mass" : `x${motion.dofs[k]}`));
     names.push(keyLine(ink, "z, contact", masses === 1 ? "dotted" : "solid"), keyLine(colour("warm"), "friction"));
-    if (bands.length) names.push(keyLine(colour("stop"), "stuck", "solid", 9));
+    if (bands.length) names.push(keyLine(colour("stop"), motion.still?.[0] ?? "stuck", "solid", 9));
     if (other) names.push(keyLine(colour("second"), other.start === "moving" ? "from sliding" : "from rest", "dashed"));
     return names;
   }

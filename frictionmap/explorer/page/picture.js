@@ -24,7 +24,7 @@ export class Picture {
     [this.canvas.width, this.canvas.height] = [columns, rows];
     this.classes = new Uint8Array(columns * rows);
     this.values = kind === "classes" ? null : new Float32Array(columns * rows);
-    this.limits = { beta_lim: new Float64Array(columns).fill(NaN), beta_stick: new Float64Array(columns).fill(NaN) };
+    this.limits = {}; // the boundaries by name, over the columns
     this.lines = null; // the boundaries, finer than the cells
     this.filled = 0; // columns from the left that are there
     this.stops = {};
@@ -40,7 +40,10 @@ export class Picture {
     this.about = packet.about;
     this.classes.set(packet.classes, first * this.rows);
     if (this.values) this.values.set(packet.values, first * this.rows);
-    for (const name of Object.keys(this.limits)) this.limits[name].set(packet[name], first);
+    for (const name of packet.about.lines.flatMap(({ names }) => names)) {
+      this.limits[name] ??= new Float64Array(this.columns).fill(NaN);
+      this.limits[name].set(packet[name], first);
+    }
     this.#countStops(packet.stops ?? {});
     if (this.values && !this.scale) this.scale = scaleOf(packet.values, packet.classes, this.kind);
     this.#paint(first, count);
@@ -104,6 +107,11 @@ export class Picture {
     return places.map((place) => Math.min(count, Math.max(0, place)));
   }
 
+  /** The boundaries that have values in the picture. */
+  get boundaries() {
+    return this.about.lines.filter(({ lower, names }) => lower || names.some((name) => this.limits[name].some(Number.isFinite)));
+  }
+
   /** Quantity that colours the cells: {key, label, scale}. */
   get quantity() {
     return this.about.quantities.find(({ key }) => key === this.view.quantity);
@@ -113,6 +121,7 @@ export class Picture {
   get words() {
     const start = this.view.start === "rest" ? "start at rest" : "start in motion";
     const cells = `${this.columns} × ${this.rows} cells`;
-    return [this.about.system, `μ = ${short(this.view.mu)}`, start, this.quantity.label, cells].join("; ");
+    const shown = this.about.contact ? `${this.quantity.label} of ${this.about.contact}` : this.quantity.label;
+    return [this.about.system, `μ = ${short(this.view.mu)}`, start, shown, cells].join("; ");
   }
 }

@@ -6,12 +6,6 @@ import { colour, keepTo, ticks } from "./axes.js";
 const ROOM = { left: 64, right: 16, top: 18, bottom: 50 };
 const SECOND = { right: 44, top: 26 };
 
-/** Styles and meanings of the boundaries. */
-export const LINES = {
-  beta_lim: { label: "β", index: "lim", dash: [], meaning: "below: continuous sliding is possible" },
-  beta_stick: { label: "β", index: "stick", dash: [7, 4], meaning: "at or above: the contact can stay stuck" },
-};
-
 const FONT = "12px system-ui, sans-serif";
 
 /** Further axes of a map in units, where they are known: {factor, name}. */
@@ -89,7 +83,8 @@ export class Plate {
     const picture = known.at(-1) ?? this.pictures.at(-1);
     if (!picture) return;
     keepTo(pen, this.area);
-    for (const [name, { dash }] of Object.entries(LINES)) {
+    const curves = picture.about.lines.flatMap(({ names, dashes }) => names.map((name) => [name, dashes]));
+    for (const [name, dash] of curves) {
       const path = this.#path(picture, (picture.lines ?? picture.limits)[name]);
       for (const [width, ink, dashes] of [[3.6, "rgb(255 255 255 / 0.75)", []], [1.5, "#000", dash]]) {
         [pen.lineWidth, pen.strokeStyle] = [width, ink];

@@ -115,7 +115,7 @@ export class Refiner {
       const piece = { columns, rows, first: at, last };
       if (columns < asked.columns && !asked.lines) piece.lines = asked.columns;
       const packet = await this.source.map(asked.view, asked.scene, piece, run.control.signal);
-      if (packet.line_lim) asked.lines = { beta_lim: packet.line_lim, beta_stick: packet.line_stick };
+      if (piece.lines && this.source.live) asked.lines = finerLines(packet);
       picture.lines = asked.lines;
       picture.put(packet, at);
       if (packet.seconds && !packet.compiled) cost.add(last - at, 1000 * packet.seconds);
@@ -127,4 +127,10 @@ export class Refiner {
       run.control.signal.throwIfAborted();
     }
   }
+}
+
+/** The boundaries of a packet by name, as fine as the screen. */
+function finerLines(packet) {
+  const names = packet.about.lines.flatMap((line) => line.names);
+  return Object.fromEntries(names.map((name) => [name, packet[`line_${name.replace(/^beta_/, "")}`]]));
 }

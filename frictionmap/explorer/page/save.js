@@ -4,7 +4,7 @@ import { colour, keepTo, short } from "./axes.js";
 import { rampColour } from "./colours.js";
 import { classesOf } from "./legend.js";
 import { ring } from "./map.js";
-import { LINES, Plate, areaOf } from "./plate.js";
+import { Plate, areaOf } from "./plate.js";
 
 /** Room of a picture for its title, and for each further line of text, in pixels of the style sheet. */
 const HEAD = 26;
@@ -63,26 +63,26 @@ function wrapped(pen, text, width) {
 }
 
 /** Entries of the legend of a picture. */
-function entriesOf(found, classes) {
-  const boundaries = Object.values(LINES).map(({ index, dash, meaning }) => ({ dash, text: `β ${index}: ${meaning}` }));
-  if (!found.scale) return [...boundaries, ...classesOf(found, classes)];
+function entriesOf(found) {
+  const boundaries = found.boundaries.map(({ lower, dashes, meaning }) => ({ dash: dashes, text: lower ? `β ${lower}: ${meaning}` : meaning }));
+  if (!found.scale) return [...boundaries, ...classesOf(found)];
   const { low, high, log } = found.scale;
   const text = `${found.quantity.label}, ${short(low, 2)} to ${short(high, 2)}${log ? ", logarithmic" : ""}`;
-  return [{ scale: found.scale, text }, ...boundaries, ...classesOf(found, classes)];
+  return [{ scale: found.scale, text }, ...boundaries, ...classesOf(found)];
 }
 
 /**
  * A picture with its axes, title and legend as PNG: all of it is of that picture, whatever the page shows by now.
  * @param {import("./picture.js").Picture} found  a whole one
- * @param {{title: string, classes: object[]}} scene  what does not change
+ * @param {{title: string}} scene  what does not change
  * @param {{width: number, height: number}} size  of the cells with their axes, in pixels of the style sheet
  */
-export function pngOf(found, { title, classes }, { width, height }) {
+export function pngOf(found, { title }, { width, height }) {
   const ratio = window.devicePixelRatio || 1;
   const canvas = document.createElement("canvas");
   const pen = canvas.getContext("2d");
   pen.font = FONT;
-  const places = laid(pen, entriesOf(found, classes), width - 90);
+  const places = laid(pen, entriesOf(found), width - 90);
   const lines = wrapped(pen, found.words, width - 80);
   const [head, foot] = [HEAD + 16 * lines.length, places.at(-1).y + LINE + 12];
   [canvas.width, canvas.height] = [width * ratio, (height + head + foot) * ratio];

@@ -40,7 +40,8 @@ export class Stored {
     const packet = { about, classes: new Uint8Array(await inflated(kept.classes)), stops: kept.stops };
     const limits = new Float64Array(await inflated(kept.limits));
     const { columns } = this.fixed;
-    [packet.beta_lim, packet.beta_stick] = [limits.subarray(0, columns), limits.subarray(columns)];
+    const names = about.lines.flatMap((line) => line.names);
+    names.forEach((name, k) => (packet[name] = limits.subarray(k * columns, (k + 1) * columns)));
     const quantity = kept.values[view.quantity];
     if (quantity) packet.values = valuesOf(new Uint8Array(await inflated(quantity.steps)), quantity);
     return packet;

@@ -1,0 +1,32 @@
+"""Sliders, contacts and boundaries that a page offers."""
+
+from typing import NamedTuple
+
+
+class Slider(NamedTuple):
+    """A number that can be changed; its key is that of a further axis of a configuration, or mu."""
+
+    key: str
+    label: str
+    least: float
+    most: float
+    value: float
+    scale: str  # how the slider runs from least to most: "linear", "square" (fine near least) or "log"
+
+
+class Contact(NamedTuple):
+    """A contact that can be chosen."""
+
+    key: str
+    label: str
+    kind: str
+    masses: tuple[int | str, ...]
+
+
+class Line(NamedTuple):
+    """Curves of one meaning over a map."""
+
+    names: tuple[str, ...]  # of their values
+    lower: str  # what stands below beta in their symbol; "" if they have none
+    dashes: tuple[int, ...]
+    meaning: str

@@ -173,7 +173,8 @@ def _codes() -> Iterator[str]:
     yield f"\n{title}\n{'-' * len(title)}\n"
     yield f".. automodule:: {title}\n   :no-members:\n"
     for variable, table in (
-        ("regime", regimes.BELT_REGIMES), ("origin", regimes.ORIGINS), ("status", regimes.STATUSES)
+        ("regime", regimes.BELT_REGIMES), ("origin", regimes.ORIGINS), ("status", regimes.STATUSES),
+        ("limit_kind", regimes.LIMIT_KINDS),
     ):  # fmt: skip
         yield f".. list-table:: Codes of ``{variable}``\n   :header-rows: 1\n"
         yield "   * - constant\n     - value\n     - meaning"

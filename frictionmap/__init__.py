@@ -1,4 +1,4 @@
-"""Exact regime maps of vibrating structures with one dry-friction contact.
+"""Exact regime maps of vibrating structures with dry-friction contacts.
 
 The rows follow the flow of data: a module imports only from rows above its own.
 

@@ -23,13 +23,17 @@ from .errors import InputError
 __all__ = [
     "BELT_REGIMES",
     "CLOSED_FORM",
+    "COINCIDENCE",
     "CONTINUOUS",
+    "INSIDE",
     "INTEGRATED",
     "IRREGULAR",
+    "LIMIT_KINDS",
     "MARGINAL",
     "NOT_COMPUTED",
     "NOT_PERIODIC",
     "NOT_REACHED",
+    "NO_LIMIT",
     "ONE_WAY_SLIDING",
     "ORIGINS",
     "PERIODIC_ORBIT",
@@ -41,6 +45,8 @@ __all__ = [
     "STATUSES",
     "STICK_SLIP",
     "TOO_MANY_EVENTS",
+    "TURN",
+    "UNLOADED",
     "UNRESOLVED",
     "WITHOUT_PERIOD",
     "regime_name",
@@ -52,6 +58,12 @@ PERMANENT_STICKING = 0
 STICK_SLIP = 1
 CONTINUOUS = 2
 ONE_WAY_SLIDING = 3
+
+NO_LIMIT = 0
+TURN = 1
+INSIDE = 2
+COINCIDENCE = 3
+UNLOADED = 4
 
 CLOSED_FORM = 0
 INTEGRATED = 1
@@ -90,6 +102,15 @@ REGIMES = (
 BELT_REGIMES = (
     *REGIMES,
     Code(ONE_WAY_SLIDING, "one_way_sliding", "the contact slides against its belt without turning"),
+)
+
+#: What ends the motion without stops at beta_lim.
+LIMIT_KINDS = (
+    Code(NO_LIMIT, "no_limit", "no friction ratio ends it, or none was found"),
+    Code(TURN, "turn", "a turn of a contact becomes a stop"),
+    Code(INSIDE, "inside", "between two turns a contact comes to a stop"),
+    Code(COINCIDENCE, "coincidence", "two contacts that act on each other turn at the same time"),
+    Code(UNLOADED, "unloaded", "a contact that does not move without friction sticks for any friction"),
 )
 
 #: Bits of `also_reachable`.

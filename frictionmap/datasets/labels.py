@@ -444,6 +444,9 @@ CURVES = {
         inf=True,
     ),
     "limiting_contact": Label(np.int64, "contact that decides beta_stick", CURVE, least=1),
+    "limit_kind": Label(
+        np.int8, "what ends the motion without stops at beta_lim", CURVE, codes=regimes.LIMIT_KINDS
+    ),
     "beta_noslip": Label(
         np.float64, "friction ratio from which no elastic contact slips", ("r",), least=0.0, inf=True
     ),

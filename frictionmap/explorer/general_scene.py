@@ -35,7 +35,7 @@ def contact_sliders(system: System) -> tuple[Slider, ...]:
     """Sliders of friction, springs and belts."""
     found: list[Slider] = []
     if system.contacts is None:
-        if system.contact_stiffness is not None:
+        if isinstance(system.contact_stiffness, float):
             found.append(_scaled("contact_stiffness", "contact stiffness kt / k1", system.contact_stiffness))
         if system.wall_velocity > 0.0:
             found.append(_scaled("wall_velocity", "wall velocity v / (ωP/k1)", system.wall_velocity))
@@ -43,11 +43,11 @@ def contact_sliders(system: System) -> tuple[Slider, ...]:
     contacts: Any = system.contacts  # checked by the system
     for k, contact in enumerate(contacts, 1):
         name, key = contact.label, f"contacts[{k}]"
-        if contact.force is not None:
+        if isinstance(contact.force, float):
             found.append(_friction(f"{key}.force", f"friction F / P, {name}", contact.force))
-        elif len(contacts) > 1:
+        elif contact.force is None and len(contacts) > 1 and not isinstance(contact.ratio, tuple):
             found.append(_friction(f"{key}.ratio", f"friction over β, {name}", contact.ratio or 0.0))
-        if contact.stiffness is not None:
+        if isinstance(contact.stiffness, float):
             found.append(_scaled(f"{key}.stiffness", f"kt / k1, {name}", contact.stiffness))
         if contact.wall_velocity > 0.0:
             found.append(_scaled(f"{key}.wall_velocity", f"wall velocity, {name}", contact.wall_velocity))

@@ -96,6 +96,17 @@ def held_ranges(system: System, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.where(finite, low, -np.inf), np.where(finite, high, np.inf)
 
 
+def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
+    """Displacements in the contacts without friction, (n_r, N, H) by order; inf at a resonance."""
+    general = general_of(system)
+    moved = np.array([float(group.base) for group in general.groups])
+    found = []
+    for order in _orders(general):
+        x = _solved(*_linear(system, system.modes.stiffness, order, r))
+        found.append(x @ general.vectors.T - general.base.get(order, 0.0) * moved)
+    return np.stack(found, axis=-1)
+
+
 def belt_limit(system: System, r: np.ndarray) -> np.ndarray:
     """Belt velocity from which the only contact slides one way, (n_r,): the largest speed without friction.
 

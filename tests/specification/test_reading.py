@@ -81,8 +81,9 @@ def test_every_variable_is_in_the_examples(datasets):
     """So that the tests below see all of the schema; see test_general_systems for the others."""
     known = {name for ds in datasets.values() for name in ds.variables}
     of_contacts = {
-        *GENERAL_VARIABLES, "beta_stick_contact", "limiting_contact", "beta_noslip", "no_stop_begin",
-        "no_stop_end", "wall_velocity_lim", "y", "load", "event_contact", "contact", "contact_name",
+        *GENERAL_VARIABLES, "beta_stick_contact", "limiting_contact", "limit_kind", "beta_noslip",
+        "no_stop_begin", "no_stop_end", "wall_velocity_lim", "y", "load", "event_contact", "contact",
+        "contact_name",
     }  # fmt: skip
     of_contacts |= {
         "border_r",

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..model.general import General
 from ..model.system import System
-from .problem import general_of, springs
+from .problem import general_of, refuse_loop, springs
 
 #: Samples per period of the highest harmonic where extremes are looked for, and steps that refine them.
 _SAMPLES = 16
@@ -51,9 +51,18 @@ def _orders(general: General) -> list[int]:
 def held_forces(system: System, r: np.ndarray) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
     """Forces F_n (n_r, N) in the contacts and displacements X_n (n_r, n), by order; inf at a resonance."""
     general = general_of(system)
-    n, elastic, vectors = system.n, general.elastic, general.vectors
-    moved = np.array([float(group.base) for group in general.groups])
-    kt = springs(general)
+    refuse_loop(general)
+    return held_forces_of(system, r, np.arange(general.count))
+
+
+def held_forces_of(
+    system: System, r: np.ndarray, which: np.ndarray
+) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
+    """Forces and displacements as of `held_forces`, with the contacts `which` (N',) alone."""
+    general = general_of(system)
+    n, elastic, vectors = system.n, general.elastic[which], general.vectors[which]
+    moved = np.array([float(general.groups[j].base) for j in which])
+    kt = springs(general)[which]
     w = vectors[~elastic].T
     stiffness = system.modes.stiffness + (vectors.T * kt) @ vectors
     forces, motions = {}, {}
@@ -67,7 +76,7 @@ def held_forces(system: System, r: np.ndarray) -> tuple[dict[int, np.ndarray], d
         right[:, n:] = u * moved[~elastic]
         found = _solved(matrix, right)
         x = found[:, :n]
-        force = np.empty((r.size, general.count), dtype=complex)
+        force = np.empty((r.size, which.size), dtype=complex)
         force[:, ~elastic] = found[:, n:]
         force[:, elastic] = kt[elastic] * (x @ vectors[elastic].T - u * moved[elastic])
         forces[order], motions[order] = force, x

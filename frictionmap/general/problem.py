@@ -123,6 +123,12 @@ def springs(general: General) -> np.ndarray:
     return np.array([group.stiffness or 0.0 for group in general.groups])
 
 
+def refuse_loop(general: General) -> None:
+    """Refuse contacts that close a loop, of which only the boundary to permanent sticking is determined."""
+    if general.loop:
+        raise InputError(f"{general.loop}; leave one out, or find beta_stick with boundaries")
+
+
 def _refuse_low(rates: np.ndarray, r: np.ndarray) -> None:
     """Refuse frequencies at which a period of the load has too many steps."""
     low = (r > 0.0) & (rates > _HIGHEST_RATE)
@@ -137,6 +143,7 @@ def _refuse_low(rates: np.ndarray, r: np.ndarray) -> None:
 def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
     """Build the arrays of a system over r; values at r = 0 are placeholders."""
     general = general_of(system)
+    refuse_loop(general)
     modal = modal_system(system)
     channels, orders = channels_of(system, modal), general.orders
     phasors = _phasors(channels, orders, r)

@@ -143,6 +143,7 @@ class General:
     forces: Mapping[int, np.ndarray]  # phasors (n,) of the loads on the masses, by order
     base: Mapping[int, complex]  # phasors of the base motion
     offset: np.ndarray  # (n,) constant loads
+    loop: str = ""  # which rigid contacts close a loop and why that matters, in words; empty without a loop
 
     @property
     def count(self) -> int:
@@ -189,7 +190,7 @@ def general_of(system: Definition) -> General | None:
     if system.load_offset is not None and system.excitation == "base":
         raise InputError("cannot use load_offset with base excitation: it is a force on each mass; omit one")
     offset = _offset(system.load_offset, system.n)
-    general = General(groups, forces, base, offset)
+    general = General(groups, forces, base, offset, _describe_loop(groups))
     moving = any(group.first.wall_velocity for group in groups)
     if not general.forces and not general.base and not moving:
         raise InputError("load_harmonics must have a harmonic that is not zero; got none")
@@ -198,7 +199,6 @@ def general_of(system: Definition) -> General | None:
             "cannot compute without a load: a belt alone makes vibrations of a period of their own; "
             "give load_harmonics"
         )
-    _refuse_loops(groups)
     return general
 
 
@@ -293,20 +293,20 @@ def _groups(system: Definition) -> tuple[Group, ...]:
     return tuple(found)
 
 
-def _refuse_loops(groups: Sequence[Group]) -> None:
-    """Refuse rigid contacts whose vectors are linearly dependent, by name."""
+def _describe_loop(groups: Sequence[Group]) -> str:
+    """Name the rigid contacts whose vectors are linearly dependent; empty if there are none."""
     rigid = [k for k, group in enumerate(groups) if group.stiffness is None]
     if not rigid:
-        return
+        return ""
     w = np.array([groups[k].vector for k in rigid])
     if np.linalg.matrix_rank(w, tol=_PARALLEL * w.shape[1]) == len(rigid):
-        return
+        return ""
     _, _, right = np.linalg.svd(w.T)
     loop = [rigid[k] + 1 for k in np.flatnonzero(np.abs(right[-1]) > 1e-9)]
     names = ", ".join(map(str, loop))
-    raise InputError(
+    return (
         f"cannot use contacts {names} together: they close a loop, and their forces in a common stop are not "
-        f"determined; leave one out"
+        f"determined"
     )
 
 

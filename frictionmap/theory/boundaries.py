@@ -191,15 +191,19 @@ def _general_boundaries(system: System, r: np.ndarray, mu: np.ndarray, units: Un
     from ..general.dataset import boundary_variables as general_variables
     from ..general.dataset import contact_coordinates, refuse_static
     from ..general.limit_kinds import limit_kinds
+    from ..general.loops import loop_stick_scales
 
     assert system.general is not None
     refuse_static(system.general, mu)
     axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
     coords = {name: coordinate(name, axis) for name, axis in axes.items()} | contact_coordinates(system)
-    limits = find_boundaries(system, r, mu)
-    variables = general_variables(system, limits)
-    if not system.general.elastic.any():
-        variables["limit_kind"] = label_variable("limit_kind", limit_kinds(system, r, mu, limits))
+    if system.general.loop:
+        variables = {"beta_stick": label_variable("beta_stick", loop_stick_scales(system, r, mu))}
+    else:
+        limits = find_boundaries(system, r, mu)
+        variables = general_variables(system, limits)
+        if not system.general.elastic.any():
+            variables["limit_kind"] = label_variable("limit_kind", limit_kinds(system, r, mu, limits))
     ds = xr.Dataset(variables, coords=coords)
     return stamp(
         ds, "boundaries", "Boundaries of the motion regimes", system, {"r": r, "mu": mu}, units=units

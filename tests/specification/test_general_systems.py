@@ -248,7 +248,6 @@ REFUSED = [
     ({"contacts": [{**WALL, "width": 1}]}, "unknown key 'contacts[1].width'"),
     ({"contacts": [WALL], "contact_stiffness": 1.0}, "cannot use contact_stiffness with contacts"),
     ({"contacts": [WALL], "contact": "joined-base-wall"}, "cannot use contact with contacts"),
-    ({"contacts": LOOP, **THREE}, "cannot use contacts 1, 2, 3 together: they close a loop"),
     ({"contact_stiffness": -1.0}, "stiffness must be > 0; got -1"),
     ({"contact_stiffness": [1.0, 0.0]}, "contact_stiffness[1] must be > 0; got 0"),
     ({"contact_stiffness": []}, "contact_stiffness must have at least one value; got none"),
@@ -300,6 +299,25 @@ NOT_OFFERED = [
     (lambda s: fm.identify.friction_ratio(1.0, 20.0, system=s), "cannot identify friction"),
     (lambda s: fm.sweep(s, [1e-6], [0.1]), "r must be 0, or >="),
 ]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda s: fm.sweep(s, [0.5], [0.1]),
+        lambda s: fm.curves(s, [0.5], [0.1]),
+        lambda s: fm.response(s, 0.5, 0.1),
+        lambda s: fm.design.stuck(s, (0.4, 0.6)),
+    ],
+)
+def test_motions_of_a_loop_are_refused(call):
+    with pytest.raises(fm.InputError, match="cannot use contacts 1, 2, 3 together: they close a loop"):
+        call(fm.System(contacts=LOOP, **THREE))
+
+
+def test_boundaries_of_a_loop_with_even_harmonics_are_refused():
+    with pytest.raises(fm.InputError, match=r"close a loop, .* beta_stick of a loop is found for rigid"):
+        fm.boundaries(fm.System(contacts=LOOP, load_harmonics={1: 1.0, 2: 0.2}, **THREE), [0.5])
 
 
 @pytest.mark.parametrize(("call", "message"), NOT_OFFERED)

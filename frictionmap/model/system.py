@@ -221,9 +221,8 @@ class System:
     Notes
     -----
     Dimensionless equations of motion: theory.md 1, in general 11; T(5.4), (5.8) for chains, T(2.12), (3.3)
-    for one mass.
-        With base excitation the load is p = K ones, which is e_1 for a chain; with damping relative to the
-        base i r C1 ones is added, so that p = 1 + 2 i zeta r for one mass.
+    for one mass.  With base excitation the load is p = K ones, which is e_1 for a chain; with damping
+    relative to the base i r C1 ones is added, so that p = 1 + 2 i zeta r for one mass.
     """
 
     contact: Literal["fixed-wall", "joined-base-wall", "between-masses"] = "fixed-wall"

@@ -101,17 +101,15 @@ def _fill_cells(
     options: Options, config: "Config", output: "Output", what: str, run: Callable[["Progress"], "xr.Dataset"]
 ) -> None:
     """Compute a grid of cells with progress, write it, and print a summary."""
-    from .._kernels.compiler.notices import listeners
+    from .._kernels.compiler.notices import told
     from ..files.summary import describe_causes, describe_map, describe_reduction
     from .progress import Progress
 
-    with Progress(what, options.quiet) as progress:
-        listeners.append(progress.compiling)
+    with Progress(what, options.quiet) as progress, told(progress.compiling):
         began = time.perf_counter()
         ds = run(progress)
         took = time.perf_counter() - began
         output.fill(_finish(ds, config, options), lambda size: progress.writing(output.path, size))
-        listeners.remove(progress.compiling)
     first = f"{describe_map(ds)} in {took:.2g} s"
     _report(options, output, first, *describe_causes(ds), *describe_reduction(ds))
 
@@ -204,7 +202,7 @@ def _refuse_ending(options: Options) -> None:
 
 def _store(options: Options) -> None:
     """Compute a map into a store, or resume one."""
-    from .._kernels.compiler.notices import listeners
+    from .._kernels.compiler.notices import told
     from ..files.config import load_config
     from ..files.studies import describe_cells
     from ..stores.cuts import cut_by_cost
@@ -221,11 +219,9 @@ def _store(options: Options) -> None:
         )
     study = study_of(config.system, config.variations, axes, config.solver, config.units)
     find_cut = functools.partial(cut_by_cost, workers=options.workers or 0, threads=options.threads)
-    with Progress(f"map of {study.cells:,} cells", options.quiet) as progress:
+    with Progress(f"map of {study.cells:,} cells", options.quiet) as progress, told(progress.compiling):
         fill = _fill(options, progress)
-        listeners.append(progress.compiling)
         store = fill_store(options.output, study, config.title, fill, options.overwrite, progress, find_cut)
-        listeners.remove(progress.compiling)
     if not options.quiet:
         first, *others = describe_cells(store.path)
         _print("\n  ".join((f"{first}; wrote {options.output}", *others)))
@@ -270,17 +266,15 @@ def _put(content: bytes, path: Path) -> None:
 
 
 def _export_page(options: Options, scene: "Scene") -> None:
-    from .._kernels.compiler.notices import listeners
+    from .._kernels.compiler.notices import told
     from ..explorer.stored import check_page, write_page
     from ..files.places import claimed
     from .progress import Progress
 
     check_page(options.output)
     with claimed(options.output, options.overwrite, scene.files) as output:
-        with Progress(f"page of {scene.title}", options.quiet, "maps") as progress:
-            listeners.append(progress.compiling)
+        with Progress(f"page of {scene.title}", options.quiet, "maps") as progress, told(progress.compiling):
             page = write_page(scene, progress)
-            listeners.remove(progress.compiling)
         output.fill(lambda scratch: _put(page, scratch))
     if not options.quiet:
         _print(f"wrote {options.output} ({len(page) / 1e6:.2g} MB)")
@@ -303,7 +297,7 @@ def _identify(options: Options) -> None:
 
 def _design(options: Options) -> None:
     """Answer the question of a configuration; what is written reproduces the answer."""
-    from .._kernels.compiler.notices import listeners
+    from .._kernels.compiler.notices import told
     from ..design.configuration import load_design
     from ..files.designs import describe_design
     from ..files.places import claimed
@@ -314,10 +308,11 @@ def _design(options: Options) -> None:
     design = load_design(options.config, options.overrides, options.threads)
     path = options.output or Path(f"{design.name}-design.nc")
     with claimed(path, options.overwrite, design.files) as output:
-        with Progress(f"design question {design.question}", options.quiet) as progress:
-            listeners.append(progress.compiling)
+        with (
+            Progress(f"design question {design.question}", options.quiet) as progress,
+            told(progress.compiling),
+        ):
             ds = design.ask()
-            listeners.remove(progress.compiling)
         ds.attrs |= {"title": design.title, "config": design.text}
         output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
     _report(options, output, f"{design.title}: {design.question}", *describe_design(ds))

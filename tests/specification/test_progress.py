@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import frictionmap as fm
+from frictionmap._kernels.compiler.notices import listeners
 from frictionmap.command_line import progress
 from frictionmap.command_line.cli import main
 from frictionmap.command_line.progress import Progress
@@ -267,3 +268,26 @@ def test_times_in_words(seconds, words):
 )
 def test_sizes_in_words(size, words):
     assert cost.in_bytes(size) == words
+
+
+QUESTION = """\
+[system]
+contact = "joined-base-wall"
+damping_ratios = 0.1
+[grid]
+r = [0.5, 1.0]
+beta = [0.1, 0.2]
+[design]
+question = "at-most"
+band = [0.4, 1.5]
+limit = 0.01
+"""
+
+
+def test_a_run_that_is_refused_hears_of_no_later_compiling(tmp_path, capsys):
+    """The limit is refused after cells have been computed."""
+    (tmp_path / "question.toml").write_text(QUESTION)
+    before = list(listeners)
+    assert main(["design", str(tmp_path / "question.toml"), "-o", str(tmp_path / "no.nc"), "--quiet"]) == 2
+    assert "the least peak" in capsys.readouterr().err
+    assert listeners == before

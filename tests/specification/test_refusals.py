@@ -475,7 +475,7 @@ design question.toml --set design.question=at-most
     design.limit must be given for question at-most; got nothing
 design question.toml --set design.question=at-most --set design.limit=0
     design.limit must be > 0; got 0
-design question.toml --set design.question=at-most --set design.limit=0.01 --set system.contact=joined-base-wall --set system.excitation=base
+design question.toml --set design.question=at-most --set design.limit=0.01 --set system.contact=joined-base-wall --set system.excitation=base --quiet
     design.limit must be >= 1, the least peak, at beta = ...; got 0.01
 design question.toml --set design.question=no-stop --set system.contact_stiffness=2.0
     [design]: cannot find friction without stops with contact_stiffness: a spring in the contact has no such limit; use question stuck

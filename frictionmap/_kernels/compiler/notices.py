@@ -1,8 +1,9 @@
 """What the compiler reports: warnings, each given once, and that a kernel is about to be compiled."""
 
+import contextlib
 import functools
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 log = logging.getLogger("frictionmap")
 
@@ -20,3 +21,13 @@ def announce() -> None:
     """Call the listeners: a kernel is about to be compiled."""
     for listener in listeners:
         listener()
+
+
+@contextlib.contextmanager
+def told(listener: Callable[[], None]) -> Iterator[None]:
+    """Have a listener called for the length of the context, however it ends."""
+    listeners.append(listener)
+    try:
+        yield
+    finally:
+        listeners.remove(listener)

@@ -79,6 +79,7 @@ def fill_store(
         except OSError as error:
             failed = f"write {path}: {error.strerror}" if error.strerror else f"finish {path}: {error}"
             raise OSError(f"cannot {failed}; {claim.kept()}") from error
+        remove_strays(path)  # what workers left that were killed while they wrote
         return store
 
 

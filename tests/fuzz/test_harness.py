@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 from . import calls, configurations, interrupts, malformed, refusals, verdict
+from . import moments as moments_module
 from .child import Child, Ended
 from .folders import Change, snapshot
 from .moments import Run
@@ -218,7 +219,7 @@ def test_moments_are_spread_over_the_run():
     assert len(delays) == 8
     assert 0.1 <= delays[0] < 0.35
     assert 1.8 < delays[-1] <= 2.1
-    assert sum(m.writing for m in moments) == 3 * 4
+    assert sum(m.writing for m in moments) == 3 * len(moments_module.SIGNALS)
 
 
 def test_the_lists_are_as_long_as_they_are_meant_to_be(tmp_path):

@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -64,7 +65,11 @@ def test_an_existing_file_is_kept(rig, capsys):
     assert capsys.readouterr().out == ""
     assert "it already exists" in refusal(capsys, "identify", path)
     assert main(["identify", str(path), "--quiet", "--overwrite"]) == 0
-    assert "it is the input file" in refusal(capsys, "identify", path, "-o", "decay.csv", "--overwrite")
+    before = Path("decay.csv").read_bytes()
+    assert "-o must end in .nc; got decay.csv" in refusal(
+        capsys, "identify", path, "-o", "decay.csv", "--overwrite"
+    )
+    assert Path("decay.csv").read_bytes() == before
 
 
 def test_known_and_free_say_the_same(rig, capsys):

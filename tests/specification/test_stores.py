@@ -119,6 +119,19 @@ def test_a_block_without_its_mark_is_written_anew(tmp_path):
     same_files(path, tmp_path / "well.zarr")
 
 
+def test_what_killed_workers_were_writing_is_gone_at_the_end(tmp_path):
+    asked, path = study(ONE, 300), tmp_path / "map.zarr"
+
+    def leaves_a_part(store, batches):
+        for batch in in_this_process(1)(store, batches):
+            (path / "block_done" / "0.0123.partial").write_bytes(b"half")
+            yield batch
+
+    fill_store(path, asked, "map", leaves_a_part)
+    fill_store(tmp_path / "well.zarr", asked, "map", in_this_process(1))
+    same_files(path, tmp_path / "well.zarr")
+
+
 @pytest.mark.parametrize("gone", ["contact_amplitude", "cycles", "beta_lim"])
 def test_a_block_that_lacks_a_chunk_is_computed_again(tmp_path, gone):
     """Whatever the chunk would say: that of cycles holds nothing but zeros, which is its fill value."""

@@ -443,7 +443,13 @@ CURVES = {
         least=0.0,
         inf=True,
     ),
-    "limiting_contact": Label(np.int64, "contact that decides beta_stick", CURVE, least=1),
+    "limiting_contact": Label(
+        np.int64,
+        "contact that stops first, at beta_lim",
+        CURVE,
+        comment="counted from 1; 0: motion without stops has no such limit",
+        least=0,
+    ),
     "limit_kind": Label(
         np.int8, "what ends the motion without stops at beta_lim", CURVE, codes=regimes.LIMIT_KINDS
     ),

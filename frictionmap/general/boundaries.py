@@ -33,7 +33,6 @@ class Boundaries:
     begins: np.ndarray  # (n_mu, n_r, INTERVALS)
     ends: np.ndarray
     wall_velocity_lim: np.ndarray  # (n_r,) NaN without one contact on a belt
-    limiting: np.ndarray  # (n_mu, n_r) contact that decides beta_stick, counted from 1
 
 
 def friction_lines(system: System, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -113,6 +112,4 @@ def find_boundaries(
             raise
     first = np.where(begins[:, :, 0] == 0.0, ends[:, :, 0], 0.0)
     first = np.where(np.isnan(begins[:, :, 0]), 0.0, first)
-    return Boundaries(
-        stick, by_contact, first, begins, ends, belt_limit(system, r), by_contact.argmax(axis=2) + 1
-    )
+    return Boundaries(stick, by_contact, first, begins, ends, belt_limit(system, r))

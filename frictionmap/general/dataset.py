@@ -122,8 +122,6 @@ def boundary_variables(system: System, limits: Boundaries) -> dict[str, xr.Varia
         "no_stop_begin": limits.begins,
         "no_stop_end": limits.ends,
     }
-    if count > 1:
-        found["limiting_contact"] = limits.limiting
     if np.isfinite(limits.wall_velocity_lim).any():
         found["wall_velocity_lim"] = limits.wall_velocity_lim
     variables = {name: label_variable(name, values) for name, values in found.items()}

@@ -1,9 +1,11 @@
 """What ends the motion without stops at beta_lim (theory.md 11), from the motion just below."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from .. import regimes
-from .._kernels.general.follow import NEAREST_STOP
+from .._kernels.general.follow import NEAREST_STOP, STOPS
 from .._kernels.general.problem import Problem
 from ..errors import NoSteadyState
 from ..model.settings import Solver
@@ -16,6 +18,9 @@ from .steps import Steps, cell_steps
 #: Distance below beta_lim, relative to it, of the motion looked at.
 _BELOW = 1e-9
 
+#: Distance above beta_lim, relative to it, at which the contact that stops is looked for.
+_ABOVE = 1e-6
+
 #: Margin at a turn that is zero, and distance of two turns that coincide [rad].
 _NO_MARGIN = 1e-5
 _TOGETHER = 1e-5
@@ -24,9 +29,18 @@ _TOGETHER = 1e-5
 _STILL = 1e-12
 
 
-def limit_kinds(system: System, r: np.ndarray, mu: np.ndarray, limits: Boundaries) -> np.ndarray:
-    """Find what ends the first interval without stops, (n_mu, n_r) codes `regimes.LIMIT_KINDS`."""
-    found = np.full(limits.beta_lim.shape, regimes.NO_LIMIT, np.int8)
+class Limits(NamedTuple):
+    """What ends the first interval without stops, (n_mu, n_r)."""
+
+    kind: np.ndarray  # codes `regimes.LIMIT_KINDS`
+    contact: np.ndarray  # the contact that stops, counted from 1; 0: there is no limit, or none was found
+
+
+def find_limits(system: System, r: np.ndarray, mu: np.ndarray, limits: Boundaries) -> Limits:
+    """Find what ends the first interval without stops, and which contact stops."""
+    found = Limits(
+        np.full(limits.beta_lim.shape, regimes.NO_LIMIT, np.int8), np.zeros(limits.beta_lim.shape, np.int64)
+    )
     problem, modal = problem_of(system, r)
     phasors = sliding_phasors(system, r)
     for i in np.flatnonzero(r > 0.0):
@@ -36,9 +50,11 @@ def limit_kinds(system: System, r: np.ndarray, mu: np.ndarray, limits: Boundarie
             limit = float(limits.beta_lim[m, i])
             if np.isnan(limits.begins[m, i, 0]) or limits.begins[m, i, 0] > 0.0:
                 still = (moves <= _STILL * moves.max(initial=0.0)).any()
-                found[m, i] = regimes.UNLOADED if still else regimes.NO_LIMIT
+                found.kind[m, i] = regimes.UNLOADED if still else regimes.NO_LIMIT
+                found.contact[m, i] = np.argmin(moves) + 1 if still else 0
             elif np.isfinite(limit):
-                found[m, i] = _kind(system, problem, modal, int(i), limit, float(mu[m]))
+                found.kind[m, i] = _kind(system, problem, modal, int(i), limit, float(mu[m]))
+                found.contact[m, i] = _stopping(system, problem, modal, int(i), limit, float(mu[m]))
     return found
 
 
@@ -58,6 +74,16 @@ def _kind(
     if 1.0 - (ratio * steps.counts[NEAREST_STOP]).max() <= _NO_MARGIN:
         return regimes.TURN
     return regimes.COINCIDENCE if _turns_coincide(steps) else regimes.INSIDE
+
+
+def _stopping(system: System, problem: Problem, modal: ModalSystem, i: int, limit: float, mu: float) -> int:
+    """The contact that stops most at r[i] just above a limit, counted from 1; 0 if none was found to."""
+    try:
+        steps = cell_steps(system, problem, modal, i, limit * (1.0 + _ABOVE), mu, Solver(cycles=100))
+    except NoSteadyState:
+        return 0
+    stops = steps.counts[STOPS]
+    return int(np.argmax(stops)) + 1 if stops.any() else 0
 
 
 def _turns_coincide(steps: Steps) -> bool:

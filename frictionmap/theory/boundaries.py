@@ -190,7 +190,7 @@ def _general_boundaries(system: System, r: np.ndarray, mu: np.ndarray, units: Un
     from ..general.boundaries import find_boundaries
     from ..general.dataset import boundary_variables as general_variables
     from ..general.dataset import contact_coordinates, refuse_static
-    from ..general.limit_kinds import limit_kinds
+    from ..general.limit_kinds import find_limits
     from ..general.loops import loop_stick_scales
 
     assert system.general is not None
@@ -203,7 +203,10 @@ def _general_boundaries(system: System, r: np.ndarray, mu: np.ndarray, units: Un
         limits = find_boundaries(system, r, mu)
         variables = general_variables(system, limits)
         if not system.general.elastic.any():
-            variables["limit_kind"] = label_variable("limit_kind", limit_kinds(system, r, mu, limits))
+            ended = find_limits(system, r, mu, limits)
+            variables["limit_kind"] = label_variable("limit_kind", ended.kind)
+            if system.general.count > 1:
+                variables["limiting_contact"] = label_variable("limiting_contact", ended.contact)
     ds = xr.Dataset(variables, coords=coords)
     return stamp(
         ds, "boundaries", "Boundaries of the motion regimes", system, {"r": r, "mu": mu}, units=units

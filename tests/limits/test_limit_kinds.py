@@ -48,7 +48,7 @@ class Waves:
         return found
 
     def margins(self, ray, scale):
-        """Turns, least margin at a turn, least speed between turns."""
+        """Turns, least margin at a turn, least speed between turns; both with the contact they are of."""
         phasors = (self.load / (self.w**2 - self.r**2 + 2j * self.zeta * self.w * self.r)) @ self.chi.T
         turns = -np.angle(phasors)
         for s in np.linspace(0.0, scale, 41)[1:]:
@@ -57,16 +57,16 @@ class Waves:
                 turns, xtol=1e-12, full_output=True,
             )[0]  # fmt: skip
         own = ((self.chi / self.r) ** 2).sum(axis=1)
-        at_turn, inside = np.inf, np.inf
+        at_turn, inside = (np.inf, 0), (np.inf, 0)
         for i, turn in enumerate(turns):
             bend = -self.contact(i, turn - 1e-10, scale * ray, turns)[2]
-            at_turn = min(at_turn, bend / (2.0 * scale * ray[i] * own[i]) - 1.0)
+            at_turn = min(at_turn, (bend / (2.0 * scale * ray[i] * own[i]) - 1.0, i + 1))
             kinks = np.mod(turns - turn, np.pi)
             times = np.unique(np.concatenate((np.linspace(0.02, np.pi - 0.02, 400), kinks)))
             times = times[(times > 0.01) & (times < np.pi - 0.01)]
             for _ in range(3):
                 speeds = [-self.contact(i, turn + t, scale * ray, turns)[1] for t in times]
-                inside, slowest = min(inside, *speeds), times[np.argmin(speeds)]
+                inside, slowest = min(inside, (min(speeds), i + 1)), times[np.argmin(speeds)]
                 near = 2.0 * np.diff(times).max()
                 times = np.linspace(max(0.01, slowest - near), min(np.pi - 0.01, slowest + near), 101)
         return turns, at_turn, inside
@@ -97,18 +97,20 @@ def test_kinds_are_those_of_the_equations(r, second, kind):
     waves, ray = Waves(K, 0.01, r, W), np.array([1.0, second])
     limit = ds.beta_lim.item()
     below, above = (waves.margins(ray, limit * (1.0 + side)) for side in (-1e-7, 1e-7))
-    turns, at_turn, inside = below
+    turns, (at_turn, turning), (inside, touching) = below
+    contact = {TURN: turning, INSIDE: touching, COINCIDENCE: above[1][1]}[kind]
+    assert ds.limiting_contact.item() == contact
     if kind == TURN:
         assert -1e-9 < at_turn < 1e-6
-        assert above[1] < 0.0
+        assert above[1][0] < 0.0
     elif kind == INSIDE:
         assert -1e-9 < inside < 1e-6
-        assert above[2] < 0.0
+        assert above[2][0] < 0.0
         assert at_turn > 1e-3
     else:
         assert abs(turns[0] - turns[1]) < 1e-6
         assert at_turn > 0.1
-        assert above[1] < -0.01
+        assert above[1][0] < -0.01
         assert inside > 1e-5
 
 
@@ -117,7 +119,7 @@ def test_a_larger_static_friction_makes_turns_limit():
     ds = fm.boundaries(system_of(0.3), [0.9], [1.0, 1.5])
     assert ds.limit_kind.values.ravel().tolist() == [TURN, TURN]
     waves, ray = Waves(K, 0.01, 0.9, W), np.array([1.0, 0.3])
-    _, at_turn, _ = waves.margins(ray, ds.beta_lim.values[1, 0])
+    _, (at_turn, _), _ = waves.margins(ray, ds.beta_lim.values[1, 0])
     assert at_turn == pytest.approx(0.25, abs=1e-7)  # (1 + 1.5)/2 - 1
 
 
@@ -130,5 +132,5 @@ def test_a_contact_without_load():
     )  # fmt: skip
     ds = fm.boundaries(system, [0.7])
     assert ds.beta_lim.item() == 0.0
-    assert ds.limit_kind.item() == UNLOADED
+    assert (ds.limit_kind.item(), ds.limiting_contact.item()) == (UNLOADED, 2)
     assert ds.limit_kind.attrs["flag_meanings"] == "no_limit turn inside coincidence unloaded"

@@ -6,7 +6,7 @@ each contact; the phases of the turns solve z_i'(tau_i) = 0.
 
 import numpy as np
 import pytest
-from scipy.linalg import eigh, expm
+from scipy.linalg import eigh
 from scipy.optimize import fsolve
 
 import frictionmap as fm
@@ -23,17 +23,23 @@ class Waves:
         self.zeta, self.load = zeta, phi[0]  # on mass 1
         self.rates = [np.array([[0.0, 1.0], [-((s / r) ** 2), -2.0 * zeta * s / r]]) for s in self.w]
         self.begins = []
-        for a in self.rates:  # y(pi) = -y(0) under the force +1/r^2
+        for m, a in enumerate(self.rates):  # y(pi) = -y(0) under the force +1/r^2
             rest = np.linalg.solve(a, [0.0, -1.0 / r**2])
-            e = expm(np.pi * a)
+            e = self.flow(m, np.pi)
             self.begins.append((rest, np.linalg.solve(e + np.eye(2), (e - np.eye(2)) @ rest)))
+
+    def flow(self, m, tau):
+        """exp(tau a) of a mode, a its matrix of rates."""
+        decay, turn = self.zeta * self.w[m] / self.r, np.sqrt(1.0 - self.zeta**2) * self.w[m] / self.r
+        shifted = self.rates[m] + decay * np.eye(2)
+        return np.exp(-decay * tau) * (np.cos(turn * tau) * np.eye(2) + np.sin(turn * tau) / turn * shifted)
 
     def square(self, m, tau):
         """Displacement, velocity, acceleration of mode m: force +1 in (0, pi), -1 in (pi, 2 pi)."""
         turns = np.floor(tau / np.pi)
         sign, rest = 1.0 - 2.0 * np.mod(turns, 2.0), tau - np.pi * turns
         equilibrium, begin = self.begins[m]
-        y = equilibrium + expm(rest * self.rates[m]) @ (begin - equilibrium)
+        y = equilibrium + self.flow(m, rest) @ (begin - equilibrium)
         return sign * np.array([*y, (self.rates[m] @ y)[1] + 1.0 / self.r**2])
 
     def contact(self, i, tau, beta, turns):

@@ -129,7 +129,10 @@ def violation(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> float
     for piece in range(1, sequence.events + 1):
         samples = sampled(phases, sequence, motion, piece)
         if sequence.senses[piece]:
-            worst = max(worst, -float(samples.values[1:-1].min() / samples.values.max()))
+            fastest = float(samples.values.max())
+            if fastest <= 0.0:
+                return math.inf  # it slides the other way
+            worst = max(worst, -float(samples.values[1:-1].min()) / fastest)
         else:
             worst = max(worst, float(np.abs(samples.values[1:-1]).max()) - 1.0)
     for k in range(sequence.events):

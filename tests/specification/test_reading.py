@@ -307,6 +307,27 @@ def test_a_huge_variable_is_refused_before_it_is_read(tmp_path):
         read(path)
 
 
+def test_contacts_peaks_and_phases_that_are_not_there(datasets):
+    """Files that were read once and failed later."""
+    system = fm.System(damping_ratios=0.1)
+    two = fm.System(
+        mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.1,
+        contacts=[fm.Contact("fixed-wall", 1), fm.Contact("fixed-wall", 2)],
+    )  # fmt: skip
+    ds = fm.sweep(two, [0.5, 1.5], [0.1, 0.2])
+    for wrong, message in (
+        (ds.drop_vars("contact"), "contact must be a coordinate with one number per contact; got none"),
+        (ds.assign_coords(contact=[7, 7]), "contact must be a coordinate .* got \\[7, 7\\]"),
+        (datasets["response"].assign_coords(tau=datasets["response"].tau * 1e300), "tau must be "),
+        (
+            fm.design.least_peak(system, [0.5, 1.5]).isel(peak=slice(0, 0)),
+            "peak must have at least one value",
+        ),
+    ):
+        with pytest.raises(InputError, match=message):
+            standard_form(wrong)
+
+
 # Damaged at random
 
 

@@ -1,14 +1,13 @@
 """Checks of input; every message names the argument, its value and the valid range."""
 
-import difflib
 import math
 import os
-from collections.abc import Iterable
 from typing import Any, TypeVar
 
 import numpy as np
 
 from .errors import InputError
+from .errors import nearest as nearest  # hints, used with the checks
 
 #: Cells of one map; 10^9 need at least 13 GB for the default outputs.
 MOST_CELLS = 10**9
@@ -33,12 +32,6 @@ def threads(given: int | None = None) -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
-
-
-def nearest(word: str, valid: Iterable[str]) -> str:
-    """Return ' (did you mean ...?)' if a valid word is similar, else ''."""
-    found = difflib.get_close_matches(word, list(valid), n=1, cutoff=0.5)
-    return f" (did you mean {found[0]}?)" if found else ""
 
 
 def one_line(value: object) -> str:

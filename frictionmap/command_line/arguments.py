@@ -1,13 +1,13 @@
 """Command-line arguments: every command with its options and help texts."""
 
 import argparse
-import difflib
 from argparse import Action, ArgumentParser
 from argparse import Namespace as Options
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
+from ..errors import nearest
 from ..version import __version__
 
 __all__ = [
@@ -59,6 +59,9 @@ FIGURE = (
     *("size", "dpi", "legend", "caption", "title", "xlim", "ylim", "panels", "mass", "beta", "point", "box"),
 )
 
+#: Least similarity of a word that is suggested: commands and options are short, and often alike.
+_SIMILAR = 0.7
+
 #: Output "-": standard output.
 STREAM = Path("-")
 
@@ -81,16 +84,10 @@ def one_line(message: object) -> str:
     return " ".join(str(message).split())
 
 
-def nearest(word: str, valid: Iterable[str]) -> str:
-    """Return ' (did you mean ...?)' if a valid word is similar, else ''; importing `checks` would be slow."""
-    found = difflib.get_close_matches(word, list(valid), n=1, cutoff=0.7)
-    return f" (did you mean {found[0]}?)" if found else ""
-
-
 def unknown_command(word: str, valid: Iterable[str]) -> str:
     """Return the message for a command that does not exist."""
     valid = list(valid)
-    return f"unknown command {word!r}{nearest(word, valid)}; valid: {', '.join(valid)}"
+    return f"unknown command {word!r}{nearest(word, valid, _SIMILAR)}; valid: {', '.join(valid)}"
 
 
 class _Parser(argparse.ArgumentParser):
@@ -114,7 +111,7 @@ class _Parser(argparse.ArgumentParser):
         if unknown:
             sub = subcommands(self).choices[found.command]
             valid = [flag for action in sub._actions for flag in action.option_strings if flag[:2] == "--"]
-            hints = [nearest(word.partition("=")[0], valid) for word in unknown if word[:2] == "--"]
+            hints = [nearest(word.partition("=")[0], valid, _SIMILAR) for word in unknown if word[:2] == "--"]
             self.error(f"unrecognized arguments: {' '.join(unknown)}{next(filter(None, hints), '')}")
         return found
 

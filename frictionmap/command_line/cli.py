@@ -101,11 +101,11 @@ def _fill_cells(
     options: Options, config: "Config", output: "Output", what: str, run: Callable[["Progress"], "xr.Dataset"]
 ) -> None:
     """Compute a grid of cells with progress, write it, and print a summary."""
-    from .._kernels.compiler.notices import told
+    from .._kernels.compiler.notices import listening
     from ..files.summary import describe_causes, describe_map, describe_reduction
     from .progress import Progress
 
-    with Progress(what, options.quiet) as progress, told(progress.compiling):
+    with Progress(what, options.quiet) as progress, listening(progress.compiling):
         began = time.perf_counter()
         ds = run(progress)
         took = time.perf_counter() - began
@@ -202,7 +202,7 @@ def _refuse_ending(options: Options) -> None:
 
 def _store(options: Options) -> None:
     """Compute a map into a store, or resume one."""
-    from .._kernels.compiler.notices import told
+    from .._kernels.compiler.notices import listening
     from ..files.config import load_config
     from ..files.studies import describe_cells
     from ..stores.cuts import cut_by_cost
@@ -219,7 +219,7 @@ def _store(options: Options) -> None:
         )
     study = study_of(config.system, config.variations, axes, config.solver, config.units)
     find_cut = functools.partial(cut_by_cost, workers=options.workers or 0, threads=options.threads)
-    with Progress(f"map of {study.cells:,} cells", options.quiet) as progress, told(progress.compiling):
+    with Progress(f"map of {study.cells:,} cells", options.quiet) as progress, listening(progress.compiling):
         fill = _fill(options, progress)
         store = fill_store(options.output, study, config.title, fill, options.overwrite, progress, find_cut)
     if not options.quiet:
@@ -266,14 +266,17 @@ def _put(content: bytes, path: Path) -> None:
 
 
 def _export_page(options: Options, scene: "Scene") -> None:
-    from .._kernels.compiler.notices import told
+    from .._kernels.compiler.notices import listening
     from ..explorer.stored import check_page, write_page
     from ..files.places import claimed
     from .progress import Progress
 
     check_page(options.output)
     with claimed(options.output, options.overwrite, scene.files) as output:
-        with Progress(f"page of {scene.title}", options.quiet, "maps") as progress, told(progress.compiling):
+        with (
+            Progress(f"page of {scene.title}", options.quiet, "maps") as progress,
+            listening(progress.compiling),
+        ):
             page = write_page(scene, progress)
         output.fill(lambda scratch: _put(page, scratch))
     if not options.quiet:
@@ -297,7 +300,7 @@ def _identify(options: Options) -> None:
 
 def _design(options: Options) -> None:
     """Answer the question of a configuration; what is written reproduces the answer."""
-    from .._kernels.compiler.notices import told
+    from .._kernels.compiler.notices import listening
     from ..design.configuration import load_design
     from ..files.designs import describe_design
     from ..files.places import claimed
@@ -310,7 +313,7 @@ def _design(options: Options) -> None:
     with claimed(path, options.overwrite, design.files) as output:
         with (
             Progress(f"design question {design.question}", options.quiet) as progress,
-            told(progress.compiling),
+            listening(progress.compiling),
         ):
             ds = design.ask()
         ds.attrs |= {"title": design.title, "config": design.text}

@@ -65,6 +65,7 @@ COORDINATES = {
         most=checks.LARGEST_RATIO,
     ),
     "beta": Label(np.float64, "ratio of kinetic friction force to load amplitude", ("beta",), least=0.0),
+    # at most: far above the longest steady state, of 256 periods
     "tau": Label(np.float64, "excitation phase, omega t", ("tau",), least=0.0, most=1e6),
     "dof": Label(np.int64, "mass, counted from 1", ("dof",), least=1),
     "harmonic": Label(

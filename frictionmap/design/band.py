@@ -5,10 +5,10 @@ from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg import eigh, null_space
 
 from .. import checks
 from ..errors import InputError
+from ..model.held_structure import constrained_frequencies
 from ..model.system import System
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales
@@ -61,15 +61,6 @@ def _patterns(count: int) -> Iterator[tuple[int, ...]]:
         yield from combinations(range(count), size)
 
 
-def _natural_frequencies(mass: np.ndarray, stiffness: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """Natural frequencies of a structure in which the displacements held (k, n) are 0."""
-    allowed = null_space(held) if len(held) else np.eye(len(mass))
-    if not allowed.shape[1]:
-        return np.empty(0)
-    squares = eigh(allowed.T @ stiffness @ allowed, allowed.T @ mass @ allowed, eigvals_only=True)
-    return np.sqrt(np.maximum(squares, 0.0))
-
-
 def natural_frequencies(system: System) -> np.ndarray:
     """Natural frequency ratios with contacts free and held, in all combinations of few; increasing."""
     modes, general = system.modes, system.general
@@ -84,7 +75,7 @@ def natural_frequencies(system: System) -> np.ndarray:
         added = sum(
             ((springs[j] or 0.0) * np.outer(vectors[j], vectors[j]) for j in pattern), 0.0 * stiffness
         )
-        found.append(_natural_frequencies(mass, stiffness + added, vectors[rigid]))
+        found.append(constrained_frequencies(mass, stiffness + added, vectors[rigid]))
     return np.unique(np.concatenate(found))
 
 

@@ -64,9 +64,7 @@ def load_design(path: str | Path, overrides: Sequence[str] = (), threads: int | 
     given = design_table(tree)
     try:
         question = checks.choice(given.get("question", QUESTIONS[0]), "question", QUESTIONS)
-        arguments = _arguments(question, given, axes is not None)
-        if axes is not None:
-            arguments["spread"] = _samples(question, axes, given)
+        arguments = _with_samples(question, _arguments(question, given), axes)
     except InputError as error:
         raise (error if str(error).startswith("unknown") else within("design", error)) from None
     function = _FUNCTIONS[question][0]
@@ -76,18 +74,23 @@ def load_design(path: str | Path, overrides: Sequence[str] = (), threads: int | 
     return Design(common.title, path.stem, text, (*common.files, *files), question, ask)
 
 
-def _samples(question: str, axes: Mapping[str, Any], given: Mapping[str, Any]) -> Samples:
-    """The samples of [axes], for the question that is about samples."""
+def _with_samples(question: str, arguments: dict[str, Any], axes: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Arguments with the samples of [axes] in the place of spread and quantile."""
+    quantile = arguments.pop("quantile", None)
+    if axes is None:
+        if quantile is not None:
+            raise InputError(f"quantile must go with samples in [axes]; got {quantile} without them")
+        return arguments
     if question != "robust":
         raise InputError(
             "question must be robust in a configuration with [axes], whose points are samples; "
             f"got {question}"
         )
-    if "spread" in given:
+    if "spread" in arguments:
         raise InputError(
-            f"spread must not be given beside [axes]: samples take its place; got {given['spread']}"
+            f"spread must not be given beside [axes]: samples take its place; got {arguments['spread']}"
         )
-    return Samples(axes, given["quantile"]) if "quantile" in given else Samples(axes)
+    return {**arguments, "spread": Samples(axes) if quantile is None else Samples(axes, quantile)}
 
 
 def _asked(function: Callable[..., xr.Dataset], system: object, arguments: Mapping[str, Any]) -> xr.Dataset:
@@ -99,7 +102,7 @@ def _asked(function: Callable[..., xr.Dataset], system: object, arguments: Mappi
         raise within("design.response" if inner else "design", error) from None
 
 
-def _arguments(question: str, given: Mapping[str, Any], sampled: bool) -> dict[str, Any]:
+def _arguments(question: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """Arguments of the function of a question, from the keys that it uses."""
     _, needed, optional = _FUNCTIONS[question]
     for key in needed:
@@ -107,8 +110,6 @@ def _arguments(question: str, given: Mapping[str, Any], sampled: bool) -> dict[s
             raise InputError(f"{key} must be given for question {question}; got nothing")
     arguments = {key: given[key] for key in (*needed, *optional) if key in given}
     response = _response(arguments.pop("response", {}))
-    if arguments.pop("quantile", None) is not None and not sampled:
-        raise InputError(f"quantile must go with samples in [axes]; got {given['quantile']} without them")
     return arguments | response
 
 

@@ -15,7 +15,7 @@ from .task import Task
 _PROMISING = 2.0
 
 #: Values of the curve that count as one: of a plateau, of two peaks at the optimum.
-_PLATEAU, _TWO_PEAKS = 1e-9, 1e-8
+_PLATEAU, TWO_PEAKS = 1e-9, 1e-8
 
 #: A peak over the whole band above those that were followed by more than this was missed before.
 _MISSED = 1e-10
@@ -72,7 +72,7 @@ def sampled(task: Task, curve: PerformanceCurve) -> Points:
 
 def _kind(points: Points, best: int, peaks: Peaks) -> str:
     """How the least value at the point `best` of a refined curve comes about."""
-    if peaks.size.size > 1 and alike(peaks.size[:2], _TWO_PEAKS):
+    if peaks.size.size > 1 and alike(peaks.size[:2], TWO_PEAKS):
         return "two equal peaks"
     return "at the bound" if best in (0, points.beta.size - 1) else "smooth"
 

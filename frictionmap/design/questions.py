@@ -108,10 +108,11 @@ def least_peak(
     >>> round(ds.beta.item(), 4), round(ds.peak.values[0], 9), str(ds.kind.values)
     (1.4019, 2.727102937, 'smooth')
     """
+    if not isinstance(spread, Samples):
+        spread = _checked_spread(spread)
     task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
     if isinstance(spread, Samples):
         return _answer_for_samples(task, spread, widen=beta is None)
-    spread = _checked_spread(spread)
     curve = task.performance()
     if spread > 0.0:
         return _answer("robust", task, curve, find_robust(task, curve, spread), {"spread": spread})
@@ -182,9 +183,10 @@ def at_most(
     NoSteadyState
         As `least_peak`.
     """
-    task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
+    checks.instance(system, "system", System)
     kind = "force" if quantity == "transmitted_force" else "length"
-    value = checks.number(_single(limit, "limit", kind, task.scales), "limit", above=0.0)
+    value = checks.number(_single(limit, "limit", kind, scales_of(units, system)), "limit", above=0.0)
+    task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
     curve = task.performance()
     optimum, begins, ends = find_ranges(task, curve, value)
     ranges = {"interval": np.arange(1, begins.size + 1), "interval_begin": begins, "interval_end": ends}
@@ -363,12 +365,13 @@ def _answer(
 
 def _answer_for_samples(task: Task, samples: Samples, *, widen: bool) -> xr.Dataset:
     """Build the dataset of the friction that is best for a quantile of samples."""
-    task, tasks = sampled(task, samples, widen=widen)
+    variations = samples.of(task.system)
+    task, tasks = sampled(task, variations, widen=widen)
     curve = SampledPerformance(tasks, samples.quantile)
     optimum = find_optimum(task, curve)
     further = sample_values(tasks, curve, optimum.best.beta)
-    study = samples.of(task.system).described
-    return _answer("robust", task, curve, optimum, {"quantile": samples.quantile}, further, study)
+    asked = {"quantile": samples.quantile}
+    return _answer("robust", task, curve, optimum, asked, further, variations.described)
 
 
 def _response_curves(task: Task, beta: float) -> dict[str, np.ndarray]:

@@ -11,13 +11,10 @@ from .. import checks
 from ..errors import InputError
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
-from .least_peak import largest
+from .least_peak import TWO_PEAKS, largest
 from .performance import Peaks
 from .responses import Values, joined_values
 from .task import Task, range_of_friction
-
-#: Samples whose responses at the quantile agree to this relative difference both count.
-_ALIKE = 1e-8
 
 
 @dataclass(frozen=True)
@@ -111,9 +108,9 @@ class SampledPerformance:
         for at_beta in zip(*found, strict=True):
             sizes = np.array([peaks.largest for peaks in at_beta])
             place = np.argsort(sizes, kind="stable")[self._rank]
-            level = sizes[place]
+            level = sizes[place]  # samples with the same response make two equal peaks
             with np.errstate(invalid="ignore"):  # infinite less infinite: that sample alone
-                near = np.abs(sizes - level) <= _ALIKE * level
+                near = np.abs(sizes - level) <= TWO_PEAKS * level
             owners = np.union1d(np.flatnonzero(near), place)
             peaks = _in_one([at_beta[owner] for owner in owners], owners)
             self._table[peaks.beta] = peaks
@@ -129,12 +126,12 @@ def _in_one(parts: list[Peaks], owners: np.ndarray) -> Peaks:
     return Peaks(parts[0].beta, r[order], size[order], owner[order])
 
 
-def sampled(task: Task, samples: Samples, *, widen: bool) -> tuple[Task, list[Task]]:
+def sampled(task: Task, variations: Variations, *, widen: bool) -> tuple[Task, list[Task]]:
     """The question of a nominal structure for its samples, and that of each sample.
 
+    variations : the samples, see `Samples.of`
     widen : whether the range of friction is to be wide enough for all samples
     """
-    variations = samples.of(task.system)
     systems = [variations.at(point) for point in variations.points()]
     low, high = task.low, task.high
     if widen:

@@ -102,7 +102,7 @@ def general_motion(view: View, r: float, beta: float) -> tuple[dict[str, Any], d
 
 
 def _name(view: View, regime: int) -> str:
-    """Heading of the regime of what is shown, from the classes of the map."""
+    """Heading of a regime, of the contact shown or of all, from the classes of the map."""
     index = int(of_cells(np.array([regime]), None)[0])
     label = "stick-slip" if regime == regimes.STICK_SLIP else counted_of(view).labels[index]
     k = chosen(view)
@@ -117,7 +117,7 @@ def _class(view: View, ds: xr.Dataset, regime: int, k: int | None) -> int:
 
 
 def _limits(view: View, r: float) -> dict[str, float]:
-    """Boundaries at the frequency of the cell, of what is shown."""
+    """Boundaries at the frequency of the cell, of the contact shown or of all."""
     return {name: float(values[0]) for name, values in line_values(view, np.array([r])).items()}
 
 
@@ -132,7 +132,7 @@ def _why(beta: float, limits: dict[str, float]) -> list[str]:
 
 def _sentence(ds: xr.Dataset, group: Group, j: int, regime: int) -> str:
     """What one contact does."""
-    elastic = group.first.stiffness is not None
+    elastic = group.stiffness is not None
     words = (_ELASTIC if elastic else _RIGID).get(regime)
     if words is None:
         name, share = ("slips", "elastic_fraction") if elastic else ("stops", "stuck_fraction")
@@ -192,6 +192,6 @@ def _rates(view: View, ds: xr.Dataset, direction: np.ndarray) -> np.ndarray:
     rows = []
     for j, group in enumerate(general.groups):
         rate = group.vector @ ds["v"].values - group.base * base
-        stuck = (direction[j] == 0) & (group.first.stiffness is None)
+        stuck = (direction[j] == 0) & (group.stiffness is None)
         rows.append(np.where(stuck, group.first.wall_velocity, rate))
     return np.array(rows)

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 
 import numpy as np
-import scipy.linalg
 
 from .. import checks
 from ..datasets.labels import LABELS, PER_CONTACT
 from ..general.dataset import cell_values, contact_values
 from ..general.maps import solve_cells
 from ..general.problem import general_of, springs
+from ..model.held_structure import constrained_frequencies
 from ..model.system import System
 from ..pictures.classes import OVERALL, OVERALL_ELASTIC, SLIPS, STOPS, Counted
 from ..pictures.palette import CLASSES, ONE_WAY, ONE_WAY_LABEL, Look
@@ -103,9 +103,4 @@ def held_frequencies(system: System) -> np.ndarray:
     """Natural frequencies with no contact sliding: rigid ones held, springs of elastic ones stuck."""
     general, modes = general_of(system), system.modes
     stiffness = modes.stiffness + general.vectors.T @ (springs(general)[:, np.newaxis] * general.vectors)
-    rigid = general.vectors[~general.elastic]
-    free = scipy.linalg.null_space(rigid) if len(rigid) else np.eye(system.n)
-    if not free.size:
-        return np.empty(0)
-    squares = scipy.linalg.eigh(free.T @ stiffness @ free, free.T @ modes.mass @ free, eigvals_only=True)
-    return np.sqrt(np.maximum(squares, 0.0))
+    return constrained_frequencies(modes.mass, stiffness, general.vectors[~general.elastic])

@@ -364,6 +364,11 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
         key: checks.axis(_values(grid[key], f"grid.{key}"), f"grid.{key}", **bounds)
         for key, bounds in AXES.items()
     }
+    if borders and variations is not None:
+        raise InputError(
+            "cannot find borders between numbers of stops with [axes]: they are those of one system; "
+            "remove [axes] or these outputs"
+        )
     try:
         (variations or system).costs(axes["r"])
     except InputError as error:

@@ -48,8 +48,8 @@ def _cells(regime: xr.DataArray) -> dict[str, int]:
     """Number of cells of every regime that occurs."""
     codes = (*LABELS["regime"].codes, *LABELS["regime"].also)
     counts = dict.fromkeys((code.name for code in codes), 0)
-    for k in range(regime.shape[0]):  # a store may be larger than the memory
-        values = regime[k].values
+    for part in regime if regime.ndim else [regime]:  # a store may be larger than the memory
+        values = part.values
         for code in codes:
             counts[code.name] += int(np.count_nonzero(values == code.value))
     return {name: count for name, count in counts.items() if count}

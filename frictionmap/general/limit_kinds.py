@@ -15,13 +15,16 @@ from .held import sliding_phasors
 from .problem import ModalSystem, problem_of
 from .steps import Steps, cell_steps
 
-#: Distance below beta_lim, relative to it, of the motion looked at.
+#: Distance below beta_lim, relative to it, of the motion looked at: far above rounding, and so close that
+#: margins and phases differ from those at the limit by some 1e-9 only.
 _BELOW = 1e-9
 
-#: Distance above beta_lim, relative to it, at which the contact that stops is looked for.
+#: Distance above beta_lim, relative to it, at which the contact that stops is looked for: the first stop is
+#: then long enough to be counted, and no further one has begun.
 _ABOVE = 1e-6
 
-#: Margin at a turn that is zero, and distance of two turns that coincide [rad].
+#: Margin at a turn that is zero, and distance of two turns that coincide [rad]: in the middle, by orders of
+#: magnitude, between what `_BELOW` leaves of zero and margins that are not.
 _NO_MARGIN = 1e-5
 _TOGETHER = 1e-5
 

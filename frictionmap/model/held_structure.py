@@ -65,3 +65,14 @@ def held_structure(
     zero = np.zeros_like(allowed)
     spread = np.block([[allowed, zero], [zero, allowed]])
     return HeldStructure(omega, ratio, spread @ basis, inverse @ spread.T, static_shape, 1.0 / compliance)
+
+
+def constrained_frequencies(mass: np.ndarray, stiffness: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """Natural frequencies of a structure in which the displacements held (k, n) are 0."""
+    from scipy.linalg import eigh, null_space  # not needed, and not loaded, for one mass
+
+    allowed = null_space(held) if len(held) else np.eye(len(mass))
+    if not allowed.shape[1]:
+        return np.empty(0)
+    squares = eigh(allowed.T @ stiffness @ allowed, allowed.T @ mass @ allowed, eigvals_only=True)
+    return np.sqrt(np.maximum(squares, 0.0))

@@ -346,10 +346,10 @@ def test_a_contact_without_its_number_has_no_marks_of_others():
     )  # fmt: skip
     ds = fm.response(system, 0.4, 0.2)
     for k in range(2):
-        (chosen,) = [fm.plot_response(ds.isel(contact=k, drop=True))]
+        chosen = fm.plot_response(ds.isel(contact=k, drop=True))
         marks = [line for ax in chosen.ravel() for line in ax.lines if line.get_marker() == "o"]
         assert not [line for line in marks if np.size(line.get_xdata())]
-        (known,) = [fm.plot_response(ds.isel(contact=k))]
+        known = fm.plot_response(ds.isel(contact=k))
         marks = [line for ax in known.ravel() for line in ax.lines if line.get_marker() == "o"]
         starts = (ds.event_contact == k + 1) & (ds.event_direction == 0)
         assert sum(np.size(line.get_xdata()) for line in marks) == int(starts.sum())

@@ -98,3 +98,13 @@ def test_a_store_has_no_borders(path, tmp_path, capsys):
     asked.write_text(path.with_suffix(".toml").read_text() + '[solver]\noutputs = ["regime", "border_r"]\n')
     assert main(["map", str(asked), "-o", str(tmp_path / "a.zarr"), "--quiet"]) == 2
     assert "cannot write borders between numbers of stops into" in capsys.readouterr().err
+
+
+def test_a_study_has_no_borders(path, tmp_path, capsys):
+    """They would be those of one of its systems."""
+    asked = tmp_path / "asked.toml"
+    text = path.with_suffix(".toml").read_text() + '[solver]\noutputs = ["regime", "border_r"]\n'
+    asked.write_text(text + "[axes]\ndamping_ratios = [0.0, 0.1]\n")
+    assert main(["map", str(asked), "-o", str(tmp_path / "a.nc"), "--quiet"]) == 2
+    assert "cannot find borders between numbers of stops with [axes]" in capsys.readouterr().err
+    assert not (tmp_path / "a.nc").exists()

@@ -612,6 +612,15 @@ def test_a_summary_for_scripts(folder, capsys):
     assert json.loads(capsys.readouterr().out)["sizes"]["r"] == 1
 
 
+def test_a_summary_of_one_cell_for_scripts(folder, capsys):
+    assert status_of("response good.toml --r 0.8 --beta 0.5 --mu 1 -o one.nc --quiet") == 0
+    capsys.readouterr()
+    assert status_of("info one.nc --json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["kind"] == "response"
+    assert sum(found["cells"].values()) == 1
+
+
 def test_csv_on_standard_output_is_that_of_the_file(folder, capsys):
     assert status_of("map good.toml -o ours.nc --quiet") == 0
     assert status_of("export ours.nc -o ours.csv --quiet") == 0

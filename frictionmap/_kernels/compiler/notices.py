@@ -24,7 +24,7 @@ def announce() -> None:
 
 
 @contextlib.contextmanager
-def told(listener: Callable[[], None]) -> Iterator[None]:
+def listening(listener: Callable[[], None]) -> Iterator[None]:
     """Have a listener called for the length of the context, however it ends."""
     listeners.append(listener)
     try:

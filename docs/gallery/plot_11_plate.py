@@ -93,7 +93,8 @@ for name, matrix in (("m", M), ("k", K)):
 # The reduced structure
 # ---------------------
 # The reduction keeps both corners and twelve modes of the rest of the plate.  Its error is determined when a
-# frequency range is requested.  An error above 0.1 % is refused, and the message states how many modes suffice.
+# frequency range is requested.  An error above 0.1 % is refused, and the message states how many modes
+# suffice.
 
 plate = fm.System(
     contact="fixed-wall",

@@ -143,10 +143,10 @@ STATUSES = (
     Code(
         MARGINAL,
         "marginal",
-        "undamped at an even sub-multiple of a natural frequency (r = 1/(2n)), of the sum or difference of "
-        "two, or at a frequency of the held structure that the load does not excite: a continuum of steady "
-        "states exists and the result depends on the initial state; where the regime is continuous, the "
-        "amplitude is that of the symmetric motion; add a little damping",
+        "no damping, and r is an even sub-multiple (1/(2n)) of a natural frequency or of the sum or "
+        "difference of two, or a frequency of the held structure that the load does not excite: a continuum "
+        "of steady states exists, and the result depends on the initial state; where the regime is "
+        "continuous, the amplitude is that of the symmetric motion; add a little damping",
         "undamped: the result depends on the initial state; add some damping",
     ),
     Code(

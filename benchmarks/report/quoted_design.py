@@ -19,12 +19,12 @@ def design_lines(design: dict) -> Iterator[str]:
     kinds = ", ".join(f"{count} {kind}" for kind, count in random["kinds"].items())
     yield (
         f"- The least peaks of {random['systems']} random systems ({random['refused']} refused; {kinds}) "
-        f"were compared with maps of {frequencies:,} frequencies and {ratios} friction ratios, with the "
-        "peaks of the three best friction ratios refined by finer maps. The best of these is lower than "
-        f"the answer by at most {rounded_off(max(random['largest gain'], 0.0))} of it."
+        f"were compared with maps of {frequencies:,} frequencies and {ratios} friction ratios. Finer maps "
+        "refined the peaks of the three best friction ratios. The lowest of these peaks is below the answer "
+        f"by a relative difference of at most {rounded_off(max(random['largest gain'], 0.0))}."
     )
     yield ""
-    yield "Borders between numbers of stops (mu = 1), against cells on both sides and against a map:"
+    yield "Borders between numbers of stops (mu = 1), compared with cells on both sides and with a map:"
     rows = [
         (
             name, f"{entry['borders']}", duration(entry["seconds"]),
@@ -37,7 +37,7 @@ def design_lines(design: dict) -> Iterator[str]:
         "system",
         "borders",
         "time",
-        "points with the right numbers beside them",
+        "points with the right numbers of stops on both sides",
         "changes of a map on a border",
     )
     yield from markdown(header, rows)

@@ -8,7 +8,7 @@ from .quoting import duration, markdown, rounded_off, two_digits
 #: Names of the methods of `accuracy` in the table.
 _METHODS = {
     "frictionmap": "frictionmap, until the steady state is found",
-    "frictionmap, marched": "its integrator alone",
+    "frictionmap, marched": "frictionmap's integrator alone",
     "heyoka": "heyoka (Taylor series)",
     "solve_ivp DOP853": "scipy's `solve_ivp` (DOP853)",
     "CVODE": "CVODE of SUNDIALS",
@@ -126,7 +126,7 @@ def _accuracy_notes(accuracy: dict) -> Iterator[str]:
     yield (
         f"Scan steps (default {_DEFAULT_STEPS}) from {min(p['steps'] for p in points)} to "
         f"{max(p['steps'] for p in points)} change {other or 'no'} stop counts, and Z by at most "
-        f"{rounded_off(off)}. The fastest numbers are {'; '.join(steps)}."
+        f"{rounded_off(off)}. The fastest numbers of steps are {'; '.join(steps)}."
     )
     for name, why in _skipped(accuracy).items():
         yield f"Not measured: {name} ({why})."
@@ -224,8 +224,8 @@ def _stress_notes(stress: dict) -> Iterator[str]:
 
     yield (
         f"Not counted as wrong: {total('wrong regimes at rounding'):,} regimes and "
-        f"{total('wrong stop counts at rounding'):,} stop counts are right for a beta that differs by "
-        f"rounding, and {total('wrong stop counts with a status'):,} stop counts have a status that warns "
+        f"{total('wrong stop counts at rounding'):,} stop counts that are right for a beta that differs by "
+        f"rounding, and {total('wrong stop counts with a status'):,} stop counts with a status that warns "
         f"about them. Contradictory outputs: {total('inconsistent') or 'none'}. Exceptions, warnings and "
         f"hangs: {total('trouble') or 'none'}."
     )

@@ -101,8 +101,8 @@ def _notes(general: dict) -> Iterator[str]:
         f"{two_digits(square['over one harmonic'])} times as long as one under a single harmonic."
     )
     yield (
-        "For more than one mass the other solvers are given the number of periods after which a disturbance "
-        "has decayed to 1e-10, and ten more."
+        "For more than one mass the other solvers march ten periods more than a disturbance needs to decay "
+        "to 1e-10."
     )
     if shorter := _shorter(general):
         yield shorter
@@ -123,8 +123,8 @@ def general_lines(general: dict) -> list[str]:
         "",
         "### Several contacts, elastic contacts and periodic loads",
         "",
-        "Stick-slip cells at mu = 1 are computed in rows of a map, each from the steady state of its "
-        "neighbour. The boundaries of a frequency are computed once per row.",
+        "Stick-slip cells at mu = 1 are computed in rows of a map. Each cell starts from the steady state "
+        "of its neighbour. The boundaries of a frequency are computed once per row.",
         *markdown(
             ("system", "time per cell", "boundaries of one frequency"), list(_cell_rows(general))
         ),

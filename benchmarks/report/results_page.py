@@ -143,7 +143,7 @@ def _caveats(peers: dict | None, structures: dict | None) -> Iterator[str]:
         yield (
             "The times of frictionmap are those of the kernel for maps. The cells of a map share the "
             "boundaries of their frequency. If the time for these boundaries is added to each cell, the "
-            f"ratios for five masses are {two_digits(min(lower))} to {two_digits(max(lower))} of those in "
+            f"ratios for five masses are {two_digits(min(lower))} to {two_digits(max(lower))} times those in "
             "the table."
         )
 
@@ -161,7 +161,7 @@ def _newton(peers: dict) -> str:
     least, most = (f"{two_digits(ratio)} ({name})" for ratio, name in (gains[0], gains[-1]))
     shares = [one["ratio"] for _, kind, one in ways if kind != "open cells"]
     return (
-        f"With Newton's method an open cell is {least} to {most} times as fast as marching until the motion "
+        f"Newton's method solves an open cell {least} to {most} times as fast as marching until the motion "
         'repeats. Continuous cells next to a resonance are integrated only with `skip = "none"` or mu > '
         f"1. They take {duration(min(near))} to {duration(max(near))}. Marching without Newton's method "
         f"takes {two_digits(min(shares))} to {two_digits(max(shares))} times as long."
@@ -335,8 +335,8 @@ def _coupling_lines(coupling: dict) -> list[str]:
         "### Damping that couples the modes",
         "",
         "The table shows the error that results from neglecting the coupling. Random chains of 2 to 5 "
-        "masses are marched with the whole damping matrix and computed with its diagonal in modal "
-        "coordinates only.",
+        "masses are computed twice: marched with the whole damping matrix, and with only its diagonal in "
+        "modal coordinates.",
         *markdown(
             ("damping", "mean zeta", "cells", "error of Z, median", "90 % quantile", "different stop counts"),
             rows,

@@ -10,7 +10,7 @@ from picture_data import computed
 import frictionmap as fm
 
 # %%
-# A mass on a fixed wall that stops twice per cycle. The contact sticks in the grey bands.
+# A mass that stops twice per cycle on a fixed wall. The contact sticks in the grey bands.
 one = fm.response(fm.System(), 0.3, 0.5)
 fm.plot_response(one)
 

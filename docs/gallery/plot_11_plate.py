@@ -92,8 +92,9 @@ for name, matrix in (("m", M), ("k", K)):
 # %%
 # The reduced structure
 # ---------------------
-# The reduction keeps both corners and twelve modes of the rest.  Its error is determined when a frequency
-# range is requested.  An error above 0.1 % is refused, and the message states how many modes suffice.
+# The reduction keeps both corners and twelve modes of the rest of the plate.  Its error is determined when a
+# frequency range is requested.  An error above 0.1 % is refused, and the message states how many modes
+# suffice.
 
 plate = fm.System(
     contact="fixed-wall",
@@ -123,7 +124,7 @@ plt.show()
 
 # %%
 # The stated error applies to responses to loads in the range.  With 24 modes the boundary to permanent
-# sticking is unchanged and the median change of the amplitudes is 0.4 %.  However, nine of a hundred cells
+# sticking is unchanged and the median change of the amplitudes is 0.4 %.  However, 9 % of the cells
 # change from continuous motion to very short stops.  The reason is that a reversal of friction excites fast
 # modes: with twelve modes the effective mass of the corner is 363 times the true one.  On a finer mesh the
 # true effective mass of a point is smaller still, so the boundary of continuous motion depends on the

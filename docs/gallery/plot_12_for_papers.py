@@ -2,8 +2,8 @@
 Figures for a publication
 =========================
 
-One picture of each kind, 85 mm wide, as a column of a journal. Above each picture stands the command that
-draws it from a file. The Python code below it draws the same. The guide on figures lists all options.
+One picture of each kind, 85 mm wide like a column of a journal. The command above each picture draws it from
+a file. The Python code below the command draws the same. The guide on figures lists all options.
 """
 
 import numpy as np
@@ -77,7 +77,7 @@ fm.plot_orbit(motion, size="85mm", panels=1, legend=False)
 fm.plot_fit(identify(load_rig(CONFIGS / "rigs/free-decay.toml")), size="85mm")
 
 # %%
-# A design question: the largest response over friction, with the friction that makes it least.
+# A design question: the peak response over friction, with the friction for which it is least.
 #
 # .. code-block:: sh
 #

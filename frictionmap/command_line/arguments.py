@@ -265,7 +265,7 @@ def _takes_figure(sub: argparse.ArgumentParser) -> None:
     group = sub.add_argument_group("figure")
     text = "width, or width and height, on paper: 85mm, 3.3in, '85mm x 60mm'; text has at least 7 pt"
     group.add_argument("--size", metavar="SIZE", action=_Once, help=text)
-    text = "pixels per inch (default: 160); in PDF and SVG only maps of more than 10,000 cells are pixels"
+    text = "pixels per inch (default: 160); in PDF and SVG only maps of over 10,000 cells consist of pixels"
     group.add_argument("--dpi", metavar="N", type=float, action=_Once, help=text)
     switch = argparse.BooleanOptionalAction
     group.add_argument("--legend", action=switch, help="draw the legend, or leave it out (default: draw)")
@@ -348,8 +348,8 @@ def build_parser() -> argparse.ArgumentParser:
     sub = command("identify", "friction, damping and natural frequency from measured data", text)
     _takes_config(sub, "RIG", "configuration of the measured data and the fit", "data.window=[0.5,4]")
     text = (
-        "Answer a design question: the friction with the least peak response, within a limit, without stops, "
-        "or stuck, or the margins of a working point; print the answer as a table; write NetCDF."
+        "Answer a design question: which friction gives the least peak, keeps a limit, avoids stops or holds "
+        "the contact, or the margins of a working point; print the answer as a table; write NetCDF."
     )
     sub = command("design", "which friction to choose: least peak, within a limit, no stops, stuck", text)
     _takes_config(sub, "CONFIG", "configuration with a table [design]", "design.band=[0.5,2]")
@@ -412,7 +412,7 @@ def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser
     text = f"configuration for measured data, with a synthetic data file: {', '.join(RIGS)}"
     which.add_argument("--rig", choices=RIGS, metavar="KIND", action=_Once, help=text)
     _takes_replacement(sub)
-    text = "Print the JSON Schema of configurations, with which editors complete and check them."
+    text = "Print the JSON Schema of configurations, which editors use to complete and check them."
     sub = command("schema", "JSON schema of configurations, for editors", text)
     sub.add_argument("--rig", action="store_true", help="schema of configurations for identify")
     sub = command("help", "help on a command", "Show the help of a command, or of the program.")

@@ -56,7 +56,7 @@ _OF_ALL = (
     _Number("beta_lim", "β_lim at this r"),
     _Number("beta_stick", "β_stick at this r"),
     _Number("beta_noslip", "β_noslip at this r"),
-    _Number("wall_velocity_lim", "belt speed from which it slides one way"),
+    _Number("wall_velocity_lim", "least belt speed for one-way sliding"),
 )
 
 #: What a contact does, by its regime: one that is rigid, and one with a spring.
@@ -67,7 +67,7 @@ _RIGID = {
 }
 _ELASTIC = {
     regimes.PERMANENT_STICKING: "it never slips, and its spring deforms",
-    regimes.CONTINUOUS: "it slips without rest",
+    regimes.CONTINUOUS: "it slips without pause",
 }
 
 

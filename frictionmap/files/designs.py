@@ -116,7 +116,7 @@ def _of_ranges(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
         return
     begins, ends = ds["interval_begin"].values, ds["interval_end"].values
     for k, (begin, end) in enumerate(zip(begins[:_SHOWN], ends[:_SHOWN], strict=True)):
-        words = f"{begin:.9g} to {end:.9g}" if np.isfinite(end) else f"from {begin:.9g} on"
+        words = f"{begin:.9g} to {end:.9g}" if np.isfinite(end) else f"{begin:.9g} or more"
         if {"interval_begin_N", "interval_end_N"} <= set(ds):
             words += f" ({ds['interval_begin_N'].values[k]:.6g} to {ds['interval_end_N'].values[k]:.6g} N)"
         limit = f" for at most {float(ds['limit']):.6g}" if "limit" in ds else ""

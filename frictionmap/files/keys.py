@@ -161,22 +161,22 @@ _SPRING = either(number(above=0.0), _ELEMENTS)
 GENERAL_KEYS = (
     Key(
         "load_harmonics",
-        "instead of load_mass: harmonics of the load, sum of amplitude cos(n tau + phase) over P; without "
-        "mass: of the base motion",
+        "instead of load_mass: harmonics of the load over P, sum of amplitude cos(n tau + phase); entries "
+        "without mass are harmonics of the base motion",
         several(table(_HARMONIC, ("n",))),
         example="[{ n = 1, mass = 1, amplitude = 1.0 }, { n = 2, mass = 1, amplitude = 0.3 }]",
         words="a list of { n, mass, amplitude, phase_deg }, or re and im instead of amplitude and phase_deg",
     ),
     Key(
         "load_file",
-        "the same as a table",
+        "instead of load_harmonics: a file that lists them",
         _NAME,
         example='"orders.csv"',
         words="path of a CSV file with the columns n, mass, amplitude, phase_deg",
     ),
     Key(
         "waveform",
-        "the load on load_mass is a wave between -P and P",
+        "shape of the load on load_mass, a wave between -P and P",
         _NAME,
         example='"square"',
         words='"square", "sawtooth", "triangle" or the path of a CSV file of one period: time, force',
@@ -395,8 +395,8 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         Key(
             "response",
-            "what is made small: amplitude or first_harmonic of a mass, contact (the displacement in it) or "
-            "transmitted_force",
+            "response to minimise: amplitude or first_harmonic of a mass, contact (the displacement in it) "
+            "or transmitted_force",
             table(
                 {
                     "quantity": word("amplitude", "first_harmonic", "contact", "transmitted_force"),
@@ -410,7 +410,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         Key("mu", "static-to-kinetic friction ratio", number(least=1.0), 1.0),
         Key(
             "limit",
-            "for at-most: the largest response that is allowed, over P/k_1, or over P",
+            "for at-most: the largest response allowed; displacements over P/k_1, forces over P",
             either(number(above=0.0), with_unit("length"), with_unit("force")),
             example="4.0",
             words="a number > 0, or a length or force with its unit",
@@ -424,7 +424,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         Key(
             "quantile",
-            "for robust with samples in [axes]: share of the samples whose response the answer is for",
+            "for robust with samples in [axes]: share of samples whose response stays below the peak",
             number(above=0.0),
             0.95,
             words="a number above 0, up to 1",

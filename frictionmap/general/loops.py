@@ -52,8 +52,8 @@ def _refuse(general: General) -> None:
     further = any(group.first.nu or group.first.wall_velocity or group.base for group in general.groups)
     if even or further or general.elastic.any():
         raise InputError(
-            f"{general.loop}; beta_stick of a loop is found for rigid contacts without belts, joined walls "
-            f"and varying normal loads, under odd harmonics"
+            f"{general.loop}; beta_stick of a loop is found for rigid contacts under odd harmonics only, "
+            f"without belts, joined walls or varying normal loads"
         )
 
 

@@ -151,7 +151,7 @@ def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool, 
         measured = ", ".join(str(mass + 1) for mass in np.unique(data.mass))
         raise InputError(
             f"cannot identify {unknown} separately: mass {measured} does not determine them; "
-            f"hold {too_many} of them in [known], or measure another mass"
+            f"fix {too_many} of them in [known], or measure another mass"
         )
     if found.outliers is None:
         kind = data.is_phase.astype(int)

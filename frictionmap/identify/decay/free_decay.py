@@ -38,8 +38,8 @@ _VERDICTS = {
 _LOSS = "growth of the sum of squares without {}, over the variance of a sample"
 
 _IMPOSSIBLE = (
-    "in the best fit the mass leaves a turning point at which friction would hold it: friction is not "
-    "constant, or the record is no free decay, and mu has no bounds"
+    "in the best fit the mass leaves a turning point at which friction would hold it, so mu has no bounds: "
+    "friction is not constant, or the record is not a free decay"
 )
 
 _MEANINGS = {
@@ -283,7 +283,7 @@ def _wandering(searched: Search) -> list[str]:
     if searched.doubted is not None:
         return [
             "the residuals may have a low-frequency part, as if the zero of the measurement wandered: "
-            "intervals hold with and without it, standard errors without it"
+            "intervals allow for both cases, standard errors only for a steady zero"
         ]
     if searched.record.terms == 0:
         return []
@@ -299,8 +299,8 @@ def _other_counts(fits: list[DecayFit]) -> list[str]:
     others = sorted({_count(fit) for fit in fits[1:]} - {_count(fits[0])})
     if others:
         words.append(
-            f"the noise hides the number of half cycles ({_count(fits[0])} fit best, {', '.join(others)} as "
-            "well): intervals and bounds of mu hold for all of them, standard errors for the best fit only"
+            f"the noise hides the number of half cycles ({_count(fits[0])} fit best, {', '.join(others)} "
+            "equally well): intervals and bounds of mu hold for all, standard errors for the best fit only"
         )
     return words
 

@@ -233,7 +233,7 @@ def _dataset(fit: JointFit, found: Errors, unit: str) -> xr.Dataset:
     ds["set"] = xr.Variable("sample", sets, {"long_name": "measurement, of one friction force"})
     ds["time_of_sample"] = xr.Variable("sample", times, {"long_name": "time", "units": "s"})
     ds["model_error"] = number(
-        fit.model_error, "what the fit leaves at the harmonics of a base, over the noise beside them"
+        fit.model_error, "residuals at the harmonics of a base, over the noise beside them"
     )
     ds["verdict"] = verdict(*_verdict(fit, found, names))
     return ds
@@ -337,7 +337,7 @@ def _of_fit(fit: JointFit, found: Errors) -> list[str]:
     """Warnings about the estimates."""
     words = [
         f"{part.label}: the model does not explain the record down to its noise: at the harmonics of the "
-        f"base it leaves {part.model_error:.3g} times the noise, and the record counts by that"
+        f"base residuals are {part.model_error:.3g} times the noise, and the record is weighted accordingly"
         for part in fit.parts
         if part.model_error > 1.0
     ]

@@ -49,7 +49,7 @@ def _near_sticking(fit: TableFit) -> list[str]:
     near = int((beta * values[MU] > _NEAR_STICKING * held).sum())
     if not near:
         return []
-    return [f"{near} of {r.size} rows have beta above {_NEAR_STICKING:g} beta_stick, where tests may stick"]
+    return [f"{near} of {r.size} rows have beta above {_NEAR_STICKING:g} beta_stick and may stick in a test"]
 
 
 def _several(fit: TableFit) -> list[str]:

@@ -36,7 +36,7 @@ _DATA = (
     Key("file", "data file, relative to this file", {"type": "string", "minLength": 1}, example='"data.csv"'),
     Key(
         "columns",
-        "names of columns; default: these names, which end in units",
+        "names of columns; default: names like those in the example, which end in units",
         {"type": "object", "additionalProperties": {"type": "string"}},
         example='{ time = "time_s", x = "x_mm" }',
         words="a table of column names",
@@ -59,7 +59,7 @@ _LABEL = Key("label", "name in the results; default: its number", {"type": "stri
              example='"10 N"')  # fmt: skip
 
 _FIT = (
-    Key("free", "parameters to be fitted: exactly those that are not in [known], which is the default",
+    Key("free", "parameters to fit; must be all that are not in [known], which is the default",
         several({"type": "string"}), example='["f_n", "zeta", "x_F", "X0", "t0", "centre"]',
         words="a list of parameters"),
     Key("drift", "whether to fit a linear drift of the zero", {"type": "boolean"}, False,

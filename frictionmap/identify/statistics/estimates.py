@@ -56,7 +56,7 @@ def _parameter_variables(
         "estimate": _of_parameters(solution.values, "estimate"),
         "standard_error": _of_parameters(
             errors.standard_error,
-            "standard error; 0 of what was held, NaN where only the interval can be used",
+            "standard error; 0 for held parameters, NaN where only the interval can be used",
         ),
         "lower": _of_parameters(errors.lower, "lower end of the 95 % interval"),
         "upper": _of_parameters(errors.upper, "upper end of the 95 % interval"),

@@ -121,15 +121,15 @@ def _checked_phasors(time: np.ndarray, channels: np.ndarray, robust: bool) -> tu
     ideal = phasors.inflation[0, 1] * phasors.rms[0] * np.sqrt(2.0 / time.size)
     if phasors.errors[0, 1] > _WORSE * ideal:
         raise InputError(
-            "cannot determine harmonics of the base: a part of the cycle has no samples, by a long gap or a "
-            "clipped base; choose another window"
+            "cannot determine harmonics of the base: a part of the cycle has no samples because of a long "
+            "gap or a clipped base; choose another window"
         )
     for k, name in enumerate(("base", "x")):
         first, error = abs(phasors.values[k, 1]), float(phasors.errors[k, 1])
         if first <= _MOVES * error:
             raise InputError(
                 f"cannot fit {name}: its first harmonic at {phasors.frequency:.4g} Hz, the frequency of the "
-                f"base, is {first:.3g}, about its error, {error:.2g}; use a record in which the mass moves"
+                f"base, is {first:.3g} with an error of {error:.2g}; use a record in which the mass moves"
             )
     _check_lag(phasors)
     return phasors, tamed

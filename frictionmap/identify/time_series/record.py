@@ -27,7 +27,7 @@ from .verdict import record_verdict
 _TRADING = (ZETA, X_F, MU)
 
 _MODEL_ERROR = (
-    "what the fit leaves at the harmonics of the base, over the noise beside them; 1 if chance makes it"
+    "residuals at the harmonics of the base, over the noise beside them; 1 if chance explains them"
 )
 
 _MEANINGS = {
@@ -197,8 +197,8 @@ def _of_fit(fit: RecordFit, found: Errors) -> list[str]:
     words += interval_warnings("mu", 1.0, not fit.free[MU] or bool(found.lower[MU] > 1.0))
     if fit.model_error > 1.0:
         words.append(
-            f"the model does not explain the record down to its noise: at the harmonics of the base it "
-            f"leaves {fit.model_error:.3g} times the noise, standard errors were multiplied by "
+            f"the model does not explain the record down to its noise: at the harmonics of the base "
+            f"residuals are {fit.model_error:.3g} times the noise, standard errors were multiplied by "
             f"{found.inflation:.3g}"
         )
     elif found.inflation > 1.0:

@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from .model.settings import Solver
     from .model.system import System
     from .plot import (
+        animate,
         plot_boundaries,
         plot_curves,
         plot_design,
@@ -86,6 +87,7 @@ __all__ = [
     "System",
     "Units",
     "__version__",
+    "animate",
     "borders",
     "boundaries",
     "continuous_motion",
@@ -119,6 +121,7 @@ _HOME = {
     "Solver": "model.settings",
     "System": "model.system",
     "Units": "units.scales",
+    "animate": "plot",
     "borders": "stop_counts.dataset",
     "boundaries": "theory.boundaries",
     "continuous_motion": "theory.continuous_motion",

@@ -1,5 +1,6 @@
 """Pictures: regime maps, boundaries, response curves, one response in time."""
 
+import shutil
 from collections.abc import Callable
 from collections.abc import Set as AbstractSet
 from io import BytesIO
@@ -21,6 +22,7 @@ from .pictures.maps.force_map import plot_forces
 from .pictures.maps.quantity_map import plot_quantity, quantities_of
 from .pictures.maps.regime_map import plot_regimes
 from .pictures.maps.share_map import plot_shares
+from .pictures.motions.animation import animate
 from .pictures.motions.history import plot_response
 from .pictures.motions.orbit import plot_orbit
 from .pictures.options import FigureOptions
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
 __all__ = [
     "FORMATS",
     "PICTURED",
+    "animate",
     "check_picture",
     "draw",
     "pictured",
@@ -49,6 +52,9 @@ __all__ = [
 ]
 
 FORMATS = (".png", ".pdf", ".svg")
+
+#: Moving pictures, of responses only.
+MOVING = (".gif", ".mp4")
 
 _FEATURES = ("natural_frequency", "held_frequency", "invariant_point")
 
@@ -86,8 +92,11 @@ def pictured(quantity: str | None) -> dict[str, AbstractSet[str]]:
 
 def check_picture(path: Path) -> None:
     """Refuse a file name with an unknown suffix of pictures."""
-    if path.suffix.lower() not in FORMATS:
-        raise InputError(f"-o must end in {', '.join(FORMATS)}; got {path}")
+    valid = (*FORMATS, *MOVING)
+    if path.suffix.lower() not in valid:
+        raise InputError(f"-o must end in {', '.join(valid)}; got {path}")
+    if path.suffix.lower() == ".mp4" and not shutil.which("ffmpeg"):
+        raise InputError(f"cannot write {path}: ffmpeg is not installed; use .gif")
 
 
 def draw(
@@ -140,7 +149,7 @@ def save_picture(
     ds : xarray.Dataset
         Any result.
     path : Path
-        File to write: .png, .pdf or .svg.
+        File to write: .png, .pdf or .svg; .gif or .mp4 for the moving picture of a response.
     quantity : str, optional
         What to draw; by default the first quantity available.
     log : bool
@@ -151,8 +160,24 @@ def save_picture(
         Settings of matplotlib, a file FILE.mplstyle.
     options : keyword arguments of the functions that draw
     """
+    if path.suffix.lower() in MOVING:
+        with settings_of(style):
+            _save_moving(ds, path, quantity, options)
+        return
     drawn = BytesIO()
     with settings_of(style):
         axes = plot_forces(ds, against, **options) if against else draw(ds, quantity, log=log, **options)
         written(axes[0].figure, drawn, path.suffix[1:].lower(), options.get("dpi"))
     path.write_bytes(drawn.getbuffer())
+
+
+def _save_moving(ds: xr.Dataset, path: Path, quantity: str | None, options: FigureOptions) -> None:
+    """Write the moving picture of a response."""
+    what = kind(ds)
+    if what != "response" or quantity is not None:
+        shown = f"a {what}" if quantity is None else f"{quantity!r}"
+        raise InputError(
+            f"cannot write {shown} as a moving picture: only responses move; use {', '.join(FORMATS)}"
+        )
+    moving = animate(ds, **options)
+    moving.save(path, writer="pillow" if path.suffix.lower() == ".gif" else "ffmpeg", dpi=options.get("dpi"))

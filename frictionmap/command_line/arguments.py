@@ -245,7 +245,8 @@ def _takes_against(sub: argparse.ArgumentParser) -> None:
 
 def _takes_picture(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("file", metavar="FILE", type=Path, help="file to draw: FILE.nc, or a store FILE.zarr")
-    _takes_output(sub, "PICTURE", ".png, .pdf or .svg (default: FILE.png in the current folder)")
+    text = ".png, .pdf or .svg; .gif or .mp4: a response, moving (default: FILE.png in the current folder)"
+    _takes_output(sub, "PICTURE", text)
     text = (
         "quantity to draw; response curves: amplitude (with the phase), first_harmonic, contact, harmonics, "
         "energy or transmitted_force (default: the first available); a response: history (default) or orbit; "

@@ -34,7 +34,7 @@ _DRAWN_BY = {
 #: Options that only some functions take.
 _MAPS = ("plot_regimes", "plot_quantity", "plot_boundaries")
 _OPTIONS_OF = {
-    "mass": ("plot_curves", "plot_response", "plot_orbit", "plot_quantity"),
+    "mass": ("plot_curves", "plot_response", "plot_orbit", "plot_quantity", "animate"),
     "beta": ("plot_curves",),
     "point": _MAPS,
     "box": _MAPS,

@@ -66,7 +66,9 @@ def test_the_ending_may_be_in_capitals(tmp_path, tiny_response):
 
 @pytest.mark.parametrize("name", ["picture", "picture.jpg", "picture.png.nc"])
 def test_wrong_ending(name):
-    with pytest.raises(InputError, match=rf"^-o must end in \.png, \.pdf, \.svg; got .*{name}$"):
+    with pytest.raises(
+        InputError, match=rf"^-o must end in \.png, \.pdf, \.svg, \.gif, \.mp4; got .*{name}$"
+    ):
         plot.check_picture(Path(name))
 
 

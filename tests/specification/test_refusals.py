@@ -307,8 +307,10 @@ plot axes.nc --over zeta
     unknown further axis of --over 'zeta'; valid: damping_ratios
 plot axes.nc --over damping_ratios --at damping_ratios=0
     cannot use --at damping_ratios with --over damping_ratios: --over takes all its points; use --at for other axes
+plot map.nc -o map.jpg
+    -o must end in .png, .pdf, .svg, .gif, .mp4; got map.jpg
 plot map.nc -o map.gif
-    -o must end in .png, .pdf, .svg; got map.gif
+    cannot write a map as a moving picture: only responses move; use .png, .pdf, .svg
 plot map.nc --quantity amplitude
     unknown quantity 'amplitude' in a file of kind map; valid: regimes
 plot map.nc --log

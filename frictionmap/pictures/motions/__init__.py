@@ -1,11 +1,12 @@
 """Pictures of one steady state.
 
-=======  =====================================================
-module   what is in it
-=======  =====================================================
-traces   motion, stops and friction levels of every contact
-loops    friction over the motion in the contacts
-history  motion, friction force and events in time
-orbit    phase portrait, friction loop, harmonics
-=======  =====================================================
+=========  ===========================================================
+module     what is in it
+=========  ===========================================================
+traces     motion, stops and friction levels of every contact
+loops      friction over the motion in the contacts
+history    motion, friction force and events in time
+orbit      phase portrait, friction loop, harmonics
+animation  moving picture: masses, lights of stuck contacts, loop
+=========  ===========================================================
 """

@@ -1,0 +1,93 @@
+"""Moving pictures of steady states: marks are where the motion is, lights are on while contacts are stuck."""
+
+import matplotlib.colors
+import numpy as np
+import pytest
+from PIL import Image
+
+import frictionmap as fm
+from frictionmap.command_line.cli import main
+
+TWO = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1], contact_masses=[2], damping_ratios=0.02)
+
+
+@pytest.fixture(scope="module")
+def stops():
+    return fm.response(TWO, 0.3, 0.3, points=101)
+
+
+def parts(moving):
+    """The marks of masses and contacts, the cursor, the points on the loop."""
+    moving._draw_was_started = True  # matplotlib warns of animations that nobody has looked at
+    stage, history, loop = moving._fig.axes[:3]
+    marks = [line for line in stage.lines if line.get_marker() in ("s", "o")]
+    dots = [line for line in loop.lines if line.get_marker() == "o"]
+    return marks, history.lines[-1], dots
+
+
+@pytest.mark.parametrize("frame", [0, 17, 50, 83])
+def test_marks_are_where_the_motion_is(stops, frame):
+    moving = fm.animate(stops, seconds=1.0, fps=101.0)
+    moving._draw_frame(frame)
+    marks, cursor, (dot,) = parts(moving)
+    assert [mark.get_xdata()[0] for mark in marks] == [*stops.x.values[:, frame], stops.z.values[frame]]
+    assert cursor.get_xdata()[0] == stops.tau.values[frame] / np.pi
+    assert (dot.get_xdata()[0], dot.get_ydata()[0]) == (stops.z.values[frame], stops.friction.values[frame])
+
+
+def test_the_light_is_on_exactly_while_the_contact_is_stuck(stops):
+    moving = fm.animate(stops, seconds=1.0, fps=101.0)
+    lit = []
+    for frame in range(stops.sizes["tau"]):
+        moving._draw_frame(frame)
+        light = parts(moving)[0][-1]
+        lit.append(matplotlib.colors.to_hex(light.get_markerfacecolor()) == "#f2a900")
+    stuck = stops.direction.values == 0
+    assert stuck.any()
+    assert not stuck.all()
+    np.testing.assert_array_equal(lit, stuck)
+
+
+def test_several_contacts_have_a_light_each():
+    contacts = [fm.Contact(masses=[1], ratio=1.0), fm.Contact(masses=[2], ratio=0.5)]
+    frame = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1], contacts=contacts, damping_ratios=0.02)
+    marks, _, dots = parts(fm.animate(fm.response(frame, 0.5, 0.2, points=51), seconds=1.0, fps=10.0))
+    assert [mark.get_marker() for mark in marks] == ["s", "s", "o", "o"]
+    assert len(dots) == 2
+
+
+def test_the_file_has_every_frame(stops, tmp_path):
+    place = tmp_path / "motion.gif"
+    fm.animate(stops, seconds=0.8, fps=10.0, size="80mm").save(place, writer="pillow")
+    with Image.open(place) as picture:
+        assert picture.n_frames == 8
+
+
+def test_plot_writes_a_moving_picture(stops, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    stops.isel(tau=slice(0, None, 2)).to_netcdf("motion.nc")
+    assert main(["plot", "motion.nc", "-o", "motion.gif", "--size", "80mm"]) == 0
+    assert capsys.readouterr().out == "wrote motion.gif\n"
+    assert (tmp_path / "motion.gif").read_bytes().startswith(b"GIF8")
+
+
+def test_maps_do_not_move(tmp_path):
+    from frictionmap.plot import save_picture
+
+    ds = fm.sweep(fm.System(), [0.5], [0.2])
+    with pytest.raises(fm.InputError, match=r"^cannot write a map as a moving picture: only responses move"):
+        save_picture(ds, tmp_path / "map.gif")
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"seconds": 0.0}, "^seconds must be .*; got 0"),
+        ({"fps": 500.0}, "^fps must be .*; got 500"),
+        ({"panels": 1}, "^cannot use panels with animate"),
+        ({"beta": 0.1}, "^cannot use beta with animate"),
+    ],
+)
+def test_invalid_arguments_are_refused(stops, options, said):
+    with pytest.raises(fm.InputError, match=said):
+        fm.animate(stops, **options)

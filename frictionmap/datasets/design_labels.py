@@ -5,12 +5,12 @@ import numpy as np
 from .. import checks, regimes
 from .labels import Label
 
-QUESTIONS = ("least-peak", "no-stop", "stuck", "at-most", "margin", "robust")
+QUESTIONS = ("least-peak", "no-stop", "stuck", "at-most", "margin", "robust", "two-forces")
 
 #: How the least largest response comes about.
 KINDS_OF_OPTIMUM = ("smooth", "two equal peaks", "plateau", "at the bound")
 
-_PEAK, _SEARCH, _OVER_R = ("peak",), ("beta_search",), ("r_search",)
+_PEAK, _SEARCH, _OVER_R, _RATIO = ("peak",), ("beta_search",), ("r_search",), ("ratio_search",)
 _FRICTION = "ratio of kinetic friction force to load amplitude"
 _RESPONSE = "largest response over the band, over P/k1 (Y), or of a force over P"
 
@@ -33,6 +33,7 @@ DESIGN_AXES = {
     "interval": Label(np.int64, "interval, counted from 1", ("interval",), least=1),
     "sample": Label(np.int64, "sample of the structure, counted from 1", ("sample",), least=1),
     "curve": _beta(f"{_FRICTION} of a response curve; infinite: stuck", ("curve",)),
+    "ratio_search": Label(np.float64, "ratio of the second contact, searched", _RATIO, least=0.0),
 }  # fmt: skip
 
 #: Answers, and what explains them.
@@ -59,6 +60,11 @@ ANSWERS = {
                       least=0.0, most=1.0),
     "peak_of_sample": Label(np.float64, f"{_RESPONSE}, of each sample at the answer", ("sample",), least=0.0,
                             inf=True),
+    "second": Label(np.int64, "contact whose ratio is varied, counted from 1", (), least=1),
+    "second_ratio": Label(np.float64, "friction of the second contact over beta: the answer", (), least=0.0),
+    "peak_of_ratio": Label(np.float64, f"{_RESPONSE}, least over the friction at each ratio", _RATIO,
+                           least=0.0, inf=True),
+    "beta_of_ratio": _beta(f"{_FRICTION} with the least peak at each ratio", _RATIO),
     "spread": Label(np.float64, "relative spread of the friction", (), least=0.0, most=1.0),
     "limit": Label(np.float64, "largest response that is allowed", (), least=0.0),
     "beta_no_stop": _beta("largest friction ratio without a stop anywhere in the band", nan=True),

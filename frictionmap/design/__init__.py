@@ -12,14 +12,15 @@ performance  the largest response over the band as a function of friction, with 
 task         checks of arguments, the range of friction that is searched
 least_peak   the friction with the least largest response, also where it is uncertain
 samples      the same for samples of an uncertain structure: a quantile of their curves
+force_plane  the least peak in the plane of two friction forces
 at_most      the ranges of friction in which the response stays within a limit
 answers      answers as datasets
-questions    `least_peak`, `robust`, `at_most`, `no_stop`, `stuck`, `margin`
+questions    `least_peak`, `two_forces`, `robust`, `at_most`, `no_stop`, `stuck`, `margin`
 configuration  the table [design] of a configuration
 ===========  ==========================================================================================
 """
 
-from .questions import at_most, least_peak, margin, no_stop, robust, stuck
+from .questions import at_most, least_peak, margin, no_stop, robust, stuck, two_forces
 from .samples import Samples
 
-__all__ = ["Samples", "at_most", "least_peak", "margin", "no_stop", "robust", "stuck"]
+__all__ = ["Samples", "at_most", "least_peak", "margin", "no_stop", "robust", "stuck", "two_forces"]

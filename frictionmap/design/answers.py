@@ -24,6 +24,7 @@ _TITLES = {
     "no-stop": "Most friction without a stop",
     "stuck": "Least friction that holds",
     "margin": "Margins of a working point",
+    "two-forces": "Two friction forces with the least peak",
 }
 
 _OF_SAMPLES = "Friction with the least peak for a share of samples"

@@ -13,12 +13,13 @@ from ..datasets.design_labels import QUESTIONS
 from ..errors import InputError
 from ..files.config import common_tables, design_table, further_axes, read_tree, unknown_key, within
 from ..files.variants import put_variants
-from .questions import at_most, least_peak, margin, no_stop, robust, stuck
+from .questions import at_most, least_peak, margin, no_stop, robust, stuck, two_forces
 from .samples import Samples
 
 #: Functions of the questions, the keys that each needs, and those that it may have.
 _FUNCTIONS: dict[str, tuple[Callable[..., xr.Dataset], tuple[str, ...], tuple[str, ...]]] = {
     "least-peak": (least_peak, ("band",), ("mu", "beta", "response")),
+    "two-forces": (two_forces, ("band",), ("mu", "beta", "response", "second", "ratio")),
     "robust": (robust, ("band",), ("mu", "beta", "response", "spread", "quantile")),
     "at-most": (at_most, ("band", "limit"), ("mu", "beta", "response")),
     "no-stop": (no_stop, ("band",), ("mu",)),
@@ -30,7 +31,7 @@ _FUNCTIONS: dict[str, tuple[Callable[..., xr.Dataset], tuple[str, ...], tuple[st
 _OF_RESPONSE = ("quantity", "mass", "contact")
 
 #: Questions that take a number of threads.
-_THREADED = ("least-peak", "robust", "at-most")
+_THREADED = ("least-peak", "two-forces", "robust", "at-most")
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
+from ..datasets.design_labels import DESIGN
 from ..errors import InputError
 from ..model.system import System
 from ..units.axes import KINDS, ratios
@@ -14,6 +15,7 @@ from ..units.scales import Scales, Units, scales_of
 from .answers import answer
 from .at_most import find_ranges
 from .band import Band, checked_band, peak_samples
+from .force_plane import checked_plane, find_in_plane
 from .least_peak import Minimum, Optimum, find_optimum, find_robust, largest
 from .limits import (
     boundary_samples,
@@ -117,6 +119,61 @@ def least_peak(
     if spread > 0.0:
         return _answer("robust", task, curve, find_robust(task, curve, spread), {"spread": spread})
     return _answer("least-peak", task, curve, find_optimum(task, curve), {})
+
+
+def two_forces(
+    system: System,
+    band: Any,
+    second: int = 2,
+    ratio: Any = (0.0, 2.0),
+    mass: int = 1,
+    mu: float = 1.0,
+    *,
+    quantity: str = "amplitude",
+    contact: int = 1,
+    beta: Any = None,
+    threads: int | None = None,
+    units: Units | None = None,
+) -> xr.Dataset:
+    """Find the two friction forces with the least largest response over a band of frequencies.
+
+    The friction of all contacts is scaled by beta, as in `least_peak`, and the ratio of one contact is varied
+    as well.  It takes tens of seconds, because each ratio is a question of its own.
+
+    Parameters
+    ----------
+    system : System
+        With a list of contacts.
+    band, mass, mu, quantity, contact, beta, threads, units : as in `least_peak`
+        Without `beta` the friction is searched in the range of the given ratio.
+    second : int
+        Contact whose ratio is varied, counted from 1.
+    ratio : array_like, shape (2,)
+        Range of its ratio [-], >= 0, in place of the one that it has.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of `least_peak`, for the best ratio; `second_ratio`, that ratio, to 1e-4 of its range; on
+        `ratio_search` the least peak of other ratios, `peak_of_ratio`, and its friction, `beta_of_ratio`.
+
+    Raises
+    ------
+    InputError
+        An argument has the wrong type or is out of range, or the contact has a force of its own.
+    NoSteadyState
+        Cells of the band have no periodic steady state: the largest response may be among them.
+    """
+    task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
+    plane = checked_plane(task.system, second, ratio)
+    task, curve, optimum, ridge = find_in_plane(task, plane)
+    k = int(np.argmin(ridge.peak))
+    further = {
+        "ratio_search": ridge.ratio, "peak_of_ratio": ridge.peak, "beta_of_ratio": ridge.beta,
+        "second_ratio": ridge.ratio[k],
+    }  # fmt: skip
+    asked = {"second": plane.contact, "ratio": [plane.low, plane.high]}
+    return _answer("two-forces", task, curve, optimum, asked, further)
 
 
 def robust(
@@ -355,7 +412,8 @@ def _answer(
         "unknown_of_beta": [curve.unknown.get(beta, 0) for beta in points.beta.tolist()],
         "offset": _OFFSETS, "peak_at_offset": largest(curve.whole(best.beta * (1.0 + _OFFSETS))),
         "beta_no_stop": task.no_stop_up_to, "beta_stuck": task.stuck_from,
-        **_response_curves(task, best.beta), **asked, **(further or {}),
+        **_response_curves(task, best.beta), **(further or {}),
+        **{name: value for name, value in asked.items() if name in DESIGN},
     }  # fmt: skip
     if "spread" in asked:
         found["peak"] = np.concatenate(([best.size], listed.size[1:]))

@@ -33,7 +33,7 @@ def design_form(ds: xr.Dataset) -> xr.Dataset:
     for axis in ("peak", "beta_search"):
         if axis in variables and variables[axis].size == 0:
             raise InputError(f"{axis} must have at least one value; got none")
-    for axis in ("beta_search", "r_search"):
+    for axis in ("beta_search", "r_search", "ratio_search"):
         if axis in variables and (np.diff(variables[axis].values) <= 0.0).any():
             raise InputError(
                 f"{axis} must be strictly increasing; got {variables[axis].values.tolist()[:_SHOWN]}"
@@ -54,6 +54,8 @@ def _rows(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
         yield name, _friction(ds, "beta", "friction_force")
     if "at_r" in ds:
         yield ("working point: r" if question == "margin" else "decided at r"), f"{float(ds['at_r']):.9g}"
+    if {"second", "second_ratio"} <= set(ds.variables):
+        yield f"ratio of contact {int(ds['second'])}", _second_force(ds)
     yield from _of_peaks(ds)
     yield from _of_ranges(ds)
     yield from _of_margins(ds)
@@ -66,6 +68,13 @@ def _rows(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
 def _friction(ds: xr.Dataset, name: str, beside: str) -> str:
     force = f" ({float(ds[beside]):.6g} N)" if beside in ds else ""
     return f"{float(ds[name]):.9g}{force}"
+
+
+def _second_force(ds: xr.Dataset) -> str:
+    """The ratio of the second contact, and its force where that of beta is known."""
+    ratio = float(ds["second_ratio"])
+    force = f" ({ratio * float(ds['friction_force']):.6g} N)" if "friction_force" in ds else ""
+    return f"{ratio:.6g}{force}"
 
 
 def _of_peaks(ds: xr.Dataset) -> Iterator[tuple[str, str]]:

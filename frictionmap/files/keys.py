@@ -407,6 +407,14 @@ KEYS: dict[str, tuple[Key, ...]] = {
             example='{ quantity = "amplitude", mass = 1 }',
             words="{ quantity, mass or contact }",
         ),
+        Key("second", "for two-forces: contact whose ratio is varied, counted from 1", whole(least=1), 2),
+        Key(
+            "ratio",
+            "for two-forces: range of the ratio of that contact",
+            several(number(least=0.0), 2, maxItems=2),
+            [0.0, 2.0],
+            words="two numbers >= 0, increasing",
+        ),
         Key("mu", "static-to-kinetic friction ratio", number(least=1.0), 1.0),
         Key(
             "limit",

@@ -12,7 +12,7 @@ from ..panels import distinct, given_axes, legend_below, new_figure, title_figur
 from ..shapes import check_holds, to_draw
 from ..words import caption
 from .limits import draw_limits
-from .performance import draw_performance, draw_responses
+from .performance import draw_performance, draw_responses, draw_ridge
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -31,6 +31,7 @@ def plot_design(
 
     Of questions about the largest response: the performance curve, largest response over friction, with the
     answer; and response curves at the answer, at half and twice its friction, without friction, and stuck.
+    Of two forces also the least peak over the ratio of the second one.
     Of questions about boundaries: the boundaries over frequency, with the answer or the working point.
 
     Parameters
@@ -38,7 +39,7 @@ def plot_design(
     ds : xarray.Dataset
         Result of a function of `design`, or of the command design.
     ax : axes of matplotlib, optional
-        Axes to draw into: two for the largest response, else one.
+        Axes to draw into: two for the largest response, three for two forces, else one.
 
     Returns
     -------
@@ -54,7 +55,11 @@ def plot_design(
     of_peaks = "peak_of_beta" in ds
     names = ("peak_of_beta", "peak", "response_of_r", "curve") if of_peaks else ("r_search",)
     check_holds(ds, names, "its answer")
-    draw = current().chosen([draw_performance, draw_responses] if of_peaks else [draw_limits])
+    of_ratios = {"ratio_search", "peak_of_ratio", "beta_of_ratio", "second", "second_ratio"} <= set(
+        ds.variables
+    )
+    parts = [draw_performance, draw_responses, *[draw_ridge] * of_ratios] if of_peaks else [draw_limits]
+    draw = current().chosen(parts)
     if ax is None:
         columns = current().columns(len(draw))
         rows = -(-len(draw) // columns)

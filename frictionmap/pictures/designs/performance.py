@@ -66,6 +66,26 @@ def draw_performance(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     return handles
 
 
+def draw_ridge(ax: Axes, ds: xr.Dataset) -> list[Handle]:
+    """Draw the least peak of every ratio of the second contact, and the friction at which it occurs."""
+    ratio, best = ds["ratio_search"].values, float(ds["second_ratio"])
+    ax.plot(ratio, ds["peak_of_ratio"].values, ".-", color="black", linewidth=1.4)
+    ax.plot([best], [float(ds["peak"].values[0])], "o", color=_ANSWER, markersize=6.0, zorder=4.0)
+    ax.set_xlabel(f"friction of contact {int(ds['second'])} / $\\beta$")
+    ax.set_ylabel(f"least peak {_unit_of(ds)}")
+    ax.set_ylim(bottom=0.0)
+    beside = ax.twinx()
+    beside.plot(ratio, ds["beta_of_ratio"].values, color=_ASIDE, linewidth=1.1, linestyle=(0, (4, 2)))
+    beside.set_ylabel(r"its friction ratio $\beta$", color=_ASIDE)
+    beside.set_ylim(bottom=0.0)
+    label = f"least: ratio {best:.4g}"
+    return [
+        Line2D([], [], color="black", linewidth=1.4, marker=".", label="least peak at each ratio"),
+        Line2D([], [], color=_ASIDE, linewidth=1.1, linestyle=(0, (4, 2)), label="its friction"),
+        Line2D([], [], color=_ANSWER, marker="o", linestyle="none", label=label),
+    ]
+
+
 def _curve_label(ds: xr.Dataset) -> str:
     if "quantile" not in ds:
         return "largest response over the band"

@@ -1,5 +1,6 @@
 """Jobs on a pool of threads: kernels release the interpreter lock, so that they run side by side."""
 
+import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from itertools import islice
@@ -16,12 +17,29 @@ Watch = Callable[[], None]
 _WATCHED = 0.02
 
 
+#: Pools without work, by their number of threads: to start a thread takes longer than a few cells.
+_IDLE: dict[int, list[ThreadPoolExecutor]] = {}
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_IDLE.clear)  # threads do not exist in a child process
+
+
+def _pool(threads: int) -> ThreadPoolExecutor:
+    """A pool of threads that nobody else uses."""
+    try:
+        return _IDLE[threads].pop()
+    except (KeyError, IndexError):
+        return ThreadPoolExecutor(threads)
+
+
 def run_jobs(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None) -> None:
     """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
 
     This thread only waits, so that it receives an interrupt at once.
     """
-    pool = ThreadPoolExecutor(threads)
+    if not jobs:
+        return
+    pool = _pool(threads)
     running: dict[Future, int] = {}
     waiting = iter(enumerate(jobs))
     try:
@@ -29,7 +47,7 @@ def run_jobs(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | N
             for index, (function, arguments) in islice(waiting, 2 * threads - len(running)):
                 running[pool.submit(function, *arguments)] = index
             if not running:
-                return
+                break
             pause = None if watch is None else _WATCHED
             ended = wait(running, pause, return_when=FIRST_COMPLETED).done
             for future in sorted(ended, key=running.__getitem__):  # in the order of submission, for progress
@@ -37,5 +55,7 @@ def run_jobs(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | N
                 done(running.pop(future))
             if watch is not None:
                 watch()
-    finally:
-        pool.shutdown(wait=not running, cancel_futures=True)
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)  # its jobs may run on for a while
+        raise
+    _IDLE.setdefault(threads, []).append(pool)

@@ -1,7 +1,8 @@
 """Expected content of the figures of the gallery as numbers, on a coarse part of each grid.
 
-The numbers are in `gallery/data`.  A figure is drawn only if it agrees with them, and a test computes the
-coarse grids again.  After a change that is meant to change figures,
+The numbers are in `gallery/data`.  A test computes the coarse grids again; another one makes sure that the
+scripts of the gallery, which stand on their own, compute what the configurations say.  After a change that is
+meant to change figures,
 
     python docs/picture_data.py
 
@@ -48,22 +49,6 @@ _DRAWN = ("amplitude", "first_harmonic_amplitude", *_PHASES)
 _MOVES = ("x", "z", "friction")
 _CODES = ("class", "also_reachable", "sense")
 _OF_CELLS = ("class", *_MAPPED, *_DRAWN)
-
-
-def computed(name: str) -> xr.Dataset:
-    """Compute the map, curves or motion of `configs/NAME.toml` and compare it with the saved numbers.
-
-    Raises
-    ------
-    ValueError
-        The result differs; the message says where.
-    """
-    config = fm.load_config(CONFIGS / f"{name}.toml")
-    ds = compute(config, config.r, config.beta)
-    different = differences(name, ds)
-    if different:
-        raise ValueError(f"{name} has changed: {'; '.join(different)}")
-    return ds.assign_attrs(title=config.title)
 
 
 def compute(config: Config, r: np.ndarray, beta: np.ndarray) -> xr.Dataset:

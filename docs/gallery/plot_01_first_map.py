@@ -8,15 +8,15 @@ stops per cycle; the black lines are the exact boundaries. On the left, static a
 """
 
 # %%
-# A configuration defines the system, the grid and the outputs. The same on the command line:
-# ``frictionmap map configs/fig-3-12.toml && frictionmap plot fig-3-12.nc``.
+# A system, and the values of r, beta and mu. The same on the command line, with a configuration from the
+# repository: ``frictionmap map configs/fig-3-12.toml && frictionmap plot fig-3-12.nc``.
 
-from picture_data import CONFIGS, computed
+import numpy as np
 
 import frictionmap as fm
 
-config = fm.load_config(CONFIGS / "fig-3-12.toml")
-ds = fm.sweep(config.system, config.r, config.beta, config.mu, solver=config.solver)
+system = fm.System(contact="joined-base-wall")
+ds = fm.sweep(system, r=np.arange(0, 251, 2) / 100, beta=np.arange(401) / 100, mu=[1.0, 1.5])
 fm.plot_regimes(ds)
 
 # %%
@@ -28,4 +28,5 @@ print(f"{cell.stops_per_cycle.item():g} stop per cycle, z up to {cell.contact_am
 # %%
 # T Fig. 3.13 shows low frequencies, which have many stops per cycle. Circles mark the rarest classes.
 
-fm.plot_regimes(computed("fig-3-13"))
+low = fm.sweep(system, np.arange(100, 701, 2) / 1000, np.arange(501) / 1000, mu=[1.0, 1.5, 2.0])
+fm.plot_regimes(low)

@@ -7,11 +7,13 @@ for one initial state. ``also_reachable`` lists the regimes that other initial s
 several regimes are hatched.
 """
 
-from picture_data import computed
+import numpy as np
 
 import frictionmap as fm
 
-ds = computed("coexistence")
+outputs = ["regime", "stops_per_cycle", "also_reachable", "sliding_limit"]
+r, beta = np.arange(2, 251, 2) / 100, np.arange(121) / 100
+ds = fm.sweep(fm.System(), r, beta, mu=[1.2, 2.0], outputs=outputs)
 fm.plot_regimes(ds)
 
 # %%

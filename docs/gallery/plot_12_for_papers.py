@@ -7,11 +7,8 @@ a file. The Python code below the command draws the same. The guide on figures l
 """
 
 import numpy as np
-from picture_data import CONFIGS, computed
 
 import frictionmap as fm
-from frictionmap.design.configuration import load_design
-from frictionmap.identify.rigs.configuration import identify, load_rig
 
 # %%
 # A map, with the working point of a machine and the box of its uncertainty:
@@ -19,7 +16,8 @@ from frictionmap.identify.rigs.configuration import identify, load_rig
 # .. code-block:: sh
 #
 #    frictionmap plot fig-3-12.nc --size 85mm --panels 1 --point 1.6 1.2 --box 0.1 0.2 --no-caption -o map.pdf
-one = computed("fig-3-12")
+shaken = fm.System(contact="joined-base-wall")
+one = fm.sweep(shaken, np.arange(0, 251, 2) / 100, np.arange(401) / 100, mu=[1.0, 1.5])
 fm.plot_regimes(one, size="85mm", panels=1, point=(1.6, 1.2), box=(0.1, 0.2), caption=False)
 
 # %%
@@ -55,7 +53,9 @@ fm.plot_boundaries(fm.boundaries(damped, r, [1.0]), size="85mm")
 # .. code-block:: sh
 #
 #    frictionmap plot fig-6-8-curves.nc --size 85mm --mass 1 --panels 1 -o curve.pdf
-fm.plot_curves(computed("fig-6-8"), size="85mm", mass=1, panels=1)
+five = fm.System(contact_masses=[1], load_mass=1, mass_ratios=[1.0] * 5, stiffness_ratios=[1.0] * 5)
+curves = fm.curves(five, np.arange(251) / 100, [0.0, 0.2, 0.4, 0.6, 0.8], quantities=["amplitude", "phase"])
+fm.plot_curves(curves, size="85mm", mass=1, panels=1)
 
 # %%
 # A motion, and its phase portrait:
@@ -74,7 +74,16 @@ fm.plot_orbit(motion, size="85mm", panels=1, legend=False)
 # .. code-block:: sh
 #
 #    frictionmap plot free-decay-identify.nc --size 85mm -o fit.pdf
-fm.plot_fit(identify(load_rig(CONFIGS / "rigs/free-decay.toml")), size="85mm")
+#
+# A mass of 3 Hz is pulled aside by 9.5 mm and let go. Friction moves the centre of each half cycle by 0.2 mm.
+f_n, friction, start = 3.0, 0.2, 9.5
+time = np.arange(0.0, 3.9, 0.01)
+half = np.floor(2.0 * f_n * time)
+sense = (-1.0) ** half
+swing = np.maximum(start - (2.0 * half + 1.0) * friction, 0.0)
+x = sense * swing * np.cos(np.pi * (2.0 * f_n * time - half)) + sense * friction
+x += np.random.default_rng(1).normal(0.0, 0.05, x.size)
+fm.plot_fit(fm.identify.free_decay(time, x), size="85mm")
 
 # %%
 # A design question: the peak response over friction, with the friction for which it is least.
@@ -82,4 +91,11 @@ fm.plot_fit(identify(load_rig(CONFIGS / "rigs/free-decay.toml")), size="85mm")
 # .. code-block:: sh
 #
 #    frictionmap plot brace-damper-design.nc --size 85mm --panels 1 -o design.pdf
-fm.plot_design(load_design(CONFIGS / "design/brace-damper.toml", []).ask(), size="85mm", panels=1)
+frame = fm.System(
+    contact="joined-base-wall",
+    damping_reference="base",
+    mass_ratios=[1.0, 1.0],
+    stiffness_ratios=[1.0, 1.0],
+    damping_ratios=0.02,
+)
+fm.plot_design(fm.design.least_peak(frame, [0.4, 2.0], mass=2, spread=0.2), size="85mm", panels=1)

@@ -20,6 +20,7 @@ version = release = frictionmap.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
 exclude_patterns = ["_build", "gallery/*"]
 suppress_warnings = ["config.cache"]  # the settings of the gallery cannot be pickled
+myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
 smartquotes = False  # keep "--set" and quotes as they are, for copying
 
@@ -52,3 +53,20 @@ html_theme_options = {"navigation_with_keys": True}
 html_show_sphinx = False
 html_copy_source = False
 html_static_path: list[str] = []
+
+html_math_renderer = "mathml"
+
+
+def setup(app: object) -> None:
+    """Formulas as MathML, which browsers show without a script or a font from elsewhere."""
+    from docutils.nodes import SkipNode
+    from latex2mathml.converter import convert
+
+    def show(display: str) -> tuple:
+        def visit(writer: object, node: object) -> None:
+            writer.body.append(convert(node.astext(), display=display))
+            raise SkipNode
+
+        return visit, None
+
+    app.add_html_math_renderer("mathml", show("inline"), show("block"))

@@ -23,6 +23,7 @@ PAGES = (
     "CITATION.cff",
     "CONTRIBUTING.md",
     "MANIFEST.in",
+    "SECURITY.md",
 )
 
 
@@ -72,6 +73,15 @@ def test_the_archive_holds_what_tests_need(built):
         names = {name.partition("/")[2] for name in opened.getnames()}
     assert {*PAGES, "configs/fig-3-12.toml", "docs/index.md", "tests/conftest.py"} <= names
     assert archive.stat().st_size < 5e6
+
+
+def test_an_index_would_take_both(built):
+    pytest.importorskip("twine")
+    pytest.importorskip("check_wheel_contents")
+    (archive,), (wheel,) = built.glob("*.tar.gz"), built.glob("*.whl")
+    said = run(sys.executable, "-m", "twine", "check", "--strict", archive, wheel, cwd=built)
+    assert said.count("PASSED") == 2
+    run(sys.executable, "-m", "check_wheel_contents", wheel, cwd=built)
 
 
 def test_the_wheel_runs_in_a_fresh_environment(built):

@@ -7,7 +7,7 @@ from .labels import Label
 
 QUESTIONS = ("least-peak", "no-stop", "stuck", "at-most", "margin", "robust")
 
-#: How the least largest response comes about.
+#: How the least peak comes about.
 KINDS_OF_OPTIMUM = ("smooth", "two equal peaks", "plateau", "at the bound")
 
 _PEAK, _SEARCH, _OVER_R = ("peak",), ("beta_search",), ("r_search",)

@@ -7,7 +7,7 @@ from .labels import Label
 
 QUESTIONS = ("least-peak", "no-stop", "stuck", "at-most", "margin", "robust", "two-forces")
 
-#: How the least largest response comes about.
+#: How the least peak comes about.
 KINDS_OF_OPTIMUM = ("smooth", "two equal peaks", "plateau", "at the bound")
 
 _PEAK, _SEARCH, _OVER_R, _RATIO = ("peak",), ("beta_search",), ("r_search",), ("ratio_search",)

@@ -10,7 +10,7 @@ limits       boundaries of the regimes over a band: their extremes and crossings
 responses    the response that a design is about, at points (r, beta) of any system
 performance  the largest response over the band as a function of friction, with its peaks
 task         checks of arguments, the range of friction that is searched
-least_peak   the friction with the least largest response, also where it is uncertain
+least_peak   the friction with the smallest peak response, also for uncertain friction
 samples      the same for samples of an uncertain structure: a quantile of their curves
 force_plane  the least peak in the plane of two friction forces
 at_most      the ranges of friction in which the response stays within a limit

@@ -1,4 +1,4 @@
-"""The friction with the least largest response over a band, also where the friction is uncertain."""
+"""The friction with the smallest peak response over a band, also where the friction is uncertain."""
 
 from collections.abc import Callable
 from typing import NamedTuple

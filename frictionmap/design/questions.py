@@ -54,7 +54,7 @@ def least_peak(
     threads: int | None = None,
     units: Units | None = None,
 ) -> xr.Dataset:
-    """Find the friction with the least largest response over a band of frequencies.
+    """Find the friction with the smallest peak response over a band of frequencies.
 
     Parameters
     ----------

@@ -9,11 +9,11 @@ scene              subject of a page: system, initial view, parameters that can 
 views              one view: changed system, ranges of r and beta, mu; quantities of its cells
 general_lines      boundaries of systems with several contacts, springs, belts or periodic loads
 lines              boundaries of a view: values, and how the page draws them
-general_views      maps of such systems: quantities, classes, cells
+general_views      maps of systems with several contacts: quantities, classes, cells
 pieces             pieces of a map for the page: cells, classes, quantities, boundaries
-general_cell       one cell of such a system: its motion, contact by contact
+general_cell       one cell of a system with several contacts: its motion, contact by contact
 cell               one cell: its motion, and that from another initial state
-general_cut        response curves through a view of such a system
+general_cut        response curves through a view of a system with several contacts
 cut                response curves through a view
 queries            queries of the page, checked like a configuration
 packets            binary packets for the page

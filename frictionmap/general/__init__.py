@@ -6,8 +6,8 @@ module       what is in it
 problem      a system over r as arrays for the kernels
 held         forces in contacts that do not slide, and the boundaries that follow from them
 loops        permanent sticking of contacts that close a loop
-boundaries   boundaries over r: permanent sticking, no stops, belts that pull one way
-partial      the friction from which one contact sticks while the others move
+boundaries   boundaries over r: permanent sticking, no stops, one-way sliding on belts
+partial      least friction at which one contact sticks while the others move
 maps         the cells of a map, on several threads
 dataset      maps and boundaries as labelled variables
 steps        one steady state as the series of its steps

@@ -12,9 +12,9 @@ refinement       change of the map of a reduced structure with twice as many mod
 sweep            `sweep`: maps of one system, or of many along further axes
 curves           `curves`: response curves over frequency
 scattered        cells at a list of points (r, beta)
-points           first harmonics at such points
+points           first harmonics at a list of points (r, beta)
 motion           one steady state in time, as arrays
-response         `response`: the same as a dataset
+response         `response`: one steady state in time, as a dataset
 cost             expected memory and time of a map
 ===============  ======================================================================
 """

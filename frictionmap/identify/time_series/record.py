@@ -26,7 +26,7 @@ from .verdict import record_verdict
 #: Estimates that can take each other's place: all of these dissipate, or hold the mass.
 _TRADING = (ZETA, X_F, MU)
 
-_MODEL_ERROR = "residuals at the harmonics of the base, over the noise beside them; 1 if chance explains them"
+_MODEL_ERROR = "residuals at the harmonics of the base, over the noise beside them; 1 if due to chance"
 
 _MEANINGS = {
     "f_n": "natural frequency without friction and damping",

@@ -32,6 +32,13 @@ def _pool(threads: int) -> ThreadPoolExecutor:
         return ThreadPoolExecutor(threads)
 
 
+def run_here(jobs: Sequence[Job], done: Callable) -> None:
+    """Run a few short jobs in this thread, as `run_jobs` does in others."""
+    for index, (function, arguments) in enumerate(jobs):
+        function(*arguments)
+        done(index)
+
+
 def run_jobs(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None) -> None:
     """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
 

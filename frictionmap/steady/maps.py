@@ -13,7 +13,7 @@ from .._kernels.engine.fill import RESTART, OpenCells
 from .._kernels.engine.policies import NO_FRICTION
 from ..datasets.labels import CELL, CELL_VARIABLES
 from ..errors import InputError
-from ..jobs import Job, Progress, Watch, run_jobs
+from ..jobs import Job, Progress, Watch, run_here, run_jobs
 from ..model.settings import Solver
 from ..model.system import System
 from ..theory.boundary_curves import Curves
@@ -32,6 +32,9 @@ ROW_CELLS = 262144
 #: Approximate cost of a cell, in hundredths of one that is integrated: decided by a formula; integrated;
 #: searched for further regimes, with mu = 1 and with mu > 1.
 _DECIDED, FOLLOWED, SEARCHED_UNIQUE, SEARCHED = 2, 100, 25, 800
+
+#: Cost up to which jobs run in this thread, as an interrupt need not wait: to wake a thread takes longer.
+_AT_ONCE = 16 * FOLLOWED
 
 #: Outputs with an array in a map: all but those that are read from the results over a cycle.
 _NAMES = tuple(name for name, label in CELL_VARIABLES.items() if label.needs != "cycle")
@@ -151,7 +154,10 @@ def _fill(
             progress(spent, total)
 
     try:
-        run_jobs(jobs, threads, done, watch)
+        if total <= _AT_ONCE and watch is None:
+            run_here(jobs, done)
+        else:
+            run_jobs(jobs, threads, done, watch)
         run_jobs(cells.exponents(out, cancel), threads, lambda _: None, watch)
     except BaseException:
         cancel[0] = 1  # the kernels check it at every event

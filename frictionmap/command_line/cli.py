@@ -253,7 +253,7 @@ def _explore(options: Options) -> None:
     from ..explorer.server import begin, open_server, show
 
     server = open_server(scene, options.port)
-    begin(server)
+    begin(server.page)
     before_exit(lambda: "page closed")
     _print(f"{scene.title}: {server.url} (end with Ctrl-C)")
     if not options.no_browser:

@@ -11,13 +11,18 @@ general_lines      boundaries of systems with several contacts, springs, belts o
 lines              boundaries of a view: values, and how the page draws them
 general_views      maps of systems with several contacts: quantities, classes, cells
 pieces             pieces of a map for the page: cells, classes, quantities, boundaries
+example            cell whose motion the page opens with
+drawing            drawing of a system in motion: masses, springs, contacts, loads
 general_cell       one cell of a system with several contacts: its motion, contact by contact
 cell               one cell: its motion, and that from another initial state
 general_cut        response curves through a view of a system with several contacts
 cut                response curves through a view
 queries            queries of the page, checked like a configuration
 packets            binary packets for the page
+presets            systems that the page offers besides its own
 scene_description  description of a scene for the page: names, ranges, parameters that can be changed, colours
+rehearsal          small computations of every kind, so that kernels are compiled before they are needed
+compile_times      time that kernels take to compile on this machine
 jobs               running requests, cancellation, state of compilation
 downloads          a view as a configuration, NetCDF or CSV
 server             HTTP server, for this machine only

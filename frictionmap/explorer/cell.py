@@ -1,6 +1,5 @@
 """One cell of a view: its motion in numbers, words and curves, and that from another initial state."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -16,7 +15,7 @@ from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
 from ..steady.maps import solve_map
 from ..steady.motion import MotionRequest, SteadyMotion, find_motion
-from ..theory.boundary_curves import find_curves
+from .drawing import drawing_curves, drawing_of
 from .views import Follower, View, name_of_mass
 
 #: Samples per excitation period: a curve a few hundred pixels wide is smooth with them.
@@ -27,9 +26,6 @@ _LISTED = 12
 
 #: Relative difference of amplitudes above which two initial states lead to different motions.
 _OTHER = 1e-6
-
-#: Position in the range of r at which motions are rehearsed; rounder ones, like the middle, often resonate.
-_ASIDE = 0.382
 
 Packet = tuple[dict[str, Any], dict[str, np.ndarray]]
 
@@ -69,7 +65,8 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
 
     Arrays over `tau`: `z`, its velocity `z_rate`, `friction`, `direction` (-1, 0, 1), `x` (masses, tau).
     Moduli of harmonics 0 to 7: `z_harmonics`, `friction_harmonics`.  `numbers` are those of the header's
-    `entries`; its `dofs` are the numbers of the masses.
+    `entries`; its `dofs` are the numbers of the masses.  Its `drawing` describes what is drawn in motion,
+    with the arrays of `drawing_curves`.
 
     Where there is no steady state, the header says why under `none`, and there are no arrays.
     """
@@ -97,6 +94,7 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
         "entries": [entry._asdict() for entry in entries],
         "comment": found.comment,
         "dofs": view.system.dofs.numbers,
+        "drawing": drawing_of(view.system),
     }
     return header, {**curves_of(view, found), "numbers": np.array(numbers)}
 
@@ -150,7 +148,7 @@ def curves_of(view: View, found: SteadyMotion) -> dict[str, np.ndarray]:
         "friction_harmonics": _moduli(found.cycle["friction_harmonic"]),
     }
     arrays = {name: values.astype(np.float32) for name, values in drawn.items()}
-    return {**arrays, "direction": history.direction}
+    return {**arrays, **drawing_curves(system, history.tau), "direction": history.direction}
 
 
 def _moduli(harmonics: np.ndarray) -> np.ndarray:
@@ -237,22 +235,3 @@ def _alike(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
         return False
     sizes = float(one["contact_amplitude"]), float(other["contact_amplitude"])
     return bool(np.isclose(*sizes, rtol=_OTHER, atol=_OTHER, equal_nan=True))
-
-
-def rehearse(view: View, follower: Follower) -> None:
-    """Compute a motion of each regime, and `others` of one, so that kernels are compiled or loaded.
-
-    With mu = 1, where every motion is found at once.
-    """
-    view, r = replace(view, mu=1.0), view.r[0] + _ASIDE * (view.r[1] - view.r[0])
-    if view.system.general is not None:
-        motion(view, r, 0.5 * sum(view.beta), follower)
-        return
-    limits = find_curves(view.system, np.array([r]), np.array([1.0]))
-    lim, stick = limits.beta_lim.item(), limits.beta_stick.item()
-    if not math.isfinite(stick):  # held, it resonates: nothing sticks there
-        stick = 2.0 * lim + 1.0
-    between = 0.5 * (lim + stick)
-    for beta in (between, 0.5 * lim, 1.5 * stick):
-        motion(view, r, beta, follower)
-    others(view, r, between, follower)

@@ -8,11 +8,12 @@ import xarray as xr
 from .. import regimes
 from ..errors import NoSteadyState
 from ..general.dataset import refuse_static
-from ..general.problem import general_of
+from ..general.problem import general_of, springs
 from ..general.response import general_response
 from ..model.general import Group
 from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
+from .drawing import drawing_curves, drawing_of
 from .general_lines import chosen
 from .general_views import counted_of
 from .lines import line_values
@@ -97,6 +98,7 @@ def general_motion(view: View, r: float, beta: float) -> tuple[dict[str, Any], d
         "contacts": [group.name for group in general.groups] if k is None else [],
         "contact": general.groups[k].name if k is not None and general.count > 1 else "",
         "still": ["without slip" if elastic else "stuck" for elastic in general.elastic[list(shown)]],
+        "drawing": drawing_of(view.system),
     }  # fmt: skip
     return header, {**_curves(view, ds, k), "numbers": np.array([value for _, value in numbers])}
 
@@ -182,7 +184,20 @@ def _curves(view: View, ds: xr.Dataset, k: int | None) -> dict[str, np.ndarray]:
     rows = {name: values if k is None else values[k] for name, values in traces.items()}
     direction = np.ascontiguousarray(rows.pop("direction")).astype(np.int8)
     curves = {"tau": tau, "x": ds["x"].values, **rows}
-    return {name: values.astype(np.float32) for name, values in curves.items()} | {"direction": direction}
+    found = {name: values.astype(np.float32) for name, values in curves.items()}
+    return {**found, **_drawn(view, traces, tau), "direction": direction}
+
+
+def _drawn(view: View, traces: dict[str, np.ndarray], tau: np.ndarray) -> dict[str, np.ndarray]:
+    """Curves of the drawing: `states`, the directions in all contacts, and `stretched`, their springs."""
+    stiffness = springs(general_of(view.system))[:, np.newaxis]
+    elastic = stiffness > 0.0
+    stretched = np.where(elastic, traces["friction"] / np.where(elastic, stiffness, 1.0), 0.0)
+    return {
+        **drawing_curves(view.system, tau),
+        "states": traces["direction"].astype(np.int8),
+        "stretched": stretched.astype(np.float32),
+    }
 
 
 def _rates(view: View, ds: xr.Dataset, direction: np.ndarray) -> np.ndarray:

@@ -23,12 +23,12 @@ def chosen_contact(key: str) -> int | None:
     return int(key.removeprefix("contact-")) - 1 if key.startswith("contact-") else None
 
 
-def _friction(key: str, label: str, value: float) -> Slider:
-    return Slider(key, label, 0.0, max(_MOST_FRICTION, 2.0 * value), value, "linear")
+def _friction(key: str, label: str, value: float, unit: str, measure: str = "") -> Slider:
+    return Slider(key, label, 0.0, max(_MOST_FRICTION, 2.0 * value), value, "linear", unit, measure)
 
 
-def _scaled(key: str, label: str, value: float) -> Slider:
-    return Slider(key, label, value / _RATIO, value * _RATIO, value, "log")
+def _scaled(key: str, label: str, value: float, unit: str) -> Slider:
+    return Slider(key, label, value / _RATIO, value * _RATIO, value, "log", unit)
 
 
 def contact_sliders(system: System) -> tuple[Slider, ...]:
@@ -36,19 +36,33 @@ def contact_sliders(system: System) -> tuple[Slider, ...]:
     found: list[Slider] = []
     if system.contacts is None:
         if isinstance(system.contact_stiffness, float):
-            found.append(_scaled("contact_stiffness", "contact stiffness kt / k1", system.contact_stiffness))
+            found.append(
+                _scaled(
+                    "contact_stiffness", "contact stiffness kt / k1", system.contact_stiffness, "times k1"
+                )
+            )
         if system.wall_velocity > 0.0:
-            found.append(_scaled("wall_velocity", "wall velocity v / (ωP/k1)", system.wall_velocity))
+            found.append(
+                _scaled("wall_velocity", "wall velocity v / (ωP/k1)", system.wall_velocity, "times ωP/k1")
+            )
         return tuple(found)
     contacts: Any = system.contacts  # checked by the system
     for k, contact in enumerate(contacts, 1):
         name, key = contact.label, f"contacts[{k}]"
         if isinstance(contact.force, float):
-            found.append(_friction(f"{key}.force", f"friction F / P, {name}", contact.force))
+            found.append(
+                _friction(f"{key}.force", f"friction F / P, {name}", contact.force, "times P", "force")
+            )
         elif contact.force is None and len(contacts) > 1 and not isinstance(contact.ratio, tuple):
-            found.append(_friction(f"{key}.ratio", f"friction over β, {name}", contact.ratio or 0.0))
+            found.append(
+                _friction(f"{key}.ratio", f"friction over β, {name}", contact.ratio or 0.0, "times β")
+            )
         if isinstance(contact.stiffness, float):
-            found.append(_scaled(f"{key}.stiffness", f"kt / k1, {name}", contact.stiffness))
+            found.append(_scaled(f"{key}.stiffness", f"kt / k1, {name}", contact.stiffness, "times k1"))
         if contact.wall_velocity > 0.0:
-            found.append(_scaled(f"{key}.wall_velocity", f"wall velocity, {name}", contact.wall_velocity))
+            found.append(
+                _scaled(
+                    f"{key}.wall_velocity", f"wall velocity, {name}", contact.wall_velocity, "times ωP/k1"
+                )
+            )
     return tuple(found)

@@ -9,8 +9,13 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from .compile_times import CompileTimes, default_place
+
 #: Lanes that are remembered: pages that were closed leave theirs behind.
 _MOST_LANES = 256
+
+#: Lane of the work that no page waits for.
+REHEARSAL = "rehearsal"
 
 
 class Outdated(Exception):
@@ -18,14 +23,14 @@ class Outdated(Exception):
 
 
 class Job:
-    """Work for a request."""
+    """Work for a request; `group` names the kernels that it needs."""
 
-    def __init__(self, gone: Callable[[], bool], turn: int) -> None:
-        self._gone = gone
-        self.turn = turn
+    def __init__(self, gone: Callable[[], bool], turn: int, group: str, times: CompileTimes) -> None:
+        self._gone, self._times = gone, times
+        self.turn, self.group = turn, group
         self.outdated = False
         self.compiles_since: float | None = None
-        self.kernels = 0
+        self.kernels, self._spent = 0, 0.0
 
     def watch(self) -> None:
         """Check, while cells are computed, whether the request still stands.
@@ -40,8 +45,25 @@ class Job:
 
     def progress(self, done: float, total: float) -> None:
         """Note that cells are finished, so that compilation is over."""
-        self.compiles_since = None
+        self.compiled()
         self.watch()
+
+    def compiled(self) -> None:
+        """Note that compilation is over."""
+        since, self.compiles_since = self.compiles_since, None
+        self._spent += 0.0 if since is None else time.monotonic() - since
+
+    def record(self) -> None:
+        """Keep the time of compilation for the next time, if anything was compiled."""
+        self.compiled()
+        if self.kernels and self.group:
+            self._times.record(self.group, self._spent, self.kernels)
+
+    def left(self, now: float) -> float:
+        """Seconds that compilation will still take; 0 if it takes longer than expected."""
+        if self.compiles_since is None or not self.group:
+            return 0.0
+        return max(0.0, self._times.expected(self.group) - self._spent - (now - self.compiles_since))
 
 
 class Jobs:
@@ -51,11 +73,14 @@ class Jobs:
         self._lock = threading.Lock()
         self._lanes: OrderedDict[str, Job] = OrderedDict()
         self._running: set[Job] = set()
+        self._times = CompileTimes()
+        self._closed = False
 
     def listen(self) -> None:
         """Listen to compilation from now on; this imports the compiler."""
         from .._kernels.compiler.notices import listeners
 
+        self._times = CompileTimes(default_place())
         listeners.append(self._compiling)
 
     def close(self) -> None:
@@ -65,23 +90,29 @@ class Jobs:
         if self._compiling in listeners:
             listeners.remove(self._compiling)
         with self._lock:
+            self._closed = True
             for job in self._running:
                 job.outdated = True
 
     @contextmanager
-    def enter(self, lane: str, gone: Callable[[], bool] = lambda: False, turn: int = 0) -> Iterator[Job]:
+    def enter(
+        self, lane: str, gone: Callable[[], bool] = lambda: False, turn: int = 0, group: str = ""
+    ) -> Iterator[Job]:
         """Run a job in a lane; of it and its predecessor, the one with the earlier turn is cancelled."""
-        job = Job(gone, turn)
+        job = Job(gone, turn, group, self._times)
         with self._lock:
             before = self._lanes.pop(lane, job)
             newer, older = (before, job) if before.turn > turn else (job, before)
             older.outdated = newer is not older
+            job.outdated |= self._closed
             self._lanes[lane] = newer
             while len(self._lanes) > _MOST_LANES:
                 self._lanes.popitem(last=False)
             self._running.add(job)
         try:
             yield job
+            if lane == REHEARSAL:  # others also wait for kernels that are not theirs
+                job.record()
         finally:
             with self._lock:
                 self._running.discard(job)
@@ -95,11 +126,18 @@ class Jobs:
                 job.kernels += 1
 
     def state(self) -> dict[str, float]:
-        """State of compilation: duration [s] and number of kernels so far; empty if none is running."""
+        """State of compilation: time so far, number of kernels, expected time left [s]; empty without any.
+
+        Jobs that a page waits for come first, as others are of no interest to it.
+        """
         with self._lock:
+            rehearsal = self._lanes.get(REHEARSAL)
             compiling = [job for job in self._running if job.compiles_since is not None]
-            if not compiling:
-                return {}
-            since = min(job.compiles_since or 0.0 for job in compiling)
-            kernels = max(job.kernels for job in compiling)
-        return {"seconds": time.monotonic() - since, "kernels": kernels}
+        compiling = [job for job in compiling if job is not rehearsal] or compiling
+        if not compiling:
+            return {}
+        now = time.monotonic()
+        since = min(job.compiles_since or now for job in compiling)
+        kernels = max(job.kernels for job in compiling)
+        left = max(job.left(now) for job in compiling)
+        return {"seconds": now - since, "kernels": kernels, "left": left}

@@ -23,7 +23,7 @@ class Explorer:
         self._server = server
         self._thread = threading.Thread(target=server.serve_forever, daemon=True)
         self._thread.start()
-        begin(server)
+        begin(server.page)
 
     @property
     def url(self) -> str:

@@ -89,9 +89,14 @@ def piece_of_map(
     if quantity.output:
         arrays["values"] = values_of(found, quantity)
     if lines:
-        finer = line_values(view, middles(view.r, lines, "lines"))
-        arrays |= {f"line_{name.removeprefix('beta_')}": values for name, values in finer.items()}
+        arrays |= packet_of_lines(view, lines)
     return {"first": piece.first, "last": piece.last, "seconds": seconds, **header}, arrays
+
+
+def packet_of_lines(view: View, count: int) -> dict[str, np.ndarray]:
+    """The boundaries over the complete view at this number of points: `line_lim` ..."""
+    values = line_values(view, middles(view.r, count, "lines"))
+    return {f"line_{name.removeprefix('beta_')}": line for name, line in values.items()}
 
 
 def marks(system: System) -> dict[str, list[float]]:

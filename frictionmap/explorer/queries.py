@@ -114,7 +114,9 @@ def _range(given: Mapping[str, str], name: str, default: tuple[float, float]) ->
     return checked_range([number(part, name) for part in parts], name)
 
 
-#: Keys of a piece of a map, of a cell, and of a cut.
+#: Keys of a page, of boundaries, of a piece of a map, of a cell, and of a cut.
+PAGE = ("page", "turn")
+LINES = ("count", *PAGE)
 PIECE = ("columns", "rows", "first", "last", "lines", "quantity", "page", "turn")
 CELL = ("at", "page", "turn")
 CUT = ("along", "place", "count", "page", "turn")
@@ -153,8 +155,12 @@ def cut_of(query: Query) -> tuple[Along, float, int]:
     valid: tuple[Along, ...] = get_args(Along)
     along: Any = checks.choice(needed(query.given, "along"), "along", valid)
     place = checks.number(number(needed(query.given, "place"), "place"), "place", least=0.0)
-    count = _whole(query.given, "count")
-    return along, place, checks.whole(count, "count", least=2, most=_MOST_POINTS)
+    return along, place, points_of(query)
+
+
+def points_of(query: Query) -> int:
+    """Number of points of a cut or of boundaries."""
+    return checks.whole(_whole(query.given, "count"), "count", least=2, most=_MOST_POINTS)
 
 
 def page_of(query: Query) -> tuple[str, int]:

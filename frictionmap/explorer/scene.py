@@ -57,7 +57,9 @@ class Scene:
     @property
     def sliders(self) -> tuple[Slider, ...]:
         """Parameters that can be changed by sliders."""
-        mu = Slider("mu", "μ", 1.0, max(_MOST_MU, 2.0 * self.mu), self.mu, "linear")
+        mu = Slider(
+            "mu", "μ", 1.0, max(_MOST_MU, 2.0 * self.mu), self.mu, "linear", "times the kinetic friction"
+        )
         general = self.system.general
         if general is None:
             return (mu, *_of_damping(self.system), *_of_ratios(self.system))
@@ -118,7 +120,7 @@ def _of_damping(system: System) -> tuple[Slider, ...]:
     of_one = system.n == 1
     labels = ("ζ" if of_one else "ζ of all modes",) if alike else tuple(f"ζ{k + 1}" for k in range(system.n))
     return tuple(
-        Slider(key, label, 0.0, max(_MOST_ZETA, 2.0 * value), value, "square")
+        Slider(key, label, 0.0, max(_MOST_ZETA, 2.0 * value), value, "square", "of critical damping")
         for key, label, value in zip(keys, labels, ratios, strict=False)
     )
 
@@ -126,8 +128,13 @@ def _of_damping(system: System) -> tuple[Slider, ...]:
 def _of_ratios(system: System) -> tuple[Slider, ...]:
     if system.matrices is not None or not 1 < system.n <= _OFFERED_RATIOS:
         return ()
+
+    def slider(key: str, letter: str, k: int, value: float) -> Slider:
+        label, unit = f"{letter}{k} / {letter}1", f"times {letter}1"
+        return Slider(f"{key}[{k}]", label, value / _RATIO, value * _RATIO, value, "log", unit)
+
     return tuple(
-        Slider(f"{key}[{k}]", f"{letter}{k} / {letter}1", value / _RATIO, value * _RATIO, value, "log")
+        slider(key, letter, k, value)
         for key, letter in (("mass_ratios", "m"), ("stiffness_ratios", "k"))
         for k, value in enumerate(getattr(system, key)[1:], start=2)
     )

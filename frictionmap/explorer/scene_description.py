@@ -13,6 +13,7 @@ from ..units.table import UNITS, handy_unit
 from ..version import __version__
 from .lines import lines_of
 from .pieces import marks, quantities_of
+from .presets import PRESETS
 from .scene import Scene
 from .views import View
 
@@ -110,5 +111,6 @@ def describe_scene(scene: Scene, view: View) -> dict[str, Any]:
         "sliders": [slider._asdict() for slider in scene.sliders],
         "contacts": _contacts(scene, view),
         "general": view.system.general is not None,
+        "presets": [{"key": key, "label": preset.label} for key, preset in PRESETS.items()],
         **{key: value for key, value in description(scene, view).items() if key != "contact"},
     }

@@ -12,6 +12,8 @@ class Slider(NamedTuple):
     most: float
     value: float
     scale: str  # how the slider runs from least to most: "linear", "square" (fine near least) or "log"
+    unit: str = ""  # words after the number: what it is relative to
+    measure: str = ""  # of the scale that converts it to units, such as "force"
 
 
 class Contact(NamedTuple):

@@ -18,11 +18,12 @@ from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlsplit
 
 from ..checks import one_line
 from ..errors import InputError
-from .jobs import Jobs, Outdated
+from .compile_times import group_of
+from .jobs import REHEARSAL, Jobs, Outdated
 from .packets import pack
 from .scene import Scene
 
@@ -37,6 +38,9 @@ _NAMES = (_HOST, "localhost", "[::1]")
 
 #: Where links from elsewhere may lead.
 _DOORS = ("/", "/index.html")
+
+#: Seconds after which the last part of the rehearsal begins without a map.
+_LATER = 30.0
 
 #: Seconds that a connection may be silent.
 _SILENCE = 120.0
@@ -84,14 +88,19 @@ def _text(status: int, message: object) -> Answer:
 class Page:
     """Answers to the addresses of the page, independent of connections."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, parent: "Page | None" = None) -> None:
         self.scene = scene
-        self.jobs = Jobs()
+        self.jobs = parent.jobs if parent else Jobs()
         self._files = page_files()
-        self._warm = threading.Event()
+        self._warm = parent._warm if parent else threading.Event()
+        self.shown = threading.Event()
+        self._presets: dict[str, Page] = {}
+        self._lock = threading.Lock()
         self._work: dict[str, Callable[[str, Callable[[], bool]], Answer]] = {
             "/scene": self._scene,
             "/state": self._state,
+            "/lines": self._lines,
+            "/example": self._example,
             "/map": self._map,
             "/motion": self._motion,
             "/others": self._others,
@@ -105,22 +114,30 @@ class Page:
     def warm(self) -> None:
         """Import the computing modules, which takes longer than the browser needs to load the page."""
         try:
-            from . import cell, cut, pieces, queries, scene_description  # noqa: F401
+            from . import cell, cut, example, pieces, queries, scene_description  # noqa: F401
 
             self.jobs.listen()
         finally:
             self._warm.set()
 
-    def rehearse(self) -> None:
-        """Compute a small map and motions, so that their kernels are compiled before the page needs them."""
-        from . import cell, pieces, queries
-        from .views import Piece
+    def rehearse(self, later: bool = False) -> None:
+        """Compute small results of every kind, so that their kernels are compiled before the page needs them.
+
+        later : rehearse what a page needs last: response curves and further quantities
+        """
+        from . import queries
+        from .rehearsal import FIRST, LATER
 
         self._warm.wait()
-        with contextlib.suppress(InputError, Outdated), self.jobs.enter("rehearsal") as job:
-            view = queries.read_query(self.scene, "").view
-            pieces.piece_of_map(view, pieces.quantities_of(view)[0], Piece(2, 2, 0, 2), job)
-            cell.rehearse(view, job)
+        for work, stage in (LATER if later else FIRST).items():
+            with contextlib.suppress(InputError):
+                view = queries.read_query(self.scene, "").view
+                try:
+                    with self.jobs.enter(REHEARSAL, group=group_of(work, view.system)) as job:
+                        job.watch()
+                        stage(view, job)
+                except Outdated:
+                    return
 
     def answer(self, target: str, gone: Callable[[], bool]) -> Answer:
         """Answer a request; `gone` returns whether the client has disconnected."""
@@ -135,13 +152,30 @@ class Page:
             return _text(404, f"unknown address {parts.path[:80]!r}")
         self._warm.wait()
         try:
-            return self._work[parts.path](parts.query, gone)
+            page, query = self._page_of(parts.query)
+            return page._work[parts.path](query, gone)
         except InputError as error:
             return _text(400, error)
         except Outdated:
             return Answer(204, _TEXT, b"")
         except MemoryError:
             return _text(500, "cannot compute this view: too little memory; use a coarser map")
+
+    def _page_of(self, query: str) -> tuple["Page", str]:
+        """The page that a query is for, that of a preset if it begins with one, and the rest of the query."""
+        from .presets import preset_scene
+
+        first, _, rest = query.partition("&")
+        name, _, value = first.partition("=")
+        if name != "preset":
+            return self, query
+        key = unquote(value)
+        scene = preset_scene(key)
+        with self._lock:
+            if key not in self._presets:
+                self._presets[key] = Page(scene, self)
+                begin(self._presets[key])
+        return self._presets[key], rest
 
     def _scene(self, query: str, gone: Callable[[], bool]) -> Answer:
         from .queries import read_query
@@ -152,12 +186,37 @@ class Page:
     def _state(self, query: str, gone: Callable[[], bool]) -> Answer:
         return _json({"compiling": self.jobs.state()})
 
-    def _enter(self, kind: str, query: "Query", gone: Callable[[], bool]) -> Any:
-        """Start a job in the lane of the page for a kind of work, or in a lane of its own without a page."""
+    def _enter(self, kind: str, query: "Query", gone: Callable[[], bool], kernels: str = "") -> Any:
+        """Start a job in the lane of the page for a kind of work, or in a lane of its own without a page.
+
+        kernels : kind of work whose kernels it needs, if that has another name
+        """
         from .queries import page_of
 
         page, turn = page_of(query)
-        return self.jobs.enter(f"{kind} {page}" if page else f"{kind} {id(query)}", gone, turn)
+        group = group_of(kernels or kind, query.view.system)
+        return self.jobs.enter(f"{kind} {page}" if page else f"{kind} {id(query)}", gone, turn, group)
+
+    def _lines(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from . import queries
+        from .pieces import packet_of_lines
+        from .scene_description import description
+
+        query = queries.read_query(self.scene, text, queries.LINES)
+        count = queries.points_of(query)
+        query.view.check()
+        with self._enter("lines", query, gone) as job:
+            job.watch()
+            arrays = packet_of_lines(query.view, count)
+        return _packet(({"about": description(self.scene, query.view)}, arrays))
+
+    def _example(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from . import queries
+        from .example import example_cell
+
+        query = queries.read_query(self.scene, text, queries.PAGE)
+        with self._enter("example", query, gone, "map") as job:
+            return _json({"cell": example_cell(query.view, job)})
 
     def _map(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
@@ -166,10 +225,12 @@ class Page:
 
         query = queries.read_query(self.scene, text, queries.PIECE)
         quantity, piece = queries.piece_of(query)
-        with self._enter("map", query, gone) as job:
+        with self._enter("map", query, gone, "quantity" if quantity.output else "map") as job:
             job.watch()
             header, arrays = piece_of_map(query.view, quantity, piece, job, queries.lines_of(query))
             header |= {"compiled": job.kernels > 0, "about": description(self.scene, query.view)}
+        if piece.last == piece.columns:
+            self.shown.set()
         return _packet((header, arrays))
 
     def _motion(self, text: str, gone: Callable[[], bool]) -> Answer:
@@ -228,7 +289,7 @@ class Page:
 
             query = queries.read_query(self.scene, text, queries.PIECE)
             quantity, piece = queries.piece_of(query)
-            with self._enter(f"save{ending}", query, gone) as job:
+            with self._enter(f"save{ending}", query, gone, "quantity") as job:
                 body = saved_map(self.scene, query.view, quantity, piece, ending, job)
             return Answer(200, "text/csv" if ending == ".csv" else _BYTES, body, f"map{ending}")
 
@@ -356,9 +417,15 @@ def open_server(scene: Scene, port: int | None = None) -> Server:
     raise AssertionError("there is always a last one")
 
 
-def begin(server: Server) -> None:
-    """Compute the first answers in the background."""
-    threading.Thread(target=server.page.rehearse, daemon=True).start()
+def begin(page: Page) -> None:
+    """Compute the first answers in the background; what a page needs last, once it shows a map."""
+
+    def work() -> None:
+        page.rehearse()
+        page.shown.wait(_LATER)
+        page.rehearse(later=True)
+
+    threading.Thread(target=work, daemon=True).start()
 
 
 def show(url: str) -> None:

@@ -1,7 +1,8 @@
 """The page as one file, with precomputed maps for positions of its sliders.
 
 The file asks nothing of any host: style, modules and maps are in it, and it opens without a server.  Maps are
-coloured classes, and quantities in 255 steps, the resolution of the colours; compressed, as text.
+coloured classes, and quantities in 255 steps, the resolution of the colours; compressed, as text.  The file
+also contains the motion in the cell that the page opens with.
 """
 
 import base64
@@ -17,11 +18,14 @@ import numpy as np
 
 from ..errors import InputError
 from ..model.system import System
+from .cell import motion
+from .example import example_cell
 from .lines import line_names
+from .packets import pack
 from .pieces import classes_of, quantities_of, solve_piece, values_of
 from .queries import read_query
 from .scene import Scene, Slider
-from .scene_description import describe_scene, description
+from .scene_description import describe_scene, description, units_of
 from .server import page_files
 from .views import CellQuantity, Follower, Piece, View
 
@@ -65,6 +69,16 @@ class _OneOf(NamedTuple):
         self.progress_of_all(self.before + min(done / total, _PACKED), self.total)
 
 
+class _Unwatched:
+    """Receiver of a result that is never cancelled."""
+
+    def watch(self) -> None:
+        """Go on."""
+
+    def progress(self, done: float, total: float) -> None:
+        """Report nothing."""
+
+
 class _Kept(NamedTuple):
     """Slider positions for which a file contains maps."""
 
@@ -101,8 +115,8 @@ def _kept(sliders: tuple[Slider, ...]) -> _Kept:
     return _Kept(values, points)
 
 
-def _deflated(values: np.ndarray) -> str:
-    return base64.b64encode(zlib.compress(values.tobytes(), 9)).decode()
+def _deflated(body: bytes) -> str:
+    return base64.b64encode(zlib.compress(body, 9)).decode()
 
 
 def _stepped(values: np.ndarray, log: bool) -> dict[str, Any]:
@@ -113,7 +127,7 @@ def _stepped(values: np.ndarray, log: bool) -> dict[str, Any]:
     share = np.log(values / low) / np.log(high / low) if log else (values - low) / (high - low)
     steps = 1.0 + np.rint((_STEPS - 1) * np.clip(share, 0.0, 1.0))
     steps[np.isnan(values)] = 0.0
-    return {"low": low, "high": high, "log": log, "steps": _deflated(steps.astype(np.uint8))}
+    return {"low": low, "high": high, "log": log, "steps": _deflated(steps.astype(np.uint8).tobytes())}
 
 
 def _cells(system: System) -> tuple[int, int]:
@@ -134,7 +148,20 @@ def _map(view: View, offered: tuple[CellQuantity, ...], follower: Follower) -> d
             for quantity in offered
             if quantity.output
         }
-    return {**header, "classes": _deflated(arrays["classes"]), "limits": _deflated(limits), "values": values}
+    packed = {"classes": _deflated(arrays["classes"].tobytes()), "limits": _deflated(limits.tobytes())}
+    return {**header, **packed, "values": values}
+
+
+def _example(scene: Scene, view: View) -> dict[str, Any] | None:
+    """The cell that the page opens with, and its motion; None if no cell moves."""
+    cell = example_cell(view, _Unwatched())
+    if cell is None:
+        return None
+    header, arrays = motion(view, *cell, _Unwatched())
+    return {
+        "cell": cell,
+        "motion": _deflated(pack({**header, **units_of(scene, view), "others": False}, arrays)),
+    }
 
 
 def _name(kept: _Kept, point: tuple[float, ...]) -> str:
@@ -165,6 +192,7 @@ def _content(scene: Scene, progress: MapProgress) -> dict[str, Any]:
         "scene": describe_scene(scene, first.view),
         "r": scene.r, "beta": scene.beta, "columns": columns, "rows": rows,
         "values": kept.values, "first": _name(kept, own), "maps": maps, "systems": systems,
+        "example": _example(scene, first.view),
     }  # fmt: skip
 
 

@@ -414,11 +414,14 @@ def test_compiling_is_said(browser, one):
         waiting = []
         page.route("**/map?**", lambda route: waiting.append(route))
         page.route(
-            "**/state?**", lambda route: route.fulfill(json={"compiling": {"seconds": 12.4, "kernels": 3}})
+            "**/state?**",
+            lambda route: route.fulfill(json={"compiling": {"seconds": 12.4, "kernels": 3, "left": 27.8}}),
         )
         page.click("[data-zoom=in]")
         page.wait_for_function("() => document.querySelector('#message').innerText.includes('compiling')")
-        assert page.inner_text("#message") == "First use: compiling, about 40 s, once only (12 s so far)"
+        assert page.inner_text("#message") == (
+            "First use: compiling, about 28 s left. This happens once per machine."
+        )
         page.unroute("**/state?**")
         page.unroute("**/map?**")
         page.wait_for_selector(DONE)  # what was kept waiting goes on

@@ -75,6 +75,12 @@ export function hashOf(view, scene) {
   return `#${joined(pairs)}`;
 }
 
+/** Keys whose values differ in two addresses. */
+export function changedKeys(before, after) {
+  const [old, now] = [before, after].map((hash) => new URLSearchParams(hash.replace(/^#/, "")));
+  return [...new Set([...old.keys(), ...now.keys()])].filter((key) => old.get(key) !== now.get(key)).sort().join();
+}
+
 /** Longest invalid value that a message quotes. */
 const LONGEST = 40;
 
@@ -122,7 +128,7 @@ function place(places) {
 }
 
 /** The keys of an address; a page that keeps maps for some places of its sliders has no others to offer. @returns {Map<string, Key>} */
-function keysOf(scene, places) {
+function validKeys(scene, places) {
   const shown = [["r", range()], ["beta", range()], ["quantity", choice(scene.quantities.map(({ key }) => key))], ["cell", cell()]];
   if (places) return new Map([...shown, ...scene.sliders.map(({ key }) => [key, place(places[key])])]);
   return new Map([
@@ -155,7 +161,7 @@ function fault(view, scene, keys, key, text) {
  */
 export function viewOf(hash, scene, places = null) {
   const view = firstView(scene);
-  const keys = keysOf(scene, places);
+  const keys = validKeys(scene, places);
   const faults = [];
   for (const [key, text] of new URLSearchParams(hash.replace(/^#/, ""))) {
     const value = keys.get(key)?.read(text);

@@ -19,7 +19,7 @@ const FONT = "11px system-ui, sans-serif";
  * @property {number} [right]
  */
 
-/** Draw a chart on a canvas. @param {HTMLCanvasElement} canvas @param {Chart} chart */
+/** Draw a chart on a canvas; returns its area, and where values are in it. @param {HTMLCanvasElement} canvas @param {Chart} chart */
 export function draw(canvas, chart) {
   const { pen, width, height } = sharp(canvas);
   const [left, right] = [chart.left ?? 46, chart.right ?? 8];
@@ -40,6 +40,7 @@ export function draw(canvas, chart) {
   drawBars(pen, chart, area, x, y);
   for (const line of chart.lines ?? []) drawLine(pen, line, x, y, area);
   pen.restore();
+  return { area, x, y };
 }
 
 function drawGrid(pen, chart, area, x, y) {

@@ -5,10 +5,11 @@ import { around, draw } from "./chart.js";
 import { keyLine, make } from "./dom.js";
 import { row } from "./packet.js";
 
+/** A canvas in a frame that marks a moment over it. */
 function canvas(className, label) {
   const made = make("canvas", { className, role: "img" });
   made.setAttribute("aria-label", label);
-  return made;
+  return make("div", { className: "plot" }, made);
 }
 
 /** Charts of one contact, under its name. */
@@ -50,20 +51,21 @@ export function bandsOf(direction, time) {
   return bands;
 }
 
-/** Draw the charts that were laid out, in the current colours and size. */
-export function drawContacts(element, motion) {
+/** Draw the charts that were laid out, in the current colours and size; a moment marks them. */
+export function drawContacts(element, motion, moment) {
   const time = timeOf(motion);
   const x = [0, time.at(-1)];
   const masses = Array.from({ length: Math.min(motion.x.shape[0], DRAWN) }, (_, k) => ({ x: time, y: row(motion.x, k), colour: massColour(k) }));
-  draw(element.querySelector(".of-masses"), { x, y: around(...masses.map((line) => line.y)), lines: masses, yName: motion.units.length, xName: "time / excitation period" });
+  const ofMasses = element.querySelector(".of-masses");
+  moment.line(ofMasses, draw(ofMasses, { x, y: around(...masses.map((line) => line.y)), lines: masses, yName: motion.units.length, xName: "time / excitation period" }), time);
   const loops = element.querySelectorAll(".of-loop");
   const histories = element.querySelectorAll(".of-contact");
   motion.contacts.forEach((_, k) => {
     const [z, friction] = [row(motion.z, k), row(motion.friction, k)];
     const bands = bandsOf(row(motion.direction, k), time);
-    const chart = (place, y, ink) => draw(place, { x, y: around(y), lines: [{ x: time, y, colour: ink, width: 1.8 }], bands, left: 38 });
+    const chart = (place, y, ink) => moment.line(place, draw(place, { x, y: around(y), lines: [{ x: time, y, colour: ink, width: 1.8 }], bands, left: 38 }), time);
     chart(histories[2 * k], z, colour("ink"));
     chart(histories[2 * k + 1], friction, colour("warm"));
-    draw(loops[k], { x: around(z), y: around(friction), lines: [{ x: z, y: friction, colour: colour("warm"), width: 1.8 }], left: 38 });
+    moment.dot(loops[k], draw(loops[k], { x: around(z), y: around(friction), lines: [{ x: z, y: friction, colour: colour("warm"), width: 1.8 }], left: 38 }), z, friction);
   });
 }

@@ -31,6 +31,7 @@ export class Controls {
     [this.form, this.scene, this.onChange, this.fixed] = [form, scene, onChange, fixed];
     form.addEventListener("submit", (event) => event.preventDefault());
     this.sliders = new Map();
+    if (!fixed) this.#presets(scene.presets);
     this.#choice("quantity", "colour", scene.quantities);
     if (!fixed) {
       if (scene.contacts.length > 1) this.#choice("contact", "contact", scene.contacts);
@@ -50,6 +51,15 @@ export class Controls {
     made.innerHTML = html;
     parent.append(made);
     return made;
+  }
+
+  /** Other systems, each at an address of its own. */
+  #presets(presets) {
+    const made = this.#add(this.form, `<label for="preset">system</label><select id="preset"></select>`);
+    const select = made.querySelector("select");
+    this.#fill(select, [{ key: "", label: "this configuration" }, ...presets]);
+    select.value = new URLSearchParams(location.search).get("preset") ?? "";
+    select.addEventListener("change", () => location.assign(`${location.pathname}${select.value && `?preset=${select.value}`}`));
   }
 
   #choice(key, label, options) {
@@ -113,6 +123,12 @@ export class Controls {
     this.sliders.set(slider.key, { slider, number, range, places });
   }
 
+  /** A number in words: relative to what, and in units where they are known. */
+  #words({ unit, measure }, value) {
+    const one = this.scene.physical[measure];
+    return `${short(value)} ${unit}${one ? `, ${short(value * one.factor)} ${one.unit}` : ""}`.trim();
+  }
+
   /** Show what a view has. */
   set(view) {
     this.view = view;
@@ -126,7 +142,7 @@ export class Controls {
     for (const [key, { slider, number, range, places }] of this.sliders) {
       const value = key === "mu" ? view.mu : view.numbers[key] ?? slider.value;
       range.value = places ? places.indexOf(value) : Math.round(STEPS * shareAt(slider, value));
-      range.ariaValueText = short(value);
+      range.ariaValueText = this.#words(slider, value);
       if (document.activeElement !== number || !number.value) number.value = Number(value.toPrecision(8));
     }
   }

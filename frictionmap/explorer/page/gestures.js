@@ -13,12 +13,15 @@ const SHIFT = 0.12;
 /** Elements that use letters, signs and arrows themselves. */
 const TYPED = "input, select, dialog, textarea";
 
+/** Elements that undo what was typed themselves. */
+const WRITTEN = "input[type=number], textarea";
+
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /**
  * @param {import("./map.js").RegimeMap} map
  * @param {object} does  callbacks: zoom(factors, point), pan(shares), frame(box), hover(x, y), leave(),
- *                       pick(x, y), step(columns, rows), release(), home(), key(letter)
+ *                       pick(x, y), step(columns, rows), release(), home(), key(letter), undo(), redo()
  */
 export function listen(map, does) {
   const { stage } = map;
@@ -105,6 +108,11 @@ function pinch(map, pointers, moved, now, does) {
 
 /** A key; arrows are the page's own, to scroll it, unless the map is pointed at or chosen. */
 function keyed(event, stage, does) {
+  if ((event.ctrlKey || event.metaKey) && ["z", "y"].includes(event.key.toLowerCase()) && !event.target.closest(WRITTEN)) {
+    does[event.key.toLowerCase() === "y" || event.shiftKey ? "redo" : "undo"]();
+    event.preventDefault();
+    return;
+  }
   if (event.ctrlKey || event.metaKey || event.target.closest(TYPED)) return;
   const arrow = stage.matches(":hover, :focus-within") && ARROWS[event.key];
   const middle = null;
@@ -114,7 +122,7 @@ function keyed(event, stage, does) {
   else if (event.key === "-" || event.key === "_") does.zoom([ZOOM, ZOOM], middle);
   else if (event.key === "0" || event.key === "Home") does.home();
   else if (event.key === "Escape") does.release();
-  else if (["r", "b", "q", "?"].includes(event.key)) does.key(event.key);
+  else if (["r", "b", "p", "q", "?"].includes(event.key)) does.key(event.key);
   else return;
   event.preventDefault();
 }

@@ -1,6 +1,6 @@
 // The page: it shows one view, and updates everything when the view changes.
 
-import { cellsKey, firstView, hashOf, pictureKey, queryOf, systemKey, tidy, viewOf } from "./address.js";
+import { cellsKey, changedKeys, firstView, hashOf, pictureKey, queryOf, systemKey, tidy, viewOf } from "./address.js";
 import { forgetColours, short } from "./axes.js";
 import { classTable } from "./colours.js";
 import { Controls } from "./controls.js";
@@ -13,6 +13,7 @@ import { Refiner } from "./refine.js";
 import { copy, pngOf, save } from "./save.js";
 import { Server } from "./source.js";
 import { Stored } from "./stored.js";
+import { Tour } from "./tour.js";
 
 const part = (id) => document.getElementById(id);
 
@@ -24,6 +25,9 @@ const SLOW = 1000;
 
 /** Milliseconds after which a request for a motion is cancelled by the next one. */
 const GRACE = 50;
+
+/** Milliseconds within which changes of one kind are one step of the history. */
+const TOGETHER = 1500;
 
 /** Milliseconds without changes before less urgent work follows: address, description, other initial states. */
 const STILL = 180;
@@ -86,16 +90,23 @@ class Page {
   constructor(source, scene) {
     [this.source, this.scene] = [source, scene];
     this.quantities = scene.quantities;
+    this.step = this.last = history.state?.step ?? 0;
     this.#readAddress();
     this.table = classTable(scene.classes);
     this.map = new RegimeMap(part("stage"), scene);
     this.hint = part("motion").innerText;
     this.motion = new MotionPanel(part("motion"));
-    this.pointed = null; // the last cell under the pointer, whose motion is shown while none is selected
-    this.cut = new CutPanel(part("cut"), scene.classes, () => this.change({ cut: "" }));
+    this.pointed = null; // the last cell under the pointer, or the example: its motion is shown while none is selected
+    this.example = null; // the cell that the page opens with
+    this.cut = new CutPanel(part("cut"), scene.classes, {
+      close: () => this.change({ cut: "" }),
+      point: (value) => this.#link(value),
+      pick: (value) => this.change({ cell: this.#onCut(value).map((one) => Number(one.toPrecision(4))) }),
+    });
     this.refiner = new Refiner(source, (found) => this.#onPicture(found), (state) => this.#onState(state));
     this.controls = new Controls(part("controls"), scene, (change) => this.#onControl(change), source.fixed);
     this.motions = new Newest((...asked) => this.#fetchMotion(...asked), (error) => this.#wrong(error), GRACE);
+    this.examples = new Newest((signal) => this.#fetchExample(signal), () => {});
     this.others = new Newest((...asked) => this.#fetchOthers(...asked), () => {});
     this.cuts = new Newest((signal) => this.#fetchCut(signal), (error) => this.#wrong(error));
     this.settle = later(() => this.#settled(), STILL);
@@ -116,12 +127,14 @@ class Page {
       pan: (shares) => this.change(moved(this.view, shares)),
       frame: (box) => this.#frame(box),
       hover: (x, y) => this.#hover(x, y),
-      leave: () => this.#point(null),
+      leave: () => this.#leave(),
       pick: (x, y) => this.#pick(this.map.cellAt(x, y)),
       step: (columns, rows) => this.#step(columns, rows),
       release: () => this.#pick(null),
       home: () => this.home(),
       key: (letter) => this.#key(letter),
+      undo: () => part("undo").click(),
+      redo: () => part("redo").click(),
     });
     part("zoom").addEventListener("click", (event) => this.#zoomButton(event.target.dataset.zoom));
     part("save").addEventListener("toggle", () => part("save").open && this.#showSizes());
@@ -129,10 +142,19 @@ class Page {
       const chosen = event.target.closest("[data-save]");
       if (chosen) this.#save(chosen.dataset.save);
     });
+    this.tour = new Tour();
+    document.addEventListener("click", (event) => {
+      if (!event.target.closest("[data-tour]")) return;
+      part("keys").close();
+      this.tour.begin();
+    });
     part("help").addEventListener("click", () => part("keys").showModal());
     part("save").addEventListener("keydown", (event) => event.key === "Escape" && this.#closeMenu(event));
     document.addEventListener("click", (event) => part("save").contains(event.target) || part("save").removeAttribute("open"));
+    window.addEventListener("popstate", (event) => this.#onStep(event));
     window.addEventListener("hashchange", () => this.#onAddress());
+    part("undo").addEventListener("click", () => history.back());
+    part("redo").addEventListener("click", () => history.forward());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#redraw());
     new ResizeObserver(() => this.#onSize()).observe(this.map.stage);
     setInterval(() => this.#lookAtWaiting(), PATIENCE);
@@ -142,6 +164,7 @@ class Page {
 
   /** Show another view. @param {Partial<import("./address.js").View>} change */
   change(change) {
+    this.examples.stop();
     const ranges = ["r", "beta"].filter((axis) => change[axis]).map((axis) => [axis, tidy(change[axis])]);
     const cells = Object.keys(change).some((key) => !["r", "beta", "quantity", "cell", "cut"].includes(key));
     this.view = { ...this.view, ...change, ...Object.fromEntries(ranges) };
@@ -161,6 +184,7 @@ class Page {
     this.map.stage.dataset.state = "refining";
     this.asked = performance.now();
     this.refiner.ask({ view, scene, columns, rows, table: this.table, kind, scale: null });
+    map.pointed = this.pointed;
     const cell = view.cell ?? this.pointed;
     if (motion && cell && this.source.live) this.motions.ask(cell, Boolean(view.cell));
     if (view.cut) {
@@ -241,8 +265,7 @@ class Page {
 
   /** Update the address and the quantities once the view has not changed for a while. */
   async #settled() {
-    const hash = hashOf(this.view, this.scene);
-    if (hash !== location.hash) history.replaceState(null, "", hash);
+    this.#remember(hashOf(this.view, this.scene));
     this.hash = location.hash;
     if (!this.source.live) return;
     const asked = queryOf(this.view, this.scene);
@@ -252,6 +275,36 @@ class Page {
     } catch {
       // the map shows the error of the view
     }
+  }
+
+  /** Put a view into the history of the browser; changes of one kind that follow each other are one step. */
+  #remember(hash) {
+    const now = performance.now();
+    const changed = hash !== location.hash;
+    const kind = changedKeys(location.hash, hash);
+    const together = kind === this.kind && now - this.changed < TOGETHER;
+    if (changed && !this.read && !together) {
+      this.step = this.last = this.step + 1;
+      history.pushState({ step: this.step }, "", hash);
+    } else if (changed || history.state?.step === undefined) {
+      history.replaceState({ step: this.step }, "", hash);
+    }
+    if (changed || this.read) [this.kind, this.changed] = [this.read ? "" : kind, now];
+    this.read = false; // whether the view was read from the address, of which the history knows
+    this.#offerSteps();
+  }
+
+  /** Enable the buttons for the steps that there are. */
+  #offerSteps() {
+    part("undo").disabled = this.step <= 0;
+    part("redo").disabled = this.step >= this.last;
+  }
+
+  /** The browser went back or forward, or the address was edited, which is a step of its own. */
+  #onStep({ state }) {
+    this.step = state?.step ?? this.step + 1;
+    this.last = Math.max(this.last, this.step);
+    this.#offerSteps();
   }
 
   /** Offer the quantities of the cells: a reduced structure has other masses for another contact. */
@@ -271,6 +324,7 @@ class Page {
   /** Read the view from the address; messages about errors in it are shown until the view changes. */
   #readAddress() {
     const { scene } = this;
+    this.read = true;
     const chosen = (this.source.live && new URLSearchParams(location.hash.slice(1)).get("contact")) || scene.contacts[0].key;
     this.quantities = scene.contacts.find(({ key }) => key === chosen)?.quantities ?? this.quantities;
     const known = { ...scene, quantities: this.quantities };
@@ -295,7 +349,8 @@ class Page {
       if (this.#resized) this.update(); // second axes take room
     }
     const cell = found.view.cell ?? this.pointed;
-    if (cell && !this.source.live) this.#showStored(found.cellAt(cell), found); // another system may do something else there
+    if (cell && !this.source.live) this.#showInFile(cell, found); // another system may do something else there
+    if (found.whole && !this.opened) this.#open();
     this.#markOutdated();
     const detail = { columns: found.columns, rows: found.rows, whole: found.whole };
     this.map.stage.dataset.cells = `${found.columns} ${found.rows}`;
@@ -374,7 +429,7 @@ class Page {
         this.#compiled(); // the pending answer has arrived
       } else if (compiling.seconds) {
         this.compiled = true;
-        this.#say(`First use: compiling, about 40 s, once only (${Math.round(compiling.seconds)} s so far)`);
+        this.#say(`First use: compiling, ${compiling.left > 1 ? `about ${this.#duration(1000 * compiling.left)} left` : "almost finished"}. This happens once per machine.`);
       } else if (this.compiled) {
         this.#compiled();
       } else if (this.message.hidden && performance.now() - this.asked > SLOW) {
@@ -400,7 +455,27 @@ class Page {
 
   #point(cell) {
     this.map.hovered = cell;
-    this.map.drawOver();
+    this.#link(cell?.[this.view.cut] ?? null);
+  }
+
+  /** Mark a place on the response curve, and the same place on the map. @param {number | null} value  of r or beta */
+  #link(value) {
+    const { cut, map, view } = this;
+    const there = value !== null && cut.curves && view.cut;
+    map.cross = there ? this.#onCut(value) : null;
+    cut.point(there ? value : this.#ofCell(view));
+    map.drawOver();
+  }
+
+  /** Where the selected cell is on the response curve. */
+  #ofCell({ cell, cut }) {
+    return cell && cut ? cell[cut === "r" ? 0 : 1] : null;
+  }
+
+  /** r and beta of a place on the response curve. */
+  #onCut(value) {
+    const { along, at } = this.cut.curves;
+    return along === "r" ? [value, at] : [at, value];
   }
 
   #hover(x, y) {
@@ -409,10 +484,33 @@ class Page {
     if (cell?.r === before?.r && cell?.beta === before?.beta) return;
     this.#point(cell);
     if (!cell || this.view.cell) return;
-    this.pointed = [cell.r, cell.beta];
+    this.map.pointed = this.pointed = [cell.r, cell.beta];
     if (this.source.live) this.motions.ask(this.pointed, false);
     else this.#showStored(cell, cell.picture);
     this.#markOutdated();
+  }
+
+  /** The pointer leaves the map; a file has one motion only, which comes back. */
+  #leave() {
+    this.#point(null);
+    if (this.source.live || this.view.cell || !this.example || this.pointed === this.example) return;
+    this.pointed = this.map.pointed = this.example;
+    this.#showInFile(this.example, this.map.whole);
+  }
+
+  /** Ask for the cell whose motion the page opens with. */
+  #open() {
+    this.opened = true;
+    if (!this.view.cell && !this.pointed) this.examples.ask();
+  }
+
+  async #fetchExample(signal) {
+    const { view } = this;
+    const { cell } = await this.source.example(view, this.scene, signal);
+    if (!cell || this.view.cell || this.pointed || systemKey(view) !== systemKey(this.view)) return;
+    this.example = this.pointed = this.map.pointed = cell;
+    this.map.drawOver();
+    this.motions.ask(cell, false);
   }
 
   #pick(cell) {
@@ -423,7 +521,7 @@ class Page {
 
   /** Deselect the cell. */
   #release() {
-    this.pointed = null;
+    this.map.pointed = this.pointed = null;
     this.motions.stop();
     this.motion.say(this.hint);
   }
@@ -440,8 +538,9 @@ class Page {
     const { view } = this;
     this.others.stop();
     const motion = await this.#slowly(this.source.motion(view, this.scene, cell, signal), cell, kept);
-    if (kept !== Boolean(this.view.cell)) return;
-    this.motion.show(motion, this.scene.classes[motion.class], kept, this.#motionKey(view, cell));
+    if (kept !== Boolean(this.view.cell) || (!this.source.live && cell !== this.pointed)) return;
+    const kind = kept ? "selected" : cell === this.example ? "example" : "";
+    this.motion.show(motion, this.scene.classes[motion.class], kind, this.#motionKey(view, cell));
     this.#markOutdated();
     requestAnimationFrame(() => part("motion").dispatchEvent(new CustomEvent("painted", { detail: { r: motion.r, beta: motion.beta } })));
     if (motion.others !== false) this.rest(motion, view, cell);
@@ -468,12 +567,18 @@ class Page {
     if (this.motion.motion === motion) this.motion.add(others);
   }
 
+  /** Show the motion in the example of a saved page, or what it contains about another cell. */
+  #showInFile(cell, found) {
+    if (cell === this.example && systemKey(this.view) === systemKey(firstView(this.scene))) this.motions.ask(cell, false);
+    else this.#showStored(found.cellAt(cell), found);
+  }
+
   /** Show what a saved page contains about a cell. */
   #showStored(cell, { quantity }) {
     if (!cell) return;
     const value = cell.value === null ? "" : ` Value of ${quantity.label}: about ${short(cell.value, 3)}.`;
     this.motion.say(`r = ${short(cell.r)}, β = ${short(cell.beta)}: ${this.scene.classes[cell.class].label}.${value} ` +
-      "This file contains maps only; to see motions, run frictionmap explore on the configuration.");
+      "This file contains the motion in one cell; to see others, run frictionmap explore on the configuration.");
   }
 
   async #fetchCut(signal) {
@@ -483,6 +588,7 @@ class Page {
     const found = await this.#waiting(this.source.cut(view, scene, view.cut, this.#placeOfCut(view), count, signal));
     const { width } = map.stage.getBoundingClientRect();
     this.cut.show(found, { left: map.area.x, right: width - map.area.x - map.area.width }, this.#cutKey(view));
+    this.#link(null);
     this.#markOutdated();
   }
 
@@ -509,6 +615,8 @@ class Page {
   #key(letter) {
     if (letter === "?") {
       part("keys").showModal();
+    } else if (letter === "p") {
+      if (this.motion.motion) this.motion.player.toggle();
     } else if (letter === "q") {
       const keys = this.quantities.map((quantity) => quantity.key);
       this.change({ quantity: keys[(keys.indexOf(this.view.quantity) + 1) % keys.length] });

@@ -12,7 +12,7 @@ export class RegimeMap {
     this.pictures = []; // from the oldest to the newest; the newer cover the older
     this.about = about;
     this.view = null;
-    this.hovered = this.kept = this.box = null;
+    this.hovered = this.kept = this.pointed = this.cross = this.box = null;
   }
 
   /** Where the cells lie, in pixels of the style sheet. */
@@ -97,8 +97,10 @@ export class RegimeMap {
 
   #drawPointers(pen) {
     keepTo(pen, this.area);
+    if (this.cross) crosshair(pen, this.#plate, this.cross);
     if (this.kept) ring(pen, this.#plate, this.kept, true);
-    if (this.hovered) ring(pen, this.#plate, [this.hovered.r, this.hovered.beta], false);
+    const cell = this.hovered ? [this.hovered.r, this.hovered.beta] : !this.kept && this.pointed;
+    if (cell) ring(pen, this.#plate, cell, false);
     if (this.box) {
       const { x, y, width, height } = this.box;
       pen.fillStyle = "rgb(43 79 166 / 0.2)";
@@ -107,6 +109,20 @@ export class RegimeMap {
       pen.strokeRect(x, y, width, height);
     }
     pen.restore();
+  }
+}
+
+/** Lines through a place, across the whole map. */
+function crosshair(pen, plate, [r, beta]) {
+  const { x, y, width, height } = plate.area;
+  for (const [thick, ink] of [[3, "rgb(255 255 255 / 0.7)"], [1, "#c2185b"]]) {
+    [pen.lineWidth, pen.strokeStyle] = [thick, ink];
+    pen.beginPath();
+    pen.moveTo(plate.x(r), y);
+    pen.lineTo(plate.x(r), y + height);
+    pen.moveTo(x, plate.y(beta));
+    pen.lineTo(x + width, plate.y(beta));
+    pen.stroke();
   }
 }
 

@@ -3,8 +3,11 @@
 import { DRAWN, colour, massColour, short } from "./axes.js";
 import { around, draw } from "./chart.js";
 import { bandsOf, drawContacts, layOut, timeOf } from "./contacts.js";
+import { Drawing } from "./drawing.js";
 import { groupRow, keyLine, make, paragraph, tableRow } from "./dom.js";
+import { Moment, sampled } from "./moment.js";
 import { row } from "./packet.js";
+import { Player } from "./player.js";
 
 const REGIMES = {
   unresolved: "Not resolved",
@@ -13,22 +16,35 @@ const REGIMES = {
   continuous: "Continuous sliding",
 };
 
+/** Words under the motion that the page opens with. */
+const HINT = "Point at the map, or tap it, to see other motions. Click to select a cell.";
+
 /** Decades of the spectrum. */
 const DECADES = 5;
 
 const TEMPLATE = `
   <h2><i></i><span class="regime"></span><small class="where"></small></h2>
+  <figure class="live">
+    <svg class="drawing" role="img"></svg>
+    <figcaption class="states"></figcaption>
+    <div class="player">
+      <button type="button" class="play"></button>
+      <input type="range" class="time" min="0" step="1" aria-label="time">
+      <select class="pace" aria-label="speed"></select>
+      <span class="slowed"></span>
+    </div>
+  </figure>
   <div class="words"></div>
   <figure class="moves">
     <figcaption class="names"></figcaption>
-    <canvas class="displacement" role="img" aria-label="displacements over time"></canvas>
-    <canvas class="force" role="img" aria-label="friction force over time"></canvas>
+    <div class="plot"><canvas class="displacement" role="img" aria-label="displacements over time"></canvas></div>
+    <div class="plot"><canvas class="force" role="img" aria-label="friction force over time"></canvas></div>
   </figure>
   <div class="pair moves">
     <figure><figcaption><b>phase portrait</b> z′ over z</figcaption>
-      <canvas class="portrait" role="img" aria-label="velocity over displacement in the contact"></canvas></figure>
+      <div class="plot"><canvas class="portrait" role="img" aria-label="velocity over displacement in the contact"></canvas></div></figure>
     <figure><figcaption><b>friction loop</b> force over z</figcaption>
-      <canvas class="loop" role="img" aria-label="friction force over displacement in the contact"></canvas></figure>
+      <div class="plot"><canvas class="loop" role="img" aria-label="friction force over displacement in the contact"></canvas></div></figure>
   </div>
   <figure class="moves"><figcaption class="spectrum-names"></figcaption>
     <canvas class="spectrum" role="img" aria-label="harmonics of displacement and friction force"></canvas></figure>
@@ -47,6 +63,8 @@ export class MotionPanel {
     this.panel = panel;
     this.motion = null;
     this.other = null;
+    this.moment = new Moment();
+    this.player = new Player((place) => this.#show(place));
   }
 
   #part(name) {
@@ -56,32 +74,76 @@ export class MotionPanel {
   /** Show a text instead of a motion. */
   say(text) {
     this.motion = null;
+    this.player.load(null);
     this.panel.replaceChildren(make("p", { className: "hint" }, text));
   }
 
   /**
    * @param {object} motion  as the server sends it, in the units of its system
    * @param {{colour: string}} look  of the cell's class
-   * @param {boolean} kept   whether the cell is selected
+   * @param {string} kind    "selected", "example" or "" of a cell that is pointed at
    * @param {string} asked   key of the motion: the system and the cell
    */
-  show(motion, look, kept, asked) {
-    if (!this.#part("h2")) this.panel.innerHTML = TEMPLATE;
+  show(motion, look, kind, asked) {
+    if (!this.#part("h2")) this.#layOut();
     [this.motion, this.other, this.asked] = [motion, null, asked];
     const none = "none" in motion;
     this.#part("h2 i").style.background = look.colour;
     this.#part(".regime").textContent = none ? REGIMES.unresolved : REGIMES[motion.regime] ?? motion.regime;
     const { frequency, force } = motion.physical;
     const place = `r = ${short(motion.r)}${inUnits(motion.r, frequency)}, β = ${short(motion.beta)}${inUnits(motion.beta, force)}`;
-    this.#part(".where").textContent = `${kept ? "selected: " : ""}${place}${motion.contact ? `; ${motion.contact}` : ""}`;
+    this.#part(".where").textContent = `${kind && `${kind}: `}${place}${motion.contact ? `; ${motion.contact}` : ""}`;
     this.#part(".words").replaceChildren(...(none ? [motion.none] : [...motion.summary, motion.comment]).filter(Boolean).map(paragraph));
+    if (kind === "example") this.#part(".words").append(make("p", { className: "hint" }, `${HINT} `, tourButton()));
+    this.#part(".live").hidden = none;
+    if (!none) this.#enliven();
     const several = !none && motion.contacts?.length > 0;
     for (const figure of this.panel.querySelectorAll(".moves")) figure.hidden = none || several;
     this.#part(".contacts").hidden = !several;
-    if (several) layOut(this.#part(".contacts"), motion);
+    if (several) this.#layOutContacts();
     this.#part(".others").hidden = true;
     this.#part("tbody").replaceChildren(...(none ? [] : motion.entries.flatMap((entry, k, all) => this.#entry(entry, motion.numbers[k], all[k - 1]))));
-    if (!none) this.draw();
+    this.moment.clear(); // its charts are of the motion before
+    this.player.load(none ? null : motion);
+    this.draw();
+  }
+
+  #layOut() {
+    this.panel.innerHTML = TEMPLATE;
+    this.drawing = new Drawing(this.#part(".drawing"));
+    this.player.mount(this.panel);
+  }
+
+  #layOutContacts() {
+    const element = this.#part(".contacts");
+    layOut(element, this.motion);
+    for (const frame of element.querySelectorAll(".plot")) this.player.follow(frame);
+  }
+
+  /** Lay out the drawing, and the names of the contacts under it. */
+  #enliven() {
+    const { motion } = this;
+    this.drawing.show(motion);
+    const { contacts } = motion.drawing;
+    const several = contacts.length > 1;
+    const lights = contacts.map(({ name }, k) => make("span", {}, make("i", { className: "lamp" }), several ? `${k + 1} ${name}: ` : "contact: ", make("b")));
+    this.#part(".states").replaceChildren(...lights);
+  }
+
+  /** Show a moment, a place between samples, in the drawing and the charts; returns it in words. */
+  #show(place) {
+    const { motion } = this;
+    const stuck = this.drawing.set(place);
+    this.moment.set(place);
+    const { contacts } = motion.drawing;
+    const words = contacts.map(({ elastic }, k) => (stuck[k] ? (elastic ? "no slip" : "stuck") : elastic ? "slips" : "slides"));
+    [...this.#part(".states").children].forEach((light, k) => {
+      if (light.lastChild.textContent === words[k]) return;
+      light.lastChild.textContent = words[k];
+      light.classList.toggle("lit", stuck[k]);
+    });
+    const x = motion.drawing.rows.slice(0, 3).map((row, k) => `x${motion.drawing.names[k]} = ${short(sampled(motion.x, place, row * motion.tau.length), 3)}`);
+    return [...x, ...contacts.map(({ name }, k) => `${name || "contact"} ${words[k]}`)].join(", ");
   }
 
   /** Rows of a number: a heading first, where it begins those of a contact. */
@@ -122,8 +184,10 @@ export class MotionPanel {
   /** Draw again, in the current colours and size. */
   draw() {
     if (!this.motion?.tau) return;
+    this.moment.clear();
     if (this.motion.contacts?.length) {
-      drawContacts(this.#part(".contacts"), this.motion);
+      drawContacts(this.#part(".contacts"), this.motion, this.moment);
+      this.player.show();
       return;
     }
     const names = this.#drawTime();
@@ -131,6 +195,7 @@ export class MotionPanel {
     const harmonics = this.#drawSpectrum();
     this.#part(".names").replaceChildren(...names); // last, as it changes the layout of the page
     this.#part(".spectrum-names").replaceChildren(...harmonics);
+    this.player.show();
   }
 
   /** Times in excitation periods, and stops as bands behind them. */
@@ -166,12 +231,14 @@ export class MotionPanel {
     lines.push({ x: time, y: motion.z, colour: ink, width: 2.1, dash: masses === 1 ? [1, 3] : [] });
     if (other) lines.push(this.#otherLine("z", time));
     const x = [0, time.at(-1)];
-    draw(this.#part(".displacement"), { x, y: around(...lines.map((line) => line.y)), lines, bands, yName: motion.units.length });
+    const [upper, lower] = [this.#part(".displacement"), this.#part(".force")];
+    this.moment.line(upper, draw(upper, { x, y: around(...lines.map((line) => line.y)), lines, bands, yName: motion.units.length }), time);
     const forces = [{ x: time, y: motion.friction, colour: colour("warm"), width: 1.8 }];
     if (other) forces.push(this.#otherLine("friction", time));
-    draw(this.#part(".force"), {
+    const drawn = draw(lower, {
       x, y: around(...forces.map((line) => line.y)), lines: forces, bands, xName: "time / excitation period", yName: motion.units.force,
     });
+    this.moment.line(lower, drawn, time);
     const names = [];
     for (let k = 0; k < masses; k += 1) names.push(keyLine(massColour(k), masses === 1 ? "x, mass" : `x${motion.dofs[k]}`));
     names.push(keyLine(ink, "z, contact", masses === 1 ? "dotted" : "solid"), keyLine(colour("warm"), "friction"));
@@ -185,7 +252,9 @@ export class MotionPanel {
     const second = (name) => (other ? [{ x: other.z, y: other[name], colour: colour("second"), dash: [5, 3], width: 1.5 }] : []);
     const loop = (canvas, name, ink) => {
       const lines = [{ x: motion.z, y: motion[name], colour: ink, width: 1.8 }, ...second(name)];
-      draw(this.#part(canvas), { x: around(...lines.map((line) => line.x)), y: around(...lines.map((line) => line.y)), lines, left: 38 });
+      const place = this.#part(canvas);
+      const drawn = draw(place, { x: around(...lines.map((line) => line.x)), y: around(...lines.map((line) => line.y)), lines, left: 38 });
+      this.moment.dot(place, drawn, motion.z, motion[name]);
     };
     loop(".portrait", "z_rate", colour("accent"));
     loop(".loop", "friction", colour("warm"));
@@ -204,6 +273,13 @@ export class MotionPanel {
     });
     return [make("b", {}, "spectrum"), keyLine(one, "z"), keyLine(other, "friction")];
   }
+}
+
+/** A button that begins the tour. */
+function tourButton() {
+  const made = make("button", { type: "button", className: "link", textContent: "Take the tour" });
+  made.dataset.tour = "";
+  return made;
 }
 
 function uncapped(text) {

@@ -19,6 +19,7 @@ export class Refiner {
   #running = null;
   #waiting = null;
   #last = null;
+  #begun = false;
 
   /**
    * @param {object} source        where maps come from
@@ -84,7 +85,18 @@ export class Refiner {
     return blocks;
   }
 
+  /** Show the boundaries alone: the first map of a page may wait for compilation. */
+  async #drawLines(asked, signal) {
+    const packet = await this.source.lines(asked.view, asked.scene, asked.columns, signal);
+    const picture = new Picture(asked.view, asked.view, 1, 1, asked.table, asked.kind);
+    picture.about = packet.about;
+    picture.lines = asked.lines = finerLines(packet);
+    this.#begun = true;
+    this.onPicture(picture);
+  }
+
   async #refine(asked, run) {
+    if (this.source.live && !this.#begun) await this.#drawLines(asked, run.control.signal);
     const blocks = this.#blocks(asked);
     for (const [level, block] of blocks.entries()) {
       const size = this.source.fixed ?? {

@@ -6,6 +6,11 @@ import { unpack } from "./packet.js";
 /** A refusal by the server, in one line. */
 export class Refused extends Error {}
 
+function presetOf(search) {
+  const preset = new URLSearchParams(search).get("preset");
+  return preset ? `preset=${encodeURIComponent(preset)}&` : "";
+}
+
 /** The server of this page. */
 export class Server {
   /** @type {null} Maps come at any resolution. */
@@ -13,13 +18,15 @@ export class Server {
   live = true;
   /** Every request of this page cancels the previous one of its kind. */
   #page = Math.random().toString(36).slice(2);
+  /** Key of the preset in the address of this page, as a query begins with it. */
+  #preset = presetOf(location.search);
   /** Requests are counted: they may arrive in another order than they were made in. */
   #turn = 0;
 
   async #get(path, query, signal) {
     let response;
     try {
-      response = await fetch(`${path}?${query}`, { signal });
+      response = await fetch(`${path}?${this.#preset}${query}`, { signal });
     } catch (error) {
       if (error.name === "AbortError") throw error;
       throw new Refused("Cannot reach frictionmap: it does not respond. Start it again and reload this page.");
@@ -55,6 +62,17 @@ export class Server {
     return this.#packet("motion", view, scene, { at: cell.join(",") }, signal);
   }
 
+  /** The cell whose motion a page opens with: {cell}, null if nothing moves. */
+  async example(view, scene, signal) {
+    const query = queryOf(view, scene, { page: this.#page, turn: (this.#turn += 1) });
+    return (await this.#get("example", query, signal)).json();
+  }
+
+  /** The boundaries of a view at so many frequencies. */
+  lines(view, scene, count, signal) {
+    return this.#packet("lines", view, scene, { count }, signal);
+  }
+
   /** Stability of a cell, and the motion from the other initial state. */
   others(view, scene, cell, signal) {
     return this.#packet("others", view, scene, { at: cell.join(",") }, signal);
@@ -78,6 +96,6 @@ export class Server {
 
   /** The address of a view's cells as a file. */
   file(view, scene, size, ending) {
-    return `map.${ending}?${queryOf(view, scene, { ...size, quantity: view.quantity })}`;
+    return `map.${ending}?${this.#preset}${queryOf(view, scene, { ...size, quantity: view.quantity })}`;
   }
 }

@@ -1,5 +1,7 @@
 // Maps from the page itself: it was written as one file, with maps computed for the places of its sliders.
 
+import { unpack } from "./packet.js";
+
 async function inflated(text) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -45,6 +47,16 @@ export class Stored {
     const quantity = kept.values[view.quantity];
     if (quantity) packet.values = valuesOf(new Uint8Array(await inflated(quantity.steps)), quantity);
     return packet;
+  }
+
+  /** The cell whose motion the file has: {cell}. */
+  async example() {
+    return { cell: this.content.example?.cell ?? null };
+  }
+
+  /** The motion in that cell. */
+  async motion() {
+    return unpack(await inflated(this.content.example.motion));
   }
 
   /** The name of the map of a view: the places of its sliders. */

@@ -1,0 +1,121 @@
+"""Drawing of a system in motion for the page: masses, springs, contacts, and how base and loads move."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..model.system import System
+
+#: Masses that are drawn at most, and springs.
+_MASSES, _SPRINGS = 8, 12
+
+#: Springs that are weaker than this, relative to the stiffness of their masses, are rounding errors.
+_WEAK = 1e-9
+
+
+class DrawnContact(NamedTuple):
+    """A contact of a drawing."""
+
+    name: str
+    masses: list[int]  # places of its masses in the drawing: one beside a wall, two beside each other
+    base: bool  # whether its wall moves with the base
+    elastic: bool
+    belt: float  # velocity of its wall
+
+
+def drawing_of(system: System) -> dict[str, Any]:
+    """Describe what is drawn: rows of `x` that are masses, springs, contacts, loaded masses.
+
+    A spring is a pair of places in `rows`, -1 for the wall or base at the left.  Large and reduced structures
+    are drawn by their masses in contact and under load only, without springs.
+    """
+    rows = _rows(system)
+    complete = len(rows) == system.n
+    return {
+        "rows": rows,
+        "names": [str(system.dofs.numbers[row]) for row in rows],
+        "masses": system.n,
+        "springs": _springs(system.modes.stiffness) if complete else [],
+        "base": system.excitation == "base",
+        "loaded": [rows.index(row) for row in _loaded(system) if row in rows],
+        "contacts": [contact._asdict() for contact in _contacts(system, rows)],
+    }
+
+
+def drawing_curves(system: System, tau: np.ndarray) -> dict[str, np.ndarray]:
+    """Motion of the base (tau,) and loads on the `loaded` masses (masses, tau), float32."""
+    rows = _rows(system)
+    loaded = [row for row in _loaded(system) if row in rows]
+    if system.excitation == "base":
+        phasors = {1: 1.0 + 0.0j} if system.general is None else system.general.base
+        return {"base": _in_time({n: np.array([u]) for n, u in phasors.items()}, tau)[0]}
+    return {"load": _in_time({n: load[loaded] for n, load in _forces(system).items()}, tau)}
+
+
+def _in_time(phasors: Mapping[int, np.ndarray], tau: np.ndarray) -> np.ndarray:
+    """Re sum u_n e^{i n tau}, float32 (values, tau)."""
+    total = sum(np.outer(u, np.exp(1j * n * tau)).real for n, u in phasors.items())
+    return np.asarray(total, dtype=np.float32)
+
+
+def _vectors(system: System) -> np.ndarray:
+    """Vectors c of all contacts, (N, n)."""
+    general = system.general
+    return system.contact_vector[np.newaxis] if general is None else general.vectors
+
+
+def _rows(system: System) -> list[int]:
+    """Rows of the masses that are drawn."""
+    if system.n <= _MASSES and system.reduction is None:
+        return list(range(system.n))
+    touched = {int(row) for row in np.flatnonzero(_vectors(system).any(axis=0))}
+    return sorted([*touched, *(row for row in _loaded(system) if row not in touched)][:_MASSES])
+
+
+def _forces(system: System) -> Mapping[int, np.ndarray]:
+    """Phasors (n,) of the loads on the masses by order."""
+    if system.general is not None:
+        return system.general.forces
+    if system.loads is not None:
+        return {1: np.array(system.loads)}
+    return {1: np.eye(system.n)[system.dofs.row(system.load_mass)].astype(complex)}  # type: ignore[arg-type]
+
+
+def _loaded(system: System) -> list[int]:
+    """Rows of masses under load, the largest first; none if the base moves."""
+    if system.excitation == "base":
+        return []
+    size = sum(np.abs(load) for load in _forces(system).values())
+    order = np.argsort(-np.asarray(size), kind="stable")
+    return [int(row) for row in order if np.asarray(size)[row] > 0.0][:_MASSES]
+
+
+def _springs(stiffness: np.ndarray) -> list[list[int]]:
+    """Springs of a stiffness matrix; none if there are too many for a drawing."""
+    size = np.sqrt(np.diag(stiffness))
+    coupled = np.abs(stiffness) > _WEAK * np.outer(size, size)
+    to_ground = stiffness.sum(axis=1) > _WEAK * size**2
+    found = [[-1, int(k)] for k in np.flatnonzero(to_ground)]
+    found += [[int(i), int(j)] for i, j in np.argwhere(np.triu(coupled, 1))]
+    return found if len(found) <= _SPRINGS else []
+
+
+def _contacts(system: System, rows: list[int]) -> list[DrawnContact]:
+    def places(vector: np.ndarray) -> list[int]:
+        return [rows.index(int(row)) for row in np.flatnonzero(vector)]
+
+    general = system.general
+    if general is None:
+        return [DrawnContact("", places(system.contact_vector), bool(system.base_motion), False, 0.0)]
+    several = general.count > 1
+    return [
+        DrawnContact(
+            group.name if several else "",
+            places(group.vector),
+            bool(group.base),
+            group.stiffness is not None,
+            float(group.first.wall_velocity),
+        )
+        for group in general.groups
+    ]

@@ -1,0 +1,63 @@
+// A tour of the page in six steps.
+
+import { make } from "./dom.js";
+
+/** Where a step points, and what it says. */
+const STEPS = [
+  ["#stage", "The map", "Each point is one steady state. Across is the frequency of the excitation, up is the friction force. The colours show what the contact does: it slides, stops several times per cycle, or stays stuck."],
+  [".live", "The motion", "This is the motion in the circled cell, slowed. The lamp is on while the contact is stuck. Pause it, or drag in the charts below, to look at one moment."],
+  ["#stage", "Other cells", "Point at the map to see the motion there. A click selects the cell, so that it stays. Zoom with the wheel, with two fingers or with + and −."],
+  ["#controls", "Parameters", "Sliders change friction, damping and masses, and the map and the motion follow. The first menu has other systems. Undo takes a change back."],
+  ["[data-cut=r]", "Response curves", "This shows the amplitude along the frequency or the friction, through the selected cell. A line links the curve to the map."],
+  ["#save", "Save", "Save a link, a configuration, a picture or the cells. Help lists the keys."],
+];
+
+export class Tour {
+  #step = 0;
+
+  constructor() {
+    const button = (text, does) => make("button", { type: "button", textContent: text, onclick: does });
+    this.title = make("h2");
+    this.text = make("p");
+    this.back = button("Back", () => this.#go(this.#step - 1));
+    this.next = button("Next", () => this.#go(this.#step + 1));
+    this.card = make("section", { id: "tour", hidden: true, ariaLabel: "Tour", ariaLive: "polite" },
+      this.title, this.text, make("div", {}, this.back, this.next, button("End the tour", () => this.#end())));
+    this.card.addEventListener("keydown", (event) => {
+      if (event.key !== "Escape") return;
+      this.#end();
+      event.stopPropagation();
+    });
+    document.body.append(this.card);
+  }
+
+  begin() {
+    this.from = document.activeElement;
+    this.card.hidden = false;
+    this.#go(0);
+    this.next.focus();
+  }
+
+  #go(step) {
+    document.querySelector(".toured")?.classList.remove("toured");
+    if (step >= STEPS.length) {
+      this.#end();
+      return;
+    }
+    this.#step = step;
+    const [place, title, text] = STEPS[step];
+    this.title.textContent = `${step + 1} of ${STEPS.length}: ${title}`;
+    this.text.textContent = text;
+    this.back.disabled = step === 0;
+    this.next.textContent = step === STEPS.length - 1 ? "Done" : "Next";
+    const target = document.querySelector(place);
+    target?.classList.add("toured");
+    target?.scrollIntoView({ block: "center" });
+  }
+
+  #end() {
+    document.querySelector(".toured")?.classList.remove("toured");
+    this.card.hidden = true;
+    this.from?.focus();
+  }
+}

@@ -15,7 +15,9 @@ general_cell       one cell of such a system: its motion, contact by contact
 cell               one cell: its motion, and that from another initial state
 general_cut        response curves through a view of such a system
 cut                response curves through a view
+subjects           responses that a goal can be about
 queries            queries of the page, checked like a configuration
+goal               the friction that meets the goal of a design
 packets            binary packets for the page
 scene_description  description of a scene for the page: names, ranges, parameters that can be changed, colours
 jobs               running requests, cancellation, state of compilation

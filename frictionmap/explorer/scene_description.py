@@ -14,6 +14,7 @@ from ..version import __version__
 from .lines import lines_of
 from .pieces import marks, quantities_of
 from .scene import Scene
+from .subjects import describe_subjects
 from .views import View
 
 #: Frequencies of the range shown at which boundaries of a reduced structure are compared with finer ones.
@@ -64,6 +65,7 @@ def description(scene: Scene, view: View) -> dict[str, Any]:
         "system": "; ".join((system.describe(), *_costs(view))),
         "quantities": offered_quantities(view),
         "marks": marks(system),
+        "subjects": describe_subjects(system),
         "lines": [line._asdict() for line in lines_of(view)],
         **_classes(view),
         **units_of(scene, view),

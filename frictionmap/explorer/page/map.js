@@ -13,6 +13,7 @@ export class RegimeMap {
     this.about = about;
     this.view = null;
     this.hovered = this.kept = this.box = null;
+    this.overlay = null; // draws over cells and boundaries: (pen, plate)
   }
 
   /** Where the cells lie, in pixels of the style sheet. */
@@ -92,6 +93,7 @@ export class RegimeMap {
   drawOver() {
     const { pen } = sharp(this.over);
     this.#plate.drawLines(pen);
+    this.overlay?.(pen, this.#plate);
     this.#drawPointers(pen);
   }
 

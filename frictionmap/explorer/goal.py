@@ -27,7 +27,7 @@ _STILL = 1e-12
 
 
 class Goal(NamedTuple):
-    """What is asked."""
+    """A question about the friction over a band of frequencies."""
 
     question: str
     band: tuple[float, ...]  # frequency ratios

@@ -1,9 +1,9 @@
-// A goal of a design: what is asked, as it stands in an address and in a query, and its answer in sentences.
+// A goal of a design: as it stands in an address and in a query, and its answer in sentences.
 
 import { short } from "./axes.js";
 
 /**
- * What is asked.
+ * A question about the friction over a band of frequencies.
  * @typedef {object} Goal
  * @property {string} ask               a key of `GOALS`; "": nothing
  * @property {[number, number]} band    frequency ratios

@@ -86,10 +86,10 @@ function later(work, milliseconds) {
 class Page {
   constructor(source, scene) {
     [this.source, this.scene] = [source, scene];
-    this.quantities = scene.quantities;
     this.design = new Design(source, scene, {
       settle: () => this.settle(), select: (cell) => this.change({ cell }), newest: (work, onError) => new Newest(work, onError),
     });
+    this.quantities = scene.quantities;
     this.#readAddress();
     this.table = classTable(scene.classes);
     this.map = new RegimeMap(part("stage"), scene);

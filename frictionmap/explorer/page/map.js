@@ -11,9 +11,9 @@ export class RegimeMap {
     this.over = stage.querySelector("#over");
     this.pictures = []; // from the oldest to the newest; the newer cover the older
     this.about = about;
+    this.overlay = null; // draws over cells and boundaries: (pen, plate)
     this.view = null;
     this.hovered = this.kept = this.box = null;
-    this.overlay = null; // draws over cells and boundaries: (pen, plate)
   }
 
   /** Where the cells lie, in pixels of the style sheet. */

@@ -3,6 +3,7 @@
 ===========  ==========================================================================================
 module       what is in it
 ===========  ==========================================================================================
+watching     cancelling a question while it is computed
 extremes     maxima of functions of one variable, many at a time
 minimum      minima and crossings of curves with kinks
 band         the frequency band, and the frequencies at which curves over it are sampled

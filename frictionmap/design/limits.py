@@ -12,6 +12,7 @@ from ..theory.boundary_curves import find_curves
 from .band import Band, limit_samples
 from .extremes import brackets_of, sharpened
 from .minimum import Points, changes, crossing
+from .watching import current_watch, look
 
 #: A boundary of a system at frequencies (n_r,) for one mu.
 Limit = Callable[[System, np.ndarray, float], np.ndarray]
@@ -28,6 +29,7 @@ _REACH = 10.0
 
 def stick_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
     """Friction ratio from which all contacts hold, (n_r,): beta_stick, or beta_noslip of elastic contacts."""
+    look()
     if system.general is None:
         return find_curves(system, r, np.array([mu])).beta_stick[0]
     needed = least_static_friction(system, r)
@@ -42,6 +44,7 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
     InputError
         All contacts are elastic: they have no such limit.
     """
+    look()
     if system.general is None:
         return find_curves(system, r, np.array([mu])).beta_lim[0]
     if system.general.elastic.any():
@@ -49,7 +52,7 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
             "cannot find friction without stops with contact_stiffness: a spring in the contact has no such "
             "limit; use question stuck"
         )
-    return find_boundaries(system, r, np.array([mu])).beta_lim[0]
+    return find_boundaries(system, r, np.array([mu]), watch=current_watch()).beta_lim[0]
 
 
 def has_no_stop_limit(system: System) -> bool:

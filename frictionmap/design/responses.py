@@ -15,6 +15,7 @@ from ..steady.maps import compute
 from ..steady.quantity_data import quantity_request, read_result
 from ..steady.scattered import scattered_cells
 from .limits import stick_limit
+from .watching import current_watch, look
 
 #: What is made small: the largest displacement of a mass, its first harmonic, the largest displacement in a
 #: contact, or the largest force on the ground.
@@ -111,7 +112,9 @@ class Responses:
             return _largest([self._general(axes, solver) for solver in self._solvers])
         parts = []
         for solver in self._solvers:
-            cells, out = compute(self.system, axes, solver, self._request, self._threads, None)
+            cells, out = compute(
+                self.system, axes, solver, self._request, self._threads, None, current_watch()
+            )
             parts.append(self._read(cells, out, (0,)))
         return _largest(parts)
 
@@ -126,6 +129,7 @@ class Responses:
         return Values(*(array[back] for array in found))
 
     def _scattered(self, r: np.ndarray, beta: np.ndarray) -> Values:
+        look()
         order = np.argsort(r, kind="stable")
         parts = []
         for solver in self._solvers:
@@ -148,7 +152,9 @@ class Responses:
 
     def _general(self, axes: dict[str, np.ndarray], solver: Solver) -> Values:
         stick = stick_limit(self.system, axes["r"], self.mu)[np.newaxis]
-        found = solve_cells(self.system, axes, stick, solver, self._threads, None, None, masses=True)
+        found = solve_cells(
+            self.system, axes, stick, solver, self._threads, None, current_watch(), masses=True
+        )
         if self.response.quantity == "amplitude":
             size = cell_values("amplitude", self.system, found)[0, ..., self._row]
         else:

@@ -17,7 +17,9 @@ general_cell       one cell of a system with several contacts: its motion, conta
 cell               one cell: its motion, and that from another initial state
 general_cut        response curves through a view of a system with several contacts
 cut                response curves through a view
+subjects           responses that a goal can be about
 queries            queries of the page, checked like a configuration
+goal               the friction that meets the goal of a design
 packets            binary packets for the page
 presets            systems that the page offers besides its own
 scene_description  description of a scene for the page: names, ranges, parameters that can be changed, colours

@@ -15,6 +15,7 @@ from .lines import lines_of
 from .pieces import marks, quantities_of
 from .presets import PRESETS
 from .scene import Scene
+from .subjects import describe_subjects
 from .views import View
 
 #: Frequencies of the range shown at which boundaries of a reduced structure are compared with finer ones.
@@ -65,6 +66,7 @@ def description(scene: Scene, view: View) -> dict[str, Any]:
         "system": "; ".join((system.describe(), *_costs(view))),
         "quantities": offered_quantities(view),
         "marks": marks(system),
+        "subjects": describe_subjects(system),
         "lines": [line._asdict() for line in lines_of(view)],
         **_classes(view),
         **units_of(scene, view),

@@ -105,6 +105,7 @@ class Page:
             "/motion": self._motion,
             "/others": self._others,
             "/cut": self._cut,
+            "/goal": self._goal,
             "/configuration.toml": self._configuration,
             "/sizes": self._sizes,
             "/map.nc": self._saved(".nc"),
@@ -264,6 +265,16 @@ class Page:
         with self._enter("cut", query, gone) as job:
             header, arrays = cut(query.view, *line, job)
         return _packet(({**header, **units_of(self.scene, query.view)}, arrays))
+
+    def _goal(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from . import goal, queries
+        from .scene_description import units_of
+
+        query = queries.read_query(self.scene, text, goal.GOAL)
+        asked = goal.goal_of(query)
+        with self._enter("goal", query, gone) as job:
+            found = goal.answer_goal(query.view, asked, job)
+        return _json({**found, **units_of(self.scene, query.view)})
 
     def _configuration(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries

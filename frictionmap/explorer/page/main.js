@@ -5,6 +5,7 @@ import { forgetColours, short } from "./axes.js";
 import { classTable } from "./colours.js";
 import { Controls } from "./controls.js";
 import { CutPanel } from "./cut.js";
+import { Design } from "./design.js";
 import { ZOOM, listen, moved, zoomed } from "./gestures.js";
 import { legend } from "./legend.js";
 import { RegimeMap } from "./map.js";
@@ -89,6 +90,9 @@ function later(work, milliseconds) {
 class Page {
   constructor(source, scene) {
     [this.source, this.scene] = [source, scene];
+    this.design = new Design(source, scene, {
+      settle: () => this.settle(), select: (cell) => this.change({ cell }), newest: (work, onError) => new Newest(work, onError),
+    });
     this.quantities = scene.quantities;
     this.step = this.last = history.state?.step ?? 0;
     this.#readAddress();
@@ -122,6 +126,7 @@ class Page {
   }
 
   begin() {
+    this.design.begin(part("controls"), this.map, part("pins"));
     listen(this.map, {
       zoom: (factors, point) => this.change(zoomed(this.view, factors, point)),
       pan: (shares) => this.change(moved(this.view, shares)),
@@ -178,6 +183,7 @@ class Page {
     map.view = view;
     map.kept = view.cell;
     this.controls.set(view);
+    this.design.update(view);
     map.draw();
     const { columns, rows } = (this.size = map.size);
     const kind = this.quantities.find((quantity) => quantity.key === view.quantity).scale;
@@ -265,7 +271,7 @@ class Page {
 
   /** Update the address and the quantities once the view has not changed for a while. */
   async #settled() {
-    this.#remember(hashOf(this.view, this.scene));
+    this.#remember(hashOf(this.view, this.scene) + this.design.hash);
     this.hash = location.hash;
     if (!this.source.live) return;
     const asked = queryOf(this.view, this.scene);
@@ -328,10 +334,10 @@ class Page {
     const chosen = (this.source.live && new URLSearchParams(location.hash.slice(1)).get("contact")) || scene.contacts[0].key;
     this.quantities = scene.contacts.find(({ key }) => key === chosen)?.quantities ?? this.quantities;
     const known = { ...scene, quantities: this.quantities };
-    const { view: asked, wrong } = viewOf(location.hash, known, this.source.fixed?.values);
+    const { view: asked, wrong } = viewOf(this.design.read(location.hash), known, this.source.fixed?.values);
     const { view, note } = this.#inFile(asked);
     this.view = view;
-    this.#note([...wrong, note].filter(Boolean).join("\n"));
+    this.#note([...wrong, ...this.design.wrong, note].filter(Boolean).join("\n"));
   }
 
   #redraw() {
@@ -654,7 +660,7 @@ class Page {
     this.#closeMenu();
     try {
       if (what === "link") {
-        await copy(location.href.split("#")[0] + hashOf(view, scene));
+        await copy(location.href.split("#")[0] + hashOf(view, scene) + this.design.hash);
         this.#toast("The link to this view is copied.");
       } else if (what === "configuration") {
         await copy(await source.configuration(view, scene, map.size));

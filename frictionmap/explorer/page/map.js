@@ -11,6 +11,7 @@ export class RegimeMap {
     this.over = stage.querySelector("#over");
     this.pictures = []; // from the oldest to the newest; the newer cover the older
     this.about = about;
+    this.overlay = null; // draws over cells and boundaries: (pen, plate)
     this.view = null;
     this.hovered = this.kept = this.pointed = this.cross = this.box = null;
   }
@@ -92,6 +93,7 @@ export class RegimeMap {
   drawOver() {
     const { pen } = sharp(this.over);
     this.#plate.drawLines(pen);
+    this.overlay?.(pen, this.#plate);
     this.#drawPointers(pen);
   }
 

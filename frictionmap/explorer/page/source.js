@@ -83,6 +83,12 @@ export class Server {
     return this.#packet("cut", view, scene, { along, place, count }, signal);
   }
 
+  /** The answer to a goal of a design. @param {object} asked  keys of the query */
+  async goal(view, scene, asked, signal) {
+    const query = queryOf(view, scene, { ...asked, page: this.#page, turn: (this.#turn += 1) });
+    return (await this.#get("goal", query, signal)).json();
+  }
+
   /** The configuration of a view. */
   async configuration(view, scene, size) {
     const query = queryOf(view, scene, { ...size, quantity: view.quantity });

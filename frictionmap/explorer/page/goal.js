@@ -1,0 +1,152 @@
+// A goal of a design: as it stands in an address and in a query, and its answer in sentences.
+
+import { short } from "./axes.js";
+
+/**
+ * A question about the friction over a band of frequencies.
+ * @typedef {object} Goal
+ * @property {string} ask               a key of `GOALS`; "": nothing
+ * @property {[number, number]} band    frequency ratios
+ * @property {string} of                key of a subject: a mass or a contact
+ * @property {number | null} limit      largest response that is allowed, a ratio
+ */
+
+/** Goals by their keys. */
+export const GOALS = {
+  "least-peak": "least peak of",
+  "no-stop": "no stops",
+  stuck: "always stuck",
+  "at-most": "never above",
+};
+
+/** Goals that are about the response of a mass or a contact. */
+const OF_RESPONSE = ["least-peak", "at-most"];
+
+export function isOfResponse({ ask }) {
+  return OF_RESPONSE.includes(ask);
+}
+
+/** No goal, and the band that it begins with. @returns {Goal} */
+export function noGoal(scene) {
+  const [low, high] = scene.r;
+  return { ask: "", band: [low || Number((0.1 * high).toPrecision(1)), high], of: scene.subjects?.[0].key ?? "", limit: null };
+}
+
+/** Whether all that a goal needs is known. */
+export function isComplete({ ask, limit }) {
+  return ask !== "" && (ask !== "at-most" || limit !== null);
+}
+
+/** A goal as keys of a query. */
+export function askedOf({ ask, band, of, limit }) {
+  const asked = { goal: ask, band: band.join(",") };
+  if (OF_RESPONSE.includes(ask)) asked.of = of;
+  if (ask === "at-most") asked.limit = limit;
+  return asked;
+}
+
+/** A goal as it stands in an address; "" if there is none. */
+export function textOf({ ask, band, of, limit }) {
+  if (!ask) return "";
+  const parts = [ask, band.join(",")];
+  if (OF_RESPONSE.includes(ask)) parts.push(of);
+  if (ask === "at-most" && limit !== null) parts.push(String(limit));
+  return parts.join(":");
+}
+
+/** What the goal of an address looks like, for a message. */
+export const VALID = "GOAL:FROM,TO:OF:LIMIT, such as least-peak:0.3,2.2:mass-1";
+
+/** The goal of an address; null if it is invalid. @returns {Goal | null} */
+export function goalOf(text, scene) {
+  const [ask, band = "", of = noGoal(scene).of, limit] = text.split(":");
+  const ends = band.split(",").map(Number);
+  const known = Object.hasOwn(GOALS, ask) && ends.length === 2 && ends[0] > 0 && ends[0] < ends[1] && Number.isFinite(ends[1]);
+  const most = limit === undefined ? null : Number(limit);
+  return known && (most === null || most > 0) ? { ask, band: ends, of, limit: most } : null;
+}
+
+/** A ratio, and in its unit in brackets if that is known. */
+export function inUnits(value, one) {
+  return one ? `${short(value)} (${short(value * one.factor)} ${one.unit})` : short(value);
+}
+
+/** Lengths over P/k1 or Y, and in their unit. */
+export function lengthOf(value, { units, physical }) {
+  return physical.length ? `${short(value)} ${units.length} (${short(value * physical.length.factor)} ${physical.length.unit})` : `${short(value)} ${units.length}`;
+}
+
+const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** A friction ratio, and the friction force if that is known. */
+function friction(beta, { physical }) {
+  return `β = ${inUnits(beta, physical.force)}`;
+}
+
+function place(r, { physical }) {
+  return `r = ${inUnits(r, physical.frequency)}`;
+}
+
+/** A range of friction in words. */
+function rangeOf([low, high], answer) {
+  const { force } = answer.physical;
+  if (high === null) return low === 0 ? "any friction" : `friction at or above ${friction(low, answer)}`;
+  return `β from ${inUnits(low, force)} to ${inUnits(high, force)}`;
+}
+
+function rangesOf(answer) {
+  return answer.ranges.map((range) => rangeOf(range, answer)).join(", and for ");
+}
+
+/** Where the least peak is reached, and what the contact does there. */
+function reached({ kind, peaks, ...answer }) {
+  const places = peaks.map(({ r, regime, stops }) => {
+    const counted = stops > 0 ? `, ${short(stops)} stops per cycle` : "";
+    return `at ${place(r, answer)}: ${regime}${counted}`;
+  });
+  if (kind === "two equal peaks") return `Two equal peaks, ${places.join("; and ")}.`;
+  const more = { plateau: " More friction changes nothing.", "at the bound": " It is at the end of the friction that was searched." };
+  return `It is reached ${places[0]}.${more[kind] ?? ""}`;
+}
+
+const SENTENCES = {
+  "least-peak": (answer, label) => [
+    `Least peak of ${label}: ${lengthOf(answer.peak ?? Infinity, answer)}, at ${friction(answer.beta, answer)}.`,
+    reached(answer),
+    ...(answer.peak ? [`At most 5 % above it for ${rangesOf(answer)}.`] : []),
+  ],
+  "at-most": (answer, label) => [
+    `${capital(label)} stays within ${lengthOf(answer.limit, answer)} for ${rangesOf(answer)}.`,
+    `Least peak: ${lengthOf(answer.peak ?? Infinity, answer)}, at ${friction(answer.beta, answer)}. ${reached(answer)}`,
+  ],
+  "no-stop": (answer) => {
+    if (!answer.ranges.length) return [`Any friction causes stops in the band; ${place(answer.r, answer)} decides.`];
+    if (answer.beta === null) return ["No stops with any friction."];
+    return [`No stops up to ${friction(answer.beta, answer)}; ${place(answer.r, answer)} decides.`];
+  },
+  stuck: (answer) => answer.ranges.length
+    ? [`Always stuck at or above ${friction(answer.beta, answer)}; ${place(answer.r, answer)} decides.`]
+    : [`No friction holds over the whole band: stuck, the structure resonates without damping at ${place(answer.r, answer)}.`],
+};
+
+/** The answer to a goal in sentences. @param {object} answer  as the server sends it  @param {string} label  of its subject */
+export function sentencesOf(answer, label) {
+  return SENTENCES[answer.goal](answer, label);
+}
+
+/** The optimum in a few words. */
+export function shortly(answer) {
+  const { beta, peak } = answer;
+  if (beta === null) return "no friction";
+  const size = peak === undefined ? "" : `, peak ${lengthOf(peak ?? Infinity, answer)}`;
+  return `${friction(beta, answer)}${size}`;
+}
+
+/** A goal in a few words. */
+export function wordsOf(goal, label, about) {
+  const { frequency } = about.physical;
+  const [low, high] = goal.band.map((r) => short(frequency ? r * frequency.factor : r));
+  const band = frequency ? `${low} to ${high} ${frequency.unit}` : `r ${low} to ${high}`;
+  const limit = goal.ask === "at-most" && goal.limit !== null ? ` ${lengthOf(goal.limit, about)},` : "";
+  return `${GOALS[goal.ask]}${limit}${isOfResponse(goal) ? ` ${label}` : ""}, ${band}`;
+}

@@ -1,9 +1,11 @@
 """What the page is sent to draw a motion, its first cell, presets, and expected times of compilation."""
 
 import json
+import re
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from pages import TWO_MASSES, ask, packet, scene_from, served
 from structures import chain_matrices
 from test_explore_contacts import ELASTIC, TWO
@@ -220,3 +222,13 @@ def test_the_time_left_is_that_of_the_job_that_is_waited_for(tmp_path, monkeypat
     jobs.close()
     assert jobs._times.expected("map one") == 100.0  # measured by rehearsals only
     assert jobs._times.expected("cut one") < 60.0
+
+
+@pytest.mark.parametrize("kind", ["one", "structure", "general"])
+def test_every_kind_of_work_of_the_server_has_an_expected_time(kind):
+    source = (ROOT / "frictionmap/explorer/server.py").read_text(encoding="utf-8")
+    alone = set(re.findall(r'self\._enter\("(\w+)", query, gone\)', source))
+    assert {"lines", "goal", "cut"} <= alone
+    times = CompileTimes()
+    for work in alone | {"map", "quantity", "motion", "others"}:
+        assert times.expected(f"{work} {kind}") > 0.0

@@ -23,12 +23,13 @@ from ...regimes import (
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from .follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
-from .problem import padded, set_row
+from .problem import padded
 from .record import LEAST_SLIP, RANGES
 from .series import Friction
-from .steady import NO_REPEAT, REPEATS, find, from_rest, make_tools, measure, steady_period
+from .steady import NO_REPEAT, REPEATS, begin_row, from_rest, make_tools, solve, steady_period
 
-#: A start is moved on by this many steps between the last two cells at most.
+#: Cells of a row that point to the next one, and the farthest that it may be, in steps between the last two.
+_KEPT = 3
 _FARTHEST = 3.0
 
 
@@ -45,11 +46,11 @@ class Grid(NamedTuple):
 
 
 class Trail(NamedTuple):
-    """The steady states of the last two cells of a row, to begin the next one from."""
+    """The steady states of the last cells of a row, latest first, to begin the next one from."""
 
-    states: np.ndarray  # (2, 3, ...) the last one and the one before it
-    senses: np.ndarray  # (2, N)
-    beta: np.ndarray  # (2,)
+    states: np.ndarray  # (_KEPT, 3, ...)
+    senses: np.ndarray  # (N,) the pattern of all of them
+    beta: np.ndarray  # (_KEPT,)
     count: np.ndarray  # (1,) int: how many there are
 
 
@@ -199,38 +200,47 @@ def make_trail(problem):
     """Allocate the memory of the last two cells."""
     contacts, modes = problem.chi.shape
     return Trail(
-        np.zeros((2, 3, padded(max(modes, contacts)))), np.zeros((2, contacts), np.int64), np.zeros(2),
+        np.zeros((_KEPT, 3, padded(max(modes, contacts)))), np.zeros(contacts, np.int64), np.zeros(_KEPT),
         np.zeros(1, np.int64),
     )  # fmt: skip
 
 
 @kernel
 def _remember(memory, beta, trail):
-    """Keep the steady state of a cell, and the one before it if it has the same pattern."""
-    same = trail.count[0] > 0
+    """Keep the steady state of a cell, and those before it if they have the same pattern."""
+    same = True
     for j in range(memory.senses.size):
-        same = same and memory.senses[j] == trail.senses[0, j]
-        trail.senses[0, j] = memory.senses[j]
-    trail.count[0] = 2 if same else 1
-    trail.beta[1], trail.beta[0] = trail.beta[0], beta
+        same = same and memory.senses[j] == trail.senses[j]
+        trail.senses[j] = memory.senses[j]
+    trail.count[0] = min(trail.count[0] + 1, _KEPT) if same else 1
+    for k in range(trail.count[0] - 1, 0, -1):
+        trail.beta[k] = trail.beta[k - 1]
+        for part in range(3):
+            for i in range(memory.start.shape[1]):
+                trail.states[k, part, i] = trail.states[k - 1, part, i]
+    trail.beta[0] = beta
     for part in range(3):
         for i in range(memory.start.shape[1]):
-            trail.states[1, part, i] = trail.states[0, part, i]
             trail.states[0, part, i] = memory.start[part, i]
 
 
 @kernel
 def _begin_ahead(beta, trail, memory):
-    """Move the start from the steady state of the last cell on to where those of the last two point."""
-    if trail.count[0] < 2:
-        return
-    ahead = (beta - trail.beta[0]) / (trail.beta[0] - trail.beta[1])
-    if not abs(ahead) <= _FARTHEST:
+    """Begin where the steady states of the last cells point: at the polynomial in beta through them."""
+    count = trail.count[0]
+    if count < 2 or not abs(beta - trail.beta[0]) <= _FARTHEST * abs(trail.beta[0] - trail.beta[1]):
         return
     for part in range(3):
         for i in range(memory.start.shape[1]):
-            step = trail.states[0, part, i] - trail.states[1, part, i]
-            memory.start[part, i] = trail.states[0, part, i] + ahead * step
+            memory.start[part, i] = 0.0
+    for k in range(count):
+        weight = 1.0
+        for other in range(count):
+            if other != k:
+                weight *= (beta - trail.beta[other]) / (trail.beta[k] - trail.beta[other])
+        for part in range(3):
+            for i in range(memory.start.shape[1]):
+                memory.start[part, i] += weight * trail.states[k, part, i]
 
 
 @kernel
@@ -250,7 +260,7 @@ def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
         m, i = index // n_r, index % n_r
         if problem.r[i] == 0.0:
             continue
-        set_row(problem, i, row)
+        begin_row(problem, i, tools)
         trail.count[0] = 0
         for b in range(grid.beta.size):
             if cancel[0] != 0:
@@ -263,16 +273,12 @@ def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
                 _begin_ahead(grid.beta[b], trail, memory)
             else:
                 from_rest(problem, row, friction, grid.starts[i], work, memory, record)
-            found = find(
-                problem, row, friction, grid.cycles, grid.tolerance, work, memory, tools.ring, record
-            )
-            measured = 0, math.nan
+            found, halves, multiplier = solve(problem, friction, grid.cycles, grid.tolerance, tools, RANGES)
             if found.status == REPEATS:
-                measured = measure(problem, row, friction, found.halves, work, memory, record, RANGES)
                 _remember(memory, grid.beta[b], trail)
             else:
                 trail.count[0] = 0
-            _store(problem, out, m, i, b, found, measured, memory.counts, record)
+            _store(problem, out, m, i, b, found, (halves, multiplier), memory.counts, record)
 
 
 @entry

@@ -73,7 +73,7 @@ def clear_record(record):
 
 
 @kernel
-def _include(ends, i, value):
+def include(ends, i, value):
     """Widen range i of `ends` (2, ...) to include a value."""
     ends[0, i] = min(ends[0, i], value)
     ends[1, i] = max(ends[1, i], value)
@@ -126,10 +126,10 @@ def _keep_range(series, at, end, size, ends, i, scratch):
     ends, i : lowest and highest values (2, ...), and the place in them
     scratch : scratch
     """
-    _include(ends, i, series[at, 0])
+    include(ends, i, series[at, 0])
     if _is_within(series, at, ends, i) or _is_still(series, at, size):
         return
-    _include(ends, i, value_at(series, at, end))
+    include(ends, i, value_at(series, at, end))
     sign = 1.0
     for k in range(1, LONG):
         if series[at, k] != 0.0:
@@ -144,7 +144,7 @@ def _keep_range(series, at, end, size, ends, i, scratch):
         scratch[_SLOPE, k] = sign * (k + shift + 1.0) * series[at, k + shift + 1]
     x = first_zero(scratch, _SLOPE)
     while x < end:
-        _include(ends, i, value_at(series, at, x))
+        include(ends, i, value_at(series, at, x))
         sign = -sign
         x = _next_turn(series, at, x, sign, scratch)
 
@@ -259,8 +259,8 @@ def _keep_forces(problem, work, end, record):
 def mirror(record):
     """Widen the ranges by those of the half period that mirrors the one recorded."""
     for i in range(record.ranges.shape[1]):
-        _include(record.ranges, i, -record.ranges[0, i])
-        _include(record.ranges, i, -record.ranges[1, i])
+        include(record.ranges, i, -record.ranges[0, i])
+        include(record.ranges, i, -record.ranges[1, i])
 
 
 @kernel
@@ -277,8 +277,8 @@ def record_step(problem, row, work, end, record):
     series, scratch = work.series, work.scratch
     for j in range(contacts):
         if problem.spring[j] == 0.0 and problem.belt[j] == 0.0:  # at rest, or on its way in one direction
-            _include(record.ranges, j, series[first + j, 0])
-            _include(record.ranges, j, value_at(series, first + j, end))
+            include(record.ranges, j, series[first + j, 0])
+            include(record.ranges, j, value_at(series, first + j, end))
         else:
             _keep_range(series, first + j, end, row.numbers[2], record.ranges, j, scratch)
     _keep_works(problem, row, work, end, record, first)

@@ -25,6 +25,8 @@ from .return_map import (
     take_step,
 )
 from .series import factor_held
+from .single_mass import solve_single
+from .single_tables import Single, make_single, set_single
 
 REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED = 0, 1, 2, 3
 
@@ -80,6 +82,7 @@ class Tools(NamedTuple):
     memory: Return
     ring: Ring
     record: Record
+    single: Single
 
 
 class Steady(NamedTuple):
@@ -105,7 +108,7 @@ def make_tools(problem, masses, most):
     """Allocate the memory, for a record of `most` steps; `masses` (n, m): see `make_record`."""
     return Tools(
         make_row(problem), make_work(problem), make_return(problem), make_ring(problem),
-        make_record(problem, masses, most),
+        make_record(problem, masses, most), make_single(problem, masses.shape[0]),
     )  # fmt: skip
 
 
@@ -475,6 +478,43 @@ def measure(problem, row, friction, halves, work, memory, record, what):
     if both % 2 == 1:
         mirror(record)
     return both, multiplier ** (steady_period(halves) * 2.0 / both)
+
+
+@kernel
+def begin_row(problem, i, tools):
+    """Fill the constants of r[i], and the tables of one mass where they apply."""
+    set_row(problem, i, tools.row)
+    set_single(problem, tools.row, tools.single, 1 if problem.symmetric else 2)
+
+
+@kernel
+def solve(problem, friction, cycles, tolerance, tools, what):
+    """Find and measure the steady state of a cell, from the state in `tools.memory.start`.
+
+    Parameters
+    ----------
+    problem, friction : Problem, Friction
+    cycles, tolerance : see `find`
+    tools : Tools after `begin_row`
+    what : NOTHING or RANGES, see `measure`
+
+    Returns
+    -------
+    Steady, half periods measured, multiplier
+    """
+    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    if tools.single.fits[0] != 0 and friction.static[0] <= friction.kinetic[0]:
+        solved, spent, multiplier = solve_single(
+            problem, row, tools.single, friction.kinetic[0], memory, record
+        )
+        if solved:
+            halves = 1 if problem.symmetric else 2
+            return Steady(REPEATS, halves, spent), halves, multiplier
+    found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record)
+    if found.status != REPEATS:
+        return found, 0, math.nan
+    halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, what)
+    return found, halves, multiplier
 
 
 @kernel

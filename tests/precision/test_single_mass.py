@@ -11,9 +11,9 @@ from general_systems import reference
 from kernels import callable_kernel
 
 import frictionmap as fm
+from frictionmap._kernels.general.problem import make_row, set_row
 from frictionmap._kernels.general.record import make_record
 from frictionmap._kernels.general.return_map import make_return
-from frictionmap._kernels.general.problem import make_row, set_row
 from frictionmap._kernels.general.single_mass import solve_single
 from frictionmap._kernels.general.single_tables import make_single, set_single
 from frictionmap.general.problem import problem_of

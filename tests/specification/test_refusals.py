@@ -334,7 +334,7 @@ plot map.nc --panels 0
 plot map.nc --panels x
     frictionmap plot: argument --panels: invalid list of numbers separated by commas value: 'x' (see frictionmap plot --help)
 plot map.nc --mass 1
-    cannot use mass with plot_regimes: it applies to plot_curves, plot_response, plot_orbit, plot_quantity; omit mass
+    cannot use mass with plot_regimes: it applies to plot_curves, plot_response, plot_orbit, plot_quantity, animate; omit mass
 plot map.nc --beta 0.5
     cannot use beta with plot_regimes: it applies to plot_curves; omit beta
 plot map.nc --point 3 0.5
@@ -442,9 +442,9 @@ plot
 design good.toml
     the configuration must have a table [design]; got none
 design question.toml --set design.quest=stuck
-    unknown key 'design.quest' (did you mean question?); valid: question, band, response, mu, limit, spread, quantile, beta, r
+    unknown key 'design.quest' (did you mean question?); valid: question, band, response, second, ratio, mu, limit, spread, quantile, beta, r
 design question.toml --set design.question=best
-    design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust; got 'best' (did you mean robust?)
+    design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust, two-forces; got 'best' (did you mean robust?)
 design good.toml --set design.question=stuck
     design.band must be given for question stuck; got nothing
 design question.toml --set design.band=[1]

@@ -37,9 +37,7 @@ class Single(NamedTuple):
     """Tables of one r, and the memory of one motion."""
 
     fits: np.ndarray  # (1,) int: whether the tables hold
-    numbers: (
-        np.ndarray
-    )  # (7,) kappa, delta, eta, contact stiffness w^2/chi^2, chi, wall and its rate at the section
+    numbers: np.ndarray  # (7,) kappa, delta, eta, w^2/chi^2, chi, wall and its rate at the section
     series: np.ndarray  # (rows, WIDTH)
     controls: np.ndarray  # (rows, WIDTH) control points of what is watched, see `fill_controls`
     bounds: np.ndarray  # (rows,) bounds on their error
@@ -70,7 +68,7 @@ def end_row(interval):
 def is_single(problem, masses):
     """Whether this is one mass with one rigid contact, a constant normal load and no belt.
 
-    masses : number of masses whose displacements are wanted: if the wall moves, they have extremes of their own
+    masses : number of masses whose displacements are wanted; if the wall moves, their extremes are others
     """
     contacts, modes = problem.chi.shape
     if contacts != 1 or modes != 1 or problem.spring[0] != 0.0 or problem.belt[0] != 0.0:

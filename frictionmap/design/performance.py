@@ -53,11 +53,17 @@ class PerformanceCurve(Protocol):
     def unknown(self) -> dict[float, int]:
         """Number of cells without a known response, at the beta where there are any: M is infinite there."""
 
-    def whole(self, beta: np.ndarray) -> list[Peaks]:
-        """Peaks at increasing beta (n_beta,), from samples over the whole band."""
+    def whole(self, beta: np.ndarray, all_peaks: bool = False) -> list[Peaks]:
+        """Peaks at increasing beta (n_beta,), from samples over the whole band.
+
+        The largest one of each beta is exact, or all are; others are at least samples of the band.
+        """
 
     def at(self, beta: np.ndarray) -> list[Peaks]:
-        """Peaks at increasing beta (n_beta,), near those of the neighbours in the table."""
+        """Peaks at increasing beta (n_beta,), near those of the neighbours in the table.
+
+        The largest one of each beta is exact.
+        """
 
     def forget(self, low: float, high: float) -> None:
         """Drop the entries of the table between two friction ratios, because a peak was missed there."""
@@ -88,10 +94,10 @@ class Performance:
         """The responses at peaks."""
         return self._responses.at(peaks.r, np.full(peaks.r.size, peaks.beta))
 
-    def whole(self, beta: np.ndarray) -> list[Peaks]:
+    def whole(self, beta: np.ndarray, all_peaks: bool = False) -> list[Peaks]:
         """Peaks at increasing beta (n_beta,), from samples over the whole band."""
         values = self._on_grid(self._r, beta)
-        return self._keep([self._brackets(self._r, column) for column in values.T], beta)
+        return self._keep([self._brackets(self._r, column) for column in values.T], beta, all_peaks)
 
     def at(self, beta: np.ndarray) -> list[Peaks]:
         """Peaks at increasing beta (n_beta,), near those of the neighbours in the table."""
@@ -102,7 +108,7 @@ class Performance:
         for column in values.T:
             inside = [np.searchsorted(r, window) for window in windows]
             parts.append(joined([self._brackets(r[which], column[which]) for which in inside]))
-        return self._keep(parts, beta)
+        return self._keep(parts, beta, all_peaks=False)
 
     def _on_grid(self, r: np.ndarray, beta: np.ndarray) -> np.ndarray:
         """Responses on a grid; at beta where one of them is not known, all are infinite."""
@@ -121,15 +127,15 @@ class Performance:
         high = found.at_m >= _FOLLOWED * size.max()
         return Brackets(*(array[high] for array in found))
 
-    def _keep(self, parts: list[Brackets], beta: np.ndarray) -> list[Peaks]:
-        """Refine the peaks at every beta, and put them into the table."""
+    def _keep(self, parts: list[Brackets], beta: np.ndarray, all_peaks: bool) -> list[Peaks]:
+        """Refine the peaks at every beta, or the largest only, and put them into the table."""
         owner = np.repeat(np.arange(beta.size), [part.m.size for part in parts])
 
         def size(which: np.ndarray, r: np.ndarray) -> np.ndarray:
             values = self._responses.at(r, beta[owner[which]])
             return np.where(unresolved(values), np.inf, values.size)
 
-        places, sizes = sharpened(size, joined(parts))
+        places, sizes = sharpened(size, joined(parts), None if all_peaks else owner)
         found = []
         for j, value in enumerate(beta.tolist()):
             own = np.flatnonzero(owner == j)

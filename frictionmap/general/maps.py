@@ -15,6 +15,9 @@ from .boundaries import friction_lines, rest_states, sliding_states
 from .held import held_ranges
 from .problem import general_of, problem_of, static_offset
 
+#: Cells of a job at least, in whole rows: a job costs as much as a few cells.
+_IN_A_JOB = 32
+
 
 def allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
     """Allocate unresolved cells."""
@@ -78,8 +81,11 @@ def solve_cells(
     found = allocate((mu.size, r.size, beta.size), general.count, count)
     outputs = np.ascontiguousarray(modal.phi) if masses else np.empty((0, modal.phi.shape[1]))
     cancel = np.zeros(1, np.uint8)
-    rows = range(mu.size * r.size)
-    jobs: list[Job] = [(fill_rows, (row, row + 1, problem, grid, found, outputs, cancel)) for row in rows]
+    rows = range(0, mu.size * r.size, max(1, _IN_A_JOB // max(beta.size, 1)))
+    jobs: list[Job] = [
+        (fill_rows, (row, min(row + rows.step, rows.stop), problem, grid, found, outputs, cancel))
+        for row in rows
+    ]
     ended = itertools.count(1)
 
     def done(_: int) -> None:

@@ -1,4 +1,4 @@
-"""Friction with which no contact stops: intervals of beta, from the motions themselves (loads.md 4)."""
+"""Friction with which no contact stops: intervals of beta, from the motions themselves (theory.md 11)."""
 
 import math
 from typing import NamedTuple

@@ -39,10 +39,14 @@ class Brackets(NamedTuple):
     at_b: np.ndarray
 
 
-def brackets_of(x: np.ndarray, values: np.ndarray) -> Brackets:
-    """Brackets of all local maxima of samples, values (n,) at increasing x (n,); of a plateau the first."""
-    padded = np.concatenate(([-np.inf], values, [-np.inf]))
-    place = np.flatnonzero((values > padded[:-2]) & (values >= padded[2:]))
+def brackets_of(x: np.ndarray, values: np.ndarray, rounding: float = 0.0) -> Brackets:
+    """Brackets of all local maxima of samples, values (n,) at increasing x (n,); of a plateau the first.
+
+    Values are compared in units of `rounding`, where it is given and finite.
+    """
+    level = np.round(values / rounding) if 0.0 < rounding < np.inf else values
+    padded = np.concatenate(([-np.inf], level, [-np.inf]))
+    place = np.flatnonzero((level > padded[:-2]) & (level >= padded[2:]))
     before, after = np.maximum(place - 1, 0), np.minimum(place + 1, x.size - 1)
     return Brackets(x[before], x[place], x[after], values[before], values[place], values[after])
 

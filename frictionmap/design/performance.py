@@ -16,6 +16,9 @@ from .responses import Responses, Values, unresolved
 #: Peaks below this share of the largest one are not followed.
 _FOLLOWED = 0.5
 
+#: Samples that differ by less than this share of the largest one are equal: a plateau has one peak.
+_ROUNDING = 1e-12
+
 #: Samples of a window around a peak at least; its least half width, and that around a peak that a neighbour
 #: does not have, in steps of the samples of the band.
 _IN_WINDOW, _LEAST_WINDOW, _FAR = 9, 0.25, 8.0
@@ -123,7 +126,7 @@ class Performance:
 
     def _brackets(self, r: np.ndarray, size: np.ndarray) -> Brackets:
         """Brackets of the peaks of one column that may be the largest."""
-        found = brackets_of(r, size)
+        found = brackets_of(r, size, _ROUNDING * size.max())
         high = found.at_m >= _FOLLOWED * size.max()
         return Brackets(*(array[high] for array in found))
 

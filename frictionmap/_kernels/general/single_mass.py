@@ -35,8 +35,9 @@ _MOST_RETURNS = 12
 #: A new slide that is not certain to last for this share of an interval may be one of rounding errors.
 _CERTAIN = 1e-3
 
-#: Largest error of the state found, as in `steady.measure`.
-_MEASURED = 1e-12
+#: Largest error of the state found, as in `steady.measure`; another step is taken unless it is so much less,
+#: or no longer decreases.
+_MEASURED, _SURELY = 1e-12, 0.02
 
 _WATCHED = 0  # row of the scratch
 
@@ -422,7 +423,8 @@ def solve_single(problem, row, single, beta, memory, record):
         a, b, c, d = sign * state[2], sign * state[3], sign * state[4], sign * state[5]
         multiplier = _radius(a, b, c, d)
         off = max(abs(off_z), abs(off_p)) / max(size, abs(z), abs(p))
-        if end == sense and off <= _MEASURED * min(1.0, abs(1.0 - multiplier)):
+        enough = _MEASURED * min(1.0, abs(1.0 - multiplier))
+        if end == sense and (off <= _SURELY * enough or enough >= off >= 0.5 * last):
             _keep_motion(problem, base, beta, (z, p), sense, single, memory, record)
             return True, 0.5 * base * count, multiplier if base == 2 else multiplier * multiplier
         determinant = (1.0 - a) * (1.0 - d) - b * c

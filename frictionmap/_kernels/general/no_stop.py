@@ -68,17 +68,17 @@ def _try(problem, i, row, search, beta, near, friction, memories, kept, k):
     beta : friction ratio
     near : whether the state in memory is that of a steady state near by
     friction : Friction, filled
-    memories : Work, Return, Ring, Record
+    memories : Work, Return, Ring, Record, Course
     kept, k : row k is filled: stops, NaN without a steady state; NEAREST_STOP of every contact
     """
-    work, memory, ring, record = memories
+    work, memory, ring, record, course = memories
     contacts = problem.spring.size
     for j in range(contacts):
         friction.kinetic[j] = search.kinetic[j, 0] * beta + search.kinetic[j, 1]
         friction.static[j] = friction.kinetic[j]
     if not near:
         from_rest(problem, row, friction, search.starts[i], work, memory, record)
-    found = find(problem, row, friction, search.cycles, search.tolerance, work, memory, ring, record)
+    found = find(problem, row, friction, search.cycles, search.tolerance, work, memory, ring, record, course)
     kept[k, 0] = math.nan
     if found.status != REPEATS:
         return False
@@ -142,7 +142,7 @@ def _fill(first, last, problem, search, begins, ends, tools, friction, kept, can
     kept : see `_try`
     """
     problem, search, tools, friction = packed(problem), packed(search), packed(tools), packed(friction)
-    row, memories = tools.row, (tools.work, tools.memory, tools.ring, tools.record)
+    row, memories = tools.row, (tools.work, tools.memory, tools.ring, tools.record, tools.course)
     for i in range(first, last):
         if cancel[0] != 0:
             return

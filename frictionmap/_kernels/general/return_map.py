@@ -47,6 +47,12 @@ def make_return(problem):
 
 
 @kernel
+def steady_period(halves):
+    """Periods of the load after which a motion repeats that returns, mirrored if odd, after half periods."""
+    return halves if halves % 2 == 1 else halves // 2
+
+
+@kernel
 def put_state(state, senses, work):
     """Set the state and the pattern of a motion."""
     for part in range(3):

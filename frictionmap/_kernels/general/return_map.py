@@ -111,6 +111,16 @@ def go_round(problem, row, friction, halves, work, memory, record, derive):
 
 
 @kernel
+def take_end(memory):
+    """Begin the next way where the last one ended."""
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            memory.start[part, i] = memory.end[part, i]
+    for j in range(memory.senses.size):
+        memory.senses[j] = memory.end_senses[j]
+
+
+@kernel
 def motion_size(problem, row, memory):
     """Size of the states, the unit of `return_distance`."""
     size = row.numbers[2]

@@ -31,6 +31,7 @@ class Ring(NamedTuple):
     count: np.ndarray  # (1,) states kept so far
     friction: np.ndarray  # (2, N) friction of contacts while they are held
     orbit: np.ndarray  # (3, ...) state of a steady state that the motion may go to
+    orbit_senses: np.ndarray  # (N,) the pattern there
     orbit_counts: np.ndarray  # counters of it
 
 
@@ -41,7 +42,8 @@ def make_ring(problem):
     width = padded(max(modes, contacts))
     return Ring(
         np.zeros((_KEPT, 3, width)), np.zeros((_KEPT, contacts), np.int64), np.zeros(1, np.int64),
-        np.zeros((2, contacts)), np.zeros((3, width)), np.zeros((COUNT_ROWS, contacts)),
+        np.zeros((2, contacts)), np.zeros((3, width)), np.zeros(contacts, np.int64),
+        np.zeros((COUNT_ROWS, contacts)),
     )  # fmt: skip
 
 
@@ -104,10 +106,10 @@ def recurrence(row, memory, ring, base):
 @kernel
 def _returns_in_a_row(row, memory, ring, back):
     """Whether each of the last states was there `back` states before, to RETURNED_AFTER_LONG."""
+    farthest = 0.0
     for ago in range(_IN_A_ROW):
-        if not distance_back(row, memory, ring, ago, back) <= RETURNED_AFTER_LONG:
-            return False
-    return True
+        farthest = max(farthest, distance_back(row, memory, ring, ago, back))
+    return farthest <= RETURNED_AFTER_LONG
 
 
 @kernel
@@ -131,4 +133,36 @@ def distance_from_last(problem, memory, ring):
     for part in range(2):
         for i in range(problem.push.shape[0]):
             off = max(off, abs(ring.states[slot, part, i] - memory.start[part, i]))
+    return off
+
+
+@kernel
+def put_orbit(memory, ring):
+    """Keep the steady state in `memory.start`, and its counters."""
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            ring.orbit[part, i] = memory.start[part, i]
+    for j in range(memory.senses.size):
+        ring.orbit_senses[j] = memory.senses[j]
+        for part in range(memory.counts.shape[0]):
+            ring.orbit_counts[part, j] = memory.counts[part, j]
+
+
+@kernel
+def take_orbit(memory, ring):
+    """Go to the steady state that was kept, without its counters."""
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            memory.start[part, i] = ring.orbit[part, i]
+    for j in range(memory.senses.size):
+        memory.senses[j] = ring.orbit_senses[j]
+
+
+@kernel
+def distance_from_orbit(problem, memory, ring):
+    """Largest difference of the state in `memory.start` from the steady state kept."""
+    off = 0.0
+    for part in range(2):
+        for i in range(problem.push.shape[0]):
+            off = max(off, abs(ring.orbit[part, i] - memory.start[part, i]))
     return off

@@ -35,6 +35,7 @@ from .return_map import (
     put_state,
     return_distance,
     steady_period,
+    take_end,
     take_state,
     take_step,
 )
@@ -42,12 +43,15 @@ from .returns import (
     Ring,
     distance_back,
     distance_from_last,
+    distance_from_orbit,
     go_back,
     go_back_cycles,
     keep,
     long_recurrence,
     make_ring,
+    put_orbit,
     recurrence,
+    take_orbit,
 )
 from .series import factor_held
 
@@ -59,6 +63,12 @@ _SAME = 5e-2
 
 #: ... and over the distance at which a motion that is on its way there would be.
 _HEADING = 3.0
+
+#: Part of its distance that is left when a motion counts as on its way to a steady state; returns after which
+#: that is decided in any case; and the least contraction per return that is reckoned with.
+_NEARER = 0.1
+_MOST_RETURNS = 64
+_FASTEST = 1e-3
 
 #: Newton steps at most, and the largest part of the distance before that may be left after each.
 _MOST_STEPS = 12
@@ -205,7 +215,7 @@ def _least_period(problem, row, friction, halves, base, work, memory, record):
 
 
 @kernel
-def _heads_for(problem, row, halves, work, memory, ring):
+def _heads_for(problem, row, halves, contraction, memory, ring):
     """Whether the steady state found is stable, and as near as one that the motion goes to would be.
 
     A motion that returns to within d of where it was, and comes nearer to a steady state by a factor c each
@@ -215,14 +225,14 @@ def _heads_for(problem, row, halves, work, memory, ring):
     ----------
     problem, row : Problem, Row
     halves : half periods after which it returns
-    work, memory, ring : Work, Return, Ring
+    contraction : largest modulus of its multipliers over these
+    memory, ring : Return, Ring
     """
-    base = 1 if problem.symmetric else 2
-    contraction = _multiplier(problem, halves, _STABLE_PRECISION, work, memory)
     if contraction > _STABLE:
         return False
     far = distance_from_last(problem, memory, ring) / motion_size(problem, row, memory)
     if contraction < 1.0:
+        base = 1 if problem.symmetric else 2
         expected = distance_back(row, memory, ring, 0, halves // base) / (1.0 - contraction)
         if far > max(_HEADING * expected, _RETURNED):
             return False
@@ -230,31 +240,55 @@ def _heads_for(problem, row, halves, work, memory, ring):
 
 
 @kernel
-def _does_the_same(problem, row, friction, halves, work, memory, ring, record):
-    """Whether the motion has as many stops, turns and slips in its next half periods as the steady state in
-    `memory.start`, which stays there.
+def _does_the_same(memory, ring):
+    """Whether there were as many stops, turns and slips as in the steady state kept."""
+    for j in range(memory.senses.size):
+        for part in (STOPS, TURNS, SLIPS):
+            if memory.counts[part, j] != ring.orbit_counts[part, j]:
+                return False
+    return True
+
+
+@kernel
+def _approaches(problem, row, friction, halves, contraction, work, memory, ring, record):
+    """Whether the motion comes nearer to the steady state in `memory.start`, which stays there.
+
+    The motion is followed until most of the distance is gone, or for as long as that should take.  In every
+    return it must have as many stops, turns and slips as the steady state: else it may only pass by.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
     halves : half periods after which the steady state returns
+    contraction : largest modulus of its multipliers over these
     work, memory, ring, record : Work, Return, Ring, Record; `memory.counts` are those of the steady state
+
+    Returns
+    -------
+    (approaches, cycles) : periods followed
     """
-    for part in range(3):
-        for i in range(memory.start.shape[1]):
-            ring.orbit[part, i] = memory.start[part, i]
-    for j in range(memory.senses.size):
-        for part in range(memory.counts.shape[0]):
-            ring.orbit_counts[part, j] = memory.counts[part, j]
+    put_orbit(memory, ring)
     go_back(memory, ring, 0)
-    same = go_round(problem, row, friction, halves, work, memory, record, False) == FOLLOWED
-    for j in range(memory.senses.size):
-        for part in (STOPS, TURNS, SLIPS):
-            same = same and memory.counts[part, j] == ring.orbit_counts[part, j]
-    for part in range(3):
-        for i in range(memory.start.shape[1]):
-            memory.start[part, i] = ring.orbit[part, i]
-    return same
+    size = motion_size(problem, row, memory)
+    begin = distance_from_orbit(problem, memory, ring)
+    enough = max(_NEARER * begin, _RETURNED * size)
+    returns, expected = _MOST_RETURNS, contraction
+    if contraction < 1.0:
+        needed = 2.0 * math.log(_NEARER) / math.log(max(contraction, _FASTEST))
+        returns = int(min(2.0 + needed, returns))
+    approaches, cycles = False, 0.0
+    for count in range(1, returns + 1):
+        code = go_round(problem, row, friction, halves, work, memory, record, False)
+        cycles += 0.5 * halves
+        if code != FOLLOWED or not _does_the_same(memory, ring):
+            break
+        take_end(memory)
+        far = distance_from_orbit(problem, memory, ring)
+        approaches = far <= enough or (count == returns and far <= begin * expected ** (0.5 * count))
+        if approaches:
+            break
+    take_orbit(memory, ring)
+    return approaches, cycles
 
 
 @kernel
@@ -370,11 +404,7 @@ def _go_on(problem, row, friction, base, work, memory, ring, record):
     work, memory, ring, record : Work, Return, Ring, Record
     """
     code = go_round(problem, row, friction, base, work, memory, record, False)
-    for part in range(3):
-        for i in range(memory.start.shape[1]):
-            memory.start[part, i] = memory.end[part, i]
-    for j in range(memory.senses.size):
-        memory.senses[j] = memory.end_senses[j]
+    take_end(memory)
     keep(memory, ring)
     return code
 
@@ -432,14 +462,16 @@ def _try_return(problem, row, friction, halves, tolerance, work, memory, ring, r
     """
     base = 1 if problem.symmetric else 2
     status, cycles = _newton(problem, row, friction, halves, tolerance, work, memory, record)
-    if (
-        status == REPEATS
-        and _heads_for(problem, row, halves, work, memory, ring)
-        and _does_the_same(problem, row, friction, halves, work, memory, ring, record)
-    ):
-        cycles += 0.5 * halves
-        least, more = _least_period(problem, row, friction, halves, base, work, memory, record)
-        return Steady(REPEATS, least, cycles + more)
+    if status == REPEATS:
+        contraction = _multiplier(problem, halves, _STABLE_PRECISION, work, memory)
+        if _heads_for(problem, row, halves, contraction, memory, ring):
+            approaches, more = _approaches(
+                problem, row, friction, halves, contraction, work, memory, ring, record
+            )
+            cycles += more
+            if approaches:
+                least, more = _least_period(problem, row, friction, halves, base, work, memory, record)
+                return Steady(REPEATS, least, cycles + more)
     go_back(memory, ring, 0)
     return Steady(NO_REPEAT, 0, cycles)
 

@@ -148,9 +148,13 @@ def test_reference_irregular_cells(form, reference):
     off = []
     for row in reference["irregular_map"]:
         found = cell(five_masses(form), row["r"], row["beta"], row["mu"], start=row["start"])
+        if found["status"] == regimes.RESOLVED:  # Newton's method ends a long transient
+            assert (row["cls"], row["period"]) == ("periodic", found["period"])
+            continue
         errors = (row["stops_per_cycle_se"], row["stuck_share_se"])
         off += errors_off(found, row["stops_per_cycle"], errors[0], row["stuck_share"], errors[1])
         assert 0.5 * row["largest_amplitude"] <= found["contact_amplitude"] <= 1.05 * row["largest_amplitude"]
+    assert len(off) > 60
     assert np.mean(np.array(off) <= 3.0) >= 0.95
     assert max(off) < 5.0
 

@@ -64,9 +64,9 @@ _SAME = 5e-2
 #: ... and over the distance at which a motion that is on its way there would be.
 _HEADING = 3.0
 
-#: Part of its distance that is left when a motion counts as on its way to a steady state; returns after which
+#: Part of the distance that is left when a motion counts as on its way to a steady state; returns after which
 #: that is decided in any case; and the least contraction per return that is reckoned with.
-_NEARER = 0.1
+_NEARER = 0.3
 _MOST_RETURNS = 64
 _FASTEST = 1e-3
 

@@ -22,12 +22,13 @@ _IN_A_JOB = 32
 def allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
     """Allocate unresolved cells."""
     per_contact = (*shape, contacts)
-    numbers = [np.full(per_contact, np.nan) for _ in range(9)]
+    numbers = [np.full(per_contact, np.nan) for _ in range(11)]
     ranges = [np.full((*shape, contacts + masses), np.nan) for _ in range(2)]
     return Cells(
         np.full(shape, regimes.UNRESOLVED, np.int8), np.full(shape, regimes.NOT_COMPUTED, np.int8),
         np.full(shape, regimes.CLOSED_FORM, np.int8), np.zeros(shape, np.int32), np.zeros(shape, np.int16),
-        np.full(shape, np.nan), np.full(per_contact, regimes.UNRESOLVED, np.int8), *numbers, *ranges,
+        np.full(shape, np.nan), np.full(shape, regimes.UNRESOLVED, np.int8),
+        np.full(per_contact, regimes.UNRESOLVED, np.int8), *numbers, *ranges,
     )  # fmt: skip
 
 
@@ -37,6 +38,7 @@ def _put_r_zero(found: Cells, at_zero: int, beta: np.ndarray, stick: np.ndarray)
         stuck = beta >= stick[m, at_zero]
         found.regime[m, at_zero] = np.where(stuck, regimes.PERMANENT_STICKING, regimes.STICK_SLIP)
         found.status[m, at_zero] = np.where(stuck, regimes.RESOLVED, regimes.QUASI_STATIC)
+        found.release_order[m, at_zero] = np.where(stuck, 0, regimes.UNRESOLVED)
         found.contact_regime[m, at_zero] = found.regime[m, at_zero][:, np.newaxis]
 
 

@@ -9,7 +9,7 @@ from .._kernels.general.follow import MOVED, NEAREST_STOP, STOPS, STUCK
 from .._kernels.general.problem import TURN, Problem
 from .._kernels.general.samples import fill_samples
 from .._kernels.general.series import Friction
-from .._kernels.general.steady import REPEATS, one_steady_state
+from .._kernels.general.steady import AVERAGED, REPEATS, one_steady_state
 
 _TOLERANCE = 1e-12
 
@@ -79,10 +79,11 @@ def steady_motion(
     period = halves // 2
     places = np.empty(phases.size)
     fill_samples(record.steps, record.patterns, count, 0, h, period, phases, places)
+    counted = found.halves // 2 if found.status == AVERAGED else period
     moves = counts[MOVED, 0] != 0.0
     nearest = counts[NEAREST_STOP, 0]
     return SteadyMotion(
-        found.status == REPEATS, places + offset, round(counts[STOPS, 0] / period),
-        counts[STUCK, 0] / (2.0 * math.pi * period) if moves else 1.0,
+        found.status == REPEATS, places + offset, round(counts[STOPS, 0] / counted),
+        counts[STUCK, 0] / (2.0 * math.pi * counted) if moves else 1.0,
         friction / nearest if nearest > 0.0 else math.inf,
     )  # fmt: skip

@@ -50,6 +50,7 @@ GeneralOutput = Literal[
     "peak_to_peak",
     "midpoint",
     "work_wall",
+    "release_order",
 ]
 GENERAL_OUTPUTS: tuple[str, ...] = get_args(GeneralOutput)
 

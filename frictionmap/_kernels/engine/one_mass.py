@@ -13,11 +13,12 @@ import numpy as np
 from ..compiler import entry, inner_kernel, kernel
 from ..continuous_motion import continuous_amplitude, orbit_phase
 from ..event_codes import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, EventSequence
+from ..logs import make_log
 from ..one_mass.events import Scratch, after_slide, make_scratch, slide_within
 from ..one_mass.newton import first_contact_force, solve_orbit
 from ..one_mass.scan_step import Step, step_constants
 from ..one_mass.sliding_orbit import Oscillator, distance_to_orbit, stop_free_radius
-from .cycle_log import make_log
+from .cycle_log import LOGGED
 from .memory import STATE, Memory, make_memory, turned
 from .policies import FINE_STEPS, MOVING_START, MOVING_START_CAP
 from .records import Contact, ContactState, Orbit, known_orbit, no_orbit, stops_at
@@ -109,7 +110,7 @@ def at_frequency(system, i):
     return OneMass(
         step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _RECURRENCE_THRESHOLD,
         oscillator, step, step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
-        make_memory(step.h, 1), make_log(), make_scratch(), np.zeros(NEIGHBOUR), np.empty((0, 0)),
+        make_memory(step.h, 1), make_log(LOGGED), make_scratch(), np.zeros(NEIGHBOUR), np.empty((0, 0)),
     )  # fmt: skip
 
 

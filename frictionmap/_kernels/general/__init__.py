@@ -16,6 +16,8 @@ tangent        derivatives of the motion by its state at the section
 glide          intervals in which nothing happens, by tables
 follow         the motion from one phase of the load to another
 return_map     the state after some half periods, and Newton steps to one that returns
+returns        states at the section that are kept, and how long ago the motion was where it is now
+course         what a motion does in every period of the load, and its averages if it does not return
 single_tables  one mass with one rigid contact: tables of one r
 single_mass    its steady state for mu = 1, by these tables
 steady         the steady state of one cell

@@ -12,6 +12,7 @@ from ...regimes import (
     CLOSED_FORM,
     CONTINUOUS,
     INTEGRATED,
+    IRREGULAR,
     NOT_REACHED,
     ONE_WAY_SLIDING,
     PERIODIC_ORBIT,
@@ -22,11 +23,12 @@ from ...regimes import (
 )
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
-from .follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
+from .follow import MOVED, RELEASE_ORDER, REVERSALS, SLIPS, STOPS, STOPS_ERROR, STUCK, STUCK_ERROR, TURNS
 from .problem import padded
 from .record import LEAST_SLIP, RANGES
+from .return_map import steady_period
 from .series import Friction
-from .steady import NO_REPEAT, REPEATS, begin_row, from_rest, make_tools, solve, steady_period
+from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, from_rest, make_tools, solve
 
 #: Cells of a row that point to the next one, and the farthest that it may be, in steps between the last two.
 _KEPT = 3
@@ -63,10 +65,13 @@ class Cells(NamedTuple):
     cycles: np.ndarray
     period: np.ndarray
     multiplier: np.ndarray
+    release_order: np.ndarray  # 1 where releasing contacts all at once would make a difference
     contact_regime: np.ndarray  # (..., N)
     stops: np.ndarray
     turns: np.ndarray
     stuck: np.ndarray
+    stops_error: np.ndarray  # standard errors
+    stuck_error: np.ndarray
     slips: np.ndarray
     reversals: np.ndarray
     least_slip: np.ndarray
@@ -109,6 +114,7 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
     contacts = problem.spring.size
     period = 0.5 * halves
     least, most = CONTINUOUS + 2, PERMANENT_STICKING
+    differs = False
     for j in range(contacts):
         regime = _regime_of(problem, counts, j)
         least, most = min(least, regime), max(most, regime)
@@ -116,6 +122,8 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
         out.stops[m, i, b, j] = counts[STOPS, j] / period
         out.turns[m, i, b, j] = counts[TURNS, j] / period
         out.stuck[m, i, b, j] = counts[STUCK, j] / (math.pi * halves)
+        out.stops_error[m, i, b, j] = counts[STOPS_ERROR, j]
+        out.stuck_error[m, i, b, j] = counts[STUCK_ERROR, j]
         out.slips[m, i, b, j] = counts[SLIPS, j] / period
         if problem.spring[j] != 0.0 and counts[STUCK, j] == 0.0:
             out.slips[m, i, b, j] = 1.0
@@ -126,6 +134,8 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
         out.distance[m, i, b, j] = record.distance[j] / period
         out.works[m, i, b, j] = record.works[0, j] / period
         out.wall_works[m, i, b, j] = record.works[1, j] / period
+        differs = differs or counts[RELEASE_ORDER, j] != 0.0
+    out.release_order[m, i, b] = 1 if differs else 0
     for k in range(record.ranges.shape[1]):
         out.lowest[m, i, b, k] = record.ranges[0, k]
         out.highest[m, i, b, k] = record.ranges[1, k]
@@ -151,6 +161,11 @@ def _store(problem, out, m, i, b, found, measured, counts, record):
     """
     halves, multiplier = measured
     out.cycles[m, i, b] = math.ceil(found.cycles)
+    if found.status == AVERAGED:
+        out.status[m, i, b] = IRREGULAR
+        out.origin[m, i, b] = INTEGRATED
+        out.regime[m, i, b] = _store_contacts(problem, out, m, i, b, counts, found.halves, record)
+        return
     if found.status != REPEATS:
         out.status[m, i, b] = NOT_REACHED if found.status == NO_REPEAT else TOO_MANY_EVENTS
         out.origin[m, i, b] = INTEGRATED
@@ -171,11 +186,13 @@ def _store_stuck(out, m, i, b):
     out.status[m, i, b] = RESOLVED
     out.origin[m, i, b] = CLOSED_FORM
     out.period[m, i, b] = 1
+    out.release_order[m, i, b] = 0
     for j in range(out.contact_regime.shape[3]):
         out.contact_regime[m, i, b, j] = PERMANENT_STICKING
         out.stops[m, i, b, j] = 0.0
         out.turns[m, i, b, j] = 0.0
         out.stuck[m, i, b, j] = 1.0
+        out.stops_error[m, i, b, j] = out.stuck_error[m, i, b, j] = 0.0
         out.slips[m, i, b, j] = 0.0
         out.reversals[m, i, b, j] = 0.0
         out.least_slip[m, i, b, j] = 0.0

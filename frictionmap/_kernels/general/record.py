@@ -55,18 +55,25 @@ def make_record(problem, masses, most):
 
 
 @kernel
-def clear_record(record):
-    """Begin a record."""
+def begin_cycle(record):
+    """Begin a cycle of a longer record: a slip under way goes on."""
     for i in range(record.ranges.shape[1]):
         record.ranges[0, i] = np.inf
         record.ranges[1, i] = -np.inf
     for j in range(record.distance.size):
         record.distance[j] = 0.0
         record.slips[LEAST_SLIP, j] = np.inf
-        record.slips[_PRESENT, j] = 0.0
-        record.slips[_EDGE, j] = np.inf
         record.works[0, j] = 0.0
         record.works[1, j] = 0.0
+
+
+@kernel
+def clear_record(record):
+    """Begin a record."""
+    begin_cycle(record)
+    for j in range(record.distance.size):
+        record.slips[_PRESENT, j] = 0.0
+        record.slips[_EDGE, j] = np.inf
         record.forces[0, j] = np.inf
         record.forces[1, j] = -np.inf
     record.count[0] = 0

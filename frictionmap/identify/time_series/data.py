@@ -63,15 +63,16 @@ def _limits(x: np.ndarray, good: np.ndarray) -> tuple[float, float]:
 
 
 def fit_clipped(
-    contact: str, damping_reference: str, given: MeasuredRecord, known: Mapping[str, float], robust: bool
-) -> tuple[MeasuredRecord, RecordFit]:
+    contact: str, damping_reference: str, given: MeasuredRecord, known: Mapping[str, float], robust: bool,
+    elastic: bool = False,
+) -> tuple[MeasuredRecord, RecordFit]:  # fmt: skip
     """Fit a steady motion as by `fit_record`, without what happens beside the ends of a measuring range.
 
     There noise decides which samples are cut off: those that are left lie too far inside, and would draw the
     motion with them.  So samples are left out by the fitted motion, which has no noise, and the motion is
     fitted anew.  Its harmonics then take the place of the clipped ones, where the search begins.
     """
-    fit = fit_record(contact, damping_reference, given.phasors, given.samples, known)
+    fit = fit_record(contact, damping_reference, given.phasors, given.samples, known, elastic)
     if not given.clipped.any():
         return given, fit
     for _ in range(_REFITS):
@@ -79,7 +80,7 @@ def fit_clipped(
         if inside.sum() < _FEWEST or (inside == given.good).all():
             break
         given = _filled(given, fit, inside, robust)
-        fit = fit_record(contact, damping_reference, given.phasors, given.samples, known)
+        fit = fit_record(contact, damping_reference, given.phasors, given.samples, known, elastic)
     return given, fit
 
 

@@ -11,7 +11,7 @@ from ...files.config import read_system
 from ...model.system import System
 from ...units.table import COLUMN_NAMES, conversion
 from ..response.data import check_lag
-from ..response.forced import forced
+from ..response.forced import PARAMETERS, forced
 from ..signals.integration import amplitude_factors, derivative_order
 from ..statistics.robust import LOSSES
 from ..tables.columns import Column, Columns, check_positive, columns_like, pick_columns
@@ -57,7 +57,7 @@ def _forced(rig: Rig, table: Table) -> xr.Dataset:
             frequency, lags or None, ratios or None, system=system, load=load, unit=unit, stiffness=stiffness,
             sets=_sets(rig, table, picked.rows), known=known, sigma_phase=sigmas[0],
             sigma_amplitude=sigmas[1], unreachable=rig.data.get("unreachable", "refuse"),
-            loss=checks.choice(rig.fit.get("loss", LOSSES[0]), "fit.loss", LOSSES),
+            loss=checks.choice(rig.fit.get("loss", LOSSES[0]), "fit.loss", LOSSES), free=rig.free,
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"file {rig.file}: {error}") from None
@@ -247,7 +247,7 @@ def _sets(rig: Rig, table: Table, rows: np.ndarray) -> list[object] | None:
 
 FORCED = Kind(
     _forced,
-    ("beta", "f_n", "zeta", "mu"),
+    PARAMETERS,
     known=("stiffness",),
     data=("use", "sigma_phase_deg", "sigma_amplitude", "unreachable"),
     fit=("loss",),

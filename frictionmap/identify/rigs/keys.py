@@ -59,7 +59,8 @@ _LABEL = Key("label", "name in the results; default: its number", {"type": "stri
              example='"10 N"')  # fmt: skip
 
 _FIT = (
-    Key("free", "parameters to fit; must be all that are not in [known], which is the default",
+    Key("free", "parameters to fit; must be all that are not in [known], which is the default; a spring in "
+        "the contact is fitted only if contact_stiffness is named",
         several({"type": "string"}), example='["f_n", "zeta", "x_F", "X0", "t0", "centre"]',
         words="a list of parameters"),
     Key("drift", "whether to fit a linear drift of the zero", {"type": "boolean"}, False,
@@ -108,6 +109,7 @@ _KNOWN = {
     "zeta": ("viscous damping ratio", "0.01"),
     "beta": ("friction ratio of all sets", "0.2"),
     "mu": ("static over kinetic friction force, >= 1", "1.0"),
+    "contact_stiffness": ("stiffness of a spring in the contact over k1; default: the contact is rigid", "3.0"),
     "x_F": ("kinetic friction force over stiffness, mm", "0.2"),
     "X0": ("amplitude at t0, mm", "9.5"),
     "t0": ("time of the first turning point, s", "0.0"),

@@ -15,7 +15,7 @@ from ..parameters import CONTACT_STIFFNESS, checked_free, is_elastic, refuse_mu
 from ..spring import held_compliance, spring_in_newtons, spring_warnings, with_stiffness
 from ..statistics.cautions import bound_warnings, correlation_warnings, interval_warnings
 from ..statistics.estimates import estimates, number, usable_errors, verdict
-from ..statistics.least_squares import Errors
+from ..statistics.least_squares import Errors, undetermined
 from ..statistics.robust import LOSSES
 from .data import fit_clipped, measured_record, whole_record
 from .errors import DERIVED, derived_values, record_errors
@@ -23,7 +23,7 @@ from .fit import RecordFit
 from .labels import of_data, of_record, one_mass
 from .motion import CONTACTS, LAW, MU, PARAMETERS, X_F, ZETA, outer
 from .static_friction import IDLE, ONE
-from .verdict import record_verdict
+from .verdict import listed, record_verdict
 
 #: What can be fitted or held.
 FITTABLE = (*PARAMETERS[:MU], "mu", CONTACT_STIFFNESS, *PARAMETERS[MU + 1 :])
@@ -136,6 +136,8 @@ def record(
     given, fit = fit_clipped(contact, damping_reference, given, held, robust, elastic)
     given = whole_record(given, fit, robust)
     phasors = given.phasors
+    if elastic:
+        _check_identifiable(fit)
     found = record_errors(fit, phasors, given.time, given.good)
     values = np.concatenate((fit.values, derived_values(fit, phasors)))
     if elastic:
@@ -149,6 +151,17 @@ def record(
     ds.attrs["config"] = system_text(one_mass(contact, damping_reference))
     ds.attrs["warnings"] = "; ".join(of_data(given, ds) + _of_fit(fit, found))
     return ds
+
+
+def _check_identifiable(fit: RecordFit) -> None:
+    """Refuse a motion that does not depend on some parameters, or not in ways of their own."""
+    indices, _ = undetermined(fit.problem, fit.solution)
+    names = [fit.mass.names[index] for index in indices if index < len(PARAMETERS)]
+    if names:
+        raise InputError(
+            f"cannot identify {listed(names)}: the contact of the fitted motion does not slip, or hardly; "
+            "measure with less friction or more motion, or hold contact_stiffness in known"
+        )
 
 
 def checked_known(known: Mapping[str, float], free: Sequence[str] | None) -> dict[str, float]:

@@ -5,9 +5,9 @@
 With q = x - offset, less y where the wall moves with the base, every slide is one damped oscillator under a
 constant friction force and harmonic loads, and is evaluated in closed form; so is a stop, in which q is
 constant.  With a spring in the contact the slider rests where the force in the spring is below the friction:
-there the mass is an oscillator on both springs.  The ends of slides and stops are the first changes of sign of the velocity and of the friction
-margin, which are sought on a grid and located with Brent's method.  The motion is marched until its state
-repeats after one cycle.  Nothing here is shared with the package.
+there the mass is an oscillator on both springs.  The ends of slides and stops are the first changes of sign
+of the velocity and of the friction margin, which are sought on a grid and located with Brent's method.  The
+motion is marched until its state repeats after one cycle.  Nothing here is shared with the package.
 """
 
 from collections.abc import Callable
@@ -45,7 +45,7 @@ class Rig(NamedTuple):
 
 
 class Phase(NamedTuple):
-    """A slide, a stop or, with a spring in the contact, a slip or an elastic phase: q(t) for begin <= t <= end within one cycle."""
+    """A slide or a stop, with a spring a slip or an elastic phase: q(t) for begin <= t <= end in a cycle."""
 
     begin: float
     end: float

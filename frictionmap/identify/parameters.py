@@ -34,14 +34,10 @@ def checked_free(
         checks.choice(name, f"{option}[{index}]", tuple(parameters))
     for name in parameters:
         if name in free and name in known:
-            raise InputError(
-                f"cannot fit {name}: {table} holds it; remove it from {option} or from {table}"
-            )
+            raise InputError(f"cannot fit {name}: {table} holds it; remove it from {option} or from {table}")
         if name not in free and name not in known and name not in _optional((*free, *known)):
             key = f"known.{name} to [known]" if file else "to known"
-            raise InputError(
-                f"cannot hold {name}: its value is missing; add {name} to {option} or {key}"
-            )
+            raise InputError(f"cannot hold {name}: its value is missing; add {name} to {option} or {key}")
     return tuple(free)
 
 

@@ -29,9 +29,7 @@ def held_compliance(stiffness: object) -> float:
     return 1.0 / checks.number(stiffness, "known.contact_stiffness", least=least, most=most)
 
 
-def with_stiffness(
-    values: np.ndarray, found: Errors, index: int, fitted: bool
-) -> tuple[np.ndarray, Errors]:
+def with_stiffness(values: np.ndarray, found: Errors, index: int, fitted: bool) -> tuple[np.ndarray, Errors]:
     """Estimates and errors with the stiffness in the place of the compliance.
 
     Where the interval holds a rigid contact it ends at infinity, and there is no standard error.
@@ -72,8 +70,7 @@ def spring_warnings(lower: float, upper: float) -> list[str]:
     known = f"any value from {lower:.3g} up to a rigid contact" if lower > 0.0 else "any value"
     return [
         f"the data do not determine contact_stiffness: {known} explains them. Measure nearer to the friction "
-        "at which the contact stops slipping, measure phase lags and amplitudes, or hold contact_stiffness in "
-        "[known]"
+        "at which the contact stops slipping, measure phase lags and amplitudes, or hold contact_stiffness"
     ]
 
 

@@ -25,9 +25,9 @@ class States(NamedTuple):
 def steady_states(system: System, r: np.ndarray, beta: np.ndarray, mu: float) -> list[States]:
     """Find the possible steady states at every point; repeated points are computed once.
 
-    For mu = 1 there is one steady state (theory.md 6), for an elastic contact too.  For mu > 1 three columns are returned, which may hold
-    the same motion: the continuous motion by its closed form, where beta <= beta_lim, and the motions reached
-    from rest and from a large sliding motion.
+    For mu = 1 there is one steady state (theory.md 6), for an elastic contact too.  For mu > 1 three columns
+    are returned, which may hold the same motion: the continuous motion by its closed form, where beta <=
+    beta_lim, and the motions reached from rest and from a large sliding motion.
 
     Parameters
     ----------

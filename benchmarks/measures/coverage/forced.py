@@ -119,7 +119,7 @@ def _made(
     if given:
         words |= {"sigma_phase": truth.sigma_phase, "sigma_amplitude": truth.sigma_amplitude}
     frequency = np.tile(truth.f_n * np.array(truth.r), len(truth.beta))
-    bound = None if truth.spring and draw is _with_spring else _bound(truth, names)
+    bound = None if draw is _with_spring else _bound(truth, names)  # it takes much longer than the fit
     lag, ratio = -np.degrees(np.angle(phasors)) + errors[0], np.abs(phasors) * np.exp(errors[1])
     return Made(names, lambda: fm.identify.forced(frequency, lag, ratio, **words, **arguments), bound)
 
@@ -132,7 +132,7 @@ def _random(rng: np.random.Generator, heavy: bool = False) -> Truth:
 
 
 def _with_spring(rng: np.random.Generator) -> Truth:
-    """One storey with a spring in its contact, which sticks for a part of the cycle; no bound, for its cost."""
+    """One storey with a spring in its contact, which sticks for a part of the cycle."""
     zeta, spring = 10.0 ** rng.uniform(-2.2, -1.5), 10.0 ** rng.uniform(-0.3, 1.3)
     beta = rng.uniform(0.3, 0.5), rng.uniform(0.6, 0.9)
     return Truth(beta, rng.uniform(2.0, 6.0), zeta, 1.0, RATIOS, spring=spring)

@@ -1,8 +1,8 @@
 """Harmonic balance of a contact with a spring: fast approximate first harmonics, from which fits start.
 
 Let A be the response in the contact to a force in it, and V that to the load, Z = V - A F.  A spring k in
-series with a slider beta answers a harmonic motion of amplitude a with F = K(a) Z: K = k if k a <= beta, else,
-with c = 1 - 2 beta/(k a) and t = arccos c,
+series with a slider beta answers a harmonic motion of amplitude a with F = K(a) Z: K = k if k a <= beta,
+else, with c = 1 - 2 beta/(k a) and t = arccos c,
 
     K(a) = k/pi (t - c sqrt(1 - c^2) + i (1 - c^2))
 
@@ -45,7 +45,7 @@ def stick_friction(system: System, r: np.ndarray, stiffness: float) -> np.ndarra
 
 
 def balanced_phasors(system: System, r: np.ndarray, beta: np.ndarray, stiffness: float) -> np.ndarray:
-    """First harmonics of the masses, (k, n), with a spring of this stiffness in the rigid contact of a system.
+    """First harmonics of the masses, (k, n), with a spring of this stiffness in the contact of a system.
 
     r, beta : (k,) frequency ratios > 0, friction ratios >= 0
     """

@@ -96,11 +96,11 @@ def forced(
     Returns
     -------
     xarray.Dataset
-        On parameter (beta, or beta_<label> of every set; f_n, zeta, mu or contact_stiffness) and on sample as `free_decay`, see
-        `quantity`: data and model are lags [deg] and amplitude ratios, residuals degrees and logarithms of
-        ratios.  beta is the friction force over the mean load of its set.  Also on sample: frequency,
-        mass, set, sigma, frequency_ratio, friction_ratio, `regime`, and `reached`, the initial
-        states that lead to the motion; `lag_status`, what follows from a lag alone, see `friction_ratio`.  On
+        On parameter (beta, or beta_<label> of every set; f_n, zeta, mu or contact_stiffness) and on sample
+        as `free_decay`, see `quantity`: data and model are lags [deg] and amplitude ratios, residuals
+        degrees and logarithms of ratios.  beta is the friction force over the mean load of its set.  Also on
+        sample: frequency, mass, set, sigma, frequency_ratio, friction_ratio, `regime`, and `reached`, the
+        initial states that lead to the motion; `lag_status`, what follows from a lag alone, see `friction_ratio`.  On
         answer: `lag_friction_ratio` with its error, and `lag_sample`, the sample that it is of.  Attribute
         `warnings`.
 
@@ -177,9 +177,7 @@ def _without_spring(system: System, known: Mapping[str, float]) -> tuple[System,
             f"contact_stiffness must be one number to identify friction; got a bank of {len(spring)}"
         )
     if CONTACT_STIFFNESS in given:
-        raise InputError(
-            "cannot use known.contact_stiffness: the system defines its contact stiffness; omit one of the two"
-        )
+        raise InputError("cannot use known.contact_stiffness: the system defines it; omit one of the two")
     rigid = replace(system, contact_stiffness=None)
     refuse_general(rigid, "identify friction")
     return rigid, given | {CONTACT_STIFFNESS: spring}

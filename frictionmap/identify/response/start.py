@@ -128,7 +128,7 @@ def _everywhere(model: ForcedModel, values: np.ndarray, known: np.ndarray) -> np
 def _best_frictions(
     model: ForcedModel, several: list[np.ndarray], tried: list[np.ndarray]
 ) -> list[tuple[float, np.ndarray]]:
-    """Find the best friction ratio of every set for several values of one zeta and one law; return their sums.
+    """Find the best friction ratio of every set for several values of one zeta and law; return their sums.
 
     tried : (tried, sets) for each of the values
     """

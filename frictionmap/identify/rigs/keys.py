@@ -109,7 +109,7 @@ _KNOWN = {
     "zeta": ("viscous damping ratio", "0.01"),
     "beta": ("friction ratio of all sets", "0.2"),
     "mu": ("static over kinetic friction force, >= 1", "1.0"),
-    "contact_stiffness": ("stiffness of a spring in the contact over k1; default: the contact is rigid", "3.0"),
+    "contact_stiffness": ("stiffness of a spring in the contact over k1; default: rigid", "3.0"),
     "x_F": ("kinetic friction force over stiffness, mm", "0.2"),
     "X0": ("amplitude at t0, mm", "9.5"),
     "t0": ("time of the first turning point, s", "0.0"),

@@ -154,7 +154,8 @@ def fit_record(
     begin = _begin(near, samples)
     at_one = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
     starting = [at_one.solution.values]
-    if not elastic and "mu" not in known and at_one.model_error > 1.0:  # else nothing far away can be much nearer
+    with_mu = not elastic and "mu" not in known
+    if with_mu and at_one.model_error > 1.0:  # else nothing far away can be much nearer
         starting.append(_begin(_nearest(coarse, samples.near[few], phasors, known), samples))
     fit = _with_static(at_one, phasors, starting)
     # without outliers once more if mu is fitted: what errors of the base do was computed for mu = 1

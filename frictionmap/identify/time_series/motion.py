@@ -3,12 +3,13 @@
     x'' = -w^2 (x - offset_x - y) - 2 zeta w (x' - y') - w^2 x_F s,   w = 2 pi f_n,   s = sgn(x' or x' - y')
 
 The mass rubs on a wall that stands still or moves with the base y; the damper acts relative to the base or to
-the ground.  With a spring in the contact w^2 x_F s is the force w^2 kt (q - p), q below, and p moves only where
-that is w^2 x_F.  In q = x - offset_x, less y where the wall moves, all four are one oscillator, r = f/f_n:
+the ground.  In q = x - offset_x, less y where the wall moves, all four are one oscillator, r = f/f_n:
 
     r^2 q'' + 2 zeta r q' + q + x_F sgn(q') = Re sum_n G_n e^{i n tau}
     wall still: G_n = Y_n (1 + 2 i n zeta r), moving: G_n = (n r)^2 Y_n,   relative to the base
     wall still: G_n = Y_n,   moving: G_n = ((n r)^2 - 2 i n zeta r) Y_n,   relative to the ground
+
+With a spring in the contact kt (q - p) takes the place of x_F sgn(q'), and p moves only where that is +-x_F.
 """
 
 from typing import NamedTuple

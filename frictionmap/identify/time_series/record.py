@@ -10,7 +10,6 @@ from ...datasets.provenance import system_text
 from ...errors import InputError
 from ...model.system import DAMPING_REFERENCES
 from ...units.table import checked_unit, conversion
-from ..signals.phasors import Phasors
 from ..parameters import CONTACT_STIFFNESS, checked_free, is_elastic, refuse_mu
 from ..spring import held_compliance, spring_in_newtons, spring_warnings, with_stiffness
 from ..statistics.cautions import bound_warnings, correlation_warnings, interval_warnings
@@ -81,11 +80,12 @@ def record(
     damping_reference : "ground" or "base"
         Whether the damper acts on the velocity of the mass, or on that relative to the base.
     known : mapping
-        Parameters to be held: f_n [Hz] > 0, zeta >= 0, x_F >= 0, mu >= 1, offset_x, contact_stiffness > 0 (kt/k
-        of a spring in the contact).  Others are fitted, but the contact is rigid unless `free` or `known` names
-        contact_stiffness.
+        Parameters to be held: f_n [Hz] > 0, zeta >= 0, x_F >= 0, mu >= 1, offset_x, contact_stiffness > 0
+        (kt/k of a spring in the contact).  Others are fitted, but the contact is rigid unless `free` or
+        `known` names contact_stiffness.
     stiffness : float
-        k [N/m] > 0; gives the friction force F = k x_F [N], and the stiffness of a spring in the contact [N/m].
+        k [N/m] > 0; gives the friction force F = k x_F [N], and the stiffness of a spring in the contact
+        [N/m].
     window : [begin, end]
         Times [s] of the part to be fitted; default: all.
     loss : "linear" or "soft_l1"
@@ -101,8 +101,8 @@ def record(
         standard_error, lower and upper (95 %, one-sided where `at_bound`), `known`, unit; `correlation`; on
         sample: time, base, data, model, residual; on channel and harmonic: `phasor`, at the middle of the
         record, and its error; scalars `base_frequency`, `cycles`, `base_distortion`, `drift`, `change`
-        (stationarity), `residual_rms`, `verdict` and others.  Attribute `warnings`.  With a spring in the contact
-        contact_stiffness takes the place of mu, and slips_per_cycle that of stops_per_cycle.
+        (stationarity), `residual_rms`, `verdict` and others.  Attribute `warnings`.  With a spring in the
+        contact contact_stiffness takes the place of mu, and slips_per_cycle that of stops_per_cycle.
 
     Raises
     ------
@@ -122,8 +122,8 @@ def record(
     determine them: by correlations beyond 0.95 if friction is not known to 10 %, and beyond 0.5 if the model
     leaves more than noise at the harmonics of the base (`model_error` > 1).  `joint` fits several records.
 
-    Of a contact with a spring mu is 1.  Where the record excludes small stiffnesses only, `upper` is infinite,
-    the standard error NaN, and a warning says so.  An estimate of infinity is a rigid contact.
+    Of a contact with a spring mu is 1.  Where the record excludes small stiffnesses only, `upper` is
+    infinite, the standard error NaN, and a warning says so.  An estimate of infinity is a rigid contact.
     """
     checked_unit(unit, "length", "unit")
     checks.choice(contact, "contact", CONTACTS)

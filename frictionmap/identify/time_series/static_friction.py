@@ -31,7 +31,7 @@ def is_asked_for(gain: float, problem: Problem, best: Solution, noise: Noise, in
 
 
 def highest(problem: Problem, solution: Solution, noise: Noise, index: int) -> tuple[float, np.ndarray]:
-    """The upper end of the interval of (mu - 1)^2, from the profile of the sum, and how the others move up to it.
+    """The upper end of the interval of (mu - 1)^2, from the profile of the sum, and how the others move.
 
     problem : with mu free
     solution : with mu = 1

@@ -1,5 +1,6 @@
 """Where fitted motions lie among the regimes of the structure that they are of."""
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -7,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from ...files.stored import stored_system
+from ...files.config import system_in
 from ...model.system import System
 from ...steady.sweep import sweep
 from ..curves.axes import Panel
@@ -35,11 +36,17 @@ class Positions(NamedTuple):
 
 
 def fitted_system(ds: xr.Dataset) -> System | None:
-    """The structure with the fitted damping, as far as the dataset contains it."""
-    system = stored_system(ds)
-    if system is None or system.modes.zeta.any() or "zeta" not in ds["parameter"].values:
-        return system
-    return replace(system, damping_ratios=max(fitted(ds, "zeta", 0.0), 0.0))
+    """The structure with the fitted damping and spring in its contact, as far as the dataset contains it."""
+    system = system_in(str(ds.attrs.get("config", "")))
+    if system is None:
+        return None
+    spring = fitted(ds, "contact_stiffness", math.inf)
+    system = replace(system, contact_stiffness=None)
+    if system.general is not None:
+        return None
+    if not system.modes.zeta.any() and "zeta" in ds["parameter"].values:
+        system = replace(system, damping_ratios=max(fitted(ds, "zeta", 0.0), 0.0))
+    return replace(system, contact_stiffness=spring) if 0.0 < spring < math.inf else system
 
 
 def fitted(ds: xr.Dataset, name: str, default: float) -> float:
@@ -58,7 +65,8 @@ def position_panel(system: System, mu: float, positions: list[Positions]) -> Pan
     )
 
     def position(ax: Axes) -> list[Handle]:
-        panel = sweep(system, r, beta, mu, outputs=["regime", "stops_per_cycle"]).isel(mu=0)
+        count = "stops_per_cycle" if system.general is None else "slip_reversals_per_cycle"
+        panel = sweep(system, r, beta, mu, outputs=["regime", count]).isel(mu=0)
         cells = cells_of(panel)
         handles = draw_map(ax, panel, cells)
         for part in positions:

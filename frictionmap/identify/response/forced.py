@@ -100,9 +100,9 @@ def forced(
         as `free_decay`, see `quantity`: data and model are lags [deg] and amplitude ratios, residuals
         degrees and logarithms of ratios.  beta is the friction force over the mean load of its set.  Also on
         sample: frequency, mass, set, sigma, frequency_ratio, friction_ratio, `regime`, and `reached`, the
-        initial states that lead to the motion; `lag_status`, what follows from a lag alone, see `friction_ratio`.  On
-        answer: `lag_friction_ratio` with its error, and `lag_sample`, the sample that it is of.  Attribute
-        `warnings`.
+        initial states that lead to the motion; `lag_status`, what follows from a lag alone, see
+        `friction_ratio`.  On answer: `lag_friction_ratio` with its error, and `lag_sample`, the sample that
+        it is of.  Attribute `warnings`.
 
     Raises
     ------

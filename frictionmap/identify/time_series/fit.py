@@ -35,8 +35,10 @@ from .motion import (
 from .starts import starts
 from .static_friction import FITTED, IDLE, KNOWN, ONE, is_asked_for
 
-#: Number of starts that are followed, and of samples used; the best one continues with all samples.
+#: Number of starts that are followed, that with a spring where the first ones leave more than noise, and of
+#: samples used; the best one continues with all samples.
 _FOLLOWED = 4
+_MORE_FOLLOWED = 24
 _SAMPLES = 600
 
 #: Fits to pseudo-values: each is a step of Newton's method with the mean slope, so few are needed.
@@ -153,6 +155,10 @@ def fit_record(
     scatter = float(np.sqrt(near.sum / samples.near[few].size))
     begin = _begin(near, samples)
     at_one = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
+    if elastic and at_one.model_error > 1.0:
+        begin = _begin(_nearest(coarse, samples.near[few], phasors, known, _MORE_FOLLOWED), samples)
+        other = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
+        at_one = min(at_one, other, key=lambda fit: float(np.sum(fit.residual**2)))
     starting = [at_one.solution.values]
     with_mu = not elastic and "mu" not in known
     if with_mu and at_one.model_error > 1.0:  # else nothing far away can be much nearer
@@ -207,13 +213,15 @@ def _fit_near(
 def _with_static(fit: RecordFit, phasors: Phasors, begin: list[np.ndarray]) -> RecordFit:
     """The fit with mu free, if it is not known and the data ask for it; else the fit as it is.
 
-    That of a spring is free to begin with, and where it ends as stiff as can be the contact is rigid.
+    A spring is free to begin with, and the contact is rigid where that explains the data as well.
     """
     task = fit.with_law
     if not task.free[LAW]:
         return fit
     if fit.mass.elastic:
-        return _rigid(fit, phasors) if fit.solution.at_bound[LAW] else fit._replace(static=FITTED)
+        rigid = _rigid(fit, phasors)
+        stiff = fit.solution.at_bound[LAW] or rigid.solution.sum <= fit.solution.sum
+        return rigid if stiff else fit._replace(static=FITTED)
     solution = min((minimise(task, start) for start in begin), key=lambda found: found.sum)
     found = motion(fit.mass, outer(solution.values[: len(PARAMETERS)]))
     noise, model_error = noise_of_record(phasors, fit.samples, task, solution)
@@ -272,12 +280,14 @@ def _begin(near: Solution, samples: Samples) -> np.ndarray:
     return np.concatenate((near.values, slow))
 
 
-def _nearest(mass: Shaken, x: np.ndarray, phasors: Phasors, known: Mapping[str, float]) -> Solution:
+def _nearest(
+    mass: Shaken, x: np.ndarray, phasors: Phasors, known: Mapping[str, float], followed: int = _FOLLOWED
+) -> Solution:
     """The least sum from several starts, of samples without drift and outliers."""
     none = np.zeros((x.size, 0))
     samples = Samples(np.zeros(x.size), x, x, x, none, none, None)
     free, elastic = _free(known, samples, mass.elastic), mass.elastic
-    candidates = starts(mass.contact, mass.damping_reference, phasors, known, elastic)[:_FOLLOWED]
+    candidates = starts(mass.contact, mass.damping_reference, phasors, known, elastic)[:followed]
     fitted = [inner(start, elastic) for start in candidates]
     problems = [(_problem(mass, samples, free, start), start) for start in fitted]
     return min((minimise(_within(task), start) for task, start in problems), key=lambda found: found.sum)

@@ -132,7 +132,7 @@ def record(
     elastic = is_elastic(checked_free(free, known or {}, FITTABLE), known or {})
     held = checked_known(known or {}, free if elastic else None)
     robust = loss == "soft_l1"
-    given = measured_record(time, base, x, window, robust)
+    given = measured_record(time, base, x, window, robust, elastic)
     given, fit = fit_clipped(contact, damping_reference, given, held, robust, elastic)
     given = whole_record(given, fit, robust)
     phasors = given.phasors
@@ -160,7 +160,7 @@ def _check_identifiable(fit: RecordFit) -> None:
     if names:
         raise InputError(
             f"cannot identify {listed(names)}: the contact of the fitted motion does not slip, or hardly; "
-            "measure with less friction or more motion, or hold contact_stiffness in known"
+            "measure with less friction or more motion, or hold them in known"
         )
 
 

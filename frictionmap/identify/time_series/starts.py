@@ -23,7 +23,7 @@ _DAMPINGS = (0.0, 0.003, 0.01, 0.03, 0.1, 0.3)
 _STATIC = (1.0, 1.1, 1.3, 1.7)
 
 #: Compliances of springs that are tried.
-_COMPLIANCES = (3.0, 1.0, 0.3, 0.1, 0.03)
+_COMPLIANCES = (2.0, 1.0, 0.5, 0.25, 0.12, 0.06, 0.03, 0.01)
 
 #: Places in a cycle at which motions are compared.
 _PLACES = 128

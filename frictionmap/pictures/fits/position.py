@@ -75,7 +75,7 @@ def position_panel(system: System, mu: float, positions: list[Positions]) -> Pan
                 markeredgewidth=0.7, path_effects=halo(1.8), zorder=4.0,
             )  # fmt: skip
         classes = [
-            patch(CLASSES[index].label, CLASSES[index].colour) for index in np.flatnonzero(cells.counts)
+            patch(cells.by.labels[index], CLASSES[index].colour) for index in np.flatnonzero(cells.counts)
         ]
         return distinct([*classes, *handles])
 

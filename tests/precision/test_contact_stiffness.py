@@ -1,4 +1,4 @@
-"""The spring in a contact as an unknown of `forced` and `record`, against motions found without the package."""
+"""The spring in a contact as an unknown of `forced` and `record`: motions found without the package."""
 
 import json
 

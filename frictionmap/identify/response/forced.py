@@ -122,7 +122,9 @@ def forced(
     """
     system = _default_system() if system is None else checks.instance(system, "system", System)
     system, given = _without_spring(system, known or {})
-    elastic = is_elastic(checked_free(free, given, PARAMETERS), given)
+    damped = system.modes.zeta.any() and "zeta" not in (free or ())  # its damping is known, then
+    checked_free(free, (*given, "zeta") if damped else given, PARAMETERS)
+    elastic = is_elastic(free, given)
     if elastic:
         refuse_mu(free, given)
     table = checked_table(
@@ -166,7 +168,7 @@ def _default_system() -> System:
 
 
 def _without_spring(system: System, known: Mapping[str, float]) -> tuple[System, dict[str, float]]:
-    """The system with a rigid contact, and what is known, with the stiffness of the spring that it had."""
+    """The system with a rigid contact, and the known parameters with the stiffness of its spring."""
     given = dict(known)
     spring = system.contact_stiffness
     if spring is None:

@@ -89,8 +89,12 @@ _REFERENCE = Key(
     "damping_reference", "damping acts on velocities relative to the ground, or relative to the base",
     word(*DAMPING_REFERENCES), DAMPING_REFERENCES[0],
 )  # fmt: skip
+_SPRING = Key(
+    "contact_stiffness", "stiffness of a spring in the contact over k1, if it is known; default: rigid",
+    number(above=0.0), example="3.0",
+)  # fmt: skip
 _SYSTEMS = {
-    "forced": tuple(key for key in KEYS["system"] if key not in GENERAL_KEYS),
+    "forced": (*(key for key in KEYS["system"] if key not in GENERAL_KEYS), _SPRING),
     "record": (
         _CONTACT._replace(valid=word(*CONTACTS)),
         _MASSES._replace(meaning="the mass in contact", valid=several({"const": 1}, maxItems=1), words="[1]"),

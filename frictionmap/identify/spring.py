@@ -74,9 +74,19 @@ def spring_warnings(lower: float, upper: float) -> list[str]:
     ]
 
 
-def spring_in_newtons(value: float, error: float, stiffness: float) -> dict[str, xr.Variable]:
-    """Stiffness of a spring [N/m], with its error, from that over k1; `stiffness` k1 [N/m]."""
+def spring_in_newtons(
+    values: np.ndarray, found: Errors, index: int, stiffness: float
+) -> dict[str, xr.Variable]:
+    """Stiffness of a spring [N/m] with its error, or the lower end of its interval if that has no upper end.
+
+    values, found, index : estimates and errors `with_stiffness`, and which of them it is
+    stiffness : k1 [N/m]
+    """
     words = "stiffness of the spring in the contact"
+    value, error, lower = (float(part[index]) for part in (values, found.standard_error, found.lower))
+    if math.isnan(error):
+        least = number(stiffness * lower, f"lower end of the 95 % interval of the {words}", "N/m")
+        return {"spring_stiffness_lower": least}
     return {
         "spring_stiffness": number(stiffness * value, words, "N/m"),
         "spring_stiffness_standard_error": number(stiffness * error, f"standard error of the {words}", "N/m"),

@@ -165,10 +165,12 @@ def test_intervals_of_a_table_hold_the_truth():
 def test_a_spring_that_the_data_do_not_determine():
     """Far from sticking, and with a rigid contact: an interval without an upper end, no standard error."""
     for data, least in ((table(3.0, (0.02, 0.05)), 0.0), (table(0.0, (0.3,)), 20.0)):
-        ds = fitted(blurred(data, 2), sigma_phase=0.7, sigma_amplitude=0.01)
+        ds = fitted(blurred(data, 2), sigma_phase=0.7, sigma_amplitude=0.01, stiffness=2000.0)
         spring = of(ds, "contact_stiffness")
         assert least < float(spring.lower) < float(spring.estimate) <= float(spring.upper) == np.inf
         assert np.isnan(spring.standard_error)
+        assert float(ds.spring_stiffness_lower) == pytest.approx(2000.0 * float(spring.lower))
+        assert "spring_stiffness" not in ds
         assert "the data do not determine contact_stiffness: any value from" in ds.warnings
         assert "or hold contact_stiffness" in ds.warnings
         others = ds.drop_sel(parameter="contact_stiffness")

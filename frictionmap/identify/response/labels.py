@@ -121,7 +121,7 @@ def spring_stiffness(fit: TableFit, stiffness: float) -> dict[str, xr.Variable]:
     if not fit.model.elastic:
         return {}
     values, found = shown_estimates(fit)
-    return spring_in_newtons(float(values[LAW]), float(found.standard_error[LAW]), stiffness)
+    return spring_in_newtons(values, found, LAW, stiffness)
 
 
 def _friction(table: ForcedTable, fit: TableFit, unit: str) -> dict[str, xr.Variable]:

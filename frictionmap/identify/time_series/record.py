@@ -228,8 +228,7 @@ def _of_motion(
     if stiffness is not None:
         newtons = checks.number(stiffness, "stiffness", above=0.0) * conversion(unit, "m")
         if fit.mass.elastic:
-            spring, of_spring = float(values[LAW]), float(found.standard_error[LAW])
-            result |= spring_in_newtons(spring, of_spring, float(stiffness))
+            result |= spring_in_newtons(values, found, LAW, float(stiffness))
         error = newtons * float(found.standard_error[X_F])
         words = "kinetic friction force k x_F"
         result["friction_force"] = number(newtons * float(fit.values[X_F]), words, "N")

@@ -32,19 +32,21 @@ def held_compliance(stiffness: object) -> float:
 def with_stiffness(values: np.ndarray, found: Errors, index: int, fitted: bool) -> tuple[np.ndarray, Errors]:
     """Estimates and errors with the stiffness in the place of the compliance.
 
-    Where the interval holds a rigid contact it ends at infinity, and there is no standard error.
+    Where the interval holds a rigid contact it ends at infinity, and there is no standard error.  For a rigid
+    contact itself the estimate is that of the stiffest spring.
 
     index : of the compliance
     fitted : whether it was fitted
     """
     compliance, lower, upper = (float(part[index]) for part in (values, found.lower, found.upper))
     changed = values.copy()
-    changed[index] = 1.0 / compliance if compliance > 0.0 else math.inf
+    changed[index] = 1.0 / max(compliance, STIFFEST)
     if not fitted:
         return changed, found._replace(
             lower=_put(found.lower, index, changed[index]), upper=_put(found.upper, index, changed[index])
         )
     open_end = lower <= STIFFEST
+    upper = max(upper, STIFFEST)  # between that and a rigid contact no motion is computed
     error = math.nan if open_end else float(found.standard_error[index]) / compliance**2
     correlation = found.correlation.copy()
     correlation[index] *= -1.0

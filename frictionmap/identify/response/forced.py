@@ -117,7 +117,7 @@ def forced(
 
     Of a contact with a spring mu is 1, and its stiffness shows where the contact sticks for a large part of
     the cycle.  Far from there, or where it is large, the data exclude small values only: `upper` is then
-    infinite, the standard error NaN, and a warning says so.  An estimate of infinity is a rigid contact.
+    infinite, the standard error NaN, and a warning says so.  An estimate on its bound is a rigid contact.
     Single lags give no friction ratio then.
     """
     system = _default_system() if system is None else checks.instance(system, "system", System)

@@ -23,7 +23,7 @@ _WORDS = {
     "f_n": "natural frequency of the first mass on its spring alone, where r = 1",
     "zeta": "viscous damping ratio of every mode; of the first one where the system's own are held",
     "mu": "static over kinetic friction force",
-    CONTACT_STIFFNESS: "stiffness of the spring in the contact over k1; inf: rigid",
+    CONTACT_STIFFNESS: "stiffness of the spring in the contact over k1; on its bound: rigid",
 }
 
 

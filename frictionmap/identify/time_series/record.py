@@ -46,7 +46,10 @@ _MEANINGS = {
 
 #: With a spring in the contact, in the places of mu and of stops.
 _OF_SPRING = {
-    "mu": (CONTACT_STIFFNESS, "stiffness of the spring in the contact over that of the mass; inf: rigid"),
+    "mu": (
+        CONTACT_STIFFNESS,
+        "stiffness of the spring in the contact over that of the mass; on its bound: rigid",
+    ),
     "stops_per_cycle": ("slips_per_cycle", "slips that begin in a cycle of the fitted motion"),
 }
 
@@ -123,7 +126,7 @@ def record(
     leaves more than noise at the harmonics of the base (`model_error` > 1).  `joint` fits several records.
 
     Of a contact with a spring mu is 1.  Where the record excludes small stiffnesses only, `upper` is
-    infinite, the standard error NaN, and a warning says so.  An estimate of infinity is a rigid contact.
+    infinite, the standard error NaN, and a warning says so.  An estimate on its bound is a rigid contact.
     """
     checked_unit(unit, "length", "unit")
     checks.choice(contact, "contact", CONTACTS)

@@ -1,6 +1,5 @@
 """Where fitted motions lie among the regimes of the structure that they are of."""
 
-import math
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -9,6 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from ...files.config import system_in
+from ...model.settings import GeneralOutput, Output
 from ...model.system import System
 from ...steady.sweep import sweep
 from ..curves.axes import Panel
@@ -40,13 +40,17 @@ def fitted_system(ds: xr.Dataset) -> System | None:
     system = system_in(str(ds.attrs.get("config", "")))
     if system is None:
         return None
-    spring = fitted(ds, "contact_stiffness", math.inf)
     system = replace(system, contact_stiffness=None)
     if system.general is not None:
         return None
     if not system.modes.zeta.any() and "zeta" in ds["parameter"].values:
         system = replace(system, damping_ratios=max(fitted(ds, "zeta", 0.0), 0.0))
-    return replace(system, contact_stiffness=spring) if 0.0 < spring < math.inf else system
+    spring = fitted(ds, "contact_stiffness", 0.0)
+    if spring <= 0.0 or ds["at_bound"].sel(
+        parameter="contact_stiffness"
+    ):  # on its bound the contact is rigid
+        return system
+    return replace(system, contact_stiffness=spring)
 
 
 def fitted(ds: xr.Dataset, name: str, default: float) -> float:
@@ -65,7 +69,9 @@ def position_panel(system: System, mu: float, positions: list[Positions]) -> Pan
     )
 
     def position(ax: Axes) -> list[Handle]:
-        count = "stops_per_cycle" if system.general is None else "slip_reversals_per_cycle"
+        count: Output | GeneralOutput = (
+            "stops_per_cycle" if system.general is None else "slip_reversals_per_cycle"
+        )
         panel = sweep(system, r, beta, mu, outputs=["regime", count]).isel(mu=0)
         cells = cells_of(panel)
         handles = draw_map(ax, panel, cells)

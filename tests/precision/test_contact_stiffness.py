@@ -130,6 +130,24 @@ def test_exact_tables_give_the_truth_back(spring, wall_moves, betas):
     np.testing.assert_allclose(ds.estimate, [*betas, 3.1, 0.01, spring], rtol=2e-6)
 
 
+def test_a_contact_between_two_masses():
+    """Under a force, both masses measured; data from response curves, which find harmonics in another way."""
+    structure = {"mass_ratios": [1.0, 0.8], "stiffness_ratios": [1.0, 0.7], "contact": "between-masses",
+                 "contact_masses": [1, 2], "damping_ratios": 0.02}  # fmt: skip
+    r = np.array([0.4, 0.55, 0.7, 0.9, 1.1, 1.3, 1.5])
+    curves = fm.curves(
+        fm.System(**structure, contact_stiffness=2.0), r, [0.5], quantities=["first_harmonic"]
+    ).isel(mu=0, beta=0)
+    lags = {k: np.degrees(curves.first_harmonic_phase.sel(dof=k).values) for k in (1, 2)}
+    sizes = {k: curves.first_harmonic_amplitude.sel(dof=k).values for k in (1, 2)}
+    ds = fm.identify.forced(
+        5.0 * r, lags, sizes, system=fm.System(**structure), free=["beta", "f_n", "contact_stiffness"]
+    )
+    np.testing.assert_allclose(
+        estimates(ds, ["beta", "f_n", "contact_stiffness"]), [0.5, 5.0, 2.0], rtol=1e-7
+    )
+
+
 def test_a_known_spring_is_held_however_it_is_given():
     data = table(3.0, (0.5,))
     rigid = fm.System(excitation="base", damping_reference="base")

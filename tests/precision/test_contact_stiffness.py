@@ -180,6 +180,7 @@ def test_intervals_of_a_table_hold_the_truth():
         assert float(spring.lower) < float(spring.estimate) < float(spring.upper) < 3.5
 
 
+@pytest.mark.slow
 def test_a_spring_that_the_data_do_not_determine():
     """Far from sticking, and with a rigid contact: an interval without an upper end, no standard error."""
     for data, least in ((table(3.0, (0.02, 0.05)), 0.0), (table(0.0, (0.3,)), 20.0)):
@@ -193,6 +194,16 @@ def test_a_spring_that_the_data_do_not_determine():
         assert "or hold contact_stiffness" in ds.warnings
         others = ds.drop_sel(parameter="contact_stiffness")
         assert np.isfinite(others.standard_error).all()
+
+
+def test_a_mass_that_the_spring_holds_leads_a_base_with_a_damper():
+    """By up to 4 deg here, which is no mistake in the data."""
+    data = table(3.0, (0.5, 1.2), zeta=0.05)
+    assert data[1].min() < -2.0
+    ds = fitted(data, sigma_phase=0.1, sigma_amplitude=0.01)
+    np.testing.assert_allclose(ds.estimate, [0.5, 1.2, 3.1, 0.05, 3.0], rtol=2e-6)
+    with pytest.raises(fm.InputError, match="must be 0 to 180 deg for the loaded mass"):
+        fitted(data, free=None, sigma_phase=0.1, sigma_amplitude=0.01)
 
 
 def test_stiffness_in_newtons_per_metre():
@@ -237,6 +248,7 @@ def test_a_known_spring_of_a_record():
     assert float(rigid.model_error) > 3.0 > float(ds.model_error)  # the spring is missed
 
 
+@pytest.mark.slow
 def test_a_record_of_a_rigid_contact():
     """The estimate is a rigid contact or a spring that the data do not tell from one."""
     ds = fm.identify.record(*sampled(RIG._replace(spring=0.0), 1), damping_reference="base", free=OF_RECORD)

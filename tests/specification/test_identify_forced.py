@@ -377,6 +377,7 @@ def test_a_known_spring_in_the_contact(rig, capsys):
         assert (friction != 1.0).all()
 
 
+@pytest.mark.slow
 def test_a_spring_that_only_a_lower_bound_is_known_of(rig, capsys):
     """These data are of a rigid contact: the table shows it, and no number that cannot be used."""
     free = '\n[fit]\nfree = ["beta", "f_n", "zeta", "contact_stiffness"]\n'

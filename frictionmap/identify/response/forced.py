@@ -128,7 +128,7 @@ def forced(
     if elastic:
         refuse_mu(free, given)
     table = checked_table(
-        system, frequency, (phase_lag, amplitude_ratio), (sigma_phase, sigma_amplitude), load, sets
+        system, frequency, (phase_lag, amplitude_ratio), (sigma_phase, sigma_amplitude), load, sets, elastic
     )
     held = _checked_known(given, system, len(table.labels), elastic)
     warnings = []

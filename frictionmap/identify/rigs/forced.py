@@ -10,6 +10,7 @@ from ...errors import InputError
 from ...files.config import read_system
 from ...model.system import System
 from ...units.table import COLUMN_NAMES, conversion
+from ..parameters import is_elastic
 from ..response.data import check_lag
 from ..response.forced import PARAMETERS, forced
 from ..signals.integration import amplitude_factors, derivative_order
@@ -43,10 +44,11 @@ def _forced(rig: Rig, table: Table) -> xr.Dataset:
             check_positive(table, column, picked.rows)
     lags = _by_mass(system, picked, "phase_lag", "deg")
     sigmas = _errors(rig, picked)
+    elastic = is_elastic(rig.free, rig.known) or system.contact_stiffness is not None
     for mass, lag in lags.items():
         name = picked.columns[_role(system, "phase_lag", mass)].name
         places = [table.place(name, int(row)) for row in picked.rows]
-        check_lag(system, mass - 1, lag, sigmas[0], places)
+        check_lag(system, mass - 1, lag, sigmas[0], places, elastic)
     frequency = _frequency(rig, picked)
     load, unit = _load(picked, frequency)
     ratios = _ratios(rig, system, picked, frequency, load)

@@ -608,7 +608,11 @@ identify forced.toml --set system.masses=2
 identify forced.toml --set known.mu=0.9
     file forced.csv: known.mu must be >= 1; got 0.9
 identify forced.toml --set known.x_F=1
-    data.kind = 'forced': unknown key 'known.x_F'; valid: beta, f_n, zeta, mu, stiffness
+    data.kind = 'forced': unknown key 'known.x_F'; valid: beta, f_n, zeta, mu, contact_stiffness, stiffness
+identify forced.toml --set known.mu=1.2 --set known.contact_stiffness=3
+    file forced.csv: mu must be 1 for a contact with a spring, which would jump at break-away; got 1.2
+identify forced.toml --set system.contact_stiffness=2 --set known.contact_stiffness=3
+    file forced.csv: cannot use known.contact_stiffness: the system defines it; omit one of the two
 identify forced.toml --set 'fit.free=["beta"]'
     cannot hold f_n: its value is missing; add f_n to fit.free or known.f_n to [known]
 identify forced.toml --set 'data.columns={ lag = "phase_lag_deg" }'
@@ -644,7 +648,7 @@ identify record.toml --set known.zeta=-0.1
 identify record.toml --set known.f_n=0
     file record.csv, columns time_s, base_mm and x_mm: known.f_n must be > 0; got 0.0
 identify record.toml --set known.beta=0.2
-    data.kind = 'record': unknown key 'known.beta' (did you mean zeta?); valid: f_n, zeta, x_F, mu, offset_x, stiffness
+    data.kind = 'record': unknown key 'known.beta' (did you mean zeta?); valid: f_n, zeta, x_F, mu, contact_stiffness, offset_x, stiffness
 identify record.toml --set 'data.columns={ z = "z_mm" }'
     unknown key 'data.columns.z'; valid: time, base, x
 identify record.toml --set 'data.window=[3, 4]'
@@ -759,6 +763,22 @@ fm.identify.forced([1.0, 2.0], [10.0, 20.0])
     cannot determine f_n: phase data alone do not determine it, and the lags of mass 1 do not pass 90 deg; give known.f_n or amplitudes
 fm.identify.forced([1.0, 2.0], [10.0, 20.0], known={"beta": 0.1, "f_n": 3.0, "zeta": 0.0, "mu": 1.0})
     known must leave at least one parameter free; got all of beta, f_n, zeta, mu
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], free="beta")
+    free must be a list of parameters; got 'beta'
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], free=["beta"])
+    cannot hold f_n: its value is missing; add f_n to free or to known
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], free=["beta", "f_n", "zeta", "mu", "contact_stiffness"])
+    cannot fit mu together with contact_stiffness: a contact with a spring is defined for mu = 1 only; remove mu from free
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], known={"contact_stiffness": 0.0})
+    known.contact_stiffness must be >= 0.001; got 0.0
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], system=fm.System(contact_stiffness=[1.0, 2.0]))
+    contact_stiffness must be one number to identify friction; got a bank of 2
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], system=fm.System(contact_stiffness=2.0, wall_velocity=0.1))
+    cannot identify friction of a system with wall_velocity: this is offered for one rigid contact under one harmonic load; omit wall_velocity
+fm.identify.record(TIME, np.cos(4 * TIME), np.cos(4 * TIME), known={"contact_stiffness": 1e5})
+    known.contact_stiffness must be <= 10000; got 100000.0
+fm.identify.record(TIME, np.cos(4 * TIME), np.cos(4 * TIME), known={"contact_stiffness": 3.0, "mu": 1.1})
+    mu must be 1 for a contact with a spring, which would jump at break-away; got 1.1
 fm.identify.forced([1.0, 2.0], [10.0, 20.0], known={"f_n": 3.0}, unreachable="keep")
     unreachable must be one of refuse, drop; got 'keep'
 fm.identify.record(TIME, np.cos(4 * TIME), np.ones(400))

@@ -22,8 +22,8 @@ _ROUNDING = 2.0**-50
 
 #: Nodes and weights on [0, 1]: exact to rounding for products of two series of a step.
 _LEGENDRE = np.polynomial.legendre.leggauss(14)
-_NODES = 0.5 * (1.0 + _LEGENDRE[0])
-_WEIGHTS = 0.5 * _LEGENDRE[1]
+NODES = 0.5 * (1.0 + _LEGENDRE[0])
+WEIGHTS = 0.5 * _LEGENDRE[1]
 
 
 class Record(NamedTuple):
@@ -169,9 +169,9 @@ def _integral(series, at, end):
 def _integral_of_product(series, a, b, end):
     """Integral over [0, end] of the product of two series."""
     sum_ = 0.0
-    for i in range(_NODES.size):
-        x = end * _NODES[i]
-        sum_ += _WEIGHTS[i] * value_at(series, a, x) * value_at(series, b, x)
+    for i in range(NODES.size):
+        x = end * NODES[i]
+        sum_ += WEIGHTS[i] * value_at(series, a, x) * value_at(series, b, x)
     return end * sum_
 
 

@@ -272,7 +272,7 @@ def _approaches(problem, row, friction, halves, contraction, work, memory, ring,
     size = motion_size(problem, row, memory)
     begin = distance_from_orbit(problem, memory, ring)
     enough = max(_NEARER * begin, _RETURNED * size)
-    returns, expected = _MOST_RETURNS, contraction
+    returns = _MOST_RETURNS
     if contraction < 1.0:
         needed = 2.0 * math.log(_NEARER) / math.log(max(contraction, _FASTEST))
         returns = int(min(2.0 + needed, returns))
@@ -284,7 +284,7 @@ def _approaches(problem, row, friction, halves, contraction, work, memory, ring,
             break
         take_end(memory)
         far = distance_from_orbit(problem, memory, ring)
-        approaches = far <= enough or (count == returns and far <= begin * expected ** (0.5 * count))
+        approaches = far <= enough or (count == returns and far <= begin * contraction ** (0.5 * count))
         if approaches:
             break
     take_orbit(memory, ring)

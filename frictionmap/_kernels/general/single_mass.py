@@ -12,6 +12,7 @@ from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, LEADING, filled, least, load, mask_above, most, store
 from .crossings import NONE, approach, slope_at, value_at
 from .follow import COUNT_ROWS, MOVED, NEAREST_STOP, STOPS, STUCK, TURNS
+from .orbits import radius_of_two
 from .problem import TERMS, WIDTH
 from .record import LEAST_SLIP, clear_record, include, mirror
 from .single_tables import (
@@ -354,16 +355,6 @@ def _return(single, h, intervals, start, sense, beta, memory, record):
 
 
 @kernel
-def _radius(a, b, c, d):
-    """Largest modulus of the eigenvalues of the matrix (a, b; c, d)."""
-    mean, half = 0.5 * (a + d), 0.5 * (a - d)
-    square = half * half + b * c
-    if square >= 0.0:
-        return abs(mean) + math.sqrt(square)
-    return math.sqrt(mean * mean - square)
-
-
-@kernel
 def _keep_motion(problem, base, beta, start, sense, single, memory, record):
     """Put the steady state found where the general solver puts its own.
 
@@ -421,7 +412,7 @@ def solve_single(problem, row, single, beta, memory, record):
             return False, 0.5 * base * count, math.nan
         off_z, off_p = sign * state[0] - z, sign * state[1] - p
         a, b, c, d = sign * state[2], sign * state[3], sign * state[4], sign * state[5]
-        multiplier = _radius(a, b, c, d)
+        multiplier = radius_of_two(a, b, c, d)
         off = max(abs(off_z), abs(off_p)) / max(size, abs(z), abs(p))
         enough = _MEASURED * min(1.0, abs(1.0 - multiplier))
         if end == sense and (off <= _SURELY * enough or enough >= off >= 0.5 * last):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from ..long_periods import WINDOW, enough_cycles, first_search, next_search
-from ..structure.newton import solve_linear, spectral_radius
+from .approach import try_return
 from .course import (
     Course,
     begin_course,
@@ -21,69 +21,33 @@ from .course import (
     window_is_stationary,
     window_stops,
 )
-from .follow import BEFORE, FOLLOWED, SLIPS, STOPS, STUCK, TURNS, follow
+from .follow import BEFORE, FOLLOWED, STUCK, follow
+from .orbits import AVERAGED, NO_REPEAT, REPEATS, Steady, largest_multiplier, newton
 from .pattern import begin, stop_exactly
-from .problem import SECTION, Row, Work, make_row, make_work, set_channels, set_row, state_size
+from .problem import SECTION, Row, Work, make_row, make_work, set_channels, set_row
 from .record import FORCES, NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
 from .return_map import (
     Return,
-    fill_newton,
     go_round,
     make_return,
-    motion_size,
-    neutral_rows,
     put_state,
     return_distance,
     steady_period,
     take_end,
     take_state,
-    take_step,
 )
 from .returns import (
     Ring,
-    distance_back,
-    distance_from_last,
-    distance_from_orbit,
     go_back,
     go_back_cycles,
     keep,
     long_recurrence,
     make_ring,
-    put_orbit,
     recurrence,
-    take_orbit,
 )
 from .series import factor_held
 from .single_mass import solve_single
 from .single_tables import Single, make_single, set_single
-
-#: Kinds of `Steady`; AVERAGED: the motion stops and starts without returning, see `course`.
-REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED, AVERAGED = 0, 1, 2, 3, 4
-
-#: Largest distance from the motion that Newton's method may lead to, where the start matters.
-_SAME = 5e-2
-
-#: ... and over the distance at which a motion that is on its way there would be.
-_HEADING = 3.0
-
-#: Part of the distance that is left when a motion counts as on its way to a steady state; returns after which
-#: that is decided in any case; and the least contraction per return that is reckoned with.
-_NEARER = 0.3
-_MOST_RETURNS = 64
-_FASTEST = 1e-3
-
-#: Newton steps at most, and the largest part of the distance before that may be left after each.
-_MOST_STEPS = 12
-_LESS = 0.5
-
-#: Largest step, over the size of the motion: beyond, the equations are singular (an undamped resonance).
-_LARGEST = 1e10
-
-#: A step below this is the last one: the next would be of the size of its square.  `measure` looks after it.
-_LAST = 1e-7
-
-#: A steady state that is back to this share of its size after a part of its period has that period.
-_RETURNED = 1e-9
 
 #: Largest error of a measured state, which is its distance from the one that it returns to, over the share
 #: of a disturbance that a return takes away; and measurements until then.
@@ -93,10 +57,6 @@ _MOST_REPEATED = 2
 #: Friction of a contact that is held, and attempts of Newton's method after which contacts are held.
 WITHOUT_LIMIT = 1e200
 _CREEPS = 6
-
-#: A multiplier above this is not that of a motion that attracts.
-_STABLE = 1.0 + 1e-9
-_STABLE_PRECISION = 0.01
 
 
 class Tools(NamedTuple):
@@ -111,14 +71,6 @@ class Tools(NamedTuple):
     course: Course
 
 
-class Steady(NamedTuple):
-    """The steady state of a cell."""
-
-    status: int
-    halves: int  # half periods after which it returns, or that averages are of
-    cycles: float  # periods followed
-
-
 @entry
 def make_tools(problem, masses, most):
     """Allocate the memory, for a record of `most` steps; `masses` (n, m): see `make_record`."""
@@ -127,172 +79,6 @@ def make_tools(problem, masses, most):
         make_record(problem, masses, most), make_single(problem, masses.shape[0]),
         make_course(problem, masses),
     )  # fmt: skip
-
-
-@kernel
-def _radius_of_two(matrix):
-    """Largest modulus of the eigenvalues of a (2, 2) matrix."""
-    mean = 0.5 * (matrix[0, 0] + matrix[1, 1])
-    half = 0.5 * (matrix[0, 0] - matrix[1, 1])
-    square = half * half + matrix[0, 1] * matrix[1, 0]
-    if square >= 0.0:
-        return abs(mean) + math.sqrt(square)
-    return math.sqrt(mean * mean - square)
-
-
-@kernel
-def _multiplier(problem, halves, precision, work, memory):
-    """Largest modulus of the multipliers, without those of contacts that rest; see `spectral_radius`."""
-    size = state_size(problem)
-    fill_newton(problem, halves, work, memory)
-    if halves % 2 == 1:  # a place where a contact rests becomes its mirror image
-        neutral_rows(problem, memory, memory.matrix, -1.0)
-    for a in range(size):
-        for b in range(size):
-            memory.matrix[a, b] = (1.0 if a == b else 0.0) - memory.matrix[a, b]
-    if size == 2:
-        return _radius_of_two(memory.matrix)
-    return spectral_radius(memory.matrix, size, work.tangent, precision)
-
-
-@kernel
-def _newton(problem, row, friction, halves, tolerance, work, memory, record):
-    """Find the state that returns after some half periods, from the one in `memory.start`.
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction
-    halves : number of half periods
-    tolerance : largest change of the state over a return, over its size
-    work, memory, record : Work, Return, Record
-
-    Returns
-    -------
-    (status, cycles) : REPEATS or NO_REPEAT; periods followed
-    """
-    last = math.inf
-    cycles = 0.0
-    size = state_size(problem)
-    for _ in range(_MOST_STEPS):
-        code = go_round(problem, row, friction, halves, work, memory, record, True)
-        cycles += 0.5 * halves
-        if code != FOLLOWED:
-            return NO_REPEAT, cycles
-        distance = return_distance(problem, row, memory)
-        if distance == 0.0:
-            return REPEATS, cycles
-        if not distance < _LESS * last:
-            if distance <= tolerance:
-                return REPEATS, cycles
-            return NO_REPEAT, cycles
-        last = distance
-        fill_newton(problem, halves, work, memory)
-        if not solve_linear(memory.matrix, memory.right, size):
-            return NO_REPEAT, cycles
-        step = take_step(problem, row, memory)
-        if not step <= _LARGEST:
-            return NO_REPEAT, cycles
-        if step <= max(tolerance, _LAST):
-            return REPEATS, cycles
-    return NO_REPEAT, cycles
-
-
-@kernel
-def _least_period(problem, row, friction, halves, base, work, memory, record):
-    """Smallest number of half periods after which a steady state returns, and the periods followed for it.
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction
-    halves : half periods after which it returns
-    base : smallest number that is possible
-    work, memory, record : Work, Return, Record
-    """
-    cycles = 0.0
-    for shorter in range(base, halves, base):
-        if halves % shorter == 0:
-            go_round(problem, row, friction, shorter, work, memory, record, False)
-            cycles += 0.5 * shorter
-            if return_distance(problem, row, memory) <= _RETURNED:
-                return shorter, cycles
-    return halves, cycles
-
-
-@kernel
-def _heads_for(problem, row, halves, contraction, memory, ring):
-    """Whether the steady state found is stable, and as near as one that the motion goes to would be.
-
-    A motion that returns to within d of where it was, and comes nearer to a steady state by a factor c each
-    time, is d/(1 - c) away from it.
-
-    Parameters
-    ----------
-    problem, row : Problem, Row
-    halves : half periods after which it returns
-    contraction : largest modulus of its multipliers over these
-    memory, ring : Return, Ring
-    """
-    if contraction > _STABLE:
-        return False
-    far = distance_from_last(problem, memory, ring) / motion_size(problem, row, memory)
-    if contraction < 1.0:
-        base = 1 if problem.symmetric else 2
-        expected = distance_back(row, memory, ring, 0, halves // base) / (1.0 - contraction)
-        if far > max(_HEADING * expected, _RETURNED):
-            return False
-    return far <= _SAME
-
-
-@kernel
-def _does_the_same(memory, ring):
-    """Whether there were as many stops, turns and slips as in the steady state kept."""
-    for j in range(memory.senses.size):
-        for part in (STOPS, TURNS, SLIPS):
-            if memory.counts[part, j] != ring.orbit_counts[part, j]:
-                return False
-    return True
-
-
-@kernel
-def _approaches(problem, row, friction, halves, contraction, work, memory, ring, record):
-    """Whether the motion comes nearer to the steady state in `memory.start`, which stays there.
-
-    The motion is followed until most of the distance is gone, or for as long as that should take.  In every
-    return it must have as many stops, turns and slips as the steady state: else it may only pass by.
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction
-    halves : half periods after which the steady state returns
-    contraction : largest modulus of its multipliers over these
-    work, memory, ring, record : Work, Return, Ring, Record; `memory.counts` are those of the steady state
-
-    Returns
-    -------
-    (approaches, cycles) : periods followed
-    """
-    put_orbit(memory, ring)
-    go_back(memory, ring, 0)
-    size = motion_size(problem, row, memory)
-    begin = distance_from_orbit(problem, memory, ring)
-    enough = max(_NEARER * begin, _RETURNED * size)
-    returns, expected = _MOST_RETURNS, contraction
-    if contraction < 1.0:
-        needed = 2.0 * math.log(_NEARER) / math.log(max(contraction, _FASTEST))
-        returns = int(min(2.0 + needed, returns))
-    approaches, cycles = False, 0.0
-    for count in range(1, returns + 1):
-        code = go_round(problem, row, friction, halves, work, memory, record, False)
-        cycles += 0.5 * halves
-        if code != FOLLOWED or not _does_the_same(memory, ring):
-            break
-        take_end(memory)
-        far = distance_from_orbit(problem, memory, ring)
-        approaches = far <= enough or (count == returns and far <= begin * expected ** (0.5 * count))
-        if approaches:
-            break
-    take_orbit(memory, ring)
-    return approaches, cycles
 
 
 @kernel
@@ -384,13 +170,13 @@ def _by_holding(problem, row, friction, base, tolerance, work, memory, ring, rec
         cycles += 1.0
         if _hold_some(problem, row, friction, share, work, memory, kept) == 0:
             continue
-        status, more = _newton(problem, row, friction, base, tolerance, work, memory, record)
+        status, more = newton(problem, row, friction, base, tolerance, work, memory, record)
         cycles += more
         if status == REPEATS and _can_rest(problem, row, friction, work, memory, record, kept):
             return True, cycles + 1.0
         _let_go(friction, kept)
         if status == REPEATS:
-            status, more = _newton(problem, row, friction, base, tolerance, work, memory, record)
+            status, more = newton(problem, row, friction, base, tolerance, work, memory, record)
             cycles += more
             if status == REPEATS:
                 return True, cycles
@@ -427,7 +213,7 @@ def _find_unique(problem, row, friction, cycles, tolerance, work, memory, ring, 
     pause = 0
     while spent < cycles:
         if wait == 0:
-            status, more = _newton(problem, row, friction, base, tolerance, work, memory, record)
+            status, more = newton(problem, row, friction, base, tolerance, work, memory, record)
             spent += more
             if status == REPEATS:
                 return Steady(REPEATS, base, spent)
@@ -447,37 +233,6 @@ def _find_unique(problem, row, friction, cycles, tolerance, work, memory, ring, 
             return Steady(1 + code, 0, spent)
         wait = max(wait - 1, 0)
     return Steady(NO_REPEAT, 0, spent)
-
-
-@kernel
-def _try_return(problem, row, friction, halves, tolerance, work, memory, ring, record):
-    """Find the steady state that the motion goes to, from a return after some half periods.
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction
-    halves : number of half periods
-    tolerance : see `find`
-    work, memory, ring, record : Work, Return, Ring, Record
-
-    Returns
-    -------
-    Steady : REPEATS or NO_REPEAT
-    """
-    base = 1 if problem.symmetric else 2
-    status, cycles = _newton(problem, row, friction, halves, tolerance, work, memory, record)
-    if status == REPEATS:
-        contraction = _multiplier(problem, halves, _STABLE_PRECISION, work, memory)
-        if _heads_for(problem, row, halves, contraction, memory, ring):
-            approaches, more = _approaches(
-                problem, row, friction, halves, contraction, work, memory, ring, record
-            )
-            cycles += more
-            if approaches:
-                least, more = _least_period(problem, row, friction, halves, base, work, memory, record)
-                return Steady(REPEATS, least, cycles + more)
-    go_back(memory, ring, 0)
-    return Steady(NO_REPEAT, 0, cycles)
 
 
 @kernel
@@ -520,7 +275,7 @@ def _find_from_start(problem, row, friction, cycles, tolerance, work, memory, ri
             longer = long_recurrence(row, memory, ring, base)
             tried = longer if longer > 0 else tried
         if tried > 0:
-            found = _try_return(problem, row, friction, tried, tolerance, work, memory, ring, record)
+            found = try_return(problem, row, friction, tried, tolerance, work, memory, ring, record)
             spent += found.cycles
             if found.status == REPEATS:
                 return Steady(REPEATS, found.halves, spent + 0.5 * halves)
@@ -598,11 +353,11 @@ def measure(problem, row, friction, halves, work, memory, record, what):
         record.active[0] = NOTHING
         most = _MEASURED
         if what != NOTHING:
-            multiplier = _multiplier(problem, both, 0.0, work, memory)
+            multiplier = largest_multiplier(problem, both, 0.0, work, memory)
             most *= min(1.0, abs(1.0 - multiplier))
         if return_distance(problem, row, memory) <= most or repeat == _MOST_REPEATED - 1:
             break
-        _newton(problem, row, friction, halves, _MEASURED, work, memory, record)
+        newton(problem, row, friction, halves, _MEASURED, work, memory, record)
     join_slips(record, both)
     if both % 2 == 1:
         mirror(record)

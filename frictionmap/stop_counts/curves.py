@@ -6,13 +6,14 @@ import numpy as np
 
 from ..model.general import refuse_general
 from ..model.system import System
-from .margins import is_physical, margins
+from .margins import margins
 from .phases import Phases
-from .seeds import Seeds, counts_at, orbit_at, seeds_of_map
-from .tracing import Place, Window, at_frequency, orbit_unknowns, solve, traced
+from .seeds import Seeds, counts_at, narrowed, orbit_at, seeds_of_map
+from .tracing import Place, Window, at_frequency, is_on_border, solve, traced
 
-#: Cells on a side of the maps that are searched, one after the other.
-_MAPS = (160, 400)
+#: Maps that are searched one after the other: frequencies, friction ratios, whether frequencies are spaced
+#: in proportion.  The last one has the rows of a fine map of the window.
+_MAPS = ((160, 160, True), (400, 400, True), (2000, 500, False))
 
 #: Nearest borders of an orbit that are tried.
 _TRIED = 5
@@ -22,6 +23,9 @@ _WIDER = 3.0
 
 #: Relative distance from a border at which the numbers of stops beside it are taken.
 _BESIDE = 1e-6
+
+#: Points of a border whose numbers of stops are compared.
+_COMPARED = 7
 
 #: Points put between two points of a curve, on the cubic through their tangents.
 _BETWEEN = 8
@@ -68,8 +72,10 @@ def find_borders(system: System, r: tuple[float, float], beta: tuple[float, floa
     window = Window(r, beta)
     phases = Phases(system)
     found: list[_Curve] = []
-    for count in _MAPS:
-        _add(system, phases, window, seeds_of_map(system, window, 1.0, count), found)
+    for rows, columns, proportional in _MAPS:
+        r_map = (np.geomspace if proportional else np.linspace)(*window.r, rows)
+        seeds = _unexplained(seeds_of_map(system, window, 1.0, r_map, columns), found)
+        _add(system, phases, window, narrowed(system, 1.0, seeds), found)
     return _beside(system, [piece for curve in found for piece in _pieces(curve)])
 
 
@@ -84,6 +90,31 @@ def _add(system: System, phases: Phases, window: Window, seeds: Seeds, found: li
             points = traced(phases, begun, window)
             exact = np.arange(_BETWEEN * (len(points) - 1) + 1) % _BETWEEN == 0
             found.append(_Curve(begun.condition.kind, *_dense(points), exact))
+
+
+def _unexplained(seeds: Seeds, found: list[_Curve]) -> Seeds:
+    """Seeds that no known border crosses."""
+    known = np.zeros(seeds.r.size, dtype=bool)
+    for curve in found:
+        known |= _crossed(curve, seeds)
+    return Seeds(*(array[~known] for array in seeds))
+
+
+def _crossed(curve: _Curve, seeds: Seeds) -> np.ndarray:
+    """Which seeds a curve crosses, (k,)."""
+    order = np.argsort(seeds.r, kind="stable")
+    r, low, high = seeds.r[order], seeds.low[order], seeds.high[order]
+    crossed = np.zeros(r.size, dtype=bool)
+    for k in range(curve.r.size - 1):
+        (left, first), (right, last) = sorted(zip(curve.r[k : k + 2], curve.beta[k : k + 2], strict=True))
+        if left == right:
+            continue
+        near = slice(*np.searchsorted(r, (left, right), side="left"))
+        place = first + (r[near] - left) / (right - left) * (last - first)
+        crossed[near] |= (place >= low[near] * (1.0 - _ALIKE)) & (place <= high[near] * (1.0 + _ALIKE))
+    found = np.empty(r.size, dtype=bool)
+    found[order] = crossed
+    return found
 
 
 def _crosses(curve: _Curve, r: float, low: float, high: float) -> bool:
@@ -121,7 +152,7 @@ def _begun(system: System, phases: Phases, r: float, low: float, high: float) ->
             place = at_frequency(phases, sequence, exact, margin)
             if place is None or not low - slack <= place.unknowns[-1] <= high + slack:
                 continue
-            if is_physical(phases, place.sequence, orbit_unknowns(place.condition, place.unknowns)):
+            if is_on_border(phases, place):
                 return place
     return None
 
@@ -155,14 +186,35 @@ def _dense(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _beside(system: System, pieces: list[Border]) -> list[Border]:
-    """The same with the numbers of stops below and above them, taken in the middle of each."""
+    """The same with the numbers of stops below and above them, which most of some points of each have."""
     if not pieces:
         return pieces
-    middle = [piece.r.size // 2 for piece in pieces]
-    r = np.array([piece.r[k] for piece, k in zip(pieces, middle, strict=True)])
-    beta = np.array([piece.beta[k] for piece, k in zip(pieces, middle, strict=True)])
-    below, above = (counts_at(system, r, beta * (1.0 + sign * _BESIDE), 1.0) for sign in (-1.0, 1.0))
+    which = [_spread(piece) for piece in pieces]
+    r = np.concatenate([piece.r[k] for piece, k in zip(pieces, which, strict=True)])
+    beta = np.concatenate([piece.beta[k] for piece, k in zip(pieces, which, strict=True)])
+    sides = [counts_at(system, r, beta * (1.0 + sign * _BESIDE), 1.0) for sign in (-1.0, 1.0)]
+    ends = np.cumsum([k.size for k in which])[:-1]
+    below, above = (np.split(side, ends) for side in sides)
     return [
-        piece._replace(below=float(low), above=float(high))
-        for piece, low, high in zip(pieces, below, above, strict=True)
+        piece._replace(below=low, above=high)
+        for piece, (low, high) in zip(pieces, map(_most, below, above), strict=True)
     ]
+
+
+def _spread(piece: Border) -> np.ndarray:
+    """Indices of points spread evenly over the length of a piece, its ends left out if it has others."""
+    steps = np.hypot(np.diff(np.log(piece.r)), np.diff(np.log(piece.beta)))
+    length = np.concatenate(([0.0], np.cumsum(steps)))
+    places = (np.arange(_COMPARED) + 0.5) / _COMPARED * length[-1]
+    return np.unique(np.clip(np.searchsorted(length, places), 0, piece.r.size - 1))
+
+
+def _most(below: np.ndarray, above: np.ndarray) -> tuple[float, float]:
+    """The pair of different numbers of stops that most points have; NaN if none has any."""
+    pairs = np.stack((below, above), axis=1)
+    pairs = pairs[~np.isnan(pairs).any(axis=1) & (below != above)]
+    if not len(pairs):
+        return np.nan, np.nan
+    found, count = np.unique(pairs, axis=0, return_counts=True)
+    low, high = found[np.argmax(count)].tolist()
+    return low, high

@@ -16,10 +16,14 @@ from ..theory.boundary_curves import find_curves
 from .orbits import Sequence
 from .tracing import Window
 
-#: Cells of a map over r and beta, and the part of the beta that is spaced in proportion.
+#: Part of the friction ratios of a map that is spaced in proportion.
 _PROPORTIONAL = 0.3
 
-#: Bisections of a bracket in beta: to a relative width of 1e-5 and less.
+#: Blocks of frequencies in a map, and the least beta searched in one, relative to its largest: each block is
+#: searched where motions stop and slide in it, which for small r may be a small part of the window.
+_BLOCKS, _LEAST = 20, 1e-4
+
+#: Bisections of a bracket in beta: of a map of 160 rows to a relative width of 1e-5 and less.
 _BISECTIONS = 17
 
 _SOLVER = Solver(outputs=("regime", "stops_per_cycle", "status"))
@@ -35,42 +39,52 @@ class Seeds(NamedTuple):
     above: np.ndarray
 
 
-def grid_of(window: Window, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies and friction ratios of a map: in proportion, the larger friction ratios evenly."""
-    r = np.geomspace(*window.r, count)
-    low, high = max(window.beta[0], 1e-3 * window.beta[1]), window.beta[1]
-    small = round(_PROPORTIONAL * count)
-    beta = np.union1d(np.geomspace(low, high, small), np.linspace(low, high, count - small))
-    return r, beta
-
-
 def counts_at(system: System, r: np.ndarray, beta: np.ndarray, mu: float) -> np.ndarray:
-    """Stops per cycle at points (k,); NaN where the contact sticks or there is no steady state."""
+    """Stops per cycle at points (k,); NaN where the contact sticks or no steady state was reached."""
     order = np.argsort(r, kind="stable")
     found = np.empty(r.size)
     for first in range(0, r.size, AT_ONCE):
         which = order[first : first + AT_ONCE]
         cells = scattered_cells(system, r[which], beta[which], mu, _SOLVER)
-        found[which] = cells.out.stops_per_cycle[0, np.arange(which.size), cells.column]
+        place = (0, np.arange(which.size), cells.column)
+        resolved = cells.out.status[place] == regimes.RESOLVED
+        found[which] = np.where(resolved, cells.out.stops_per_cycle[place], np.nan)
     return found
 
 
-def seeds_of_map(system: System, window: Window, mu: float, count: int) -> Seeds:
-    """Brackets of all changes of the number of stops along beta in a map, narrowed."""
-    r, beta = grid_of(window, count)
-    axes = {"mu": np.array([mu]), "r": r, "beta": beta}
-    _, out = compute(system, axes, _SOLVER, None, None, None)
-    stops = np.where(out.status[0] == regimes.RESOLVED, out.stops_per_cycle[0], np.nan)
+def seeds_of_map(system: System, window: Window, mu: float, r: np.ndarray, count: int) -> Seeds:
+    """Brackets of all changes of the number of stops along beta in a map with `count` friction ratios."""
+    found = [_of_block(system, window, mu, block, count) for block in np.array_split(r, _BLOCKS)]
+    return Seeds(*(np.concatenate(arrays) for arrays in zip(*found, strict=True)))
+
+
+def _of_block(system: System, window: Window, mu: float, r: np.ndarray, count: int) -> Seeds:
+    """The same for frequencies of one block of the map."""
     curves = find_curves(system, r, np.array([mu]))
+    beta = _friction_of(window, curves.beta_lim[0], curves.beta_stick[0], count)
+    if not beta.size:
+        return Seeds(*np.empty((5, 0)))
+    _, out = compute(system, {"mu": np.array([mu]), "r": r, "beta": beta}, _SOLVER, None, None, None)
+    stops = np.where(out.status[0] == regimes.RESOLVED, out.stops_per_cycle[0], np.nan)
     changed = (stops[:, 1:] != stops[:, :-1]) & ~np.isnan(stops[:, 1:]) & ~np.isnan(stops[:, :-1])
     for boundary in (curves.beta_lim[0], curves.beta_stick[0]):
         limit = boundary[:, np.newaxis]
         changed &= ~((beta[:-1] <= limit) & (limit <= beta[1:]))
     i, j = np.nonzero(changed)
-    return _narrowed(system, mu, Seeds(r[i], beta[j], beta[j + 1], stops[i, j], stops[i, j + 1]))
+    return Seeds(r[i], beta[j], beta[j + 1], stops[i, j], stops[i, j + 1])
 
 
-def _narrowed(system: System, mu: float, seeds: Seeds) -> Seeds:
+def _friction_of(window: Window, lim: np.ndarray, stick: np.ndarray, count: int) -> np.ndarray:
+    """Friction ratios between those of continuous and of stuck motions: in proportion, the larger evenly."""
+    high = min(window.beta[1], float(stick.max()))
+    low = max(window.beta[0], float(lim.min()), _LEAST * high)
+    if low >= high:
+        return np.empty(0)
+    small = round(_PROPORTIONAL * count)
+    return np.union1d(np.geomspace(low, high, small), np.linspace(low, high, count - small))
+
+
+def narrowed(system: System, mu: float, seeds: Seeds) -> Seeds:
     """The same brackets, narrow; where a third number of stops lies between, that of the lower change."""
     r, low, high, below, above = (array.copy() for array in seeds)
     for _ in range(_BISECTIONS):

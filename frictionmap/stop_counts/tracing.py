@@ -1,5 +1,6 @@
 """Borders as curves: Newton's method for a point, pseudo-arclength from point to point."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,17 +12,28 @@ from .phases import Phases
 #: Steps of differences: of phases, and of r and beta relative to them.
 _DIFFERENCE = 1e-6
 
-#: Newton's method: steps, at most; the relative step at which it ends, and the largest one it begins with.
-_NEWTON, _FOUND, _LARGEST = 12, 1e-13, 0.5
-
-#: What Newton's method has reached when it no longer improves.
-_REACHED = 1e-10
+#: Newton's method: steps, at most; the largest one; and the one after which the next would be rounding: the
+#: error left is its square, or its product with the error of the derivatives.
+_NEWTON, _LARGEST, _FOUND = 12, 0.5, 1e-9
 
 #: Weight of phases against relative changes of r and beta, in the length of a curve.
 _PHASE = 1.0 / 30.0
 
 #: Steps along a curve: first, largest, least; the factor of a longer one.
 _FIRST, _LONGEST, _SHORTEST, _GROWTH = 0.01, 0.02, 1e-7, 1.5
+
+#: Least distance of a border's event from the beginning of its piece, in periods of the orbit.
+_INSIDE = 1e-5
+
+#: Length of a step times the angle by which the curve turns in it: the chord is off by an eighth of that.
+#: Steps are chosen for it, and repeated if it is exceeded by a factor, unless they are short.
+_TURNED, _EXCEEDED, _SHORT = 4e-4, 3.0, 1e-3
+
+#: Turns of a curve in r are found to this component of the tangent, in so many steps at most.
+_VERTICAL, _SECANTS = 1e-9, 8
+
+#: Points closer than this to others are not kept, but for the ends.
+_APART = 5e-4
 
 #: So many steps in sequence below this length are the end of a curve: its equations become singular there.
 _CRAWLS, _CRAWL = 20, 1e-4
@@ -65,7 +77,6 @@ def solve(
 ) -> np.ndarray | None:
     """Point of a border on planes through the guess, normals `fixed` (k, unknowns) scaled; None: none."""
     unknowns, scales = guess.copy(), _scales(guess)
-    before = np.inf
     for _ in range(_NEWTON):
         try:
             values, slopes = _linearised(phases, sequence, condition, unknowns)
@@ -81,9 +92,8 @@ def solve(
         unknowns = unknowns + step * scales
         if unknowns[-1] <= 0.0 or unknowns[-2] <= 0.0:
             return None
-        if size <= _FOUND or (size <= _REACHED and size >= 0.25 * before):
+        if size <= _FOUND:
             return unknowns
-        before = size
     return None
 
 
@@ -160,9 +170,56 @@ def _without_stop(
     return sequence._replace(senses=senses), condition, np.delete(unknowns, k + 1)
 
 
+def is_on_border(phases: Phases, place: Place) -> bool:
+    """Whether the orbit of a point is what it says, and the border's own event is inside its piece."""
+    sequence, condition, unknowns = place
+    if condition.inside and not _is_inside(sequence, condition, unknowns):
+        return False
+    return is_physical(phases, sequence, orbit_unknowns(condition, unknowns))
+
+
+def _is_inside(sequence: Sequence, condition: Condition, unknowns: np.ndarray) -> bool:
+    """Whether the event of a border lies between the ends of its piece.
+
+    For mu = 1 a slide that follows a stop fulfils the equations of a graze at its beginning.
+    """
+    count, piece = sequence.events, condition.piece
+    times, tau = unknowns[:count], unknowns[count]
+    end = times[piece] if piece < count else times[0] + sequence.end - sequence.start
+    return bool(times[piece - 1] + _INSIDE * (sequence.end - sequence.start) < tau < end)
+
+
 def orbit_unknowns(condition: Condition, unknowns: np.ndarray) -> np.ndarray:
     """Event times, r and beta of a point of a border."""
     return np.delete(unknowns, unknowns.size - 3) if condition.inside else unknowns
+
+
+class _Course(NamedTuple):
+    """Where a border is, where it goes, and how it bends: scaled tangent and its change with length."""
+
+    place: Place
+    along: np.ndarray
+    bend: np.ndarray
+
+    def ahead(self, step: float) -> np.ndarray:
+        """Unknowns of the point at a length further on, to second order."""
+        unknowns = self.place.unknowns
+        return unknowns + step * (self.along + 0.5 * step * self.bend) * _scales(unknowns)
+
+
+def _stepped(phases: Phases, course: _Course, step: float) -> _Course | None:
+    """The course at a length further on; None if there is no such point, or its orbit is not physical."""
+    sequence, condition, last = course.place
+    guess = course.ahead(step)
+    if guess[-1] <= 0.0 or guess[-2] <= 0.0:
+        return None
+    found = solve(phases, sequence, condition, guess, course.along[np.newaxis])
+    if found is None or not is_on_border(phases, Place(sequence, condition, found)):
+        return None
+    place = centred(Place(sequence, condition, found))
+    along = _tangent(phases, place, np.log(found[-2:] / last[-2:]))
+    same = place.sequence is sequence
+    return _Course(place, along, (along - course.along) / step if same else np.zeros(along.size))
 
 
 def _follow(phases: Phases, begin: Place, direction: np.ndarray, window: Window) -> list[np.ndarray]:
@@ -172,31 +229,57 @@ def _follow(phases: Phases, begin: Place, direction: np.ndarray, window: Window)
     """
     place, step = centred(begin), _FIRST
     along = _tangent(phases, place, direction)
-    points, crawled = [_point(place, along)], 0
+    course = _Course(place, along, np.zeros(along.size))
+    points, crawled = [_point(course)], 0
     while len(points) < _MOST and crawled < _CRAWLS:
-        sequence, condition, last = place
-        guess = last + step * along * _scales(last)
-        found = None
-        if guess[-1] > 0.0 and guess[-2] > 0.0:
-            found = solve(phases, sequence, condition, guess, along[np.newaxis])
-        if found is None or not is_physical(phases, sequence, orbit_unknowns(condition, found)):
+        ahead = _stepped(phases, course, step)
+        turned = 0.0 if ahead is None else _turned(points[-1], _point(ahead))
+        if ahead is None or (turned > _EXCEEDED * _TURNED and step > _SHORT):
             step *= 0.5
             if step < _SHORTEST:
                 break
             continue
-        place = centred(Place(sequence, condition, found))
-        along = _tangent(phases, place, np.log(found[-2:] / last[-2:]))
-        points.append(_point(place, along))
-        if not window.holds(found[-2], found[-1]) or _closed(points):
+        if ahead.along[-2] * course.along[-2] < 0.0:
+            turn = _vertical(phases, course, ahead, step)
+            if turn is not None:
+                points.append(_point(turn))
+        points.append(_point(ahead))
+        course = ahead
+        if not window.holds(*course.place.unknowns[-2:]) or _closed(points):
             break
         crawled = crawled + 1 if step < _CRAWL else 0
-        step = min(_LONGEST, step * _GROWTH)
+        longer = _GROWTH if turned * _GROWTH**2 <= _TURNED else max(0.5, math.sqrt(_TURNED / turned))
+        step = min(_LONGEST, step * longer)
     return points
 
 
-def _point(place: Place, along: np.ndarray) -> np.ndarray:
+def _turned(first: np.ndarray, second: np.ndarray) -> float:
+    """Distance of two points times the sine of the angle between their tangents."""
+    sine = first[2] * second[3] - first[3] * second[2]
+    return float(np.hypot(*(second[:2] - first[:2])) * abs(sine))
+
+
+def _vertical(phases: Phases, course: _Course, ahead: _Course, step: float) -> _Course | None:
+    """The point of a step at which r turns, by secants; None if they lose it."""
+    low, high = (0.0, float(course.along[-2])), (step, float(ahead.along[-2]))
+    for _ in range(_SECANTS):
+        middle = low[0] - low[1] * (high[0] - low[0]) / (high[1] - low[1])
+        if not 0.0 < middle < step:
+            return None
+        found = _stepped(phases, course, middle)
+        if found is None:
+            return None
+        slope = float(found.along[-2])
+        if abs(slope) <= _VERTICAL:
+            return found
+        low, high = (high if abs(high[1]) < abs(low[1]) else low), (middle, slope)
+    return None
+
+
+def _point(course: _Course) -> np.ndarray:
     """log r and log beta of a place, and their unit tangent."""
-    return np.concatenate((np.log(place.unknowns[-2:]), along[-2:] / np.linalg.norm(along[-2:])))
+    along = course.along[-2:]
+    return np.concatenate((np.log(course.place.unknowns[-2:]), along / np.linalg.norm(along)))
 
 
 def _closed(points: list[np.ndarray]) -> bool:
@@ -212,7 +295,20 @@ def traced(phases: Phases, begin: Place, window: Window) -> np.ndarray:
     direction = _tangent(phases, centred(begin), np.array([1.0, 0.0]))[-2:]
     forward = _follow(phases, begin, direction, window)
     if _closed(forward):
-        return np.array(forward)
+        return _thinned(np.array(forward))
     backward = _follow(phases, begin, -direction, window)
     turned = [point * [1.0, 1.0, -1.0, -1.0] for point in backward[:0:-1]]
-    return np.array([*turned, *forward])
+    return _thinned(np.array([*turned, *forward]))
+
+
+def _thinned(points: np.ndarray) -> np.ndarray:
+    """The same points without those that crowd, mostly where the last steps to an end were halved."""
+    kept = [0]
+    for k in range(1, len(points)):
+        near = np.hypot(*(points[k, :2] - points[kept[-1], :2])) < _APART
+        if near and k + 1 < len(points) and abs(points[k, 2]) > _VERTICAL:
+            continue
+        if near and len(kept) > 1:
+            kept.pop()
+        kept.append(k)
+    return points[kept]

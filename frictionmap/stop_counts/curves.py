@@ -5,27 +5,29 @@ from typing import NamedTuple
 import numpy as np
 
 from ..model.general import refuse_general
+from ..model.settings import Start
 from ..model.system import System
-from .margins import margins
+from .beginnings import begun, ends, orbits_beside
+from .conditions import DOUBLING, TURN
 from .phases import Phases
-from .seeds import Seeds, counts_at, narrowed, orbit_at, seeds_of_map
-from .tracing import Place, Window, at_frequency, is_on_border, solve, traced
+from .seeds import Seeds, Source, narrowed, seeds_of_map
+from .tracing import Place, Window, traced
 
-#: Maps that are searched one after the other: frequencies, friction ratios, whether frequencies are spaced
-#: in proportion.  The last one has the rows of a fine map of the window.
-_MAPS = ((160, 160, True), (400, 400, True), (2000, 500, False))
+class _Map(NamedTuple):
+    """A map that is searched: frequencies, friction ratios, whether frequencies are spaced in proportion."""
 
-#: Nearest borders of an orbit that are tried.
-_TRIED = 5
+    rows: int
+    columns: int
+    proportional: bool
+    start: Start = "rest"
 
-#: A point of a border lies in the bracket of a seed, widened by this multiple of its width.
+
+#: Maps that are searched one after the other.  For mu = 1 the last has the rows of a fine map of the window.
+_UNIQUE = (_Map(160, 160, True), _Map(400, 400, True), _Map(2000, 500, False))
+_SEVERAL = (_Map(160, 160, True), _Map(160, 160, True, "moving"), _Map(400, 400, True))
+
+#: A curve crosses a bracket that is widened by this multiple of its width.
 _WIDER = 3.0
-
-#: Relative distance from a border at which the numbers of stops beside it are taken.
-_BESIDE = 1e-6
-
-#: Points of a border whose numbers of stops are compared.
-_COMPARED = 7
 
 #: Points put between two points of a curve, on the cubic through their tangents.
 _BETWEEN = 8
@@ -38,7 +40,10 @@ _NEAR_END = 2e-4
 
 
 class Border(NamedTuple):
-    """A border over increasing r, its kind, and the stops per cycle below and above it in beta."""
+    """A border over increasing r, its kind, and the stops per cycle below and above it in beta.
+
+    For mu > 1 these are the stops of the orbit that ends there; NaN where it does not exist.
+    """
 
     r: np.ndarray
     beta: np.ndarray
@@ -52,10 +57,15 @@ class _Curve(NamedTuple):
     r: np.ndarray
     beta: np.ndarray
     exact: np.ndarray  # whether a point was computed, not put between
+    side: np.ndarray  # of the orbit, at exact points
+    stops: float  # of the orbit
+    other: float  # on the other side
 
 
-def find_borders(system: System, r: tuple[float, float], beta: tuple[float, float]) -> list[Border]:
-    """Find the borders between numbers of stops per cycle for mu = 1, in ranges of r and beta.
+def find_borders(
+    system: System, r: tuple[float, float], beta: tuple[float, float], mu: float
+) -> list[Border]:
+    """Find the borders between numbers of stops per cycle in ranges of r and beta.
 
     Parameters
     ----------
@@ -63,6 +73,8 @@ def find_borders(system: System, r: tuple[float, float], beta: tuple[float, floa
         With one rigid contact under one harmonic load.
     r, beta : two numbers each, > 0
         Below some r borders are dense: about as many as 1/r^2.
+    mu : >= 1
+        For mu > 1 the borders of the orbits that maps from two starts contain: where each of them ends.
 
     Returns
     -------
@@ -72,24 +84,40 @@ def find_borders(system: System, r: tuple[float, float], beta: tuple[float, floa
     window = Window(r, beta)
     phases = Phases(system)
     found: list[_Curve] = []
-    for rows, columns, proportional in _MAPS:
-        r_map = (np.geomspace if proportional else np.linspace)(*window.r, rows)
-        seeds = _unexplained(seeds_of_map(system, window, 1.0, r_map, columns), found)
-        _add(system, phases, window, narrowed(system, 1.0, seeds), found)
-    return _beside(system, [piece for curve in found for piece in _pieces(curve)])
+    for searched in _UNIQUE if mu == 1.0 else _SEVERAL:
+        source = Source(system, mu, searched.start)
+        r_map = (np.geomspace if searched.proportional else np.linspace)(*window.r, searched.rows)
+        seeds = _unexplained(seeds_of_map(source, window, r_map, searched.columns), found)
+        _add(source, phases, window, narrowed(source, seeds), found)
+    return [piece for curve in found for piece in _pieces(curve)]
 
 
-def _add(system: System, phases: Phases, window: Window, seeds: Seeds, found: list[_Curve]) -> None:
+def _add(source: Source, phases: Phases, window: Window, seeds: Seeds, found: list[_Curve]) -> None:
     """Trace the borders through seeds that no known border explains."""
     for k in range(seeds.r.size):
         r, low, high = float(seeds.r[k]), float(seeds.low[k]), float(seeds.high[k])
         if any(_crosses(curve, r, low, high) for curve in found):
             continue
-        begun = _begun(system, phases, r, low, high)
-        if begun is not None and not any(_is_on(curve, begun) for curve in found):
-            points = traced(phases, begun, window)
-            exact = np.arange(_BETWEEN * (len(points) - 1) + 1) % _BETWEEN == 0
-            found.append(_Curve(begun.condition.kind, *_dense(points), exact))
+        orbits = orbits_beside(source, phases, (r, low, high))
+        place = begun(phases, orbits, low, high)
+        places = [] if place is None else [place]
+        if source.mu > 1.0 and place is None:
+            places = ends(phases, orbits, low, high)
+        for first in places:
+            if not any(_is_on(curve, first) for curve in found):
+                found.append(_curve(first, traced(phases, first, window)))
+
+
+def _curve(place: Place, points: np.ndarray) -> _Curve:
+    """A traced border with points between its own, and the stops of its orbit on both sides."""
+    sequence, kind = place.sequence, place.condition.kind
+    exact = np.arange(_BETWEEN * (len(points) - 1) + 1) % _BETWEEN == 0
+    stops = other = sequence.stops_per_cycle
+    if sequence.mu == 1.0 or kind == TURN:
+        other += 2.0 / sequence.half_periods
+    elif kind != DOUBLING:
+        other = np.nan
+    return _Curve(kind, *_dense(points[:, :4]), exact, points[:, 4], stops, other)
 
 
 def _unexplained(seeds: Seeds, found: list[_Curve]) -> Seeds:
@@ -135,28 +163,6 @@ def _is_on(curve: _Curve, place: Place) -> bool:
     return same and _crosses(curve, float(r), (1.0 - _NEAR_END) * beta, (1.0 + _NEAR_END) * beta)
 
 
-def _begun(system: System, phases: Phases, r: float, low: float, high: float) -> Place | None:
-    """The border inside a bracket; None if none of the nearest ones is there."""
-    slack = _WIDER * (high - low)
-    for beta in (low, high):
-        orbit = orbit_at(system, r, beta, 1.0)
-        if orbit is None:
-            continue
-        sequence, unknowns = orbit
-        fixed = np.zeros((2, unknowns.size))
-        fixed[0, -2] = fixed[1, -1] = 1.0
-        exact = solve(phases, sequence, None, unknowns, fixed)
-        if exact is None:
-            continue
-        for margin in margins(phases, sequence, exact)[:_TRIED]:
-            place = at_frequency(phases, sequence, exact, margin)
-            if place is None or not low - slack <= place.unknowns[-1] <= high + slack:
-                continue
-            if is_on_border(phases, place):
-                return place
-    return None
-
-
 def _pieces(curve: _Curve) -> list[Border]:
     """Parts of a curve over which r increases or decreases, with points between its own."""
     r, beta = curve.r[curve.exact], curve.beta[curve.exact]
@@ -167,8 +173,16 @@ def _pieces(curve: _Curve) -> list[Border]:
         part = slice(first, last + 1)
         order = np.argsort(r[part], kind="stable")
         if order.size > 1:
-            pieces.append(Border(r[part][order], beta[part][order], curve.kind, np.nan, np.nan))
+            sides = _sides(curve, float(curve.side[part].sum()))
+            pieces.append(Border(r[part][order], beta[part][order], curve.kind, *sides))
     return pieces
+
+
+def _sides(curve: _Curve, side: float) -> tuple[float, float]:
+    """Stops below and above a border whose orbit is on one side of it."""
+    if side == 0.0 and curve.kind != DOUBLING:
+        return np.nan, np.nan
+    return (curve.other, curve.stops) if side > 0.0 else (curve.stops, curve.other)
 
 
 def _dense(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -183,38 +197,3 @@ def _dense(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     between = found.transpose(1, 0, 2).reshape(-1, 2)
     r, beta = np.exp(np.concatenate((between, places[-1:]))).T
     return r, beta
-
-
-def _beside(system: System, pieces: list[Border]) -> list[Border]:
-    """The same with the numbers of stops below and above them, which most of some points of each have."""
-    if not pieces:
-        return pieces
-    which = [_spread(piece) for piece in pieces]
-    r = np.concatenate([piece.r[k] for piece, k in zip(pieces, which, strict=True)])
-    beta = np.concatenate([piece.beta[k] for piece, k in zip(pieces, which, strict=True)])
-    sides = [counts_at(system, r, beta * (1.0 + sign * _BESIDE), 1.0) for sign in (-1.0, 1.0)]
-    ends = np.cumsum([k.size for k in which])[:-1]
-    below, above = (np.split(side, ends) for side in sides)
-    return [
-        piece._replace(below=low, above=high)
-        for piece, (low, high) in zip(pieces, map(_most, below, above), strict=True)
-    ]
-
-
-def _spread(piece: Border) -> np.ndarray:
-    """Indices of points spread evenly over the length of a piece, its ends left out if it has others."""
-    steps = np.hypot(np.diff(np.log(piece.r)), np.diff(np.log(piece.beta)))
-    length = np.concatenate(([0.0], np.cumsum(steps)))
-    places = (np.arange(_COMPARED) + 0.5) / _COMPARED * length[-1]
-    return np.unique(np.clip(np.searchsorted(length, places), 0, piece.r.size - 1))
-
-
-def _most(below: np.ndarray, above: np.ndarray) -> tuple[float, float]:
-    """The pair of different numbers of stops that most points have; NaN if none has any."""
-    pairs = np.stack((below, above), axis=1)
-    pairs = pairs[~np.isnan(pairs).any(axis=1) & (below != above)]
-    if not len(pairs):
-        return np.nan, np.nan
-    found, count = np.unique(pairs, axis=0, return_counts=True)
-    low, high = found[np.argmax(count)].tolist()
-    return low, high

@@ -18,7 +18,7 @@ from .curves import Border, find_borders
 _LOWEST = 1.0 / 16.0
 
 
-def borders(system: System, r: Any, beta: Any, *, units: Units | None = None) -> xr.Dataset:
+def borders(system: System, r: Any, beta: Any, *, mu: float = 1.0, units: Units | None = None) -> xr.Dataset:
     """Find the borders between numbers of stops per cycle for mu = 1 as exact curves, theory.md 12.
 
     Parameters
@@ -62,7 +62,7 @@ def borders(system: System, r: Any, beta: Any, *, units: Units | None = None) ->
             raise InputError(f"{name} must be two numbers > 0; got {checks.one_line(given)}")
         ends[name] = axis
     system.costs(ends["r"])
-    found = find_borders(system, tuple(ends["r"]), tuple(ends["beta"]))
+    found = find_borders(system, tuple(ends["r"]), tuple(ends["beta"]), mu)
     ds = stamp(
         xr.Dataset(_variables(found)),
         "borders",

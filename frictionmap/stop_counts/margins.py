@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .orbits import GRAZE, SLIDE_END, SLIP, TURN, Condition, Motion, Sequence, inside, motion_of
+from .conditions import GRAZE, SLIDE_END, SLIP, TURN, Condition
+from .orbits import Motion, Sequence, inside, motion_of
 from .phases import Phases
 
 #: Samples of a piece: per period of the fastest part of the motion, and at least.

@@ -7,7 +7,7 @@ import numpy as np
 from .. import regimes
 from .._kernels.engine import segment_table
 from .._kernels.engine.fill import one_cell
-from ..model.settings import Solver
+from ..model.settings import Solver, Start
 from ..model.system import System
 from ..steady.cells import Cells, limits
 from ..steady.maps import compute
@@ -26,7 +26,24 @@ _BLOCKS, _LEAST = 20, 1e-4
 #: Bisections of a bracket in beta: of a map of 160 rows to a relative width of 1e-5 and less.
 _BISECTIONS = 17
 
-_SOLVER = Solver(outputs=("regime", "stops_per_cycle", "status"))
+#: Solvers by their initial state: for mu > 1 the steady state depends on it.
+_SOLVERS = {
+    start: Solver(start=start, outputs=("regime", "stops_per_cycle", "status"))
+    for start in ("rest", "moving")
+}
+
+
+class Source(NamedTuple):
+    """Where steady states are taken from: a system, mu, and the initial state."""
+
+    system: System
+    mu: float
+    start: Start = "rest"
+
+    @property
+    def solver(self) -> Solver:
+        """The solver of the maps."""
+        return _SOLVERS[self.start]
 
 
 class Seeds(NamedTuple):
@@ -39,32 +56,33 @@ class Seeds(NamedTuple):
     above: np.ndarray
 
 
-def counts_at(system: System, r: np.ndarray, beta: np.ndarray, mu: float) -> np.ndarray:
+def counts_at(source: Source, r: np.ndarray, beta: np.ndarray) -> np.ndarray:
     """Stops per cycle at points (k,); NaN where the contact sticks or no steady state was reached."""
     order = np.argsort(r, kind="stable")
     found = np.empty(r.size)
     for first in range(0, r.size, AT_ONCE):
         which = order[first : first + AT_ONCE]
-        cells = scattered_cells(system, r[which], beta[which], mu, _SOLVER)
+        cells = scattered_cells(source.system, r[which], beta[which], source.mu, source.solver)
         place = (0, np.arange(which.size), cells.column)
         resolved = cells.out.status[place] == regimes.RESOLVED
         found[which] = np.where(resolved, cells.out.stops_per_cycle[place], np.nan)
     return found
 
 
-def seeds_of_map(system: System, window: Window, mu: float, r: np.ndarray, count: int) -> Seeds:
+def seeds_of_map(source: Source, window: Window, r: np.ndarray, count: int) -> Seeds:
     """Brackets of all changes of the number of stops along beta in a map with `count` friction ratios."""
-    found = [_of_block(system, window, mu, block, count) for block in np.array_split(r, _BLOCKS)]
+    found = [_of_block(source, window, block, count) for block in np.array_split(r, _BLOCKS)]
     return Seeds(*(np.concatenate(arrays) for arrays in zip(*found, strict=True)))
 
 
-def _of_block(system: System, window: Window, mu: float, r: np.ndarray, count: int) -> Seeds:
+def _of_block(source: Source, window: Window, r: np.ndarray, count: int) -> Seeds:
     """The same for frequencies of one block of the map."""
-    curves = find_curves(system, r, np.array([mu]))
+    mu = np.array([source.mu])
+    curves = find_curves(source.system, r, mu)
     beta = _friction_of(window, curves.beta_lim[0], curves.beta_stick[0], count)
     if not beta.size:
         return Seeds(*np.empty((5, 0)))
-    _, out = compute(system, {"mu": np.array([mu]), "r": r, "beta": beta}, _SOLVER, None, None, None)
+    _, out = compute(source.system, {"mu": mu, "r": r, "beta": beta}, source.solver, None, None, None)
     stops = np.where(out.status[0] == regimes.RESOLVED, out.stops_per_cycle[0], np.nan)
     changed = (stops[:, 1:] != stops[:, :-1]) & ~np.isnan(stops[:, 1:]) & ~np.isnan(stops[:, :-1])
     for boundary in (curves.beta_lim[0], curves.beta_stick[0]):
@@ -84,14 +102,14 @@ def _friction_of(window: Window, lim: np.ndarray, stick: np.ndarray, count: int)
     return np.union1d(np.geomspace(low, high, small), np.linspace(low, high, count - small))
 
 
-def narrowed(system: System, mu: float, seeds: Seeds) -> Seeds:
+def narrowed(source: Source, seeds: Seeds) -> Seeds:
     """The same brackets, narrow; where a third number of stops lies between, that of the lower change."""
     r, low, high, below, above = (array.copy() for array in seeds)
     for _ in range(_BISECTIONS):
         if not r.size:
             break
         middle = 0.5 * (low + high)
-        stops = counts_at(system, r, middle, mu)
+        stops = counts_at(source, r, middle)
         known = ~np.isnan(stops)
         lower = known & (stops == below)
         low = np.where(lower, middle, low)
@@ -99,10 +117,11 @@ def narrowed(system: System, mu: float, seeds: Seeds) -> Seeds:
     return Seeds(r, low, high, below, above)
 
 
-def orbit_at(system: System, r: float, beta: float, mu: float) -> tuple[Sequence, np.ndarray] | None:
+def orbit_at(source: Source, r: float, beta: float) -> tuple[Sequence, np.ndarray] | None:
     """Sequence of the steady state of a cell, and its event times, r and beta; None if it never stops."""
-    cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), _SOLVER)
-    cell, table = one_cell(cells.motion, beta, mu, limits(_SOLVER), False)
+    mu, solver = source.mu, source.solver
+    cells = Cells(source.system, np.array([r]), np.array([beta]), np.array([mu]), solver)
+    cell, table = one_cell(cells.motion, beta, mu, limits(solver), source.start == "moving")
     if cell.period == 0 or len(table) < 2:
         return None
     senses = (table[:, segment_table.SENSE] * table[:, segment_table.SIGN]).round().astype(int)

@@ -5,12 +5,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .conditions import DOUBLING, FOLD, GRAZE, SLIDE_END, SLIP, TURN, Condition, residuals
 from .margins import Margin, is_physical
-from .orbits import TURN, Condition, Sequence, residuals
+from .orbits import Sequence
 from .phases import Phases
 
 #: Steps of differences: of phases, and of r and beta relative to them.
 _DIFFERENCE = 1e-6
+
+#: Step, in phases, by which the second derivative of an orbit's equations at a fold is found.
+_BENT = 1e-3
 
 #: Newton's method: steps, at most; the largest one; and the one after which the next would be rounding: the
 #: error left is its square, or its product with the error of the derivatives.
@@ -135,12 +139,32 @@ def centred(place: Place) -> Place:
     )  # fmt: skip
 
 
-def _tangent(phases: Phases, place: Place, along: np.ndarray) -> np.ndarray:
+def _tangent(place: Place, slopes: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Scaled direction of a border at one of its points, of the sense of `along` in r and beta."""
-    _, slopes = _linearised(phases, *place)
     scaled = slopes * _scales(place.unknowns)
     direction = np.linalg.svd(scaled / np.abs(scaled).max(axis=1, keepdims=True))[2][-1]
     return direction if direction[-2:] @ along >= 0.0 else -direction
+
+
+def _side(phases: Phases, place: Place, slopes: np.ndarray) -> float:
+    """Whether the orbit lives above (1) or below (-1) its border in beta, or neither alone (0)."""
+    sequence, condition, unknowns = place
+    if condition.kind == DOUBLING:
+        return 0.0
+    count = sequence.events
+    by_times, by_beta = slopes[:count, :count], slopes[:count, -1]
+    if condition.kind in (FOLD, SLIDE_END):  # two orbits meet, or the two times at which a slide may end
+        left, _, right = np.linalg.svd(by_times)
+        away = np.append(right[-1], [0.0, 0.0]) * _BENT
+        values = residuals(phases, sequence, None, unknowns + np.outer([1.0, 0.0, -1.0], away))
+        return float(-np.sign((left[:, -1] @ values.T @ [1.0, -2.0, 1.0]) * (left[:, -1] @ by_beta)))
+    try:
+        moved = np.linalg.solve(by_times, -by_beta)
+    except np.linalg.LinAlgError:
+        return 0.0  # it is one of a family of orbits
+    margin = slopes[count, -1] + slopes[count, :count] @ moved
+    within = condition.sign if condition.kind == SLIP else sequence.senses[condition.piece]
+    return float(np.sign(margin * (within if condition.kind == GRAZE else -within)))
 
 
 def at_frequency(phases: Phases, sequence: Sequence, unknowns: np.ndarray, margin: Margin) -> Place | None:
@@ -195,16 +219,25 @@ def orbit_unknowns(condition: Condition, unknowns: np.ndarray) -> np.ndarray:
 
 
 class _Course(NamedTuple):
-    """Where a border is, where it goes, and how it bends: scaled tangent and its change with length."""
+    """Where a border is, where it goes, and how it bends: scaled tangent, its change with length, `_side`."""
 
     place: Place
     along: np.ndarray
     bend: np.ndarray
+    side: float
 
     def ahead(self, step: float) -> np.ndarray:
         """Unknowns of the point at a length further on, to second order."""
         unknowns = self.place.unknowns
         return unknowns + step * (self.along + 0.5 * step * self.bend) * _scales(unknowns)
+
+
+def _begun(phases: Phases, begin: Place, direction: np.ndarray) -> _Course:
+    """The course at the first point of a border."""
+    place = centred(begin)
+    _, slopes = _linearised(phases, *place)
+    along = _tangent(place, slopes, direction)
+    return _Course(place, along, np.zeros(along.size), _side(phases, place, slopes))
 
 
 def _stepped(phases: Phases, course: _Course, step: float) -> _Course | None:
@@ -217,19 +250,18 @@ def _stepped(phases: Phases, course: _Course, step: float) -> _Course | None:
     if found is None or not is_on_border(phases, Place(sequence, condition, found)):
         return None
     place = centred(Place(sequence, condition, found))
-    along = _tangent(phases, place, np.log(found[-2:] / last[-2:]))
-    same = place.sequence is sequence
-    return _Course(place, along, (along - course.along) / step if same else np.zeros(along.size))
+    _, slopes = _linearised(phases, *place)
+    along = _tangent(place, slopes, np.log(found[-2:] / last[-2:]))
+    bend = (along - course.along) / step if place.sequence is sequence else np.zeros(along.size)
+    return _Course(place, along, bend, _side(phases, place, slopes))
 
 
 def _follow(phases: Phases, begin: Place, direction: np.ndarray, window: Window) -> list[np.ndarray]:
-    """Points of a border from one on, to the end of the window or of the orbit: log r, log beta, tangent.
+    """Points of a border from one on, to the end of the window or of the orbit: log r, log beta, tangent, side.
 
     direction : (2,) in which log r and log beta are to change at first
     """
-    place, step = centred(begin), _FIRST
-    along = _tangent(phases, place, direction)
-    course = _Course(place, along, np.zeros(along.size))
+    course, step = _begun(phases, begin, direction), _FIRST
     points, crawled = [_point(course)], 0
     while len(points) < _MOST and crawled < _CRAWLS:
         ahead = _stepped(phases, course, step)
@@ -277,9 +309,11 @@ def _vertical(phases: Phases, course: _Course, ahead: _Course, step: float) -> _
 
 
 def _point(course: _Course) -> np.ndarray:
-    """log r and log beta of a place, and their unit tangent."""
+    """log r and log beta of a place, their unit tangent, and the side of the orbit."""
     along = course.along[-2:]
-    return np.concatenate((np.log(course.place.unknowns[-2:]), along / np.linalg.norm(along)))
+    return np.array(
+        [*np.log(course.place.unknowns[-2:]), *(along / np.linalg.norm(along)), course.side]
+    )
 
 
 def _closed(points: list[np.ndarray]) -> bool:
@@ -291,13 +325,13 @@ def _closed(points: list[np.ndarray]) -> bool:
 
 
 def traced(phases: Phases, begin: Place, window: Window) -> np.ndarray:
-    """Points (points, 4) of a border through one of its points, in both directions: see `_follow`."""
-    direction = _tangent(phases, centred(begin), np.array([1.0, 0.0]))[-2:]
+    """Points (points, 5) of a border through one of its points, in both directions: see `_follow`."""
+    direction = _begun(phases, begin, np.array([1.0, 0.0])).along[-2:]
     forward = _follow(phases, begin, direction, window)
     if _closed(forward):
         return _thinned(np.array(forward))
     backward = _follow(phases, begin, -direction, window)
-    turned = [point * [1.0, 1.0, -1.0, -1.0] for point in backward[:0:-1]]
+    turned = [point * [1.0, 1.0, -1.0, -1.0, 1.0] for point in backward[:0:-1]]
     return _thinned(np.array([*turned, *forward]))
 
 

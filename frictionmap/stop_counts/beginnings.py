@@ -44,7 +44,7 @@ def orbits_beside(
 
 
 def begun(phases: Phases, orbits: list[Orbit], low: float, high: float) -> Place | None:
-    """The border inside a bracket that one of its orbits is near; None if none of the nearest ones is there."""
+    """The border inside a bracket that one of its orbits is near; None if there is none."""
     slack = _WIDER * (high - low)
     for near in (_events, _singularities):
         for sequence, unknowns in orbits:
@@ -85,9 +85,7 @@ def _singularities(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> 
     return [Margin(Condition(kind, 0), 0.0, 0.0) for kind in (FOLD, DOUBLING)]
 
 
-def _solved(
-    phases: Phases, sequence: Sequence, unknowns: np.ndarray, near: list[Margin]
-) -> Iterator[Place]:
+def _solved(phases: Phases, sequence: Sequence, unknowns: np.ndarray, near: list[Margin]) -> Iterator[Place]:
     for margin in near:
         place = at_frequency(phases, sequence, unknowns, margin)
         if place is not None:

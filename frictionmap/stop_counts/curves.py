@@ -13,6 +13,7 @@ from .phases import Phases
 from .seeds import Seeds, Source, narrowed, seeds_of_map
 from .tracing import Place, Window, traced
 
+
 class _Map(NamedTuple):
     """A map that is searched: frequencies, friction ratios, whether frequencies are spaced in proportion."""
 

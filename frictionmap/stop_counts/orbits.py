@@ -11,6 +11,7 @@ import numpy as np
 
 from .phases import Affine, Drive, Phases
 
+
 class Sequence(NamedTuple):
     """Senses of the pieces, the first of which goes on as the last, mirrored if `mirrored`."""
 

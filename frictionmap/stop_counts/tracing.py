@@ -257,7 +257,7 @@ def _stepped(phases: Phases, course: _Course, step: float) -> _Course | None:
 
 
 def _follow(phases: Phases, begin: Place, direction: np.ndarray, window: Window) -> list[np.ndarray]:
-    """Points of a border from one on, to the end of the window or of the orbit: log r, log beta, tangent, side.
+    """Points of a border from one on, to the end of the window or of the orbit, see `_point`.
 
     direction : (2,) in which log r and log beta are to change at first
     """
@@ -311,9 +311,7 @@ def _vertical(phases: Phases, course: _Course, ahead: _Course, step: float) -> _
 def _point(course: _Course) -> np.ndarray:
     """log r and log beta of a place, their unit tangent, and the side of the orbit."""
     along = course.along[-2:]
-    return np.array(
-        [*np.log(course.place.unknowns[-2:]), *(along / np.linalg.norm(along)), course.side]
-    )
+    return np.array([*np.log(course.place.unknowns[-2:]), *(along / np.linalg.norm(along)), course.side])
 
 
 def _closed(points: list[np.ndarray]) -> bool:

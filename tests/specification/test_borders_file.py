@@ -23,7 +23,7 @@ r = { start = 0.0, stop = 0.4, step = 0.01 }
 beta = { start = 0.0, stop = 0.05, step = 0.005 }
 mu = [1.0, 1.5]
 """
-NAMES = ("border_r", "border_beta", "border_kind", "stops_below", "stops_above")
+NAMES = ("border_r", "border_beta", "border_kind", "border_mu", "stops_below", "stops_above")
 
 
 @pytest.fixture(scope="module")

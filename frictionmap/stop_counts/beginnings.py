@@ -23,8 +23,8 @@ _WIDER = 3.0
 #: without end where stops are added period by period.
 HALVES = 4
 
-#: The same for folds and period doublings, whose determinants take long for long orbits.
-_SINGULAR = 2
+#: The same for folds and period doublings, and their events: determinants take long for long orbits.
+_SINGULAR, _SINGULAR_EVENTS = 2, 6
 
 #: The factor in beta by which the end of an orbit may lie beyond a seed.
 _FAR = 1.3
@@ -80,16 +80,14 @@ def _events(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> list[Ma
 
 def _singularities(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> list[Margin]:
     """Only mu > 1 has them."""
-    if sequence.mu == 1.0 or sequence.half_periods > _SINGULAR:
+    if sequence.mu == 1.0 or sequence.half_periods > _SINGULAR or sequence.events > _SINGULAR_EVENTS:
         return []
     return [Margin(Condition(kind, 0), 0.0, 0.0) for kind in (FOLD, DOUBLING)]
 
 
 def _solved(phases: Phases, sequence: Sequence, unknowns: np.ndarray, near: list[Margin]) -> Iterator[Place]:
     for margin in near:
-        place = at_frequency(phases, sequence, unknowns, margin)
-        if place is not None:
-            yield place
+        yield from at_frequency(phases, sequence, unknowns, margin)
 
 
 def _exact(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> Orbit | None:

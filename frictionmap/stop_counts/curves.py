@@ -11,7 +11,7 @@ from .beginnings import begun, ends, orbits_beside
 from .conditions import DOUBLING, TURN
 from .phases import Phases
 from .seeds import Seeds, Source, narrowed, seeds_of_map
-from .tracing import Place, Window, traced
+from .tracing import Place, Window, ends_with_stop, traced
 
 
 class _Map(NamedTuple):
@@ -114,7 +114,7 @@ def _curve(place: Place, points: np.ndarray) -> _Curve:
     sequence, kind = place.sequence, place.condition.kind
     exact = np.arange(_BETWEEN * (len(points) - 1) + 1) % _BETWEEN == 0
     stops = other = sequence.stops_per_cycle
-    if sequence.mu == 1.0 or kind == TURN:
+    if sequence.mu == 1.0 or (kind == TURN and not ends_with_stop(sequence, place.condition)):
         other += 2.0 / sequence.half_periods
     elif kind != DOUBLING:
         other = np.nan

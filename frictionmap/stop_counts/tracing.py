@@ -164,14 +164,33 @@ def _side(phases: Phases, place: Place, slopes: np.ndarray) -> float:
         return 0.0  # it is one of a family of orbits
     margin = slopes[count, -1] + slopes[count, :count] @ moved
     within = condition.sign if condition.kind == SLIP else sequence.senses[condition.piece]
-    return float(np.sign(margin * (within if condition.kind == GRAZE else -within)))
+    positive = condition.kind == GRAZE or ends_with_stop(sequence, condition)
+    return float(np.sign(margin * (within if positive else -within)))
 
 
-def at_frequency(phases: Phases, sequence: Sequence, unknowns: np.ndarray, margin: Margin) -> Place | None:
-    """The point of a border at the frequency of an orbit that is near it; None if there is none."""
+def ends_with_stop(sequence: Sequence, condition: Condition) -> bool:
+    """Whether an orbit ends at turn/stop with a stop that has a length."""
+    return condition.kind == TURN and sequence.senses[condition.piece + 1] == 0
+
+
+def at_frequency(phases: Phases, sequence: Sequence, unknowns: np.ndarray, margin: Margin) -> list[Place]:
+    """The points of a border at the frequency of an orbit that is near it.
+
+    At turn/stop a stop becomes a turn as its length vanishes.  For mu > 1 the orbit may also end there with a
+    stop of some length, which the force leaves at its beginning already.
+    """
+    places = []
+    if margin.condition.kind == TURN:
+        shorter = _without_stop(sequence, unknowns, margin.condition.piece)
+        if shorter is not None:
+            places.append(_at_frequency(phases, *shorter, margin))
+    if margin.condition.kind != TURN or sequence.mu > 1.0 or not places:
+        places.append(_at_frequency(phases, sequence, unknowns, margin))
+    return [place for place in places if place is not None]
+
+
+def _at_frequency(phases: Phases, sequence: Sequence, unknowns: np.ndarray, margin: Margin) -> Place | None:
     condition = margin.condition
-    if condition.kind == TURN:
-        sequence, condition, unknowns = _without_stop(sequence, condition, unknowns)
     guess = unknowns
     if condition.inside:
         guess = np.insert(unknowns, unknowns.size - 2, margin.tau)
@@ -181,17 +200,14 @@ def at_frequency(phases: Phases, sequence: Sequence, unknowns: np.ndarray, margi
     return None if found is None else Place(sequence, condition, found)
 
 
-def _without_stop(
-    sequence: Sequence, condition: Condition, unknowns: np.ndarray
-) -> tuple[Sequence, Condition, np.ndarray]:
+def _without_stop(sequence: Sequence, unknowns: np.ndarray, k: int) -> tuple[Sequence, np.ndarray] | None:
     """A sequence in which the stop after slide k is a turn: on their border it has no length."""
-    k = condition.piece
     if sequence.senses[k + 1] or k + 2 > sequence.events:
-        return sequence, condition, unknowns
+        return None
     if sequence.senses[k + 2] == sequence.senses[k]:
-        return sequence, condition, unknowns
+        return None
     senses = (*sequence.senses[: k + 1], *sequence.senses[k + 2 :])
-    return sequence._replace(senses=senses), condition, np.delete(unknowns, k + 1)
+    return sequence._replace(senses=senses), np.delete(unknowns, k + 1)
 
 
 def is_on_border(phases: Phases, place: Place) -> bool:

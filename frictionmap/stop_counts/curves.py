@@ -7,7 +7,7 @@ import numpy as np
 from ..model.general import refuse_general
 from ..model.settings import Start
 from ..model.system import System
-from .beginnings import begun, ends, orbits_beside
+from .beginnings import HALVES, begun, ends, orbits_beside
 from .conditions import DOUBLING, TURN
 from .phases import Phases
 from .seeds import Seeds, Source, narrowed, seeds_of_map
@@ -26,6 +26,10 @@ class _Map(NamedTuple):
 #: Maps that are searched one after the other.  For mu = 1 the last has the rows of a fine map of the window.
 _UNIQUE = (_Map(160, 160, True), _Map(400, 400, True), _Map(2000, 500, False))
 _SEVERAL = (_Map(160, 160, True), _Map(160, 160, True, "moving"), _Map(400, 400, True))
+
+#: Seeds for mu > 1 are alike within this relative distance in r and beta.  Numbers of stops are whole, but
+#: stored in single precision.
+_ALIKE_SEEDS, _WHOLE = 0.01, 1e-5
 
 #: A curve crosses a bracket that is widened by this multiple of its width.
 _WIDER = 3.0
@@ -89,6 +93,8 @@ def find_borders(
         source = Source(system, mu, searched.start)
         r_map = (np.geomspace if searched.proportional else np.linspace)(*window.r, searched.rows)
         seeds = _unexplained(seeds_of_map(source, window, r_map, searched.columns), found)
+        if mu > 1.0:
+            seeds = _thinned(seeds)
         _add(source, phases, window, narrowed(source, seeds), found)
     return [piece for curve in found for piece in _pieces(curve)]
 
@@ -127,6 +133,21 @@ def _unexplained(seeds: Seeds, found: list[_Curve]) -> Seeds:
     for curve in found:
         known |= _crossed(curve, seeds)
     return Seeds(*(array[~known] for array in seeds))
+
+
+def _thinned(seeds: Seeds) -> Seeds:
+    """Seeds beside an orbit whose ends are sought, one of those with the same numbers close to each other.
+
+    For mu > 1 most changes are where a start leaves a basin, and explained by no border.
+    """
+    sides = (seeds.below, seeds.above)
+    halves = np.arange(1, HALVES + 1)[:, np.newaxis]
+    stops = [0.5 * halves * side for side in sides]  # of an orbit of so many half periods
+    short = np.any([np.abs(each - np.round(each)) < _WHOLE for each in stops], axis=(0, 1))
+    places = [np.floor(np.log(array) / _ALIKE_SEEDS) for array in (seeds.r, seeds.low)]
+    keys = np.column_stack((*places, *sides))[short]
+    first = np.sort(np.unique(keys, axis=0, return_index=True)[1])
+    return Seeds(*(array[short][first] for array in seeds))
 
 
 def _crossed(curve: _Curve, seeds: Seeds) -> np.ndarray:

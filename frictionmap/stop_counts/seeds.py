@@ -7,7 +7,7 @@ import numpy as np
 from .. import regimes
 from .._kernels.engine import segment_table
 from .._kernels.engine.fill import one_cell
-from ..model.settings import Solver, Start
+from ..model.settings import Output, Solver, Start
 from ..model.system import System
 from ..steady.cells import Cells, limits
 from ..steady.maps import compute
@@ -26,10 +26,15 @@ _BLOCKS, _LEAST = 20, 1e-4
 #: Bisections of a bracket in beta: of a map of 160 rows to a relative width of 1e-5 and less.
 _BISECTIONS = 17
 
-#: Solvers by their initial state: for mu > 1 the steady state depends on it.
-_SOLVERS = {
-    start: Solver(start=start, outputs=("regime", "stops_per_cycle", "status"))
-    for start in ("rest", "moving")
+_OUTPUTS: tuple[Output, ...] = ("regime", "stops_per_cycle", "status")
+
+#: Solvers for mu > 1 by their initial state.  The orbits sought settle within some cycles; irregular motions,
+#: of which there are many, would be followed for all.
+_CYCLES = 200
+_UNIQUE = Solver(outputs=_OUTPUTS)
+_SEVERAL: dict[Start, Solver] = {
+    "rest": Solver(start="rest", cycles=_CYCLES, outputs=_OUTPUTS),
+    "moving": Solver(start="moving", cycles=_CYCLES, outputs=_OUTPUTS),
 }
 
 
@@ -43,7 +48,7 @@ class Source(NamedTuple):
     @property
     def solver(self) -> Solver:
         """The solver of the maps."""
-        return _SOLVERS[self.start]
+        return _UNIQUE if self.mu == 1.0 else _SEVERAL[self.start]
 
 
 class Seeds(NamedTuple):

@@ -35,7 +35,7 @@ Orbit: TypeAlias = tuple[Sequence, np.ndarray]
 def orbits_beside(
     source: Source, phases: Phases, seed: tuple[float, float, float], halves: int = HALVES
 ) -> list[Orbit]:
-    """The orbits at both ends of a seed (r, low, high) that return after so many half periods at most."""
+    """The orbits at both ends of a seed (r, low, high) that return after at most `halves` half periods."""
     r, low, high = seed
     found = [orbit_at(source, r, beta) for beta in (low, high)]
     short = [orbit for orbit in found if orbit is not None and orbit[0].half_periods <= halves]

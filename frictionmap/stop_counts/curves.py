@@ -62,7 +62,7 @@ class _Curve(NamedTuple):
     r: np.ndarray
     beta: np.ndarray
     exact: np.ndarray  # whether a point was computed, not put between
-    side: np.ndarray  # of the orbit, at exact points
+    side: np.ndarray  # of the orbit, weighted by the tangent in r: where r turns, the side changes
     stops: float  # of the orbit
     other: float  # on the other side
 
@@ -124,7 +124,8 @@ def _curve(place: Place, points: np.ndarray) -> _Curve:
         other += 2.0 / sequence.half_periods
     elif kind != DOUBLING:
         other = np.nan
-    return _Curve(kind, *_dense(points[:, :4]), exact, points[:, 4], stops, other)
+    side = points[:, 4] * np.abs(points[:, 2])
+    return _Curve(kind, *_dense(points[:, :4]), exact, side, stops, other)
 
 
 def _unexplained(seeds: Seeds, found: list[_Curve]) -> Seeds:
@@ -142,7 +143,7 @@ def _thinned(seeds: Seeds) -> Seeds:
     """
     sides = (seeds.below, seeds.above)
     halves = np.arange(1, HALVES + 1)[:, np.newaxis]
-    stops = [0.5 * halves * side for side in sides]  # of an orbit of so many half periods
+    stops = [0.5 * halves * side for side in sides]  # of an orbit of this many half periods
     short = np.any([np.abs(each - np.round(each)) < _WHOLE for each in stops], axis=(0, 1))
     places = [np.floor(np.log(array) / _ALIKE_SEEDS) for array in (seeds.r, seeds.low)]
     keys = np.column_stack((*places, *sides))[short]

@@ -81,6 +81,8 @@ def test_cells_beside_borders_have_the_counts(number):
     """Points evenly along the borders, away from their ends, where two borders are next to each other."""
     system, ds = WINDOWS[number][0], borders_of(number)
     assert ds.sizes["border"] > 1
+    assert not np.isnan(ds.stops_below).any()
+    assert not np.isnan(ds.stops_above).any()
     right = total = known = 0
     for k in range(ds.sizes["border"]):
         x, y = ds.border_r.values[k], ds.border_beta.values[k]

@@ -177,9 +177,10 @@ def test_reference_points_of_existence():
 
 @functools.cache
 def existence():
-    return fm.borders(WALL, [0.3, 0.34], [0.01, 0.08], 1.5)
+    return fm.borders(WALL, [0.305, 0.336], [0.014, 0.07], 1.5)
 
 
+@pytest.mark.slow
 def test_an_orbit_lives_on_the_stated_side():
     """Solved next to points of its border it is physical on one side only, where stops are stated."""
     ds, checked = existence(), set()
@@ -219,13 +220,13 @@ def test_existence_is_not_the_basin_of_a_start():
     r, source = 0.42655658, Source(WALL, 1.5)
     beside = counts_at(source, np.full(2, r), np.array([0.14039, 0.14040]))
     np.testing.assert_array_equal(beside, [0.0, 1.0])
-    ds = fm.borders(WALL, [0.4, 0.45], [0.12, 0.16], 1.5)
+    ds = fm.borders(WALL, [0.42, 0.43], [0.13, 0.15], 1.5)
     ends = [
         np.interp(r, x[~np.isnan(x)], y[~np.isnan(x)], left=np.nan, right=np.nan)
         for x, y in zip(ds.border_r.values, ds.border_beta.values, strict=True)
     ]
-    assert np.nanmin(np.abs(np.array(ends) - 0.140259)) < 2e-6
-    assert np.nanmin(np.abs(np.array(ends) - 0.140397)) > 2e-5
+    assert np.nanmin(np.abs(np.array(ends) - 0.140259)) < 1e-5  # chords of steps of 2 %
+    assert np.nanmin(np.abs(np.array(ends) - 0.140397)) > 1e-4
 
 
 def test_a_slip_curve_ends_where_its_event_meets_the_beginning_of_the_stop():

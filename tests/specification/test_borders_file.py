@@ -20,7 +20,7 @@ base_amplitude = "1 mm"
 stiffness = "2 N/mm"
 [grid]
 r = { start = 0.0, stop = 0.4, step = 0.01 }
-beta = { start = 0.0, stop = 0.05, step = 0.005 }
+beta = { start = 0.0, stop = 0.02, step = 0.005 }
 mu = [1.0, 1.5]
 """
 NAMES = ("border_r", "border_beta", "border_kind", "border_mu", "stops_below", "stops_above")
@@ -29,7 +29,7 @@ NAMES = ("border_r", "border_beta", "border_kind", "border_mu", "stops_below", "
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     folder = tmp_path_factory.mktemp("borders")
-    (folder / "b.toml").write_text(CONFIG.replace("start = 0.0, stop = 0.4", "start = 0.18, stop = 0.4"))
+    (folder / "b.toml").write_text(CONFIG.replace("start = 0.0, stop = 0.4", "start = 0.21, stop = 0.24"))
     assert (
         main(["boundaries", str(folder / "b.toml"), "--borders", "-o", str(folder / "b.nc"), "--quiet"]) == 0
     )

@@ -37,7 +37,7 @@ _LOWEST, _PEAKS, _ZOOMS = 3, 4, 4
 #: Relative distance from a border at which cells are compared, and from the ends of borders that is left out.
 _BESIDE, _ENDS = 1e-6, 0.02
 
-#: Relative distance within which a change of a map is on a border: chords are off by about 5e-5, more where
+#: Relative distance within which a change of a map is on a border: chords are off by about 2e-5, more where
 #: borders are steep.
 _ON = 1e-3
 

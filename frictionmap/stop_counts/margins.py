@@ -150,7 +150,10 @@ def violation(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> float
     edges = np.concatenate(([sequence.start], times, [sequence.end]))
     if (np.diff(edges) <= 0.0).any() or unknowns[-1] <= 0.0 or unknowns[-2] <= 0.0:
         return math.inf
-    motion = motion_of(phases, sequence, times[np.newaxis], unknowns[-2:-1], unknowns[-1:])
+    try:
+        motion = motion_of(phases, sequence, times[np.newaxis], unknowns[-2:-1], unknowns[-1:])
+    except np.linalg.LinAlgError:
+        return math.inf  # its return determines no state
     worst = 0.0
     for piece in range(1, sequence.events + 1):
         samples = sampled(phases, sequence, motion, piece)

@@ -31,7 +31,7 @@ _INSIDE = 1e-5
 
 #: Length of a step times the angle by which the curve turns in it: the chord is off by an eighth of that.
 #: Steps are chosen for it, and repeated if it is exceeded by a factor, unless they are short.
-_TURNED, _EXCEEDED, _SHORT = 4e-4, 3.0, 1e-3
+_TURNED, _EXCEEDED, _SHORT = 1e-4, 3.0, 1e-3
 
 #: Turns of a curve in r are found to this component of the tangent, in so many steps at most.
 _VERTICAL, _SECANTS = 1e-9, 8
@@ -311,6 +311,8 @@ def _vertical(phases: Phases, course: _Course, ahead: _Course, step: float) -> _
     """The point of a step at which r turns, by secants; None if they lose it."""
     low, high = (0.0, float(course.along[-2])), (step, float(ahead.along[-2]))
     for _ in range(_SECANTS):
+        if high[1] == low[1]:
+            return None
         middle = low[0] - low[1] * (high[0] - low[0]) / (high[1] - low[1])
         if not 0.0 < middle < step:
             return None

@@ -239,5 +239,7 @@ def test_a_slip_curve_ends_where_its_event_meets_the_beginning_of_the_stop():
 def test_what_is_refused():
     with pytest.raises(fm.InputError, match="r must be two numbers > 0"):
         fm.borders(WALL, [0.0, 1.0], [0.1, 1.0])
+    with pytest.raises(fm.InputError, match="mu must be"):
+        fm.borders(WALL, [0.1, 1.0], [0.1, 1.0], 0.5)
     with pytest.raises(fm.InputError, match="cannot find borders between numbers of stops"):
         fm.borders(fm.System(contact_stiffness=2.0), [0.1, 1.0], [0.1, 1.0])

@@ -63,9 +63,7 @@ def test_borders_lie_between_the_boundaries(path):
 
 def test_borders_are_drawn_with_their_mu(path):
     ds = read(path)
-    kept = [
-        name for name in ds.data_vars if name in pictured(None)["boundaries"]
-    ]  # as the command reads
+    kept = [name for name in ds.data_vars if name in pictured(None)["boundaries"]]  # as the command reads
     axes = fm.plot_boundaries(ds[kept])
     lines = [[line for line in ax.lines if line.get_linewidth() == 0.8] for ax in axes]
     for mu, drawn in zip((1.0, 1.5), lines, strict=True):

@@ -30,8 +30,9 @@ BOUNDARIES = ("beta_lim", "beta_lim_modal", "beta_stick")
 
 
 #: Kinds of borders between numbers of stops, see `stop_counts.orbits`.
-BORDER_KINDS = ("graze", "slip-in-stop", "turn/stop")
+BORDER_KINDS = ("graze", "slip-in-stop", "turn/stop", "graze-of-slide-end", "fold", "doubling")
 _BORDER_POINT = ("border", "point")
+_OF_ORBIT = "mu > 1: of the periodic motion that ends at the border; NaN on the side where it does not exist"
 
 
 class Label(NamedTuple):
@@ -630,13 +631,26 @@ CURVES = {
         np.float64,
         "friction ratios of borders between numbers of stops",
         _BORDER_POINT,
-        comment="mu = 1; padded with NaN",
+        comment="padded with NaN",
         least=0.0,
         nan=True,
     ),
     "border_kind": Label(np.str_, "kind of the border", ("border",), texts=BORDER_KINDS),
-    "stops_below": Label(np.float32, "stops per cycle below the border", ("border",), least=0.0, nan=True),
-    "stops_above": Label(np.float32, "stops per cycle above the border", ("border",), least=0.0, nan=True),
+    "border_mu": Label(
+        np.float64,
+        "ratio of static to kinetic friction",
+        ("border",),
+        comment="mu = 1: the number of stops changes there; mu > 1: a periodic motion ends there, whether or "
+        "not a motion from rest reaches it; the number of stops from one initial state also changes where "
+        "that state leaves the basin of its motion",
+        least=1.0,
+    ),
+    "stops_below": Label(
+        np.float32, "stops per cycle below the border", ("border",), comment=_OF_ORBIT, least=0.0, nan=True
+    ),
+    "stops_above": Label(
+        np.float32, "stops per cycle above the border", ("border",), comment=_OF_ORBIT, least=0.0, nan=True
+    ),
     "beta_lim_high": Label(np.float64, "limit of beta_lim for r to infinity", ("mu",), least=0.0, inf=True),
     "beta_stick_high": Label(
         np.float64, "limit of beta_stick for r to infinity", ("mu",), least=0.0, inf=True

@@ -19,6 +19,9 @@ _FOLLOWED = 0.5
 #: Samples that differ by less than this share of the largest one are equal: a plateau has one peak.
 _ROUNDING = 1e-12
 
+#: Responses below this share of the largest one are rounding error of contacts that stick.
+_ZERO = 1e-13
+
 #: Samples of a window around a peak at least; its least half width, and that around a peak that a neighbour
 #: does not have, in steps of the samples of the band.
 _IN_WINDOW, _LEAST_WINDOW, _FAR = 9, 0.25, 8.0
@@ -81,6 +84,7 @@ class Performance:
     def __init__(self, responses: Responses, r: np.ndarray) -> None:
         self._responses, self._r = responses, r
         self._table: list[Peaks] = []
+        self._scale = 0.0
         self._unknown: dict[float, int] = {}
 
     @property
@@ -116,7 +120,13 @@ class Performance:
     def _on_grid(self, r: np.ndarray, beta: np.ndarray) -> np.ndarray:
         """Responses on a grid; at beta where one of them is not known, all are infinite."""
         values = self._responses.on_grid(r, beta)
-        return self._known(values.size, unresolved(values), beta)
+        size = values.size[np.isfinite(values.size)]
+        self._scale = max(self._scale, size.max(initial=0.0))
+        return self._known(self._rounded(values.size), unresolved(values), beta)
+
+    def _rounded(self, size: np.ndarray) -> np.ndarray:
+        """Responses without those that are rounding error."""
+        return np.where(size < _ZERO * self._scale, 0.0, size)
 
     def _known(self, size: np.ndarray, wrong: np.ndarray, beta: np.ndarray) -> np.ndarray:
         columns = wrong.any(axis=0)
@@ -136,7 +146,7 @@ class Performance:
 
         def size(which: np.ndarray, r: np.ndarray) -> np.ndarray:
             values = self._responses.at(r, beta[owner[which]])
-            return np.where(unresolved(values), np.inf, values.size)
+            return np.where(unresolved(values), np.inf, self._rounded(values.size))
 
         places, sizes = sharpened(size, joined(parts), None if all_peaks else owner)
         found = []

@@ -112,7 +112,8 @@ def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
     found = []
     for order in _orders(general):
         x = _solved(*_linear(system, system.modes.stiffness, order, r))
-        found.append(x @ general.vectors.T - general.base.get(order, 0.0) * moved)
+        with np.errstate(invalid="ignore"):  # an infinite x
+            found.append(x @ general.vectors.T - general.base.get(order, 0.0) * moved)
     return np.stack(found, axis=-1)
 
 

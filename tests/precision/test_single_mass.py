@@ -119,3 +119,33 @@ def test_the_tables_solve_a_cell():
     assert cycles <= 6.0
     assert 0.0 <= multiplier < 1.0
     assert record.distance[0] == pytest.approx(float(motion.sliding_distance), rel=1e-10)
+
+
+@pytest.mark.parametrize(("load", "r"), [({1: 1.0, 3: 0.2}, 1.0), ({1: 0.3, 2: 1.0}, 0.5)])
+def test_an_undamped_resonance_has_no_steady_state_of_any_size(load, r):
+    """Below beta = pi/4 of the resonant harmonic every motion grows; above it the contact stops."""
+    found = fm.sweep(one_mass(load, 0.0), [r], np.linspace(0.05, 1.0, 20), outputs=OUTPUTS).squeeze()
+    solved = found.status.values == 0
+    limit = np.pi / 4.0 * max(abs(value) for n, value in load.items() if n * r == 1.0)
+    assert not solved[found.beta.values < limit].any()
+    assert solved[found.beta.values > 1.05 * limit].all()
+    assert (found.stops_per_cycle.values[solved] >= 1.0).all()
+    assert found.peak_to_peak.values[solved].max() < 20.0
+
+
+def test_the_boundary_to_sticking_ends_no_interval_without_stops():
+    load = {1: 1.0, 5: 0.25j}
+    limits = fm.boundaries(one_mass(load, 0.3), [1.5075187969924813])
+    begins = limits.no_stop_begin.values.ravel()
+    assert begins[0] == 0.0
+    assert np.isnan(begins[1:]).all()
+    assert np.isfinite(limits.no_stop_end.values.ravel()[0])
+
+
+def test_a_cell_does_not_depend_on_the_cells_before_it():
+    system = one_mass({1: 1.0, 2: 0.3}, 0.0)
+    few = fm.sweep(system, [1.000001], [0.5, 0.7, 0.9], outputs=OUTPUTS)
+    many = fm.sweep(system, [1.000001], np.linspace(0.6, 0.9, 31), outputs=OUTPUTS)
+    last = [ds.isel(beta=-1).squeeze() for ds in (few, many)]
+    assert [ds.status.item() for ds in last] == [0, 0]
+    assert last[0].peak_to_peak.item() == pytest.approx(last[1].peak_to_peak.item(), rel=1e-9)

@@ -286,11 +286,17 @@ def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
                 _store_stuck(out, m, i, b)
                 continue
             unique = _set_friction(grid, m, b, friction)
-            if unique and trail.count[0] > 0:
+            ahead = unique and trail.count[0] > 0
+            if ahead:
                 _begin_ahead(grid.beta[b], trail, memory)
-            else:
+                found, halves, multiplier = solve(
+                    problem, friction, grid.cycles, grid.tolerance, tools, RANGES
+                )
+            if not ahead or found.status != REPEATS:
                 from_rest(problem, row, friction, grid.starts[i], work, memory, record)
-            found, halves, multiplier = solve(problem, friction, grid.cycles, grid.tolerance, tools, RANGES)
+                found, halves, multiplier = solve(
+                    problem, friction, grid.cycles, grid.tolerance, tools, RANGES
+                )
             if found.status == REPEATS:
                 _remember(memory, grid.beta[b], trail)
             else:

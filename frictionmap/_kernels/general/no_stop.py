@@ -29,6 +29,9 @@ class Search(NamedTuple):
     kinetic: np.ndarray  # (N, 2)
     static: np.ndarray  # (n_mu, N, 2)
     top: np.ndarray  # (n_r,) largest beta that is tried
+    sticks: (
+        np.ndarray
+    )  # (n_r,) bool: whether all contacts stick permanently there, where a motion would creep
     starts: np.ndarray  # (n_r, 2, m)
     cycles: float
     tolerance: float
@@ -149,7 +152,10 @@ def _fill(first, last, problem, search, begins, ends, tools, friction, kept, can
         near = False
         for k in range(NODES + 1):
             beta = _node(search.top[i], k)
-            near = _try(problem, i, search, beta, near, friction, tools, kept, k)
+            if k == NODES and search.sticks[i]:
+                kept[k, 0] = 1.0
+            else:
+                near = _try(problem, i, search, beta, near, friction, tools, kept, k)
         for m in range(search.static.shape[0]):
             count = 0
             margin = _margin(search, m, _node(search.top[i], 0), kept, 0)

@@ -7,7 +7,7 @@ from ..compiler import kernel
 from ..structure.newton import solve_linear, spectral_radius
 from .follow import FOLLOWED
 from .problem import state_size
-from .return_map import fill_newton, go_round, neutral_rows, return_distance, take_step
+from .return_map import fill_newton, go_round, motion_size, neutral_rows, return_distance, take_step
 
 #: Kinds of `Steady`; AVERAGED: the motion stops and starts without returning, see `course`.
 REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED, AVERAGED = 0, 1, 2, 3, 4
@@ -17,7 +17,7 @@ _MOST_STEPS = 12
 _LESS = 0.5
 
 #: Largest step, over the size of the motion: beyond, the equations are singular (an undamped resonance).
-_LARGEST = 1e10
+LARGEST = 1e10
 
 #: A step below this is the last one: the next would be of the size of its square.  `measure` looks after it.
 _LAST = 1e-7
@@ -96,7 +96,7 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
         if not solve_linear(memory.matrix, memory.right, size):
             return NO_REPEAT, cycles
         step = take_step(problem, row, memory)
-        if not step <= _LARGEST:
+        if not (step <= LARGEST and motion_size(problem, row, memory) <= LARGEST * row.numbers[2]):
             return NO_REPEAT, cycles
         if step <= max(tolerance, _LAST):
             return REPEATS, cycles

@@ -12,7 +12,7 @@ from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, LEADING, filled, least, load, mask_above, most, store
 from .crossings import NONE, approach, slope_at, value_at
 from .follow import COUNT_ROWS, MOVED, NEAREST_STOP, STOPS, STUCK, TURNS
-from .orbits import radius_of_two
+from .orbits import LARGEST, radius_of_two
 from .problem import TERMS, WIDTH
 from .record import LEAST_SLIP, clear_record, include, mirror
 from .single_tables import (
@@ -404,6 +404,8 @@ def solve_single(problem, row, single, beta, memory, record):
     for count in range(1, _MOST_RETURNS + 1):
         if not sense * p > 0.0:  # a stop, or a start that was moved beyond the end of its slide
             sense, p = 0, 0.0
+        if not max(abs(z), abs(p)) <= LARGEST * size:
+            return False, 0.5 * base * count, math.nan
         end, decided = _return(
             single, row.numbers[0], base * row.intervals[0], (z, p), sense, beta, memory, record
         )

@@ -61,9 +61,10 @@ class Job:
 
     def left(self, now: float) -> float:
         """Seconds that compilation will still take; 0 if it takes longer than expected."""
-        if self.compiles_since is None or not self.group:
+        since = self.compiles_since  # once: the thread of the job may end it meanwhile
+        if since is None or not self.group:
             return 0.0
-        return max(0.0, self._times.expected(self.group) - self._spent - (now - self.compiles_since))
+        return max(0.0, self._times.expected(self.group) - self._spent - (now - since))
 
 
 class Jobs:

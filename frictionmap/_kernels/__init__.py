@@ -11,6 +11,7 @@ newton_limits      limits of Newton's method on the return map
 taylor_series      the motion in one scan step: number of terms, first root, refined roots
 boundary           response functions V, U, G, H, S of one mass and of structures, the terms of beta_lim
 one_mass           scan step, events, return map and sliding orbit of one mass
+extrapolation      where a cell begins: the polynomial through the last cells of its row
 structure          the same for any structure, with its oscillators and states
 logs               numbers of every cycle of a motion that does not repeat, their means and errors
 long_periods       when a motion is searched for a long period, and when it is taken as irregular

@@ -13,6 +13,7 @@ import numpy as np
 from ..compiler import entry, inner_kernel, kernel
 from ..continuous_motion import continuous_amplitude, orbit_phase
 from ..event_codes import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, EventSequence
+from ..extrapolation import CELLS, reaches, weight
 from ..logs import make_log
 from ..one_mass.events import Scratch, after_slide, make_scratch, slide_within
 from ..one_mass.newton import first_contact_force, solve_orbit
@@ -25,16 +26,12 @@ from .records import Contact, ContactState, Orbit, known_orbit, no_orbit, stops_
 from .segment_table import put_mass
 
 #: Columns of the orbits solved for last, which point to the next cell: slides per recurrence (0: no orbit),
-#: sign at the end of a stop, how many orbits with these events are known, at most _KNOWN, their displacements
+#: sign at the end of a stop, how many orbits with these events are known, at most CELLS, their displacements
 #: at the end of that stop and their friction, latest first, and the events, at most MOST_EVENTS.
 COUNT, SIDE, KNOWN = 0, 1, 2
-_KNOWN = 3
-_DISPLACEMENTS, _FRICTION, FIRST = 3, 3 + _KNOWN, 3 + 2 * _KNOWN
+_DISPLACEMENTS, _FRICTION, FIRST = 3, 3 + CELLS, 3 + 2 * CELLS
 MOST_EVENTS = 32
 NEIGHBOUR = FIRST + MOST_EVENTS
-
-#: Farthest extrapolation, in steps between the last two orbits.
-_FARTHEST = 3.0
 
 #: Two anchors closer than this are the same: Newton's method may have converged to a repeated short orbit.
 _SAME = 1e-9
@@ -292,7 +289,7 @@ def seek(motion, contact, contact_state, event, sign, events, recurrence, failur
 @kernel
 def _remember(neighbour, b, z):
     """Add an orbit with the events of the last ones, its displacement at the end of a stop."""
-    known = int(min(neighbour[KNOWN] + 1.0, float(_KNOWN)))
+    known = int(min(neighbour[KNOWN] + 1.0, float(CELLS)))
     for first in (_DISPLACEMENTS, _FRICTION):
         for k in range(known - 1, 0, -1):
             neighbour[first + k] = neighbour[first + k - 1]
@@ -304,15 +301,11 @@ def _expected(neighbour, b):
     """Displacement at friction b by the polynomial through the last orbits; if b is far away, the last."""
     last, friction = neighbour[_DISPLACEMENTS], neighbour[_FRICTION:FIRST]
     known = int(neighbour[KNOWN])
-    if known < 2 or not abs(b - friction[0]) <= _FARTHEST * abs(friction[0] - friction[1]):
+    if not reaches(friction, known, b):
         return last
     z = 0.0
     for k in range(known):
-        weight = 1.0
-        for other in range(known):
-            if other != k:
-                weight *= (b - friction[other]) / (friction[k] - friction[other])
-        z += weight * neighbour[_DISPLACEMENTS + k]
+        z += weight(friction, known, k, b) * neighbour[_DISPLACEMENTS + k]
     return z
 
 

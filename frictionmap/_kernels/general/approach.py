@@ -8,7 +8,7 @@ import math
 from ..compiler import kernel
 from .follow import FOLLOWED, SLIPS, STOPS, TURNS
 from .orbits import NO_REPEAT, REPEATS, RETURNED, Steady, largest_multiplier, least_period, newton
-from .return_map import go_round, motion_size, take_end
+from .return_map import base_halves, go_round, motion_size, take_end
 from .returns import distance_back, distance_from_last, distance_from_orbit, go_back, put_orbit, take_orbit
 
 #: Largest distance from the motion that Newton's method may lead to, where the start matters.
@@ -44,10 +44,9 @@ def _heads_for(problem, row, halves, contraction, memory, ring):
     """
     if contraction > _STABLE:
         return False
-    far = distance_from_last(problem, memory, ring) / motion_size(problem, row, memory)
+    far = distance_from_last(memory, ring) / motion_size(problem, row, memory)
     if contraction < 1.0:
-        base = 1 if problem.symmetric else 2
-        expected = distance_back(row, memory, ring, 0, halves // base) / (1.0 - contraction)
+        expected = distance_back(row, memory, ring, 0, halves // base_halves(problem)) / (1.0 - contraction)
         if far > max(_HEADING * expected, RETURNED):
             return False
     return far <= _SAME
@@ -84,7 +83,7 @@ def _approaches(problem, row, friction, halves, contraction, work, memory, ring,
     put_orbit(memory, ring)
     go_back(memory, ring, 0)
     size = motion_size(problem, row, memory)
-    begin = distance_from_orbit(problem, memory, ring)
+    begin = distance_from_orbit(memory, ring)
     enough = max(_NEARER * begin, RETURNED * size)
     returns = _MOST_RETURNS
     if contraction < 1.0:
@@ -97,7 +96,7 @@ def _approaches(problem, row, friction, halves, contraction, work, memory, ring,
         if code != FOLLOWED or not _does_the_same(memory, ring):
             break
         take_end(memory)
-        far = distance_from_orbit(problem, memory, ring)
+        far = distance_from_orbit(memory, ring)
         approaches = far <= enough or (count == returns and far <= begin * contraction ** (0.5 * count))
         if approaches:
             break
@@ -120,7 +119,7 @@ def try_return(problem, row, friction, halves, tolerance, work, memory, ring, re
     -------
     Steady : REPEATS or NO_REPEAT
     """
-    base = 1 if problem.symmetric else 2
+    base = base_halves(problem)
     status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, record)
     if status == REPEATS:
         contraction = largest_multiplier(problem, halves, _STABLE_PRECISION, work, memory)

@@ -23,16 +23,13 @@ from ...regimes import (
 )
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
+from ..extrapolation import CELLS, reaches, weight
 from .follow import MOVED, RELEASE_ORDER, REVERSALS, SLIPS, STOPS, STOPS_ERROR, STUCK, STUCK_ERROR, TURNS
 from .problem import padded
 from .record import LEAST_SLIP, RANGES
-from .return_map import steady_period
+from .return_map import copy_motion, copy_state, steady_period
 from .series import Friction
 from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, from_rest, make_tools, solve
-
-#: Cells of a row that point to the next one, and the farthest that it may be, in steps between the last two.
-_KEPT = 3
-_FARTHEST = 3.0
 
 
 class Grid(NamedTuple):
@@ -50,9 +47,9 @@ class Grid(NamedTuple):
 class Trail(NamedTuple):
     """The steady states of the last cells of a row, latest first, to begin the next one from."""
 
-    states: np.ndarray  # (_KEPT, 3, ...)
+    states: np.ndarray  # (CELLS, 3, ...)
     senses: np.ndarray  # (N,) the pattern of all of them
-    beta: np.ndarray  # (_KEPT,)
+    beta: np.ndarray  # (CELLS,)
     count: np.ndarray  # (1,) int: how many there are
 
 
@@ -214,10 +211,10 @@ def _set_friction(grid, m, b, friction):
 
 @entry
 def make_trail(problem):
-    """Allocate the memory of the last two cells."""
+    """Allocate the memory of the last cells."""
     contacts, modes = problem.chi.shape
     return Trail(
-        np.zeros((_KEPT, 3, padded(max(modes, contacts)))), np.zeros(contacts, np.int64), np.zeros(_KEPT),
+        np.zeros((CELLS, 3, padded(max(modes, contacts)))), np.zeros(contacts, np.int64), np.zeros(CELLS),
         np.zeros(1, np.int64),
     )  # fmt: skip
 
@@ -228,36 +225,52 @@ def _remember(memory, beta, trail):
     same = True
     for j in range(memory.senses.size):
         same = same and memory.senses[j] == trail.senses[j]
-        trail.senses[j] = memory.senses[j]
-    trail.count[0] = min(trail.count[0] + 1, _KEPT) if same else 1
+    trail.count[0] = min(trail.count[0] + 1, CELLS) if same else 1
     for k in range(trail.count[0] - 1, 0, -1):
         trail.beta[k] = trail.beta[k - 1]
-        for part in range(3):
-            for i in range(memory.start.shape[1]):
-                trail.states[k, part, i] = trail.states[k - 1, part, i]
+        copy_state(trail.states[k - 1], trail.states[k])
     trail.beta[0] = beta
-    for part in range(3):
-        for i in range(memory.start.shape[1]):
-            trail.states[0, part, i] = memory.start[part, i]
+    copy_motion(memory.start, memory.senses, trail.states[0], trail.senses)
 
 
 @kernel
 def _begin_ahead(beta, trail, memory):
     """Begin where the steady states of the last cells point: at the polynomial in beta through them."""
     count = trail.count[0]
-    if count < 2 or not abs(beta - trail.beta[0]) <= _FARTHEST * abs(trail.beta[0] - trail.beta[1]):
+    if not reaches(trail.beta, count, beta):
         return
     for part in range(3):
         for i in range(memory.start.shape[1]):
             memory.start[part, i] = 0.0
     for k in range(count):
-        weight = 1.0
-        for other in range(count):
-            if other != k:
-                weight *= (beta - trail.beta[other]) / (trail.beta[k] - trail.beta[other])
+        share = weight(trail.beta, count, k, beta)
         for part in range(3):
             for i in range(memory.start.shape[1]):
-                memory.start[part, i] += weight * trail.states[k, part, i]
+                memory.start[part, i] += share * trail.states[k, part, i]
+
+
+@kernel
+def _solve_cell(problem, grid, i, b, unique, friction, tools, trail):
+    """Find the steady state of a cell: from where the last cells point, if that leads to it, or from rest.
+
+    Parameters
+    ----------
+    problem, grid : Problem, Grid
+    i, b : indices of r and beta
+    unique : whether the start does not matter
+    friction, tools, trail : Friction of the cell, Tools, Trail
+
+    Returns
+    -------
+    Steady, half periods measured, multiplier
+    """
+    if unique and trail.count[0] > 0:
+        _begin_ahead(grid.beta[b], trail, tools.memory)
+        found, halves, multiplier = solve(problem, friction, grid.cycles, grid.tolerance, tools, RANGES)
+        if found.status == REPEATS:
+            return found, halves, multiplier
+    from_rest(problem, tools.row, friction, grid.starts[i], tools.work, tools.memory, tools.record)
+    return solve(problem, friction, grid.cycles, grid.tolerance, tools, RANGES)
 
 
 @kernel
@@ -271,7 +284,6 @@ def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
     """
     problem, grid, out, tools = packed(problem), packed(grid), packed(out), packed(tools)
     trail, friction = packed(trail), packed(friction)
-    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
     n_r = problem.r.size
     for index in range(first, last):
         m, i = index // n_r, index % n_r
@@ -286,22 +298,12 @@ def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
                 _store_stuck(out, m, i, b)
                 continue
             unique = _set_friction(grid, m, b, friction)
-            ahead = unique and trail.count[0] > 0
-            if ahead:
-                _begin_ahead(grid.beta[b], trail, memory)
-                found, halves, multiplier = solve(
-                    problem, friction, grid.cycles, grid.tolerance, tools, RANGES
-                )
-            if not ahead or found.status != REPEATS:
-                from_rest(problem, row, friction, grid.starts[i], work, memory, record)
-                found, halves, multiplier = solve(
-                    problem, friction, grid.cycles, grid.tolerance, tools, RANGES
-                )
+            found, halves, multiplier = _solve_cell(problem, grid, i, b, unique, friction, tools, trail)
             if found.status == REPEATS:
-                _remember(memory, grid.beta[b], trail)
+                _remember(tools.memory, grid.beta[b], trail)
             else:
                 trail.count[0] = 0
-            _store(problem, out, m, i, b, found, (halves, multiplier), memory.counts, record)
+            _store(problem, out, m, i, b, found, (halves, multiplier), tools.memory.counts, tools.record)
 
 
 @entry

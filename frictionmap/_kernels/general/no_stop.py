@@ -29,9 +29,7 @@ class Search(NamedTuple):
     kinetic: np.ndarray  # (N, 2)
     static: np.ndarray  # (n_mu, N, 2)
     top: np.ndarray  # (n_r,) largest beta that is tried
-    sticks: (
-        np.ndarray
-    )  # (n_r,) bool: whether all contacts stick permanently there, where a motion would creep
+    sticks: np.ndarray  # (n_r,) bool: whether all contacts stick permanently at `top`: motions there creep
     starts: np.ndarray  # (n_r, 2, m)
     cycles: float
     tolerance: float

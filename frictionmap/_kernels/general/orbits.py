@@ -16,8 +16,13 @@ REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED, AVERAGED = 0, 1, 2, 3, 4
 _MOST_STEPS = 12
 _LESS = 0.5
 
-#: Largest step, over the size of the motion: beyond, the equations are singular (an undamped resonance).
+#: Largest step over the size of the motion, and largest motion over its size without friction: beyond, the
+#: equations are singular (an undamped resonance).
 LARGEST = 1e10
+
+#: Largest error of a measured state, which is its distance from the one that it returns to, over the share
+#: of a disturbance that a return takes away.
+MEASURED = 1e-12
 
 #: A step below this is the last one: the next would be of the size of its square.  `measure` looks after it.
 _LAST = 1e-7

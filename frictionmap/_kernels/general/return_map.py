@@ -53,13 +53,32 @@ def steady_period(halves):
 
 
 @kernel
-def put_state(state, senses, work):
-    """Set the state and the pattern of a motion."""
+def base_halves(problem):
+    """Half periods between returns to the section: one where half periods of the load mirror each other."""
+    return 1 if problem.symmetric else 2
+
+
+@kernel
+def copy_state(state, into):
+    """Copy a state at the section."""
     for part in range(3):
         for i in range(state.shape[1]):
-            work.state[part, i] = state[part, i]
+            into[part, i] = state[part, i]
+
+
+@kernel
+def copy_motion(state, senses, into, into_senses):
+    """Copy a state at the section and its pattern."""
+    copy_state(state, into)
     for j in range(senses.size):
-        work.sense[j] = senses[j]
+        into_senses[j] = senses[j]
+
+
+@kernel
+def put_state(state, senses, work):
+    """Set the state and the pattern of a motion."""
+    copy_motion(state, senses, work.state, work.sense)
+    for j in range(senses.size):
         work.fresh[j] = 0
 
 
@@ -113,11 +132,7 @@ def go_round(problem, row, friction, halves, work, memory, record, derive):
 @kernel
 def take_end(memory):
     """Begin the next way where the last one ended."""
-    for part in range(3):
-        for i in range(memory.start.shape[1]):
-            memory.start[part, i] = memory.end[part, i]
-    for j in range(memory.senses.size):
-        memory.senses[j] = memory.end_senses[j]
+    copy_motion(memory.end, memory.end_senses, memory.start, memory.senses)
 
 
 @kernel

@@ -9,7 +9,7 @@ from ..compiler import entry, kernel
 from ..long_periods import LONGEST_RECURRENCE, RETURNED_AFTER_LONG
 from .follow import COUNT_ROWS
 from .problem import padded
-from .return_map import steady_period
+from .return_map import base_halves, copy_motion, steady_period
 
 #: Returns one after the other that a long period is recognised by.
 _IN_A_ROW = 4
@@ -51,11 +51,7 @@ def make_ring(problem):
 def keep(memory, ring):
     """Keep the state at the section."""
     slot = ring.count[0] % _KEPT
-    for part in range(3):
-        for i in range(memory.start.shape[1]):
-            ring.states[slot, part, i] = memory.start[part, i]
-    for j in range(memory.senses.size):
-        ring.senses[slot, j] = memory.senses[j]
+    copy_motion(memory.start, memory.senses, ring.states[slot], ring.senses[slot])
     ring.count[0] += 1
 
 
@@ -63,18 +59,13 @@ def keep(memory, ring):
 def go_back(memory, ring, ago):
     """Go back to the state kept `ago` states before the last one, 0..LONGEST_RECURRENCE."""
     slot = (ring.count[0] - 1 - ago) % _KEPT
-    for part in range(3):
-        for i in range(memory.start.shape[1]):
-            memory.start[part, i] = ring.states[slot, part, i]
-    for j in range(memory.senses.size):
-        memory.senses[j] = ring.senses[slot, j]
+    copy_motion(ring.states[slot], ring.senses[slot], memory.start, memory.senses)
 
 
 @kernel
 def go_back_cycles(problem, memory, ring, cycles):
     """Go back by some periods of the load, or to the first state kept."""
-    states = 2 * cycles if problem.symmetric else cycles
-    go_back(memory, ring, min(states, ring.count[0] - 1))
+    go_back(memory, ring, min(2 * cycles // base_halves(problem), ring.count[0] - 1))
 
 
 @kernel
@@ -126,24 +117,26 @@ def long_recurrence(row, memory, ring, base):
 
 
 @kernel
-def distance_from_last(problem, memory, ring):
-    """Largest difference of the state in `memory.start` from the last one kept."""
-    slot = (ring.count[0] - 1) % _KEPT
+def _distance(memory, state):
+    """Largest difference of the displacements and velocities in `memory.start` from those of a state."""
     off = 0.0
     for part in range(2):
-        for i in range(problem.push.shape[0]):
-            off = max(off, abs(ring.states[slot, part, i] - memory.start[part, i]))
+        for i in range(state.shape[1]):
+            off = max(off, abs(state[part, i] - memory.start[part, i]))
     return off
+
+
+@kernel
+def distance_from_last(memory, ring):
+    """Largest difference of the state in `memory.start` from the last one kept."""
+    return _distance(memory, ring.states[(ring.count[0] - 1) % _KEPT])
 
 
 @kernel
 def put_orbit(memory, ring):
     """Keep the steady state in `memory.start`, and its counters."""
-    for part in range(3):
-        for i in range(memory.start.shape[1]):
-            ring.orbit[part, i] = memory.start[part, i]
+    copy_motion(memory.start, memory.senses, ring.orbit, ring.orbit_senses)
     for j in range(memory.senses.size):
-        ring.orbit_senses[j] = memory.senses[j]
         for part in range(memory.counts.shape[0]):
             ring.orbit_counts[part, j] = memory.counts[part, j]
 
@@ -151,18 +144,10 @@ def put_orbit(memory, ring):
 @kernel
 def take_orbit(memory, ring):
     """Go to the steady state that was kept, without its counters."""
-    for part in range(3):
-        for i in range(memory.start.shape[1]):
-            memory.start[part, i] = ring.orbit[part, i]
-    for j in range(memory.senses.size):
-        memory.senses[j] = ring.orbit_senses[j]
+    copy_motion(ring.orbit, ring.orbit_senses, memory.start, memory.senses)
 
 
 @kernel
-def distance_from_orbit(problem, memory, ring):
+def distance_from_orbit(memory, ring):
     """Largest difference of the state in `memory.start` from the steady state kept."""
-    off = 0.0
-    for part in range(2):
-        for i in range(problem.push.shape[0]):
-            off = max(off, abs(ring.orbit[part, i] - memory.start[part, i]))
-    return off
+    return _distance(memory, ring.orbit)

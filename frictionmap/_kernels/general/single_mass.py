@@ -12,9 +12,10 @@ from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, LEADING, filled, least, load, mask_above, most, store
 from .crossings import NONE, approach, slope_at, value_at
 from .follow import COUNT_ROWS, MOVED, NEAREST_STOP, STOPS, STUCK, TURNS
-from .orbits import LARGEST, radius_of_two
+from .orbits import LARGEST, MEASURED, radius_of_two
 from .problem import TERMS, WIDTH
 from .record import LEAST_SLIP, clear_record, include, mirror
+from .return_map import base_halves
 from .single_tables import (
     PLACE,
     PLACE_RATE,
@@ -36,9 +37,8 @@ _MOST_RETURNS = 12
 #: A new slide that is not certain to last for this share of an interval may be one of rounding errors.
 _CERTAIN = 1e-3
 
-#: Largest error of the state found, as in `steady.measure`; another step is taken unless it is so much less,
-#: or no longer decreases.
-_MEASURED, _SURELY = 1e-12, 0.02
+#: Another step is taken unless the error is so much less than MEASURED, or no longer decreases.
+_SURELY = 0.02
 
 _WATCHED = 0  # row of the scratch
 
@@ -392,7 +392,7 @@ def solve_single(problem, row, single, beta, memory, record):
     (found, cycles, multiplier) : whether it was found; periods followed; largest modulus of the multipliers
         over a period of the load
     """
-    base = 1 if problem.symmetric else 2
+    base = base_halves(problem)
     sign = 1.0 - 2.0 * (base % 2)
     chi = single.numbers[4]
     z = chi * memory.start[0, 0] - single.numbers[5]
@@ -416,7 +416,7 @@ def solve_single(problem, row, single, beta, memory, record):
         a, b, c, d = sign * state[2], sign * state[3], sign * state[4], sign * state[5]
         multiplier = radius_of_two(a, b, c, d)
         off = max(abs(off_z), abs(off_p)) / max(size, abs(z), abs(p))
-        enough = _MEASURED * min(1.0, abs(1.0 - multiplier))
+        enough = MEASURED * min(1.0, abs(1.0 - multiplier))
         if end == sense and (off <= _SURELY * enough or enough >= off >= 0.5 * last):
             _keep_motion(problem, base, beta, (z, p), sense, single, memory, record)
             return True, 0.5 * base * count, multiplier if base == 2 else multiplier * multiplier

@@ -29,6 +29,8 @@ _PER_INTERVAL = 3
 #: Rows of `Single.controls`: the velocities of the shared motions, then two for every interval.
 _COMMON_CONTROLS, _CONTROLS = 3, 2
 
+_UNKNOWN = -1
+
 #: Intervals of a period for which there is memory at most: a load of 200 harmonics has 600.
 _MOST_INTERVALS = 1024
 
@@ -36,10 +38,10 @@ _MOST_INTERVALS = 1024
 class Single(NamedTuple):
     """Tables of one r, and the memory of one motion."""
 
-    fits: np.ndarray  # (1,) int: whether the tables hold
+    fits: np.ndarray  # (1,) int: 1 if there are tables, 0 if not, _UNKNOWN before they are needed
     numbers: np.ndarray  # (7,) kappa, delta, eta, w^2/chi^2, chi, wall and its rate at the section
     series: np.ndarray  # (rows, WIDTH)
-    controls: np.ndarray  # (rows, WIDTH) control points of what is watched, see `fill_controls`
+    controls: np.ndarray  # (rows, WIDTH) control points of the watched quantity, see `fill_controls`
     bounds: np.ndarray  # (rows,) bounds on their error
     ends: np.ndarray  # (rows,) the shared motions at the end of an interval, then z and z' under each force
     state: np.ndarray  # (6,) z, z', and their derivatives by z and z' at the section
@@ -172,13 +174,25 @@ def _fill_wall(problem, row, single):
 
 
 @kernel
-def set_single(problem, row, single, base):
-    """Fill the tables of a row, for `base` half periods; `single.fits` says whether there is memory."""
-    intervals = base * row.intervals[0]
-    single.fits[0] = 0
-    if force_row(intervals) > single.series.shape[0] or single.series.shape[0] == _COMMON:
-        return
-    single.fits[0] = 1
+def forget_row(single):
+    """Forget the tables of a row."""
+    single.fits[0] = _UNKNOWN
+
+
+@kernel
+def fits_row(problem, row, single, base):
+    """Whether there are tables of a row, of `base` half periods; they are filled when first needed."""
+    if single.fits[0] == _UNKNOWN:
+        none = single.series.shape[0] == _COMMON
+        single.fits[0] = 0 if none or force_row(base * row.intervals[0]) > single.series.shape[0] else 1
+        if single.fits[0] == 1:
+            _fill(problem, row, single, base * row.intervals[0])
+    return single.fits[0] == 1
+
+
+@kernel
+def _fill(problem, row, single, intervals):
+    """Fill the tables of a row, of some intervals."""
     chi = problem.chi[0, 0]
     single.numbers[0], single.numbers[1] = row.stiffness[0], row.damping[0, 0]
     single.numbers[2], single.numbers[3] = row.mobility[0, 0], problem.squares[0] / (chi * chi)

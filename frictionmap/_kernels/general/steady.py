@@ -22,12 +22,13 @@ from .course import (
     window_stops,
 )
 from .follow import BEFORE, FOLLOWED, STUCK, follow
-from .orbits import AVERAGED, NO_REPEAT, REPEATS, Steady, largest_multiplier, newton
+from .orbits import AVERAGED, MEASURED, NO_REPEAT, REPEATS, Steady, largest_multiplier, newton
 from .pattern import begin, stop_exactly
 from .problem import SECTION, Row, Work, make_row, make_work, set_channels, set_row
 from .record import FORCES, NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
 from .return_map import (
     Return,
+    base_halves,
     go_round,
     make_return,
     put_state,
@@ -47,11 +48,9 @@ from .returns import (
 )
 from .series import factor_held
 from .single_mass import solve_single
-from .single_tables import Single, make_single, set_single
+from .single_tables import Single, fits_row, forget_row, make_single
 
-#: Largest error of a measured state, which is its distance from the one that it returns to, over the share
-#: of a disturbance that a return takes away; and measurements until then.
-_MEASURED = 1e-12
+#: Measurements until the error is below MEASURED.
 _MOST_REPEATED = 2
 
 #: Friction of a contact that is held, and attempts of Newton's method after which contacts are held.
@@ -207,7 +206,7 @@ def _find_unique(problem, row, friction, cycles, tolerance, work, memory, ring, 
     ----------
     problem, row, friction, cycles, tolerance, work, memory, ring, record : see `find`
     """
-    base = 1 if problem.symmetric else 2
+    base = base_halves(problem)
     spent = 0.0
     wait = 0
     pause = 0
@@ -259,7 +258,7 @@ def _find_from_start(problem, row, friction, cycles, tolerance, work, memory, ri
     ----------
     problem, row, friction, cycles, tolerance, work, memory, ring, record, course : see `find`
     """
-    base = 1 if problem.symmetric else 2
+    base = base_halves(problem)
     enough = enough_cycles(cycles)
     logged_from = 2 * int(min(enough, cycles) / 3.0)
     search = first_search()
@@ -351,13 +350,13 @@ def measure(problem, row, friction, halves, work, memory, record, what):
         record.active[0] = what
         go_round(problem, row, friction, both, work, memory, record, what != NOTHING)
         record.active[0] = NOTHING
-        most = _MEASURED
+        most = MEASURED
         if what != NOTHING:
             multiplier = largest_multiplier(problem, both, 0.0, work, memory)
             most *= min(1.0, abs(1.0 - multiplier))
         if return_distance(problem, row, memory) <= most or repeat == _MOST_REPEATED - 1:
             break
-        newton(problem, row, friction, halves, _MEASURED, work, memory, record)
+        newton(problem, row, friction, halves, MEASURED, work, memory, record)
     join_slips(record, both)
     if both % 2 == 1:
         mirror(record)
@@ -366,9 +365,9 @@ def measure(problem, row, friction, halves, work, memory, record, what):
 
 @kernel
 def begin_row(problem, i, tools):
-    """Fill the constants of r[i], and the tables of one mass where they apply."""
+    """Fill the constants of r[i]."""
     set_row(problem, i, tools.row)
-    set_single(problem, tools.row, tools.single, 1 if problem.symmetric else 2)
+    forget_row(tools.single)
 
 
 @kernel
@@ -387,13 +386,13 @@ def solve(problem, friction, cycles, tolerance, tools, what):
     Steady, half periods measured, multiplier
     """
     row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
-    if tools.single.fits[0] != 0 and friction.static[0] <= friction.kinetic[0]:
+    base = base_halves(problem)
+    if friction.static[0] <= friction.kinetic[0] and fits_row(problem, row, tools.single, base):
         solved, spent, multiplier = solve_single(
             problem, row, tools.single, friction.kinetic[0], memory, record
         )
         if solved:
-            halves = 1 if problem.symmetric else 2
-            return Steady(REPEATS, halves, spent), halves, multiplier
+            return Steady(REPEATS, base, spent), base, multiplier
     found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course)
     if found.status != REPEATS:
         return found, 0, math.nan

@@ -10,6 +10,7 @@ boundaries       boundaries over r: permanent sticking, no stops, one-way slidin
 partial          least friction at which one contact sticks while the others move
 maps             the cells of a map, on several threads
 dataset          maps and boundaries as labelled variables
+recorded         one steady state and the series of its steps, from the kernels
 steps            one steady state as the series of its steps
 limit_kinds      what ends the motion without stops
 cycle            harmonics, works and phases of a steady state

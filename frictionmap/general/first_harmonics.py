@@ -6,15 +6,13 @@ from .. import regimes
 from .._kernels.general.follow import MOVED
 from .._kernels.general.samples import fill_phasors
 from .._kernels.general.series import Friction
-from .._kernels.general.steady import REPEATS, one_steady_state
+from .._kernels.general.steady import REPEATS
 from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines, rest_states
 from .held import held_forces, least_static_friction, stick_scales
-from .problem import ModalSystem, general_of, problem_of
-
-#: Steps that are kept at first; four times as many where they do not suffice.
-_FIRST = 64
+from .problem import general_of, problem_of
+from .recorded import recorded_state
 
 
 def steady_phasors(system: System, r: np.ndarray, beta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -59,27 +57,17 @@ def _follow(
     problem, modal = problem_of(system, at)
     kinetic, _ = friction_lines(system, np.ones(1))
     starts, solver = rest_states(system, modal, at), Solver()
-    most = _FIRST
+    no_masses = np.empty((0, modal.squares.size))  # their displacements are not recorded: modes are enough
     for k in chosen:
         force = kinetic @ np.array([beta[k], 1.0])
-        while True:
-            state, _, _, counts, record, h = one_steady_state(
-                problem, index[k], Friction(force, force), starts[index[k]], float(solver.cycles),
-                solver.tolerance, _no_masses(modal), most,
-            )  # fmt: skip
-            count = int(record.count[0])
-            if count <= most:
-                break
-            most = 4 * count
+        state, _, _, counts, record, h, steps = recorded_state(
+            problem, index[k], Friction(force, force), starts[index[k]], (solver.cycles, solver.tolerance),
+            no_masses,
+        )  # fmt: skip
         if state.status != REPEATS:
             continue
         parts = np.empty((2, modal.squares.size))
-        fill_phasors(record.steps, record.patterns, count, h, parts)
+        fill_phasors(record.steps, record.patterns, steps, h, parts)
         found[0][k] = modal.phi @ (parts[0] + 1j * parts[1])
         moves = counts[MOVED].any()
         found[1][k] = regimes.STICK_SLIP if moves else regimes.PERMANENT_STICKING
-
-
-def _no_masses(modal: ModalSystem) -> np.ndarray:
-    """No displacements of masses are recorded: their modes are enough."""
-    return np.empty((0, modal.squares.size))

@@ -9,14 +9,15 @@ from .._kernels.general.follow import MOVED, NEAREST_STOP, SLIPS, STOPS, STUCK
 from .._kernels.general.problem import TURN, Problem
 from .._kernels.general.samples import fill_samples
 from .._kernels.general.series import Friction
-from .._kernels.general.steady import AVERAGED, REPEATS, one_steady_state
+from .._kernels.general.steady import AVERAGED, REPEATS
+from .recorded import recorded_state
 
 _TOLERANCE = 1e-12
 
 _ONE = np.ones((1, 1))
 _NONE = np.zeros((1, 1))
 
-#: Steps beyond those between events that are kept at first; four times as many where they do not suffice.
+#: Steps beyond those between events that are kept at first.
 _EVENTS = 64
 
 
@@ -69,17 +70,12 @@ def steady_motion(
     state = np.array([[start[0] - offset], [start[1]]])
     forces = Friction(np.array([friction]), np.array([mu * friction]))
     most = int(4.0 * math.pi * problem.rates[0] / TURN) + _EVENTS
-    while True:
-        found, halves, _, counts, record, h = one_steady_state(
-            problem, 0, forces, state, float(cycles), _TOLERANCE, np.empty((0, 1)), most
-        )
-        count = int(record.count[0])
-        if count <= most:
-            break
-        most = 4 * count
+    found, halves, _, counts, record, h, steps = recorded_state(
+        problem, 0, forces, state, (cycles, _TOLERANCE), np.empty((0, 1)), most
+    )
     period = halves // 2
     places = np.empty(phases.size)
-    fill_samples(record.steps, record.patterns, count, 0, h, period, phases, places)
+    fill_samples(record.steps, record.patterns, steps, 0, h, period, phases, places)
     counted = found.halves // 2 if found.status == AVERAGED else period
     moves = counts[MOVED, 0] != 0.0
     nearest = counts[NEAREST_STOP, 0]

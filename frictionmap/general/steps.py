@@ -20,7 +20,7 @@ from .._kernels.general.follow import (
 from .._kernels.general.problem import LONG, SECTION, Problem
 from .._kernels.general.record import LEAST_SLIP
 from .._kernels.general.series import Friction
-from .._kernels.general.steady import AVERAGED, REPEATS, one_steady_state
+from .._kernels.general.steady import AVERAGED, REPEATS
 from .._kernels.long_periods import WINDOW
 from ..errors import NoSteadyState
 from ..model.settings import Solver
@@ -28,8 +28,9 @@ from ..model.system import System
 from .boundaries import friction_lines, rest_states, sliding_states
 from .held import least_static_friction
 from .problem import ModalSystem, problem_of, static_offset
+from .recorded import recorded_state
 
-#: Steps that are kept at first; four times as many where they do not suffice.
+#: Steps for which there is room at first.
 _FIRST = 512
 
 #: Gauss nodes per step for integrals with harmonics.
@@ -182,21 +183,15 @@ def cell_steps(
     start = rest_states(system, modal, problem.r[i : i + 1])[0]
     if solver.start == "moving":
         start = sliding_states(problem, problem.r, MOVING_START)[i]
-    most = _FIRST
     phi = np.ascontiguousarray(modal.phi)
-    while True:
-        found, halves, multiplier, counts, record, h = one_steady_state(
-            problem, i, friction, start, float(solver.cycles), solver.tolerance, phi, most
+    found, halves, multiplier, counts, record, h, count = recorded_state(
+        problem, i, friction, start, (solver.cycles, solver.tolerance), phi, _FIRST
+    )
+    if found.status not in (REPEATS, AVERAGED):
+        raise NoSteadyState(
+            f"r = {problem.r[i]:g}, beta = {beta:g}, mu = {mu:g}: no steady state was found in "
+            f"{found.cycles:.0f} periods; raise solver.cycles"
         )
-        if found.status not in (REPEATS, AVERAGED):
-            raise NoSteadyState(
-                f"r = {problem.r[i]:g}, beta = {beta:g}, mu = {mu:g}: no steady state was found in "
-                f"{found.cycles:.0f} periods; raise solver.cycles"
-            )
-        count = int(record.count[0])
-        if count <= most:
-            break
-        most = 4 * count
     if (friction.static == friction.kinetic).all() and _rests(system, problem, i, friction):
         counts[[STOPS, TURNS, SLIPS, REVERSALS, MOVED]] = 0.0  # contacts at their limit, by rounding
     span, averaged = halves // 2, halves // 2

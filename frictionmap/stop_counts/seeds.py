@@ -81,7 +81,7 @@ def seeds_of_map(source: Source, window: Window, r: np.ndarray, count: int) -> S
 
 
 def _of_block(source: Source, window: Window, r: np.ndarray, count: int) -> Seeds:
-    """The same for frequencies of one block of the map."""
+    """Brackets along beta in one block of frequencies; see `seeds_of_map`."""
     mu = np.array([source.mu])
     curves = find_curves(source.system, r, mu)
     beta = _friction_of(window, curves.beta_lim[0], curves.beta_stick[0], count)

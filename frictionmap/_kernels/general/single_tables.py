@@ -87,7 +87,7 @@ def make_single(problem, masses):
     intervals = most_intervals(problem, _MOST_INTERVALS) if is_single(problem, masses) else 0
     rows = _COMMON_CONTROLS + _CONTROLS * intervals
     return Single(
-        np.zeros(1, np.int64), np.zeros(7), np.zeros((_COMMON + _PER_INTERVAL * intervals, WIDTH)),
+        np.full(1, _UNKNOWN), np.zeros(7), np.zeros((_COMMON + _PER_INTERVAL * intervals, WIDTH)),
         np.zeros((rows, WIDTH)), np.zeros(rows), np.zeros(rows), np.zeros(6), np.zeros((1, WIDTH)),
     )  # fmt: skip
 

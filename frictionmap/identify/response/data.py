@@ -8,6 +8,7 @@ import numpy as np
 from ... import checks
 from ...errors import InputError
 from ...model.system import System
+from .. import spring
 from .model import Rows, Samples
 
 #: Initial errors of the data, until the residuals give better ones: radian, and relative.
@@ -15,9 +16,6 @@ _PHASE, _AMPLITUDE = np.radians(1.0), 0.02
 
 #: Tolerance of lags beyond their range, in their errors, and in degrees if these are unknown.
 _ERRORS, _DEGREES = 5.0, 5.0
-
-#: Further tolerance for a contact with a spring [deg]: a mass that it holds leads a base with a damper.
-_LEAD_OF_SPRING = 20.0
 
 #: Values by mass, or those of the only mass.
 Values = Sequence[float] | np.ndarray | Mapping[int, Sequence[float] | np.ndarray]
@@ -135,7 +133,7 @@ def check_lag(
     if not _drives(system, mass):
         return
     slack = np.full(lag.size, _DEGREES) if sigma is None else _ERRORS * sigma
-    slack = slack + _LEAD_OF_SPRING if elastic else slack
+    slack = slack + spring.LEAD if elastic else slack
     wrong = np.flatnonzero((lag < -slack) | (lag > 180.0 + slack))
     if wrong.size:
         raise InputError(

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...errors import InputError
+from .. import spring
 from ..signals.phasors import Phasors, amplitude_and_lag, harmonics_of, ratio_error
 from ..signals.plateaus import unclipped_mass
 from ..signals.samples import checked_record, unclipped, within
@@ -16,9 +17,8 @@ from .fit import RecordFit, Samples, fit_record, places_at, samples_of
 #: Errors of the base's first harmonic so many times those of samples at all phases.
 _WORSE = 4.0
 
-#: A lead of so many degrees may come from higher harmonics of the base; and from a damper between the base
-#: and a mass that a spring in the contact holds.
-_LEAD, _LEAD_OF_SPRING = 1.0, 20.0
+#: A lead of so many degrees may come from higher harmonics of the base.
+_LEAD = 1.0
 
 #: Noise brings a motion to the ends of the range that is nearer to them than so many standard deviations.
 _MARGIN = 3.0
@@ -54,7 +54,7 @@ def measured_record(
     whole = unclipped(channels[:, 0])
     t, data = times[whole], channels[whole]
     good = unclipped_mass(t, data[:, 1])
-    phasors, tamed = _checked_phasors(t, data, robust, _LEAD_OF_SPRING if elastic else _LEAD)
+    phasors, tamed = _checked_phasors(t, data, robust, spring.LEAD if elastic else _LEAD)
     samples = samples_of(phasors, t, data[:, 1], tamed[:, 1], good, robust)
     return MeasuredRecord(times, t, data, ~good, _limits(data[:, 1], good), good, phasors, samples)
 

@@ -73,7 +73,8 @@ def least_no_stop(system: System, band: Band, mu: float) -> tuple[float, float]:
     bracket = brackets_of(r, -no_stop_limit(system, r, mu))
     low = bracket.at_m >= 2.0 * bracket.at_m.max()  # values are negative: other dips are far above
     bracket = type(bracket)(*(array[low] for array in bracket))
-    places, values = sharpened(lambda _, x: -no_stop_limit(system, x, mu), bracket)
+    together = np.zeros(bracket.m.size, int)  # the lowest of all is wanted
+    places, values = sharpened(lambda _, x: -no_stop_limit(system, x, mu), bracket, together)
     best = int(np.argmax(values))
     return float(-values[best]), float(places[best])
 

@@ -107,9 +107,9 @@ class Responses:
 
     def on_grid(self, r: np.ndarray, beta: np.ndarray) -> Values:
         """Values on a grid, (n_r, n_beta); r > 0 and beta >= 0 increase."""
-        axes = {"mu": np.array([self.mu]), "r": r, "beta": beta}
         if self.system.general is not None:
-            return _largest([self._general(axes, solver) for solver in self._solvers])
+            return self._of_general({"r": r, "beta": beta})
+        axes = {"mu": np.array([self.mu]), "r": r, "beta": beta}
         parts = []
         for solver in self._solvers:
             cells, out = compute(
@@ -163,15 +163,15 @@ class Responses:
         return Values(size, found.regime[0], stops, found.status[0])
 
     def _general_at(self, r: np.ndarray, beta: np.ndarray) -> Values:
-        """Points of one beta at a time, as rows of a grid."""
-        found = Values(*(np.empty(r.size, kind) for kind in (float, np.int8, float, np.int8)))
-        for level in np.unique(beta):
-            which = np.flatnonzero(beta == level)
-            places, back = np.unique(r[which], return_inverse=True)
-            column = self.on_grid(places, np.array([level]))
-            for array, values in zip(found, column, strict=True):
-                array[which] = values[back, 0]
-        return found
+        """Points as rows of a grid with a beta of their own."""
+        points, back = np.unique(np.stack((r, beta)), axis=1, return_inverse=True)
+        found = self._of_general({"r": points[0], "beta": points[1, :, np.newaxis]})
+        return Values(*(values[back.ravel(), 0] for values in found))
+
+    def _of_general(self, axes: dict[str, np.ndarray]) -> Values:
+        """Values on a grid, those of the worst start."""
+        axes = axes | {"mu": np.array([self.mu])}
+        return _largest([self._general(axes, solver) for solver in self._solvers])
 
 
 def _largest(parts: list[Values]) -> Values:

@@ -136,14 +136,20 @@ def belt_limit(system: System, r: np.ndarray) -> np.ndarray:
     return largest(np.array(orders, dtype=float), sign * np.stack(speeds, axis=-1))
 
 
+def _one_solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Solve for one r; inf where the matrix is singular."""
+    try:
+        return np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        return np.full_like(right, np.inf)
+
+
 def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Solve for every r; inf where the matrix is singular to rounding."""
-    found = np.empty_like(right)
-    for i in range(len(matrix)):
-        try:
-            found[i] = np.linalg.solve(matrix[i], right[i])
-        except np.linalg.LinAlgError:
-            found[i] = np.inf
+    try:
+        found = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
+    except np.linalg.LinAlgError:  # one of them is singular
+        found = np.stack([_one_solved(*one) for one in zip(matrix, right, strict=True)])
     size = np.abs(matrix).max(axis=(1, 2))
     with np.errstate(invalid="ignore"):
         load = np.abs(right).max(axis=1)

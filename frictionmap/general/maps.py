@@ -60,30 +60,31 @@ def solve_cells(
     Parameters
     ----------
     system : System
-    axes : mu, r and beta
+    axes : mu, r and beta (n_beta,), or beta (n_r, n_beta), own ones of every r
     beta_stick : (n_mu, n_r) boundary to permanent sticking
     solver : Solver
     threads : number of threads
     progress, watch : as in `sweep`
     masses : whether displacements of the masses are wanted, after those in the contacts
     """
-    mu, r, beta = axes["mu"], axes["r"], axes["beta"]
+    mu, r = axes["mu"], axes["r"]
+    beta = np.tile(axes["beta"], (r.size, 1)) if axes["beta"].ndim == 1 else axes["beta"]
+    many = beta.shape[1]
     problem, modal = problem_of(system, r)
     general = general_of(system)
     kinetic, static = friction_lines(system, mu)
     unique = (static == kinetic).all(axis=(1, 2)) & (solver.skip == "exact")
-    stuck_from = np.where(
-        unique[:, np.newaxis], np.searchsorted(beta, beta_stick), beta.size
-    )  # fmt: skip
+    sticks_from = [np.searchsorted(beta[i], beta_stick[:, i]) for i in range(r.size)]
+    stuck_from = np.where(unique[:, np.newaxis], np.stack(sticks_from, axis=1), many)
     starts = rest_states(system, modal, r)
     if solver.start == "moving":
         starts = sliding_states(problem, r, MOVING_START)
     grid = Grid(beta, kinetic, static, stuck_from, starts, float(solver.cycles), solver.tolerance)
     count = system.n if masses else 0
-    found = allocate((mu.size, r.size, beta.size), general.count, count)
+    found = allocate((mu.size, r.size, many), general.count, count)
     outputs = np.ascontiguousarray(modal.phi) if masses else np.empty((0, modal.phi.shape[1]))
     cancel = np.zeros(1, np.uint8)
-    rows = range(0, mu.size * r.size, max(1, _IN_A_JOB // max(beta.size, 1)))
+    rows = range(0, mu.size * r.size, max(1, _IN_A_JOB // max(many, 1)))
     jobs: list[Job] = [
         (fill_rows, (row, min(row + rows.step, rows.stop), problem, grid, found, outputs, cancel))
         for row in rows
@@ -100,7 +101,7 @@ def solve_cells(
         cancel[0] = 1  # the kernel checks it at every cell
         raise
     for at_zero in np.flatnonzero(r == 0.0):
-        _put_r_zero(found, int(at_zero), beta, beta_stick)
+        _put_r_zero(found, int(at_zero), beta[at_zero], beta_stick)
     _put_stuck(system, r, found)
     _put_offset(system, found, count)
     return found

@@ -35,7 +35,7 @@ from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, from_rest, make_too
 class Grid(NamedTuple):
     """Friction of a grid: kinetic friction of contact j is kinetic[j, 0] beta + kinetic[j, 1], ..."""
 
-    beta: np.ndarray  # (n_beta,)
+    beta: np.ndarray  # (n_r, n_beta) increasing; those of a map are the same at every r
     kinetic: np.ndarray  # (N, 2)
     static: np.ndarray  # (n_mu, N, 2)
     stuck_from: np.ndarray  # (n_mu, n_r) index of the first cell that is proved to stick permanently
@@ -199,12 +199,12 @@ def _store_stuck(out, m, i, b):
 
 
 @kernel
-def _set_friction(grid, m, b, friction):
+def _set_friction(grid, m, i, b, friction):
     """Friction of every contact in a cell; whether it is the same, static and kinetic."""
     unique = True
     for j in range(friction.kinetic.size):
-        friction.kinetic[j] = grid.kinetic[j, 0] * grid.beta[b] + grid.kinetic[j, 1]
-        friction.static[j] = grid.static[m, j, 0] * grid.beta[b] + grid.static[m, j, 1]
+        friction.kinetic[j] = grid.kinetic[j, 0] * grid.beta[i, b] + grid.kinetic[j, 1]
+        friction.static[j] = grid.static[m, j, 0] * grid.beta[i, b] + grid.static[m, j, 1]
         unique = unique and friction.static[j] <= friction.kinetic[j]
     return unique
 
@@ -265,7 +265,7 @@ def _solve_cell(problem, grid, i, b, unique, friction, tools, trail):
     Steady, half periods measured, multiplier
     """
     if unique and trail.count[0] > 0:
-        _begin_ahead(grid.beta[b], trail, tools.memory)
+        _begin_ahead(grid.beta[i, b], trail, tools.memory)
         found, halves, multiplier = solve(problem, friction, grid.cycles, grid.tolerance, tools, RANGES)
         if found.status == REPEATS:
             return found, halves, multiplier
@@ -291,16 +291,16 @@ def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
             continue
         begin_row(problem, i, tools)
         trail.count[0] = 0
-        for b in range(grid.beta.size):
+        for b in range(grid.beta.shape[1]):
             if cancel[0] != 0:
                 return
             if b >= grid.stuck_from[m, i]:
                 _store_stuck(out, m, i, b)
                 continue
-            unique = _set_friction(grid, m, b, friction)
+            unique = _set_friction(grid, m, i, b, friction)
             found, halves, multiplier = _solve_cell(problem, grid, i, b, unique, friction, tools, trail)
             if found.status == REPEATS:
-                _remember(tools.memory, grid.beta[b], trail)
+                _remember(tools.memory, grid.beta[i, b], trail)
             else:
                 trail.count[0] = 0
             _store(problem, out, m, i, b, found, (halves, multiplier), tools.memory.counts, tools.record)

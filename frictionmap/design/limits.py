@@ -52,7 +52,7 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
             "cannot find friction without stops with contact_stiffness: a spring in the contact has no such "
             "limit; use question stuck"
         )
-    return find_boundaries(system, r, np.array([mu]), watch=current_watch()).beta_lim[0]
+    return find_boundaries(system, r, np.array([mu]), watch=current_watch(), intervals=1).beta_lim[0]
 
 
 def has_no_stop_limit(system: System) -> bool:

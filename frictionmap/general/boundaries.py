@@ -13,7 +13,7 @@ from ..model.system import System
 from .held import belt_limit, least_static_friction, stick_scales
 from .problem import ModalSystem, general_of, problem_of
 
-#: Intervals without stops that are looked for.
+#: Intervals without stops that are looked for in maps.
 INTERVALS = 4
 
 #: Where the boundary to sticking is infinite: beta up to which stops are looked for, over the sum of all
@@ -30,7 +30,7 @@ class Boundaries:
     beta_stick: np.ndarray  # (n_mu, n_r) scale from which all contacts stick permanently
     beta_stick_contact: np.ndarray  # (n_mu, n_r, N)
     beta_lim: np.ndarray  # (n_mu, n_r) end of the first interval without stops
-    begins: np.ndarray  # (n_mu, n_r, INTERVALS)
+    begins: np.ndarray  # (n_mu, n_r, intervals)
     ends: np.ndarray
     wall_velocity_lim: np.ndarray  # (n_r,) NaN without one contact on a belt
 
@@ -80,18 +80,20 @@ def sliding_states(problem: Problem, r: np.ndarray, size: float) -> np.ndarray:
 
 
 def find_boundaries(
-    system: System, r: np.ndarray, mu: np.ndarray, threads: int | None = None, watch: Watch | None = None
-) -> Boundaries:
+    system: System, r: np.ndarray, mu: np.ndarray, threads: int | None = None, watch: Watch | None = None,
+    intervals: int = INTERVALS,
+) -> Boundaries:  # fmt: skip
     """Find the boundaries over r; the intervals without stops take the longest.
 
     threads : number of threads; default: all processors of the process
     watch : called repeatedly; an exception raised by it ends the search
+    intervals : number of intervals without stops that are looked for, from beta = 0 up
     """
     general = general_of(system)
     needed = least_static_friction(system, r)
     by_contact = stick_scales(general, needed, mu)
     stick = by_contact.max(axis=2)
-    shape = (mu.size, r.size, INTERVALS)
+    shape = (mu.size, r.size, intervals)
     begins, ends = np.full(shape, np.nan), np.full(shape, np.nan)
     if not general.elastic.any():
         loads = sum(float(np.abs(vector).max()) for vector in general.forces.values())

@@ -5,6 +5,7 @@ import pytest
 from general_systems import KINDS, chain, phasors, reference
 
 import frictionmap as fm
+from frictionmap.general.boundaries import find_boundaries
 
 #: r, ends of the rays (1, 0.3) and (1, 1) without stops, and with mu = 1.5; two masses, wall 1 and 1-2.
 RAYS = [
@@ -107,6 +108,8 @@ def test_reentrant_intervals_to_nine_digits():
             check_end(system, row["r"], begins[k], one["beta_from"], 1.0)
             check_end(system, row["r"], ends[k], one["beta_to"], -1.0)
         assert np.isnan(begins[len(row["no_stop_intervals"]) :]).all()
+        only = find_boundaries(system, np.array([row["r"]]), np.ones(1), intervals=1)
+        assert (only.begins.item(), only.ends.item()) == (begins[0], ends[0])  # the search ends there
         assert ds.beta_stick.item() == pytest.approx(row["beta_stick"], rel=1e-12)
 
 

@@ -131,6 +131,43 @@ def _end(problem, i, search, m, inside, outside, friction, tools, kept):
 
 
 @kernel
+def _ends_within(i, search, m, kept, last):
+    """How many intervals without stops end between the nodes 0..last."""
+    count = 0
+    margin = _margin(search, m, _node(search.top[i], 0), kept, 0)
+    for k in range(1, last + 1):
+        now = _margin(search, m, _node(search.top[i], k), kept, k)
+        if margin > 0.0 and now <= 0.0:
+            count += 1
+        margin = now
+    return count
+
+
+@kernel
+def _try_nodes(problem, i, search, wanted, friction, tools, kept):
+    """Try the nodes until the wanted number of intervals has ended for every mu; return the last one tried.
+
+    Parameters
+    ----------
+    problem, i, search : Problem, index of r, Search
+    wanted : number of intervals
+    friction, tools, kept : see `_try`
+    """
+    near = False
+    for k in range(NODES + 1):
+        if k == NODES and search.sticks[i]:
+            kept[k, 0] = 1.0
+        else:
+            near = _try(problem, i, search, _node(search.top[i], k), near, friction, tools, kept, k)
+        fewest = wanted
+        for m in range(search.static.shape[0]):
+            fewest = min(fewest, _ends_within(i, search, m, kept, k))
+        if fewest == wanted:
+            return k
+    return NODES
+
+
+@kernel
 def _fill(first, last, problem, search, begins, ends, tools, friction, kept, cancel):
     """Fill the intervals; see `fill_no_stop`.
 
@@ -147,19 +184,13 @@ def _fill(first, last, problem, search, begins, ends, tools, friction, kept, can
         if problem.r[i] == 0.0:
             continue
         begin_row(problem, i, tools)
-        near = False
-        for k in range(NODES + 1):
-            beta = _node(search.top[i], k)
-            if k == NODES and search.sticks[i]:
-                kept[k, 0] = 1.0
-            else:
-                near = _try(problem, i, search, beta, near, friction, tools, kept, k)
+        last = _try_nodes(problem, i, search, begins.shape[2], friction, tools, kept)
         for m in range(search.static.shape[0]):
             count = 0
             margin = _margin(search, m, _node(search.top[i], 0), kept, 0)
             if margin > 0.0:
                 begins[m, i, 0] = 0.0
-            for k in range(1, NODES + 1):
+            for k in range(1, last + 1):
                 before, here = _node(search.top[i], k - 1), _node(search.top[i], k)
                 now = _margin(search, m, here, kept, k)
                 if margin > 0.0 and now <= 0.0 and count < begins.shape[2]:

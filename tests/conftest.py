@@ -19,9 +19,11 @@ os.environ.setdefault("MPLBACKEND", "agg")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-#: Files that take a minute or so, first: a worker that begins one of them last works on alone.
+#: Files that take a minute or so, first: a worker that begins one of them last works on alone.  The first two
+#: need different kernels in their first minute, so that two workers do not compile the same ones.
 LONGEST = (
-    "test_quick_benchmarks.py", "test_stores.py", "test_explore_page.py", "test_fuzz.py",
+    "test_quick_benchmarks.py", "test_contact_stiffness.py", "test_stores.py", "test_explore_goals_page.py",
+    "test_explore_page.py", "test_fuzz.py", "test_explore_contacts_page.py", "test_explore_alive.py",
     "test_interrupts.py", "test_stores_cut.py",
 )  # fmt: skip
 

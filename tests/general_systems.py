@@ -64,7 +64,7 @@ class Solved:
         belt = np.asarray(further.get("belt", zero), dtype=float)
         chi = w.T @ phi
         fastest = np.sqrt(np.linalg.eigvalsh(np.diag(squares) + chi.T @ np.diag(spring) @ chi)[-1])
-        rate = max((fastest + np.linalg.norm(c, 2)) / r, max(orders))
+        rate = max((fastest + np.linalg.norm(c, 2)) / r, float(max(orders)))
         odd = all(q % 2 for q in (*loads, *([1] if walls.any() else [])))
         even = all(q % 2 == 0 for q in normal)
         problem = Problem(

@@ -27,9 +27,10 @@ _ROUNDS = 3
 #: Questions of the quick form.
 _QUICK_QUESTIONS = ("two masses: least peak", "two masses, elastic contact: least peak", "two masses: margin")
 
-#: Frequencies and friction ratios of the maps that look for better answers; random systems.
+#: Frequencies and friction ratios of the maps that look for better answers; random systems, of which the
+#: quick form leaves out the first: three masses, for which the answer takes longer than for all others.
 GRID, QUICK_GRID = (1500, 150), (150, 30)
-RANDOM, QUICK_RANDOM = 50, 2
+RANDOM, QUICK_RANDOM = range(50), range(1, 4)
 
 #: Lowest columns of a map that are compared, how many of their peaks, and how often these are refined.
 _LOWEST, _PEAKS, _ZOOMS = 3, 4, 4
@@ -118,9 +119,9 @@ def better_in_a_map(quick: bool) -> dict:
     """Whether a map finds a better answer than the least peak, for random systems."""
     random, seconds, gains, kinds = np.random.default_rng(2026), [], [], []
     refused = 0
-    counts = QUICK_GRID if quick else GRID
-    for _ in range(QUICK_RANDOM if quick else RANDOM):
-        system, band, mass = random_problem(random)
+    counts, chosen = (QUICK_GRID, QUICK_RANDOM) if quick else (GRID, RANDOM)
+    problems = [random_problem(random) for _ in range(chosen.stop)]
+    for system, band, mass in problems[chosen.start :]:
         try:
             taken, ds = timed(lambda s=system, b=band, m=mass: fm.design.least_peak(s, b, mass=m, threads=1))
         except (fm.InputError, fm.NoSteadyState):
@@ -171,15 +172,15 @@ def _zoomed(system: fm.System, r: np.ndarray, beta: float, mass: int, column: np
     return largest
 
 
-#: Systems whose borders are found: window in r and beta, and that of the quick form.
+#: Systems whose borders are found: window in r and beta, and the frequencies of the quick form.
 _BORDERS = {
-    "one mass, fixed wall": (fm.System(), (0.06, 1.3), (1e-3, 1.3), (0.3, 0.5)),
+    "one mass, fixed wall": (fm.System(), (0.06, 1.3), (1e-3, 1.3), (0.32, 0.36)),
     "one mass, joined base-wall": (
-        fm.System(contact="joined-base-wall"), (0.06, 2.5), (1e-3, 4.0), (0.2, 0.5),
+        fm.System(contact="joined-base-wall"), (0.06, 2.5), (1e-3, 4.0), (0.32, 0.36),
     ),
     "two masses": (
         fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.02), (0.12, 2.5), (1e-3, 2.0),
-        (0.3, 0.5),
+        None,
     ),
 }  # fmt: skip
 
@@ -189,6 +190,8 @@ def borders(quick: bool) -> tuple[dict, dict[str, xr.Dataset]]:
     found, curves = {}, {}
     for name, (system, wide, beta, narrow) in _BORDERS.items():
         r = narrow if quick else wide
+        if r is None:
+            continue
         taken, ds = timed(lambda s=system, x=r, y=beta: fm.borders(s, x, y))
         curves[name] = ds
         right, points = _counts_beside(system, ds)

@@ -1,14 +1,15 @@
 """Averages of general systems: those of a motion that repeats are what one period of it has."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from kernels import callable_kernel
 
 import frictionmap as fm
-from frictionmap._kernels.general import course, record, steady
+from benchmarks.measures.own_entry import own_entry
+from frictionmap._kernels.compiler.packed import packed
+from frictionmap._kernels.general import record, steady
+from frictionmap._kernels.general.course import begin_course, follow_cycle, set_window, take_window
 from frictionmap._kernels.general.follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
 from frictionmap._kernels.general.problem import set_row
 from frictionmap._kernels.general.series import Friction
@@ -38,6 +39,40 @@ def counted(counts, kept, halves, elastic):
 ROWS = {"stops": STOPS, "turns": TURNS, "stuck": STUCK, "slips": SLIPS, "reversals": REVERSALS}
 
 
+# Arguments are packed as in maps: of other types, all kernels would be compiled once more.
+
+
+@own_entry
+def settle(problem, friction, start, tools):
+    """Find the steady state; the row of the problem is filled."""
+    problem, friction, tools = packed(problem), packed(friction), packed(tools)
+    row, work, memory, kept = tools.row, tools.work, tools.memory, tools.record
+    set_row(problem, 0, row)
+    steady.from_rest(problem, row, friction, start, work, memory, kept)
+    return steady.find(problem, row, friction, 2000.0, 1e-12, work, memory, tools.ring, kept, tools.course)
+
+
+@own_entry
+def measure(problem, friction, halves, tools):
+    """Follow one period of the motion into the counters and the record."""
+    problem, friction, tools = packed(problem), packed(friction), packed(tools)
+    steady.measure(
+        problem, tools.row, friction, halves, tools.work, tools.memory, tools.record, record.RANGES
+    )
+
+
+@own_entry
+def average(problem, friction, periods, tools):
+    """Follow twice as many periods again, and average over the window; return its half periods."""
+    problem, friction, tools = packed(problem), packed(friction), packed(tools)
+    work, memory, kept, course = tools.work, tools.memory, tools.record, tools.course
+    begin_course(periods, memory, kept, course)
+    for cycle in range(periods, 3 * periods):
+        follow_cycle(problem, tools.row, friction, cycle, work, memory, tools.ring, kept, course)
+    set_window(3 * periods, course)
+    return take_window(course, memory.counts, kept)
+
+
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_averages_of_a_periodic_motion(name):
     system = fm.System(
@@ -47,32 +82,17 @@ def test_averages_of_a_periodic_motion(name):
     kinetic, static = friction_lines(system, np.array([1.0]))
     friction = Friction(kinetic @ [0.3, 1.0], static[0] @ [0.3, 1.0])
     tools = steady.make_tools(problem, np.ascontiguousarray(modal.phi), 0)
-    row, work, memory, ring, kept = tools.row, tools.work, tools.memory, tools.ring, tools.record
-    call = SimpleNamespace(
-        **{
-            one.__name__: callable_kernel(one)
-            for one in (
-                set_row, steady.from_rest, steady.find, steady.measure, course.begin_course,
-                course.follow_cycle, course.set_window, course.take_window,
-            )
-        }
-    )  # fmt: skip
-    call.set_row(problem, 0, row)
+    memory, kept = tools.memory, tools.record
     start = rest_states(system, modal, np.array([0.45]))[0]
-    call.from_rest(problem, row, friction, start, work, memory, kept)
-    found = call.find(problem, row, friction, 2000.0, 1e-12, work, memory, ring, kept, tools.course)
+    found = settle(problem, friction, start, tools)
     assert found.status == steady.REPEATS
     state, senses = memory.start.copy(), memory.senses.copy()
     whole = found.halves if found.halves % 2 == 0 else 2 * found.halves
-    call.measure(problem, row, friction, whole, work, memory, kept, record.RANGES)
+    measure(problem, friction, whole, tools)
     wanted = counted(memory.counts, kept, whole, problem.spring > 0.0)
     memory.start[:], memory.senses[:] = state, senses
     periods = whole // 2
-    call.begin_course(periods, memory, kept, tools.course)
-    for cycle in range(periods, 3 * periods):
-        call.follow_cycle(problem, row, friction, cycle, work, memory, ring, kept, tools.course)
-    call.set_window(3 * periods, tools.course)
-    halves = call.take_window(tools.course, memory.counts, kept)
+    halves = average(problem, friction, periods, tools)
     assert halves == 4 * periods
     averaged = counted(memory.counts, kept, halves, problem.spring > 0.0)
     assert sum(wanted["stops"]) + sum(wanted["slips"]) >= 2.0

@@ -9,6 +9,7 @@ from outputs import OF_ONE_CONTACT
 import frictionmap as fm
 from benchmarks.measures.own_entry import own_entry
 from frictionmap import regimes
+from frictionmap._kernels.compiler.packed import packed
 from frictionmap._kernels.engine.march import steady_state
 from frictionmap._kernels.engine.motion import at_frequency, contact_at, forget_neighbour, start
 from frictionmap.steady.cells import Cells, limits
@@ -45,14 +46,23 @@ def random_cell(rng, k):
 
 
 @own_entry
-def _followed(system, beta, mu, limits, moving):
-    """(regime, scan steps taken) of the motion in an open cell at the only frequency."""
-    motion = at_frequency(system, 0)
+def _with_motion(system, motion, beta, mu, limits, moving):
+    """The same with the arrays of a motion, which the caller keeps.
+
+    Arguments are packed as in maps: of other types, all kernels would be compiled once more.
+    """
+    system, motion = packed(system), packed(motion)
     forget_neighbour(motion)
     contact = contact_at(system, 0, 0, beta, mu)
     at = start(motion, system, 0, contact, moving)
     found = steady_state(motion, contact, at, moving, limits, np.zeros(1, dtype=np.uint8))
     return found.regime, limits.steps - motion.scratch.left[0]
+
+
+@own_entry
+def _followed(system, beta, mu, limits, moving):
+    """(regime, scan steps taken) of the motion in an open cell at the only frequency."""
+    return _with_motion(system, at_frequency(system, 0), beta, mu, limits, moving)
 
 
 def steps_of(system, r, beta, mu, cycles, moving):

@@ -30,6 +30,13 @@ CHAOTIC = [
     (0.07458193979933112, 0.294314381270903, 2.0, 0.0, 0.70018, 0.00001, 0.617355),
 ]
 
+#: Of the same, at mu = 1.3: r and beta where the motion comes near a stable orbit that it does not go to.
+PASSED_BY = [
+    (0.3753132832080201, 0.3397243107769424), (0.6858395989974938, 0.062456140350877196),
+    (0.693233082706767, 0.07744360902255638), (1.743107769423559, 2.9550375939849625),
+    (1.7505012531328323, 2.7602005012531325),
+]  # fmt: skip
+
 
 #: Solvers: that of one contact, and the one of several contacts, to which a list of one contact leads.
 FORMS = pytest.mark.parametrize("form", ["contact", "contacts"])
@@ -225,3 +232,17 @@ def test_a_disturbance_grows_as_two_motions_part():
     ]
     early, late = (np.abs(ends[k].z.values - ends[k + 2].z.values).max() for k in (0, 1))
     assert np.log(late / early) / 50.0 == pytest.approx(0.1746, rel=0.6)
+
+
+@FORMS
+@pytest.mark.parametrize(("r", "beta"), PASSED_BY)
+def test_an_orbit_that_the_motion_passes_by_is_not_its_steady_state(r, beta, form):
+    """Against the motion followed to its end, without Newton's method."""
+    found = fm.sweep(five_masses(form), [r], [beta], [1.3], outputs=OUTPUTS).squeeze()
+    end = fm.sweep(
+        five_masses(), [r], [beta], [1.3], outputs=OUTPUTS, steady="marched", cycles=20_000
+    ).squeeze()  # fmt: skip
+    assert end.status == found.status == regimes.RESOLVED
+    assert (found.regime, found.period) == (end.regime, end.period)
+    assert found.stops_per_cycle.item() == pytest.approx(end.stops_per_cycle.item(), rel=1e-6)  # as float32
+    assert found.contact_amplitude.item() == pytest.approx(end.contact_amplitude.item(), rel=1e-9)

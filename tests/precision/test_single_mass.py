@@ -8,9 +8,10 @@ import math
 import numpy as np
 import pytest
 from general_systems import reference
-from kernels import callable_kernel
 
 import frictionmap as fm
+from benchmarks.measures.own_entry import own_entry
+from frictionmap._kernels.compiler.packed import packed
 from frictionmap._kernels.general.problem import make_row, set_row
 from frictionmap._kernels.general.record import make_record
 from frictionmap._kernels.general.return_map import make_return
@@ -95,6 +96,24 @@ def test_a_wall_that_moves_with_the_base():
     assert np.abs(found.contact_amplitude - wanted.contact_amplitude).max() < 1e-11
 
 
+# Arguments are packed as in maps: of other types, the kernels would be compiled once more.
+
+
+@own_entry
+def fill_tables(problem, row, single):
+    """Fill the row of the only frequency, and its tables for two half periods; whether they fit."""
+    problem, row, single = packed(problem), packed(row), packed(single)
+    set_row(problem, 0, row)
+    return fits_row(problem, row, single, 2)
+
+
+@own_entry
+def solve_by_tables(problem, row, single, beta, memory, record):
+    """What `solve_single` returns."""
+    problem, row, single = packed(problem), packed(row), packed(single)
+    return solve_single(problem, row, single, beta, packed(memory), packed(record))
+
+
 @pytest.mark.plain
 def test_the_tables_solve_a_cell():
     """From a state that is 1e-4 off, without the general solver."""
@@ -104,8 +123,7 @@ def test_the_tables_solve_a_cell():
     masses = np.empty((0, 1))
     row, memory, record = make_row(problem), make_return(problem), make_record(problem, masses, 0)
     single = make_single(problem, 0)
-    callable_kernel(set_row)(problem, 0, row)
-    assert callable_kernel(fits_row)(problem, row, single, 2)
+    assert fill_tables(problem, row, single)
     motion = fm.response(system, r, beta)
     tau = motion.tau.values
     section = 0.37
@@ -113,7 +131,7 @@ def test_the_tables_solve_a_cell():
     memory.start[0, 0] = np.interp(section, tau, motion.z.values) + 1e-4
     memory.start[1, 0] = h * np.interp(section, tau, motion.v.values[0])
     memory.senses[0] = int(np.sign(memory.start[1, 0]))
-    found, cycles, multiplier = callable_kernel(solve_single)(problem, row, single, beta, memory, record)
+    found, cycles, multiplier = solve_by_tables(problem, row, single, beta, memory, record)
     assert found
     assert cycles <= 6.0
     assert 0.0 <= multiplier < 1.0

@@ -1,0 +1,303 @@
+"""The first minute with the page, second by second: fresh clone, virtual environment, no compiled kernels.
+
+What a new user sees of `frictionmap explore` in headless Chromium: the page notes every change of its texts
+and pictures, and which requests are unanswered meanwhile. After the motion runs, the newcomer points at
+another cell, asks for a response curve and chooses another quantity. "still" is the longest time for which
+an unanswered request changed nothing on the screen, "silent" the longest without a text that says why. The
+quick form has the installed package and the usual kernels. The load of the machine stands beside the result.
+"""
+
+import contextlib
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .. import ROOT
+from ..report.figures import new_figure, save_figure
+from ..report.record import save, spread, table, timed
+from .browser import NoBrowser, chromium
+
+CONFIG = "fig-3-12.toml"
+
+#: Rounds, by quick.
+ROUNDS = {False: 3, True: 1}
+
+#: Milliseconds that a step may take, on a slow machine.
+HANG = 600_000
+
+#: Seconds between what the newcomer does: long enough to look.
+LOOK = 2.0
+
+#: Seconds within which the boundaries should be on the screen, and for which nothing should stand still.
+FIRST_PICTURE, STILL = 3.0, 2.0
+
+#: What the page shows by itself, and the condition that ends each wait.
+_CELLS = "document.querySelector('#stage')?.dataset.cells ?? ''"
+_DONE = "document.querySelector('#stage').dataset.state === 'done'"
+SHOWN = {
+    "boundaries": f"() => ({_CELLS}) !== ''",
+    "map": f"() => !['', '1 1'].includes({_CELLS})",
+    "finest map": f"() => {_DONE}",
+    "motion runs": "() => Number(document.querySelector('#motion .time')?.value) > 0",
+}
+
+#: Conditions that end the waits for what the newcomer does.
+_POINTED = "() => /^r/.test(document.querySelector('#motion .where')?.innerText ?? '')"
+_CURVE = "() => !document.querySelector('#cut').hidden"
+_COLOURED = f"() => {_DONE} && !document.querySelector('#legend').classList.contains('outdated')"
+
+#: Notes in the page, every 50 ms, what has changed since the last time.
+_NOTES = """() => {
+  const pending = new Map();
+  const ask = window.fetch;
+  let count = 0;
+  window.fetch = async (...asked) => {
+    const name = new URL(asked[0], location).pathname.slice(1);
+    const key = (count += 1);
+    if (name !== 'state') pending.set(key, name);
+    try { return await ask(...asked); } finally { pending.delete(key); }
+  };
+  const text = (name) => {
+    const found = document.querySelector(name);
+    return found && found.checkVisibility() ? found.innerText.trim().replace(/\\s+/g, ' ') : '';
+  };
+  const screen = () => ({
+    cells: document.querySelector('#stage')?.dataset.cells ?? '',
+    state: document.querySelector('#stage')?.dataset.state ?? '',
+    message: text('#message'),
+    motion: text('#motion .regime') || text('#motion'),
+    other: text('#motion .others'),
+    curve: text('#cut'),
+    legend: text('#legend'),
+  });
+  window.noted = [];
+  let last = '';
+  setInterval(() => {
+    const now = { screen: screen(), pending: [...pending.values()] };
+    if (JSON.stringify(now) === last) return;
+    last = JSON.stringify(now);
+    window.noted.push({ at: (performance.timeOrigin + performance.now()) / 1000, ...now });
+  }, 50);
+}"""
+
+
+class Program(NamedTuple):
+    """A frictionmap to start: the command, its folder, its environment."""
+
+    command: list[str]
+    folder: Path
+    environment: dict[str, str]
+
+
+def _run(*command: object, **options: Any) -> None:
+    subprocess.run([str(word) for word in command], check=True, capture_output=True, **options)
+
+
+def _installed(folder: Path, taken: dict[str, float]) -> Program:
+    """Clone, create an environment and install, as README says; note the seconds of each."""
+    clone = folder / "frictionmap"
+    python = clone / ".venv" / "bin" / "python"
+    taken["clone"], _ = timed(lambda: _run("git", "clone", "--quiet", ROOT, clone))
+    taken["virtual environment"], _ = timed(lambda: _run(sys.executable, "-m", "venv", clone / ".venv"))
+    taken["installation"], _ = timed(lambda: _run(python, "-m", "pip", "install", "--quiet", ".", cwd=clone))
+    kept = {name: text for name, text in os.environ.items() if name not in ("NUMBA_CACHE_DIR", "PYTHONPATH")}
+    return Program([str(python.parent / "frictionmap")], clone, kept)
+
+
+def _here() -> Program:
+    """The package of this checkout, with the kernels that there are."""
+    search = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    return Program([sys.executable, "-m", "frictionmap"], ROOT, {**os.environ, "PYTHONPATH": search})
+
+
+class Terminal:
+    """What the program prints, with the seconds since it was started."""
+
+    def __init__(self, program: Program) -> None:
+        self.began = time.time()
+        self.lines: list[tuple[float, str]] = []
+        self.process = subprocess.Popen(
+            [*program.command, "explore", f"configs/{CONFIG}", "--no-browser", "--port", "0"],
+            cwd=program.folder,
+            env=program.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.lines.append((time.time() - self.began, line.rstrip()))
+
+    def address(self) -> tuple[float, str]:
+        """Seconds until the server was ready, and its address."""
+        while self.process.poll() is None:
+            for seconds, line in list(self.lines):
+                for word in line.split():
+                    if word.startswith("http"):
+                        return seconds, word
+            time.sleep(0.005)
+        raise RuntimeError(f"the server did not start: {self.lines}")
+
+    def end(self) -> None:
+        """Stop the program."""
+        self.process.terminate()
+        self.process.wait()
+
+
+@contextlib.contextmanager
+def _started(program: Program) -> Iterator[Terminal]:
+    terminal = Terminal(program)
+    try:
+        yield terminal
+    finally:
+        terminal.end()
+
+
+def _seen(page: Any, condition: str, began: float) -> float:
+    """Seconds from a time until a condition holds in the page."""
+    page.wait_for_function(condition, polling=20)
+    return time.time() - began
+
+
+def _steps(page: Any) -> dict[str, float]:
+    """Let the newcomer point at a cell, ask for a curve and choose another quantity: seconds of each."""
+    taken = {}
+    box = page.locator("#stage").bounding_box()
+
+    def step(name: str, act: Any, condition: str) -> None:
+        time.sleep(LOOK)
+        began = time.time()
+        act()
+        taken[name] = _seen(page, condition, began)
+
+    place = box["x"] + 0.75 * box["width"], box["y"] + 0.9 * box["height"]
+    step("pointed: motion", lambda: page.mouse.move(*place), _POINTED)
+    page.focus("#stage")
+    step("asked: response curve", lambda: page.keyboard.press("r"), _CURVE)
+    step("asked: amplitude", lambda: page.select_option("#quantity", index=1), _COLOURED)
+    return taken
+
+
+def waits(noted: list[dict]) -> dict[str, float]:
+    """Longest times [s] with an unanswered request: without any change on the screen, without a text.
+
+    noted : entries {at, screen, pending} in order of time, each valid until the next
+    """
+    still = silent = still_since = silent_since = 0.0
+    screen: object = None
+    for entry, following in pairwise(noted):
+        if not entry["pending"]:
+            screen = None
+            silent_since = 0.0
+            continue
+        if entry["screen"] != screen:
+            screen, still_since = entry["screen"], entry["at"]
+        still = max(still, following["at"] - still_since)
+        says = entry["screen"]["message"] or entry["screen"]["motion"].startswith("Computing")
+        silent_since = 0.0 if says else silent_since or entry["at"]
+        silent = max(silent, 0.0 if says else following["at"] - silent_since)
+    return {"still": still, "silent": silent}
+
+
+def _watched(browser: Any, program: Program, taken: dict[str, float]) -> list[dict]:
+    """Start the program and open its page; note the seconds, and return what was on the screen."""
+    with _started(program) as terminal:
+        taken["server"], url = terminal.address()
+        began = terminal.began + taken["server"]
+        page = browser.new_page(viewport={"width": 1280, "height": 800})
+        page.set_default_timeout(HANG)
+        page.add_init_script(f"({_NOTES})()")
+        page.goto(url, wait_until="commit")
+        for name, condition in SHOWN.items():
+            taken[name] = _seen(page, condition, began)
+        taken |= _steps(page)
+        time.sleep(LOOK)
+        noted = page.evaluate("() => window.noted")
+        page.close()
+    return [{**entry, "at": entry["at"] - began} for entry in noted]
+
+
+def _words(entry: dict) -> str:
+    """The screen in one line."""
+    screen = entry["screen"]
+    cells = {"": "nothing", "1 1": "boundaries"}.get(
+        screen["cells"], f"map {screen['cells'].replace(' ', ' x ')}"
+    )
+    parts = [cells, screen["message"], screen["motion"][:60], "curve" if screen["curve"] else ""]
+    return "; ".join(part for part in parts if part)
+
+
+def by_seconds(noted: list[dict]) -> list[tuple[int, str, str]]:
+    """What was on the screen at every full second, and which requests were unanswered."""
+    rows, last = [], ""
+    for second in range(int(noted[-1]["at"]) + 2):
+        before = [entry for entry in noted if entry["at"] <= second]
+        words = _words(before[-1]) if before else "no page"
+        asked = ", ".join(sorted(set(before[-1]["pending"]))) if before else ""
+        if words + asked != last:
+            rows.append((second, words, asked))
+        last = words + asked
+    return rows
+
+
+def _round(browser: Any, quick: bool) -> tuple[dict[str, float], list[dict]]:
+    """Seconds of all steps, and the record of the screen."""
+    taken: dict[str, float] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        program = _here() if quick else _installed(Path(folder), taken)
+        noted = _watched(browser, program, taken)
+    return taken | waits(noted), noted
+
+
+def draw(seconds: dict, path: Path) -> None:
+    """Draw one bar per step, with its limit."""
+    figure = new_figure(8.0, 0.4 * len(seconds) + 1.3)
+    axes = figure.subplots()
+    axes.barh(list(seconds), [entry["median"] for entry in seconds.values()], color="#2c5aa0")
+    for place, (name, entry) in enumerate(seconds.items()):
+        axes.text(entry["median"], place, f" {entry['median']:.2g} s", va="center", fontsize=9)
+        limit = {"boundaries": FIRST_PICTURE, "still": STILL, "silent": STILL}.get(name)
+        if limit:
+            axes.plot([limit] * 2, [place - 0.4, place + 0.4], color="#d98032", linewidth=2.0)
+    axes.margins(x=0.15)
+    axes.invert_yaxis()
+    axes.set_xlabel("time [s]; after the server has started: since then; orange: what it should take at most")
+    axes.set_title("The first minute: from a clone to a motion that runs")
+    axes.grid(alpha=0.25, axis="x")
+    save_figure(figure, path)
+
+
+def run(quick: bool, results: Path) -> dict:
+    """Measure, print, save and draw."""
+    try:
+        with chromium() as browser:
+            version = browser.version
+            rounds = [_round(browser, quick) for _ in range(ROUNDS[quick])]
+    except NoBrowser as missing:
+        content: dict = {"no browser": str(missing)}
+        print(f"skipped: {missing}")
+        save("first_minute", content, results)
+        return content
+    seconds = {name: spread([taken[name] for taken, _ in rounds]) for name in rounds[0][0]}
+    noted = rounds[0][1]
+    table(("second", "on the screen", "unanswered"), by_seconds(noted))
+    print()
+    table(
+        ("step", "seconds", "least", "most"),
+        [(name, entry["median"], entry["least"], entry["most"]) for name, entry in seconds.items()],
+    )
+    content = {"browser": version, "configuration": CONFIG, "seconds": seconds, "screen": by_seconds(noted)}
+    save("first_minute", content, results)
+    draw(seconds, results / "first_minute.png")
+    return content

@@ -435,7 +435,9 @@ class Page {
         this.#compiled(); // the pending answer has arrived
       } else if (compiling.seconds) {
         this.compiled = true;
-        this.#say(`First use: compiling, ${compiling.left > 1 ? `about ${this.#duration(1000 * compiling.left)} left` : "almost finished"}. This happens once per machine.`);
+        const { left, seconds } = compiling;
+        const wait = left > 1 ? `about ${this.#duration(1000 * left)} left` : `almost finished, ${this.#duration(1000 * seconds)} so far`;
+        this.#say(`First use: compiling, ${wait}. This happens once per machine.`);
       } else if (this.compiled) {
         this.#compiled();
       } else if (this.message.hidden && performance.now() - this.asked > SLOW) {

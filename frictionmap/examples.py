@@ -16,19 +16,25 @@ from .files.template import section_text
 from .identify.chain.estimates import chain_names
 from .identify.chain.two_masses import log_amplitude
 from .identify.decay.motion import Decay, displacement
+from .identify.parameters import CONTACT_STIFFNESS
 from .identify.rigs.keys import TABLES, rig_keys
 from .identify.signals.phasors import harmonics_at
-from .identify.time_series.motion import PARAMETERS, Shaken, motion
+from .identify.time_series.motion import LAW, Shaken, motion
 from .model.system import System
 from .steady.curves import curves
 
-#: True parameters by the kind of data, in Hz, mm and s.
+#: True parameters by the name of the example, in Hz, mm and s.
 TRUTHS: Mapping[str, Mapping[str, float]] = {
     "free-decay": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.2, "X0": 9.5, "t0": -0.03, "centre": 0.25},
     "forced": {"beta_1": 0.2, "beta_2": 0.4, "f_n": 3.12, "zeta": 0.008},
     "sweep": {"f0": 3.1, "f1": 1.85, "f2": 4.9},
     "record": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.7, "mu": 1.2, "offset_x": -0.1},
+    "forced-spring": {"beta_1": 0.4, "beta_2": 0.8, "f_n": 3.12, "zeta": 0.008, "contact_stiffness": 3.0},
+    "record-spring": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.9, "contact_stiffness": 3.0, "offset_x": -0.1},
 }
+
+#: Kind of data of those with a spring in the contact; the others are called after it.
+_KINDS = {"forced-spring": "forced", "record-spring": "record"}
 
 #: Samples of a decay: rate [1/s], length [s], error [mm].
 _RATE, _LENGTH, _DECAY_ERROR = 200, 4, 0.03
@@ -40,6 +46,7 @@ _BASE, _LAG_ERROR, _AMPLITUDE_ERROR = 1.75, 0.7, 0.01
 #: errors of mass and base [mm].
 _SHAKEN_AT, _HARMONICS = 1.0, (0.0, 1.75, 0.018j)
 _RECORD_RATE, _RECORD_LENGTH, _RECORD_ERRORS = 100, 8, (0.01, 0.003)
+_SPRING_LENGTH = 4
 
 _HEAD = """\
 # Above each key: its meaning and its valid values.  A line that begins with # and a key shows the default or,
@@ -74,7 +81,7 @@ stiffness = 1191.0        # N/m: the friction forces in N
 
 
 def rig_files(seed: int = 1) -> dict[str, str]:
-    """Return the texts of all files by name: a configuration and a table for each kind of data."""
+    """Return the texts of all files by name: a configuration and a table for each example."""
     files = {}
     for kind in _TABLES:
         files[f"{kind}.csv"] = rig_table(kind, seed)
@@ -154,6 +161,38 @@ excitation = "base"
 damping_reference = "base"
 """,
     ),
+    "forced-spring": (
+        "One storey on a shaken base, with a spring in the contact and two friction forces",
+        """sigma_phase_deg = 0.7
+sigma_amplitude = 0.01
+
+[system]
+contact = "fixed-wall"
+excitation = "base"
+damping_reference = "base"
+
+[known]
+stiffness = 1191.0        # N/m: friction forces in N, and the stiffness of the contact in N/m
+
+[fit]
+free = ["beta", "f_n", "zeta", "contact_stiffness"]
+""",
+    ),
+    "record-spring": (
+        "One storey on a shaken base, with a spring in the contact",
+        """
+[system]
+contact = "fixed-wall"
+excitation = "base"
+damping_reference = "base"
+
+[known]
+stiffness = 1191.0        # N/m: the friction force in N, and the stiffness of the contact in N/m
+
+[fit]
+free = ["f_n", "zeta", "x_F", "contact_stiffness", "offset_x"]
+""",
+    ),
 }
 
 
@@ -161,7 +200,8 @@ def _configuration(kind: str) -> str:
     title, rest = _CONFIGURATIONS[kind]
     truth = ", ".join(f"{name} = {value:g}" for name, value in TRUTHS[kind].items())
     head = f"{_SYNTHETIC}\n# The truth, in Hz, mm and s: {truth}\n"
-    return f'{head}title = "{title} (synthetic)"\n\n[data]\nkind = "{kind}"\nfile = "{kind}.csv"\n{rest}'
+    of = _KINDS.get(kind, kind)
+    return f'{head}title = "{title} (synthetic)"\n\n[data]\nkind = "{of}"\nfile = "{kind}.csv"\n{rest}'
 
 
 def _decay(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
@@ -184,7 +224,10 @@ def _half_cycles(decay: Decay) -> int:
 
 def _forced(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
     """Simulate first harmonics at the same frequencies for two friction forces."""
-    system = System(excitation="base", damping_reference="base", damping_ratios=truth["zeta"])
+    system = System(
+        excitation="base", damping_reference="base", damping_ratios=truth["zeta"],
+        contact_stiffness=truth.get(CONTACT_STIFFNESS),
+    )  # fmt: skip
     r = np.array([0.55, 0.65, 0.75, 0.85, 0.92, 0.97, 1.03, 1.08, 1.15, 1.25, 1.4, 1.6, 1.8, 2.0])
     beta = [truth["beta_1"], truth["beta_2"]]
     ds = curves(system, r, beta, quantities=["first_harmonic"], threads=1).isel(mu=0, dof=0)
@@ -210,12 +253,16 @@ def _sweep(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
 
 def _record(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
     """Simulate base and mass in steady motion."""
-    time = np.arange(_RECORD_RATE * _RECORD_LENGTH) / _RECORD_RATE
+    elastic = CONTACT_STIFFNESS in truth
+    time = np.arange(_RECORD_RATE * (_SPRING_LENGTH if elastic else _RECORD_LENGTH)) / _RECORD_RATE
     phases = np.mod(2.0 * np.pi * _SHAKEN_AT * time, 2.0 * np.pi)
     order = np.argsort(phases, kind="stable")
     base = np.array(_HARMONICS)
-    mass = Shaken("fixed-wall", "base", _SHAKEN_AT, base, (0.0, 0.0), phases[order], order)
-    x = motion(mass, np.array([truth[name] for name in PARAMETERS])).places
+    mass = Shaken("fixed-wall", "base", _SHAKEN_AT, base, (0.0, 0.0), phases[order], order, elastic)
+    values = np.array([truth[name] for name in mass.names])
+    if elastic:
+        values[LAW] = 1.0 / values[LAW]
+    x = motion(mass, values).places
     channels = [
         places + rng.normal(0.0, error, time.size)
         for places, error in zip((x, harmonics_at(base, phases)), _RECORD_ERRORS, strict=True)
@@ -229,12 +276,14 @@ def _table(names: str, *columns: tuple[np.ndarray, str]) -> str:
     return "\n".join([names, *(",".join(row) for row in rows)]) + "\n"
 
 
-#: What makes the table of each kind of data.
+#: What makes the table of each example.
 _TABLES: Mapping[str, Callable[[np.random.Generator, Mapping[str, float]], str]] = {
     "free-decay": _decay,
     "forced": _forced,
     "sweep": _sweep,
     "record": _record,
+    "forced-spring": _forced,
+    "record-spring": _record,
 }
 
 if __name__ == "__main__":

@@ -58,7 +58,7 @@ MOVING = (".gif", ".mp4")
 
 _FEATURES = ("natural_frequency", "held_frequency", "invariant_point")
 
-_BORDERS = ("border_r", "border_beta")
+_BORDERS = ("border_r", "border_beta", "border_mu")
 
 _GENERAL_BOUNDARIES = ("beta_stick_contact", "beta_noslip", "no_stop_begin", "no_stop_end")
 

@@ -59,7 +59,7 @@ def page_of(browser, url, wait=DONE, **options):
         if wait:
             page.wait_for_selector(wait)
         yield page
-        assert page.wrong == []
+        assert page.wrong == [], page.wrong
         assert {pair for pair in page.asked if pair[0] not in ("data", "blob")} == {
             urllib.parse.urlsplit(url)[:2]
         }

@@ -6,7 +6,8 @@ frequencies and 150 friction ratios, half of them around the answer, look for a 
 three best friction ratios are refined by finer maps: without that a map misses up to 1 % of a narrow peak.
 
 Borders are compared with a map: every change of the number of stops that is not beta_lim or beta_stick must
-lie on one, and cells on both sides of its points must have their numbers.
+lie on one, and cells on both sides of its points must have their numbers.  Points beside which a cell has not
+settled are left out.
 """
 
 from collections.abc import Callable
@@ -36,8 +37,12 @@ _LOWEST, _PEAKS, _ZOOMS = 3, 4, 4
 #: Relative distance from a border at which cells are compared, and from the ends of borders that is left out.
 _BESIDE, _ENDS = 1e-6, 0.02
 
-#: Relative distance within which a change of a map is on a border: a third of the step between its points.
-_ON = 3e-3
+#: Relative distance within which a change of a map is on a border: chords are off by about 2e-5, more where
+#: borders are steep.
+_ON = 1e-3
+
+#: Cells on a side of the maps that are compared with borders, and in the quick form.
+_MAP, _QUICK_MAP = 2000, 150
 
 CHAIN = {"contact_masses": [2], "mass_ratios": [1, 1], "stiffness_ratios": [1, 1]}
 _FIVE = {"contact_masses": [3], "mass_ratios": [1] * 5, "stiffness_ratios": [1] * 5}
@@ -187,7 +192,7 @@ def borders(quick: bool) -> tuple[dict, dict[str, xr.Dataset]]:
         taken, ds = timed(lambda s=system, x=r, y=beta: fm.borders(s, x, y))
         curves[name] = ds
         right, points = _counts_beside(system, ds)
-        on, changes = _changes_on_borders(system, ds, r, beta, 150 if quick else 1000)
+        on, changes = _changes_on_borders(system, ds, r, beta, _QUICK_MAP if quick else _MAP)
         found[name] = {
             "r": list(r), "borders": ds.sizes["border"], "seconds": taken, "points compared": points,
             "points right": right, "changes of a map": changes, "changes on a border": on,
@@ -232,9 +237,10 @@ def _counts_beside(system: fm.System, ds: xr.Dataset) -> tuple[int, int]:
         length = np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(np.log(r)), np.diff(np.log(beta))))))
         for j in np.flatnonzero((length > _ENDS) & (length < length[-1] - _ENDS))[:: max(1, r.size // 8)]:
             beside = beta[j] * np.array([1.0 - _BESIDE, 1.0 + _BESIDE])
-            stops = fm.sweep(
-                system, [r[j]], beside, outputs=["stops_per_cycle"]
-            ).stops_per_cycle.values.ravel()
+            cells = fm.sweep(system, [r[j]], beside, outputs=["stops_per_cycle", "status"])
+            if (cells.status != 0).any():
+                continue
+            stops = cells.stops_per_cycle.values.ravel()
             stated = ds.stops_below.values[k], ds.stops_above.values[k]
             right, points = right + int((stops == stated).all()), points + 1
     return right, points

@@ -4,9 +4,10 @@
 
 With q = x - offset, less y where the wall moves with the base, every slide is one damped oscillator under a
 constant friction force and harmonic loads, and is evaluated in closed form; so is a stop, in which q is
-constant.  The ends of slides and stops are the first changes of sign of the velocity and of the friction
-margin, which are sought on a grid and located with Brent's method.  The motion is marched until its state
-repeats after one cycle.  Nothing here is shared with the package.
+constant.  With a spring in the contact the slider rests where the force in the spring is below the friction:
+there the mass is an oscillator on both springs.  The ends of slides and stops are the first changes of sign
+of the velocity and of the friction margin, which are sought on a grid and located with Brent's method.  The
+motion is marched until its state repeats after one cycle.  Nothing here is shared with the package.
 """
 
 from collections.abc import Callable
@@ -40,10 +41,11 @@ class Rig(NamedTuple):
     base: tuple[complex, ...]  # harmonics 0, 1, ...
     wall_moves: bool = False  # with the base
     damper_on_base: bool = True  # else on the ground
+    spring: float = 0.0  # stiffness of a spring in the contact over that of the mass, mu = 1; 0: rigid
 
 
 class Phase(NamedTuple):
-    """A slide or a stop: q(t) for begin <= t <= end within one cycle."""
+    """A slide or a stop, with a spring a slip or an elastic phase: q(t) for begin <= t <= end in a cycle."""
 
     begin: float
     end: float
@@ -55,7 +57,7 @@ class Steady(NamedTuple):
 
     rig: Rig
     phases: list[Phase]
-    stops: int
+    stops: int  # slips of a contact with a spring
     settled: bool
 
     def places(self, time: np.ndarray) -> np.ndarray:
@@ -110,32 +112,40 @@ class _Equation:
     def __init__(self, rig: Rig) -> None:
         self.rig = rig
         self.w = 2.0 * np.pi * rig.f_n
-        turn = np.arange(len(rig.base)) * rig.f / rig.f_n
+        self.turn = turn = np.arange(len(rig.base)) * rig.f / rig.f_n
         spring = turn**2 if rig.wall_moves else np.ones(turn.size)
         damper = 2j * rig.zeta * turn * (int(rig.damper_on_base) - int(rig.wall_moves))
         self.load = np.array(rig.base) * (spring + damper)
-        self.driven = self.load / (1.0 - turn**2 + 2j * rig.zeta * turn)
-        self.step = 1.0 / (_POINTS * max(rig.f_n, rig.f * max(1, len(rig.base) - 1)))
+        highest = max(rig.f_n * np.sqrt(1.0 + rig.spring), rig.f * max(1, len(rig.base) - 1))
+        self.step = 1.0 / (_POINTS * highest)
 
     def slide(self, begin: float, q: float, speed: float, sense: float) -> tuple[Callable, Callable]:
         """q(t) and its velocity from a state, sliding in one direction."""
-        zeta, w, f = self.rig.zeta, self.w, self.rig.f
+        return self.oscillation(begin, (q, speed), -sense * self.rig.x_F, 1.0)
+
+    def oscillation(
+        self, begin: float, state: tuple[float, float], centre: float, stiffness: float
+    ) -> tuple[Callable, Callable]:
+        """q(t) and its velocity from a state on a spring `stiffness` times as stiff, about a centre."""
+        q, speed = state
+        w, f = self.w * np.sqrt(stiffness), self.rig.f
+        zeta = self.rig.zeta / np.sqrt(stiffness)
         d = w * np.sqrt(1.0 - zeta**2)
         at = np.array([begin])
-        push = -sense * self.rig.x_F
-        a = q - push - _sum(self.driven, f, at)[0]
-        b = (speed - _sum(self.driven, f, at, 1)[0] + zeta * w * a) / d
+        driven = self.load / (stiffness - self.turn**2 + 2j * self.rig.zeta * self.turn)
+        a = q - centre - _sum(driven, f, at)[0]
+        b = (speed - _sum(driven, f, at, 1)[0] + zeta * w * a) / d
 
         def place(t: np.ndarray) -> np.ndarray:
             u = t - begin
             free = np.exp(-zeta * w * u) * (a * np.cos(d * u) + b * np.sin(d * u))
-            return push + _sum(self.driven, f, t) + free
+            return centre + _sum(driven, f, t) + free
 
         def velocity(t: np.ndarray) -> np.ndarray:
             u = t - begin
             cosine, sine = np.cos(d * u), np.sin(d * u)
             free = np.exp(-zeta * w * u) * ((d * b - zeta * w * a) * cosine - (d * a + zeta * w * b) * sine)
-            return _sum(self.driven, f, t, 1) + free
+            return _sum(driven, f, t, 1) + free
 
         return place, velocity
 
@@ -172,8 +182,58 @@ def _cycle(equation: _Equation, q: float, speed: float) -> tuple[list[Phase], in
     return phases, stops, q, speed
 
 
+def _elastic_cycle(
+    equation: _Equation, q: float, speed: float, force: float, sense: float
+) -> tuple[list[Phase], int, tuple[float, float, float, float]]:
+    """One cycle from a state, with the force in the spring over the stiffness; sense 0: the slider rests."""
+    rig, period, t = equation.rig, 1.0 / equation.rig.f, 0.0
+    phases: list[Phase] = []
+    slips = 0
+    while t < period:
+        begin = t
+        if sense == 0.0:
+            slider = q - force / rig.spring
+            centre = rig.spring * slider / (1.0 + rig.spring)
+            place, velocity = equation.oscillation(begin, (q, speed), centre, 1.0 + rig.spring)
+            t = _first_change(
+                lambda s, p=place, y=slider: rig.x_F - rig.spring * np.abs(p(s) - y), begin, period,
+                equation.step,
+            )  # fmt: skip
+        else:
+            place, velocity = equation.slide(begin, q, speed, sense)
+            t = _first_change(lambda s, v=velocity, sense=sense: sense * v(s), begin, period, equation.step)
+        phases.append(Phase(begin, t, place))
+        end = np.array([t])
+        q, speed = float(place(end)[0]), float(velocity(end)[0])
+        if sense == 0.0:
+            force = rig.spring * (q - slider)
+            if t < period:
+                sense = float(np.sign(force))
+                force, slips = sense * rig.x_F, slips + 1
+        elif t < period:
+            sense, speed = 0.0, 0.0
+    return phases, slips, (q, speed, force, sense)
+
+
+def _steady_elastic(rig: Rig) -> Steady:
+    """March a mass with a spring in its contact from a moving start until the state repeats."""
+    equation = _Equation(rig)
+    size = max(abs(one) for one in rig.base[1:])
+    state = 0.0, size * rig.f, 0.0, 0.0
+    for _ in range(_CYCLES):
+        phases, slips, after = _elastic_cycle(equation, *state)
+        rates = np.array([1.0, 2.0 * np.pi * rig.f, 1.0, 1.0])
+        change = float(np.abs((np.array(after) - state) / rates).max())
+        state = after
+        if change < _SETTLED * size:
+            return Steady(rig, phases, slips, True)
+    return Steady(rig, phases, slips, False)
+
+
 def steady(rig: Rig) -> Steady:
     """March from a moving start until the state repeats."""
+    if rig.spring > 0.0:
+        return _steady_elastic(rig)
     equation = _Equation(rig)
     size = max(abs(one) for one in rig.base[1:])
     q, speed = 0.0, size * rig.f

@@ -12,6 +12,8 @@ taylor_series      the motion in one scan step: number of terms, first root, ref
 boundary           response functions V, U, G, H, S of one mass and of structures, the terms of beta_lim
 one_mass           scan step, events, return map and sliding orbit of one mass
 structure          the same for any structure, with its oscillators and states
+logs               numbers of every cycle of a motion that does not repeat, their means and errors
+long_periods       when a motion is searched for a long period, and when it is taken as irregular
 general            any number of contacts, springs in contacts, belts, periodic loads
 engine             solver of cells: recurrence, periodic orbits, outputs, stability, coexistence
 =================  =====================================================================================

@@ -376,7 +376,7 @@ def _takes_grids(command: Callable[[str, str, str], argparse.ArgumentParser]) ->
     text = "Compute the regime boundaries over frequency, without classifying cells; write NetCDF."
     sub = command("boundaries", "regime boundaries only", text)
     _takes_config(sub)
-    text = "also find the borders between numbers of stops for mu = 1, within the ranges of [grid]"
+    text = "also find the borders between numbers of stops within the ranges of [grid]"
     sub.add_argument("--borders", action="store_true", help=text)
 
 

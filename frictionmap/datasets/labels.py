@@ -30,8 +30,9 @@ BOUNDARIES = ("beta_lim", "beta_lim_modal", "beta_stick")
 
 
 #: Kinds of borders between numbers of stops, see `stop_counts.orbits`.
-BORDER_KINDS = ("graze", "slip-in-stop", "turn/stop")
+BORDER_KINDS = ("graze", "slip-in-stop", "turn/stop", "graze-of-slide-end", "fold", "doubling")
 _BORDER_POINT = ("border", "point")
+_OF_ORBIT = "mu > 1: of the periodic motion that ends at the border; NaN on the side where it does not exist"
 
 
 class Label(NamedTuple):
@@ -263,6 +264,18 @@ def _range_of(long_name: str, *further: str, comment: str = "", least: float = -
     return Label(np.float64, long_name, (*CELL, *further), comment=comment, least=least, nan=True, inf=True)
 
 
+_RELEASE_ORDERS = (
+    regimes.Code(regimes.UNRESOLVED, "unresolved", "no steady state found; see status"),
+    regimes.Code(0, "same", "no event leads to another pattern if all overloaded contacts let go at once"),
+    regimes.Code(
+        1,
+        "differs",
+        "at some event, letting all overloaded contacts go at once leads to another pattern of sliding and "
+        "stuck contacts than letting them go one by one, which is the rule (mu > 1); of an irregular motion, "
+        "in the cycles that are averaged",
+    ),
+)
+
 #: Variables of cells that general systems have.  Systems of several contacts have further a last dimension
 #: `contact` in these, and in those of `PER_CONTACT`.
 GENERAL_VARIABLES = {
@@ -322,7 +335,18 @@ GENERAL_VARIABLES = {
     "peak_to_peak": _range_of("range of the displacement of each mass, over P/k1 (Y)", "dof", least=0.0),
     "midpoint": _range_of("middle of the range of the displacement of each mass, over P/k1 (Y)", "dof"),
     "work_wall": _range_of("work of the moving wall", comment=_PER_CYCLE),
+    "release_order": Label(
+        np.int8,
+        "whether the pattern after some event of the steady state depends on the order in which contacts let "
+        "go",
+        CELL,
+        _RELEASE_ORDERS,
+        unresolved=regimes.UNRESOLVED,
+    ),
 }
+
+#: Of these, the ones that are not of single contacts.
+_OF_ALL_CONTACTS = ("peak_to_peak", "midpoint", "release_order")
 
 #: Variables of all maps that have one value per contact where there are several.
 PER_CONTACT = (
@@ -330,7 +354,8 @@ PER_CONTACT = (
     "contact_first_harmonic_amplitude", "contact_first_harmonic_phase", "contact_harmonic",
     "friction_harmonic",
     "equivalent_damping",
-    "beta_stick_contact", *(name for name in GENERAL_VARIABLES if "dof" not in GENERAL_VARIABLES[name].dims),
+    "beta_stick_contact", "stops_per_cycle_error", "stuck_fraction_error",
+    *(name for name in GENERAL_VARIABLES if name not in _OF_ALL_CONTACTS),
 )  # fmt: skip
 
 #: Variables over time that have one row per contact where there are several.
@@ -606,13 +631,26 @@ CURVES = {
         np.float64,
         "friction ratios of borders between numbers of stops",
         _BORDER_POINT,
-        comment="mu = 1; padded with NaN",
+        comment="padded with NaN",
         least=0.0,
         nan=True,
     ),
     "border_kind": Label(np.str_, "kind of the border", ("border",), texts=BORDER_KINDS),
-    "stops_below": Label(np.float32, "stops per cycle below the border", ("border",), least=0.0, nan=True),
-    "stops_above": Label(np.float32, "stops per cycle above the border", ("border",), least=0.0, nan=True),
+    "border_mu": Label(
+        np.float64,
+        "ratio of static to kinetic friction",
+        ("border",),
+        comment="mu = 1: the number of stops changes there; mu > 1: a periodic motion ends there, whether or "
+        "not a motion from rest reaches it; the number of stops from one initial state also changes where "
+        "that state leaves the basin of its motion",
+        least=1.0,
+    ),
+    "stops_below": Label(
+        np.float32, "stops per cycle below the border", ("border",), comment=_OF_ORBIT, least=0.0, nan=True
+    ),
+    "stops_above": Label(
+        np.float32, "stops per cycle above the border", ("border",), comment=_OF_ORBIT, least=0.0, nan=True
+    ),
     "beta_lim_high": Label(np.float64, "limit of beta_lim for r to infinity", ("mu",), least=0.0, inf=True),
     "beta_stick_high": Label(
         np.float64, "limit of beta_stick for r to infinity", ("mu",), least=0.0, inf=True
@@ -685,6 +723,12 @@ SHARES = {
     "beta_stick_quantile": _quantiles("beta_stick"),
     "contact_amplitude_quantile": _quantiles("contact_amplitude"),
 }
+
+#: Comment on a motion in time that is irregular.
+EXCERPT = (
+    "the motion is irregular: x, v, z, friction and events cover the last {shown} of the {followed} periods "
+    "followed; the scalars are averages over the last two thirds of them"
+)
 
 #: Variables with a counterpart in SI units where the reference values are known, by measure.
 MEASURES = {

@@ -11,8 +11,12 @@ _ASIDE = 0.06
 #: Shares of a bracket that begins at its largest value.
 _FROM_AN_END = (0.02, 0.1, 0.3, 0.6)
 
-#: Rounds, at most; a kink is approached by a factor of 2 to 8 a round.
-_ROUNDS = 60
+#: Rounds, at most.  A smooth maximum needs about five; what is not found then lies at a kink or a jump, and
+#: that side of its bracket is cut into this many parts.
+_ROUNDS, _SMOOTH_ROUNDS, _PARTS = 60, 6, 13
+
+#: A maximum that is not the largest of its group is left if it cannot reach that with so many of its rises.
+_RISE = 4.0
 
 #: A bracket ends where its values differ by less than this: of a smooth maximum the square of it is lost.
 _ALIKE = 1e-10
@@ -35,12 +39,21 @@ class Brackets(NamedTuple):
     at_b: np.ndarray
 
 
-def brackets_of(x: np.ndarray, values: np.ndarray) -> Brackets:
-    """Brackets of all local maxima of samples, values (n,) at increasing x (n,); of a plateau the first."""
-    padded = np.concatenate(([-np.inf], values, [-np.inf]))
-    place = np.flatnonzero((values > padded[:-2]) & (values >= padded[2:]))
+def brackets_of(x: np.ndarray, values: np.ndarray, rounding: float = 0.0) -> Brackets:
+    """Brackets of all local maxima of samples, values (n,) at increasing x (n,); of a plateau the first.
+
+    Values are compared in units of `rounding`, where it is given and finite.
+    """
+    level = np.round(values / rounding) if 0.0 < rounding < np.inf else values
+    padded = np.concatenate(([-np.inf], level, [-np.inf]))
+    place = np.flatnonzero((level > padded[:-2]) & (level >= padded[2:]))
     before, after = np.maximum(place - 1, 0), np.minimum(place + 1, x.size - 1)
     return Brackets(x[before], x[place], x[after], values[before], values[place], values[after])
+
+
+def _chosen(bracket: Brackets, which: np.ndarray) -> Brackets:
+    """Some of the brackets."""
+    return Brackets(*(array[which] for array in bracket))
 
 
 def joined(parts: list[Brackets]) -> Brackets:
@@ -72,6 +85,14 @@ def _proposals(bracket: Brackets) -> np.ndarray:
     return np.clip(found, bracket.a[:, np.newaxis], bracket.b[:, np.newaxis])
 
 
+def _sections(bracket: Brackets) -> np.ndarray:
+    """New places for each bracket, (k, _PARTS): equally spaced on its lower side, and one beyond m."""
+    after = bracket.at_b <= bracket.at_a
+    step = np.where(after, bracket.b - bracket.m, bracket.a - bracket.m) / _PARTS
+    found = bracket.m[:, np.newaxis] + step[:, np.newaxis] * np.array([-1, *range(1, _PARTS)])
+    return np.clip(found, bracket.a[:, np.newaxis], bracket.b[:, np.newaxis])
+
+
 def _narrowed(bracket: Brackets, places: np.ndarray, values: np.ndarray) -> Brackets:
     """The largest of the old and new places of each bracket, and its neighbours."""
     x = np.column_stack((bracket.a, bracket.m, bracket.b, places))
@@ -98,18 +119,47 @@ def open_brackets(bracket: Brackets, alike: float = _ALIKE) -> np.ndarray:
     return np.flatnonzero(finite & apart & wide)
 
 
-def sharpened(functions: Functions, bracket: Brackets) -> tuple[np.ndarray, np.ndarray]:
+def _at_a_jump(bracket: Brackets, alike: float = _ALIKE) -> np.ndarray:
+    """Whether the largest value lies next to a jump, and equals one just as far away on the other side."""
+    left, right = bracket.m - bracket.a, bracket.b - bracket.m
+    after = bracket.at_b <= bracket.at_a
+    higher = np.maximum(bracket.at_a, bracket.at_b)
+    near, beyond = np.where(after, left, right), np.where(after, right, left)
+    with np.errstate(invalid="ignore"):
+        return (bracket.at_m - higher <= alike * np.abs(bracket.at_m)) & (beyond > 0.0) & (beyond <= near)
+
+
+def _is_outdone(bracket: Brackets, group: np.ndarray) -> np.ndarray:
+    """Whether a maximum stays below the largest one of its group, (k,).
+
+    It may rise by what it has risen over its higher neighbour, here taken `_RISE` times.
+    """
+    largest = np.full(int(group.max(initial=-1)) + 1, -np.inf)
+    np.maximum.at(largest, group, bracket.at_m)
+    with np.errstate(invalid="ignore"):
+        rise = bracket.at_m - np.maximum(bracket.at_a, bracket.at_b)
+        return bracket.at_m + _RISE * rise < largest[group]
+
+
+def sharpened(
+    functions: Functions, bracket: Brackets, group: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Places and values of the maxima in brackets, function k in bracket k.
 
-    A value that is NaN is never the largest; one that is infinite is left as it is.
+    A value that is NaN is never the largest; one that is infinite is left as it is.  With `group` (k,) only
+    the largest maximum of every group is wanted: others are left where it is clear that they are lower.
     """
     bracket = Brackets(*(array.copy() for array in bracket))
-    for _ in range(_ROUNDS):
+    for count in range(_ROUNDS):
         which = open_brackets(bracket)
+        if count > _SMOOTH_ROUNDS:
+            which = which[~_at_a_jump(_chosen(bracket, which))]
+        if group is not None:
+            which = which[~_is_outdone(bracket, group)[which]]
         if not which.size:
             break
-        part = Brackets(*(array[which] for array in bracket))
-        places = _proposals(part)
+        part = _chosen(bracket, which)
+        places = _proposals(part) if count < _SMOOTH_ROUNDS else _sections(part)
         values = functions(np.repeat(which, places.shape[1]), places.ravel()).reshape(places.shape)
         narrow = _narrowed(part, places, np.where(np.isnan(values), -np.inf, values))
         for array, new in zip(bracket, narrow, strict=True):

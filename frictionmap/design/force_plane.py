@@ -53,7 +53,7 @@ def checked_plane(system: System, second: Any, ratio: Any) -> Plane:
         raise InputError("cannot vary two forces: the system has no list of contacts; give contacts")
     number = checks.whole(second, "second", least=1, most=len(system.contacts))
     one = _contact(system, number)
-    if one.force is not None or np.ndim(one.ratio):
+    if one.force is not None or not isinstance(one.ratio, float):
         raise InputError(
             f"cannot vary the ratio of contact {number}: it has a force of its own or is a bank; "
             f"give it one ratio"

@@ -88,16 +88,16 @@ def _refined(curve: PerformanceCurve, values: Callable, points: Points, k: int) 
     for _ in range(_AGAIN):
         refined = lowest(values, points, low, high)
         k = lowest_of(refined, low, high)
-        (peaks,) = curve.whole(refined.beta[k : k + 1])
+        (peaks,) = curve.whole(refined.beta[k : k + 1], all_peaks=True)
         if peaks.largest <= refined.size[k] * (1.0 + _MISSED):
             break
         curve.forget(low, high)
-        (peaks,) = curve.whole(refined.beta[k : k + 1])
+        (peaks,) = curve.whole(refined.beta[k : k + 1], all_peaks=True)
         points = points.with_more(refined.beta[k : k + 1], np.array([peaks.largest]))
     _refuse_unknown(curve, low, high)
     if k + 1 < refined.beta.size and alike(refined.size[[k, _index(refined, high)]], _PLATEAU):
         beta = plateau_begin(values, refined, k, _PLATEAU)
-        (peaks,) = curve.whole(np.array([beta]))
+        (peaks,) = curve.whole(np.array([beta]), all_peaks=True)
         return Minimum(beta, peaks.largest, "plateau"), peaks
     minimum = Minimum(float(refined.beta[k]), peaks.largest, _kind(refined, k, peaks))
     return minimum, peaks
@@ -185,7 +185,7 @@ def find_robust(task: Task, curve: PerformanceCurve, spread: float) -> Optimum:
         one = Minimum(float(refined.beta[j]), float(refined.size[j]), kind)
         best = one if best is None or one.size < best.size else best
     assert best is not None
-    ends = curve.whole(best.beta * np.array([1.0 - spread, 1.0 + spread]))
+    ends = curve.whole(best.beta * np.array([1.0 - spread, 1.0 + spread]), all_peaks=True)
     table = curve.table
     refined = Points(np.array([one.beta for one in table]), largest(table))
     return Optimum(best, max(ends, key=lambda one: one.largest), None, refined)

@@ -16,6 +16,12 @@ from .responses import Responses, Values, unresolved
 #: Peaks below this share of the largest one are not followed.
 _FOLLOWED = 0.5
 
+#: Samples that differ by less than this share of the largest one are equal: a plateau has one peak.
+_ROUNDING = 1e-12
+
+#: Responses below this share of the largest one are rounding error of contacts that stick.
+_ZERO = 1e-13
+
 #: Samples of a window around a peak at least; its least half width, and that around a peak that a neighbour
 #: does not have, in steps of the samples of the band.
 _IN_WINDOW, _LEAST_WINDOW, _FAR = 9, 0.25, 8.0
@@ -53,11 +59,17 @@ class PerformanceCurve(Protocol):
     def unknown(self) -> dict[float, int]:
         """Number of cells without a known response, at the beta where there are any: M is infinite there."""
 
-    def whole(self, beta: np.ndarray) -> list[Peaks]:
-        """Peaks at increasing beta (n_beta,), from samples over the whole band."""
+    def whole(self, beta: np.ndarray, all_peaks: bool = False) -> list[Peaks]:
+        """Peaks at increasing beta (n_beta,), from samples over the whole band.
+
+        The largest one of each beta is exact, or all are; others are at least samples of the band.
+        """
 
     def at(self, beta: np.ndarray) -> list[Peaks]:
-        """Peaks at increasing beta (n_beta,), near those of the neighbours in the table."""
+        """Peaks at increasing beta (n_beta,), near those of the neighbours in the table.
+
+        The largest one of each beta is exact.
+        """
 
     def forget(self, low: float, high: float) -> None:
         """Drop the entries of the table between two friction ratios, because a peak was missed there."""
@@ -72,6 +84,7 @@ class Performance:
     def __init__(self, responses: Responses, r: np.ndarray) -> None:
         self._responses, self._r = responses, r
         self._table: list[Peaks] = []
+        self._scale = 0.0
         self._unknown: dict[float, int] = {}
 
     @property
@@ -88,10 +101,10 @@ class Performance:
         """The responses at peaks."""
         return self._responses.at(peaks.r, np.full(peaks.r.size, peaks.beta))
 
-    def whole(self, beta: np.ndarray) -> list[Peaks]:
+    def whole(self, beta: np.ndarray, all_peaks: bool = False) -> list[Peaks]:
         """Peaks at increasing beta (n_beta,), from samples over the whole band."""
         values = self._on_grid(self._r, beta)
-        return self._keep([self._brackets(self._r, column) for column in values.T], beta)
+        return self._keep([self._brackets(self._r, column) for column in values.T], beta, all_peaks)
 
     def at(self, beta: np.ndarray) -> list[Peaks]:
         """Peaks at increasing beta (n_beta,), near those of the neighbours in the table."""
@@ -102,12 +115,18 @@ class Performance:
         for column in values.T:
             inside = [np.searchsorted(r, window) for window in windows]
             parts.append(joined([self._brackets(r[which], column[which]) for which in inside]))
-        return self._keep(parts, beta)
+        return self._keep(parts, beta, all_peaks=False)
 
     def _on_grid(self, r: np.ndarray, beta: np.ndarray) -> np.ndarray:
         """Responses on a grid; at beta where one of them is not known, all are infinite."""
         values = self._responses.on_grid(r, beta)
-        return self._known(values.size, unresolved(values), beta)
+        size = values.size[np.isfinite(values.size)]
+        self._scale = max(self._scale, size.max(initial=0.0))
+        return self._known(self._rounded(values.size), unresolved(values), beta)
+
+    def _rounded(self, size: np.ndarray) -> np.ndarray:
+        """Responses without those that are rounding error."""
+        return np.where(size < _ZERO * self._scale, 0.0, size)
 
     def _known(self, size: np.ndarray, wrong: np.ndarray, beta: np.ndarray) -> np.ndarray:
         columns = wrong.any(axis=0)
@@ -117,19 +136,19 @@ class Performance:
 
     def _brackets(self, r: np.ndarray, size: np.ndarray) -> Brackets:
         """Brackets of the peaks of one column that may be the largest."""
-        found = brackets_of(r, size)
+        found = brackets_of(r, size, _ROUNDING * size.max())
         high = found.at_m >= _FOLLOWED * size.max()
         return Brackets(*(array[high] for array in found))
 
-    def _keep(self, parts: list[Brackets], beta: np.ndarray) -> list[Peaks]:
-        """Refine the peaks at every beta, and put them into the table."""
+    def _keep(self, parts: list[Brackets], beta: np.ndarray, all_peaks: bool) -> list[Peaks]:
+        """Refine the peaks at every beta, or the largest only, and put them into the table."""
         owner = np.repeat(np.arange(beta.size), [part.m.size for part in parts])
 
         def size(which: np.ndarray, r: np.ndarray) -> np.ndarray:
             values = self._responses.at(r, beta[owner[which]])
-            return np.where(unresolved(values), np.inf, values.size)
+            return np.where(unresolved(values), np.inf, self._rounded(values.size))
 
-        places, sizes = sharpened(size, joined(parts))
+        places, sizes = sharpened(size, joined(parts), None if all_peaks else owner)
         found = []
         for j, value in enumerate(beta.tolist()):
             own = np.flatnonzero(owner == j)

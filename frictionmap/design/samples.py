@@ -74,9 +74,9 @@ class SampledPerformance:
         """All peaks that were computed, by increasing beta."""
         return [self._table[beta] for beta in sorted(self._table)]
 
-    def whole(self, beta: np.ndarray) -> list[Peaks]:
+    def whole(self, beta: np.ndarray, all_peaks: bool = False) -> list[Peaks]:
         """Peaks at increasing beta (n_beta,), from samples over the whole band."""
-        return self._chosen([curve.whole(beta) for curve in self._curves])
+        return self._chosen([curve.whole(beta, all_peaks) for curve in self._curves])
 
     def at(self, beta: np.ndarray) -> list[Peaks]:
         """Peaks at increasing beta (n_beta,), near those of the neighbours in the tables."""

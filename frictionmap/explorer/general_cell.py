@@ -94,7 +94,7 @@ def general_motion(view: View, r: float, beta: float) -> tuple[dict[str, Any], d
         "r": r, "beta": beta, "class": _class(view, ds, regime, k), "regime": _name(view, regime),
         "summary": [_sentence(ds, general.groups[j], j, int(own[j])) for j in shown] + _why(beta, limits),
         "entries": [entry._asdict() for entry, _ in numbers],
-        "comment": "", "dofs": view.system.dofs.numbers, "others": False,
+        "comment": ds.attrs.get("comment", ""), "dofs": view.system.dofs.numbers, "others": False,
         "contacts": [group.name for group in general.groups] if k is None else [],
         "contact": general.groups[k].name if k is not None and general.count > 1 else "",
         "still": ["without slip" if elastic else "stuck" for elastic in general.elastic[list(shown)]],

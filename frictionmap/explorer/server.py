@@ -90,9 +90,9 @@ class Page:
 
     def __init__(self, scene: Scene, parent: "Page | None" = None) -> None:
         self.scene = scene
-        self.jobs = parent.jobs if parent else Jobs()
+        self.jobs: Jobs = parent.jobs if parent else Jobs()
         self._files = page_files()
-        self._warm = parent._warm if parent else threading.Event()
+        self._warm: threading.Event = parent._warm if parent else threading.Event()
         self.shown = threading.Event()
         self._presets: dict[str, Page] = {}
         self._lock = threading.Lock()

@@ -1,20 +1,21 @@
 """Several contacts, springs in contacts, belts, varying normal loads and periodic loads.
 
-===========  ====================================================================================
-module       what is in it
-===========  ====================================================================================
-problem      a system over r as arrays for the kernels
-held         forces in contacts that do not slide, and the boundaries that follow from them
-loops        permanent sticking of contacts that close a loop
-boundaries   boundaries over r: permanent sticking, no stops, one-way sliding on belts
-partial      least friction at which one contact sticks while the others move
-maps         the cells of a map, on several threads
-dataset      maps and boundaries as labelled variables
-steps        one steady state as the series of its steps
-limit_kinds  what ends the motion without stops
-cycle        harmonics, works and phases of a steady state
-response     one steady state in time
-curves       response curves
-one_mass     one mass under a load of several harmonics, for measured records
-===========  ====================================================================================
+===============  ================================================================================
+module           what is in it
+===============  ================================================================================
+problem          a system over r as arrays for the kernels
+held             forces in contacts that do not slide, and the boundaries that follow from them
+loops            permanent sticking of contacts that close a loop
+boundaries       boundaries over r: permanent sticking, no stops, one-way sliding on belts
+partial          least friction at which one contact sticks while the others move
+maps             the cells of a map, on several threads
+dataset          maps and boundaries as labelled variables
+steps            one steady state as the series of its steps
+limit_kinds      what ends the motion without stops
+cycle            harmonics, works and phases of a steady state
+response         one steady state in time
+curves           response curves
+first_harmonics  first harmonics at a list of points (r, beta), mu = 1
+one_mass         one mass under a load of several harmonics, for measured records
+===============  ================================================================================
 """

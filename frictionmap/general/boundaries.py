@@ -100,7 +100,9 @@ def find_boundaries(
         kinetic, static = friction_lines(system, mu)
         highest = stick.max(axis=0)
         top = np.where(np.isfinite(highest) & (highest > 0.0), highest, _HIGHEST * loads)
-        search = Search(kinetic, static, top, sliding_states(problem, r, 1.0), _CYCLES, _TOLERANCE)
+        sticks = np.isfinite(highest) & (highest > 0.0) & (static == kinetic).all(axis=(1, 2)).any()
+        starts = sliding_states(problem, r, 1.0)
+        search = Search(kinetic, static, top, sticks, starts, _CYCLES, _TOLERANCE)
         cancel = np.zeros(1, np.uint8)
         jobs: list[Job] = [
             (fill_no_stop, (i, i + 1, problem, search, begins, ends, cancel)) for i in range(r.size)

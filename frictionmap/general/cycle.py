@@ -16,6 +16,9 @@ _REFINED = 6
 #: Amplitude over P/k1 at or below which a contact rests.
 _ROUNDING = 1e-12
 
+#: Phasor that is not known.
+_UNKNOWN = complex(np.nan, np.nan)
+
 
 def parts(phasors: np.ndarray) -> np.ndarray:
     """Real and imaginary parts as a last dimension."""
@@ -27,13 +30,16 @@ def _lag(phasors: np.ndarray) -> np.ndarray:
 
 
 def harmonic_values(system: System, steps: Steps, highest: int) -> dict[str, np.ndarray]:
-    """Harmonics 0 to `highest` of masses, contacts and friction forces."""
+    """Harmonics 0 to `highest` of masses, contacts and forces; NaN of a motion that does not repeat."""
     offset_z, offset_x = static_offset(system)
     x = steps.modal.phi @ steps.harmonics("q", highest)
     x[:, 0] += offset_x
     z, f = steps.harmonics("z", highest), steps.harmonics("f", highest)
     z[:, 0] += offset_z
-    return {"displacement_harmonic": x, "contact_harmonic": z, "friction_harmonic": f}
+    phasors = {"displacement_harmonic": x, "contact_harmonic": z, "friction_harmonic": f}
+    if steps.period:
+        return phasors
+    return {name: np.full_like(values, _UNKNOWN) for name, values in phasors.items()}
 
 
 def _damping_work(system: System, steps: Steps) -> float:
@@ -60,8 +66,14 @@ def _base_velocity(system: System, steps: Steps, x: np.ndarray) -> np.ndarray:
 
 
 def work_values(system: System, steps: Steps) -> dict[str, np.ndarray]:
-    """Works per cycle; with base excitation the input follows from the balance."""
+    """Works per cycle; with base excitation the input follows from the balance.
+
+    Of a motion that does not repeat only the work of friction is known, an average.
+    """
     general = general_of(system)
+    if not steps.period:
+        unknown = np.array(np.nan)
+        return {"work_input": unknown, "work_damping": unknown, "work_friction": steps.works[0]}
     damping = _damping_work(system, steps)
     friction, wall = steps.works
     if general.base:
@@ -110,7 +122,7 @@ def equivalent(steps: Steps, found: dict[str, np.ndarray]) -> dict[str, np.ndarr
     """Equivalent stiffness and damping of each contact, from F_1/Z_1; NaN where it rests."""
     z, f = found["contact_harmonic"][:, 1], found["friction_harmonic"][:, 1]
     moves = np.abs(z) > _ROUNDING
-    ratio = np.where(moves, f / np.where(moves, z, 1.0), np.nan)
+    ratio = np.where(moves, f / np.where(moves, z, 1.0), _UNKNOWN)
     return {"equivalent_stiffness": ratio.real, "equivalent_damping": ratio.imag}
 
 

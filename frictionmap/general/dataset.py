@@ -21,7 +21,7 @@ from .problem import general_of
 #: Outputs that general systems have.
 OUTPUTS = (
     "regime", "stops_per_cycle", "contact_amplitude", "stuck_fraction", "period", "origin", "cycles",
-    "status",
+    "status", "stops_per_cycle_error", "stuck_fraction_error",
     "multiplier", "amplitude", "sliding_distance", "work_friction",
     *(name for name in GENERAL_VARIABLES if name != "equivalent_stiffness"),
 )  # fmt: skip
@@ -82,6 +82,10 @@ def contact_values(name: str, system: System, found: Cells) -> np.ndarray:
         return np.where(rigid, np.nan, found.slips if name == "slips_per_cycle" else found.reversals)
     if name == "least_slip":
         return np.where(rigid, np.nan, found.least_slip)
+    if name == "stops_per_cycle_error":
+        return np.where(rests | ~rigid, np.nan, found.stops_error)
+    if name == "stuck_fraction_error":
+        return np.where(rigid, found.stuck_error, np.nan)
     if name in ("stuck_fraction", "elastic_fraction"):
         return np.where(rigid if name == "elastic_fraction" else ~rigid, np.nan, found.stuck)
     if name == "contact_amplitude":

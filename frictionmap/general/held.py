@@ -4,8 +4,8 @@ The structure with rigid contacts held and elastic ones as springs is linear; pe
 
     [K' - n^2 r^2 M + i n r C, W; W^T, 0] [X_n; F_n] = [p_n; s u_n],   K' = K + sum k_t c c^T
 
-A contact sticks permanently iff half the range of its force is at most its static friction (contacts.md 2,
-loads.md 2, elastic.md 1); with a varying normal load iff max(F - mu beta nu) <= min(F + mu beta nu).
+A contact sticks permanently iff half the range of its force is at most its static friction (theory.md 11);
+with a varying normal load iff max(F - mu beta nu) <= min(F + mu beta nu).
 """
 
 from collections.abc import Mapping
@@ -112,7 +112,8 @@ def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
     found = []
     for order in _orders(general):
         x = _solved(*_linear(system, system.modes.stiffness, order, r))
-        found.append(x @ general.vectors.T - general.base.get(order, 0.0) * moved)
+        with np.errstate(invalid="ignore"):  # an infinite x
+            found.append(x @ general.vectors.T - general.base.get(order, 0.0) * moved)
     return np.stack(found, axis=-1)
 
 

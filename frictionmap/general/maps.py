@@ -15,16 +15,20 @@ from .boundaries import friction_lines, rest_states, sliding_states
 from .held import held_ranges
 from .problem import general_of, problem_of, static_offset
 
+#: Cells of a job at least, in whole rows: a job costs as much as a few cells.
+_IN_A_JOB = 32
+
 
 def allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
     """Allocate unresolved cells."""
     per_contact = (*shape, contacts)
-    numbers = [np.full(per_contact, np.nan) for _ in range(9)]
+    numbers = [np.full(per_contact, np.nan) for _ in range(11)]
     ranges = [np.full((*shape, contacts + masses), np.nan) for _ in range(2)]
     return Cells(
         np.full(shape, regimes.UNRESOLVED, np.int8), np.full(shape, regimes.NOT_COMPUTED, np.int8),
         np.full(shape, regimes.CLOSED_FORM, np.int8), np.zeros(shape, np.int32), np.zeros(shape, np.int16),
-        np.full(shape, np.nan), np.full(per_contact, regimes.UNRESOLVED, np.int8), *numbers, *ranges,
+        np.full(shape, np.nan), np.full(shape, regimes.UNRESOLVED, np.int8),
+        np.full(per_contact, regimes.UNRESOLVED, np.int8), *numbers, *ranges,
     )  # fmt: skip
 
 
@@ -34,6 +38,7 @@ def _put_r_zero(found: Cells, at_zero: int, beta: np.ndarray, stick: np.ndarray)
         stuck = beta >= stick[m, at_zero]
         found.regime[m, at_zero] = np.where(stuck, regimes.PERMANENT_STICKING, regimes.STICK_SLIP)
         found.status[m, at_zero] = np.where(stuck, regimes.RESOLVED, regimes.QUASI_STATIC)
+        found.release_order[m, at_zero] = np.where(stuck, 0, regimes.UNRESOLVED)
         found.contact_regime[m, at_zero] = found.regime[m, at_zero][:, np.newaxis]
 
 
@@ -78,8 +83,11 @@ def solve_cells(
     found = allocate((mu.size, r.size, beta.size), general.count, count)
     outputs = np.ascontiguousarray(modal.phi) if masses else np.empty((0, modal.phi.shape[1]))
     cancel = np.zeros(1, np.uint8)
-    rows = range(mu.size * r.size)
-    jobs: list[Job] = [(fill_rows, (row, row + 1, problem, grid, found, outputs, cancel)) for row in rows]
+    rows = range(0, mu.size * r.size, max(1, _IN_A_JOB // max(beta.size, 1)))
+    jobs: list[Job] = [
+        (fill_rows, (row, min(row + rows.step, rows.stop), problem, grid, found, outputs, cancel))
+        for row in rows
+    ]
     ended = itertools.count(1)
 
     def done(_: int) -> None:

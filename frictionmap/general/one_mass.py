@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._kernels.general.follow import MOVED, NEAREST_STOP, STOPS, STUCK
+from .._kernels.general.follow import MOVED, NEAREST_STOP, SLIPS, STOPS, STUCK
 from .._kernels.general.problem import TURN, Problem
 from .._kernels.general.samples import fill_samples
 from .._kernels.general.series import Friction
-from .._kernels.general.steady import REPEATS, one_steady_state
+from .._kernels.general.steady import AVERAGED, REPEATS, one_steady_state
 
 _TOLERANCE = 1e-12
 
@@ -25,32 +25,32 @@ class SteadyMotion(NamedTuple):
 
     repeats: bool  # whether there is one; if not, the rest is of the last period followed
     places: np.ndarray  # displacements
-    stops: int  # a period
-    stuck: float  # share of the period
+    stops: int  # a period; slips of a contact with a spring
+    stuck: float  # share of the period; in which a contact with a spring does not slip
     turn_load: float  # the least load over stiffness at a turn without a stop; infinite without one
 
 
-def _problem(r: float, zeta: float, load: np.ndarray) -> Problem:
-    """r^2 q'' + 2 zeta r q' + q + f = Re sum load_n e^{i n tau}, n >= 1.
+def _problem(r: float, zeta: float, load: np.ndarray, spring: float) -> Problem:
+    """r^2 q'' + 2 zeta r q' + q + f = Re sum load_n e^{i n tau}, n >= 1; f through a spring, if it is not 0.
 
     Whole periods even where half of one suffices: a mass that rests stays where it began.
     """
     orders = np.flatnonzero(load[1:]) + 1 if load[1:].any() else np.array([1])
     phasors = load[orders] if load[1:].any() else np.zeros(1, dtype=complex)
     damping = 2.0 * zeta
-    fastest = 0.5 * (damping + math.sqrt(damping * damping + 4.0)) / r
+    fastest = 0.5 * (damping + math.sqrt(damping * damping + 4.0 * (1.0 + spring))) / r
     size = float(np.abs(phasors).sum()) / (1.0 + r * r)
     parts = np.stack((phasors.real, -phasors.imag))[np.newaxis, :, np.newaxis]
     return Problem(
-        np.ones(1), np.full((1, 1), damping), False, _ONE, _ONE, _NONE, _NONE, np.zeros(1), np.zeros(1),
-        orders.astype(float), np.array([r]), parts,
+        np.ones(1), np.full((1, 1), damping), False, _ONE, _ONE, _NONE, _NONE, np.array([spring]),
+        np.zeros(1), orders.astype(float), np.array([r]), parts,
         np.array([max(fastest, float(orders[-1]))]), np.array([size or 1.0]), False,
     )  # fmt: skip
 
 
 def steady_motion(
     r: float, zeta: float, friction: float, mu: float, load: np.ndarray, start: tuple[float, float],
-    phases: np.ndarray, cycles: int,
+    phases: np.ndarray, cycles: int, spring: float = 0.0,
 ) -> SteadyMotion:  # fmt: skip
     """Find the steady state that the motion from a state at tau = 0 reaches.
 
@@ -62,8 +62,9 @@ def steady_motion(
     start : displacement and velocity over tau at tau = 0
     phases : (n,) phases at which the displacement is wanted
     cycles : periods allowed
+    spring : stiffness of a spring in the contact over that of the mass, >= 0; 0: the contact is rigid
     """
-    problem = _problem(r, zeta, load)
+    problem = _problem(r, zeta, load, spring)
     offset = float(load[0].real)
     state = np.array([[start[0] - offset], [start[1]]])
     forces = Friction(np.array([friction]), np.array([mu * friction]))
@@ -79,10 +80,11 @@ def steady_motion(
     period = halves // 2
     places = np.empty(phases.size)
     fill_samples(record.steps, record.patterns, count, 0, h, period, phases, places)
+    counted = found.halves // 2 if found.status == AVERAGED else period
     moves = counts[MOVED, 0] != 0.0
     nearest = counts[NEAREST_STOP, 0]
     return SteadyMotion(
-        found.status == REPEATS, places + offset, round(counts[STOPS, 0] / period),
-        counts[STUCK, 0] / (2.0 * math.pi * period) if moves else 1.0,
+        found.status == REPEATS, places + offset, round(counts[SLIPS if spring else STOPS, 0] / counted),
+        counts[STUCK, 0] / (2.0 * math.pi * counted) if moves else 1.0,
         friction / nearest if nearest > 0.0 else math.inf,
     )  # fmt: skip

@@ -1,7 +1,7 @@
 """Partial sticking for mu = 1: the friction from which one contact sticks while the others slide.
 
 A contact with mu = 1 and constant normal load sticks permanently iff its friction is at least half the range
-of the force that holds it in the steady state of the others (contacts.md 2).
+of the force that holds it in the steady state of the others (theory.md 11).
 """
 
 import numpy as np

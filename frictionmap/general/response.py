@@ -7,7 +7,7 @@ import xarray as xr
 
 from .. import regimes
 from .._kernels.general.problem import SECTION
-from ..datasets.labels import CONTACT_TRACES, LABELS, OLDER_NAMES, PER_CONTACT
+from ..datasets.labels import CONTACT_TRACES, EXCERPT, LABELS, OLDER_NAMES, PER_CONTACT
 from ..datasets.variables import coordinate, label_variable
 from ..model.general import General
 from ..model.settings import HARMONICS, Solver
@@ -61,11 +61,18 @@ def _events(system: System, steps: Steps) -> dict[str, np.ndarray]:
     """Where a contact begins to slide or to stop, in order of time."""
     changed = steps.senses != np.roll(steps.senses, 1, axis=0)
     k, j = np.nonzero(changed)
-    tau = np.mod(steps.begins[k] + SECTION, 2.0 * np.pi * steps.period)
+    tau = steps.begins[k] + SECTION - steps.lead
+    if steps.period:
+        tau = np.mod(tau, 2.0 * np.pi * steps.period)
     order = np.argsort(tau, kind="stable")
+    order = order[(tau[order] >= 0.0) & (tau[order] <= 2.0 * np.pi * steps.shown)]
     k, j, tau = k[order], j[order], tau[order]
     z = steps.series[:, steps.rows("z"), 0]
-    found = {"event_tau": tau, "event_direction": steps.senses[k, j].astype(np.int8), "event_z": z[k, j]}
+    found: dict[str, np.ndarray] = {
+        "event_tau": tau,
+        "event_direction": steps.senses[k, j].astype(np.int8),
+        "event_z": z[k, j],
+    }
     if steps.contacts > 1:
         found["event_contact"] = j + 1
     return found
@@ -84,7 +91,7 @@ def scalars(system: System, steps: Steps) -> dict[str, np.ndarray]:
     low, high = steps.lowest, steps.highest
     largest = np.maximum(np.abs(low), np.abs(high))
     own = [steps.regime(j) for j in range(count)]
-    return found | {
+    found |= {
         "regime": np.array(_overall(own)),
         "contact_regime": np.array(own),
         "contact_amplitude": np.where(still, 0.0, largest[:count]),
@@ -94,15 +101,17 @@ def scalars(system: System, steps: Steps) -> dict[str, np.ndarray]:
         "peak_to_peak": (high - low)[count:],
         "midpoint": 0.5 * (high + low)[count:],
         "period": np.array(steps.period),
-        "status": np.array(regimes.RESOLVED),
+        "status": np.array(regimes.RESOLVED if steps.period else regimes.IRREGULAR),
         "multiplier": np.array(steps.multiplier),
         "cycles": np.array(int(np.ceil(steps.cycles))),
-        "origin": np.array(regimes.PERIODIC_ORBIT),
+        "origin": np.array(regimes.PERIODIC_ORBIT if steps.period else regimes.INTEGRATED),
+        "release_order": np.array(steps.release_order),
         "sliding_distance": steps.distance,
         "least_slip": np.where(general.elastic, steps.least_slip, np.nan),
         "work_friction": steps.works[0],
         "work_wall": steps.works[1],
     }
+    return found
 
 
 def labelled(name: str, values: np.ndarray, contacts: int, what: str = "") -> xr.Variable:
@@ -122,23 +131,26 @@ def _trace(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
 
 def is_wanted(name: str, general: General) -> bool:
     """Whether a number says something about contacts of these kinds."""
-    if name in ("stops_per_cycle", "turns_per_cycle", "stuck_fraction"):
+    if name.startswith(("stops_", "turns_", "stuck_")):
         return not general.elastic.all()
     if name.startswith(("slip_", "slips", "elastic", "least_slip")):
         return bool(general.elastic.any())
     if name == "work_wall":
         return any(group.first.wall_velocity for group in general.groups)
-    return name != "contact_regime" or general.count > 1
+    return name not in ("contact_regime", "release_order") or general.count > 1
 
 
 def general_response(
     system: System, r: float, beta: float, mu: float, solver: Solver, points: int
 ) -> xr.Dataset:
-    """Compute one steady state of a general system in time; see `response`."""
+    """Compute one steady state of a general system in time; see `response`.
+
+    An irregular motion has the comment on it among its attributes.
+    """
     general = general_of(system)
     refuse_static(general, np.array([mu]))
     steps = steps_of(system, r, beta, mu, solver)
-    tau = np.linspace(0.0, 2.0 * np.pi * steps.period, points * steps.period + 1)
+    tau = np.linspace(0.0, 2.0 * np.pi * steps.shown, points * steps.shown + 1)
     traces = _traces(system, steps, tau)
     count = general.count
     variables: dict[str, xr.Variable] = {}
@@ -170,4 +182,8 @@ def general_response(
         "mu": mu,
     }
     coords = {name: coordinate(name, values) for name, values in own.items()}
-    return xr.Dataset(variables, coords=coords | contact_coordinates(system))
+    ds = xr.Dataset(variables, coords=coords | contact_coordinates(system))
+    if not steps.period:
+        followed = int(np.ceil(steps.cycles))
+        ds.attrs["comment"] = EXCERPT.format(shown=steps.shown, followed=followed)
+    return ds

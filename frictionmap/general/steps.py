@@ -1,4 +1,4 @@
-"""One steady state as the Taylor series of its steps: values at any time, harmonics, works."""
+"""One steady state, or a part of an irregular motion, as the Taylor series of its steps."""
 
 from dataclasses import dataclass
 
@@ -6,11 +6,22 @@ import numpy as np
 
 from .. import regimes
 from .._kernels.engine.policies import MOVING_START
-from .._kernels.general.follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
+from .._kernels.general.follow import (
+    MOVED,
+    RELEASE_ORDER,
+    REVERSALS,
+    SLIPS,
+    STOPS,
+    STOPS_ERROR,
+    STUCK,
+    STUCK_ERROR,
+    TURNS,
+)
 from .._kernels.general.problem import LONG, SECTION, Problem
 from .._kernels.general.record import LEAST_SLIP
 from .._kernels.general.series import Friction
-from .._kernels.general.steady import REPEATS, one_steady_state
+from .._kernels.general.steady import AVERAGED, REPEATS, one_steady_state
+from .._kernels.long_periods import WINDOW
 from ..errors import NoSteadyState
 from ..model.settings import Solver
 from ..model.system import System
@@ -27,7 +38,10 @@ _GAUSS = 24
 
 @dataclass(frozen=True)
 class Steps:
-    """A steady state over its period, step by step from the phase `SECTION` on."""
+    """A steady state over its period, or the last periods of a motion that does not repeat.
+
+    The steps begin at the phase `SECTION`: of the period, or of the one before those that are shown.
+    """
 
     problem: Problem
     modal: ModalSystem
@@ -39,7 +53,10 @@ class Steps:
     series: np.ndarray  # (steps, rows, WIDTH)
     senses: np.ndarray  # (steps, N)
     counts: np.ndarray
-    period: int
+    period: int  # 0: the motion does not repeat, and numbers are averages
+    shown: int  # periods of the load that are shown, from tau = 0 on
+    span: int  # periods that the steps cover
+    averaged: int  # periods that `counts` are of
     multiplier: float
     cycles: float
     lowest: np.ndarray  # (N + n,) extremes in the contacts and of the masses
@@ -53,6 +70,11 @@ class Steps:
         """Number of contacts."""
         return self.senses.shape[1]
 
+    @property
+    def lead(self) -> float:
+        """Time before tau = 0 at which the first period with steps begins."""
+        return 2.0 * np.pi * (self.span - self.shown)
+
     def rows(self, name: str) -> slice:
         """Rows of the series of the modes, of z, w, f."""
         modes, channels = self.problem.push.shape
@@ -65,7 +87,7 @@ class Steps:
 
     def places(self, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The step that each phase lies in, and the place x in it."""
-        since = np.mod(tau - SECTION, 2.0 * np.pi * self.period)
+        since = np.mod(tau - SECTION + self.lead, 2.0 * np.pi * self.span)
         k = np.clip(np.searchsorted(self.begins, since, side="right") - 1, 0, self.begins.size - 1)
         return k, (since - self.begins[k]) / self.h
 
@@ -93,7 +115,7 @@ class Steps:
         weight = 0.5 * weights * self.lengths[:, np.newaxis]
         orders = np.arange(highest + 1)
         waves = np.exp(-1j * orders[:, np.newaxis, np.newaxis] * tau) * weight
-        found = np.einsum("skg,nsg->kn", values, waves) / (np.pi * self.period)
+        found = np.einsum("skg,nsg->kn", values, waves) / (np.pi * self.span)
         found[:, 0] *= 0.5
         return found
 
@@ -108,9 +130,14 @@ class Steps:
             return regimes.ONE_WAY_SLIDING
         return regimes.STICK_SLIP if elastic else regimes.CONTINUOUS
 
+    @property
+    def release_order(self) -> int:
+        """Whether letting contacts go all at once would make a difference at some event."""
+        return int(self.counts[RELEASE_ORDER].any())
+
     def per_cycle(self, j: int) -> dict[str, float]:
         """Numbers of a contact per period of the load."""
-        c, p = self.counts[:, j], self.period
+        c, p = self.counts[:, j], self.averaged
         elastic = bool(self.problem.spring[j])
         slips = 1.0 if elastic and c[MOVED] and not c[STUCK] else c[SLIPS] / p
         rests = not c[MOVED]
@@ -120,6 +147,8 @@ class Steps:
             "stops_per_cycle": none if elastic or rests else c[STOPS] / p,
             "turns_per_cycle": none if elastic or rests else c[TURNS] / p,
             "stuck_fraction": none if elastic else stuck,
+            "stops_per_cycle_error": none if elastic or rests else c[STOPS_ERROR],
+            "stuck_fraction_error": none if elastic else c[STUCK_ERROR],
             "slips_per_cycle": slips if elastic else none,
             "slip_reversals_per_cycle": c[REVERSALS] / p if elastic else none,
             "elastic_fraction": stuck if elastic else none,
@@ -159,7 +188,7 @@ def cell_steps(
         found, halves, multiplier, counts, record, h = one_steady_state(
             problem, i, friction, start, float(solver.cycles), solver.tolerance, phi, most
         )
-        if found.status != REPEATS:
+        if found.status not in (REPEATS, AVERAGED):
             raise NoSteadyState(
                 f"r = {problem.r[i]:g}, beta = {beta:g}, mu = {mu:g}: no steady state was found in "
                 f"{found.cycles:.0f} periods; raise solver.cycles"
@@ -170,17 +199,21 @@ def cell_steps(
         most = 4 * count
     if (friction.static == friction.kinetic).all() and _rests(system, problem, i, friction):
         counts[[STOPS, TURNS, SLIPS, REVERSALS, MOVED]] = 0.0  # contacts at their limit, by rounding
-    period = halves // 2
+    span, averaged = halves // 2, halves // 2
+    period = shown = span
+    if found.status == AVERAGED:
+        period, shown, averaged = 0, WINDOW, found.halves // 2
     lengths = record.patterns[:count, -1] * h
     begins = np.concatenate(([0.0], np.cumsum(lengths)[:-1]))
     own = lengths > 0.0
     shift = np.concatenate(static_offset(system))
-    works = record.works / period
+    works = record.works / averaged
     works[0] = np.maximum(works[0], 0.0)  # of a contact that hardly slides, rounding may be negative
     return Steps(
         problem, modal, friction, float(problem.r[i]), begins[own], lengths[own], h,
         record.steps[:count][own],
-        record.patterns[:count][own][:, :-1].astype(np.int8), counts, period, multiplier, found.cycles,
-        record.ranges[0] + shift, record.ranges[1] + shift, works, record.distance / period,
+        record.patterns[:count][own][:, :-1].astype(np.int8), counts, period, shown, span, averaged,
+        multiplier, found.cycles,
+        record.ranges[0] + shift, record.ranges[1] + shift, works, record.distance / averaged,
         np.where(counts[MOVED] > 0.0, record.slips[LEAST_SLIP], 0.0),
     )  # fmt: skip

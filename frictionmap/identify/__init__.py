@@ -5,6 +5,8 @@ module       what is in it
 ===========  ==========================================================================
 tables       files of measured data, and their columns with units
 statistics   least squares, outliers, correlated residuals; estimates with their errors
+parameters   names of parameters to fit, and of those to hold
+spring       the spring in a contact: fitted as a compliance, reported as a stiffness
 signals      records: samples, turning points, harmonics, noise, displacements
 decay        `free_decay`: the free decay of one mass
 response     `forced`, `friction_ratio`: amplitudes and lags of steady states

@@ -50,11 +50,12 @@ GeneralOutput = Literal[
     "peak_to_peak",
     "midpoint",
     "work_wall",
+    "release_order",
 ]
 GENERAL_OUTPUTS: tuple[str, ...] = get_args(GeneralOutput)
 
 #: Variables of the borders between numbers of stops.
-BORDERS = ("border_r", "border_beta", "border_kind", "stops_below", "stops_above")
+BORDERS = ("border_r", "border_beta", "border_kind", "border_mu", "stops_below", "stops_above")
 
 #: Quantities of response curves, in the order of the file.
 Quantity = Literal[

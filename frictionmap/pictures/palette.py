@@ -91,6 +91,12 @@ BORDER: LineStyle = {
     "linewidth": 0.8,
     "label": "borders between numbers of stops",
 }
+BORDER_OF_EXISTENCE: LineStyle = {
+    "color": "#00162c",
+    "linewidth": 0.8,
+    "linestyle": (0, (5, 1.5)),
+    "label": "ends of periodic motions (not of the basins of a start)",
+}
 
 #: Colours of two contacts, 3 times the state of the first plus that of the second: it sticks, sticks and
 #: slips, slides.  Both alike: grey, black, white; bluish where the first one moves less, else brownish.

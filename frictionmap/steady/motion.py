@@ -18,9 +18,11 @@ from .._kernels.engine.further import (
 from .._kernels.engine.records import Cell
 from .._kernels.engine.time_history import Samples, sample_segments
 from .._kernels.engine.window import window_table
+from .._kernels.long_periods import WINDOW
 from .._kernels.structure.newton import make_workspace
 from .._kernels.structure.oscillators import make_scratch
 from .._kernels.structure.state import make_structure
+from ..datasets.labels import EXCERPT
 from ..errors import NoSteadyState
 from ..model.settings import HARMONICS, Solver
 from ..model.system import System
@@ -29,14 +31,6 @@ from .cells import Cells, limits
 from .kernel_data import StructureArrays
 from .maps import plan
 from .quantity_data import VARIABLES, quantity_request, read_result
-
-#: Excitation periods shown of an irregular motion.
-WINDOW = 8
-
-_WINDOWED = (
-    f"the motion is irregular: x, v, z, friction and events cover the last {WINDOW} of the {{}} periods "
-    "followed; the scalars are averages over the last two thirds of them"
-)
 
 _TURN = 2.0 * math.pi
 
@@ -340,7 +334,9 @@ def find_motion(request: MotionRequest) -> SteadyMotion:
     cells = Cells(system, r, beta, mu, solver, quantity_request(CYCLE, HARMONICS))
     found = _find(request, cells)
     history = _history(request, cells, found)
-    comment = _WINDOWED.format(math.ceil(found.averages.cycles)) if found.averages else ""
+    comment = ""
+    if found.averages is not None:
+        comment = EXCERPT.format(shown=WINDOW, followed=math.ceil(found.averages.cycles))
     return SteadyMotion(
         history, _summary(history, found), _cycle(request, cells, found), cells.curves, comment
     )

@@ -6,6 +6,7 @@ import numpy as np
 
 from .. import regimes
 from .._kernels.engine.quantities import LAG, MODULUS
+from ..general.first_harmonics import steady_phasors
 from ..model.settings import Solver, Start
 from ..model.system import System
 from ..theory.boundary_curves import Curves, find_curves
@@ -24,20 +25,23 @@ class States(NamedTuple):
 def steady_states(system: System, r: np.ndarray, beta: np.ndarray, mu: float) -> list[States]:
     """Find the possible steady states at every point; repeated points are computed once.
 
-    For mu = 1 there is one steady state (theory.md 6).  For mu > 1 three columns are returned, which may hold
-    the same motion: the continuous motion by its closed form, where beta <= beta_lim, and the motions reached
-    from rest and from a large sliding motion.
+    For mu = 1 there is one steady state (theory.md 6), for an elastic contact too.  For mu > 1 three columns
+    are returned, which may hold the same motion: the continuous motion by its closed form, where beta <=
+    beta_lim, and the motions reached from rest and from a large sliding motion.
 
     Parameters
     ----------
     system : System
     r : (k,) > 0
     beta : (k,) >= 0
-    mu : >= 1
+    mu : >= 1; 1 for an elastic contact
     """
     distinct, index = np.unique(r + 1j * beta, return_inverse=True)
     points = _Points(distinct.real, distinct.imag, mu)
-    found = _unique_states(system, points) if mu == 1.0 else _multiple_states(system, points)
+    if system.general is not None:
+        found = [States(*steady_phasors(system, points.r, points.beta))]
+    else:
+        found = _unique_states(system, points) if mu == 1.0 else _multiple_states(system, points)
     return [States(states.phasors[index], states.regime[index]) for states in found]
 
 

@@ -29,6 +29,13 @@ _MOST_POINTS = 10**6
 _TITLE = "Steady state in time"
 
 
+def _commented(ds: xr.Dataset, comment: str) -> xr.Dataset:
+    """Add the comment on an irregular motion, if there is one."""
+    if comment:
+        ds.attrs |= {"title": "Motion in time, a part of it", "comment": comment}
+    return ds
+
+
 def _further(request: MotionRequest, names: list[Output]) -> dict[str, xr.Variable]:
     """Compute outputs of the cell of a map that do not follow from the motion in time."""
     if not names:
@@ -121,7 +128,9 @@ def response(
     cell = {"r": r, "beta": beta, "mu": mu}
     if system.general is not None:
         ds = general_response(system, r, beta, mu, solver, points)
-        return with_units(stamp(ds, "response", _TITLE, system, cell, solver, units=units), scales)
+        comment = ds.attrs.get("comment", "")
+        ds = with_units(stamp(ds, "response", _TITLE, system, cell, solver, units=units), scales)
+        return _commented(ds, comment)
     request = MotionRequest(system, r, beta, mu, solver, points)
     found = find_motion(request)
     history, cycle = found.history, found.cycle
@@ -156,6 +165,4 @@ def response(
     ds = stamp(ds, "response", _TITLE, system, cell, solver, units=units)
     ds.attrs |= boundary_check(system, np.array([r]), np.array([mu]))
     ds = with_units(ds, scales)
-    if found.comment:
-        ds.attrs |= {"title": "Motion in time, a part of it", "comment": found.comment}
-    return ds
+    return _commented(ds, found.comment)

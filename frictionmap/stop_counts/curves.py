@@ -5,23 +5,34 @@ from typing import NamedTuple
 import numpy as np
 
 from ..model.general import refuse_general
+from ..model.settings import Start
 from ..model.system import System
-from .margins import is_physical, margins
+from .beginnings import HALVES, begun, ends, orbits_beside
+from .conditions import DOUBLING, TURN
 from .phases import Phases
-from .seeds import Seeds, counts_at, orbit_at, seeds_of_map
-from .tracing import Place, Window, at_frequency, orbit_unknowns, solve, traced
+from .seeds import Seeds, Source, narrowed, seeds_of_map
+from .tracing import Place, Window, ends_with_stop, traced
 
-#: Cells on a side of the maps that are searched, one after the other.
-_MAPS = (160, 400)
 
-#: Nearest borders of an orbit that are tried.
-_TRIED = 5
+class _Map(NamedTuple):
+    """A map that is searched: frequencies, friction ratios, whether frequencies are spaced in proportion."""
 
-#: A point of a border lies in the bracket of a seed, widened by this multiple of its width.
+    rows: int
+    columns: int
+    proportional: bool
+    start: Start = "rest"
+
+
+#: Maps that are searched one after the other.  For mu = 1 the last has the rows of a fine map of the window.
+_UNIQUE = (_Map(160, 160, True), _Map(400, 400, True), _Map(2000, 500, False))
+_SEVERAL = (_Map(160, 160, True), _Map(160, 160, True, "moving"), _Map(400, 400, True))
+
+#: Seeds for mu > 1 are alike within this relative distance in r and beta.  Numbers of stops are whole, but
+#: stored in single precision.
+_ALIKE_SEEDS, _WHOLE = 0.01, 1e-5
+
+#: A curve crosses a bracket that is widened by this multiple of its width.
 _WIDER = 3.0
-
-#: Relative distance from a border at which the numbers of stops beside it are taken.
-_BESIDE = 1e-6
 
 #: Points put between two points of a curve, on the cubic through their tangents.
 _BETWEEN = 8
@@ -34,7 +45,10 @@ _NEAR_END = 2e-4
 
 
 class Border(NamedTuple):
-    """A border over increasing r, its kind, and the stops per cycle below and above it in beta."""
+    """A border over increasing r, its kind, and the stops per cycle below and above it in beta.
+
+    For mu > 1 these are the stops of the orbit that ends there; NaN where it does not exist.
+    """
 
     r: np.ndarray
     beta: np.ndarray
@@ -48,10 +62,15 @@ class _Curve(NamedTuple):
     r: np.ndarray
     beta: np.ndarray
     exact: np.ndarray  # whether a point was computed, not put between
+    side: np.ndarray  # of the orbit, weighted by the tangent in r: where r turns, the side changes
+    stops: float  # of the orbit
+    other: float  # on the other side
 
 
-def find_borders(system: System, r: tuple[float, float], beta: tuple[float, float]) -> list[Border]:
-    """Find the borders between numbers of stops per cycle for mu = 1, in ranges of r and beta.
+def find_borders(
+    system: System, r: tuple[float, float], beta: tuple[float, float], mu: float
+) -> list[Border]:
+    """Find the borders between numbers of stops per cycle in ranges of r and beta.
 
     Parameters
     ----------
@@ -59,6 +78,8 @@ def find_borders(system: System, r: tuple[float, float], beta: tuple[float, floa
         With one rigid contact under one harmonic load.
     r, beta : two numbers each, > 0
         Below some r borders are dense: about as many as 1/r^2.
+    mu : >= 1
+        For mu > 1 the borders of the orbits that maps from two starts contain: where each of them ends.
 
     Returns
     -------
@@ -68,22 +89,83 @@ def find_borders(system: System, r: tuple[float, float], beta: tuple[float, floa
     window = Window(r, beta)
     phases = Phases(system)
     found: list[_Curve] = []
-    for count in _MAPS:
-        _add(system, phases, window, seeds_of_map(system, window, 1.0, count), found)
-    return _beside(system, [piece for curve in found for piece in _pieces(curve)])
+    for searched in _UNIQUE if mu == 1.0 else _SEVERAL:
+        source = Source(system, mu, searched.start)
+        r_map = (np.geomspace if searched.proportional else np.linspace)(*window.r, searched.rows)
+        seeds = _unexplained(seeds_of_map(source, window, r_map, searched.columns), found)
+        if mu > 1.0:
+            seeds = _thinned(seeds)
+        _add(source, phases, window, narrowed(source, seeds), found)
+    return [piece for curve in found for piece in _pieces(curve)]
 
 
-def _add(system: System, phases: Phases, window: Window, seeds: Seeds, found: list[_Curve]) -> None:
+def _add(source: Source, phases: Phases, window: Window, seeds: Seeds, found: list[_Curve]) -> None:
     """Trace the borders through seeds that no known border explains."""
     for k in range(seeds.r.size):
         r, low, high = float(seeds.r[k]), float(seeds.low[k]), float(seeds.high[k])
         if any(_crosses(curve, r, low, high) for curve in found):
             continue
-        begun = _begun(system, phases, r, low, high)
-        if begun is not None and not any(_is_on(curve, begun) for curve in found):
-            points = traced(phases, begun, window)
-            exact = np.arange(_BETWEEN * (len(points) - 1) + 1) % _BETWEEN == 0
-            found.append(_Curve(begun.condition.kind, *_dense(points), exact))
+        orbits = orbits_beside(source, phases, (r, low, high))
+        place = begun(phases, orbits, low, high)
+        places = [] if place is None else [place]
+        if source.mu > 1.0 and place is None:
+            places = ends(phases, orbits, low, high)
+        for first in places:
+            if not any(_is_on(curve, first) for curve in found):
+                found.append(_curve(first, traced(phases, first, window)))
+
+
+def _curve(place: Place, points: np.ndarray) -> _Curve:
+    """A traced border with points between its own, and the stops of its orbit on both sides."""
+    sequence, kind = place.sequence, place.condition.kind
+    exact = np.arange(_BETWEEN * (len(points) - 1) + 1) % _BETWEEN == 0
+    stops = other = sequence.stops_per_cycle
+    if sequence.mu == 1.0 or (kind == TURN and not ends_with_stop(sequence, place.condition)):
+        other += 2.0 / sequence.half_periods
+    elif kind != DOUBLING:
+        other = np.nan
+    side = points[:, 4] * np.abs(points[:, 2])
+    return _Curve(kind, *_dense(points[:, :4]), exact, side, stops, other)
+
+
+def _unexplained(seeds: Seeds, found: list[_Curve]) -> Seeds:
+    """Seeds that no known border crosses."""
+    known = np.zeros(seeds.r.size, dtype=bool)
+    for curve in found:
+        known |= _crossed(curve, seeds)
+    return Seeds(*(array[~known] for array in seeds))
+
+
+def _thinned(seeds: Seeds) -> Seeds:
+    """Seeds beside an orbit whose ends are sought, one of those with the same numbers close to each other.
+
+    For mu > 1 most changes are where a start leaves a basin, and explained by no border.
+    """
+    sides = (seeds.below, seeds.above)
+    halves = np.arange(1, HALVES + 1)[:, np.newaxis]
+    stops = [0.5 * halves * side for side in sides]  # of an orbit of this many half periods
+    short = np.any([np.abs(each - np.round(each)) < _WHOLE for each in stops], axis=(0, 1))
+    places = [np.floor(np.log(array) / _ALIKE_SEEDS) for array in (seeds.r, seeds.low)]
+    keys = np.column_stack((*places, *sides))[short]
+    first = np.sort(np.unique(keys, axis=0, return_index=True)[1])
+    return Seeds(*(array[short][first] for array in seeds))
+
+
+def _crossed(curve: _Curve, seeds: Seeds) -> np.ndarray:
+    """Which seeds a curve crosses, (k,)."""
+    order = np.argsort(seeds.r, kind="stable")
+    r, low, high = seeds.r[order], seeds.low[order], seeds.high[order]
+    crossed = np.zeros(r.size, dtype=bool)
+    for k in range(curve.r.size - 1):
+        (left, first), (right, last) = sorted(zip(curve.r[k : k + 2], curve.beta[k : k + 2], strict=True))
+        if left == right:
+            continue
+        near = slice(*np.searchsorted(r, (left, right), side="left"))
+        place = first + (r[near] - left) / (right - left) * (last - first)
+        crossed[near] |= (place >= low[near] * (1.0 - _ALIKE)) & (place <= high[near] * (1.0 + _ALIKE))
+    found = np.empty(r.size, dtype=bool)
+    found[order] = crossed
+    return found
 
 
 def _crosses(curve: _Curve, r: float, low: float, high: float) -> bool:
@@ -104,28 +186,6 @@ def _is_on(curve: _Curve, place: Place) -> bool:
     return same and _crosses(curve, float(r), (1.0 - _NEAR_END) * beta, (1.0 + _NEAR_END) * beta)
 
 
-def _begun(system: System, phases: Phases, r: float, low: float, high: float) -> Place | None:
-    """The border inside a bracket; None if none of the nearest ones is there."""
-    slack = _WIDER * (high - low)
-    for beta in (low, high):
-        orbit = orbit_at(system, r, beta, 1.0)
-        if orbit is None:
-            continue
-        sequence, unknowns = orbit
-        fixed = np.zeros((2, unknowns.size))
-        fixed[0, -2] = fixed[1, -1] = 1.0
-        exact = solve(phases, sequence, None, unknowns, fixed)
-        if exact is None:
-            continue
-        for margin in margins(phases, sequence, exact)[:_TRIED]:
-            place = at_frequency(phases, sequence, exact, margin)
-            if place is None or not low - slack <= place.unknowns[-1] <= high + slack:
-                continue
-            if is_physical(phases, place.sequence, orbit_unknowns(place.condition, place.unknowns)):
-                return place
-    return None
-
-
 def _pieces(curve: _Curve) -> list[Border]:
     """Parts of a curve over which r increases or decreases, with points between its own."""
     r, beta = curve.r[curve.exact], curve.beta[curve.exact]
@@ -136,8 +196,16 @@ def _pieces(curve: _Curve) -> list[Border]:
         part = slice(first, last + 1)
         order = np.argsort(r[part], kind="stable")
         if order.size > 1:
-            pieces.append(Border(r[part][order], beta[part][order], curve.kind, np.nan, np.nan))
+            sides = _sides(curve, float(curve.side[part].sum()))
+            pieces.append(Border(r[part][order], beta[part][order], curve.kind, *sides))
     return pieces
+
+
+def _sides(curve: _Curve, side: float) -> tuple[float, float]:
+    """Stops below and above a border whose orbit is on one side of it."""
+    if side == 0.0 and curve.kind != DOUBLING:
+        return np.nan, np.nan
+    return (curve.other, curve.stops) if side > 0.0 else (curve.stops, curve.other)
 
 
 def _dense(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -152,17 +220,3 @@ def _dense(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     between = found.transpose(1, 0, 2).reshape(-1, 2)
     r, beta = np.exp(np.concatenate((between, places[-1:]))).T
     return r, beta
-
-
-def _beside(system: System, pieces: list[Border]) -> list[Border]:
-    """The same with the numbers of stops below and above them, taken in the middle of each."""
-    if not pieces:
-        return pieces
-    middle = [piece.r.size // 2 for piece in pieces]
-    r = np.array([piece.r[k] for piece, k in zip(pieces, middle, strict=True)])
-    beta = np.array([piece.beta[k] for piece, k in zip(pieces, middle, strict=True)])
-    below, above = (counts_at(system, r, beta * (1.0 + sign * _BESIDE), 1.0) for sign in (-1.0, 1.0))
-    return [
-        piece._replace(below=float(low), above=float(high))
-        for piece, low, high in zip(pieces, below, above, strict=True)
-    ]

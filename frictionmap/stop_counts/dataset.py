@@ -18,8 +18,13 @@ from .curves import Border, find_borders
 _LOWEST = 1.0 / 16.0
 
 
-def borders(system: System, r: Any, beta: Any, *, units: Units | None = None) -> xr.Dataset:
-    """Find the borders between numbers of stops per cycle for mu = 1 as exact curves, theory.md 12.
+def borders(system: System, r: Any, beta: Any, mu: Any = 1.0, *, units: Units | None = None) -> xr.Dataset:
+    """Find the borders between numbers of stops per cycle as exact curves, theory.md 12.
+
+    For mu = 1 the steady state is unique, and every change of its number of stops within the ranges lies on
+    a border, `beta_lim` or `beta_stick`.  For mu > 1 the borders are those of existence: where a periodic
+    motion with some number of stops ends.  The motion from a given initial state may leave it before, at the
+    border of its basin, which is no such curve.
 
     Parameters
     ----------
@@ -29,16 +34,23 @@ def borders(system: System, r: Any, beta: Any, *, units: Units | None = None) ->
         Range of frequency ratios, > 0; with units also frequencies.  The number of borders grows like 1/r^2.
     beta : array_like, shape (2,)
         Range of friction ratios, > 0; with units also forces.
+    mu : float or array_like, shape (n_mu,)
+        Ratios of static to kinetic friction [-], >= 1, increasing.  For mu > 1 the search takes several times
+        as long; it begins at motions from rest and from a large sliding motion that repeat within two
+        excitation periods.
     units : Units, optional
         Reference values that convert ratios to Hz and N, as in `sweep`.
 
     Returns
     -------
     xarray.Dataset
-        On (border, point) `border_r` and `border_beta`, exact points about 2 % apart over increasing r,
-        padded with NaN; on border `border_kind`: "graze" (a slide touches zero velocity, a stop is born),
-        "slip-in-stop" (a stop is split by a slide), "turn/stop" (a stop becomes a turn), and `stops_below`
-        and `stops_above`, stops per cycle on both sides.  `beta_lim` and `beta_stick` are not among them.
+        On (border, point) `border_r` and `border_beta`, exact points at most 2 % apart over increasing r,
+        padded with NaN.  On border: `border_mu`; `border_kind`: "graze" (a slide touches zero velocity),
+        "slip-in-stop" (the force in a stop touches its limit), "turn/stop" (a stop becomes a turn), and for
+        mu > 1 "graze-of-slide-end" (a slide ends where its deceleration vanishes), "fold" (two motions meet
+        and end) and "doubling" (a motion loses its stability to one of twice its period, or its symmetry);
+        `stops_below` and `stops_above`, stops per cycle on both sides: for mu > 1 those of the motion that
+        ends, NaN where it does not exist.  `beta_lim` and `beta_stick` are not among the borders.
 
     Raises
     ------
@@ -61,30 +73,37 @@ def borders(system: System, r: Any, beta: Any, *, units: Units | None = None) ->
         if axis.size != 2 or axis[0] <= 0.0:
             raise InputError(f"{name} must be two numbers > 0; got {checks.one_line(given)}")
         ends[name] = axis
+    each = checks.axis(mu, "mu", least=1.0)
     system.costs(ends["r"])
-    found = find_borders(system, tuple(ends["r"]), tuple(ends["beta"]))
+    found = [
+        (float(one), border)
+        for one in each
+        for border in find_borders(system, tuple(ends["r"]), tuple(ends["beta"]), float(one))
+    ]
     ds = stamp(
         xr.Dataset(_variables(found)),
         "borders",
         "Borders between numbers of stops",
         system,
-        ends,
+        ends | {"mu": each},
         units=units,
     )
     return with_units(ds, scales)
 
 
-def _variables(found: list[Border]) -> dict[str, xr.Variable]:
-    longest = max((border.r.size for border in found), default=0)
+def _variables(found: list[tuple[float, Border]]) -> dict[str, xr.Variable]:
+    """Variables of borders, each with its mu."""
+    longest = max((border.r.size for _, border in found), default=0)
     points = np.full((2, len(found), longest), np.nan)
-    for k, border in enumerate(found):
+    for k, (_, border) in enumerate(found):
         points[:, k, : border.r.size] = border.r, border.beta
     values = {
         "border_r": points[0],
         "border_beta": points[1],
-        "border_kind": np.array([border.kind for border in found], dtype=np.str_),
-        "stops_below": np.array([border.below for border in found], dtype=np.float32),
-        "stops_above": np.array([border.above for border in found], dtype=np.float32),
+        "border_kind": np.array([border.kind for _, border in found], dtype=np.str_),
+        "border_mu": np.array([mu for mu, _ in found]),
+        "stops_below": np.array([border.below for _, border in found], dtype=np.float32),
+        "stops_above": np.array([border.above for _, border in found], dtype=np.float32),
     }
     return {name: label_variable(name, value) for name, value in values.items()}
 
@@ -95,11 +114,8 @@ def with_borders(ds: xr.Dataset, system: System, beta: np.ndarray, units: Units 
     Raises
     ------
     InputError
-        mu = 1 is not among those of the boundaries, or the axes hold no window.
+        The axes hold no window.
     """
-    if not (ds["mu"].values == 1.0).any():
-        mu = ", ".join(f"{value:g}" for value in ds["mu"].values)
-        raise InputError(f"mu must contain 1 for borders between numbers of stops; got {mu}")
     r = ds["r"].values
     lowest = _LOWEST * float(system.modes.w.min())
     inside, positive = r[r >= lowest], beta[beta > 0.0]
@@ -108,7 +124,7 @@ def with_borders(ds: xr.Dataset, system: System, beta: np.ndarray, units: Units 
             f"grid.r must have two values >= {lowest:.3g}, and grid.beta two > 0, for borders between "
             f"numbers of stops; got {inside.size} and {positive.size}"
         )
-    found = borders(system, inside[[0, -1]], positive[[0, -1]], units=units)
+    found = borders(system, inside[[0, -1]], positive[[0, -1]], ds["mu"].values, units=units)
     if not found.sizes["border"]:
         return ds
     return ds.assign(found.data_vars)

@@ -5,11 +5,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .orbits import GRAZE, SLIDE_END, SLIP, TURN, Condition, Motion, Sequence, inside, motion_of
+from .conditions import GRAZE, SLIDE_END, SLIP, TURN, Condition
+from .orbits import Motion, Sequence, inside, motion_of
 from .phases import Phases
 
 #: Samples of a piece: per period of the fastest part of the motion, and at least.
 _PER_PERIOD, _LEAST = 24, 16
+
+#: Samples between the neighbours of a minimum, how often they are taken, and how much above the least sample
+#: a minimum is that may be below it in truth: the square of the distance of samples.
+_ZOOMED, _ZOOMS, _CLOSE = 17, 2, 0.07
 
 #: Relative violation below which an orbit is what it says: rounding, and the solved extreme of its border.
 _ROUNDING = 1e-8
@@ -47,14 +52,35 @@ def sampled(phases: Phases, sequence: Sequence, motion: Motion, piece: int) -> S
         _LEAST, math.ceil(_PER_PERIOD * (end - begin) * max(1.0, phases.fastest / r) / (2.0 * math.pi))
     )
     tau = np.linspace(begin, end, count + 1)
+    return Samples(piece, tau, _values(phases, sequence, motion, piece, tau))
+
+
+def _values(phases: Phases, sequence: Sequence, motion: Motion, piece: int, tau: np.ndarray) -> np.ndarray:
+    """Values of a piece of one orbit at phases tau (k,), see `Samples`."""
     many = _repeated(motion, piece, tau.size)
     states = inside(phases, sequence, many, piece, tau)
     sense = sequence.senses[piece]
     if sense == 0:
-        values = phases.force(many.drive, states, tau) / (sequence.mu * many.beta)
-    else:
-        values = sense * phases.velocity(states)
-    return Samples(piece, tau, values)
+        return phases.force(many.drive, states, tau) / (sequence.mu * many.beta)
+    return sense * phases.velocity(states)
+
+
+def _least(phases: Phases, sequence: Sequence, motion: Motion, samples: Samples, sign: float) -> float:
+    """Least value of sign times a piece away from its ends; minima between samples are looked at closely."""
+    values = sign * samples.values
+    least = float(values[1:-1].min())
+    scale = float(np.abs(values).max())
+    for k in _minima(values):
+        low, high = samples.tau[k - 1], samples.tau[k + 1]
+        if values[k] > least + _CLOSE * scale:
+            continue
+        for _ in range(_ZOOMS):
+            tau = np.linspace(low, high, _ZOOMED)
+            closer = sign * _values(phases, sequence, motion, samples.piece, tau)
+            lowest = int(np.argmin(closer[1:-1])) + 1
+            low, high = tau[lowest - 1], tau[lowest + 1]
+            least = min(least, float(closer[lowest]))
+    return least
 
 
 def _repeated(motion: Motion, piece: int, count: int) -> Motion:
@@ -124,7 +150,10 @@ def violation(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> float
     edges = np.concatenate(([sequence.start], times, [sequence.end]))
     if (np.diff(edges) <= 0.0).any() or unknowns[-1] <= 0.0 or unknowns[-2] <= 0.0:
         return math.inf
-    motion = motion_of(phases, sequence, times[np.newaxis], unknowns[-2:-1], unknowns[-1:])
+    try:
+        motion = motion_of(phases, sequence, times[np.newaxis], unknowns[-2:-1], unknowns[-1:])
+    except np.linalg.LinAlgError:
+        return math.inf  # its return determines no state
     worst = 0.0
     for piece in range(1, sequence.events + 1):
         samples = sampled(phases, sequence, motion, piece)
@@ -132,9 +161,10 @@ def violation(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> float
             fastest = float(samples.values.max())
             if fastest <= 0.0:
                 return math.inf  # it slides the other way
-            worst = max(worst, -float(samples.values[1:-1].min()) / fastest)
+            worst = max(worst, -_least(phases, sequence, motion, samples, 1.0) / fastest)
         else:
-            worst = max(worst, float(np.abs(samples.values[1:-1]).max()) - 1.0)
+            for sign in (1.0, -1.0):
+                worst = max(worst, -_least(phases, sequence, motion, samples, sign) - 1.0)
     for k in range(sequence.events):
         if sequence.senses[k]:
             force = _end_force(phases, sequence, motion, k)

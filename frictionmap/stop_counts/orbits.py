@@ -1,4 +1,4 @@
-"""Periodic motions with a given sequence of slides and stops, and what borders a region of them.
+"""Periodic motions with a given sequence of slides and stops.
 
 An orbit returns to its state, or to its mirror image, after `half_periods` of the load.  It begins in the
 middle of its longest piece, at `start`; between the events its pieces have senses (+1, -1: slides, 0: a
@@ -10,8 +10,6 @@ from typing import NamedTuple
 import numpy as np
 
 from .phases import Affine, Drive, Phases
-
-GRAZE, SLIP, TURN, SLIDE_END = "graze", "slip-in-stop", "turn/stop", "graze-of-slide-end"
 
 
 class Sequence(NamedTuple):
@@ -34,23 +32,15 @@ class Sequence(NamedTuple):
         return self.start + np.pi * self.half_periods
 
     @property
+    def sign(self) -> float:
+        """The factor by which the orbit returns to its state."""
+        return -1.0 if self.mirrored else 1.0
+
+    @property
     def stops_per_cycle(self) -> float:
         """Stops that begin per excitation period."""
         stops = sum(sense == 0 for sense in self.senses[1:])
         return 2.0 * stops / self.half_periods
-
-
-class Condition(NamedTuple):
-    """A kind of border, the piece that it concerns, and the sign of the force there."""
-
-    kind: str
-    piece: int
-    sign: int = 0
-
-    @property
-    def inside(self) -> bool:
-        """Whether the border is an event inside a piece, whose phase is a further unknown."""
-        return self.kind in (GRAZE, SLIP)
 
 
 class Motion(NamedTuple):
@@ -70,27 +60,46 @@ def _piece(
     return phases.slide(drive, begin, end, sense * beta)
 
 
+class Pieces(NamedTuple):
+    """All pieces of an orbit as maps of the state, and the phases of their beginnings and of the end."""
+
+    drive: Drive
+    beta: np.ndarray
+    times: list[np.ndarray]
+    maps: list[Affine]
+
+    def states(self, first: np.ndarray) -> list[np.ndarray]:
+        """States at these phases, from the first (B, 2m)."""
+        found = [first]
+        for one in self.maps:
+            found.append(one(found[-1]))
+        return found
+
+
+def pieces_of(
+    phases: Phases, sequence: Sequence, times: np.ndarray, r: np.ndarray, beta: np.ndarray
+) -> Pieces:
+    """The pieces between event times (B, k), for r and beta (B,)."""
+    drive = phases.drive(r)
+    edges = [np.full(r.size, sequence.start), *times.T, np.full(r.size, sequence.end)]
+    maps = [
+        _piece(phases, sense, drive, beta, begin, end)
+        for sense, begin, end in zip(sequence.senses, edges[:-1], edges[1:], strict=True)
+    ]
+    return Pieces(drive, beta, edges, maps)
+
+
 def motion_of(
     phases: Phases, sequence: Sequence, times: np.ndarray, r: np.ndarray, beta: np.ndarray
 ) -> Motion:
     """The motion that returns, for event times (B, k), r and beta (B,)."""
-    drive, cases = phases.drive(r), r.size
-    ends = [*times.T, np.full(cases, sequence.end)]
-    begins = [np.full(cases, sequence.start), *times.T]
-    size = 2 * phases.m
-    whole = None
-    maps = []
-    for sense, begin, end in zip(sequence.senses, begins, ends, strict=True):
-        one = _piece(phases, sense, drive, beta, begin, end)
-        whole = one if whole is None else one.after(whole)
-        maps.append(one)
-    assert whole is not None
-    sign = -1.0 if sequence.mirrored else 1.0
-    state = np.linalg.solve(sign * np.eye(size) - whole.matrix, whole.shift[..., np.newaxis])[..., 0]
-    states = [state]
-    for one in maps:
-        states.append(one(states[-1]))
-    return Motion(drive, beta, [*begins, ends[-1]], states)
+    pieces = pieces_of(phases, sequence, times, r, beta)
+    whole = pieces.maps[0]
+    for one in pieces.maps[1:]:
+        whole = one.after(whole)
+    back = sequence.sign * np.eye(2 * phases.m)
+    first = np.linalg.solve(back - whole.matrix, whole.shift[..., np.newaxis])[..., 0]
+    return Motion(pieces.drive, beta, pieces.times, pieces.states(first))
 
 
 def inside(phases: Phases, sequence: Sequence, motion: Motion, piece: int, tau: np.ndarray) -> np.ndarray:
@@ -100,42 +109,14 @@ def inside(phases: Phases, sequence: Sequence, motion: Motion, piece: int, tau: 
     return one(motion.states[piece])
 
 
-def residuals(
-    phases: Phases, sequence: Sequence, condition: Condition | None, unknowns: np.ndarray
-) -> np.ndarray:
-    """What an orbit on a border leaves of its equations, (B, k [+ 1 or 2]).
-
-    unknowns : (B, k [+ 1] + 2): times of the events, of the condition, r, beta
-    """
-    count = sequence.events
-    r, beta = unknowns[:, -2], unknowns[:, -1]
-    motion = motion_of(phases, sequence, unknowns[:, :count], r, beta)
+def events(phases: Phases, sequence: Sequence, motion: Motion) -> list[np.ndarray]:
+    """What a motion leaves of the equations of its events: z' at ends of slides, forces at ends of stops."""
     found = []
-    for k in range(count):
+    for k in range(sequence.events):
         state, tau = motion.states[k + 1], motion.times[k + 1]
         if sequence.senses[k] == 0:
-            limit = sequence.senses[k + 1] * sequence.mu * beta
+            limit = sequence.senses[k + 1] * sequence.mu * motion.beta
             found.append(phases.force(motion.drive, state, tau) - limit)
         else:
             found.append(phases.velocity(state))
-    if condition is not None:
-        found += _border(phases, sequence, condition, motion, unknowns[:, count])
-    return np.stack(found, axis=1)
-
-
-def _border(
-    phases: Phases, sequence: Sequence, condition: Condition, motion: Motion, tau: np.ndarray
-) -> list[np.ndarray]:
-    """Equations of a condition; `tau` is its phase, where it has one."""
-    drive, beta, piece = motion.drive, motion.beta, condition.piece
-    sense = sequence.senses[piece]
-    if condition.kind == GRAZE:
-        state = inside(phases, sequence, motion, piece, tau)
-        return [phases.velocity(state), phases.acceleration(drive, state, tau, sense * beta)]
-    if condition.kind == SLIP:
-        state = inside(phases, sequence, motion, piece, tau)
-        limit = condition.sign * sequence.mu * beta
-        return [phases.force(drive, state, tau) - limit, phases.force_rate(drive, state, tau)]
-    state, end = motion.states[piece + 1], motion.times[piece + 1]
-    limit = -sense * sequence.mu * beta if condition.kind == TURN else sense * beta
-    return [phases.force(drive, state, end) - limit]
+    return found

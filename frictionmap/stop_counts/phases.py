@@ -26,12 +26,11 @@ class Affine(NamedTuple):
     shift: np.ndarray
 
     def __call__(self, state: np.ndarray) -> np.ndarray:
-        return np.einsum("bij,bj->bi", self.matrix, state) + self.shift
+        return _applied(self.matrix, state) + self.shift
 
     def after(self, first: "Affine") -> "Affine":
         """This map after another one."""
-        shift = np.einsum("bij,bj->bi", self.matrix, first.shift) + self.shift
-        return Affine(self.matrix @ first.matrix, shift)
+        return Affine(self.matrix @ first.matrix, self(first.shift))
 
 
 class Exponential:
@@ -90,6 +89,13 @@ class Phases:
         self._held = Exponential(np.block([[np.zeros((n, n)), np.eye(n)], [-k, -d]]))
         pull = self._basis.T @ self._stiffness @ self._unit
         self._static = -np.linalg.solve(k, pull) if n else np.empty(0)
+        self._enter, self._leave = np.zeros((2 * n, 2 * m)), np.zeros((2 * m, 2 * n))
+        self._enter[:n, :m], self._enter[n:, m:] = self._basis.T, self._basis.T
+        self._enter[:n, :m] -= np.outer(self._static, self.chi)
+        self._leave[:m, :n], self._leave[m:, n:] = self._basis, self._basis
+        self._stays = np.zeros((2 * m, 2 * m))
+        self._stays[:m, :m] = np.outer(self._basis @ self._static + self._unit, self.chi)
+        self._rest = -np.concatenate((self.chi / np.diag(self._stiffness), np.zeros(m)))
 
     @cached_property
     def fastest(self) -> float:
@@ -107,26 +113,19 @@ class Phases:
     def slide(self, drive: Drive, begin: np.ndarray, end: np.ndarray, force: np.ndarray) -> Affine:
         """From begin to end (B,) in tau, against a friction force (B,) of the sign of the slide."""
         grown = self._slide((end - begin) / drive.r)
-        rest = np.zeros((drive.r.size, 2 * self.m))
-        rest[:, : self.m] = -force[:, np.newaxis] * self.chi / np.diag(self._stiffness)
+        rest = force[:, np.newaxis] * self._rest
         before = _forced(drive.sliding, drive.r, begin) + rest
-        return Affine(
-            grown, _forced(drive.sliding, drive.r, end) + rest - np.einsum("bij,bj->bi", grown, before)
-        )
+        return Affine(grown, _forced(drive.sliding, drive.r, end) + rest - _applied(grown, before))
 
     def stop(self, drive: Drive, begin: np.ndarray, end: np.ndarray) -> Affine:
         """From begin to end (B,) in tau with the contact held."""
-        m, n = self.m, self.m - 1
-        into, out = np.zeros((2 * n, 2 * m)), np.zeros((2 * m, 2 * n))
-        into[:n, :m], into[n:, m:] = self._basis.T, self._basis.T
-        out[:m, :n], out[m:, n:] = self._basis, self._basis
-        into[:n, :m] -= np.outer(self._static, self.chi)
-        stays = np.zeros((2 * m, 2 * m))
-        stays[:m, :m] = np.outer(self._basis @ self._static + self._unit, self.chi)
-        grown = self._held((end - begin) / drive.r) if n else np.empty((drive.r.size, 0, 0))
+        cases, size = drive.r.size, self._stays.shape
+        if self.m == 1:
+            return Affine(np.broadcast_to(self._stays, (cases, *size)), np.zeros((cases, size[0])))
+        grown = self._held((end - begin) / drive.r)
         moved = _forced(drive.held, drive.r, end)
-        moved = moved - np.einsum("bij,bj->bi", grown, _forced(drive.held, drive.r, begin))
-        return Affine(out @ grown @ into + stays, moved @ out.T)
+        moved = moved - _applied(grown, _forced(drive.held, drive.r, begin))
+        return Affine(self._leave @ grown @ self._enter + self._stays, moved @ self._leave.T)
 
     def velocity(self, state: np.ndarray) -> np.ndarray:
         """r z' of states (B, 2m)."""
@@ -151,6 +150,11 @@ class Phases:
     def _free_force(self, drive: Drive, state: np.ndarray, tau: np.ndarray) -> np.ndarray:
         load = (drive.load * np.exp(1j * tau)[:, np.newaxis]).real
         return load - state[:, : self.m] @ self._stiffness - state[:, self.m :] @ self._damping
+
+
+def _applied(matrix: np.ndarray, state: np.ndarray) -> np.ndarray:
+    """Products of matrices (B, n, n) and states (B, n)."""
+    return (matrix @ state[..., np.newaxis])[..., 0]
 
 
 def _phasors(stiffness: np.ndarray, damping: np.ndarray, r: np.ndarray, load: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ import numpy as np
 from .. import regimes
 from .._kernels.engine import segment_table
 from .._kernels.engine.fill import one_cell
-from ..model.settings import Solver
+from ..model.settings import Output, Solver, Start
 from ..model.system import System
 from ..steady.cells import Cells, limits
 from ..steady.maps import compute
@@ -16,13 +16,39 @@ from ..theory.boundary_curves import find_curves
 from .orbits import Sequence
 from .tracing import Window
 
-#: Cells of a map over r and beta, and the part of the beta that is spaced in proportion.
+#: Part of the friction ratios of a map that is spaced in proportion.
 _PROPORTIONAL = 0.3
 
-#: Bisections of a bracket in beta: to a relative width of 1e-5 and less.
+#: Blocks of frequencies in a map, and the least beta searched in one, relative to its largest: each block is
+#: searched where motions stop and slide in it, which for small r may be a small part of the window.
+_BLOCKS, _LEAST = 20, 1e-4
+
+#: Bisections of a bracket in beta: of a map of 160 rows to a relative width of 1e-5 and less.
 _BISECTIONS = 17
 
-_SOLVER = Solver(outputs=("regime", "stops_per_cycle", "status"))
+_OUTPUTS: tuple[Output, ...] = ("regime", "stops_per_cycle", "status")
+
+#: Solvers for mu > 1 by their initial state.  The orbits sought settle within some cycles; irregular motions,
+#: of which there are many, would be followed for all.
+_CYCLES = 200
+_UNIQUE = Solver(outputs=_OUTPUTS)
+_SEVERAL: dict[Start, Solver] = {
+    "rest": Solver(start="rest", cycles=_CYCLES, outputs=_OUTPUTS),
+    "moving": Solver(start="moving", cycles=_CYCLES, outputs=_OUTPUTS),
+}
+
+
+class Source(NamedTuple):
+    """Where steady states are taken from: a system, mu, and the initial state."""
+
+    system: System
+    mu: float
+    start: Start = "rest"
+
+    @property
+    def solver(self) -> Solver:
+        """The solver of the maps."""
+        return _UNIQUE if self.mu == 1.0 else _SEVERAL[self.start]
 
 
 class Seeds(NamedTuple):
@@ -35,49 +61,60 @@ class Seeds(NamedTuple):
     above: np.ndarray
 
 
-def grid_of(window: Window, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies and friction ratios of a map: in proportion, the larger friction ratios evenly."""
-    r = np.geomspace(*window.r, count)
-    low, high = max(window.beta[0], 1e-3 * window.beta[1]), window.beta[1]
-    small = round(_PROPORTIONAL * count)
-    beta = np.union1d(np.geomspace(low, high, small), np.linspace(low, high, count - small))
-    return r, beta
-
-
-def counts_at(system: System, r: np.ndarray, beta: np.ndarray, mu: float) -> np.ndarray:
-    """Stops per cycle at points (k,); NaN where the contact sticks or there is no steady state."""
+def counts_at(source: Source, r: np.ndarray, beta: np.ndarray) -> np.ndarray:
+    """Stops per cycle at points (k,); NaN where the contact sticks or no steady state was reached."""
     order = np.argsort(r, kind="stable")
     found = np.empty(r.size)
     for first in range(0, r.size, AT_ONCE):
         which = order[first : first + AT_ONCE]
-        cells = scattered_cells(system, r[which], beta[which], mu, _SOLVER)
-        found[which] = cells.out.stops_per_cycle[0, np.arange(which.size), cells.column]
+        cells = scattered_cells(source.system, r[which], beta[which], source.mu, source.solver)
+        place = (0, np.arange(which.size), cells.column)
+        resolved = cells.out.status[place] == regimes.RESOLVED
+        found[which] = np.where(resolved, cells.out.stops_per_cycle[place], np.nan)
     return found
 
 
-def seeds_of_map(system: System, window: Window, mu: float, count: int) -> Seeds:
-    """Brackets of all changes of the number of stops along beta in a map, narrowed."""
-    r, beta = grid_of(window, count)
-    axes = {"mu": np.array([mu]), "r": r, "beta": beta}
-    _, out = compute(system, axes, _SOLVER, None, None, None)
+def seeds_of_map(source: Source, window: Window, r: np.ndarray, count: int) -> Seeds:
+    """Brackets of all changes of the number of stops along beta in a map with `count` friction ratios."""
+    found = [_of_block(source, window, block, count) for block in np.array_split(r, _BLOCKS)]
+    return Seeds(*(np.concatenate(arrays) for arrays in zip(*found, strict=True)))
+
+
+def _of_block(source: Source, window: Window, r: np.ndarray, count: int) -> Seeds:
+    """The same for frequencies of one block of the map."""
+    mu = np.array([source.mu])
+    curves = find_curves(source.system, r, mu)
+    beta = _friction_of(window, curves.beta_lim[0], curves.beta_stick[0], count)
+    if not beta.size:
+        return Seeds(*np.empty((5, 0)))
+    _, out = compute(source.system, {"mu": mu, "r": r, "beta": beta}, source.solver, None, None, None)
     stops = np.where(out.status[0] == regimes.RESOLVED, out.stops_per_cycle[0], np.nan)
-    curves = find_curves(system, r, np.array([mu]))
     changed = (stops[:, 1:] != stops[:, :-1]) & ~np.isnan(stops[:, 1:]) & ~np.isnan(stops[:, :-1])
     for boundary in (curves.beta_lim[0], curves.beta_stick[0]):
         limit = boundary[:, np.newaxis]
         changed &= ~((beta[:-1] <= limit) & (limit <= beta[1:]))
     i, j = np.nonzero(changed)
-    return _narrowed(system, mu, Seeds(r[i], beta[j], beta[j + 1], stops[i, j], stops[i, j + 1]))
+    return Seeds(r[i], beta[j], beta[j + 1], stops[i, j], stops[i, j + 1])
 
 
-def _narrowed(system: System, mu: float, seeds: Seeds) -> Seeds:
+def _friction_of(window: Window, lim: np.ndarray, stick: np.ndarray, count: int) -> np.ndarray:
+    """Friction ratios between those of continuous and of stuck motions: in proportion, the larger evenly."""
+    high = min(window.beta[1], float(stick.max()))
+    low = max(window.beta[0], float(lim.min()), _LEAST * high)
+    if low >= high:
+        return np.empty(0)
+    small = round(_PROPORTIONAL * count)
+    return np.union1d(np.geomspace(low, high, small), np.linspace(low, high, count - small))
+
+
+def narrowed(source: Source, seeds: Seeds) -> Seeds:
     """The same brackets, narrow; where a third number of stops lies between, that of the lower change."""
     r, low, high, below, above = (array.copy() for array in seeds)
     for _ in range(_BISECTIONS):
         if not r.size:
             break
         middle = 0.5 * (low + high)
-        stops = counts_at(system, r, middle, mu)
+        stops = counts_at(source, r, middle)
         known = ~np.isnan(stops)
         lower = known & (stops == below)
         low = np.where(lower, middle, low)
@@ -85,10 +122,11 @@ def _narrowed(system: System, mu: float, seeds: Seeds) -> Seeds:
     return Seeds(r, low, high, below, above)
 
 
-def orbit_at(system: System, r: float, beta: float, mu: float) -> tuple[Sequence, np.ndarray] | None:
+def orbit_at(source: Source, r: float, beta: float) -> tuple[Sequence, np.ndarray] | None:
     """Sequence of the steady state of a cell, and its event times, r and beta; None if it never stops."""
-    cells = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), _SOLVER)
-    cell, table = one_cell(cells.motion, beta, mu, limits(_SOLVER), False)
+    mu, solver = source.mu, source.solver
+    cells = Cells(source.system, np.array([r]), np.array([beta]), np.array([mu]), solver)
+    cell, table = one_cell(cells.motion, beta, mu, limits(solver), source.start == "moving")
     if cell.period == 0 or len(table) < 2:
         return None
     senses = (table[:, segment_table.SENSE] * table[:, segment_table.SIGN]).round().astype(int)

@@ -1,27 +1,43 @@
 """Borders as curves: Newton's method for a point, pseudo-arclength from point to point."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
+from .conditions import DOUBLING, FOLD, GRAZE, SLIDE_END, SLIP, TURN, Condition, residuals
 from .margins import Margin, is_physical
-from .orbits import TURN, Condition, Sequence, residuals
+from .orbits import Sequence
 from .phases import Phases
 
 #: Steps of differences: of phases, and of r and beta relative to them.
 _DIFFERENCE = 1e-6
 
-#: Newton's method: steps, at most; the relative step at which it ends, and the largest one it begins with.
-_NEWTON, _FOUND, _LARGEST = 12, 1e-13, 0.5
+#: Step, in phases, by which the second derivative of an orbit's equations at a fold is found.
+_BENT = 1e-3
 
-#: What Newton's method has reached when it no longer improves.
-_REACHED = 1e-10
+#: Newton's method: steps, at most; the largest one; and the one after which the next would be rounding: the
+#: error left is its square, or its product with the error of the derivatives.
+_NEWTON, _LARGEST, _FOUND = 12, 0.5, 1e-9
 
 #: Weight of phases against relative changes of r and beta, in the length of a curve.
 _PHASE = 1.0 / 30.0
 
 #: Steps along a curve: first, largest, least; the factor of a longer one.
 _FIRST, _LONGEST, _SHORTEST, _GROWTH = 0.01, 0.02, 1e-7, 1.5
+
+#: Least distance of a border's event from the beginning of its piece, in periods of the orbit.
+_INSIDE = 1e-5
+
+#: Length of a step times the angle by which the curve turns in it: the chord is off by an eighth of that.
+#: Steps are chosen for it, and repeated if it is exceeded by a factor, unless they are short.
+_TURNED, _EXCEEDED, _SHORT = 1e-4, 3.0, 1e-3
+
+#: Turns of a curve in r are found to this component of the tangent, in so many steps at most.
+_VERTICAL, _SECANTS = 1e-9, 8
+
+#: Points closer than this to others are not kept, but for the ends.
+_APART = 5e-4
 
 #: So many steps in sequence below this length are the end of a curve: its equations become singular there.
 _CRAWLS, _CRAWL = 20, 1e-4
@@ -65,7 +81,6 @@ def solve(
 ) -> np.ndarray | None:
     """Point of a border on planes through the guess, normals `fixed` (k, unknowns) scaled; None: none."""
     unknowns, scales = guess.copy(), _scales(guess)
-    before = np.inf
     for _ in range(_NEWTON):
         try:
             values, slopes = _linearised(phases, sequence, condition, unknowns)
@@ -81,9 +96,8 @@ def solve(
         unknowns = unknowns + step * scales
         if unknowns[-1] <= 0.0 or unknowns[-2] <= 0.0:
             return None
-        if size <= _FOUND or (size <= _REACHED and size >= 0.25 * before):
+        if size <= _FOUND:
             return unknowns
-        before = size
     return None
 
 
@@ -125,19 +139,58 @@ def centred(place: Place) -> Place:
     )  # fmt: skip
 
 
-def _tangent(phases: Phases, place: Place, along: np.ndarray) -> np.ndarray:
+def _tangent(place: Place, slopes: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Scaled direction of a border at one of its points, of the sense of `along` in r and beta."""
-    _, slopes = _linearised(phases, *place)
     scaled = slopes * _scales(place.unknowns)
     direction = np.linalg.svd(scaled / np.abs(scaled).max(axis=1, keepdims=True))[2][-1]
     return direction if direction[-2:] @ along >= 0.0 else -direction
 
 
-def at_frequency(phases: Phases, sequence: Sequence, unknowns: np.ndarray, margin: Margin) -> Place | None:
-    """The point of a border at the frequency of an orbit that is near it; None if there is none."""
+def _side(phases: Phases, place: Place, slopes: np.ndarray) -> float:
+    """Whether the orbit lives above (1) or below (-1) its border in beta, or neither alone (0)."""
+    sequence, condition, unknowns = place
+    if condition.kind == DOUBLING:
+        return 0.0
+    count = sequence.events
+    by_times, by_beta = slopes[:count, :count], slopes[:count, -1]
+    if condition.kind in (FOLD, SLIDE_END):  # two orbits meet, or the two times at which a slide may end
+        left, _, right = np.linalg.svd(by_times)
+        away = np.append(right[-1], [0.0, 0.0]) * _BENT
+        values = residuals(phases, sequence, None, unknowns + np.outer([1.0, 0.0, -1.0], away))
+        return float(-np.sign((left[:, -1] @ values.T @ [1.0, -2.0, 1.0]) * (left[:, -1] @ by_beta)))
+    try:
+        moved = np.linalg.solve(by_times, -by_beta)
+    except np.linalg.LinAlgError:
+        return 0.0  # it is one of a family of orbits
+    margin = slopes[count, -1] + slopes[count, :count] @ moved
+    within = condition.sign if condition.kind == SLIP else sequence.senses[condition.piece]
+    positive = condition.kind == GRAZE or ends_with_stop(sequence, condition)
+    return float(np.sign(margin * (within if positive else -within)))
+
+
+def ends_with_stop(sequence: Sequence, condition: Condition) -> bool:
+    """Whether an orbit ends at turn/stop with a stop that has a length."""
+    return condition.kind == TURN and sequence.senses[condition.piece + 1] == 0
+
+
+def at_frequency(phases: Phases, sequence: Sequence, unknowns: np.ndarray, margin: Margin) -> list[Place]:
+    """The points of a border at the frequency of an orbit that is near it.
+
+    At turn/stop a stop becomes a turn as its length vanishes.  For mu > 1 the orbit may also end there with a
+    stop of some length, which the force leaves at its beginning already.
+    """
+    places = []
+    if margin.condition.kind == TURN:
+        shorter = _without_stop(sequence, unknowns, margin.condition.piece)
+        if shorter is not None:
+            places.append(_at_frequency(phases, *shorter, margin))
+    if margin.condition.kind != TURN or sequence.mu > 1.0 or not places:
+        places.append(_at_frequency(phases, sequence, unknowns, margin))
+    return [place for place in places if place is not None]
+
+
+def _at_frequency(phases: Phases, sequence: Sequence, unknowns: np.ndarray, margin: Margin) -> Place | None:
     condition = margin.condition
-    if condition.kind == TURN:
-        sequence, condition, unknowns = _without_stop(sequence, condition, unknowns)
     guess = unknowns
     if condition.inside:
         guess = np.insert(unknowns, unknowns.size - 2, margin.tau)
@@ -147,17 +200,33 @@ def at_frequency(phases: Phases, sequence: Sequence, unknowns: np.ndarray, margi
     return None if found is None else Place(sequence, condition, found)
 
 
-def _without_stop(
-    sequence: Sequence, condition: Condition, unknowns: np.ndarray
-) -> tuple[Sequence, Condition, np.ndarray]:
+def _without_stop(sequence: Sequence, unknowns: np.ndarray, k: int) -> tuple[Sequence, np.ndarray] | None:
     """A sequence in which the stop after slide k is a turn: on their border it has no length."""
-    k = condition.piece
     if sequence.senses[k + 1] or k + 2 > sequence.events:
-        return sequence, condition, unknowns
+        return None
     if sequence.senses[k + 2] == sequence.senses[k]:
-        return sequence, condition, unknowns
+        return None
     senses = (*sequence.senses[: k + 1], *sequence.senses[k + 2 :])
-    return sequence._replace(senses=senses), condition, np.delete(unknowns, k + 1)
+    return sequence._replace(senses=senses), np.delete(unknowns, k + 1)
+
+
+def is_on_border(phases: Phases, place: Place) -> bool:
+    """Whether the orbit of a point is what it says, and the border's own event is inside its piece."""
+    sequence, condition, unknowns = place
+    if condition.inside and not _is_inside(sequence, condition, unknowns):
+        return False
+    return is_physical(phases, sequence, orbit_unknowns(condition, unknowns))
+
+
+def _is_inside(sequence: Sequence, condition: Condition, unknowns: np.ndarray) -> bool:
+    """Whether the event of a border lies between the ends of its piece.
+
+    For mu = 1 a slide that follows a stop fulfils the equations of a graze at its beginning.
+    """
+    count, piece = sequence.events, condition.piece
+    times, tau = unknowns[:count], unknowns[count]
+    end = times[piece] if piece < count else times[0] + sequence.end - sequence.start
+    return bool(times[piece - 1] + _INSIDE * (sequence.end - sequence.start) < tau < end)
 
 
 def orbit_unknowns(condition: Condition, unknowns: np.ndarray) -> np.ndarray:
@@ -165,38 +234,102 @@ def orbit_unknowns(condition: Condition, unknowns: np.ndarray) -> np.ndarray:
     return np.delete(unknowns, unknowns.size - 3) if condition.inside else unknowns
 
 
+class _Course(NamedTuple):
+    """Where a border is, where it goes, and how it bends: scaled tangent, its change with length, `_side`."""
+
+    place: Place
+    along: np.ndarray
+    bend: np.ndarray
+    side: float
+
+    def ahead(self, step: float) -> np.ndarray:
+        """Unknowns of the point at a length further on, to second order."""
+        unknowns = self.place.unknowns
+        return unknowns + step * (self.along + 0.5 * step * self.bend) * _scales(unknowns)
+
+
+def _begun(phases: Phases, begin: Place, direction: np.ndarray) -> _Course:
+    """The course at the first point of a border."""
+    place = centred(begin)
+    _, slopes = _linearised(phases, *place)
+    along = _tangent(place, slopes, direction)
+    return _Course(place, along, np.zeros(along.size), _side(phases, place, slopes))
+
+
+def _stepped(phases: Phases, course: _Course, step: float) -> _Course | None:
+    """The course at a length further on; None if there is no such point, or its orbit is not physical."""
+    sequence, condition, last = course.place
+    guess = course.ahead(step)
+    if guess[-1] <= 0.0 or guess[-2] <= 0.0:
+        return None
+    found = solve(phases, sequence, condition, guess, course.along[np.newaxis])
+    if found is None or not is_on_border(phases, Place(sequence, condition, found)):
+        return None
+    place = centred(Place(sequence, condition, found))
+    _, slopes = _linearised(phases, *place)
+    along = _tangent(place, slopes, np.log(found[-2:] / last[-2:]))
+    bend = (along - course.along) / step if place.sequence is sequence else np.zeros(along.size)
+    return _Course(place, along, bend, _side(phases, place, slopes))
+
+
 def _follow(phases: Phases, begin: Place, direction: np.ndarray, window: Window) -> list[np.ndarray]:
-    """Points of a border from one on, to the end of the window or of the orbit: log r, log beta, tangent.
+    """Points of a border from one on, to the end of the window or of the orbit, see `_point`.
 
     direction : (2,) in which log r and log beta are to change at first
     """
-    place, step = centred(begin), _FIRST
-    along = _tangent(phases, place, direction)
-    points, crawled = [_point(place, along)], 0
+    course, step = _begun(phases, begin, direction), _FIRST
+    points, crawled = [_point(course)], 0
     while len(points) < _MOST and crawled < _CRAWLS:
-        sequence, condition, last = place
-        guess = last + step * along * _scales(last)
-        found = None
-        if guess[-1] > 0.0 and guess[-2] > 0.0:
-            found = solve(phases, sequence, condition, guess, along[np.newaxis])
-        if found is None or not is_physical(phases, sequence, orbit_unknowns(condition, found)):
+        ahead = _stepped(phases, course, step)
+        turned = 0.0 if ahead is None else _turned(points[-1], _point(ahead))
+        if ahead is None or (turned > _EXCEEDED * _TURNED and step > _SHORT):
             step *= 0.5
             if step < _SHORTEST:
                 break
             continue
-        place = centred(Place(sequence, condition, found))
-        along = _tangent(phases, place, np.log(found[-2:] / last[-2:]))
-        points.append(_point(place, along))
-        if not window.holds(found[-2], found[-1]) or _closed(points):
+        if ahead.along[-2] * course.along[-2] < 0.0:
+            turn = _vertical(phases, course, ahead, step)
+            if turn is not None:
+                points.append(_point(turn))
+        points.append(_point(ahead))
+        course = ahead
+        if not window.holds(*course.place.unknowns[-2:]) or _closed(points):
             break
         crawled = crawled + 1 if step < _CRAWL else 0
-        step = min(_LONGEST, step * _GROWTH)
+        longer = _GROWTH if turned * _GROWTH**2 <= _TURNED else max(0.5, math.sqrt(_TURNED / turned))
+        step = min(_LONGEST, step * longer)
     return points
 
 
-def _point(place: Place, along: np.ndarray) -> np.ndarray:
-    """log r and log beta of a place, and their unit tangent."""
-    return np.concatenate((np.log(place.unknowns[-2:]), along[-2:] / np.linalg.norm(along[-2:])))
+def _turned(first: np.ndarray, second: np.ndarray) -> float:
+    """Distance of two points times the sine of the angle between their tangents."""
+    sine = first[2] * second[3] - first[3] * second[2]
+    return float(np.hypot(*(second[:2] - first[:2])) * abs(sine))
+
+
+def _vertical(phases: Phases, course: _Course, ahead: _Course, step: float) -> _Course | None:
+    """The point of a step at which r turns, by secants; None if they lose it."""
+    low, high = (0.0, float(course.along[-2])), (step, float(ahead.along[-2]))
+    for _ in range(_SECANTS):
+        if high[1] == low[1]:
+            return None
+        middle = low[0] - low[1] * (high[0] - low[0]) / (high[1] - low[1])
+        if not 0.0 < middle < step:
+            return None
+        found = _stepped(phases, course, middle)
+        if found is None:
+            return None
+        slope = float(found.along[-2])
+        if abs(slope) <= _VERTICAL:
+            return found
+        low, high = (high if abs(high[1]) < abs(low[1]) else low), (middle, slope)
+    return None
+
+
+def _point(course: _Course) -> np.ndarray:
+    """log r and log beta of a place, their unit tangent, and the side of the orbit."""
+    along = course.along[-2:]
+    return np.array([*np.log(course.place.unknowns[-2:]), *(along / np.linalg.norm(along)), course.side])
 
 
 def _closed(points: list[np.ndarray]) -> bool:
@@ -208,11 +341,24 @@ def _closed(points: list[np.ndarray]) -> bool:
 
 
 def traced(phases: Phases, begin: Place, window: Window) -> np.ndarray:
-    """Points (points, 4) of a border through one of its points, in both directions: see `_follow`."""
-    direction = _tangent(phases, centred(begin), np.array([1.0, 0.0]))[-2:]
+    """Points (points, 5) of a border through one of its points, in both directions: see `_follow`."""
+    direction = _begun(phases, begin, np.array([1.0, 0.0])).along[-2:]
     forward = _follow(phases, begin, direction, window)
     if _closed(forward):
-        return np.array(forward)
+        return _thinned(np.array(forward))
     backward = _follow(phases, begin, -direction, window)
-    turned = [point * [1.0, 1.0, -1.0, -1.0] for point in backward[:0:-1]]
-    return np.array([*turned, *forward])
+    turned = [point * [1.0, 1.0, -1.0, -1.0, 1.0] for point in backward[:0:-1]]
+    return _thinned(np.array([*turned, *forward]))
+
+
+def _thinned(points: np.ndarray) -> np.ndarray:
+    """The same points without those that crowd, mostly where the last steps to an end were halved."""
+    kept = [0]
+    for k in range(1, len(points)):
+        near = np.hypot(*(points[k, :2] - points[kept[-1], :2])) < _APART
+        if near and k + 1 < len(points) and abs(points[k, 2]) > _VERTICAL:
+            continue
+        if near and len(kept) > 1:
+            kept.pop()
+        kept.append(k)
+    return points[kept]

@@ -50,7 +50,7 @@ def test_more_friction_can_end_stops(n, amplitude, angle, r, stick, intervals):
 
 
 def least_speed(zeta, r, load, beta, guess):
-    """Least speed, in its sense, of a motion of one mass with two turns and no stop (loads.md 3).
+    """Least speed, in its sense, of a motion of one mass with two turns and no stop (theory.md 11).
 
     load : {n: p_n};  guess : its turns, and the sense of the motion after each
     """

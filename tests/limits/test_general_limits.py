@@ -223,7 +223,7 @@ def random_system(rng):
 
 
 def test_steady_states_do_not_depend_on_the_start():
-    """mu = 1: friction is monotone, and so two motions approach each other (loads.md 2)."""
+    """mu = 1: friction is monotone, and so two motions approach each other (theory.md 11)."""
     rng = np.random.default_rng(24)
     resolved = 0
     for _ in range(60):
@@ -248,7 +248,7 @@ def test_steady_states_do_not_depend_on_the_start():
 
 
 def test_stiff_contacts_approach_the_rigid_one():
-    """The error falls like 1/k where the contact stops; reversals of slip are its stops (elastic.md 3)."""
+    """The error falls like 1/k where the contact stops; reversals of slip are its stops (theory.md 11)."""
     rigid = fm.System(damping_ratios=0.05, contacts=[fm.Contact("fixed-wall", 1)])
     cell = {"r": [0.4], "beta": [0.42]}
     wanted = fm.sweep(rigid, **cell, outputs=OUTPUTS)
@@ -263,7 +263,7 @@ def test_stiff_contacts_approach_the_rigid_one():
 
 
 def test_partial_sticking_begins_at_half_the_range_of_the_force():
-    """A contact rests beside others that slide from this friction on (contacts.md 2)."""
+    """A contact rests beside others that slide from this friction on (theory.md 11)."""
     for row in reference("contacts.json")["partial"]:
         given = {key: np.array(row[name]) for key, name in (("M", "M"), ("K", "K"), ("C", "C1"))}
         for factor, regime in ((1.0 - 1e-3, 1), (1.0 + 1e-3, 0)):

@@ -1,4 +1,4 @@
-"""What ends the motion without stops, against the equations of that motion (contacts.md 3, (1) and (2)).
+"""What ends the motion without stops, against the equations of that motion (theory.md 11).
 
 The motion is the sum of the response to the load and of those to square waves of friction that turn with
 each contact; the phases of the turns solve z_i'(tau_i) = 0.

@@ -183,7 +183,7 @@ def test_outliers_of_a_sweep_have_little_weight():
 @pytest.mark.parametrize(
     ("n", "mass", "known", "message"),
     [
-        (2, 2, {}, "cannot identify f_k1m1, gamma, kappa separately: mass 2 does not determine them; hold 1"),
+        (2, 2, {}, "cannot identify f_k1m1, gamma, kappa separately: mass 2 does not determine them; fix 1"),
         (
             3, 3, {"mass_ratio_2": 1.3},
             "cannot identify f_k1m1, mass_ratio_3, stiffness_ratio_2, stiffness_ratio_3 separately: mass 3",

@@ -31,10 +31,21 @@ CHAOTIC = [
 ]
 
 
-def five_masses():
+#: Solvers: that of one contact, and the one of several contacts, to which a list of one contact leads.
+FORMS = pytest.mark.parametrize("form", ["contact", "contacts"])
+
+
+def with_contact(form, kind, masses, **further):
+    """A system with one contact, for one of both solvers."""
+    if form == "contact":
+        return fm.System(kind, masses, **further)
+    return fm.System(contacts=[fm.Contact(kind, masses)], **further)
+
+
+def five_masses(form="contact"):
     ones = [1.0] * 5
-    return fm.System(
-        contact_masses=[3], load_mass=1, mass_ratios=ones, stiffness_ratios=ones, damping_ratios=0.02
+    return with_contact(
+        form, "fixed-wall", [3], load_mass=1, mass_ratios=ones, stiffness_ratios=ones, damping_ratios=0.02
     )
 
 
@@ -44,10 +55,11 @@ def cell(system, r, beta, mu, **settings):
     return {name: ds[name].item() for name in OUTPUTS}
 
 
+@FORMS
 @pytest.mark.parametrize(("r", "beta", "period", "stops", "stuck", "amplitude"), LONG_PERIODS)
-def test_long_periods(r, beta, period, stops, stuck, amplitude):
+def test_long_periods(form, r, beta, period, stops, stuck, amplitude):
     """The period is the smallest, not a multiple, and the orbit is solved to rounding."""
-    found = cell(five_masses(), r, beta, 1.3)
+    found = cell(five_masses(form), r, beta, 1.3)
     assert (found["status"], found["regime"]) == (regimes.RESOLVED, regimes.STICK_SLIP)
     assert found["period"] == period
     assert found["stops_per_cycle"] == pytest.approx(stops / period, rel=1e-6)
@@ -68,31 +80,34 @@ def errors_off(found, stops, stops_error, stuck, stuck_error):
     )
 
 
+@FORMS
 @pytest.mark.parametrize(("r", "beta", "stops", "stops_error", "stuck", "stuck_error", "largest"), CHAOTIC)
-def test_chaotic_cells(r, beta, stops, stops_error, stuck, stuck_error, largest):
+def test_chaotic_cells(form, r, beta, stops, stops_error, stuck, stuck_error, largest):
     """Not waited for: stops, share stuck and amplitude are those of the cycles seen."""
-    found = cell(five_masses(), r, beta, 1.3)
+    found = cell(five_masses(form), r, beta, 1.3)
     assert max(errors_off(found, stops, stops_error, stuck, stuck_error)) <= 3.0
     assert 0.75 * largest <= found["contact_amplitude"] <= largest * (1.0 + 1e-5)
 
 
-def test_more_cycles_look_longer():
+@FORMS
+def test_more_cycles_look_longer(form):
     """An irregular motion is followed for a quarter of `cycles`, or for 512 cycles if that is more."""
     r, beta, stops, *_ = CHAOTIC[0]
-    few, many = (cell(five_masses(), r, beta, 1.3, cycles=cycles) for cycles in (300, 8000))
+    few, many = (cell(five_masses(form), r, beta, 1.3, cycles=cycles) for cycles in (300, 8000))
     assert few["status"] == many["status"] == regimes.IRREGULAR
     assert few["cycles"] <= 301
     assert 2000 <= many["cycles"] <= 4001
     assert abs(many["stops_per_cycle"] - stops) < 0.02
 
 
-def test_damped_cells_are_resolved_or_irregular():
+@FORMS
+def test_damped_cells_are_resolved_or_irregular(form):
     """Random structures, mu and starts: below beta_stick no damped cell is left without a regime."""
     rng = np.random.default_rng(8)
     for _ in range(12):
         n = int(rng.integers(1, 7))
-        system = fm.System(
-            contact_masses=[int(rng.integers(1, n + 1))], load_mass=int(rng.integers(1, n + 1)),
+        system = with_contact(
+            form, "fixed-wall", [int(rng.integers(1, n + 1))], load_mass=int(rng.integers(1, n + 1)),
             mass_ratios=[1.0, *rng.uniform(0.3, 3.0, n - 1)],
             stiffness_ratios=[1.0, *rng.uniform(0.3, 3.0, n - 1)],
             damping_ratios=float(rng.choice([0.005, 0.02, 0.1])),
@@ -116,29 +131,36 @@ def reference():
     return json.loads(path.read_text())
 
 
-def test_reference_long_periods(reference):
+@FORMS
+def test_reference_long_periods(form, reference):
     """Every period; the number of stops in it; share stuck and amplitude to the digits of the reference."""
     for row in reference["long_periods"]:
-        found = cell(five_masses(), row["r"], row["beta"], row["mu"], start=row["start"], cycles=8000)
+        found = cell(five_masses(form), row["r"], row["beta"], row["mu"], start=row["start"], cycles=8000)
         assert found["period"] == row["period"], row
         assert found["stops_per_cycle"] == pytest.approx(row["stops_per_cycle"], rel=1e-6), row
         assert found["stuck_fraction"] == pytest.approx(row["stuck_share"], abs=1e-6), row
         assert found["contact_amplitude"] == pytest.approx(row["contact_amplitude"], rel=1e-6), row
 
 
-def test_reference_irregular_cells(reference):
+@FORMS
+def test_reference_irregular_cells(form, reference):
     """Status; stops and share stuck within three errors, but for a few; the amplitude of the cycles seen."""
     off = []
     for row in reference["irregular_map"]:
-        found = cell(five_masses(), row["r"], row["beta"], row["mu"], start=row["start"])
+        found = cell(five_masses(form), row["r"], row["beta"], row["mu"], start=row["start"])
+        if found["status"] == regimes.RESOLVED:  # Newton's method ends a long transient
+            assert (row["cls"], row["period"]) == ("periodic", found["period"])
+            continue
         errors = (row["stops_per_cycle_se"], row["stuck_share_se"])
         off += errors_off(found, row["stops_per_cycle"], errors[0], row["stuck_share"], errors[1])
         assert 0.5 * row["largest_amplitude"] <= found["contact_amplitude"] <= 1.05 * row["largest_amplitude"]
+    assert len(off) > 60
     assert np.mean(np.array(off) <= 3.0) >= 0.95
     assert max(off) < 5.0
 
 
-def test_reference_random_walls(reference):
+@FORMS
+def test_reference_random_walls(form, reference):
     """Random chains from rest, in the reference's units k = m = 1: the orbit, or an irregular motion."""
     count = 0
     for row in reference["irregular_random"]:
@@ -146,8 +168,8 @@ def test_reference_random_walls(reference):
         if row["contact"][0] != "wall" or row["start"] != "rest" or row["gamma"][0] != 1.0:
             continue
         springs = np.array(row["kappa"])
-        system = fm.System(
-            contact_masses=[row["contact"][1]], load_mass=row["load"], mass_ratios=row["gamma"],
+        system = with_contact(
+            form, "fixed-wall", [row["contact"][1]], load_mass=row["load"], mass_ratios=row["gamma"],
             stiffness_ratios=springs / springs[0], damping_ratios=row["zeta"],
         )  # fmt: skip
         found = cell(system, row["r"] / np.sqrt(springs[0]), row["beta"], row["mu"])

@@ -330,3 +330,20 @@ def test_what_is_not_offered_is_refused_by_name(call, message):
 def test_new_outputs_of_a_plain_system_are_refused_by_name():
     with pytest.raises(fm.InputError, match="cannot compute turns_per_cycle for one rigid contact"):
         fm.sweep(fm.System(), [1.0], [0.1], outputs=["turns_per_cycle"])
+
+
+def test_the_order_of_release_in_a_file(tmp_path, capsys):
+    """Where it matters, mu > 1, several contacts; for one contact it is refused by name."""
+    asked = 'solver.outputs=["regime", "release_order", "stops_per_cycle_error"]'
+    text = TWO_CONTACTS.replace("force = 0.2", "ratio = 0.6")
+    cells = ["--set", "grid.r={values=[0.28, 0.5]}", "--set", "grid.beta={values=[0.05, 0.3]}"]
+    ds = written(tmp_path, text, "map", "--set", asked, "--set", "grid.mu=[1.0, 1.5]", *cells)
+    assert ds.release_order.dims == ("mu", "r", "beta")
+    assert ds.release_order.dtype == np.int8
+    assert (ds.release_order.sel(mu=1.0) == 0).all()
+    assert set(np.unique(ds.release_order.sel(mu=1.5))) == {0, 1}
+    assert ds.stops_per_cycle_error.dims == ("mu", "r", "beta", "contact")
+    assert main(["info", str(tmp_path / "1.nc")]) == 0
+    assert "release_order" in capsys.readouterr().out
+    with pytest.raises(fm.InputError, match="cannot compute release_order for one rigid contact"):
+        fm.sweep(fm.System(), [0.5], [0.5], outputs=["release_order"])

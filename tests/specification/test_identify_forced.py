@@ -327,7 +327,7 @@ def test_bad_forced_files(measured, rig, capsys):
         ({"phase_lag": [1.0]}, "phase_lag must be 12 numbers, one per frequency"),
         ({"sets": [1]}, "sets must be 12 labels, one per frequency; got 1"),
         ({"load": np.zeros(12)}, "load must be finite and > 0; got 0 at index 0"),
-        ({"known": {"x_F": 1.0}}, "known must be one of beta, f_n, zeta, mu; got 'x_F'"),
+        ({"known": {"x_F": 1.0}}, "known must be one of beta, f_n, zeta, mu, contact_stiffness; got 'x_F'"),
         ({"known": {"beta": 0.1, "f_n": 3.0, "zeta": 0.0, "mu": 1.0}}, "known must leave at least one"),
         ({"sigma_phase": -1.0}, "sigma_phase must be > 0"),
         ({"system": TWO}, "phase_lag must be a mapping by mass"),
@@ -354,3 +354,41 @@ def test_what_data_cannot_tell_apart():
     """Four amplitudes at one frequency: friction, frequency and damping trade without end."""
     with pytest.raises(fm.InputError, match=r"cannot identify .* separately: .*; fix one in \[known\]"):
         fm.identify.forced(np.full(4, 2.0), None, [1.61, 1.6, 1.6, 1.59], known={"mu": 1.0})
+
+
+def with_spring(text):
+    return text.replace('contact = "fixed-wall"', 'contact = "fixed-wall"\ncontact_stiffness = 1000.0')
+
+
+def test_a_known_spring_in_the_contact(rig, capsys):
+    """In [system] or in [known]: held, in the place of mu; a stiff one is nearly a rigid contact."""
+    assert main(["identify", rig(), "--quiet"]) == 0
+    rigid = estimates_of("rig-identify.nc")
+    for text in (with_spring(RIG), RIG.replace("mu = 1.0", "contact_stiffness = 1000.0")):
+        assert main(["identify", rig(text=text), "--overwrite"]) == 0
+        rows = {
+            line.split()[0]: line.split() for line in capsys.readouterr().out.splitlines() if line.split()
+        }
+        assert rows["contact_stiffness"][1:3] == ["1000", "held"]
+        assert "mu" not in rows
+        found = estimates_of("rig-identify.nc")
+        friction = found.estimate.values[:2] / rigid.estimate.values[:2]
+        assert (np.abs(friction - 1.0) < 0.1).all()  # a motion without stops differs by kt^(-1/2)
+        assert (friction != 1.0).all()
+
+
+@pytest.mark.slow
+def test_a_spring_that_only_a_lower_bound_is_known_of(rig, capsys):
+    """These data are of a rigid contact: the table shows it, and no number that cannot be used."""
+    free = '\n[fit]\nfree = ["beta", "f_n", "zeta", "contact_stiffness"]\n'
+    text = RIG.replace("mu = 1.0", "stiffness = 2000.0") + free
+    assert main(["identify", rig(text=text)]) == 0
+    out = capsys.readouterr().out
+    row = next(line for line in out.splitlines() if line.split()[:1] == ["contact_stiffness"])
+    assert "see interval" in row
+    assert " to inf" in row
+    assert "spring_stiffness_lower" in out
+    assert "nan" not in out
+    assert "warning: the data do not determine contact_stiffness: any value from" in out
+    assert main(["plot", "rig-identify.nc"]) == 0
+    assert main(["info", "rig-identify.nc"]) == 0

@@ -89,6 +89,7 @@ def test_every_variable_is_in_the_examples(datasets):
         "border_r",
         "border_beta",
         "border_kind",
+        "border_mu",
         "stops_below",
         "stops_above",
     }  # test_borders_file

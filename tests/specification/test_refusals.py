@@ -118,9 +118,9 @@ map good.toml --set solver.start=sliding
 map good.toml --set solver.skip=all
     solver.skip must be one of exact, none; got 'all'
 map good.toml --set solver.outputs=[]
-    solver.outputs must name at least one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, least_slip, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall; got none
+    solver.outputs must name at least one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, least_slip, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall, release_order; got none
 map good.toml --set 'solver.outputs=["regim"]'
-    solver.outputs must be one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, least_slip, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall; got 'regim' (did you mean regime?)
+    solver.outputs must be one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, least_slip, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall, release_order; got 'regim' (did you mean regime?)
 map good.toml --set 'axes.damping_ratio=[0,0.1]'
     axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'damping_ratio' (did you mean damping_ratios?)
 map good.toml --set 'axes={"mass_ratios[2]"=[1,2]}'
@@ -334,7 +334,7 @@ plot map.nc --panels 0
 plot map.nc --panels x
     frictionmap plot: argument --panels: invalid list of numbers separated by commas value: 'x' (see frictionmap plot --help)
 plot map.nc --mass 1
-    cannot use mass with plot_regimes: it applies to plot_curves, plot_response, plot_orbit, plot_quantity; omit mass
+    cannot use mass with plot_regimes: it applies to plot_curves, plot_response, plot_orbit, plot_quantity, animate; omit mass
 plot map.nc --beta 0.5
     cannot use beta with plot_regimes: it applies to plot_curves; omit beta
 plot map.nc --point 3 0.5
@@ -442,9 +442,9 @@ plot
 design good.toml
     the configuration must have a table [design]; got none
 design question.toml --set design.quest=stuck
-    unknown key 'design.quest' (did you mean question?); valid: question, band, response, mu, limit, spread, quantile, beta, r
+    unknown key 'design.quest' (did you mean question?); valid: question, band, response, second, ratio, mu, limit, spread, quantile, beta, r
 design question.toml --set design.question=best
-    design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust; got 'best' (did you mean robust?)
+    design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust, two-forces; got 'best' (did you mean robust?)
 design good.toml --set design.question=stuck
     design.band must be given for question stuck; got nothing
 design question.toml --set design.band=[1]
@@ -608,7 +608,11 @@ identify forced.toml --set system.masses=2
 identify forced.toml --set known.mu=0.9
     file forced.csv: known.mu must be >= 1; got 0.9
 identify forced.toml --set known.x_F=1
-    data.kind = 'forced': unknown key 'known.x_F'; valid: beta, f_n, zeta, mu, stiffness
+    data.kind = 'forced': unknown key 'known.x_F'; valid: beta, f_n, zeta, mu, contact_stiffness, stiffness
+identify forced.toml --set known.mu=1.2 --set known.contact_stiffness=3
+    file forced.csv: mu must be 1 for a contact with a spring, which would jump at break-away; got 1.2
+identify forced.toml --set system.contact_stiffness=2 --set known.contact_stiffness=3
+    file forced.csv: cannot use known.contact_stiffness: the system defines it; omit one of the two
 identify forced.toml --set 'fit.free=["beta"]'
     cannot hold f_n: its value is missing; add f_n to fit.free or known.f_n to [known]
 identify forced.toml --set 'data.columns={ lag = "phase_lag_deg" }'
@@ -644,7 +648,7 @@ identify record.toml --set known.zeta=-0.1
 identify record.toml --set known.f_n=0
     file record.csv, columns time_s, base_mm and x_mm: known.f_n must be > 0; got 0.0
 identify record.toml --set known.beta=0.2
-    data.kind = 'record': unknown key 'known.beta' (did you mean zeta?); valid: f_n, zeta, x_F, mu, offset_x, stiffness
+    data.kind = 'record': unknown key 'known.beta' (did you mean zeta?); valid: f_n, zeta, x_F, mu, contact_stiffness, offset_x, stiffness
 identify record.toml --set 'data.columns={ z = "z_mm" }'
     unknown key 'data.columns.z'; valid: time, base, x
 identify record.toml --set 'data.window=[3, 4]'
@@ -759,6 +763,22 @@ fm.identify.forced([1.0, 2.0], [10.0, 20.0])
     cannot determine f_n: phase data alone do not determine it, and the lags of mass 1 do not pass 90 deg; give known.f_n or amplitudes
 fm.identify.forced([1.0, 2.0], [10.0, 20.0], known={"beta": 0.1, "f_n": 3.0, "zeta": 0.0, "mu": 1.0})
     known must leave at least one parameter free; got all of beta, f_n, zeta, mu
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], free="beta")
+    free must be a list of parameters; got 'beta'
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], free=["beta"])
+    cannot hold f_n: its value is missing; add f_n to free or to known
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], free=["beta", "f_n", "zeta", "mu", "contact_stiffness"])
+    cannot fit mu together with contact_stiffness: a contact with a spring is defined for mu = 1 only; remove mu from free
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], known={"contact_stiffness": 0.0})
+    known.contact_stiffness must be >= 0.001; got 0.0
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], system=fm.System(contact_stiffness=[1.0, 2.0]))
+    contact_stiffness must be one number to identify friction; got a bank of 2
+fm.identify.forced([1.0, 2.0], [10.0, 20.0], system=fm.System(contact_stiffness=2.0, wall_velocity=0.1))
+    cannot identify friction of a system with wall_velocity: this is offered for one rigid contact under one harmonic load; omit wall_velocity
+fm.identify.record(TIME, np.cos(4 * TIME), np.cos(4 * TIME), known={"contact_stiffness": 1e5})
+    known.contact_stiffness must be <= 10000; got 100000.0
+fm.identify.record(TIME, np.cos(4 * TIME), np.cos(4 * TIME), known={"contact_stiffness": 3.0, "mu": 1.1})
+    mu must be 1 for a contact with a spring, which would jump at break-away; got 1.1
 fm.identify.forced([1.0, 2.0], [10.0, 20.0], known={"f_n": 3.0}, unreachable="keep")
     unreachable must be one of refuse, drop; got 'keep'
 fm.identify.record(TIME, np.cos(4 * TIME), np.ones(400))

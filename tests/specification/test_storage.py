@@ -30,7 +30,7 @@ mu = [1.0, 1.5]
 CELL = ("mu", "r", "beta")
 CURVE = ("mu", "r")
 
-#: Type and dimensions that shared/interface.md promises.
+#: Type and dimensions that files promise their readers.
 CELL_VARIABLES = {
     "regime": "int8",
     "stops_per_cycle": "float32",

@@ -25,6 +25,7 @@ class Truth(NamedTuple):
     wall_moves: bool = False
     sigma_phase: float = 0.7  # deg
     sigma_amplitude: float = 0.01
+    spring: float = 0.0  # stiffness in the contact over k1; 0: rigid
 
 
 #: Frequency ratios of random tests.
@@ -37,6 +38,10 @@ STICK_SLIP = Truth(
     (0.25, 0.45, 0.65), 3.086, 0.006, 1.15, (0.15, 0.22, 0.28, 0.36, 0.44, 0.55, 0.7), False, 0.3, 0.005
 )
 
+#: A spring in the contact: near sticking in the last set, and far from it in all.
+SPRING = Truth((0.3, 0.6, 0.9), 3.086, 0.01, 1.0, RATIOS, spring=3.0)
+FAR = Truth((0.02, 0.05), 3.086, 0.01, 1.0, RATIOS, spring=3.0)
+
 #: Two storeys, contact on the second one: beta, zeta, f_k1m1 [Hz], ratios, frequency ratios, errors.
 TWO_BETA, TWO_ZETA, TWO_F = 0.2, 0.003, 2.9248318221702254
 TWO_MASSES, TWO_SPRINGS = (1.0, 0.9772), (1.0, 1.1119)
@@ -44,20 +49,20 @@ TWO_RATIOS = (0.55, 0.68, 0.75, 0.85, 1.25, 1.35, 1.45, 1.55, 1.75)
 TWO_SIGMAS = 1.0, 0.015
 
 
-def _phasor(r: float, beta: float, zeta: float, mu: float, wall_moves: bool) -> complex:
+def _phasor(truth: Truth, r: float, beta: float) -> complex:
     """X/Y of one mass with its damper between base and mass: closed form, or marched if it stops."""
-    moving = continuous(chain([1.0], [1.0], [zeta], True), 0, wall_moves, r, beta)
-    if moving is not None:
-        return complex(moving[0])
-    return steady(Rig(1.0, zeta, beta, mu, 0.0, r, (0.0, 1.0), wall_moves)).first_harmonic()
+    if not truth.spring:
+        moving = continuous(chain([1.0], [1.0], [truth.zeta], True), 0, truth.wall_moves, r, beta)
+        if moving is not None:
+            return complex(moving[0])
+    rig = Rig(1.0, truth.zeta, beta, truth.mu, 0.0, r, (0.0, 1.0), truth.wall_moves, spring=truth.spring)
+    return steady(rig).first_harmonic()
 
 
 @lru_cache(maxsize=64)
 def _phasors(truth: Truth) -> np.ndarray:
     """X/Y of every set at every r, one set after another."""
-    return np.array([
-        _phasor(r, beta, truth.zeta, truth.mu, truth.wall_moves) for beta in truth.beta for r in truth.r
-    ])  # fmt: skip
+    return np.array([_phasor(truth, r, beta) for beta in truth.beta for r in truth.r])
 
 
 def _quantities(phasors: np.ndarray) -> np.ndarray:
@@ -66,14 +71,16 @@ def _quantities(phasors: np.ndarray) -> np.ndarray:
 
 
 def _bound(truth: Truth, names: dict[str, float]) -> dict[str, float]:
-    """Cramer-Rao bound of beta of every set, f_n, zeta and optionally mu."""
+    """Cramer-Rao bound of beta of every set, f_n, zeta and optionally mu or the spring."""
     sets, frequency = len(truth.beta), truth.f_n * np.array(truth.r)
 
     def model(values: np.ndarray) -> np.ndarray:
-        mu = float(values[sets + 2]) if values.size > sets + 2 else truth.mu
-        r = tuple((frequency / values[sets]).tolist())
-        one = Truth(tuple(values[:sets].tolist()), 1.0, float(values[sets + 1]), mu, r, truth.wall_moves)
-        return _quantities(_phasors(one))
+        law = float(values[sets + 2]) if values.size > sets + 2 else truth.mu
+        one = truth._replace(
+            beta=tuple(values[:sets].tolist()), f_n=1.0, zeta=float(values[sets + 1]),
+            r=tuple((frequency / values[sets]).tolist()),
+        )  # fmt: skip
+        return _quantities(_phasors(one._replace(spring=law) if truth.spring else one._replace(mu=law)))
 
     count = sets * len(truth.r)
     return cramer_rao(model, names, np.repeat([np.radians(truth.sigma_phase), truth.sigma_amplitude], count))
@@ -93,6 +100,9 @@ def _made(
     truth = draw(rng)
     names = {f"beta_{k}": beta for k, beta in enumerate(truth.beta, start=1)}
     names |= {"f_n": truth.f_n, "zeta": truth.zeta} | ({} if mu_known else {"mu": truth.mu})
+    if truth.spring:
+        names["contact_stiffness"] = truth.spring
+        arguments = {"free": ["beta", "f_n", "zeta", "contact_stiffness"], **arguments}
     phasors = _phasors(truth)
     errors = [rng.normal(0.0, one, phasors.size) for one in (truth.sigma_phase, truth.sigma_amplitude)]
     if far:
@@ -109,10 +119,9 @@ def _made(
     if given:
         words |= {"sigma_phase": truth.sigma_phase, "sigma_amplitude": truth.sigma_amplitude}
     frequency = np.tile(truth.f_n * np.array(truth.r), len(truth.beta))
+    bound = None if draw is _with_spring else _bound(truth, names)  # it takes much longer than the fit
     lag, ratio = -np.degrees(np.angle(phasors)) + errors[0], np.abs(phasors) * np.exp(errors[1])
-    return Made(
-        names, lambda: fm.identify.forced(frequency, lag, ratio, **words, **arguments), _bound(truth, names)
-    )
+    return Made(names, lambda: fm.identify.forced(frequency, lag, ratio, **words, **arguments), bound)
 
 
 def _random(rng: np.random.Generator, heavy: bool = False) -> Truth:
@@ -120,6 +129,13 @@ def _random(rng: np.random.Generator, heavy: bool = False) -> Truth:
     zeta = rng.uniform(0.08, 0.12) if heavy else 10.0 ** rng.uniform(-2.5, -1.5)
     beta = rng.uniform(0.1, 0.25), rng.uniform(0.3, 0.5)
     return Truth(beta, rng.uniform(2.0, 6.0), zeta, 1.0, RATIOS)
+
+
+def _with_spring(rng: np.random.Generator) -> Truth:
+    """One storey with a spring in its contact, which sticks for a part of the cycle."""
+    zeta, spring = 10.0 ** rng.uniform(-2.2, -1.5), 10.0 ** rng.uniform(-0.3, 1.3)
+    beta = rng.uniform(0.3, 0.5), rng.uniform(0.6, 0.9)
+    return Truth(beta, rng.uniform(2.0, 6.0), zeta, 1.0, RATIOS, spring=spring)
 
 
 def _fixed(truth: Truth) -> Callable[[np.random.Generator], Truth]:
@@ -170,4 +186,7 @@ CASES = (
         partial(_made, draw=_fixed(STICK_SLIP), given=True, mu_known=False),
         100,
     ),
+    Case("spring in the contact, two sets", partial(_made, draw=_with_spring), 100),
+    Case("spring in the contact, three sets", partial(_made, draw=_fixed(SPRING), given=True), 100),
+    Case("spring in the contact, far from sticking", partial(_made, draw=_fixed(FAR), given=True), 40),
 )

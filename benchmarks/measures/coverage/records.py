@@ -19,6 +19,9 @@ NOISE, BASE_NOISE = 0.01, 0.003
 STICK_SLIP = Rig(3.13, 0.0055, 0.8372, 1.0, -0.1, 1.001, (0.0, 1.82 * np.exp(0.7j), 0.02 * np.exp(2.0j)))
 STATIC = STICK_SLIP._replace(mu=1.25)
 
+#: Parameters that are fitted with a spring in the contact.
+_OF_SPRING = ["f_n", "zeta", "x_F", "contact_stiffness", "offset_x"]
+
 #: Rigs are drawn anew until the motion repeats after one cycle, at most so often.
 _DRAWS = 20
 
@@ -43,11 +46,17 @@ def _random(rng: np.random.Generator, heavy: bool = False) -> Rig:
     )
 
 
+def _with_spring(rng: np.random.Generator) -> Rig:
+    """Random rig with a spring in its contact."""
+    rig = _random(rng)
+    return rig._replace(spring=10.0 ** rng.uniform(-0.3, 1.3))
+
+
 def _settled(rng: np.random.Generator, draw: Callable[[np.random.Generator], Rig]) -> Steady:
-    """Steady motion of a rig whose motion has the period of the base."""
+    """Steady motion of a rig whose motion has the period of the base, and whose elastic contact slips."""
     for _ in range(_DRAWS):
         motion = settled(draw(rng))
-        if motion.settled:
+        if motion.settled and (motion.stops or not motion.rig.spring):
             return motion
     raise RuntimeError(f"none of {_DRAWS} rigs settled")
 
@@ -75,6 +84,10 @@ def _made(
     if change is not None:
         kept, x = change(rng, rig, time, x)
     truth = {"f_n": rig.f_n, "zeta": rig.zeta, "x_F": rig.x_F, "mu": rig.mu, "offset_x": rig.offset}
+    if rig.spring:
+        del truth["mu"]
+        truth["contact_stiffness"] = rig.spring
+        known, arguments = {}, {"free": _OF_SPRING, **arguments}
     truth["beta"] = rig.x_F / abs(rig.base[1])
     words = {
         "contact": "joined-base-wall" if rig.wall_moves else "fixed-wall",
@@ -121,4 +134,5 @@ CASES = (
     Case("clipped", partial(_made, change=_clipped)),
     Case("zeta 0.08 to 0.12", partial(_made, draw=partial(_random, heavy=True))),
     Case("mu 1.25, fitted", partial(_made, draw=lambda rng: STATIC, known={}), 100),
+    Case("spring in the contact", partial(_made, draw=_with_spring), 100),
 )

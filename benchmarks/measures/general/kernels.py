@@ -12,8 +12,9 @@ from frictionmap._kernels.general.fill import Cells, Grid, fill_rows
 from frictionmap._kernels.general.follow import MOVED, STOPS
 from frictionmap._kernels.general.problem import set_row
 from frictionmap._kernels.general.record import RANGES
+from frictionmap._kernels.general.return_map import steady_period
 from frictionmap._kernels.general.series import Friction
-from frictionmap._kernels.general.steady import REPEATS, find, from_rest, make_tools, measure, steady_period
+from frictionmap._kernels.general.steady import REPEATS, find, from_rest, make_tools, measure
 from frictionmap.general.boundaries import friction_lines, rest_states
 from frictionmap.general.held import least_static_friction, stick_scales
 from frictionmap.general.maps import allocate
@@ -64,7 +65,9 @@ def _solve_cells(problem, forces, starts, tools, friction, found):
         for j in range(contacts):
             friction.kinetic[j] = friction.static[j] = forces[k, j]
         from_rest(problem, row, friction, starts[k], work, memory, record)
-        steady = find(problem, row, friction, _CYCLES, _TOLERANCE, work, memory, tools.ring, record)
+        steady = find(
+            problem, row, friction, _CYCLES, _TOLERANCE, work, memory, tools.ring, record, tools.course
+        )
         if steady.status != REPEATS:
             continue
         halves, multiplier = measure(problem, row, friction, steady.halves, work, memory, record, RANGES)

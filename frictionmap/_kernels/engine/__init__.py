@@ -8,7 +8,7 @@ policies       initial states and thresholds shared by both kinds of motion
 records        records passed to and returned by the solver: contact, state, limits, orbit, cell
 memory         ring buffer of past anchors
 cycle_log      what a motion did in every excitation period, and its averages
-schedules      when Newton's method is tried, and when long periods are looked for
+schedules      when Newton's method is tried
 segment_table  slides and stops of a steady state in order, each with its exact motion
 one_mass       one mass as a kind of motion
 many_masses    a structure as a kind of motion

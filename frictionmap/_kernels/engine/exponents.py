@@ -12,11 +12,11 @@ import numpy as np
 from ...regimes import IRREGULAR
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
+from ..logs import mean_and_error
 from ..structure.events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
 from ..structure.newton import Workspace, free_motion, make_workspace, through_event
 from ..structure.oscillators import FELL, Scratch, make_scratch
 from ..structure.state import StructureAtFrequency, W, make_structure
-from .cycle_log import mean_and_error
 from .records import TURN, stops_at, turns_at
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from ..compiler import entry, inner_kernel, kernel
 from ..continuous_motion import continuous_amplitude, orbit_phase
 from ..event_codes import NO_END, STOP_THEN_BACK, EventSequence
+from ..logs import make_log
 from ..structure.events import UNDER_WAY, after_slide, slide_on
 from ..structure.newton import (
     BETA,
@@ -44,7 +45,7 @@ from ..structure.state import (
     release_steady,
     vibrates_in_step,
 )
-from .cycle_log import make_log
+from .cycle_log import LOGGED
 from .memory import STATE, Memory, Recurrence, make_memory, turned
 from .policies import FINE_STEPS, SLOTS
 from .records import TURN, Contact, ContactState, known_orbit, no_orbit, turns_at, undefined_state
@@ -136,7 +137,7 @@ def at_frequency(system, i):
     return ManyMasses(
         st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _RECURRENCE_THRESHOLD, i, st, fine,
         system.orbit, make_state(n), np.zeros((SLOTS, 2, padded(n))), make_memory(st.h, 2 * n),
-        make_log(), make_workspace(n), make_scratch(n), np.empty((0, 0)),
+        make_log(LOGGED), make_workspace(n), make_scratch(n), np.empty((0, 0)),
     )  # fmt: skip
 
 

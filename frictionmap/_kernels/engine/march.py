@@ -21,8 +21,10 @@ from ...regimes import (
 )
 from ..compiler import inner_kernel, kernel
 from ..event_codes import GRAZING, NO_END, STUCK
+from ..logs import clear_log
+from ..long_periods import enough_cycles, first_search, next_search
 from ..structure.events import NO_RELEASE
-from .cycle_log import averages, clear_log, log_event, log_stop
+from .cycle_log import averages, log_event, log_stop
 from .measure import measure, proven_stops
 from .memory import Recurrence, record_anchor, settled
 from .motion import (
@@ -53,7 +55,7 @@ from .records import (
     unresolved,
 )
 from .recurrence import find_long_recurrence, find_recurrence
-from .schedules import first_schedule, first_search, next_search, postpone
+from .schedules import first_schedule, postpone
 
 #: Events per excitation period (times one quarter over the scan step, if that exceeds 1) beyond which a
 #: motion counts as chattering without end.
@@ -64,12 +66,6 @@ _GROWING = 64
 
 #: Slides without a stop after which a motion away from the continuous orbit is also searched for recurrences.
 _SLIDES_WITHOUT_STOP = 8
-
-#: Excitation periods after which a motion that does not return, and whose averages are stationary, is taken
-#: as irregular; and the share of the periods that may be followed, if that is more.  A motion that is not
-#: stationary is followed twice as long.
-_FEWEST_CYCLES = 512.0
-_SHARE_OF_CYCLES = 0.25
 
 #: Relative distance from an orbit that is rounding error.
 _ROUNDING = 1e-12
@@ -336,7 +332,7 @@ def _long_search(motion, contact, contact_state, event, history, schedule, limit
         orbit = _seek(motion, contact, contact_state, event, history, recurrence, schedule, limits)
         if orbit.found:
             return _orbit_cell(motion, contact, orbit, PERIODIC_ORBIT, history.time)
-    enough = TURN * max(_FEWEST_CYCLES, _SHARE_OF_CYCLES * limits.cycles)
+    enough = TURN * enough_cycles(limits.cycles)
     if history.time >= enough and not _is_marginal(motion, contact):
         found = averages(motion.log, history.time)
         if found.stationary or history.time >= 2.0 * enough:

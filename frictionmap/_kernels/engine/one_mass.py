@@ -13,21 +13,28 @@ import numpy as np
 from ..compiler import entry, inner_kernel, kernel
 from ..continuous_motion import continuous_amplitude, orbit_phase
 from ..event_codes import REVERSE, STOP_THEN_BACK, STOP_THEN_ON, EventSequence
+from ..logs import make_log
 from ..one_mass.events import Scratch, after_slide, make_scratch, slide_within
 from ..one_mass.newton import first_contact_force, solve_orbit
 from ..one_mass.scan_step import Step, step_constants
 from ..one_mass.sliding_orbit import Oscillator, distance_to_orbit, stop_free_radius
-from .cycle_log import make_log
+from .cycle_log import LOGGED
 from .memory import STATE, Memory, make_memory, turned
 from .policies import FINE_STEPS, MOVING_START, MOVING_START_CAP
 from .records import Contact, ContactState, Orbit, known_orbit, no_orbit, stops_at
 from .segment_table import put_mass
 
-#: Columns of the orbit solved for last, the first guess of the next cell: slides per recurrence (0: no
-#: orbit), displacement and sign at the end of a stop, and the events that follow it, at most MOST_EVENTS.
-COUNT, DISPLACEMENT, SIDE, FIRST = 0, 1, 2, 3
+#: Columns of the orbits solved for last, which point to the next cell: slides per recurrence (0: no orbit),
+#: sign at the end of a stop, how many orbits with these events are known, at most _KNOWN, their displacements
+#: at the end of that stop and their friction, latest first, and the events, at most MOST_EVENTS.
+COUNT, SIDE, KNOWN = 0, 1, 2
+_KNOWN = 3
+_DISPLACEMENTS, _FRICTION, FIRST = 3, 3 + _KNOWN, 3 + 2 * _KNOWN
 MOST_EVENTS = 32
 NEIGHBOUR = FIRST + MOST_EVENTS
+
+#: Farthest extrapolation, in steps between the last two orbits.
+_FARTHEST = 3.0
 
 #: Two anchors closer than this are the same: Newton's method may have converged to a repeated short orbit.
 _SAME = 1e-9
@@ -103,7 +110,7 @@ def at_frequency(system, i):
     return OneMass(
         step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _RECURRENCE_THRESHOLD,
         oscillator, step, step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
-        make_memory(step.h, 1), make_log(), make_scratch(), np.zeros(NEIGHBOUR), np.empty((0, 0)),
+        make_memory(step.h, 1), make_log(LOGGED), make_scratch(), np.zeros(NEIGHBOUR), np.empty((0, 0)),
     )  # fmt: skip
 
 
@@ -273,7 +280,7 @@ def seek(motion, contact, contact_state, event, sign, events, recurrence, failur
         )  # fmt: skip
         if found:
             if stopped:
-                _keep(motion, z, sign, events, slides)
+                _keep(motion, contact.b, z, sign, events, slides)
             contact_force = first_contact_force(contact.b, contact.mu_b, z, c)
             return Orbit(
                 True, ContactState(z, 0.0, c, s, contact_force), event, sign, slides, contact.unique,
@@ -283,12 +290,50 @@ def seek(motion, contact, contact_state, event, sign, events, recurrence, failur
 
 
 @kernel
-def _keep(motion, z, sign, events, slides):
-    """Save an orbit that starts at the end of a stop, as the first guess of the next cell."""
+def _remember(neighbour, b, z):
+    """Add an orbit with the events of the last ones, its displacement at the end of a stop."""
+    known = int(min(neighbour[KNOWN] + 1.0, float(_KNOWN)))
+    for first in (_DISPLACEMENTS, _FRICTION):
+        for k in range(known - 1, 0, -1):
+            neighbour[first + k] = neighbour[first + k - 1]
+    neighbour[KNOWN], neighbour[_DISPLACEMENTS], neighbour[_FRICTION] = known, z, b
+
+
+@kernel
+def _expected(neighbour, b):
+    """Displacement at friction b by the polynomial through the last orbits; if b is far away, the last."""
+    last, friction = neighbour[_DISPLACEMENTS], neighbour[_FRICTION:FIRST]
+    known = int(neighbour[KNOWN])
+    if known < 2 or not abs(b - friction[0]) <= _FARTHEST * abs(friction[0] - friction[1]):
+        return last
+    z = 0.0
+    for k in range(known):
+        weight = 1.0
+        for other in range(known):
+            if other != k:
+                weight *= (b - friction[other]) / (friction[k] - friction[other])
+        z += weight * neighbour[_DISPLACEMENTS + k]
+    return z
+
+
+@kernel
+def _keep(motion, b, z, sign, events, slides):
+    """Save an orbit that starts at the end of a stop, as the first guess of the next cell.
+
+    Parameters
+    ----------
+    motion : OneMass
+    b : friction over load amplitude
+    z : displacement at the end of the stop
+    sign : -1.0 where the slide after it is mirrored, else 1.0
+    events : number of events of the motion
+    slides : slides per recurrence, whose events are the last ones
+    """
     neighbour, ring = motion.neighbour, motion.memory.events
     if slides > MOST_EVENTS:
         return
-    neighbour[COUNT], neighbour[DISPLACEMENT], neighbour[SIDE] = slides, z, sign
+    neighbour[COUNT], neighbour[SIDE], neighbour[KNOWN] = slides, sign, 0.0
+    _remember(neighbour, b, z)
     for m in range(slides):
         neighbour[FIRST + m] = ring[(events - slides + m) % ring.size]
 
@@ -300,9 +345,19 @@ def forget_neighbour(motion):
 
 
 @kernel
+def _nearby(motion, contact, z, slides, limits):
+    """Solve for the orbit with the events of the last cell, from a first guess of its displacement."""
+    found, z, c, s, _ = solve_orbit(
+        motion.step, motion.oscillator, contact.b, contact.mu_b, z, 1.0, 0.0, True,
+        EventSequence(motion.neighbour[FIRST:], np.int64(0), slides), limits.tolerance, motion.scratch,
+    )  # fmt: skip
+    return found, z, c, s
+
+
+@kernel
 def seek_nearby(motion, contact, limits):
-    """See `motion.seek_nearby`; the first guess is the orbit at the onset of stopping, which stops where it
-    turns.
+    """See `motion.seek_nearby`; the first guess is where the last orbits point, at first the orbit at the
+    onset of stopping, which stops where it turns.
     """
     neighbour = motion.neighbour
     slides = int(neighbour[COUNT])
@@ -311,18 +366,18 @@ def seek_nearby(motion, contact, limits):
         if math.isinf(f.v_abs) or not contact.b_lim > 0.0:
             return no_orbit()
         slides = 1
-        neighbour[DISPLACEMENT] = -continuous_amplitude(f.v_abs, f.u, f.g, contact.b_lim)
-        neighbour[SIDE] = 1.0
+        neighbour[SIDE], neighbour[KNOWN] = 1.0, 0.0
         neighbour[FIRST] = STOP_THEN_BACK
+        _remember(neighbour, contact.b_lim, -continuous_amplitude(f.v_abs, f.u, f.g, contact.b_lim))
     neighbour[COUNT] = 0.0
-    found, z, c, s, _ = solve_orbit(
-        motion.step, motion.oscillator, contact.b, contact.mu_b, neighbour[DISPLACEMENT], 1.0, 0.0, True,
-        EventSequence(neighbour[FIRST:], np.int64(0), slides), limits.tolerance, motion.scratch,
-    )  # fmt: skip
+    expected, last = _expected(neighbour, contact.b), neighbour[_DISPLACEMENTS]
+    found, z, c, s = _nearby(motion, contact, expected, slides, limits)
+    if not found and expected != last:
+        found, z, c, s = _nearby(motion, contact, last, slides, limits)
     if not found:
         return no_orbit()
     neighbour[COUNT] = slides
-    neighbour[DISPLACEMENT] = z
+    _remember(neighbour, contact.b, z)
     contact_force = first_contact_force(contact.b, contact.mu_b, z, c)
     event = int(neighbour[FIRST + slides - 1])
     return known_orbit(ContactState(z, 0.0, c, s, contact_force), event, neighbour[SIDE], slides)

@@ -3,21 +3,17 @@
 import math
 
 from ..compiler import kernel
+from ..long_periods import LONGEST_RECURRENCE, RETURNED_AFTER_LONG
 from .memory import TIME, Recurrence, halves_between
 from .motion import motion_size, recurrence_distance
 from .periods import full_period
 
-#: Longest recurrence [half periods of the excitation] looked for in every half period, and in the seldom
-#: searches for long periods.
-_LONGEST_RECURRENCE = 16
-_LONG = 512
+#: Longest recurrence [half periods of the excitation] looked for in every half period.
+_LONGEST_SOON = 16
 
 #: Largest number of candidates compared per half period of the longest recurrence: symmetric motions need one
 #: or a few, subharmonic ones more.
 _MOST_RECURRENCES = 4
-
-#: Distance, relative to the motion, of a return after a long period.
-_LONG_THRESHOLD = 1e-6
 
 
 @kernel
@@ -33,13 +29,13 @@ def find_recurrence(motion, contact_state, events, any_will_do, shortest):
     shortest : True stops the search at the first recurrence
     """
     threshold = math.inf if any_will_do else motion.recurrence_threshold
-    return _nearest(motion, contact_state, events, threshold, _LONGEST_RECURRENCE, shortest)
+    return _nearest(motion, contact_state, events, threshold, _LONGEST_SOON, shortest)
 
 
 @kernel
 def find_long_recurrence(motion, contact_state, events):
     """Find the earlier anchor, up to 256 excitation periods ago, that the present one equals."""
-    return _nearest(motion, contact_state, events, _LONG_THRESHOLD, _LONG, False)
+    return _nearest(motion, contact_state, events, RETURNED_AFTER_LONG, LONGEST_RECURRENCE, False)
 
 
 @kernel

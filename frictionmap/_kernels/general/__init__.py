@@ -4,22 +4,28 @@ A motion is a chain of steps.  In each the modes are Taylor series that follow f
 term by term, with the forces that hold the held contacts, so that no combination of held contacts needs a
 solution of its own.  Events are located on these series, with certainty.
 
-==========  =====================================================================================
-module      what is in it
-==========  =====================================================================================
-problem     a system over r, the constants of one r, the memory of a motion; series of the load
-crossings   values of a series, and its first zero, with certainty
-series      series of one step: modes, forces, motion in the contacts
-pattern     which contacts slide and which are held after an event
-record      extremes, works and steps of a steady motion
-tangent     derivatives of the motion by its state at the section
-glide       intervals in which nothing happens, by tables
-follow      the motion from one phase of the load to another
-return_map  the state after some half periods, and Newton steps to one that returns
-steady      the steady state of one cell
-fill        the cells of a map
-partial     the force that holds one contact while the others move
-no_stop     friction ratios at which no contact stops
-samples     displacements of a recorded motion
-==========  =====================================================================================
+=============  =====================================================================================
+module         what is in it
+=============  =====================================================================================
+problem        a system over r, the constants of one r, the memory of a motion; series of the load
+crossings      values of a series, and its first zero, with certainty
+series         series of one step: modes, forces, motion in the contacts
+pattern        which contacts slide and which are held after an event
+record         extremes, works and steps of a steady motion
+tangent        derivatives of the motion by its state at the section
+glide          intervals in which nothing happens, by tables
+follow         the motion from one phase of the load to another
+return_map     the state after some half periods, and Newton steps to one that returns
+returns        states at the section that are kept, and how long ago the motion was where it is now
+orbits         steady states by Newton's method, their multipliers and periods
+approach       whether a motion goes to a steady state, for mu > 1
+course         what a motion does in every period of the load, and its averages if it does not return
+single_tables  one mass with one rigid contact: tables of one r
+single_mass    its steady state for mu = 1, by these tables
+steady         the steady state of one cell
+fill           the cells of a map
+partial        the force that holds one contact while the others move
+no_stop        friction ratios at which no contact stops
+samples        displacements of a recorded motion
+=============  =====================================================================================
 """

@@ -12,6 +12,7 @@ from ...regimes import (
     CLOSED_FORM,
     CONTINUOUS,
     INTEGRATED,
+    IRREGULAR,
     NOT_REACHED,
     ONE_WAY_SLIDING,
     PERIODIC_ORBIT,
@@ -22,13 +23,15 @@ from ...regimes import (
 )
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
-from .follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
-from .problem import padded, set_row
+from .follow import MOVED, RELEASE_ORDER, REVERSALS, SLIPS, STOPS, STOPS_ERROR, STUCK, STUCK_ERROR, TURNS
+from .problem import padded
 from .record import LEAST_SLIP, RANGES
+from .return_map import steady_period
 from .series import Friction
-from .steady import NO_REPEAT, REPEATS, find, from_rest, make_tools, measure, steady_period
+from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, from_rest, make_tools, solve
 
-#: A start is moved on by this many steps between the last two cells at most.
+#: Cells of a row that point to the next one, and the farthest that it may be, in steps between the last two.
+_KEPT = 3
 _FARTHEST = 3.0
 
 
@@ -45,11 +48,11 @@ class Grid(NamedTuple):
 
 
 class Trail(NamedTuple):
-    """The steady states of the last two cells of a row, to begin the next one from."""
+    """The steady states of the last cells of a row, latest first, to begin the next one from."""
 
-    states: np.ndarray  # (2, 3, ...) the last one and the one before it
-    senses: np.ndarray  # (2, N)
-    beta: np.ndarray  # (2,)
+    states: np.ndarray  # (_KEPT, 3, ...)
+    senses: np.ndarray  # (N,) the pattern of all of them
+    beta: np.ndarray  # (_KEPT,)
     count: np.ndarray  # (1,) int: how many there are
 
 
@@ -62,10 +65,13 @@ class Cells(NamedTuple):
     cycles: np.ndarray
     period: np.ndarray
     multiplier: np.ndarray
+    release_order: np.ndarray  # 1 where releasing contacts all at once would make a difference
     contact_regime: np.ndarray  # (..., N)
     stops: np.ndarray
     turns: np.ndarray
     stuck: np.ndarray
+    stops_error: np.ndarray  # standard errors
+    stuck_error: np.ndarray
     slips: np.ndarray
     reversals: np.ndarray
     least_slip: np.ndarray
@@ -108,6 +114,7 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
     contacts = problem.spring.size
     period = 0.5 * halves
     least, most = CONTINUOUS + 2, PERMANENT_STICKING
+    differs = False
     for j in range(contacts):
         regime = _regime_of(problem, counts, j)
         least, most = min(least, regime), max(most, regime)
@@ -115,6 +122,8 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
         out.stops[m, i, b, j] = counts[STOPS, j] / period
         out.turns[m, i, b, j] = counts[TURNS, j] / period
         out.stuck[m, i, b, j] = counts[STUCK, j] / (math.pi * halves)
+        out.stops_error[m, i, b, j] = counts[STOPS_ERROR, j]
+        out.stuck_error[m, i, b, j] = counts[STUCK_ERROR, j]
         out.slips[m, i, b, j] = counts[SLIPS, j] / period
         if problem.spring[j] != 0.0 and counts[STUCK, j] == 0.0:
             out.slips[m, i, b, j] = 1.0
@@ -125,6 +134,8 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
         out.distance[m, i, b, j] = record.distance[j] / period
         out.works[m, i, b, j] = record.works[0, j] / period
         out.wall_works[m, i, b, j] = record.works[1, j] / period
+        differs = differs or counts[RELEASE_ORDER, j] != 0.0
+    out.release_order[m, i, b] = 1 if differs else 0
     for k in range(record.ranges.shape[1]):
         out.lowest[m, i, b, k] = record.ranges[0, k]
         out.highest[m, i, b, k] = record.ranges[1, k]
@@ -150,6 +161,11 @@ def _store(problem, out, m, i, b, found, measured, counts, record):
     """
     halves, multiplier = measured
     out.cycles[m, i, b] = math.ceil(found.cycles)
+    if found.status == AVERAGED:
+        out.status[m, i, b] = IRREGULAR
+        out.origin[m, i, b] = INTEGRATED
+        out.regime[m, i, b] = _store_contacts(problem, out, m, i, b, counts, found.halves, record)
+        return
     if found.status != REPEATS:
         out.status[m, i, b] = NOT_REACHED if found.status == NO_REPEAT else TOO_MANY_EVENTS
         out.origin[m, i, b] = INTEGRATED
@@ -170,11 +186,13 @@ def _store_stuck(out, m, i, b):
     out.status[m, i, b] = RESOLVED
     out.origin[m, i, b] = CLOSED_FORM
     out.period[m, i, b] = 1
+    out.release_order[m, i, b] = 0
     for j in range(out.contact_regime.shape[3]):
         out.contact_regime[m, i, b, j] = PERMANENT_STICKING
         out.stops[m, i, b, j] = 0.0
         out.turns[m, i, b, j] = 0.0
         out.stuck[m, i, b, j] = 1.0
+        out.stops_error[m, i, b, j] = out.stuck_error[m, i, b, j] = 0.0
         out.slips[m, i, b, j] = 0.0
         out.reversals[m, i, b, j] = 0.0
         out.least_slip[m, i, b, j] = 0.0
@@ -199,38 +217,47 @@ def make_trail(problem):
     """Allocate the memory of the last two cells."""
     contacts, modes = problem.chi.shape
     return Trail(
-        np.zeros((2, 3, padded(max(modes, contacts)))), np.zeros((2, contacts), np.int64), np.zeros(2),
+        np.zeros((_KEPT, 3, padded(max(modes, contacts)))), np.zeros(contacts, np.int64), np.zeros(_KEPT),
         np.zeros(1, np.int64),
     )  # fmt: skip
 
 
 @kernel
 def _remember(memory, beta, trail):
-    """Keep the steady state of a cell, and the one before it if it has the same pattern."""
-    same = trail.count[0] > 0
+    """Keep the steady state of a cell, and those before it if they have the same pattern."""
+    same = True
     for j in range(memory.senses.size):
-        same = same and memory.senses[j] == trail.senses[0, j]
-        trail.senses[0, j] = memory.senses[j]
-    trail.count[0] = 2 if same else 1
-    trail.beta[1], trail.beta[0] = trail.beta[0], beta
+        same = same and memory.senses[j] == trail.senses[j]
+        trail.senses[j] = memory.senses[j]
+    trail.count[0] = min(trail.count[0] + 1, _KEPT) if same else 1
+    for k in range(trail.count[0] - 1, 0, -1):
+        trail.beta[k] = trail.beta[k - 1]
+        for part in range(3):
+            for i in range(memory.start.shape[1]):
+                trail.states[k, part, i] = trail.states[k - 1, part, i]
+    trail.beta[0] = beta
     for part in range(3):
         for i in range(memory.start.shape[1]):
-            trail.states[1, part, i] = trail.states[0, part, i]
             trail.states[0, part, i] = memory.start[part, i]
 
 
 @kernel
 def _begin_ahead(beta, trail, memory):
-    """Move the start from the steady state of the last cell on to where those of the last two point."""
-    if trail.count[0] < 2:
-        return
-    ahead = (beta - trail.beta[0]) / (trail.beta[0] - trail.beta[1])
-    if not abs(ahead) <= _FARTHEST:
+    """Begin where the steady states of the last cells point: at the polynomial in beta through them."""
+    count = trail.count[0]
+    if count < 2 or not abs(beta - trail.beta[0]) <= _FARTHEST * abs(trail.beta[0] - trail.beta[1]):
         return
     for part in range(3):
         for i in range(memory.start.shape[1]):
-            step = trail.states[0, part, i] - trail.states[1, part, i]
-            memory.start[part, i] = trail.states[0, part, i] + ahead * step
+            memory.start[part, i] = 0.0
+    for k in range(count):
+        weight = 1.0
+        for other in range(count):
+            if other != k:
+                weight *= (beta - trail.beta[other]) / (trail.beta[k] - trail.beta[other])
+        for part in range(3):
+            for i in range(memory.start.shape[1]):
+                memory.start[part, i] += weight * trail.states[k, part, i]
 
 
 @kernel
@@ -250,7 +277,7 @@ def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
         m, i = index // n_r, index % n_r
         if problem.r[i] == 0.0:
             continue
-        set_row(problem, i, row)
+        begin_row(problem, i, tools)
         trail.count[0] = 0
         for b in range(grid.beta.size):
             if cancel[0] != 0:
@@ -259,20 +286,22 @@ def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
                 _store_stuck(out, m, i, b)
                 continue
             unique = _set_friction(grid, m, b, friction)
-            if unique and trail.count[0] > 0:
+            ahead = unique and trail.count[0] > 0
+            if ahead:
                 _begin_ahead(grid.beta[b], trail, memory)
-            else:
+                found, halves, multiplier = solve(
+                    problem, friction, grid.cycles, grid.tolerance, tools, RANGES
+                )
+            if not ahead or found.status != REPEATS:
                 from_rest(problem, row, friction, grid.starts[i], work, memory, record)
-            found = find(
-                problem, row, friction, grid.cycles, grid.tolerance, work, memory, tools.ring, record
-            )
-            measured = 0, math.nan
+                found, halves, multiplier = solve(
+                    problem, friction, grid.cycles, grid.tolerance, tools, RANGES
+                )
             if found.status == REPEATS:
-                measured = measure(problem, row, friction, found.halves, work, memory, record, RANGES)
                 _remember(memory, grid.beta[b], trail)
             else:
                 trail.count[0] = 0
-            _store(problem, out, m, i, b, found, measured, memory.counts, record)
+            _store(problem, out, m, i, b, found, (halves, multiplier), memory.counts, record)
 
 
 @entry

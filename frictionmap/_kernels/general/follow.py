@@ -25,11 +25,13 @@ _AT_LIMIT = 1e-11
 _TOGETHER = 1e-11
 
 #: Rows of `law` and `counts`.
-LAW_ROWS = 9
+LAW_ROWS = 10
 STOPS, TURNS, STUCK, SLIPS, REVERSALS, LAST_SENSE, MOVED = 0, 1, 2, 3, 4, 5, 6
 NEAREST_STOP = 7  # largest share that friction has of the force that would hold a contact at a turn
 FIRST_SENSE = 8  # of the slips of an elastic contact; 0 before the first
-COUNT_ROWS = 9
+RELEASE_ORDER = 9  # 1 where releasing all overloaded contacts at once would leave it in another state
+STOPS_ERROR, STUCK_ERROR = 10, 11  # standard errors per period of the load, of averages; else 0
+COUNT_ROWS = 12
 
 FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
 
@@ -249,6 +251,9 @@ def _event(problem, row, friction, tau, work, law, counts, event, derive):
     if not _change_pattern(problem, row, friction, tau, work, law, x, contact, side):
         return False
     _count(problem, work, law, before, counts)
+    if settles:
+        for j in range(contacts):
+            counts[RELEASE_ORDER, j] = max(counts[RELEASE_ORDER, j], law[8, j])
     if not factor_held(problem, row, work):
         return False
     if derive:

@@ -1,4 +1,4 @@
-"""Friction with which no contact stops: intervals of beta, from the motions themselves (loads.md 4)."""
+"""Friction with which no contact stops: intervals of beta, from the motions themselves (theory.md 11)."""
 
 import math
 from typing import NamedTuple
@@ -8,10 +8,9 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from .follow import MOVED, NEAREST_STOP, STOPS
-from .problem import set_row
 from .record import NOTHING
 from .series import Friction
-from .steady import REPEATS, find, from_rest, make_tools, measure
+from .steady import REPEATS, begin_row, from_rest, make_tools, solve
 
 #: Nodes in beta at which the motion is tried: so many in geometric progression from _LOWEST of the top up,
 #: then equally spaced ones.
@@ -30,6 +29,9 @@ class Search(NamedTuple):
     kinetic: np.ndarray  # (N, 2)
     static: np.ndarray  # (n_mu, N, 2)
     top: np.ndarray  # (n_r,) largest beta that is tried
+    sticks: (
+        np.ndarray
+    )  # (n_r,) bool: whether all contacts stick permanently there, where a motion would creep
     starts: np.ndarray  # (n_r, 2, m)
     cycles: float
     tolerance: float
@@ -58,31 +60,30 @@ def _margin(search, m, beta, kept, k):
 
 
 @kernel
-def _try(problem, i, row, search, beta, near, friction, memories, kept, k):
+def _try(problem, i, search, beta, near, friction, tools, kept, k):
     """Keep the number of stops, and how near the turns are to one, of the motion with mu = 1 at beta.
 
     Parameters
     ----------
-    problem, i, row : Problem, index of r, Row
+    problem, i : Problem, index of r
     search : Search
     beta : friction ratio
     near : whether the state in memory is that of a steady state near by
     friction : Friction, filled
-    memories : Work, Return, Ring, Record
+    tools : Tools, after `begin_row`
     kept, k : row k is filled: stops, NaN without a steady state; NEAREST_STOP of every contact
     """
-    work, memory, ring, record = memories
+    memory = tools.memory
     contacts = problem.spring.size
     for j in range(contacts):
         friction.kinetic[j] = search.kinetic[j, 0] * beta + search.kinetic[j, 1]
         friction.static[j] = friction.kinetic[j]
     if not near:
-        from_rest(problem, row, friction, search.starts[i], work, memory, record)
-    found = find(problem, row, friction, search.cycles, search.tolerance, work, memory, ring, record)
+        from_rest(problem, tools.row, friction, search.starts[i], tools.work, memory, tools.record)
+    found, _, _ = solve(problem, friction, search.cycles, search.tolerance, tools, NOTHING)
     kept[k, 0] = math.nan
     if found.status != REPEATS:
         return False
-    measure(problem, row, friction, found.halves, work, memory, record, NOTHING)
     kept[k, 0] = 0.0
     for j in range(contacts):
         kept[k, 0] += memory.counts[STOPS, j]
@@ -93,7 +94,7 @@ def _try(problem, i, row, search, beta, near, friction, memories, kept, k):
 
 
 @kernel
-def _end(problem, i, row, search, m, inside, outside, friction, memories, kept):
+def _end(problem, i, search, m, inside, outside, friction, tools, kept):
     """End of an interval between a beta without stops and one with.
 
     Where a turn becomes a stop, the margin goes to zero there: trials on both sides of where it should be
@@ -101,12 +102,12 @@ def _end(problem, i, row, search, m, inside, outside, friction, memories, kept):
 
     Parameters
     ----------
-    problem, i, row : Problem, index of r, Row
+    problem, i : Problem, index of r
     search, m : Search, index of mu
     inside, outside : friction ratios without and with stops
-    friction, memories, kept : see `_try`
+    friction, tools, kept : see `_try`
     """
-    near = _try(problem, i, row, search, inside, False, friction, memories, kept, NODES + 1)
+    near = _try(problem, i, search, inside, False, friction, tools, kept, NODES + 1)
     margin = _margin(search, m, inside, kept, NODES + 1)
     guess = math.nan
     off = _OFF
@@ -117,7 +118,7 @@ def _end(problem, i, row, search, m, inside, outside, friction, memories, kept):
             beta = 0.5 * (inside + outside)
         if beta == inside or beta == outside:
             break
-        near = _try(problem, i, row, search, beta, near, friction, memories, kept, NODES + 1)
+        near = _try(problem, i, search, beta, near, friction, tools, kept, NODES + 1)
         now = _margin(search, m, beta, kept, NODES + 1)
         if aimed and (now > 0.0) == (off < 0.0):
             off *= -0.1
@@ -142,17 +143,19 @@ def _fill(first, last, problem, search, begins, ends, tools, friction, kept, can
     kept : see `_try`
     """
     problem, search, tools, friction = packed(problem), packed(search), packed(tools), packed(friction)
-    row, memories = tools.row, (tools.work, tools.memory, tools.ring, tools.record)
     for i in range(first, last):
         if cancel[0] != 0:
             return
         if problem.r[i] == 0.0:
             continue
-        set_row(problem, i, row)
+        begin_row(problem, i, tools)
         near = False
         for k in range(NODES + 1):
             beta = _node(search.top[i], k)
-            near = _try(problem, i, row, search, beta, near, friction, memories, kept, k)
+            if k == NODES and search.sticks[i]:
+                kept[k, 0] = 1.0
+            else:
+                near = _try(problem, i, search, beta, near, friction, tools, kept, k)
         for m in range(search.static.shape[0]):
             count = 0
             margin = _margin(search, m, _node(search.top[i], 0), kept, 0)
@@ -162,14 +165,10 @@ def _fill(first, last, problem, search, begins, ends, tools, friction, kept, can
                 before, here = _node(search.top[i], k - 1), _node(search.top[i], k)
                 now = _margin(search, m, here, kept, k)
                 if margin > 0.0 and now <= 0.0 and count < begins.shape[2]:
-                    ends[m, i, count] = _end(
-                        problem, i, row, search, m, before, here, friction, memories, kept
-                    )
+                    ends[m, i, count] = _end(problem, i, search, m, before, here, friction, tools, kept)
                     count += 1
                 if margin <= 0.0 and now > 0.0 and count < begins.shape[2]:
-                    begins[m, i, count] = _end(
-                        problem, i, row, search, m, here, before, friction, memories, kept
-                    )
+                    begins[m, i, count] = _end(problem, i, search, m, here, before, friction, tools, kept)
                 margin = now
             if margin > 0.0 and count < begins.shape[2]:
                 ends[m, i, count] = math.inf

@@ -34,7 +34,9 @@ def _fill(problem, i, contact, lines, values, state, limits, tools, friction, ou
             friction.static[j] = force
         if not near:
             from_rest(problem, row, friction, state, work, memory, record)
-        found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record)
+        found = find(
+            problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course
+        )
         near = found.status == REPEATS
         out[k] = math.nan
         if near:

@@ -104,23 +104,85 @@ def _box_law(problem, row, work, law):
 
 
 @kernel
-def _let_go(friction, work, law):
-    """Let the most overloaded of the held contacts with mu > 1 slide; whether there was one.
-
-    law[4] is the kinetic friction, and law[6] the static one.
-    """
-    contacts = work.sense.size
-    worst = 1.0
-    for j in range(contacts):
-        if law[3, j] != 0.0 and law[5, j] == 0.0 and abs(law[1, j]) > law[6, j]:
-            worst = max(worst, abs(law[1, j]) / law[6, j])
-    if worst == 1.0:
-        return False
-    for j in range(contacts):
-        if law[3, j] != 0.0 and law[5, j] == 0.0 and abs(law[1, j]) >= worst * (1.0 - _TIED) * law[6, j]:
+def _let_go(work, law, least):
+    """Let every held contact with mu > 1 slide whose force is at least `least` times its static friction."""
+    for j in range(work.sense.size):
+        if law[3, j] != 0.0 and law[5, j] == 0.0 and abs(law[1, j]) >= least * law[6, j]:
             law[5, j] = 1.0
             work.sense[j] = 1 if law[1, j] > 0.0 else -1
-    return True
+
+
+@kernel
+def _overloads(work, law):
+    """Largest and smallest share, above 1, that the force of a held contact with mu > 1 has of its static
+    friction, law[6]; 1 where none is overloaded.
+    """
+    worst, least = 1.0, math.inf
+    for j in range(work.sense.size):
+        if law[3, j] != 0.0 and law[5, j] == 0.0 and abs(law[1, j]) > law[6, j]:
+            share = abs(law[1, j]) / law[6, j]
+            worst, least = max(worst, share), min(least, share)
+    return worst, min(least, worst)
+
+
+@kernel
+def _release(problem, row, work, law, released, at_once):
+    """Let contacts go until no load exceeds its static friction, beginning with all participants held.
+
+    Parameters
+    ----------
+    problem, row, work, law : see `settle`; law[1] holds the forces that hold all participants
+    released : contact that is released; -1: none
+    at_once : whether all overloaded contacts with mu > 1 let go at once; else the most overloaded one
+
+    Returns
+    -------
+    (determined, several) : whether the contacts determine their forces; whether several were overloaded at
+        once, and not tied
+    """
+    if released >= 0:
+        law[5, released] = 1.0
+        work.sense[released] = 1 if law[1, released] > 0.0 else -1
+        _let_go(work, law, 1.0 - _TIED)
+    if not _box_law(problem, row, work, law):
+        return False, False
+    several = False
+    for _ in range(work.sense.size):
+        worst, least = _overloads(work, law)
+        if worst == 1.0:
+            break
+        several = several or least < worst * (1.0 - _TIED)
+        _let_go(work, law, (least if at_once else worst) * (1.0 - _TIED))
+        if not _box_law(problem, row, work, law):
+            return False, several
+    return True, several
+
+
+@kernel
+def _hold_participants(work, law):
+    """Hold all that take part; those with mu = 1 may slide."""
+    for j in range(work.sense.size):
+        if law[3, j] != 0.0:
+            work.sense[j] = 0
+        law[5, j] = 1.0 if law[6, j] <= law[4, j] else 0.0
+
+
+@kernel
+def _mark_order(problem, row, work, law, released):
+    """Mark in law[8] the contacts that would do otherwise if all overloaded ones let go at once.
+
+    The pattern stays that of the rule; see `settle`.
+    """
+    contacts = work.sense.size
+    for j in range(contacts):
+        law[9, j] = work.sense[j]
+        law[1, j] = law[7, j]
+    _hold_participants(work, law)
+    determined, _ = _release(problem, row, work, law, released, True)
+    for j in range(contacts):
+        law[8, j] = 1.0 if determined and work.sense[j] != law[9, j] else 0.0
+        work.sense[j] = int(law[9, j])
+    return _forces_of_choice(problem, row, work, law)
 
 
 @kernel
@@ -191,8 +253,9 @@ def settle(problem, row, friction, tau, work, law, arrived, released):
     problem, row, friction : Problem, Row, Friction
     tau : phase of the load
     work : Work; state and pattern of the instant; the pattern is replaced
-    law : (9, N) scratch: accelerations, forces, accelerations of sliders, participants, kinetic friction,
-        whether a participant may slide, static friction, forces that would hold all participants
+    law : (10, N) scratch: accelerations, forces, accelerations of sliders, participants, kinetic friction,
+        whether a participant may slide, static friction, forces that would hold all participants, whether
+        the contact would do otherwise if all overloaded ones let go at once, pattern
     arrived : contact that has arrived; -1: none
     released : contact that is released; -1: none
 
@@ -205,30 +268,17 @@ def settle(problem, row, friction, tau, work, law, arrived, released):
     if arrived >= 0:
         law[3, arrived] = 1.0
     _free_accelerations(problem, row, work, law)
-    for j in range(contacts):
-        if law[3, j] != 0.0:
-            work.sense[j] = 0
-        law[5, j] = 1.0 if law[6, j] <= law[4, j] else 0.0
+    _hold_participants(work, law)
     if not _forces_of_choice(problem, row, work, law):
         return False
     for j in range(contacts):
         law[7, j] = law[1, j]
+        law[8, j] = 0.0
     stop_exactly(problem, row, work)
-    if released >= 0:
-        law[5, released] = 1.0
-        work.sense[released] = 1 if law[1, released] > 0.0 else -1
-        for j in range(contacts):
-            if law[3, j] != 0.0 and law[5, j] == 0.0 and abs(law[1, j]) >= (1.0 - _TIED) * law[6, j]:
-                law[5, j] = 1.0
-                work.sense[j] = 1 if law[1, j] > 0.0 else -1
-    if not _box_law(problem, row, work, law):
-        return False
-    for _ in range(contacts):
-        if not _let_go(friction, work, law):
-            break
-        if not _box_law(problem, row, work, law):
-            return False
-    return True
+    determined, several = _release(problem, row, work, law, released, False)
+    if determined and several:
+        return _mark_order(problem, row, work, law, released)
+    return determined
 
 
 @kernel

@@ -156,6 +156,17 @@ def _intervals(problem, i):
     return int(math.ceil(math.pi * problem.rates[i] / TURN))
 
 
+@kernel
+def most_intervals(problem, limit):
+    """Largest number of intervals of a period over r, of those numbers that do not exceed a limit."""
+    most = 0
+    for i in range(problem.r.size):
+        count = 2 * _intervals(problem, i)
+        if count <= limit:
+            most = max(most, count)
+    return most
+
+
 @entry
 def _make_parts(problem, kept, most):
     """Allocate the parts of `kept` patterns and at most `most` intervals of a period."""
@@ -176,11 +187,7 @@ def make_row(problem):
     contacts, modes = problem.chi.shape
     channels, harmonics = problem.push.shape[1], problem.orders.size
     width, size = padded(modes), state_size(problem)
-    most = 0
-    for i in range(problem.r.size):
-        count = 2 * _intervals(problem, i)
-        if count <= _KEPT_INTERVALS:
-            most = max(most, count)
+    most = most_intervals(problem, _KEPT_INTERVALS)
     kept = min(1 << contacts, _KEPT_PATTERNS)
     return Row(
         np.empty(3), np.zeros(1, np.int64), np.empty(modes), np.empty((modes, modes)),

@@ -22,8 +22,8 @@ _ROUNDING = 2.0**-50
 
 #: Nodes and weights on [0, 1]: exact to rounding for products of two series of a step.
 _LEGENDRE = np.polynomial.legendre.leggauss(14)
-_NODES = 0.5 * (1.0 + _LEGENDRE[0])
-_WEIGHTS = 0.5 * _LEGENDRE[1]
+NODES = 0.5 * (1.0 + _LEGENDRE[0])
+WEIGHTS = 0.5 * _LEGENDRE[1]
 
 
 class Record(NamedTuple):
@@ -55,25 +55,32 @@ def make_record(problem, masses, most):
 
 
 @kernel
-def clear_record(record):
-    """Begin a record."""
+def begin_cycle(record):
+    """Begin a cycle of a longer record: a slip under way goes on."""
     for i in range(record.ranges.shape[1]):
         record.ranges[0, i] = np.inf
         record.ranges[1, i] = -np.inf
     for j in range(record.distance.size):
         record.distance[j] = 0.0
         record.slips[LEAST_SLIP, j] = np.inf
-        record.slips[_PRESENT, j] = 0.0
-        record.slips[_EDGE, j] = np.inf
         record.works[0, j] = 0.0
         record.works[1, j] = 0.0
+
+
+@kernel
+def clear_record(record):
+    """Begin a record."""
+    begin_cycle(record)
+    for j in range(record.distance.size):
+        record.slips[_PRESENT, j] = 0.0
+        record.slips[_EDGE, j] = np.inf
         record.forces[0, j] = np.inf
         record.forces[1, j] = -np.inf
     record.count[0] = 0
 
 
 @kernel
-def _include(ends, i, value):
+def include(ends, i, value):
     """Widen range i of `ends` (2, ...) to include a value."""
     ends[0, i] = min(ends[0, i], value)
     ends[1, i] = max(ends[1, i], value)
@@ -126,10 +133,10 @@ def _keep_range(series, at, end, size, ends, i, scratch):
     ends, i : lowest and highest values (2, ...), and the place in them
     scratch : scratch
     """
-    _include(ends, i, series[at, 0])
+    include(ends, i, series[at, 0])
     if _is_within(series, at, ends, i) or _is_still(series, at, size):
         return
-    _include(ends, i, value_at(series, at, end))
+    include(ends, i, value_at(series, at, end))
     sign = 1.0
     for k in range(1, LONG):
         if series[at, k] != 0.0:
@@ -144,7 +151,7 @@ def _keep_range(series, at, end, size, ends, i, scratch):
         scratch[_SLOPE, k] = sign * (k + shift + 1.0) * series[at, k + shift + 1]
     x = first_zero(scratch, _SLOPE)
     while x < end:
-        _include(ends, i, value_at(series, at, x))
+        include(ends, i, value_at(series, at, x))
         sign = -sign
         x = _next_turn(series, at, x, sign, scratch)
 
@@ -162,9 +169,9 @@ def _integral(series, at, end):
 def _integral_of_product(series, a, b, end):
     """Integral over [0, end] of the product of two series."""
     sum_ = 0.0
-    for i in range(_NODES.size):
-        x = end * _NODES[i]
-        sum_ += _WEIGHTS[i] * value_at(series, a, x) * value_at(series, b, x)
+    for i in range(NODES.size):
+        x = end * NODES[i]
+        sum_ += WEIGHTS[i] * value_at(series, a, x) * value_at(series, b, x)
     return end * sum_
 
 
@@ -259,8 +266,8 @@ def _keep_forces(problem, work, end, record):
 def mirror(record):
     """Widen the ranges by those of the half period that mirrors the one recorded."""
     for i in range(record.ranges.shape[1]):
-        _include(record.ranges, i, -record.ranges[0, i])
-        _include(record.ranges, i, -record.ranges[1, i])
+        include(record.ranges, i, -record.ranges[0, i])
+        include(record.ranges, i, -record.ranges[1, i])
 
 
 @kernel
@@ -277,8 +284,8 @@ def record_step(problem, row, work, end, record):
     series, scratch = work.series, work.scratch
     for j in range(contacts):
         if problem.spring[j] == 0.0 and problem.belt[j] == 0.0:  # at rest, or on its way in one direction
-            _include(record.ranges, j, series[first + j, 0])
-            _include(record.ranges, j, value_at(series, first + j, end))
+            include(record.ranges, j, series[first + j, 0])
+            include(record.ranges, j, value_at(series, first + j, end))
         else:
             _keep_range(series, first + j, end, row.numbers[2], record.ranges, j, scratch)
     _keep_works(problem, row, work, end, record, first)

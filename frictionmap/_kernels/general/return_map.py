@@ -47,6 +47,12 @@ def make_return(problem):
 
 
 @kernel
+def steady_period(halves):
+    """Periods of the load after which a motion repeats that returns, mirrored if odd, after half periods."""
+    return halves if halves % 2 == 1 else halves // 2
+
+
+@kernel
 def put_state(state, senses, work):
     """Set the state and the pattern of a motion."""
     for part in range(3):
@@ -102,6 +108,16 @@ def go_round(problem, row, friction, halves, work, memory, record, derive):
             memory.counts[REVERSALS, j] += 1.0
     take_state(work, memory.end, memory.end_senses, sign)
     return code
+
+
+@kernel
+def take_end(memory):
+    """Begin the next way where the last one ended."""
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            memory.start[part, i] = memory.end[part, i]
+    for j in range(memory.senses.size):
+        memory.senses[j] = memory.end_senses[j]
 
 
 @kernel

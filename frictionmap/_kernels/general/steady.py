@@ -1,53 +1,53 @@
-"""The steady state of one cell: periods are followed until Newton's method finds the state that returns."""
+"""The steady state of one cell: periods are followed until Newton's method finds the state that returns.
+
+Where the start matters (mu > 1), a motion may take many periods to return, or never return: its averages are
+then the result.
+"""
 
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
-from ..structure.newton import solve_linear, spectral_radius
+from ..long_periods import WINDOW, enough_cycles, first_search, next_search
+from .approach import try_return
+from .course import (
+    Course,
+    begin_course,
+    follow_cycle,
+    make_course,
+    set_window,
+    take_window,
+    window_is_stationary,
+    window_stops,
+)
 from .follow import BEFORE, FOLLOWED, STUCK, follow
+from .orbits import AVERAGED, NO_REPEAT, REPEATS, Steady, largest_multiplier, newton
 from .pattern import begin, stop_exactly
-from .problem import SECTION, Row, Work, make_row, make_work, padded, set_channels, set_row, state_size
+from .problem import SECTION, Row, Work, make_row, make_work, set_channels, set_row
 from .record import FORCES, NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
 from .return_map import (
     Return,
-    fill_newton,
     go_round,
     make_return,
-    motion_size,
-    neutral_rows,
     put_state,
     return_distance,
+    steady_period,
+    take_end,
     take_state,
-    take_step,
+)
+from .returns import (
+    Ring,
+    go_back,
+    go_back_cycles,
+    keep,
+    long_recurrence,
+    make_ring,
+    recurrence,
 )
 from .series import factor_held
-
-REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED = 0, 1, 2, 3
-
-#: States that are kept, one per return to the section: periods up to half as many are recognised.
-RING = 33
-
-#: Largest distance from an earlier state at which Newton's method is tried, where the start matters, and
-#: largest distance of its result.
-_NEAR = 1e-2
-_SAME = 5e-2
-
-#: Newton steps at most, and the largest part of the distance before that may be left after each.
-_MOST_STEPS = 12
-_LESS = 0.5
-
-#: Largest step, over the size of the motion: beyond, the equations are singular (an undamped resonance).
-_LARGEST = 1e10
-
-#: A step below this is the last one: the next would be of the size of its square.  `measure` looks after it.
-_LAST = 1e-7
-
-#: A steady state that is back to this share of its size after a part of its period has that period.
-_RETURNED = 1e-9
+from .single_mass import solve_single
+from .single_tables import Single, make_single, set_single
 
 #: Largest error of a measured state, which is its distance from the one that it returns to, over the share
 #: of a disturbance that a return takes away; and measurements until then.
@@ -58,19 +58,6 @@ _MOST_REPEATED = 2
 WITHOUT_LIMIT = 1e200
 _CREEPS = 6
 
-#: A multiplier above this is not that of a motion that attracts.
-_STABLE = 1.0 + 1e-9
-_STABLE_PRECISION = 0.01
-
-
-class Ring(NamedTuple):
-    """The last states at the section."""
-
-    states: np.ndarray  # (RING, 3, ...)
-    senses: np.ndarray  # (RING, N)
-    count: np.ndarray  # (1,) states kept so far
-    friction: np.ndarray  # (2, N) friction of contacts while they are held
-
 
 class Tools(NamedTuple):
     """The memory that steady states are found in."""
@@ -80,24 +67,8 @@ class Tools(NamedTuple):
     memory: Return
     ring: Ring
     record: Record
-
-
-class Steady(NamedTuple):
-    """The steady state of a cell."""
-
-    status: int
-    halves: int  # half periods after which it returns
-    cycles: float  # periods followed
-
-
-@entry
-def make_ring(problem):
-    """Allocate the kept states."""
-    contacts, modes = problem.chi.shape
-    return Ring(
-        np.zeros((RING, 3, padded(max(modes, contacts)))), np.zeros((RING, contacts), np.int64),
-        np.zeros(1, np.int64), np.zeros((2, contacts)),
-    )  # fmt: skip
+    single: Single
+    course: Course
 
 
 @entry
@@ -105,172 +76,9 @@ def make_tools(problem, masses, most):
     """Allocate the memory, for a record of `most` steps; `masses` (n, m): see `make_record`."""
     return Tools(
         make_row(problem), make_work(problem), make_return(problem), make_ring(problem),
-        make_record(problem, masses, most),
+        make_record(problem, masses, most), make_single(problem, masses.shape[0]),
+        make_course(problem, masses),
     )  # fmt: skip
-
-
-@kernel
-def _keep(memory, ring):
-    """Keep the state at the section."""
-    slot = ring.count[0] % RING
-    for part in range(3):
-        for i in range(memory.start.shape[1]):
-            ring.states[slot, part, i] = memory.start[part, i]
-    for j in range(memory.senses.size):
-        ring.senses[slot, j] = memory.senses[j]
-    ring.count[0] += 1
-
-
-@kernel
-def _last_kept(memory, ring):
-    """Go back to the last state kept."""
-    slot = (ring.count[0] - 1) % RING
-    for part in range(3):
-        for i in range(memory.start.shape[1]):
-            memory.start[part, i] = ring.states[slot, part, i]
-    for j in range(memory.senses.size):
-        memory.senses[j] = ring.senses[slot, j]
-
-
-@kernel
-def _distance_back(row, memory, ring, back):
-    """Distance of the last state kept from the one `back` before it, over its size."""
-    now, then = (ring.count[0] - 1) % RING, (ring.count[0] - 1 - back) % RING
-    for j in range(memory.senses.size):
-        if ring.senses[now, j] != ring.senses[then, j]:
-            return math.inf
-    off = 0.0
-    size = row.numbers[2]
-    for part in range(2):
-        for i in range(memory.start.shape[1]):
-            off = max(off, abs(ring.states[now, part, i] - ring.states[then, part, i]))
-            size = max(size, abs(ring.states[now, part, i]))
-    return off / size
-
-
-@kernel
-def _recurrence(row, memory, ring, base):
-    """Number of half periods after which the motion is nearly back; 0 if it is not."""
-    most = min(ring.count[0], RING) - 1
-    for back in range(1, most + 1):
-        if _distance_back(row, memory, ring, back) < _NEAR:
-            return back * base
-    return 0
-
-
-@kernel
-def _radius_of_two(matrix):
-    """Largest modulus of the eigenvalues of a (2, 2) matrix."""
-    mean = 0.5 * (matrix[0, 0] + matrix[1, 1])
-    half = 0.5 * (matrix[0, 0] - matrix[1, 1])
-    square = half * half + matrix[0, 1] * matrix[1, 0]
-    if square >= 0.0:
-        return abs(mean) + math.sqrt(square)
-    return math.sqrt(mean * mean - square)
-
-
-@kernel
-def _multiplier(problem, halves, precision, work, memory):
-    """Largest modulus of the multipliers, without those of contacts that rest; see `spectral_radius`."""
-    size = state_size(problem)
-    fill_newton(problem, halves, work, memory)
-    if halves % 2 == 1:  # a place where a contact rests becomes its mirror image
-        neutral_rows(problem, memory, memory.matrix, -1.0)
-    for a in range(size):
-        for b in range(size):
-            memory.matrix[a, b] = (1.0 if a == b else 0.0) - memory.matrix[a, b]
-    if size == 2:
-        return _radius_of_two(memory.matrix)
-    return spectral_radius(memory.matrix, size, work.tangent, precision)
-
-
-@kernel
-def _newton(problem, row, friction, halves, tolerance, work, memory, record):
-    """Find the state that returns after some half periods, from the one in `memory.start`.
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction
-    halves : number of half periods
-    tolerance : largest change of the state over a return, over its size
-    work, memory, record : Work, Return, Record
-
-    Returns
-    -------
-    (status, cycles) : REPEATS or NO_REPEAT; periods followed
-    """
-    last = math.inf
-    cycles = 0.0
-    size = state_size(problem)
-    for _ in range(_MOST_STEPS):
-        code = go_round(problem, row, friction, halves, work, memory, record, True)
-        cycles += 0.5 * halves
-        if code != FOLLOWED:
-            return NO_REPEAT, cycles
-        distance = return_distance(problem, row, memory)
-        if distance == 0.0:
-            return REPEATS, cycles
-        if not distance < _LESS * last:
-            if distance <= tolerance:
-                return REPEATS, cycles
-            return NO_REPEAT, cycles
-        last = distance
-        fill_newton(problem, halves, work, memory)
-        if not solve_linear(memory.matrix, memory.right, size):
-            return NO_REPEAT, cycles
-        step = take_step(problem, row, memory)
-        if not step <= _LARGEST:
-            return NO_REPEAT, cycles
-        if step <= max(tolerance, _LAST):
-            return REPEATS, cycles
-    return NO_REPEAT, cycles
-
-
-@kernel
-def _least_period(problem, row, friction, halves, base, work, memory, record):
-    """Smallest number of half periods after which a steady state returns, and the periods followed for it.
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction
-    halves : half periods after which it returns
-    base : smallest number that is possible
-    work, memory, record : Work, Return, Record
-    """
-    cycles = 0.0
-    for shorter in range(base, halves, base):
-        if halves % shorter == 0:
-            go_round(problem, row, friction, shorter, work, memory, record, False)
-            cycles += 0.5 * shorter
-            if return_distance(problem, row, memory) <= _RETURNED:
-                return shorter, cycles
-    return halves, cycles
-
-
-@kernel
-def _far(problem, row, memory, ring):
-    """Distance of the state found from the last state kept, over its size."""
-    slot = (ring.count[0] - 1) % RING
-    off = 0.0
-    for part in range(2):
-        for i in range(problem.push.shape[0]):
-            off = max(off, abs(ring.states[slot, part, i] - memory.start[part, i]))
-    return off / motion_size(problem, row, memory)
-
-
-@kernel
-def _attracts(problem, row, halves, work, memory, ring):
-    """Whether the steady state found is stable, and the one that the motion goes to.
-
-    Parameters
-    ----------
-    problem, row : Problem, Row
-    halves : half periods after which it returns
-    work, memory, ring : Work, Return, Ring
-    """
-    if _multiplier(problem, halves, _STABLE_PRECISION, work, memory) > _STABLE:
-        return False
-    return _far(problem, row, memory, ring) <= _SAME
 
 
 @kernel
@@ -314,7 +122,7 @@ def _let_go(friction, kept):
 
 @kernel
 def _can_rest(problem, row, friction, work, memory, record, kept):
-    """Whether half the range of the force of every contact held is within its friction (contacts.md 2).
+    """Whether half the range of the force of every contact held is within its friction (theory.md 11).
 
     Parameters
     ----------
@@ -357,18 +165,18 @@ def _by_holding(problem, row, friction, base, tolerance, work, memory, ring, rec
     kept = ring.friction
     cycles = 0.0
     for share in (0.98, 0.5):
-        _last_kept(memory, ring)
+        go_back(memory, ring, 0)
         go_round(problem, row, friction, 2, work, memory, record, False)
         cycles += 1.0
         if _hold_some(problem, row, friction, share, work, memory, kept) == 0:
             continue
-        status, more = _newton(problem, row, friction, base, tolerance, work, memory, record)
+        status, more = newton(problem, row, friction, base, tolerance, work, memory, record)
         cycles += more
         if status == REPEATS and _can_rest(problem, row, friction, work, memory, record, kept):
             return True, cycles + 1.0
         _let_go(friction, kept)
         if status == REPEATS:
-            status, more = _newton(problem, row, friction, base, tolerance, work, memory, record)
+            status, more = newton(problem, row, friction, base, tolerance, work, memory, record)
             cycles += more
             if status == REPEATS:
                 return True, cycles
@@ -376,7 +184,124 @@ def _by_holding(problem, row, friction, base, tolerance, work, memory, ring, rec
 
 
 @kernel
-def find(problem, row, friction, cycles, tolerance, work, memory, ring, record):
+def _go_on(problem, row, friction, base, work, memory, ring, record):
+    """Follow the motion from one return to the section to the next; return the code of `follow`.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    base : half periods of the return map
+    work, memory, ring, record : Work, Return, Ring, Record
+    """
+    code = go_round(problem, row, friction, base, work, memory, record, False)
+    take_end(memory)
+    keep(memory, ring)
+    return code
+
+
+@kernel
+def _find_unique(problem, row, friction, cycles, tolerance, work, memory, ring, record):
+    """Find the steady state where every motion reaches it; see `find`.
+
+    Parameters
+    ----------
+    problem, row, friction, cycles, tolerance, work, memory, ring, record : see `find`
+    """
+    base = 1 if problem.symmetric else 2
+    spent = 0.0
+    wait = 0
+    pause = 0
+    while spent < cycles:
+        if wait == 0:
+            status, more = newton(problem, row, friction, base, tolerance, work, memory, record)
+            spent += more
+            if status == REPEATS:
+                return Steady(REPEATS, base, spent)
+            pause += 1
+            wait = pause
+            if pause in (_CREEPS, 2 * _CREEPS):
+                settled, more = _by_holding(
+                    problem, row, friction, base, tolerance, work, memory, ring, record
+                )
+                spent += more
+                if settled:
+                    return Steady(REPEATS, base, spent)
+            go_back(memory, ring, 0)
+        code = _go_on(problem, row, friction, base, work, memory, ring, record)
+        spent += 0.5 * base
+        if code != FOLLOWED:
+            return Steady(1 + code, 0, spent)
+        wait = max(wait - 1, 0)
+    return Steady(NO_REPEAT, 0, spent)
+
+
+@kernel
+def _averages(followed, at_last, memory, record, course):
+    """Take the averages of a motion as its result, if it stops, and they are stationary or it is the last
+    occasion; return the half periods that they are of, else 0.
+    """
+    set_window(followed, course)
+    if not window_stops(course):
+        return 0
+    if at_last or window_is_stationary(course):
+        return take_window(course, memory.counts, record)
+    return 0
+
+
+@kernel
+def _find_from_start(problem, row, friction, cycles, tolerance, work, memory, ring, record, course):
+    """Find the steady state where it depends on the start; see `find`.
+
+    The motion is compared with its last states at every return, and at times, ever more rarely, with those
+    of up to 256 periods ago.
+
+    Parameters
+    ----------
+    problem, row, friction, cycles, tolerance, work, memory, ring, record, course : see `find`
+    """
+    base = 1 if problem.symmetric else 2
+    enough = enough_cycles(cycles)
+    logged_from = 2 * int(min(enough, cycles) / 3.0)
+    search = first_search()
+    halves = 0  # followed, without those of Newton's method
+    spent = 0.0
+    wait = 0
+    pause = 0
+    while 0.5 * halves < cycles:
+        tried = recurrence(row, memory, ring, base) if wait == 0 else 0
+        due = halves >= search and halves % 2 == 0
+        if due:
+            search = next_search(halves)
+            longer = long_recurrence(row, memory, ring, base)
+            tried = longer if longer > 0 else tried
+        if tried > 0:
+            found = try_return(problem, row, friction, tried, tolerance, work, memory, ring, record)
+            spent += found.cycles
+            if found.status == REPEATS:
+                return Steady(REPEATS, found.halves, spent + 0.5 * halves)
+            pause += 1
+            wait = pause
+        if due and 0.5 * halves >= enough:
+            averaged = _averages(halves // 2, 0.5 * halves >= 2.0 * enough, memory, record, course)
+            if averaged > 0:
+                return Steady(AVERAGED, averaged, 0.5 * halves)
+        if halves == logged_from:
+            begin_course(halves // 2, memory, record, course)
+        if halves >= logged_from:
+            code = follow_cycle(problem, row, friction, halves // 2, work, memory, ring, record, course)
+            halves += 2
+        else:
+            code = _go_on(problem, row, friction, base, work, memory, ring, record)
+            halves += base
+        if code != FOLLOWED:
+            return Steady(1 + code, 0, spent + 0.5 * halves)
+        wait = max(wait - 1, 0)
+    averaged = _averages(halves // 2, True, memory, record, course)
+    return Steady(AVERAGED if averaged > 0 else NO_REPEAT, averaged, 0.5 * halves)
+
+
+@kernel
+def find(problem, row, friction, cycles, tolerance, work, memory, ring, record, course):
     """Find the steady state that the motion from `memory.start` reaches.
 
     Parameters
@@ -384,59 +309,21 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record):
     problem, row, friction : Problem, Row, Friction
     cycles : periods to follow at most
     tolerance : largest change of the state over a return, over its size
-    work, memory, ring, record : Work, Return, Ring, Record; `memory.start` is replaced by the steady state
+    work, memory, ring, record, course : Work, Return, Ring, Record, Course; `memory.start` is replaced by the
+        steady state; where averages are found, they are in `memory.counts` and `record`
 
     Returns
     -------
     Steady
     """
-    base = 1 if problem.symmetric else 2
     unique = True
     for j in range(memory.senses.size):
         unique = unique and friction.static[j] <= friction.kinetic[j]
     ring.count[0] = 0
-    _keep(memory, ring)
-    spent = 0.0
-    wait = 0
-    pause = 0
-    while spent < cycles:
-        halves = 0
-        if wait == 0:
-            halves = base if unique else _recurrence(row, memory, ring, base)
-        if halves > 0:
-            status, more = _newton(problem, row, friction, halves, tolerance, work, memory, record)
-            spent += more
-            if status == REPEATS and (unique or _attracts(problem, row, halves, work, memory, ring)):
-                least, more = _least_period(problem, row, friction, halves, base, work, memory, record)
-                return Steady(REPEATS, least, spent + more)
-            pause += 1
-            wait = pause
-            if unique and pause in (_CREEPS, 2 * _CREEPS):
-                settled, more = _by_holding(
-                    problem, row, friction, base, tolerance, work, memory, ring, record
-                )
-                spent += more
-                if settled:
-                    return Steady(REPEATS, base, spent)
-            _last_kept(memory, ring)
-        code = go_round(problem, row, friction, base, work, memory, record, False)
-        spent += 0.5 * base
-        if code != FOLLOWED:
-            return Steady(1 + code, 0, spent)
-        for part in range(3):
-            for i in range(memory.start.shape[1]):
-                memory.start[part, i] = memory.end[part, i]
-        for j in range(memory.senses.size):
-            memory.senses[j] = memory.end_senses[j]
-        _keep(memory, ring)
-        wait = max(wait - 1, 0)
-    return Steady(NO_REPEAT, 0, spent)
-
-
-@kernel
-def steady_period(halves):
-    """Periods of the load after which a motion repeats that returns, mirrored if odd, after half periods."""
-    return halves if halves % 2 == 1 else halves // 2
+    keep(memory, ring)
+    if unique:
+        return _find_unique(problem, row, friction, cycles, tolerance, work, memory, ring, record)
+    return _find_from_start(problem, row, friction, cycles, tolerance, work, memory, ring, record, course)
 
 
 @kernel
@@ -466,15 +353,52 @@ def measure(problem, row, friction, halves, work, memory, record, what):
         record.active[0] = NOTHING
         most = _MEASURED
         if what != NOTHING:
-            multiplier = _multiplier(problem, both, 0.0, work, memory)
+            multiplier = largest_multiplier(problem, both, 0.0, work, memory)
             most *= min(1.0, abs(1.0 - multiplier))
         if return_distance(problem, row, memory) <= most or repeat == _MOST_REPEATED - 1:
             break
-        _newton(problem, row, friction, halves, _MEASURED, work, memory, record)
+        newton(problem, row, friction, halves, _MEASURED, work, memory, record)
     join_slips(record, both)
     if both % 2 == 1:
         mirror(record)
     return both, multiplier ** (steady_period(halves) * 2.0 / both)
+
+
+@kernel
+def begin_row(problem, i, tools):
+    """Fill the constants of r[i], and the tables of one mass where they apply."""
+    set_row(problem, i, tools.row)
+    set_single(problem, tools.row, tools.single, 1 if problem.symmetric else 2)
+
+
+@kernel
+def solve(problem, friction, cycles, tolerance, tools, what):
+    """Find and measure the steady state of a cell, from the state in `tools.memory.start`.
+
+    Parameters
+    ----------
+    problem, friction : Problem, Friction
+    cycles, tolerance : see `find`
+    tools : Tools after `begin_row`
+    what : NOTHING or RANGES, see `measure`
+
+    Returns
+    -------
+    Steady, half periods measured, multiplier
+    """
+    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    if tools.single.fits[0] != 0 and friction.static[0] <= friction.kinetic[0]:
+        solved, spent, multiplier = solve_single(
+            problem, row, tools.single, friction.kinetic[0], memory, record
+        )
+        if solved:
+            halves = 1 if problem.symmetric else 2
+            return Steady(REPEATS, halves, spent), halves, multiplier
+    found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course)
+    if found.status != REPEATS:
+        return found, 0, math.nan
+    halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, what)
+    return found, halves, multiplier
 
 
 @kernel
@@ -515,13 +439,19 @@ def _one(problem, i, friction, state, cycles, tolerance, tools):
     row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
     set_row(problem, i, row)
     from_rest(problem, row, friction, state, work, memory, record)
-    found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record)
+    found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course)
     halves, multiplier = 2, math.nan
     if found.status == REPEATS:
         halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, STEPS)
-    else:
-        record.active[0] = STEPS
-        go_round(problem, row, friction, halves, work, memory, record, False)
+        return found, halves, multiplier
+    if found.status == AVERAGED:  # the first phase shown is a maximum of the load, after the first section
+        halves = 2 * (WINDOW + 1)
+        go_back_cycles(problem, memory, tools.ring, WINDOW + 1)
+    clear_record(record)
+    record.active[0] = STEPS
+    go_round(problem, row, friction, halves, work, memory, record, False)
+    if found.status == AVERAGED:
+        take_window(tools.course, memory.counts, record)
     return found, halves, multiplier
 
 
@@ -540,8 +470,8 @@ def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, mos
 
     Returns
     -------
-    Steady, half periods that the steps cover (two if there is no steady state), multiplier, counts (see
-    `follow`), Record, h
+    Steady, half periods that the steps cover (two if there is no steady state, WINDOW periods and one before
+    them if there are averages), multiplier, counts (see `follow`), Record, h
     """
     tools = make_tools(problem, masses, most)
     found, halves, multiplier = _one(problem, i, friction, state, cycles, tolerance, tools)

@@ -13,7 +13,7 @@ import math
 from ..closed_form import decay
 from ..compiler import kernel
 from ..event_codes import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON
-from ..newton_limits import LONGEST_SLIDE, MAX_NEWTON, NEAR_END
+from ..newton_limits import LONGEST_SLIDE, MAX_NEWTON, NEAR_END, next_step_negligible
 from .events import after_slide, slide_within
 
 
@@ -135,7 +135,7 @@ def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolera
             if not contraction < 1.0:
                 break
             move = miss / (1.0 - z_z)
-            turn = 0.0
+            turn = late = 0.0
         else:
             late = math.atan2(s1 * c - c1 * s, c1 * c + s1 * s)
             trace = z_z + t_t
@@ -162,7 +162,8 @@ def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolera
             cosine = math.cos(turn)
             sine = math.sin(turn)
             c, s = c * cosine - s * sine, s * cosine + c * sine
-        if size <= 1e-16 * abs(z):
+        off = abs(miss) + abs(late) * abs(z)
+        if size <= 1e-16 * abs(z) or next_step_negligible(size, last, off, abs(z), tolerance):
             if after_stop:
                 c, s = stop_ends(mu_b, z)
             return True, z, c, s, contraction

@@ -14,7 +14,7 @@ import numpy as np
 from ..closed_form import decay
 from ..compiler import entry, kernel
 from ..event_codes import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
-from ..newton_limits import MAX_NEWTON, NEAR_END
+from ..newton_limits import MAX_NEWTON, NEAR_END, next_step_negligible
 from .events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
 from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA, make_state, padded
 from .state import PUSH, SPEED, SPEED_RATE, STATIC_SHAPE, Z_RATE, Z, energy
@@ -399,17 +399,6 @@ def newton_step(st, beta, mu_beta, c, s, sequence, halves, work, scratch):
 
 
 @kernel
-def _next_step_negligible(move, last, miss, scale, tolerance):
-    """Whether the next Newton step would be rounding error, quadratic convergence being expected.
-
-    Where the step is much larger than the difference that it removes, it amplifies rounding error, and
-    convergence cannot be predicted.
-    """
-    expected = move * (move / last) ** 2 if last < math.inf else move
-    return expected <= 1e-16 * scale and 1e-16 * move <= tolerance * miss
-
-
-@kernel
 def solve_return(st, beta, mu_beta, c, s, sequence, halves, tolerance, work, scratch):
     """Solve the return map for its fixed point by Newton's method.
 
@@ -441,7 +430,7 @@ def solve_return(st, beta, mu_beta, c, s, sequence, halves, tolerance, work, scr
         for i in range(n):
             work.middle[0, i] += work.moved[0, i]
             work.middle[1, i] += work.moved[1, i]
-        if move <= 1e-15 * scale or _next_step_negligible(move, last, miss, scale, tolerance):
+        if move <= 1e-15 * scale or next_step_negligible(move, last, miss, scale, tolerance):
             return True
         last = move
     return False

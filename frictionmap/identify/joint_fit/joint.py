@@ -188,7 +188,7 @@ def _errors(fit: JointFit) -> Errors:
     if fit.static == ONE:
         most, moved = highest(fit.with_mu, fit.solution, fit.noise, MU)
         lower, upper = lower + np.minimum(moved, 0.0), upper + np.maximum(moved, 0.0)
-        lower[MU], upper[MU] = 1.0, most
+        lower[MU], upper[MU] = 1.0, 1.0 + float(np.sqrt(most))
     elif fit.static == IDLE:
         lower[MU], upper[MU] = 1.0, np.inf
     elif fit.static == FITTED:

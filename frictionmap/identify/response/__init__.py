@@ -5,6 +5,7 @@ module           what is in it
 ===============  =====================================================================
 model            amplitudes and lags by the exact steady states, and their derivatives
 data             tables of forced responses, checked
+balance          harmonic balance of a contact with a spring: approximate, to begin with
 start            where the fit begins
 fit              the steady states nearest to the data
 extremes         extremes of sampled functions between their samples

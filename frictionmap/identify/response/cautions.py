@@ -4,6 +4,7 @@ import numpy as np
 from scipy.special import gammaincc
 
 from ... import regimes
+from ..spring import spring_warnings
 from ..statistics.cautions import (
     autocorrelation_warnings,
     bound_warnings,
@@ -12,8 +13,8 @@ from ..statistics.cautions import (
 )
 from ..statistics.levels import CHANCE
 from .data import ForcedTable
-from .fit import TableFit, parameter_names
-from .model import MU, ZETA, points_of
+from .fit import TableFit, parameter_names, shown_estimates
+from .model import LAW, ZETA, points_of
 
 #: Share of beta_stick above which structures stuck in tests, T 4.4.
 _NEAR_STICKING = 0.7
@@ -21,17 +22,30 @@ _NEAR_STICKING = 0.7
 
 def fit_warnings(table: ForcedTable, fit: TableFit) -> list[str]:
     """Warnings."""
-    names = parameter_names(table)
+    names = parameter_names(table, fit.model.elastic)
+    at_bound = fit.solution.at_bound.copy()
+    if fit.model.elastic:
+        at_bound[LAW] = False  # `_of_contact` has words for it
     return [
         *_scatter(table, fit),
         *autocorrelation_warnings(fit.errors),
-        *correlation_warnings(names, fit.errors.correlation),
-        *interval_warnings("mu", 1.0, not fit.problem.free[MU] or bool(fit.errors.lower[MU] > 1.0)),
-        *bound_warnings(names, fit.problem.floor, fit.solution.at_bound),
+        *correlation_warnings(names, shown_estimates(fit)[1].correlation),
+        *_of_contact(fit),
+        *bound_warnings(names, fit.problem.floor, at_bound),
         *_near_sticking(fit),
         *_several(fit),
         *_idle(fit),
     ]
+
+
+def _of_contact(fit: TableFit) -> list[str]:
+    """Warnings about mu, or about the spring."""
+    if not fit.problem.free[LAW]:
+        return []
+    if fit.model.elastic:
+        found = shown_estimates(fit)[1]
+        return spring_warnings(float(found.lower[LAW]), float(found.upper[LAW]))
+    return interval_warnings("mu", 1.0, bool(fit.errors.lower[LAW] > 1.0))
 
 
 def _scatter(table: ForcedTable, fit: TableFit) -> list[str]:
@@ -43,10 +57,12 @@ def _scatter(table: ForcedTable, fit: TableFit) -> list[str]:
 
 def _near_sticking(fit: TableFit) -> list[str]:
     """Rows whose friction is near that which holds the contact, beta_stick = |F|/mu, theory.md 4."""
+    if fit.model.elastic:  # there the contact has its spring
+        return []
     values = fit.solution.values
     r, beta = points_of(fit.model.rows, values)
     held = np.abs(fit.model.with_zeta(float(values[ZETA])).contact_load(r))
-    near = int((beta * values[MU] > _NEAR_STICKING * held).sum())
+    near = int((beta * values[LAW] > _NEAR_STICKING * held).sum())
     if not near:
         return []
     return [f"{near} of {r.size} rows have beta above {_NEAR_STICKING:g} beta_stick and may stick in a test"]

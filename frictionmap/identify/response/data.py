@@ -16,6 +16,9 @@ _PHASE, _AMPLITUDE = np.radians(1.0), 0.02
 #: Tolerance of lags beyond their range, in their errors, and in degrees if these are unknown.
 _ERRORS, _DEGREES = 5.0, 5.0
 
+#: Further tolerance for a contact with a spring [deg]: a mass that it holds leads a base with a damper.
+_LEAD_OF_SPRING = 20.0
+
 #: Values by mass, or those of the only mass.
 Values = Sequence[float] | np.ndarray | Mapping[int, Sequence[float] | np.ndarray]
 
@@ -32,7 +35,7 @@ class ForcedTable(NamedTuple):
 
 def checked_table(
     system: System, frequency: object, values: tuple[Values | None, Values | None],
-    errors: tuple[object, object], load: object, sets: Sequence[object] | None,
+    errors: tuple[object, object], load: object, sets: Sequence[object] | None, elastic: bool = False,
 ) -> ForcedTable:  # fmt: skip
     """Rows and samples of lags [deg] and amplitude ratios, with their errors [deg] and relative ones.
 
@@ -54,7 +57,9 @@ def checked_table(
         None if one is None else _errors(one, name, f.size)
         for one, name in zip(errors, ("sigma_phase", "sigma_amplitude"), strict=True)
     ]
-    parts = [_phases(system, mass, given, name, sigmas[0], f.size) for mass, (given, name) in lags.items()]
+    parts = [
+        _phases(system, mass, given, name, sigmas[0], f.size, elastic) for mass, (given, name) in lags.items()
+    ]
     parts += [_amplitudes(mass, given, name, sigmas[1], f.size) for mass, (given, name) in ratios.items()]
     samples = Samples(*(np.concatenate(part) for part in zip(*parts, strict=True)))
     return ForcedTable(rows, samples, labels, means, (sigmas[0] is not None, sigmas[1] is not None))
@@ -119,15 +124,18 @@ def _by_mass(values: Values | None, name: str, system: System) -> dict[int, tupl
 
 
 def check_lag(
-    system: System, mass: int, lag: np.ndarray, sigma: np.ndarray | None, places: Sequence[str]
-) -> None:
+    system: System, mass: int, lag: np.ndarray, sigma: np.ndarray | None, places: Sequence[str],
+    elastic: bool = False,
+) -> None:  # fmt: skip
     """Refuse lags [deg] that no errors bring into the range of the loaded mass; `mass` from 0.
 
     places : of the lags, in words
+    elastic : whether the contact has a spring
     """
     if not _drives(system, mass):
         return
     slack = np.full(lag.size, _DEGREES) if sigma is None else _ERRORS * sigma
+    slack = slack + _LEAD_OF_SPRING if elastic else slack
     wrong = np.flatnonzero((lag < -slack) | (lag > 180.0 + slack))
     if wrong.size:
         raise InputError(
@@ -143,10 +151,10 @@ def most_beyond(table: ForcedTable) -> np.ndarray:
 
 
 def _phases(
-    system: System, mass: int, values: object, name: str, sigma: np.ndarray | None, size: int
+    system: System, mass: int, values: object, name: str, sigma: np.ndarray | None, size: int, elastic: bool
 ) -> Samples:
     lag = _numbers(values, name, size)
-    check_lag(system, mass, lag, sigma, [f"{name} at index {index}" for index in range(size)])
+    check_lag(system, mass, lag, sigma, [f"{name} at index {index}" for index in range(size)], elastic)
     error = np.full(size, _PHASE) if sigma is None else np.radians(sigma)
     return Samples(np.arange(size), np.full(size, mass), np.ones(size, bool), np.radians(lag), error)
 

@@ -8,6 +8,8 @@ from scipy.special import gammainccinv
 from ... import checks, regimes
 from ...errors import InputError
 from ...model.system import System
+from ..parameters import CONTACT_STIFFNESS
+from ..spring import SOFTEST, with_stiffness
 from ..statistics.least_squares import (
     Allowance,
     Errors,
@@ -24,7 +26,7 @@ from ..statistics.levels import ROUNDS, SETTLED
 from ..statistics.robust import effective_variance, jackknife_growth, root_mean_square, softened, usual_size
 from ..statistics.weights import estimated_weights, freedom_by_kind
 from .data import ForcedTable
-from .model import F_N, MU, ZETA, Fitted, ForcedModel, Samples, evaluate
+from .model import F_N, LAW, ZETA, Fitted, ForcedModel, Samples, evaluate
 from .start import closer, starts
 
 #: The natural frequency is within this share of where the fit begins.
@@ -44,8 +46,9 @@ _OUTLIER = 1.0
 _RANK = 1e-5
 
 
-#: Steps in which the end of the interval of mu is looked for where slopes do not say how far it may be.
-_STEP_OF_MU = 0.05
+#: Steps in which the end of the interval of mu, or of the compliance of a spring, is looked for where slopes
+#: do not say how far it may be.
+_STEP_OF_LAW = 0.05
 
 
 class TableFit(NamedTuple):
@@ -59,25 +62,31 @@ class TableFit(NamedTuple):
     mu_idle: bool  # mu was to be fitted, but no motion that was found stops
 
 
-def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bool = False) -> TableFit:
+def fit_forced(
+    table: ForcedTable, system: System, known: np.ndarray, elastic: bool = False, robust: bool = False
+) -> TableFit:
     """The steady states nearest to a table.
 
     known : (parameters,) values that are held; NaN of the others
+    elastic : whether the contact has a spring: its compliance takes the place of mu among the parameters
     robust : whether residuals far beyond their errors have little weight
     """
-    model = ForcedModel(system, bool(system.modes.zeta.any()), table.rows, table.samples)
+    model = ForcedModel(system, bool(system.modes.zeta.any()), table.rows, table.samples, elastic)
     model, solution, task = _with_errors(model, known, table.given, robust)
     here = evaluate(model, solution.values, task.free)
-    idle = bool(task.free[MU]) and not (here.regime == regimes.STICK_SLIP).any()
-    if idle:
-        known = known.copy()
-        known[MU] = 1.0
-        model, solution, task = _with_errors(model, known, table.given, robust)
+    idle = not elastic and bool(task.free[LAW]) and not (here.regime == regimes.STICK_SLIP).any()
+    rigid = elastic and bool(task.free[LAW] and solution.at_bound[LAW])
+    if idle or rigid:
+        free = task.free
+        held = _with_law(known, 0.0 if rigid else 1.0)
+        model, solution, task = _with_errors(model, held, table.given, robust)
         here = evaluate(model, solution.values, task.free)
-    flat = _is_flat(model, solution, task)
-    determined = _without_mu(task) if flat else task
+        if rigid:  # whatever is left of the spring is within the interval
+            task = problem(model, free, float(solution.values[F_N]), robust)
+    flat = rigid or _is_flat(model, solution, task)
+    determined = _without_law(task) if flat else task
     _check_identifiable(table, model, solution, determined)
-    plain = problem(model, task.free, float(solution.values[F_N]))
+    plain = problem(model, determined.free if rigid else task.free, float(solution.values[F_N]))
     now = solution._replace(at_bound=solution.at_bound & determined.free)
     variance = 1.0 if any(table.given) else None
     if robust:
@@ -86,8 +95,10 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bo
     else:
         allowance = estimated_weights(determined, now, _kind(model.samples), ~np.array(table.given))
     found = errors(determined, now, variance, allowance=allowance)
-    of_mu = (found.variance if variance is None else variance) * (found.inflation * allowance.larger[MU]) ** 2
-    found = (_on_bound if flat else _near_bound)(found, task, solution, of_mu)
+    of_law = (found.variance if variance is None else variance) * (
+        found.inflation * allowance.larger[LAW]
+    ) ** 2
+    found = (_on_bound if flat else _near_bound)(found, task, solution, of_law)
     if flat:
         solution = solution._replace(at_bound=solution.at_bound | (task.free & ~determined.free))
     if robust:
@@ -98,31 +109,46 @@ def fit_forced(table: ForcedTable, system: System, known: np.ndarray, robust: bo
 
 def _is_flat(model: ForcedModel, solution: Solution, task: Problem) -> bool:
     """Check whether mu ended on its bound and nothing changes with it there to first order."""
-    return bool(task.free[MU] and solution.at_bound[MU]) and float(_effects(model, solution)[MU]) < _RANK
+    return bool(task.free[LAW] and solution.at_bound[LAW]) and float(_effects(model, solution)[LAW]) < _RANK
 
 
 def _effects(model: ForcedModel, solution: Solution) -> np.ndarray:
-    """Return the changes of lags [rad] and logarithms of amplitudes per unit of each parameter."""
+    """Return the changes of lags [rad] and logarithms of amplitudes per unit of each parameter.
+
+    f_n and compliances count by their own size.
+    """
     unit = np.ones(solution.values.size)
     unit[F_N] = solution.values[F_N]
+    if model.elastic:
+        unit[LAW] = solution.values[LAW]
     return np.linalg.norm(solution.slopes * model.samples.sigma[:, np.newaxis], axis=0) * unit
 
 
-def _without_mu(task: Problem) -> Problem:
-    """Hold mu."""
+def _with_law(known: np.ndarray, value: float) -> np.ndarray:
+    """What is held, and the parameter of the contact with it."""
+    held = known.copy()
+    held[LAW] = value
+    return held
+
+
+def _without_law(task: Problem) -> Problem:
+    """Hold mu, or the spring."""
     free = task.free.copy()
-    free[MU] = False
+    free[LAW] = False
     return task._replace(free=free)
 
 
 def _on_bound(found: Errors, task: Problem, solution: Solution, variance: float) -> Errors:
-    """Take the interval of mu = 1 from the profile of the sum; those of the others allow for all of it."""
+    """Take the interval of mu = 1, or of a rigid contact, from the profile of the sum.
+
+    Those of the others allow for all of it.
+    """
     allowed = one_sided(_freedom(solution, task)) ** 2 * variance
-    most, end = profile_end(task, solution, MU, allowed, _STEP_OF_MU)
+    most, end = profile_end(task, solution, LAW, allowed, _STEP_OF_LAW)
     moved = end.values - solution.values
     lower, upper = found.lower + np.minimum(moved, 0.0), found.upper + np.maximum(moved, 0.0)
     lower = np.where(task.free, np.maximum(lower, task.floor), lower)
-    upper[MU] = most
+    upper[LAW] = most
     return found._replace(lower=lower, upper=upper)
 
 
@@ -131,13 +157,16 @@ def _freedom(solution: Solution, task: Problem) -> int:
 
 
 def _near_bound(found: Errors, task: Problem, solution: Solution, variance: float) -> Errors:
-    """Take the interval of mu from the profile of the sum where it begins at 1: there slopes say little."""
-    if not task.free[MU] or solution.at_bound[MU] or found.lower[MU] > 1.0:
+    """Take the interval of mu from the profile of the sum where it begins at 1: there slopes say little.
+
+    So for the compliance of a spring, where the interval holds a rigid contact.
+    """
+    if not task.free[LAW] or solution.at_bound[LAW] or found.lower[LAW] > task.floor[LAW]:
         return found
-    scale = float(found.standard_error[MU])
+    scale = float(found.standard_error[LAW])
     upper = found.upper.copy()
     allowed = two_sided(_freedom(solution, task)) ** 2 * variance
-    upper[MU] = profile_end(task, solution, MU, allowed, scale)[0]
+    upper[LAW] = profile_end(task, solution, LAW, allowed, scale)[0]
     return found._replace(upper=upper)
 
 
@@ -147,7 +176,9 @@ def problem(model: ForcedModel, free: np.ndarray, f_n: float, robust: bool = Fal
     Below a bound, where there is no model, its tangent there takes its place.
     """
     floor = np.full(free.size, -np.inf)
-    floor[:F_N], floor[ZETA], floor[MU] = 0.0, 0.0, 1.0
+    floor[:F_N], floor[ZETA] = 0.0, 0.0
+    if free[LAW]:
+        floor[LAW] = model.least_law
 
     def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         inside = np.maximum(values, floor)
@@ -157,6 +188,8 @@ def problem(model: ForcedModel, free: np.ndarray, f_n: float, robust: bool = Fal
     lowest, highest = np.full(free.size, -np.inf), np.full(free.size, np.inf)
     lowest[F_N], highest[F_N] = f_n * (1.0 - _FREQUENCY_RANGE), f_n * (1.0 + _FREQUENCY_RANGE)
     highest[ZETA] = checks.LARGEST_DAMPING
+    if model.elastic:
+        highest[LAW] = SOFTEST
     plain = Problem(residuals, free, floor, lowest, highest)
     return softened(plain, _OUTLIER) if robust else plain
 
@@ -205,7 +238,7 @@ def _best(model: ForcedModel, known: np.ndarray, sure: bool, robust: bool) -> tu
     freedom = model.samples.row.size - int(free.sum())
     enough = 2.0 * float(gammainccinv(0.5 * freedom, _CHANCE)) if sure else 0.0
     begun = starts(model, known)
-    looks = _CLOSER_LOOKS if np.isnan(known[MU]) else 0
+    looks = _CLOSER_LOOKS if np.isnan(known[LAW]) and not model.elastic else 0
     best: tuple[Solution, Problem] | None = None
     while begun and (best is None or best[0].sum > enough):
         start = begun.pop(0)
@@ -227,7 +260,7 @@ def _best(model: ForcedModel, known: np.ndarray, sure: bool, robust: bool) -> tu
 
 def _check_identifiable(table: ForcedTable, model: ForcedModel, solution: Solution, task: Problem) -> None:
     """Refuse data that do not identify a parameter, or several of them separately."""
-    names = parameter_names(table)
+    names = parameter_names(table, model.elastic)
     for index in np.flatnonzero(task.free & (_effects(model, solution) < _RANK)):
         raise InputError(
             f"cannot identify {names[index]}: no measured quantity depends on it; fix it in [known]"
@@ -240,7 +273,14 @@ def _check_identifiable(table: ForcedTable, model: ForcedModel, solution: Soluti
         )
 
 
-def parameter_names(table: ForcedTable) -> tuple[str, ...]:
-    """beta, or one of every set; f_n, zeta and mu."""
+def shown_estimates(fit: TableFit) -> tuple[np.ndarray, Errors]:
+    """Estimates and errors as they are reported: the stiffness of a spring for its compliance."""
+    if not fit.model.elastic:
+        return fit.solution.values, fit.errors
+    return with_stiffness(fit.solution.values, fit.errors, LAW, bool(fit.problem.free[LAW]))
+
+
+def parameter_names(table: ForcedTable, elastic: bool) -> tuple[str, ...]:
+    """beta, or one of every set; f_n, zeta, and mu or the stiffness of a spring."""
     betas = [f"beta_{label}" for label in table.labels] if len(table.labels) > 1 else ["beta"]
-    return (*betas, "f_n", "zeta", "mu")
+    return (*betas, "f_n", "zeta", CONTACT_STIFFNESS if elastic else "mu")

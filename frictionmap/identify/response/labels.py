@@ -5,10 +5,12 @@ import xarray as xr
 
 from ... import regimes
 from ...units.table import checked_unit, conversion
+from ..parameters import CONTACT_STIFFNESS
+from ..spring import spring_in_newtons
 from ..statistics.estimates import QUANTITIES, estimates, number, usable_errors
 from .data import ForcedTable
-from .fit import TableFit, parameter_names
-from .model import F_N, MU, points_of
+from .fit import TableFit, parameter_names, shown_estimates
+from .model import F_N, LAW, points_of
 
 #: From where the motion is reached: both starts, or one.
 _REACHED = ("from_anywhere", "from_rest_only", "moving_only")
@@ -21,17 +23,22 @@ _WORDS = {
     "f_n": "natural frequency of the first mass on its spring alone, where r = 1",
     "zeta": "viscous damping ratio of every mode; of the first one where the system's own are held",
     "mu": "static over kinetic friction force",
+    CONTACT_STIFFNESS: "stiffness of the spring in the contact over k1; on its bound: rigid",
 }
 
 
 def labelled(table: ForcedTable, fit: TableFit, unit: str | None) -> xr.Dataset:
     """Dataset of a fit without its verdict; `unit` of the loads, if they were given."""
-    samples, solution = fit.model.samples, fit.solution
-    names = parameter_names(table)
+    samples = fit.model.samples
+    values, found = shown_estimates(fit)
+    solution = fit.solution._replace(values=values)
+    names = parameter_names(table, fit.model.elastic)
     meanings = {name: _WORDS.get(name) or f"{_WORDS['beta']} {name[5:]}" for name in names}
     units = tuple("Hz" if name == "f_n" else "1" for name in names)
-    errors = usable_errors(fit.errors, MU, 1.0, bool(fit.problem.free[MU]))
-    shown = fit.errors._replace(standard_error=errors)
+    shown = found
+    if not fit.model.elastic:
+        errors = usable_errors(found, LAW, 1.0, bool(fit.problem.free[LAW]))
+        shown = found._replace(standard_error=errors)
     ds = estimates(meanings, units, solution, shown, fit.problem.free, np.zeros(samples.row.size), "1")
     ds = ds.assign(_of_samples(table, fit))
     if unit is not None:
@@ -109,6 +116,14 @@ def friction_forces(table: ForcedTable, fit: TableFit, unit: str, stiffness: flo
     return _per_set(table, fit, "friction_force", "kinetic friction force k1 x_F", newtons, "N")
 
 
+def spring_stiffness(fit: TableFit, stiffness: float) -> dict[str, xr.Variable]:
+    """Stiffness of the spring in the contact [N/m], with its error; `stiffness` k1 [N/m]."""
+    if not fit.model.elastic:
+        return {}
+    values, found = shown_estimates(fit)
+    return spring_in_newtons(values, found, LAW, stiffness)
+
+
 def _friction(table: ForcedTable, fit: TableFit, unit: str) -> dict[str, xr.Variable]:
     """Friction of every set in the unit of its loads: of a base a length, F/k1; of a force a force."""
     base = fit.model.system.excitation == "base"
@@ -121,7 +136,7 @@ def _per_set(
 ) -> dict[str, xr.Variable]:
     """beta of every set as friction, times its load and `scale`, with the standard error."""
     result = {}
-    for k, name in enumerate(parameter_names(table)[:F_N]):
+    for k, name in enumerate(parameter_names(table, fit.model.elastic)[:F_N]):
         own, size = name.replace("beta", what), table.load[k] * scale
         result[own] = number(fit.solution.values[k] * size, words, unit)
         error = fit.errors.standard_error[k] * size

@@ -1,7 +1,9 @@
 """Amplitudes and lags of forced responses by the exact steady states, and their derivatives.
 
 A row of the data is one frequency of one set; a set has one friction force.  Parameters are the friction
-ratio beta of every set, at the mean of its loads, then f_n, zeta and mu: `F_N`, `ZETA`, `MU` from the end.
+ratio beta of every set, at the mean of its loads, then f_n, zeta and one of the contact: `F_N`, `ZETA`, `LAW`
+from the end.  The last one is mu of a rigid contact.  Of a contact with a spring, for which mu = 1, it is the
+compliance of the spring, k1/kt: motions depend on it smoothly, and 0 is the rigid contact.
 """
 
 from dataclasses import replace
@@ -12,8 +14,9 @@ import numpy as np
 from ...model.modes import wrapped
 from ...model.system import System
 from ...steady.points import States, steady_states
+from ..spring import STIFFEST
 
-F_N, ZETA, MU = -3, -2, -1
+F_N, ZETA, LAW = -3, -2, -1
 
 #: Steps of differences, relative or absolute: steady states are exact to some 1e-12.
 _STEP = 1e-6
@@ -47,15 +50,30 @@ class ForcedModel(NamedTuple):
     own_damping: bool  # the system's damping is known: zeta is not looked at
     rows: Rows
     samples: Samples
+    elastic: bool = False  # whether the contact has a spring, which the system is given without
 
     @property
     def sets(self) -> int:
         """Number of friction forces."""
         return int(self.rows.member.max()) + 1
 
+    @property
+    def least_law(self) -> float:
+        """Least value of the parameter of the contact: mu = 1, or the stiffest spring."""
+        return STIFFEST if self.elastic else 1.0
+
     def with_zeta(self, zeta: float) -> System:
-        """The system with this damping ratio of every mode."""
+        """The system with this damping ratio of every mode, its contact rigid."""
         return self.system if self.own_damping else replace(self.system, damping_ratios=zeta)
+
+    def system_at(self, values: np.ndarray) -> System:
+        """The system with the damping and the spring of some values."""
+        system, law = self.with_zeta(float(values[ZETA])), float(values[LAW])
+        return replace(system, contact_stiffness=1.0 / law) if self.elastic and law > 0.0 else system
+
+    def mu_at(self, values: np.ndarray) -> float:
+        """Static over kinetic friction at some values."""
+        return 1.0 if self.elastic else float(values[LAW])
 
 
 class Fitted(NamedTuple):
@@ -77,9 +95,8 @@ def evaluate(model: ForcedModel, values: np.ndarray, free: np.ndarray) -> Fitted
     step = _STEP * (1.0 + beta)
     low, high = np.maximum(beta - step, 0.0), beta + step
     slow, fast = r * (1.0 - _STEP), r * (1.0 + _STEP)
-    system, mu = model.with_zeta(float(values[ZETA])), float(values[MU])
     pairs = [(r, beta), (slow, beta), (fast, beta), (r, low), (r, high)]
-    here, *beside = _together(system, mu, pairs)
+    here, *beside = _together(model.system_at(values), model.mu_at(values), pairs)
     residual, chosen = nearest(model, here)
     phasors = np.array([states.phasors for states in here])[chosen, np.arange(r.size)]
     regime = np.array([states.regime for states in here])[chosen, np.arange(r.size)]
@@ -89,8 +106,8 @@ def evaluate(model: ForcedModel, values: np.ndarray, free: np.ndarray) -> Fitted
         change[one] = by_beta * np.where(model.rows.member == one, 1.0 / model.rows.share, 0.0)[:, np.newaxis]
     by_r = _slope(phasors, (beside[0], slow - r), (beside[1], fast - r))
     change[F_N] = by_r * (-r / values[F_N])[:, np.newaxis]
-    for index, least in ((ZETA, 0.0), (MU, 1.0)):
-        if free[index]:
+    for index, least in ((ZETA, 0.0), (LAW, model.least_law)):
+        if free[index] and values[index] >= least:
             change[index] = _slope(phasors, *_beside(model, values, index, least))
     slopes = _sample_slopes(model.samples, phasors, change)
     return Fitted(residual, np.where(free, slopes, 0.0), regime, phasors, here)
@@ -130,13 +147,14 @@ def _together(system: System, mu: float, pairs: list[tuple[np.ndarray, np.ndarra
 def _beside(
     model: ForcedModel, values: np.ndarray, index: int, least: float
 ) -> list[tuple[list[States], np.ndarray]]:
-    """States, and how far they are off, below and above the value of zeta or mu."""
+    """States, and how far they are off, below and above the value of zeta or of the contact's parameter."""
     r, beta = points_of(model.rows, values)
+    step = _STEP * values[index] if model.elastic and index == LAW else _STEP
     result = []
-    for value in (max(values[index] - _STEP, least), values[index] + _STEP):
+    for value in (max(values[index] - step, least), values[index] + step):
         other = values.copy()
         other[index] = value
-        states = steady_states(model.with_zeta(float(other[ZETA])), r, beta, float(other[MU]))
+        states = steady_states(model.system_at(other), r, beta, model.mu_at(other))
         result.append((states, np.full(r.size, value - values[index])))
     return result
 

@@ -9,7 +9,8 @@ from itertools import product
 import numpy as np
 
 from ...steady.points import steady_states
-from .model import F_N, MU, ZETA, ForcedModel, Samples, residuals
+from .balance import balanced_phasors, stick_friction
+from .model import F_N, LAW, ZETA, ForcedModel, Samples, residuals
 
 #: Errors with which it looks, radian and relative, and the most that one number counts.
 _LOOK_PHASE, _LOOK_AMPLITUDE = 0.15, 0.2
@@ -30,6 +31,10 @@ _DAMPINGS = (0.003, 0.03)
 _TRIED, _APART = 3, 0.06
 _MU = (1.05, 1.4)
 
+#: Compliances of springs that are tried, and the factor by which those of two starts differ if f_n does not.
+_COMPLIANCES = (3.0, 1.0, 0.3, 0.1, 0.03)
+_SPRINGS_APART = 2.0
+
 #: A closer search: factor of the errors, and values near those that were found.
 _CLOSER = 3.0
 _F_BESIDE = np.array([0.97, 0.985, 1.0, 1.015, 1.03])
@@ -45,25 +50,32 @@ def starts(model: ForcedModel, known: np.ndarray) -> list[np.ndarray]:
     tempered = model._replace(samples=_tempered(model))
     frequencies = _candidates(model) if np.isnan(known[F_N]) else [known[F_N]]
     dampings = _DAMPINGS if np.isnan(known[ZETA]) else [known[ZETA]]
+    first_laws = _COMPLIANCES if model.elastic else (1.0,)
     looked = []
-    for zeta in dampings:
-        mu = 1.0 if np.isnan(known[MU]) else known[MU]
-        several = [np.append(known[:F_N], [f_n, zeta, mu]) for f_n in frequencies]
+    for zeta, law in product(dampings, first_laws if np.isnan(known[LAW]) else (known[LAW],)):
+        several = [np.append(known[:F_N], [f_n, zeta, law]) for f_n in frequencies]
         looked += _best_frictions(tempered, several, [_everywhere(model, one, known) for one in several])
     looked.sort(key=lambda one: one[0])
     chosen: list[np.ndarray] = []
     for _, values in looked:
-        if all(abs(np.log(values[F_N] / other[F_N])) > _APART for other in chosen):
+        if all(_differ(model, values, other) for other in chosen):
             chosen.append(values)
     chosen = chosen[:_TRIED]
-    if not np.isnan(known[MU]):
+    if model.elastic or not np.isnan(known[LAW]):
         return chosen
     looked = []
     for values, mu in product(chosen, _MU):
         other = values.copy()
-        other[MU] = mu
+        other[LAW] = mu
         looked += _best_frictions(tempered, [other], [_everywhere(model, other, known)])
     return [values for _, values in sorted(looked, key=lambda one: one[0])]
+
+
+def _differ(model: ForcedModel, one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two starts have other natural frequencies, or other springs."""
+    stiff, soft = sorted((float(one[LAW]), float(other[LAW])))
+    other_spring = model.elastic and soft > _SPRINGS_APART * stiff
+    return other_spring or bool(abs(np.log(one[F_N] / other[F_N])) > _APART)
 
 
 def _tempered(model: ForcedModel) -> Samples:
@@ -87,7 +99,7 @@ def closer(model: ForcedModel, near: np.ndarray, known: np.ndarray) -> list[np.n
     samples = model.samples._replace(sigma=_CLOSER * model.samples.sigma)
     frequencies = near[F_N] * _F_BESIDE if np.isnan(known[F_N]) else known[F_N:ZETA]
     looked = []
-    for mu in near[MU] + _MU_BESIDE:
+    for mu in near[LAW] + _MU_BESIDE:
         if mu >= 1.0:
             several = [np.append(near[:F_N], [f_n, near[ZETA], mu]) for f_n in frequencies]
             tried = [_around(values, known) for values in several]
@@ -103,8 +115,11 @@ def _around(values: np.ndarray, known: np.ndarray) -> np.ndarray:
 
 def _everywhere(model: ForcedModel, values: np.ndarray, known: np.ndarray) -> np.ndarray:
     """Friction ratios of every set up to where all sticks, (tried, sets)."""
-    system, r = model.with_zeta(float(values[ZETA])), model.rows.frequency / values[F_N]
-    stick = np.abs(system.contact_load(np.unique(r)))
+    system, r = model.with_zeta(float(values[ZETA])), np.unique(model.rows.frequency / values[F_N])
+    if model.elastic and values[LAW] > 0.0:
+        stick = stick_friction(system, r, 1.0 / float(values[LAW]))
+    else:
+        stick = np.abs(system.contact_load(r))
     top = float(stick[np.isfinite(stick)].max(initial=1.0))
     grid = np.append(np.geomspace(_LEAST_SHARE * top, top, _BETAS), 0.0)[:, np.newaxis]
     return np.where(np.isnan(known[:F_N]), grid, known[:F_N])
@@ -113,7 +128,7 @@ def _everywhere(model: ForcedModel, values: np.ndarray, known: np.ndarray) -> np
 def _best_frictions(
     model: ForcedModel, several: list[np.ndarray], tried: list[np.ndarray]
 ) -> list[tuple[float, np.ndarray]]:
-    """Find the best friction ratio of every set for several values of one zeta and mu; return their sums.
+    """Find the best friction ratio of every set for several values of one zeta and law; return their sums.
 
     tried : (tried, sets) for each of the values
     """
@@ -122,15 +137,23 @@ def _best_frictions(
         [np.tile(rows.frequency / one[F_N], grid.shape[0]) for one, grid in zip(several, tried, strict=True)]
     )
     beta = np.concatenate([(grid[:, rows.member] / rows.share).ravel() for grid in tried])
-    states = steady_states(model.with_zeta(float(several[0][ZETA])), r, beta, float(several[0][MU]))
-    phasors = np.array([state.phasors for state in states])
+    phasors = _phasors(model, several[0], r, beta)
     ends = np.cumsum([grid.shape[0] * rows.frequency.size for grid in tried])[:-1]
     found = []
     for one, grid, part in zip(several, tried, np.split(phasors, ends, axis=1), strict=True):
-        sums = _sums(model, part.reshape(len(states), grid.shape[0], rows.frequency.size, -1))
+        sums = _sums(model, part.reshape(len(phasors), grid.shape[0], rows.frequency.size, -1))
         best = grid[sums.argmin(axis=0), np.arange(model.sets)]
         found.append((float(sums.min(axis=0).sum()), np.append(best, one[F_N:])))
     return found
+
+
+def _phasors(model: ForcedModel, values: np.ndarray, r: np.ndarray, beta: np.ndarray) -> np.ndarray:
+    """Phasors (motions, points, n): exact, or of a contact with a spring by harmonic balance."""
+    if model.elastic and values[LAW] > 0.0:
+        system = model.with_zeta(float(values[ZETA]))
+        return balanced_phasors(system, r, beta, 1.0 / float(values[LAW]))[np.newaxis]
+    states = steady_states(model.system_at(values), r, beta, model.mu_at(values))
+    return np.array([state.phasors for state in states])
 
 
 def _sums(model: ForcedModel, phasors: np.ndarray) -> np.ndarray:

@@ -17,6 +17,7 @@ from ...files.config import read_tree, unknown_key
 from ...units.axes import rounded
 from ...units.quantities import quantity
 from ...units.table import UNITS
+from ..parameters import checked_free
 from ..tables.columns import MISSING
 from ..tables.files import read_table
 from .decay import FREE_DECAY
@@ -173,18 +174,7 @@ def _checked_free(
         raise InputError(
             "cannot use fit.free for this kind of data: all parameters not in [known] are fitted; omit it"
         )
-    if not isinstance(free, list) or not free:
-        raise InputError(f"fit.free must be a list of parameters; got {checks.one_line(free)}")
-    for index, name in enumerate(free):
-        checks.choice(name, f"fit.free[{index}]", tuple(parameters))
-    for name in parameters:
-        if name in free and name in known:
-            raise InputError(f"cannot fit {name}: [known] holds it; remove it from fit.free or from [known]")
-        if name not in free and name not in known:
-            raise InputError(
-                f"cannot hold {name}: its value is missing; add {name} to fit.free or known.{name} to [known]"
-            )
-    return tuple(free)
+    return checked_free(free, known, parameters, file=True)
 
 
 def _known_number(value: object, key: str) -> float:

@@ -10,8 +10,9 @@ from ...errors import InputError
 from ...files.config import read_system
 from ...model.system import System
 from ...units.table import COLUMN_NAMES, conversion
+from ..parameters import is_elastic
 from ..response.data import check_lag
-from ..response.forced import forced
+from ..response.forced import PARAMETERS, forced
 from ..signals.integration import amplitude_factors, derivative_order
 from ..statistics.robust import LOSSES
 from ..tables.columns import Column, Columns, check_positive, columns_like, pick_columns
@@ -43,10 +44,11 @@ def _forced(rig: Rig, table: Table) -> xr.Dataset:
             check_positive(table, column, picked.rows)
     lags = _by_mass(system, picked, "phase_lag", "deg")
     sigmas = _errors(rig, picked)
+    elastic = is_elastic(rig.free, rig.known) or system.contact_stiffness is not None
     for mass, lag in lags.items():
         name = picked.columns[_role(system, "phase_lag", mass)].name
         places = [table.place(name, int(row)) for row in picked.rows]
-        check_lag(system, mass - 1, lag, sigmas[0], places)
+        check_lag(system, mass - 1, lag, sigmas[0], places, elastic)
     frequency = _frequency(rig, picked)
     load, unit = _load(picked, frequency)
     ratios = _ratios(rig, system, picked, frequency, load)
@@ -57,7 +59,7 @@ def _forced(rig: Rig, table: Table) -> xr.Dataset:
             frequency, lags or None, ratios or None, system=system, load=load, unit=unit, stiffness=stiffness,
             sets=_sets(rig, table, picked.rows), known=known, sigma_phase=sigmas[0],
             sigma_amplitude=sigmas[1], unreachable=rig.data.get("unreachable", "refuse"),
-            loss=checks.choice(rig.fit.get("loss", LOSSES[0]), "fit.loss", LOSSES),
+            loss=checks.choice(rig.fit.get("loss", LOSSES[0]), "fit.loss", LOSSES), free=rig.free,
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"file {rig.file}: {error}") from None
@@ -247,7 +249,7 @@ def _sets(rig: Rig, table: Table, rows: np.ndarray) -> list[object] | None:
 
 FORCED = Kind(
     _forced,
-    ("beta", "f_n", "zeta", "mu"),
+    PARAMETERS,
     known=("stiffness",),
     data=("use", "sigma_phase_deg", "sigma_amplitude", "unreachable"),
     fit=("loss",),

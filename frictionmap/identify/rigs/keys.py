@@ -59,7 +59,8 @@ _LABEL = Key("label", "name in the results; default: its number", {"type": "stri
              example='"10 N"')  # fmt: skip
 
 _FIT = (
-    Key("free", "parameters to fit; must be all that are not in [known], which is the default",
+    Key("free", "parameters to fit; must be all that are not in [known], which is the default; a spring in "
+        "the contact is fitted only if contact_stiffness is named",
         several({"type": "string"}), example='["f_n", "zeta", "x_F", "X0", "t0", "centre"]',
         words="a list of parameters"),
     Key("drift", "whether to fit a linear drift of the zero", {"type": "boolean"}, False,
@@ -88,8 +89,12 @@ _REFERENCE = Key(
     "damping_reference", "damping acts on velocities relative to the ground, or relative to the base",
     word(*DAMPING_REFERENCES), DAMPING_REFERENCES[0],
 )  # fmt: skip
+_SPRING = Key(
+    "contact_stiffness", "stiffness of a spring in the contact over k1, if it is known; default: rigid",
+    number(above=0.0), example="3.0",
+)  # fmt: skip
 _SYSTEMS = {
-    "forced": tuple(key for key in KEYS["system"] if key not in GENERAL_KEYS),
+    "forced": (*(key for key in KEYS["system"] if key not in GENERAL_KEYS), _SPRING),
     "record": (
         _CONTACT._replace(valid=word(*CONTACTS)),
         _MASSES._replace(meaning="the mass in contact", valid=several({"const": 1}, maxItems=1), words="[1]"),
@@ -108,6 +113,7 @@ _KNOWN = {
     "zeta": ("viscous damping ratio", "0.01"),
     "beta": ("friction ratio of all sets", "0.2"),
     "mu": ("static over kinetic friction force, >= 1", "1.0"),
+    "contact_stiffness": ("stiffness of a spring in the contact over k1; default: rigid", "3.0"),
     "x_F": ("kinetic friction force over stiffness, mm", "0.2"),
     "X0": ("amplitude at t0, mm", "9.5"),
     "t0": ("time of the first turning point, s", "0.0"),

@@ -14,8 +14,8 @@ from ..signals.integration import Displacements, derivative_order, displacements
 from ..signals.samples import within
 from ..tables.columns import Column, check_increasing, pick_columns
 from ..tables.files import Table
-from ..time_series.motion import CONTACTS, PARAMETERS
-from ..time_series.record import record
+from ..time_series.motion import CONTACTS
+from ..time_series.record import FITTABLE, record
 from .rig import Kind, Rig, check_columns, with_remarks
 
 _WANTED = {"time": "time", "base": "motion", "x": "motion"}
@@ -45,7 +45,7 @@ def _record(rig: Rig, table: Table) -> xr.Dataset:
         times, found = _displaced(time, base, x, unit, rig.data.get("window"))
         ds = record(
             times, found.base, found.x, unit=unit, contact=contact, damping_reference=reference, known=known,
-            stiffness=stiffness, window=rig.data.get("window"), **options,
+            stiffness=stiffness, window=rig.data.get("window"), free=rig.free, **options,
         )  # fmt: skip
     except InputError as error:
         names = f"columns {time.name}, {base.name} and {x.name}"
@@ -100,4 +100,4 @@ def one_mass_on_base(rig: Rig) -> tuple[str, str]:
     )
 
 
-RECORD = Kind(_record, PARAMETERS, known=("stiffness",), data=("window",), fit=("loss",), system=True)
+RECORD = Kind(_record, FITTABLE, known=("stiffness",), data=("window",), fit=("loss",), system=True)

@@ -16,8 +16,9 @@ from .fit import RecordFit, Samples, fit_record, places_at, samples_of
 #: Errors of the base's first harmonic so many times those of samples at all phases.
 _WORSE = 4.0
 
-#: A lead of so many degrees may come from higher harmonics of the base.
-_LEAD = 1.0
+#: A lead of so many degrees may come from higher harmonics of the base; and from a damper between the base
+#: and a mass that a spring in the contact holds.
+_LEAD, _LEAD_OF_SPRING = 1.0, 20.0
 
 #: Noise brings a motion to the ends of the range that is nearer to them than so many standard deviations.
 _MARGIN = 3.0
@@ -42,7 +43,9 @@ class MeasuredRecord(NamedTuple):
     samples: Samples  # of the mass, where it is good
 
 
-def measured_record(time: object, base: object, x: object, window: object, robust: bool) -> MeasuredRecord:
+def measured_record(
+    time: object, base: object, x: object, window: object, robust: bool, elastic: bool = False
+) -> MeasuredRecord:
     """Check a record and find its harmonics; see `record`."""
     times, places = checked_record(time, x)
     shakes = checked_record(times, base, "base")[1]
@@ -51,7 +54,7 @@ def measured_record(time: object, base: object, x: object, window: object, robus
     whole = unclipped(channels[:, 0])
     t, data = times[whole], channels[whole]
     good = unclipped_mass(t, data[:, 1])
-    phasors, tamed = _checked_phasors(t, data, robust)
+    phasors, tamed = _checked_phasors(t, data, robust, _LEAD_OF_SPRING if elastic else _LEAD)
     samples = samples_of(phasors, t, data[:, 1], tamed[:, 1], good, robust)
     return MeasuredRecord(times, t, data, ~good, _limits(data[:, 1], good), good, phasors, samples)
 
@@ -63,15 +66,16 @@ def _limits(x: np.ndarray, good: np.ndarray) -> tuple[float, float]:
 
 
 def fit_clipped(
-    contact: str, damping_reference: str, given: MeasuredRecord, known: Mapping[str, float], robust: bool
-) -> tuple[MeasuredRecord, RecordFit]:
+    contact: str, damping_reference: str, given: MeasuredRecord, known: Mapping[str, float], robust: bool,
+    elastic: bool = False,
+) -> tuple[MeasuredRecord, RecordFit]:  # fmt: skip
     """Fit a steady motion as by `fit_record`, without what happens beside the ends of a measuring range.
 
     There noise decides which samples are cut off: those that are left lie too far inside, and would draw the
     motion with them.  So samples are left out by the fitted motion, which has no noise, and the motion is
     fitted anew.  Its harmonics then take the place of the clipped ones, where the search begins.
     """
-    fit = fit_record(contact, damping_reference, given.phasors, given.samples, known)
+    fit = fit_record(contact, damping_reference, given.phasors, given.samples, known, elastic)
     if not given.clipped.any():
         return given, fit
     for _ in range(_REFITS):
@@ -79,7 +83,7 @@ def fit_clipped(
         if inside.sum() < _FEWEST or (inside == given.good).all():
             break
         given = _filled(given, fit, inside, robust)
-        fit = fit_record(contact, damping_reference, given.phasors, given.samples, known)
+        fit = fit_record(contact, damping_reference, given.phasors, given.samples, known, elastic)
     return given, fit
 
 
@@ -109,7 +113,9 @@ def _fitted(given: MeasuredRecord, fit: RecordFit) -> np.ndarray:
     return places_at(fit, given.phasors, given.time) + fit.slow_at(given.samples.everywhere)
 
 
-def _checked_phasors(time: np.ndarray, channels: np.ndarray, robust: bool) -> tuple[Phasors, np.ndarray]:
+def _checked_phasors(
+    time: np.ndarray, channels: np.ndarray, robust: bool, lead: float
+) -> tuple[Phasors, np.ndarray]:
     """Harmonics of a base and of a mass that move, and the channels without outliers."""
     for name, places in zip(("base", "x"), channels.T, strict=True):
         if float(np.ptp(places)) <= 2.0 * resolution(places):
@@ -131,14 +137,14 @@ def _checked_phasors(time: np.ndarray, channels: np.ndarray, robust: bool) -> tu
                 f"cannot fit {name}: its first harmonic at {phasors.frequency:.4g} Hz, the frequency of the "
                 f"base, is {first:.3g} with an error of {error:.2g}; use a record in which the mass moves"
             )
-    _check_lag(phasors)
+    _check_lag(phasors, lead)
     return phasors, tamed
 
 
-def _check_lag(phasors: Phasors) -> None:
+def _check_lag(phasors: Phasors, lead: float) -> None:
     """Energy flows from the base to the mass: its first harmonic lags by 0 to 180 degrees."""
     lag = np.degrees(amplitude_and_lag(phasors)[1])
-    if lag < -(_LEAD + FOUND * np.degrees(ratio_error(phasors))):
+    if lag < -(lead + FOUND * np.degrees(ratio_error(phasors))):
         raise InputError(
             "x must lag behind the base by 0 to 180 degrees; "
             f"got a lead of {-lag:.4g} (are the columns exchanged, or is one of opposite sign?)"

@@ -4,7 +4,8 @@ What is fitted, p, has the covariance s^2 (J^T V^-1 J)^-1, with V as in `fit`.  
 harmonics move it by -(J^T V^-1 J)^-1 J^T V^-1 J_b b, and the noise of the mass moves p and X_1 together.
 
 Where the data do not ask for mu > 1, estimates are those with mu = 1; their intervals reach as far as they
-would move if mu were at the upper end of its own.
+would move if mu were at the upper end of its own.  So where a spring in the contact is as stiff as can be:
+estimates are those with a rigid contact.
 """
 
 from typing import NamedTuple
@@ -14,7 +15,7 @@ import numpy as np
 from ..signals.phasors import Phasors, first_harmonics
 from ..statistics.least_squares import Errors, errors, growth, two_sided
 from .fit import RecordFit, base_errors
-from .motion import F_N, MU, OFFSET, PARAMETERS, X_F, ZETA
+from .motion import F_N, LAW, MU, OFFSET, PARAMETERS, X_F, ZETA
 from .static_friction import FITTED, IDLE, ONE, highest, interval, per_square
 
 #: What follows from the parameters and the phasors.
@@ -52,8 +53,9 @@ def record_errors(fit: RecordFit, phasors: Phasors, time: np.ndarray, used: np.n
     on_bound = fit.solution.at_bound & fit.problem.free
     found = errors(fit.problem, fit.solution._replace(at_bound=on_bound), noise=fit.noise)
     linear = _in_what_is_fitted(fit, phasors, time, used, found)
-    of_square = float(found.standard_error[MU])
-    linear.transfer[MU] *= per_square(float(fit.values[MU]), of_square)
+    of_law, elastic = float(found.standard_error[LAW]), fit.mass.elastic
+    if not elastic:
+        linear.transfer[MU] *= per_square(float(fit.values[MU]), of_law)
     covariance = linear.of_estimates
     deviation = np.sqrt(np.diag(covariance))
     scale = np.where(deviation > 0.0, deviation, 1.0)
@@ -64,14 +66,15 @@ def record_errors(fit: RecordFit, phasors: Phasors, time: np.ndarray, used: np.n
     for index in np.flatnonzero(on_bound[:size]):  # one-sided, from the profile of the sum
         lower[index], upper[index] = 0.0, found.upper[index]
     if fit.static == ONE:
-        upper[MU], moved = highest(fit.with_mu, fit.solution, fit.noise, MU)
+        most, moved = highest(fit.with_law, fit.solution, fit.noise, LAW)
+        lower[LAW], upper[LAW] = (0.0, most) if elastic else (lower[LAW], 1.0 + float(np.sqrt(most)))
         moves = np.concatenate((moved[:size], np.zeros(len(DERIVED))))
         moves[size] = moved[X_F] / abs(phasors.values[0, 1])  # beta
         lower, upper = lower + np.minimum(moves, 0.0), upper + np.maximum(moves, 0.0)
     elif fit.static == IDLE:
         upper[MU] = _mu_of_first_stop(fit)
-    elif fit.static == FITTED:
-        lower[MU], upper[MU] = interval(float(fit.solution.values[MU]), reach * of_square)
+    elif fit.static == FITTED and not elastic:
+        lower[MU], upper[MU] = interval(float(fit.solution.values[MU]), reach * of_law)
     lower[_POSITIVE] = np.maximum(lower[_POSITIVE], 0.0)
     return found._replace(
         standard_error=deviation, lower=lower, upper=upper, correlation=correlation,

@@ -13,14 +13,16 @@ import numpy as np
 
 from ..signals.noise import noise_of_fit
 from ..signals.phasors import Phasors, scatter_of
+from ..spring import SOFTEST
 from ..statistics.least_squares import Noise, Problem, Solution, minimise
 from ..statistics.robust import pseudo_residuals
 from .motion import (
     F_N,
-    FLOOR,
+    LAW,
     MU,
     OFFSET,
     PARAMETERS,
+    WITH_SPRING,
     Motion,
     Shaken,
     base_slopes,
@@ -33,8 +35,10 @@ from .motion import (
 from .starts import starts
 from .static_friction import FITTED, IDLE, KNOWN, ONE, is_asked_for
 
-#: Number of starts that are followed, and of samples used; the best one continues with all samples.
+#: Number of starts that are followed, that with a spring where the first ones leave more than noise, and of
+#: samples used; the best one continues with all samples.
 _FOLLOWED = 4
+_MORE_FOLLOWED = 24
 _SAMPLES = 600
 
 #: Fits to pseudo-values: each is a step of Newton's method with the mean slope, so few are needed.
@@ -78,13 +82,15 @@ class Samples(NamedTuple):
 class RecordFit(NamedTuple):
     """A steady motion; the solution is in what is fitted, see `inner`, and its residuals are whitened.
 
+    For a contact with a spring, what is said of mu = 1 holds for the rigid contact, compliance 0.
+
     After the parameters come the parts of the slow waves, see `Samples`.
     """
 
     mass: Shaken
     samples: Samples
     problem: Problem  # mu is not free where the data do not determine it
-    with_mu: Problem  # with mu free, if it is not known
+    with_law: Problem  # with mu free, if it is not known
     solution: Solution
     noise: Noise
     model_error: float  # what is left at the harmonics over the noise beside them; 1 if chance makes it
@@ -96,12 +102,12 @@ class RecordFit(NamedTuple):
     @property
     def values(self) -> np.ndarray:
         """The parameters."""
-        return outer(self.solution.values[: len(PARAMETERS)])
+        return outer(self.solution.values[: len(PARAMETERS)], self.mass.elastic)
 
     @property
     def free(self) -> np.ndarray:
         """Parameters that are not known, bool (parameters,)."""
-        return self.with_mu.free[: len(PARAMETERS)]
+        return self.with_law.free[: len(PARAMETERS)]
 
     @property
     def residual(self) -> np.ndarray:
@@ -131,23 +137,31 @@ def samples_of(
 
 
 def fit_record(
-    contact: str, damping_reference: str, phasors: Phasors, samples: Samples, known: Mapping[str, float]
-) -> RecordFit:
+    contact: str, damping_reference: str, phasors: Phasors, samples: Samples, known: Mapping[str, float],
+    elastic: bool = False,
+) -> RecordFit:  # fmt: skip
     """The least sum over all samples, with mu = 1 unless it is known or the data ask for more.
+
+    elastic : whether the contact has a spring, whose compliance is fitted unless it is known
 
     Where there may be outliers, pseudo-values from the last fit take the place of x (Huber and Ronchetti,
     Robust Statistics, 2009, section 7.8): this converges to the estimate of soft_l1, and the errors are those
     of least squares.
     """
     few = slice(None, None, max(1, samples.time.size // _SAMPLES))
-    coarse = shaken(contact, damping_reference, phasors, samples.time[few])
-    mass = shaken(contact, damping_reference, phasors, samples.time)
-    near = _nearest(coarse, samples.near[few], phasors, {"mu": 1.0, **known})
+    coarse = shaken(contact, damping_reference, phasors, samples.time[few], elastic)
+    mass = shaken(contact, damping_reference, phasors, samples.time, elastic)
+    near = _nearest(coarse, samples.near[few], phasors, known if elastic else {"mu": 1.0, **known})
     scatter = float(np.sqrt(near.sum / samples.near[few].size))
     begin = _begin(near, samples)
     at_one = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
+    if elastic and at_one.model_error > 1.0:
+        begin = _begin(_nearest(coarse, samples.near[few], phasors, known, _MORE_FOLLOWED), samples)
+        other = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
+        at_one = min(at_one, other, key=lambda fit: float(np.sum(fit.residual**2)))
     starting = [at_one.solution.values]
-    if "mu" not in known and at_one.model_error > 1.0:  # else nothing far away can be much nearer
+    with_mu = not elastic and "mu" not in known
+    if with_mu and at_one.model_error > 1.0:  # else nothing far away can be much nearer
         starting.append(_begin(_nearest(coarse, samples.near[few], phasors, known), samples))
     fit = _with_static(at_one, phasors, starting)
     # without outliers once more if mu is fitted: what errors of the base do was computed for mu = 1
@@ -185,22 +199,29 @@ def _fit_near(
     scatter : standard deviation of a sample, without what errors of the base make
     about : values of the motion that errors of the base move
     """
-    held = {"mu": 1.0, **known}
-    by_base = base_slopes(mass, outer(about[: len(PARAMETERS)]))
+    held = known if mass.elastic else {"mu": 1.0, **known}
+    by_base = base_slopes(mass, outer(about[: len(PARAMETERS)], mass.elastic))
     whitening = _whitening(by_base, base_errors(mass, phasors), scatter)
-    with_mu = _problem(mass, samples, _free(known, samples), start, whitening)
-    problem = with_mu._replace(free=_free(held, samples))
+    with_law = _problem(mass, samples, _free(known, samples, mass.elastic), start, whitening)
+    problem = with_law._replace(free=_free(held, samples, mass.elastic))
     solution = minimise(problem, start)
-    found = motion(mass, outer(solution.values[: len(PARAMETERS)]))
+    found = motion(mass, outer(solution.values[: len(PARAMETERS)], mass.elastic))
     noise = noise_of_record(phasors, samples, problem, solution)
-    return RecordFit(mass, samples, problem, with_mu, solution, *noise, whitening, by_base, found, KNOWN)
+    return RecordFit(mass, samples, problem, with_law, solution, *noise, whitening, by_base, found, KNOWN)
 
 
 def _with_static(fit: RecordFit, phasors: Phasors, begin: list[np.ndarray]) -> RecordFit:
-    """The fit with mu free, if it is not known and the data ask for it; else the fit as it is."""
-    task = fit.with_mu
-    if not task.free[MU]:
+    """The fit with mu free, if it is not known and the data ask for it; else the fit as it is.
+
+    A spring is free to begin with, and the contact is rigid where that explains the data as well.
+    """
+    task = fit.with_law
+    if not task.free[LAW]:
         return fit
+    if fit.mass.elastic:
+        rigid = _rigid(fit, phasors)
+        stiff = fit.solution.at_bound[LAW] or rigid.solution.sum <= fit.solution.sum
+        return rigid if stiff else fit._replace(static=FITTED)
     solution = min((minimise(task, start) for start in begin), key=lambda found: found.sum)
     found = motion(fit.mass, outer(solution.values[: len(PARAMETERS)]))
     noise, model_error = noise_of_record(phasors, fit.samples, task, solution)
@@ -218,9 +239,28 @@ def _with_static(fit: RecordFit, phasors: Phasors, begin: list[np.ndarray]) -> R
     )  # fmt: skip
 
 
+def _rigid(fit: RecordFit, phasors: Phasors) -> RecordFit:
+    """The fit with a rigid contact in place of the stiffest spring."""
+    start = fit.solution.values.copy()
+    start[LAW] = 0.0
+    free = fit.with_law.free.copy()
+    free[LAW] = False
+    problem = _problem(fit.mass, fit.samples, free, start, fit.whitening)
+    solution = minimise(problem, start)
+    found = motion(fit.mass, solution.values[: len(PARAMETERS)])
+    noise, model_error = noise_of_record(phasors, fit.samples, problem, solution)
+    on_bound = solution.at_bound.copy()
+    on_bound[LAW] = True
+    return fit._replace(
+        problem=problem, solution=solution._replace(at_bound=on_bound), noise=noise, model_error=model_error,
+        motion=found, static=ONE,
+    )  # fmt: skip
+
+
 def problem_of(fit: RecordFit, known: Mapping[str, float]) -> Problem:
     """The problem that was solved, with other parameters held."""
-    return _problem(fit.mass, fit.samples, _free(known, fit.samples), fit.solution.values, fit.whitening)
+    free = _free(known, fit.samples, fit.mass.elastic)
+    return _problem(fit.mass, fit.samples, free, fit.solution.values, fit.whitening)
 
 
 def noise_of_record(
@@ -240,23 +280,27 @@ def _begin(near: Solution, samples: Samples) -> np.ndarray:
     return np.concatenate((near.values, slow))
 
 
-def _nearest(mass: Shaken, x: np.ndarray, phasors: Phasors, known: Mapping[str, float]) -> Solution:
+def _nearest(
+    mass: Shaken, x: np.ndarray, phasors: Phasors, known: Mapping[str, float], followed: int = _FOLLOWED
+) -> Solution:
     """The least sum from several starts, of samples without drift and outliers."""
     none = np.zeros((x.size, 0))
     samples = Samples(np.zeros(x.size), x, x, x, none, none, None)
-    free = _free(known, samples)
-    candidates = starts(mass.contact, mass.damping_reference, phasors, known)[:_FOLLOWED]
-    problems = [(_problem(mass, samples, free, inner(start)), inner(start)) for start in candidates]
+    free, elastic = _free(known, samples, mass.elastic), mass.elastic
+    candidates = starts(mass.contact, mass.damping_reference, phasors, known, elastic)[:followed]
+    fitted = [inner(start, elastic) for start in candidates]
+    problems = [(_problem(mass, samples, free, start), start) for start in fitted]
     return min((minimise(_within(task), start) for task, start in problems), key=lambda found: found.sum)
 
 
-def _free(known: Mapping[str, float], samples: Samples) -> np.ndarray:
-    return np.array([name not in known for name in PARAMETERS] + [True] * samples.slow.shape[1])
+def _free(known: Mapping[str, float], samples: Samples, elastic: bool) -> np.ndarray:
+    names = WITH_SPRING if elastic else PARAMETERS
+    return np.array([name not in known for name in names] + [True] * samples.slow.shape[1])
 
 
 def places_at(fit: RecordFit, phasors: Phasors, time: np.ndarray) -> np.ndarray:
     """The fitted motion at other times."""
-    mass = shaken(fit.mass.contact, fit.mass.damping_reference, phasors, time)
+    mass = shaken(fit.mass.contact, fit.mass.damping_reference, phasors, time, fit.mass.elastic)
     return motion(mass, fit.values).places
 
 
@@ -296,7 +340,9 @@ def _problem(
     waves = np.full(samples.slow.shape[1], np.inf)
     lowest, highest = np.concatenate((_BELOW, -waves)), np.concatenate((_HIGHEST, waves))
     lowest[F_N], highest[F_N] = start[F_N] / _RANGE, start[F_N] * _RANGE
-    problem = Problem(plain, free, np.concatenate((FLOOR, -waves)), lowest, highest)
+    if mass.elastic:
+        highest[LAW] = SOFTEST
+    problem = Problem(plain, free, np.concatenate((mass.floor, -waves)), lowest, highest)
     return problem if whitening is None else _whitened(problem, whitening)
 
 

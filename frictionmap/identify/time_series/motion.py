@@ -8,6 +8,8 @@ the ground.  In q = x - offset_x, less y where the wall moves, all four are one 
     r^2 q'' + 2 zeta r q' + q + x_F sgn(q') = Re sum_n G_n e^{i n tau}
     wall still: G_n = Y_n (1 + 2 i n zeta r), moving: G_n = (n r)^2 Y_n,   relative to the base
     wall still: G_n = Y_n,   moving: G_n = ((n r)^2 - 2 i n zeta r) Y_n,   relative to the ground
+
+With a spring in the contact kt (q - p) takes the place of x_F sgn(q'), and p moves only where that is +-x_F.
 """
 
 from typing import NamedTuple
@@ -15,10 +17,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ...general.one_mass import steady_motion
+from ..parameters import CONTACT_STIFFNESS
 from ..signals.phasors import Phasors, harmonics_at
+from ..spring import STIFFEST
 
 PARAMETERS = ("f_n", "zeta", "x_F", "mu", "offset_x")
 F_N, ZETA, X_F, MU, OFFSET = range(len(PARAMETERS))
+
+#: Of a contact with a spring mu is 1, and the spring has its place; its compliance, k1/kt, stands for it.
+LAW = MU
+WITH_SPRING = ("f_n", "zeta", "x_F", CONTACT_STIFFNESS, "offset_x")
 
 CONTACTS = ("fixed-wall", "joined-base-wall")
 
@@ -30,6 +38,7 @@ _CYCLES = 150
 
 #: What is fitted cannot be below; see `inner`.
 FLOOR = np.array([-np.inf, 0.0, 0.0, 0.0, -np.inf])
+_FLOOR_WITH_SPRING = np.array([-np.inf, 0.0, 0.0, STIFFEST, -np.inf])
 
 #: Steps of the difference quotients, of (mu - 1)^2 their square: steady states are exact to some 1e-12.
 _STEP = 1e-5
@@ -45,6 +54,17 @@ class Shaken(NamedTuple):
     start: tuple[float, float]  # x and dx/dtau at tau = 0, from which a steady state is looked for
     phases: np.ndarray  # increasing, in [0, 2 pi)
     order: np.ndarray  # of the samples by phase
+    elastic: bool = False  # whether the contact has a spring
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters."""
+        return WITH_SPRING if self.elastic else PARAMETERS
+
+    @property
+    def floor(self) -> np.ndarray:
+        """What is fitted cannot be below."""
+        return _FLOOR_WITH_SPRING if self.elastic else FLOOR
 
 
 class Motion(NamedTuple):
@@ -52,12 +72,14 @@ class Motion(NamedTuple):
 
     places: np.ndarray  # x of every sample
     repeats: bool
-    stops: int  # a cycle
-    stuck: float  # share of the cycle
+    stops: int  # a cycle; slips of a contact with a spring
+    stuck: float  # share of the cycle in which the contact does not slip
     turn_load: float  # the least load over stiffness at a turn without a stop; infinite if there is none
 
 
-def shaken(contact: str, damping_reference: str, phasors: Phasors, time: np.ndarray) -> Shaken:
+def shaken(
+    contact: str, damping_reference: str, phasors: Phasors, time: np.ndarray, elastic: bool = False
+) -> Shaken:
     """The mass on the base of a record, at these times."""
     base = phasors.values[0, : BASE_HARMONICS + 1]
     angle = 2.0 * np.pi * phasors.frequency * (time - phasors.middle)
@@ -67,7 +89,7 @@ def shaken(contact: str, damping_reference: str, phasors: Phasors, time: np.ndar
     phases = folded[order]
     mass = phasors.values[1]
     start = (float(mass.sum().real), float((1j * np.arange(mass.size) * mass).sum().real))
-    return Shaken(contact, damping_reference, phasors.frequency, base, start, phases, order)
+    return Shaken(contact, damping_reference, phasors.frequency, base, start, phases, order, elastic)
 
 
 def moved(mass: Shaken, change: np.ndarray) -> Shaken:
@@ -94,35 +116,38 @@ def load_harmonics(mass: Shaken, f_n: float, zeta: float) -> np.ndarray:
 
 
 def motion(mass: Shaken, values: np.ndarray) -> Motion:
-    """The steady state for f_n > 0, zeta >= 0, x_F >= 0, mu >= 1 and offset_x."""
-    f_n, zeta, friction, mu, offset = (float(value) for value in values)
+    """The steady state for f_n > 0, zeta >= 0, x_F >= 0, mu >= 1 (or a compliance >= 0) and offset_x."""
+    f_n, zeta, friction, law, offset = (float(value) for value in values)
+    mu, spring = (1.0, 1.0 / law if law > 0.0 else 0.0) if mass.elastic else (law, 0.0)
     moves = mass.contact == "joined-base-wall"
     q = mass.start[0] - offset - (float(mass.base.sum().real) if moves else 0.0)
     rate = (1j * np.arange(mass.base.size) * mass.base).sum().real if moves else 0.0
     found = steady_motion(
         mass.frequency / f_n, zeta, friction, mu, load_harmonics(mass, f_n, zeta),
-        (q, mass.start[1] - float(rate)), mass.phases, _CYCLES,
+        (q, mass.start[1] - float(rate)), mass.phases, _CYCLES, spring,
     )  # fmt: skip
     by_sample = np.empty(mass.phases.size)
     by_sample[mass.order] = found.places + offset + (harmonics_at(mass.base, mass.phases) if moves else 0.0)
     return Motion(by_sample, found.repeats, found.stops, found.stuck, found.turn_load)
 
 
-def inner(values: np.ndarray) -> np.ndarray:
-    """Convert parameters to fitted variables, with (mu - 1)^2 for mu.
+def inner(values: np.ndarray, elastic: bool = False) -> np.ndarray:
+    """Convert parameters to fitted variables, with (mu - 1)^2 for mu; compliances are fitted as they are.
 
     After a stop the mass leaves with an acceleration in proportion to mu - 1, but later by as much: at mu = 1
     the motion does not change with mu to first order.
     """
     result = values.copy()
-    result[MU] = (values[MU] - 1.0) ** 2
+    if not elastic:
+        result[MU] = (values[MU] - 1.0) ** 2
     return result
 
 
-def outer(values: np.ndarray) -> np.ndarray:
+def outer(values: np.ndarray, elastic: bool = False) -> np.ndarray:
     """Convert fitted variables to parameters."""
     result = values.copy()
-    result[MU] = 1.0 + np.sqrt(max(float(values[MU]), 0.0))
+    if not elastic:
+        result[MU] = 1.0 + np.sqrt(max(float(values[MU]), 0.0))
     return result
 
 
@@ -131,17 +156,20 @@ def places_and_slopes(mass: Shaken, fitted: np.ndarray, free: np.ndarray) -> tup
 
     Below its floor a parameter has no motion: there the places go on as a straight line.
     """
-    valid = np.maximum(fitted, FLOOR)
-    places = motion(mass, outer(valid)).places
+    floor, elastic = mass.floor, mass.elastic
+    if elastic and not free[LAW]:  # a rigid contact may be held
+        floor = np.where(np.arange(floor.size) == LAW, 0.0, floor)
+    valid = np.maximum(fitted, floor)
+    places = motion(mass, outer(valid, elastic)).places
     slopes = np.zeros((places.size, fitted.size))
     slopes[:, OFFSET] = 1.0  # the whole motion is moved
     unit = float(np.abs(mass.base[1:]).max())
-    steps = _STEP * np.array([valid[F_N], 1.0, unit, _STEP, unit])
+    steps = _STEP * np.array([valid[F_N], 1.0, unit, valid[LAW] if elastic else _STEP, unit])
     for index in np.flatnonzero(free[:OFFSET]):
         step = np.zeros(fitted.size)
         step[index] = steps[index]
-        middle = np.maximum(valid, FLOOR + step)
-        ahead, behind = (motion(mass, outer(at)).places for at in (middle + step, middle - step))
+        middle = np.maximum(valid, floor + step)
+        ahead, behind = (motion(mass, outer(at, elastic)).places for at in (middle + step, middle - step))
         slopes[:, index] = (ahead - behind) / (2.0 * steps[index])
     return places + slopes @ (fitted - valid), slopes
 

@@ -31,7 +31,7 @@ def is_asked_for(gain: float, problem: Problem, best: Solution, noise: Noise, in
 
 
 def highest(problem: Problem, solution: Solution, noise: Noise, index: int) -> tuple[float, np.ndarray]:
-    """The upper end of the interval of mu, from the profile of the sum, and how the others move up to it.
+    """The upper end of the interval of (mu - 1)^2, from the profile of the sum, and how the others move.
 
     problem : with mu free
     solution : with mu = 1
@@ -45,7 +45,7 @@ def highest(problem: Problem, solution: Solution, noise: Noise, index: int) -> t
     square, end = profile_end(problem, best, index, allowed, scale)
     moved = end.values - best.values
     moved[index] = 0.0
-    return 1.0 + float(np.sqrt(square)), moved
+    return square, moved
 
 
 def interval(square: float, reach: float) -> tuple[float, float]:

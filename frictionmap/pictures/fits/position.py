@@ -7,7 +7,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from ...files.stored import stored_system
+from ...files.config import system_in
+from ...model.settings import GeneralOutput, Output
 from ...model.system import System
 from ...steady.sweep import sweep
 from ..curves.axes import Panel
@@ -35,11 +36,21 @@ class Positions(NamedTuple):
 
 
 def fitted_system(ds: xr.Dataset) -> System | None:
-    """The structure with the fitted damping, as far as the dataset contains it."""
-    system = stored_system(ds)
-    if system is None or system.modes.zeta.any() or "zeta" not in ds["parameter"].values:
+    """The structure with the fitted damping and spring in its contact, as far as the dataset contains it."""
+    system = system_in(str(ds.attrs.get("config", "")))
+    if system is None:
+        return None
+    system = replace(system, contact_stiffness=None)
+    if system.general is not None:
+        return None
+    if not system.modes.zeta.any() and "zeta" in ds["parameter"].values:
+        system = replace(system, damping_ratios=max(fitted(ds, "zeta", 0.0), 0.0))
+    spring = fitted(ds, "contact_stiffness", 0.0)
+    if spring <= 0.0 or ds["at_bound"].sel(
+        parameter="contact_stiffness"
+    ):  # on its bound the contact is rigid
         return system
-    return replace(system, damping_ratios=max(fitted(ds, "zeta", 0.0), 0.0))
+    return replace(system, contact_stiffness=spring)
 
 
 def fitted(ds: xr.Dataset, name: str, default: float) -> float:
@@ -58,7 +69,10 @@ def position_panel(system: System, mu: float, positions: list[Positions]) -> Pan
     )
 
     def position(ax: Axes) -> list[Handle]:
-        panel = sweep(system, r, beta, mu, outputs=["regime", "stops_per_cycle"]).isel(mu=0)
+        count: Output | GeneralOutput = (
+            "stops_per_cycle" if system.general is None else "slip_reversals_per_cycle"
+        )
+        panel = sweep(system, r, beta, mu, outputs=["regime", count]).isel(mu=0)
         cells = cells_of(panel)
         handles = draw_map(ax, panel, cells)
         for part in positions:
@@ -67,7 +81,7 @@ def position_panel(system: System, mu: float, positions: list[Positions]) -> Pan
                 markeredgewidth=0.7, path_effects=halo(1.8), zorder=4.0,
             )  # fmt: skip
         classes = [
-            patch(CLASSES[index].label, CLASSES[index].colour) for index in np.flatnonzero(cells.counts)
+            patch(cells.by.labels[index], CLASSES[index].colour) for index in np.flatnonzero(cells.counts)
         ]
         return distinct([*classes, *handles])
 

@@ -1,7 +1,7 @@
 """One steady state as a moving picture: masses, contacts that light while they are stuck, friction loop."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple, Unpack
+from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 
 import numpy as np
 import xarray as xr
@@ -153,7 +153,7 @@ def _draw_stage(ax: Axes, masses: xr.Dataset, traces: Sequence[Trace]) -> list[L
     for row, (_, values) in enumerate(rows):
         ax.plot([values.min(), values.max()], [row, row], color="0.8", linewidth=3.0, solid_capstyle="round")
         if row < masses.sizes["dof"]:
-            look = {"marker": "s", "markersize": _MASS, "color": LINES[row % len(LINES)]}
+            look: dict[str, Any] = {"marker": "s", "markersize": _MASS, "color": LINES[row % len(LINES)]}
         else:
             look = {"marker": "o", "markersize": _LIGHT, "markeredgecolor": "black", "color": "black"}
         marks += ax.plot([values[0]], [row], **look)

@@ -1,0 +1,136 @@
+"""Whether a motion goes to a steady state that Newton's method found near it, where the start matters.
+
+For mu > 1 several steady states may attract, and a motion may pass one by for some time.
+"""
+
+import math
+
+from ..compiler import kernel
+from .follow import FOLLOWED, SLIPS, STOPS, TURNS
+from .orbits import NO_REPEAT, REPEATS, RETURNED, Steady, largest_multiplier, least_period, newton
+from .return_map import go_round, motion_size, take_end
+from .returns import distance_back, distance_from_last, distance_from_orbit, go_back, put_orbit, take_orbit
+
+#: Largest distance from the motion that Newton's method may lead to, where the start matters.
+_SAME = 5e-2
+
+#: ... and over the distance at which a motion that is on its way there would be.
+_HEADING = 3.0
+
+#: Part of the distance that is left when a motion counts as on its way to a steady state; returns after which
+#: that is decided in any case; and the least contraction per return that is reckoned with.
+_NEARER = 0.3
+_MOST_RETURNS = 64
+_FASTEST = 1e-3
+
+#: A multiplier above this is not that of a motion that attracts.
+_STABLE = 1.0 + 1e-9
+_STABLE_PRECISION = 0.01
+
+
+@kernel
+def _heads_for(problem, row, halves, contraction, memory, ring):
+    """Whether the steady state found is stable, and as near as one that the motion goes to would be.
+
+    A motion that returns to within d of where it was, and comes nearer to a steady state by a factor c each
+    time, is d/(1 - c) away from it.
+
+    Parameters
+    ----------
+    problem, row : Problem, Row
+    halves : half periods after which it returns
+    contraction : largest modulus of its multipliers over these
+    memory, ring : Return, Ring
+    """
+    if contraction > _STABLE:
+        return False
+    far = distance_from_last(problem, memory, ring) / motion_size(problem, row, memory)
+    if contraction < 1.0:
+        base = 1 if problem.symmetric else 2
+        expected = distance_back(row, memory, ring, 0, halves // base) / (1.0 - contraction)
+        if far > max(_HEADING * expected, RETURNED):
+            return False
+    return far <= _SAME
+
+
+@kernel
+def _does_the_same(memory, ring):
+    """Whether there were as many stops, turns and slips as in the steady state kept."""
+    for j in range(memory.senses.size):
+        for part in (STOPS, TURNS, SLIPS):
+            if memory.counts[part, j] != ring.orbit_counts[part, j]:
+                return False
+    return True
+
+
+@kernel
+def _approaches(problem, row, friction, halves, contraction, work, memory, ring, record):
+    """Whether the motion comes nearer to the steady state in `memory.start`, which stays there.
+
+    The motion is followed until most of the distance is gone, or for as long as that should take.  In every
+    return it must have as many stops, turns and slips as the steady state: else it may only pass by.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    halves : half periods after which the steady state returns
+    contraction : largest modulus of its multipliers over these
+    work, memory, ring, record : Work, Return, Ring, Record; `memory.counts` are those of the steady state
+
+    Returns
+    -------
+    (approaches, cycles) : periods followed
+    """
+    put_orbit(memory, ring)
+    go_back(memory, ring, 0)
+    size = motion_size(problem, row, memory)
+    begin = distance_from_orbit(problem, memory, ring)
+    enough = max(_NEARER * begin, RETURNED * size)
+    returns = _MOST_RETURNS
+    if contraction < 1.0:
+        needed = 2.0 * math.log(_NEARER) / math.log(max(contraction, _FASTEST))
+        returns = int(min(2.0 + needed, returns))
+    approaches, cycles = False, 0.0
+    for count in range(1, returns + 1):
+        code = go_round(problem, row, friction, halves, work, memory, record, False)
+        cycles += 0.5 * halves
+        if code != FOLLOWED or not _does_the_same(memory, ring):
+            break
+        take_end(memory)
+        far = distance_from_orbit(problem, memory, ring)
+        approaches = far <= enough or (count == returns and far <= begin * contraction ** (0.5 * count))
+        if approaches:
+            break
+    take_orbit(memory, ring)
+    return approaches, cycles
+
+
+@kernel
+def try_return(problem, row, friction, halves, tolerance, work, memory, ring, record):
+    """Find the steady state that the motion goes to, from a return after some half periods.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    halves : number of half periods
+    tolerance : see `find`
+    work, memory, ring, record : Work, Return, Ring, Record
+
+    Returns
+    -------
+    Steady : REPEATS or NO_REPEAT
+    """
+    base = 1 if problem.symmetric else 2
+    status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, record)
+    if status == REPEATS:
+        contraction = largest_multiplier(problem, halves, _STABLE_PRECISION, work, memory)
+        if _heads_for(problem, row, halves, contraction, memory, ring):
+            approaches, more = _approaches(
+                problem, row, friction, halves, contraction, work, memory, ring, record
+            )
+            cycles += more
+            if approaches:
+                least, more = least_period(problem, row, friction, halves, base, work, memory, record)
+                return Steady(REPEATS, least, cycles + more)
+    go_back(memory, ring, 0)
+    return Steady(NO_REPEAT, 0, cycles)

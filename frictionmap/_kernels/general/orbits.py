@@ -1,0 +1,124 @@
+"""Steady states by Newton's method on the return map: the state, its multipliers, its period."""
+
+import math
+from typing import NamedTuple
+
+from ..compiler import kernel
+from ..structure.newton import solve_linear, spectral_radius
+from .follow import FOLLOWED
+from .problem import state_size
+from .return_map import fill_newton, go_round, motion_size, neutral_rows, return_distance, take_step
+
+#: Kinds of `Steady`; AVERAGED: the motion stops and starts without returning, see `course`.
+REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED, AVERAGED = 0, 1, 2, 3, 4
+
+#: Newton steps at most, and the largest part of the distance before that may be left after each.
+_MOST_STEPS = 12
+_LESS = 0.5
+
+#: Largest step, over the size of the motion: beyond, the equations are singular (an undamped resonance).
+LARGEST = 1e10
+
+#: A step below this is the last one: the next would be of the size of its square.  `measure` looks after it.
+_LAST = 1e-7
+
+#: A steady state that is back to this share of its size after a part of its period has that period.
+RETURNED = 1e-9
+
+
+class Steady(NamedTuple):
+    """The steady state of a cell."""
+
+    status: int
+    halves: int  # half periods after which it returns, or that averages are of
+    cycles: float  # periods followed
+
+
+@kernel
+def radius_of_two(a, b, c, d):
+    """Largest modulus of the eigenvalues of the matrix (a, b; c, d)."""
+    mean, half = 0.5 * (a + d), 0.5 * (a - d)
+    square = half * half + b * c
+    if square >= 0.0:
+        return abs(mean) + math.sqrt(square)
+    return math.sqrt(mean * mean - square)
+
+
+@kernel
+def largest_multiplier(problem, halves, precision, work, memory):
+    """Largest modulus of the multipliers, without those of contacts that rest; see `spectral_radius`."""
+    size = state_size(problem)
+    fill_newton(problem, halves, work, memory)
+    if halves % 2 == 1:  # a place where a contact rests becomes its mirror image
+        neutral_rows(problem, memory, memory.matrix, -1.0)
+    for a in range(size):
+        for b in range(size):
+            memory.matrix[a, b] = (1.0 if a == b else 0.0) - memory.matrix[a, b]
+    if size == 2:
+        return radius_of_two(
+            memory.matrix[0, 0], memory.matrix[0, 1], memory.matrix[1, 0], memory.matrix[1, 1]
+        )
+    return spectral_radius(memory.matrix, size, work.tangent, precision)
+
+
+@kernel
+def newton(problem, row, friction, halves, tolerance, work, memory, record):
+    """Find the state that returns after some half periods, from the one in `memory.start`.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    halves : number of half periods
+    tolerance : largest change of the state over a return, over its size
+    work, memory, record : Work, Return, Record
+
+    Returns
+    -------
+    (status, cycles) : REPEATS or NO_REPEAT; periods followed
+    """
+    last = math.inf
+    cycles = 0.0
+    size = state_size(problem)
+    for _ in range(_MOST_STEPS):
+        code = go_round(problem, row, friction, halves, work, memory, record, True)
+        cycles += 0.5 * halves
+        if code != FOLLOWED:
+            return NO_REPEAT, cycles
+        distance = return_distance(problem, row, memory)
+        if distance == 0.0:
+            return REPEATS, cycles
+        if not distance < _LESS * last:
+            if distance <= tolerance:
+                return REPEATS, cycles
+            return NO_REPEAT, cycles
+        last = distance
+        fill_newton(problem, halves, work, memory)
+        if not solve_linear(memory.matrix, memory.right, size):
+            return NO_REPEAT, cycles
+        step = take_step(problem, row, memory)
+        if not (step <= LARGEST and motion_size(problem, row, memory) <= LARGEST * row.numbers[2]):
+            return NO_REPEAT, cycles
+        if step <= max(tolerance, _LAST):
+            return REPEATS, cycles
+    return NO_REPEAT, cycles
+
+
+@kernel
+def least_period(problem, row, friction, halves, base, work, memory, record):
+    """Smallest number of half periods after which a steady state returns, and the periods followed for it.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    halves : half periods after which it returns
+    base : smallest number that is possible
+    work, memory, record : Work, Return, Record
+    """
+    cycles = 0.0
+    for shorter in range(base, halves, base):
+        if halves % shorter == 0:
+            go_round(problem, row, friction, shorter, work, memory, record, False)
+            cycles += 0.5 * shorter
+            if return_distance(problem, row, memory) <= RETURNED:
+                return shorter, cycles
+    return halves, cycles

@@ -1,0 +1,168 @@
+"""States at the section that are kept, and how long ago the motion was where it is now."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiler import entry, kernel
+from ..long_periods import LONGEST_RECURRENCE, RETURNED_AFTER_LONG
+from .follow import COUNT_ROWS
+from .problem import padded
+from .return_map import steady_period
+
+#: Returns one after the other that a long period is recognised by.
+_IN_A_ROW = 4
+
+#: States that are kept, one per return to the section.
+_KEPT = LONGEST_RECURRENCE + _IN_A_ROW
+
+#: Largest distance from an earlier state at which Newton's method is tried, where the start matters, and how
+#: many states ago that is at most.
+_NEAR = 1e-2
+_SOON = 32
+
+
+class Ring(NamedTuple):
+    """The last states at the section."""
+
+    states: np.ndarray  # (_KEPT, 3, ...)
+    senses: np.ndarray  # (_KEPT, N)
+    count: np.ndarray  # (1,) states kept so far
+    friction: np.ndarray  # (2, N) friction of contacts while they are held
+    orbit: np.ndarray  # (3, ...) state of a steady state that the motion may go to
+    orbit_senses: np.ndarray  # (N,) the pattern there
+    orbit_counts: np.ndarray  # counters of it
+
+
+@entry
+def make_ring(problem):
+    """Allocate the kept states."""
+    contacts, modes = problem.chi.shape
+    width = padded(max(modes, contacts))
+    return Ring(
+        np.zeros((_KEPT, 3, width)), np.zeros((_KEPT, contacts), np.int64), np.zeros(1, np.int64),
+        np.zeros((2, contacts)), np.zeros((3, width)), np.zeros(contacts, np.int64),
+        np.zeros((COUNT_ROWS, contacts)),
+    )  # fmt: skip
+
+
+@kernel
+def keep(memory, ring):
+    """Keep the state at the section."""
+    slot = ring.count[0] % _KEPT
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            ring.states[slot, part, i] = memory.start[part, i]
+    for j in range(memory.senses.size):
+        ring.senses[slot, j] = memory.senses[j]
+    ring.count[0] += 1
+
+
+@kernel
+def go_back(memory, ring, ago):
+    """Go back to the state kept `ago` states before the last one, 0..LONGEST_RECURRENCE."""
+    slot = (ring.count[0] - 1 - ago) % _KEPT
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            memory.start[part, i] = ring.states[slot, part, i]
+    for j in range(memory.senses.size):
+        memory.senses[j] = ring.senses[slot, j]
+
+
+@kernel
+def go_back_cycles(problem, memory, ring, cycles):
+    """Go back by some periods of the load, or to the first state kept."""
+    states = 2 * cycles if problem.symmetric else cycles
+    go_back(memory, ring, min(states, ring.count[0] - 1))
+
+
+@kernel
+def distance_back(row, memory, ring, ago, back):
+    """Distance of the state `ago` before the last one kept from that `back` before it, over its size."""
+    now, then = (ring.count[0] - 1 - ago) % _KEPT, (ring.count[0] - 1 - ago - back) % _KEPT
+    for j in range(memory.senses.size):
+        if ring.senses[now, j] != ring.senses[then, j]:
+            return math.inf
+    off = 0.0
+    size = row.numbers[2]
+    for part in range(2):
+        for i in range(memory.start.shape[1]):
+            off = max(off, abs(ring.states[now, part, i] - ring.states[then, part, i]))
+            size = max(size, abs(ring.states[now, part, i]))
+    return off / size
+
+
+@kernel
+def recurrence(row, memory, ring, base):
+    """Number of half periods after which the motion is nearly back; 0 if it is not within _SOON states."""
+    most = min(ring.count[0] - 1, _SOON)
+    for back in range(1, most + 1):
+        if distance_back(row, memory, ring, 0, back) < _NEAR:
+            return back * base
+    return 0
+
+
+@kernel
+def _returns_in_a_row(row, memory, ring, back):
+    """Whether each of the last states was there `back` states before, to RETURNED_AFTER_LONG."""
+    farthest = 0.0
+    for ago in range(_IN_A_ROW):
+        farthest = max(farthest, distance_back(row, memory, ring, ago, back))
+    return farthest <= RETURNED_AFTER_LONG
+
+
+@kernel
+def long_recurrence(row, memory, ring, base):
+    """Number of half periods, of a period up to half of LONGEST_RECURRENCE, after which the motion has
+    returned several times in a row; 0 if it has not.
+    """
+    most = min(ring.count[0] - _IN_A_ROW, LONGEST_RECURRENCE // base)
+    for back in range(1, most + 1):
+        halves = back * base
+        if 2 * steady_period(halves) <= LONGEST_RECURRENCE and _returns_in_a_row(row, memory, ring, back):
+            return halves
+    return 0
+
+
+@kernel
+def distance_from_last(problem, memory, ring):
+    """Largest difference of the state in `memory.start` from the last one kept."""
+    slot = (ring.count[0] - 1) % _KEPT
+    off = 0.0
+    for part in range(2):
+        for i in range(problem.push.shape[0]):
+            off = max(off, abs(ring.states[slot, part, i] - memory.start[part, i]))
+    return off
+
+
+@kernel
+def put_orbit(memory, ring):
+    """Keep the steady state in `memory.start`, and its counters."""
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            ring.orbit[part, i] = memory.start[part, i]
+    for j in range(memory.senses.size):
+        ring.orbit_senses[j] = memory.senses[j]
+        for part in range(memory.counts.shape[0]):
+            ring.orbit_counts[part, j] = memory.counts[part, j]
+
+
+@kernel
+def take_orbit(memory, ring):
+    """Go to the steady state that was kept, without its counters."""
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            memory.start[part, i] = ring.orbit[part, i]
+    for j in range(memory.senses.size):
+        memory.senses[j] = ring.orbit_senses[j]
+
+
+@kernel
+def distance_from_orbit(problem, memory, ring):
+    """Largest difference of the state in `memory.start` from the steady state kept."""
+    off = 0.0
+    for part in range(2):
+        for i in range(problem.push.shape[0]):
+            off = max(off, abs(ring.orbit[part, i] - memory.start[part, i]))
+    return off

@@ -1,0 +1,85 @@
+"""First harmonics of steady states at a list of points, each with its own frequency and friction ratio."""
+
+import numpy as np
+
+from .. import regimes
+from .._kernels.general.follow import MOVED
+from .._kernels.general.samples import fill_phasors
+from .._kernels.general.series import Friction
+from .._kernels.general.steady import REPEATS, one_steady_state
+from ..model.settings import Solver
+from ..model.system import System
+from .boundaries import friction_lines, rest_states
+from .held import held_forces, least_static_friction, stick_scales
+from .problem import ModalSystem, general_of, problem_of
+
+#: Steps that are kept at first; four times as many where they do not suffice.
+_FIRST = 64
+
+
+def steady_phasors(system: System, r: np.ndarray, beta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Find the steady state of mu = 1 at every point; NaN and unresolved where none is found.
+
+    Parameters
+    ----------
+    system : System
+        With elastic contacts, under one harmonic.
+    r : (k,) > 0
+    beta : (k,) >= 0
+
+    Returns
+    -------
+    phasors : (k, n) complex, X_k1 over P/k1 (Y)
+    regime : (k,) int8
+    """
+    at, index = np.unique(r, return_inverse=True)
+    phasors = np.full((r.size, system.n), complex(np.nan, np.nan))
+    regime = np.full(r.size, regimes.UNRESOLVED, np.int8)
+    free = beta == 0.0
+    phasors[free] = system.modes.mass_responses(at)[index[free]]
+    regime[free] = regimes.CONTINUOUS
+    one = np.ones(1)
+    stick = stick_scales(general_of(system), least_static_friction(system, at), one)[0].max(axis=1)
+    stuck = ~free & (beta >= stick[index])
+    phasors[stuck] = held_forces(system, at)[1][1][index[stuck]]
+    regime[stuck] = regimes.PERMANENT_STICKING
+    _follow(system, (at, index), beta, np.flatnonzero(~free & ~stuck), (phasors, regime))
+    return phasors, regime
+
+
+def _follow(
+    system: System, frequencies: tuple[np.ndarray, np.ndarray], beta: np.ndarray, chosen: np.ndarray,
+    found: tuple[np.ndarray, np.ndarray],
+) -> None:  # fmt: skip
+    """Fill in the motions that slip.
+
+    frequencies : distinct r, and which of them each point has
+    """
+    at, index = frequencies
+    problem, modal = problem_of(system, at)
+    kinetic, _ = friction_lines(system, np.ones(1))
+    starts, solver = rest_states(system, modal, at), Solver()
+    most = _FIRST
+    for k in chosen:
+        force = kinetic @ np.array([beta[k], 1.0])
+        while True:
+            state, _, _, counts, record, h = one_steady_state(
+                problem, index[k], Friction(force, force), starts[index[k]], float(solver.cycles),
+                solver.tolerance, _no_masses(modal), most,
+            )  # fmt: skip
+            count = int(record.count[0])
+            if count <= most:
+                break
+            most = 4 * count
+        if state.status != REPEATS:
+            continue
+        parts = np.empty((2, modal.squares.size))
+        fill_phasors(record.steps, record.patterns, count, h, parts)
+        found[0][k] = modal.phi @ (parts[0] + 1j * parts[1])
+        moves = counts[MOVED].any()
+        found[1][k] = regimes.STICK_SLIP if moves else regimes.PERMANENT_STICKING
+
+
+def _no_masses(modal: ModalSystem) -> np.ndarray:
+    """No displacements of masses are recorded: their modes are enough."""
+    return np.empty((0, modal.squares.size))

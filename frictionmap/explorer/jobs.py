@@ -62,8 +62,8 @@ class Job:
     def left(self, now: float) -> float:
         """Seconds that compilation will still take; 0 if more kernels have come than expected.
 
-        The more kernels are compiled, the more their time counts, and the less the expected one: a machine may
-        be slower than expected, or busy.
+        The more kernels are compiled, the more their time counts, and the less the expected one. A machine
+        may be slower than expected, or busy.
         """
         since = self.compiles_since
         if since is None or not self.group:

@@ -220,8 +220,8 @@ def test_changes_are_undone_and_done_again(browser, one):
         page.focus("#stage")
         page.keyboard.press("Control+z")
         page.wait_for_function("() => location.hash.includes('mu=1&') || location.hash.endsWith('mu=1')")
+        page.wait_for_function("() => document.querySelector('input[name=mu]').value === '1'")
         page.wait_for_selector(DONE)
-        assert page.input_value("input[type=number][name=mu]") == "1"
         assert page.is_disabled("#undo")
         page.keyboard.press("Control+Shift+z")
         page.wait_for_function("() => location.hash.includes('mu=1.4')")
@@ -355,3 +355,34 @@ def test_everything_fits_small_screens(browser, one, size):
         page.wait_for_selector("#motion .drawing .mass")
         page.wait_for_selector("#cut:not([hidden])")
         assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+
+
+def test_the_first_screen_of_a_phone_has_map_sliders_and_motion(browser, one):
+    size = {"width": 390, "height": 844}
+    with page_of(browser, one.url, viewport=size, has_touch=True) as page:
+        page.wait_for_selector("#motion .drawing .mass")
+        boxes = [page.locator(name).bounding_box() for name in ("#stage", "#slider-mu", "#motion .drawing")]
+        ends = [box["y"] + box["height"] for box in boxes]
+        assert sorted(ends) == ends
+        assert max(ends) <= size["height"]
+        assert all(box["x"] >= 0 and box["x"] + box["width"] <= size["width"] for box in boxes)
+        assert boxes[0]["height"] > 300
+
+
+COVERED = """() => {
+  const box = (name) => document.querySelector(name).getBoundingClientRect();
+  const [card, part] = [box('#tour'), box('.toured')];
+  const [x, y] = [part.left + 10, Math.max(part.top, 0) + 10];
+  const inside = x > card.left && x < card.right && y > card.top && y < card.bottom;
+  return inside || part.bottom < 0 || y > innerHeight;
+}"""
+
+
+@pytest.mark.parametrize("size", [(390, 844), (640, 400), (1280, 800)])
+def test_the_tour_shows_what_it_is_about(browser, one, size):
+    with page_of(browser, one.url, viewport={"width": size[0], "height": size[1]}) as page:
+        page.wait_for_selector("#motion .drawing .mass")
+        page.click("#motion [data-tour]")
+        for _ in range(6):
+            assert not page.evaluate(COVERED), page.inner_text("#tour h2")
+            page.keyboard.press("Enter")

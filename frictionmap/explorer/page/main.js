@@ -436,7 +436,7 @@ class Page {
       } else if (compiling.seconds) {
         this.compiled = true;
         const { left, seconds } = compiling;
-        const wait = left > 1 ? `about ${this.#duration(1000 * left)} left` : `almost finished, ${this.#duration(1000 * seconds)} so far`;
+        const wait = left > 1 ? `about ${this.#duration(1000 * left)} left` : `${left > 0 ? "almost finished" : "longer than expected"}, ${this.#duration(1000 * seconds)} so far`;
         this.#say(`First use: compiling, ${wait}. This happens once per machine.`);
       } else if (this.compiled) {
         this.#compiled();

@@ -65,7 +65,7 @@ class Job:
         The more kernels are compiled, the more their time counts, and the less the expected one. A machine
         may be slower than expected, or busy.
         """
-        since = self.compiles_since
+        since = self.compiles_since  # once: the thread of the job may end it meanwhile
         if since is None or not self.group:
             return 0.0
         expected, kernels = self._times.expected(self.group)

@@ -261,6 +261,34 @@ def test_the_page_waits_for_what_the_rehearsal_has_begun(tmp_path):
     jobs.close()
 
 
+class EndsMeanwhile:
+    """Expected times; while they are looked up, the thread of a job ends its compilation."""
+
+    def __init__(self):
+        self.job, self.asked = None, 0
+
+    def expected(self, group):
+        self.asked += 1
+        self.job.compiled()
+        return 100.0
+
+
+def test_compilation_may_end_while_its_state_is_read():
+    """The page asks for the state at any time; it was an internal error of the server (500) now and then."""
+    jobs = Jobs()
+    jobs._times = EndsMeanwhile()
+    with jobs.enter("map a", group="map one") as job:
+        jobs._times.job = job
+        jobs._compiling()
+        state = jobs.state()
+        assert jobs._times.asked == 1
+        assert job.compiles_since is None
+        assert state["kernels"] == 1
+        assert 0.0 <= state["seconds"] < 60.0
+        assert 0.0 <= state["left"] <= 100.0
+        assert jobs.state() == {}  # nothing is compiled any more
+
+
 @pytest.mark.parametrize("kind", ["one", "structure", "general"])
 def test_every_kind_of_work_of_the_server_has_an_expected_time(kind):
     source = (ROOT / "frictionmap/explorer/server.py").read_text(encoding="utf-8")

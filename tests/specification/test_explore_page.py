@@ -430,6 +430,13 @@ def test_compiling_is_said(browser, one):
 # What is taken along
 
 
+#: The words of the menu about the files of a view, once both have their size.
+SIZES = """() => {
+  const words = ['csv', 'nc'].map((what) => document.querySelector(`[data-save=${what}]`).innerText.trim());
+  return words.every((one) => one.includes('about')) && words;
+}"""
+
+
 def test_a_view_can_be_taken_along(browser, one, tmp_path):
     allowed = {
         "permissions": ["clipboard-read", "clipboard-write"],
@@ -449,11 +456,7 @@ def test_a_view_can_be_taken_along(browser, one, tmp_path):
         np.testing.assert_array_equal(colours(page), table[classes(ds.isel(mu=0))])
         assert copied("link") == page.url
         page.click("#save summary")
-        for what in ("csv", "nc"):
-            page.wait_for_function(
-                f"() => document.querySelector('[data-save={what}]').innerText.includes('about')"
-            )
-        sizes = page.inner_text("#save div").splitlines()[-2:]
+        sizes = page.wait_for_function(SIZES).json_value()  # read at once: opening the menu clears them first
         page.click("#save summary")
         for what, name in (("picture", "map.png"), ("csv", "map.csv"), ("nc", "map.nc")):
             with page.expect_download() as expected:

@@ -14,7 +14,7 @@ import frictionmap as fm
 from frictionmap._kernels.compiler.notices import listeners
 from frictionmap.explorer import compile_times
 from frictionmap.explorer import jobs as jobs_module
-from frictionmap.explorer.compile_times import CompileTimes, group_of
+from frictionmap.explorer.compile_times import Compilation, CompileTimes, group_of
 from frictionmap.explorer.drawing import drawing_curves, drawing_of
 from frictionmap.explorer.example import largest_square
 from frictionmap.explorer.jobs import REHEARSAL, Jobs
@@ -270,7 +270,7 @@ class EndsMeanwhile:
     def expected(self, group):
         self.asked += 1
         self.job.compiled()
-        return 100.0
+        return Compilation(100.0, 10)
 
 
 def test_compilation_may_end_while_its_state_is_read():

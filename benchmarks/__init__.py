@@ -51,7 +51,7 @@ tables, and writes JSON and a figure.
   results_page                 the tables of docs/results.md, from the committed results
   quoted_errors                tables about errors; `quoted_coverage`: about the intervals of `identify`;
                                `quoted_general`: about several contacts and periodic loads;
-                               `quoted_design`: about designs
+                               `quoted_design`: about designs; `quoted_first_minute`: about the page
   quoting                      format of the numbers
 `results/`                     the committed results; `results/local` has those of local runs
 =============================  ========================================================================

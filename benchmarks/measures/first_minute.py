@@ -1,10 +1,11 @@
 """The first minute with the page, second by second: fresh clone, virtual environment, no compiled kernels.
 
-What a new user sees of `frictionmap explore` in headless Chromium: the page notes every change of its texts
-and pictures, and which requests are unanswered meanwhile. After the motion runs, the newcomer points at
-another cell, asks for a response curve and chooses another quantity. "still" is the longest time for which
-an unanswered request changed nothing on the screen, "silent" the longest without a text that says why. The
-quick form has the installed package and the usual kernels. The load of the machine stands beside the result.
+The benchmark records what a new user sees of `frictionmap explore` in headless Chromium: every change of
+texts and pictures, and the requests without an answer. Once the motion runs, the user points at another cell,
+asks for a response curve and chooses another quantity. "longest without a change" is the longest time for
+which a request without an answer changed nothing on the screen, "longest without an estimate" the longest of
+these times without a text that states how long it takes. The clone has the committed files of this checkout.
+The quick form uses this checkout itself, with the kernels compiled so far.
 """
 
 import contextlib
@@ -32,11 +33,17 @@ ROUNDS = {False: 3, True: 1}
 #: Milliseconds that a step may take, on a slow machine.
 HANG = 600_000
 
-#: Seconds between what the newcomer does: long enough to look.
-LOOK = 2.0
+#: Seconds that the user looks at the page before each step, by quick.
+LOOK = {False: 2.0, True: 0.2}
 
-#: Seconds within which the boundaries should be on the screen, and for which nothing should stand still.
-FIRST_PICTURE, STILL = 3.0, 2.0
+#: Longest waits, in the results.
+UNCHANGED, UNEXPLAINED = "longest without a change", "longest without an estimate"
+
+#: What a step should take at most [s].
+GOALS = {"boundaries": 3.0, UNEXPLAINED: 2.0}
+
+#: Beginning of the text that states how long a wait is.
+_ESTIMATE = "First use: compiling"
 
 #: What the page shows by itself, and the condition that ends each wait.
 _CELLS = "document.querySelector('#stage')?.dataset.cells ?? ''"
@@ -48,12 +55,12 @@ SHOWN = {
     "motion runs": "() => Number(document.querySelector('#motion .time')?.value) > 0",
 }
 
-#: Conditions that end the waits for what the newcomer does.
+#: Conditions that end the waits for what the user asks for.
 _POINTED = "() => /^r/.test(document.querySelector('#motion .where')?.innerText ?? '')"
 _CURVE = "() => !document.querySelector('#cut').hidden"
 _COLOURED = f"() => {_DONE} && !document.querySelector('#legend').classList.contains('outdated')"
 
-#: Notes in the page, every 50 ms, what has changed since the last time.
+#: Records in the page, every 50 ms, what has changed.
 _NOTES = """() => {
   const pending = new Map();
   const ask = window.fetch;
@@ -89,7 +96,7 @@ _NOTES = """() => {
 
 
 class Program(NamedTuple):
-    """A frictionmap to start: the command, its folder, its environment."""
+    """An installed program: its command, folder and environment."""
 
     command: list[str]
     folder: Path
@@ -97,11 +104,11 @@ class Program(NamedTuple):
 
 
 def _run(*command: object, **options: Any) -> None:
-    subprocess.run([str(word) for word in command], check=True, capture_output=True, **options)
+    subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL, **options)
 
 
 def _installed(folder: Path, taken: dict[str, float]) -> Program:
-    """Clone, create an environment and install, as README says; note the seconds of each."""
+    """Clone, create an environment and install, as README says; record the seconds of each."""
     clone = folder / "frictionmap"
     python = clone / ".venv" / "bin" / "python"
     taken["clone"], _ = timed(lambda: _run("git", "clone", "--quiet", ROOT, clone))
@@ -112,7 +119,7 @@ def _installed(folder: Path, taken: dict[str, float]) -> Program:
 
 
 def _here() -> Program:
-    """The package of this checkout, with the kernels that there are."""
+    """The package of this checkout, with the kernels compiled so far."""
     search = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     return Program([sys.executable, "-m", "frictionmap"], ROOT, {**os.environ, "PYTHONPATH": search})
 
@@ -170,13 +177,13 @@ def _seen(page: Any, condition: str, began: float) -> float:
     return time.time() - began
 
 
-def _steps(page: Any) -> dict[str, float]:
-    """Let the newcomer point at a cell, ask for a curve and choose another quantity: seconds of each."""
+def _steps(page: Any, look: float) -> dict[str, float]:
+    """Point at a cell, ask for a response curve and choose another quantity: seconds of each."""
     taken = {}
     box = page.locator("#stage").bounding_box()
 
     def step(name: str, act: Any, condition: str) -> None:
-        time.sleep(LOOK)
+        time.sleep(look)
         began = time.time()
         act()
         taken[name] = _seen(page, condition, began)
@@ -190,28 +197,28 @@ def _steps(page: Any) -> dict[str, float]:
 
 
 def waits(noted: list[dict]) -> dict[str, float]:
-    """Longest times [s] with an unanswered request: without any change on the screen, without a text.
+    """Longest times [s] for which a request without an answer changed nothing on the screen.
 
     noted : entries {at, screen, pending} in order of time, each valid until the next
     """
-    still = silent = still_since = silent_since = 0.0
+    found = {UNCHANGED: 0.0, UNEXPLAINED: 0.0}
     screen: object = None
+    since = 0.0
     for entry, following in pairwise(noted):
         if not entry["pending"]:
             screen = None
-            silent_since = 0.0
             continue
         if entry["screen"] != screen:
-            screen, still_since = entry["screen"], entry["at"]
-        still = max(still, following["at"] - still_since)
-        says = entry["screen"]["message"] or entry["screen"]["motion"].startswith("Computing")
-        silent_since = 0.0 if says else silent_since or entry["at"]
-        silent = max(silent, 0.0 if says else following["at"] - silent_since)
-    return {"still": still, "silent": silent}
+            screen, since = entry["screen"], entry["at"]
+        waited = following["at"] - since
+        found[UNCHANGED] = max(found[UNCHANGED], waited)
+        if not entry["screen"]["message"].startswith(_ESTIMATE):
+            found[UNEXPLAINED] = max(found[UNEXPLAINED], waited)
+    return found
 
 
-def _watched(browser: Any, program: Program, taken: dict[str, float]) -> list[dict]:
-    """Start the program and open its page; note the seconds, and return what was on the screen."""
+def _watched(browser: Any, program: Program, taken: dict[str, float], look: float) -> list[dict]:
+    """Start the program and open its page; record the seconds, and return what was on the screen."""
     with _started(program) as terminal:
         taken["server"], url = terminal.address()
         began = terminal.began + taken["server"]
@@ -221,29 +228,29 @@ def _watched(browser: Any, program: Program, taken: dict[str, float]) -> list[di
         page.goto(url, wait_until="commit")
         for name, condition in SHOWN.items():
             taken[name] = _seen(page, condition, began)
-        taken |= _steps(page)
-        time.sleep(LOOK)
+        taken |= _steps(page, look)
+        time.sleep(look)
         noted = page.evaluate("() => window.noted")
         page.close()
     return [{**entry, "at": entry["at"] - began} for entry in noted]
 
 
-def _words(entry: dict) -> str:
+def _words(screen: dict) -> str:
     """The screen in one line."""
-    screen = entry["screen"]
     cells = {"": "nothing", "1 1": "boundaries"}.get(
         screen["cells"], f"map {screen['cells'].replace(' ', ' x ')}"
     )
-    parts = [cells, screen["message"], screen["motion"][:60], "curve" if screen["curve"] else ""]
+    motion = screen["motion"].partition(".")[0]
+    parts = [cells, screen["message"].rstrip("."), motion, "response curve" if screen["curve"] else ""]
     return "; ".join(part for part in parts if part)
 
 
 def by_seconds(noted: list[dict]) -> list[tuple[int, str, str]]:
-    """What was on the screen at every full second, and which requests were unanswered."""
+    """What was on the screen at full seconds, and requests without an answer; repetitions are left out."""
     rows, last = [], ""
     for second in range(int(noted[-1]["at"]) + 2):
         before = [entry for entry in noted if entry["at"] <= second]
-        words = _words(before[-1]) if before else "no page"
+        words = _words(before[-1]["screen"]) if before else "no page"
         asked = ", ".join(sorted(set(before[-1]["pending"]))) if before else ""
         if words + asked != last:
             rows.append((second, words, asked))
@@ -256,7 +263,7 @@ def _round(browser: Any, quick: bool) -> tuple[dict[str, float], list[dict]]:
     taken: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as folder:
         program = _here() if quick else _installed(Path(folder), taken)
-        noted = _watched(browser, program, taken)
+        noted = _watched(browser, program, taken, LOOK[quick])
     return taken | waits(noted), noted
 
 
@@ -267,13 +274,12 @@ def draw(seconds: dict, path: Path) -> None:
     axes.barh(list(seconds), [entry["median"] for entry in seconds.values()], color="#2c5aa0")
     for place, (name, entry) in enumerate(seconds.items()):
         axes.text(entry["median"], place, f" {entry['median']:.2g} s", va="center", fontsize=9)
-        limit = {"boundaries": FIRST_PICTURE, "still": STILL, "silent": STILL}.get(name)
-        if limit:
-            axes.plot([limit] * 2, [place - 0.4, place + 0.4], color="#d98032", linewidth=2.0)
+        if name in GOALS:
+            axes.plot([GOALS[name]] * 2, [place - 0.4, place + 0.4], color="#d98032", linewidth=2.0)
     axes.margins(x=0.15)
     axes.invert_yaxis()
-    axes.set_xlabel("time [s]; after the server has started: since then; orange: what it should take at most")
-    axes.set_title("The first minute: from a clone to a motion that runs")
+    axes.set_xlabel("time [s]; boundaries to motion: since the start of the server; orange: limit")
+    axes.set_title("The first minute: from a clone to a running motion")
     axes.grid(alpha=0.25, axis="x")
     save_figure(figure, path)
 
@@ -291,12 +297,13 @@ def run(quick: bool, results: Path) -> dict:
         return content
     seconds = {name: spread([taken[name] for taken, _ in rounds]) for name in rounds[0][0]}
     noted = rounds[0][1]
-    table(("second", "on the screen", "unanswered"), by_seconds(noted))
+    table(("second", "on the screen", "requests without an answer"), by_seconds(noted))
     print()
-    table(
-        ("step", "seconds", "least", "most"),
-        [(name, entry["median"], entry["least"], entry["most"]) for name, entry in seconds.items()],
-    )
+    rows = [
+        (name, entry["median"], entry["least"], entry["most"], GOALS.get(name, ""))
+        for name, entry in seconds.items()
+    ]
+    table(("step", "seconds", "least", "most", "at most"), rows)
     content = {"browser": version, "configuration": CONFIG, "seconds": seconds, "screen": by_seconds(noted)}
     save("first_minute", content, results)
     draw(seconds, results / "first_minute.png")

@@ -147,6 +147,8 @@ class Jobs:
         since = min(job.compiles_since or now for job in compiling)
         kernels = max(job.kernels for job in compiling)
         left = max(_foremost(job, running).left(now) for job in compiling)
+        # if all their kernels have come, they wait for what others compile: numba compiles for one at a time
+        left = left or max(_foremost(job, running).left(now) for job in running)
         return {"seconds": now - since, "kernels": kernels, "left": left}
 
 

@@ -261,6 +261,22 @@ def test_the_page_waits_for_what_the_rehearsal_has_begun(tmp_path):
     jobs.close()
 
 
+def test_a_page_that_waits_for_the_kernels_of_another_job_knows_how_long(tmp_path):
+    jobs = Jobs()
+    jobs.listen()
+    jobs._times = CompileTimes(tmp_path / "times.json")
+    jobs._times.record("motion one", 100.0, 10)
+    jobs._times.record("cut one", 400.0, 40)
+    listener = listeners[-1]
+    with jobs.enter("motion a", group="motion one"), jobs.enter(REHEARSAL, group="cut one"):
+        for _ in range(9):
+            listener()
+        assert 0.0 < jobs.state()["left"] <= 10.0
+        listener()
+        assert 200.0 < jobs.state()["left"] <= 300.0
+    jobs.close()
+
+
 class EndsMeanwhile:
     """Expected times; while they are looked up, the thread of a job ends its compilation."""
 

@@ -418,7 +418,8 @@ TOUCHING = """() => {
     found.texts += here.length;
     for (const one of here) for (const other of here) {
       const apart = (one.width + other.width) / 2 + 2;
-      if (other.y === one.y && other.x > one.x && other.x - one.x < apart) found.touching.push(`${one.text} ${other.text}`);
+      const near = other.y === one.y && other.x > one.x && other.x - one.x < apart;
+      if (near) found.touching.push(`${one.text} ${other.text}`);
     }
   }
   return found;

@@ -3,8 +3,8 @@
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
 NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, design, static, bound,
-large, explore, coupling or coverage: each is a module of that name in `measures`.  It prints tables, and
-writes JSON and a figure.
+large, explore, first_minute, coupling or coverage: each is a module of that name in `measures`.  It prints
+tables, and writes JSON and a figure.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -26,6 +26,7 @@ writes JSON and a figure.
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
   large                        stores: overhead, memory, workers, random variations, kills
   explore                      response times of the interactive page; `browser` finds a browser
+  first_minute                 fresh clone to running motion: what the page shows, second by second
   coupling                     error if the coupling of modes by damping is neglected
   coverage                     how often the 95 % intervals of `identify` contain the true value
 `peers/`                       other solvers: each for one mass and for chains of masses
@@ -50,7 +51,7 @@ writes JSON and a figure.
   results_page                 the tables of docs/results.md, from the committed results
   quoted_errors                tables about errors; `quoted_coverage`: about the intervals of `identify`;
                                `quoted_general`: about several contacts and periodic loads;
-                               `quoted_design`: about designs
+                               `quoted_design`: about designs; `quoted_first_minute`: about the page
   quoting                      format of the numbers
 `results/`                     the committed results; `results/local` has those of local runs
 =============================  ========================================================================

@@ -31,6 +31,7 @@ BENCHMARKS = (
     "bound",
     "large",
     "explore",
+    "first_minute",
     "coupling",
     "coverage",
 )

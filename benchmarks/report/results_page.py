@@ -15,6 +15,7 @@ from .. import ROOT
 from .quoted_coverage import coverage_lines
 from .quoted_design import design_lines
 from .quoted_errors import accuracy_lines, steady_lines, stress_lines
+from .quoted_first_minute import first_minute_lines
 from .quoted_general import general_lines
 from .quoting import duration, markdown, rounded_off, two_digits
 
@@ -37,6 +38,7 @@ QUOTED = (
     "coupling",
     "coverage",
     "explore",
+    "first_minute",
     "static",
 )
 
@@ -394,6 +396,8 @@ def block(results: Path) -> str:
             lines += quote(found[name])
     if "milliseconds" in found.get("explore", {}):  # there was a browser
         lines += _explore_lines(found["explore"])
+    if "seconds" in found.get("first_minute", {}):
+        lines += first_minute_lines(found["first_minute"])
     if "coupling" in found:
         lines += _coupling_lines(found["coupling"])
     if "coverage" in found:

@@ -11,43 +11,51 @@ import tempfile
 import threading
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..model.system import System
 
-#: Seconds of compilation on the machine of the benchmark, by kind of work and of system.
+
+class Compilation(NamedTuple):
+    """What kernels of a group take to compile."""
+
+    seconds: float
+    kernels: float
+
+
+#: Compilation on the machine of the benchmark, by kind of system and of work: what the work before it leaves.
 _BENCHMARK = {
     "one": {
-        "lines": 3.0,
-        "map": 17.0,
-        "quantity": 5.0,
-        "motion": 8.0,
-        "others": 5.0,
-        "cut": 8.0,
-        "goal": 15.0,
+        "lines": Compilation(1.3, 12),
+        "map": Compilation(7.4, 133),
+        "motion": Compilation(16.0, 120),
+        "others": Compilation(13.0, 75),
+        "cut": Compilation(2.3, 5),
+        "quantity": Compilation(2.1, 4),
+        "goal": Compilation(23.0, 236),
     },
     "structure": {
-        "lines": 5.0,
-        "map": 32.0,
-        "quantity": 8.0,
-        "motion": 12.0,
-        "others": 8.0,
-        "cut": 12.0,
-        "goal": 35.0,
+        "lines": Compilation(2.9, 23),
+        "map": Compilation(15.0, 186),
+        "motion": Compilation(13.0, 85),
+        "others": Compilation(10.5, 46),
+        "cut": Compilation(2.5, 5),
+        "quantity": Compilation(2.1, 4),
+        "goal": Compilation(25.0, 236),
     },
     "general": {
-        "lines": 10.0,
-        "map": 30.0,
-        "quantity": 5.0,
-        "motion": 10.0,
-        "others": 5.0,
-        "cut": 10.0,
-        "goal": 40.0,
+        "lines": Compilation(16.0, 135),
+        "map": Compilation(18.0, 139),
+        "motion": Compilation(1.0, 2),
+        "others": Compilation(1.0, 2),
+        "cut": Compilation(1.0, 2),
+        "quantity": Compilation(1.0, 2),
+        "goal": Compilation(26.0, 145),
     },
 }
 
 #: Turns of a loop, and the seconds that they took on that machine.
-_TURNS, _LOOP = 200_000, 0.013
+_TURNS, _LOOP = 200_000, 0.006
 
 #: A compilation of fewer kernels than this share of the last one was partly done before, and is not kept.
 _PARTLY = 0.5
@@ -75,27 +83,27 @@ class CompileTimes:
     def __init__(self, place: Path | None = None) -> None:
         self._place = place
         self._lock = threading.Lock()
-        self._known: dict[str, dict[str, float]] = _read(place) if place else {}
+        self._known: dict[str, Compilation] = _read(place) if place else {}
         self._slowness = 0.0
 
-    def expected(self, group: str) -> float:
-        """Seconds that the kernels of a group will take."""
+    def expected(self, group: str) -> Compilation:
+        """What the kernels of a group will take."""
         with self._lock:
             if group in self._known:
-                return self._known[group]["seconds"]
+                return self._known[group]
             self._slowness = self._slowness or _loop_time() / _LOOP
         work, _, kind = group.partition(" ")
-        return self._slowness * _BENCHMARK[kind][work]
+        benchmark = _BENCHMARK[kind][work]
+        return benchmark._replace(seconds=self._slowness * benchmark.seconds)
 
     def record(self, group: str, seconds: float, kernels: int) -> None:
         """Keep a measured time, unless most kernels of the group were there already."""
         with self._lock:
-            before = self._known.get(group, {"kernels": 0})
-            if kernels < _PARTLY * before["kernels"]:
+            if group in self._known and kernels < _PARTLY * self._known[group].kernels:
                 return
-            self._known[group] = {"seconds": round(seconds, 3), "kernels": kernels}
+            self._known[group] = Compilation(round(seconds, 3), kernels)
             if self._place:
-                _write(self._place, self._known)
+                _write(self._place, {name: one._asdict() for name, one in self._known.items()})
 
 
 def _loop_time() -> float:
@@ -110,12 +118,12 @@ def _loop_time() -> float:
     return min(found)
 
 
-def _read(place: Path) -> dict[str, dict[str, float]]:
+def _read(place: Path) -> dict[str, Compilation]:
     """Read times; a damaged file counts as missing."""
     try:
         content: Any = json.loads(place.read_text())
         return {
-            str(group): {"seconds": _positive(one["seconds"]), "kernels": _positive(one["kernels"])}
+            str(group): Compilation(_positive(one["seconds"]), _positive(one["kernels"]))
             for group, one in content.items()
         }
     except (OSError, ValueError, TypeError, KeyError, AttributeError):

@@ -60,11 +60,17 @@ class Job:
             self._times.record(self.group, self._spent, self.kernels)
 
     def left(self, now: float) -> float:
-        """Seconds that compilation will still take; 0 if it takes longer than expected."""
+        """Seconds that compilation will still take; 0 if more kernels have come than expected.
+
+        The more kernels are compiled, the more their time counts, and the less the expected one. A machine
+        may be slower than expected, or busy.
+        """
         since = self.compiles_since  # once: the thread of the job may end it meanwhile
         if since is None or not self.group:
             return 0.0
-        return max(0.0, self._times.expected(self.group) - self._spent - (now - since))
+        expected, kernels = self._times.expected(self.group)
+        missing = max(0.0, 1.0 - self.kernels / kernels)
+        return missing * (missing * expected + self._spent + (now - since))
 
 
 class Jobs:
@@ -133,12 +139,19 @@ class Jobs:
         """
         with self._lock:
             rehearsal = self._lanes.get(REHEARSAL)
-            compiling = [job for job in self._running if job.compiles_since is not None]
-        compiling = [job for job in compiling if job is not rehearsal] or compiling
+            running = [job for job in self._running if job.compiles_since is not None]
+        compiling = [job for job in running if job is not rehearsal] or running
         if not compiling:
             return {}
         now = time.monotonic()
         since = min(job.compiles_since or now for job in compiling)
         kernels = max(job.kernels for job in compiling)
-        left = max(job.left(now) for job in compiling)
+        left = max(_foremost(job, running).left(now) for job in compiling)
+        # if all their kernels have come, they wait for what others compile: numba compiles for one at a time
+        left = left or max(_foremost(job, running).left(now) for job in running)
         return {"seconds": now - since, "kernels": kernels, "left": left}
+
+
+def _foremost(job: Job, running: list[Job]) -> Job:
+    """The job that has seen most of the kernels that a job needs: the rehearsal may have begun before it."""
+    return max((one for one in running if one.group == job.group), key=lambda one: one.kernels)

@@ -25,15 +25,21 @@ def _lines(view: View, follower: Follower) -> None:
     lines.line_values(view, np.array([_place(view)]))
 
 
-def _map(view: View, follower: Follower) -> None:
-    pieces.piece_of_map(view, pieces.quantities_of(view)[0], Piece(2, 2, 0, 2), follower)
-
-
 def _between(view: View) -> tuple[float, float]:
     """beta_lim, and beta_stick, at the frequency of the rehearsal with mu = 1."""
     limits = find_curves(view.system, np.array([_place(view)]), np.array([1.0]))
     lim, stick = limits.beta_lim.item(), limits.beta_stick.item()
     return lim, stick if math.isfinite(stick) else 2.0 * lim + 1.0  # held, it resonates: nothing sticks there
+
+
+def _map(view: View, follower: Follower) -> None:
+    """Cells over the whole map, and some between the boundaries, which closed forms do not decide."""
+    regimes = pieces.quantities_of(view)[0]
+    pieces.piece_of_map(view, regimes, Piece(2, 2, 0, 2), follower)
+    if view.system.general is None:
+        r, beta = _place(view), 0.5 * sum(_between(view))
+        narrow = replace(view, r=(r, 1.001 * r), beta=(beta, 1.001 * beta))
+        pieces.piece_of_map(narrow, regimes, Piece(2, 2, 0, 2), follower)
 
 
 def _motion(view: View, follower: Follower) -> None:

@@ -10,6 +10,7 @@ from conftest import ROOT
 from measuring import python, spreads
 
 from benchmarks.__main__ import BENCHMARKS
+from benchmarks.measures import first_minute
 from benchmarks.report import quoting, record, results_page
 
 RESULTS = ROOT / "benchmarks" / "results"
@@ -108,6 +109,48 @@ def test_committed_scaling_had_the_same_answers():
         assert all(row["their Z differs by"] < 1e-9 for row in done)
     for row in content["open cells"]["maps"]:
         assert row["stuck where beta >= 1, and there only"]
+
+
+# What the first minute on a screen means
+
+
+def noted(*rows):
+    """A record of the screen: time, message, cells, pending requests."""
+    return [
+        {
+            "at": at,
+            "screen": {"cells": cells, "message": message, "motion": "Stick-slip. More", "curve": ""},
+            "pending": pending,
+        }
+        for at, message, cells, pending in rows
+    ]
+
+
+def test_waits_count_only_what_stands_still_while_a_request_has_no_answer():
+    found = first_minute.waits(
+        noted(
+            (0.0, "", "", ["map"]),
+            (1.5, "First use: compiling, about 9 s left.", "", ["map"]),
+            (4.0, "First use: compiling, about 9 s left.", "", ["map", "motion"]),  # nothing has changed
+            (5.0, "First use: compiling, about 5 s left.", "", ["map"]),
+            (6.0, "", "40 40", []),
+            (30.0, "", "40 40", ["cut"]),
+            (31.75, "", "40 30", []),
+        )
+    )
+    assert found == {first_minute.UNCHANGED: 3.5, first_minute.UNEXPLAINED: 1.75}
+
+
+def test_seconds_without_a_change_are_left_out():
+    rows = first_minute.by_seconds(
+        noted((0.4, "", "", ["map"]), (1.2, "", "1 1", ["map"]), (3.1, "computing", "40 30", ["map"]))
+    )
+    assert rows == [
+        (0, "no page", ""),
+        (1, "nothing; Stick-slip", "map"),
+        (2, "boundaries; Stick-slip", "map"),
+        (4, "map 40 x 30; computing; Stick-slip", "map"),
+    ]
 
 
 # How numbers are quoted

@@ -5,13 +5,15 @@ import re
 import numpy as np
 import pytest
 from browser import DONE, MOVE, area, page_of, point, repainted
+from conftest import ROOT
 from pages import TWO_MASSES, scene_from, served
 from test_explore_contacts import BELT, ELASTIC, TWO
 
 import frictionmap as fm
 from frictionmap.explorer import stored
 from frictionmap.explorer.presets import PRESETS, preset_scene
-from frictionmap.files.config import config_of
+from frictionmap.explorer.scene import scene_of
+from frictionmap.files.config import config_of, load_config
 
 ONE = """\
 title = "One mass"
@@ -220,8 +222,8 @@ def test_changes_are_undone_and_done_again(browser, one):
         page.focus("#stage")
         page.keyboard.press("Control+z")
         page.wait_for_function("() => location.hash.includes('mu=1&') || location.hash.endsWith('mu=1')")
+        page.wait_for_function("() => document.querySelector('input[name=mu]').value === '1'")
         page.wait_for_selector(DONE)
-        assert page.input_value("input[type=number][name=mu]") == "1"
         assert page.is_disabled("#undo")
         page.keyboard.press("Control+Shift+z")
         page.wait_for_function("() => location.hash.includes('mu=1.4')")
@@ -355,3 +357,102 @@ def test_everything_fits_small_screens(browser, one, size):
         page.wait_for_selector("#motion .drawing .mass")
         page.wait_for_selector("#cut:not([hidden])")
         assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+
+
+def test_the_first_screen_of_a_phone_has_map_sliders_and_motion(browser, one):
+    size = {"width": 390, "height": 844}
+    with page_of(browser, one.url, viewport=size, has_touch=True) as page:
+        page.wait_for_selector("#motion .drawing .mass")
+        boxes = [page.locator(name).bounding_box() for name in ("#stage", "#slider-mu", "#motion .drawing")]
+        ends = [box["y"] + box["height"] for box in boxes]
+        assert sorted(ends) == ends
+        assert max(ends) <= size["height"]
+        assert all(box["x"] >= 0 and box["x"] + box["width"] <= size["width"] for box in boxes)
+        assert boxes[0]["height"] > 300
+
+
+def test_the_next_cell_by_keys_begins_at_the_example(browser, one):
+    with page_of(browser, one.url, viewport=LARGE) as page:
+        page.wait_for_selector("#motion .drawing .mass")
+        r, beta = map(float, re.findall(r"= ([0-9.]+)", page.inner_text("#motion .where")))
+        page.focus("#stage")
+        page.keyboard.press("Shift+ArrowLeft")
+        page.wait_for_function("() => location.hash.includes('cell=')")
+        cell = page.evaluate("location.hash.match(/cell=([0-9.]+),([0-9.]+)/).slice(1).map(Number)")
+        assert r - 0.05 < cell[0] < r
+        assert cell[1] == pytest.approx(beta, abs=0.01)
+
+
+def test_help_begins_at_its_beginning(browser, one):
+    with page_of(browser, one.url, viewport={"width": 390, "height": 500}) as page:
+        page.focus("#stage")
+        page.keyboard.press("?")
+        assert page.evaluate("document.querySelector('#keys').scrollTop") == 0
+        assert page.evaluate("document.activeElement.id") == "keys-title"
+        page.keyboard.press("Tab")
+        assert page.evaluate("document.activeElement.innerText") == "Close"
+        page.keyboard.press("Enter")
+        assert page.is_hidden("#keys")
+        assert page.evaluate("document.activeElement.id") == "stage"
+
+
+#: Scripts: record the texts that are written on canvases; pairs that touch in the panel of the motion.
+WRITING = """() => {
+  const { prototype } = CanvasRenderingContext2D;
+  const { fillText, clearRect } = prototype;
+  const texts = (window.texts = new Map());
+  prototype.clearRect = function (...box) {
+    texts.set(this.canvas, []);
+    clearRect.apply(this, box);
+  };
+  prototype.fillText = function (text, x, y, ...more) {
+    const { width } = this.measureText(text);
+    if (this.getTransform().b === 0) texts.get(this.canvas)?.push({ text, x, y, width });
+    fillText.call(this, text, x, y, ...more);
+  };
+}"""
+TOUCHING = """() => {
+  const found = { texts: 0, touching: [] };
+  for (const canvas of document.querySelectorAll('#motion canvas')) {
+    const here = window.texts.get(canvas) ?? [];
+    found.texts += here.length;
+    for (const one of here) for (const other of here) {
+      const apart = (one.width + other.width) / 2 + 2;
+      const near = other.y === one.y && other.x > one.x && other.x - one.x < apart;
+      if (near) found.touching.push(`${one.text} ${other.text}`);
+    }
+  }
+  return found;
+}"""
+
+
+def test_texts_of_narrow_charts_do_not_touch(browser):
+    size = {"width": 1024, "height": 768}
+    scene = scene_of(load_config(ROOT / "configs/contacts/two-storey-frame.toml"))
+    with served(scene) as server, page_of(browser, server.url, viewport=size) as page:
+        page.wait_for_selector("#motion .drawing .mass")
+        page.evaluate(WRITING)
+        page.evaluate("location.hash = '#cell=1.06,1.05'")
+        page.wait_for_selector("#motion .where:has-text('selected')")
+        found = page.evaluate(TOUCHING)
+        assert found["texts"] > 20
+        assert found["touching"] == []
+
+
+COVERED = """() => {
+  const box = (name) => document.querySelector(name).getBoundingClientRect();
+  const [card, part] = [box('#tour'), box('.toured')];
+  const [x, y] = [part.left + 10, Math.max(part.top, 0) + 10];
+  const inside = x > card.left && x < card.right && y > card.top && y < card.bottom;
+  return inside || part.bottom < 0 || y > innerHeight;
+}"""
+
+
+@pytest.mark.parametrize("size", [(390, 844), (640, 400), (1280, 800)])
+def test_the_tour_shows_what_it_is_about(browser, one, size):
+    with page_of(browser, one.url, viewport={"width": size[0], "height": size[1]}) as page:
+        page.wait_for_selector("#motion .drawing .mass")
+        page.click("#motion [data-tour]")
+        for _ in range(6):
+            assert not page.evaluate(COVERED), page.inner_text("#tour h2")
+            page.keyboard.press("Enter")

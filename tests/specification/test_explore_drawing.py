@@ -13,7 +13,8 @@ from test_explore_contacts import ELASTIC, TWO
 import frictionmap as fm
 from frictionmap._kernels.compiler.notices import listeners
 from frictionmap.explorer import compile_times
-from frictionmap.explorer.compile_times import CompileTimes, group_of
+from frictionmap.explorer import jobs as jobs_module
+from frictionmap.explorer.compile_times import Compilation, CompileTimes, group_of
 from frictionmap.explorer.drawing import drawing_curves, drawing_of
 from frictionmap.explorer.example import largest_square
 from frictionmap.explorer.jobs import REHEARSAL, Jobs
@@ -169,11 +170,11 @@ def test_measured_times_are_kept(tmp_path):
     place = tmp_path / "times.json"
     times = CompileTimes(place)
     times.record("map one", 12.5, 40)
-    assert CompileTimes(place).expected("map one") == 12.5
+    assert CompileTimes(place).expected("map one") == (12.5, 40)
     times.record("map one", 0.5, 3)  # most kernels were there
-    assert CompileTimes(place).expected("map one") == 12.5
+    assert CompileTimes(place).expected("map one") == (12.5, 40)
     times.record("map one", 9.0, 38)
-    assert CompileTimes(place).expected("map one") == 9.0
+    assert CompileTimes(place).expected("map one") == (9.0, 38)
 
 
 DAMAGED = (
@@ -186,7 +187,7 @@ DAMAGED = (
 def test_a_damaged_file_counts_as_missing(tmp_path, content):
     place = tmp_path / "times.json"
     place.write_text(content)
-    assert 1.0 < CompileTimes(place).expected("map one") < 1e4
+    assert 1.0 < CompileTimes(place).expected("map one").seconds < 1e4
     CompileTimes(tmp_path / "none" / "times.json").record("map one", 2.0, 3)  # no folder: nothing is kept
 
 
@@ -194,7 +195,7 @@ def test_unmeasured_times_grow_with_the_slowness_of_the_machine(monkeypatch):
     expected = []
     for factor in (1.0, 3.0):
         monkeypatch.setattr(compile_times, "_loop_time", lambda factor=factor: factor * compile_times._LOOP)
-        expected.append(CompileTimes().expected("motion structure"))
+        expected.append(CompileTimes().expected("motion structure").seconds)
     assert expected[1] == pytest.approx(3.0 * expected[0])
 
 
@@ -209,8 +210,8 @@ def test_the_time_left_is_that_of_the_job_that_is_waited_for(tmp_path, monkeypat
     jobs = Jobs()
     jobs.listen()
     jobs._times = CompileTimes(tmp_path / "times.json")
-    jobs._times.record("map one", 100.0, 2)
-    jobs._times.record("cut one", 500.0, 2)
+    jobs._times.record("map one", 100.0, 100)
+    jobs._times.record("cut one", 500.0, 100)
     listener = listeners[-1]
     with jobs.enter(REHEARSAL, group="cut one"):
         listener()
@@ -219,9 +220,61 @@ def test_the_time_left_is_that_of_the_job_that_is_waited_for(tmp_path, monkeypat
             listener()
             assert 50.0 < jobs.state()["left"] <= 100.0
         assert 400.0 < jobs.state()["left"] <= 500.0
+        for _ in range(60):
+            listener()
     jobs.close()
-    assert jobs._times.expected("map one") == 100.0  # measured by rehearsals only
-    assert jobs._times.expected("cut one") < 60.0
+    assert jobs._times.expected("map one") == (100.0, 100)  # measured by rehearsals only
+    assert jobs._times.expected("cut one").seconds < 60.0
+
+
+def left_after(kernels, seconds, tmp_path, monkeypatch):
+    """Seconds that the page states after so many of 100 kernels, expected to take 100 s together."""
+    clock = [1000.0]
+    monkeypatch.setattr(jobs_module.time, "monotonic", lambda: clock[0])
+    times = CompileTimes(tmp_path / "times.json")
+    times.record("map one", 100.0, 100)
+    job = jobs_module.Job(lambda: False, 0, "map one", times)
+    job.compiles_since, job.kernels = clock[0], kernels
+    return job.left(clock[0] + seconds)
+
+
+def test_the_time_left_follows_the_kernels(tmp_path, monkeypatch):
+    assert left_after(50, 50.0, tmp_path, monkeypatch) == pytest.approx(50.0)  # as expected
+    assert left_after(90, 90.0, tmp_path, monkeypatch) == pytest.approx(10.0)
+    assert 100.0 < left_after(50, 200.0, tmp_path, monkeypatch) < 200.0  # four times as slow
+    assert left_after(90, 360.0, tmp_path, monkeypatch) == pytest.approx(40.0, rel=0.1)
+    assert left_after(100, 360.0, tmp_path, monkeypatch) == 0.0
+
+
+def test_the_page_waits_for_what_the_rehearsal_has_begun(tmp_path):
+    jobs = Jobs()
+    jobs.listen()
+    jobs._times = CompileTimes(tmp_path / "times.json")
+    jobs._times.record("motion one", 100.0, 10)
+    listener = listeners[-1]
+    with jobs.enter(REHEARSAL, group="motion one"):
+        for _ in range(9):
+            listener()
+        with jobs.enter("motion a", group="motion one"):
+            listener()
+            assert jobs.state()["left"] == 0.0  # all ten have begun
+    jobs.close()
+
+
+def test_a_page_that_waits_for_the_kernels_of_another_job_knows_how_long(tmp_path):
+    jobs = Jobs()
+    jobs.listen()
+    jobs._times = CompileTimes(tmp_path / "times.json")
+    jobs._times.record("motion one", 100.0, 10)
+    jobs._times.record("cut one", 400.0, 40)
+    listener = listeners[-1]
+    with jobs.enter("motion a", group="motion one"), jobs.enter(REHEARSAL, group="cut one"):
+        for _ in range(9):
+            listener()
+        assert 0.0 < jobs.state()["left"] <= 10.0
+        listener()
+        assert 200.0 < jobs.state()["left"] <= 300.0
+    jobs.close()
 
 
 class EndsMeanwhile:
@@ -233,7 +286,7 @@ class EndsMeanwhile:
     def expected(self, group):
         self.asked += 1
         self.job.compiled()
-        return 100.0
+        return Compilation(100.0, 10)
 
 
 def test_compilation_may_end_while_its_state_is_read():
@@ -259,4 +312,4 @@ def test_every_kind_of_work_of_the_server_has_an_expected_time(kind):
     assert {"lines", "goal", "cut"} <= alone
     times = CompileTimes()
     for work in alone | {"map", "quantity", "motion", "others"}:
-        assert times.expected(f"{work} {kind}") > 0.0
+        assert min(times.expected(f"{work} {kind}")) > 0.0

@@ -43,12 +43,23 @@ export function draw(canvas, chart) {
   return { area, x, y };
 }
 
+/** Ticks whose texts do not touch the text of the tick before. */
+function spread(pen, found, x) {
+  let end = -Infinity;
+  return found.filter(({ value, text }) => {
+    const half = pen.measureText(text).width / 2;
+    const free = x(value) - half > end + 3;
+    if (free) end = x(value) + half;
+    return free;
+  });
+}
+
 function drawGrid(pen, chart, area, x, y) {
   [pen.font, pen.fillStyle, pen.strokeStyle, pen.lineWidth] = [FONT, colour("faint"), colour("rule"), 1];
   const bottom = area.y + area.height;
   pen.beginPath();
   [pen.textAlign, pen.textBaseline] = ["center", "top"];
-  for (const { value, text } of chart.xTicks ?? ticks(chart.x, Math.max(3, area.width / 60))) {
+  for (const { value, text } of spread(pen, chart.xTicks ?? ticks(chart.x, Math.max(3, area.width / 60)), x)) {
     pen.moveTo(x(value), area.y);
     pen.lineTo(x(value), bottom);
     pen.fillText(text, x(value), bottom + 4);

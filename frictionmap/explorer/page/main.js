@@ -435,7 +435,9 @@ class Page {
         this.#compiled(); // the pending answer has arrived
       } else if (compiling.seconds) {
         this.compiled = true;
-        this.#say(`First use: compiling, ${compiling.left > 1 ? `about ${this.#duration(1000 * compiling.left)} left` : "almost finished"}. This happens once per machine.`);
+        const { left, seconds } = compiling;
+        const wait = left > 1 ? `about ${this.#duration(1000 * left)} left` : `${left > 0 ? "almost finished" : "longer than expected"}, ${this.#duration(1000 * seconds)} so far`;
+        this.#say(`First use: compiling, ${wait}. This happens once per machine.`);
       } else if (this.compiled) {
         this.#compiled();
       } else if (this.message.hidden && performance.now() - this.asked > SLOW) {
@@ -532,11 +534,13 @@ class Page {
     this.motion.say(this.hint);
   }
 
-  /** Select the next cell by keys: some pixels from the selected one, or from the centre. */
+  /** Select the next cell by keys: some pixels from the selected one, from the example, or from the centre. */
   #step(across, up) {
     const { map, view } = this;
     const size = { r: (view.r[1] - view.r[0]) / map.area.width, beta: (view.beta[1] - view.beta[0]) / map.area.height };
-    const from = view.cell ?? [(view.r[0] + view.r[1]) / 2, (view.beta[0] + view.beta[1]) / 2];
+    const [r, beta] = (this.pointed === this.example && this.example) || [];
+    const circled = r > view.r[0] && r < view.r[1] && beta > view.beta[0] && beta < view.beta[1];
+    const from = view.cell ?? (circled ? [r, beta] : [(view.r[0] + view.r[1]) / 2, (view.beta[0] + view.beta[1]) / 2]);
     this.#pick(map.cellAt(map.x(from[0] + 5 * across * size.r), map.y(from[1] + 5 * up * size.beta)));
   }
 

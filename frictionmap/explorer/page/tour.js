@@ -2,15 +2,18 @@
 
 import { make } from "./dom.js";
 
-/** Where a step points, and what it says. */
+/** Where a step points, the first of these that has a box of its own, and what it says. */
 const STEPS = [
   ["#stage", "The map", "Each point is one steady state. Across is the frequency of the excitation, up is the friction force. The colours show what the contact does: it slides, stops several times per cycle, or stays stuck."],
   [".live", "The motion", "This is the motion in the circled cell, slowed. The lamp is on while the contact is stuck. Pause it, or drag in the charts below, to look at one moment."],
   ["#stage", "Other cells", "Point at the map to see the motion there. A click selects the cell, so that it stays. Zoom with the wheel, with two fingers or with + and −."],
-  ["#controls", "Parameters", "Sliders change friction, damping and masses, and the map and the motion follow. The first menu has other systems. Undo takes a change back."],
+  ["#controls, #controls > .slider", "Parameters", "Sliders change friction, damping and masses, and the map and the motion follow. The first menu has other systems. Undo takes a change back."],
   ["[data-cut=r]", "Response curves", "This shows the amplitude along the frequency or the friction, through the selected cell. A line links the curve to the map."],
   ["#save", "Save", "Save a link, a configuration, a picture or the cells. Help lists the keys."],
 ];
+
+/** Windows in which the page is higher than the window. */
+const SCROLLS = matchMedia("(max-width: 64rem)");
 
 export class Tour {
   #step = 0;
@@ -50,9 +53,17 @@ export class Tour {
     this.text.textContent = text;
     this.back.disabled = step === 0;
     this.next.textContent = step === STEPS.length - 1 ? "Done" : "Next";
-    const target = document.querySelector(place);
+    const target = [...document.querySelectorAll(place)].find((part) => part.checkVisibility());
     target?.classList.add("toured");
-    target?.scrollIntoView({ block: "center" });
+    target?.scrollIntoView({ block: SCROLLS.matches ? "start" : "nearest" });
+    this.card.classList.remove("above"); // it is at the bottom
+    this.card.classList.toggle("above", Boolean(target) && this.#covers(target.getBoundingClientRect()));
+  }
+
+  /** Whether the card covers the upper left corner of a box. */
+  #covers({ left, top }) {
+    const card = this.card.getBoundingClientRect();
+    return top > card.top - 40 && left < card.right;
   }
 
   #end() {

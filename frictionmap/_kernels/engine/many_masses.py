@@ -61,8 +61,8 @@ _LONGEST_SLIDE = 8.0 * math.pi
 _MOST_ORDERS = 8
 
 #: Recurrence distance, relative to the motion, below which Newton's method is tried.  A motion may come near
-#: a stable orbit and leave it, because an event changes before it arrives: at 0.01 one cell in 25,000 ended in
-#: an orbit that its motion only passes by, at 0.001 one in 600,000.  Above 0.01 no time is gained.
+#: a stable orbit and leave it, as an event changes before it arrives: at 0.01 one cell in 25,000 ended in an
+#: orbit that its motion only passes by, at 0.001 one in 600,000.  Above 0.01 no time is gained.
 _RECURRENCE_THRESHOLD = 0.001
 
 #: Where several steady states exist the orbit found must be the one that the motion approaches: its distance

@@ -1,5 +1,9 @@
 """Tables of docs/results.md about the first minute with the page, from a fresh clone."""
 
+import re
+from collections.abc import Sequence
+from itertools import groupby
+
 from .quoting import duration, markdown
 
 #: Names of steps in the results, and the words in the table.
@@ -17,13 +21,37 @@ _WORDS = {
 }
 
 
+#: Parts of a text on the screen that differ while the same is shown.
+_COUNTED = re.compile(r"about \d+ s left|almost finished, \d+ s so far|longer than expected, \d+ s so far")
+
+#: A text that says the same whenever something is compiled.
+_ALWAYS = ". This happens once per machine"
+
+
+def _stretches(screen: Sequence[Sequence]) -> list[tuple[str, str, str]]:
+    """Rows of the seconds in which the same was on the screen, with the first and the last estimate."""
+
+    def shown(row: Sequence) -> tuple[str, str]:
+        return _COUNTED.sub("", row[1]), row[2]
+
+    found = []
+    for (_, asked), group in groupby(screen, key=shown):
+        rows = list(group)
+        words = rows[0][1].replace(_ALWAYS, "")
+        first, last = (_COUNTED.findall(row[1]) for row in (rows[0], rows[-1]))
+        if first and first != last:
+            words = words.replace(first[0], f'from "{first[0]}" to "{last[0]}"')
+        seconds = f"{rows[0][0]}" if len(rows) == 1 else f"{rows[0][0]} to {rows[-1][0]}"
+        found.append((seconds, words, asked or "-"))
+    return found
+
+
 def first_minute_lines(first_minute: dict) -> list[str]:
     """Lines of the section on the first minute."""
     rows = [
         (_WORDS.get(name, name), *(duration(entry[key]) for key in ("median", "least", "most")))
         for name, entry in first_minute["seconds"].items()
     ]
-    screen = [(str(second), words, asked or "-") for second, words, asked in first_minute["screen"]]
     return [
         "",
         "### The first minute",
@@ -34,6 +62,8 @@ def first_minute_lines(first_minute: dict) -> list[str]:
         "response curve and chooses the amplitude.",
         *markdown(("step", "median", "minimum", "maximum"), rows),
         "",
-        "The first round, second by second since the start of the server:",
-        *markdown(("second", "on the screen", "requests without an answer"), screen),
+        "What was on the screen in the first round, in seconds since the start of the server:",
+        *markdown(
+            ("seconds", "on the screen", "requests without an answer"), _stretches(first_minute["screen"])
+        ),
     ]

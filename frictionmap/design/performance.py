@@ -110,6 +110,8 @@ class Performance:
         """Peaks at increasing beta (n_beta,), near those of the neighbours in the table."""
         windows = self._windows(beta)
         r = np.unique(np.concatenate(windows))
+        if r.size > self._r.size:  # they cover most of the band
+            return self.whole(beta)
         values = self._on_grid(r, beta)
         parts = []
         for column in values.T:

@@ -16,7 +16,7 @@ from .held import held_ranges
 from .problem import general_of, problem_of, static_offset
 
 #: Cells of a job at least, in whole rows: a job costs as much as a few cells.
-_IN_A_JOB = 32
+_IN_A_JOB = 64
 
 
 def allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:

@@ -63,7 +63,8 @@ _MOST_ORDERS = 8
 #: Recurrence distance, relative to the motion, below which Newton's method is tried.  A motion may come near
 #: a stable orbit and leave it, as an event changes before it arrives: at 0.01 one cell in 25,000 ended in an
 #: orbit that its motion only passes by, at 0.001 one in 600,000.  Above 0.01 no time is gained.
-_RECURRENCE_THRESHOLD = 0.001
+#: A motion that is still further away after many periods approaches slowly.
+_RECURRENCE_THRESHOLD, _LATE_THRESHOLD = 0.001, 0.01
 
 #: Where several steady states exist the orbit found must be the one that the motion approaches: its distance
 #: may exceed the one expected from the last recurrence and the contraction by at most this factor.
@@ -115,6 +116,7 @@ class ManyMasses(NamedTuple):
     v_abs: float
     marginal: bool  # whether the continuous motions form a continuum
     recurrence_threshold: float
+    late_threshold: float
     i: int  # index of the frequency
     st: StructureAtFrequency
     fine: StructureAtFrequency  # with scan steps at least as short, for bounds over a whole orbit
@@ -136,8 +138,8 @@ def at_frequency(system, i):
     fine = make_structure(system.model, system.loads, i, r, max(system.steps, FINE_STEPS))
     n = st.n
     return ManyMasses(
-        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _RECURRENCE_THRESHOLD, i, st, fine,
-        system.orbit, make_state(n), np.zeros((SLOTS, 2, padded(n))), make_memory(st.h, 2 * n),
+        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _RECURRENCE_THRESHOLD, _LATE_THRESHOLD, i, st,
+        fine, system.orbit, make_state(n), np.zeros((SLOTS, 2, padded(n))), make_memory(st.h, 2 * n),
         make_log(LOGGED), make_workspace(n), make_scratch(n), np.empty((0, 0)),
     )  # fmt: skip
 

@@ -70,6 +70,9 @@ _SLIDES_WITHOUT_STOP = 8
 #: Relative distance from an orbit that is rounding error.
 _ROUNDING = 1e-12
 
+#: Time in tau after which a motion that has not come very near an orbit is taken to approach it slowly.
+_LATE = 256.0 * TURN
+
 #: Largest number of slides between two comparisons with the continuous orbit, and the share of the predicted
 #: number of slides after which the next comparison is made.
 _MOST_SLIDES_UNCHECKED = 8.0
@@ -207,7 +210,10 @@ def _may_recur(event, history, continuous, unbounded):
 def _nearest_recurrence(motion, contact, contact_state, history, schedule, newton):
     """Find the nearest recurrence; if the shortest one led to no orbit, the closest one is tried."""
     shortest = newton and schedule.made % 2 == 0  # the shortest is better conditioned
-    recurrence = find_recurrence(motion, contact_state, history.events, contact.unique and newton, shortest)
+    late = history.time > _LATE
+    recurrence = find_recurrence(
+        motion, contact_state, history.events, contact.unique and newton, shortest, late
+    )
     if history.slides > 0 and history.slides < 2 * recurrence.lag:
         return Recurrence(0, math.inf, 0)
     return recurrence

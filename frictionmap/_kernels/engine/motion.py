@@ -7,8 +7,9 @@ kind of motion; the functions below update these arrays.
 
 The solver reads these fields: `h`, the scan step in tau; `r`; `v_abs`, the response function of the contact;
 `marginal`, whether the continuous motions form a continuum; `memory`; `load`, the unit of forces and
-displacements; `recurrence_threshold`, the recurrence distance below which an orbit is sought; `scratch`,
-whose `left` holds the number of scan steps that may still be taken; and `no_table`, an empty segment table.
+displacements; `recurrence_threshold` and `late_threshold`, the recurrence distances below which an orbit is
+sought; `scratch`, whose `left` holds the number of scan steps that may still be taken; and `no_table`, an
+empty segment table.
 """
 
 from ..compiler import by_class

@@ -87,6 +87,7 @@ class OneMass(NamedTuple):
     v_abs: float
     marginal: bool  # whether the continuous motions form a continuum
     recurrence_threshold: float
+    late_threshold: float
     oscillator: Oscillator
     step: Step
     fine: Step  # a step at least as short, for bounds over a whole orbit
@@ -106,7 +107,7 @@ def at_frequency(system, i):
     step = step_constants(r, system.zeta, system.steps)
     return OneMass(
         step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _RECURRENCE_THRESHOLD,
-        oscillator, step, step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
+        _RECURRENCE_THRESHOLD, oscillator, step, step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
         make_memory(step.h, 1), make_log(LOGGED), make_scratch(), np.zeros(NEIGHBOUR), np.empty((0, 0)),
     )  # fmt: skip
 

@@ -17,7 +17,7 @@ _MOST_RECURRENCES = 4
 
 
 @kernel
-def find_recurrence(motion, contact_state, events, any_will_do, shortest):
+def find_recurrence(motion, contact_state, events, any_will_do, shortest, late):
     """Find the earlier anchor that the present one nearly equals, as a `Recurrence`.
 
     Parameters
@@ -27,8 +27,10 @@ def find_recurrence(motion, contact_state, events, any_will_do, shortest):
     events : number of anchors so far
     any_will_do : True accepts any distance, because the steady state is unique
     shortest : True stops the search at the first recurrence
+    late : whether the motion has been followed for long
     """
-    threshold = math.inf if any_will_do else motion.recurrence_threshold
+    threshold = motion.late_threshold if late else motion.recurrence_threshold
+    threshold = math.inf if any_will_do else threshold
     return _nearest(motion, contact_state, events, threshold, _LONGEST_SOON, shortest)
 
 

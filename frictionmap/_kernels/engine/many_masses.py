@@ -138,8 +138,8 @@ def at_frequency(system, i):
     fine = make_structure(system.model, system.loads, i, r, max(system.steps, FINE_STEPS))
     n = st.n
     return ManyMasses(
-        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _RECURRENCE_THRESHOLD, _LATE_THRESHOLD, i, st,
-        fine, system.orbit, make_state(n), np.zeros((SLOTS, 2, padded(n))), make_memory(st.h, 2 * n),
+        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _RECURRENCE_THRESHOLD, _LATE_THRESHOLD, i,
+        st, fine, system.orbit, make_state(n), np.zeros((SLOTS, 2, padded(n))), make_memory(st.h, 2 * n),
         make_log(LOGGED), make_workspace(n), make_scratch(n), np.empty((0, 0)),
     )  # fmt: skip
 

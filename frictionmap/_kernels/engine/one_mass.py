@@ -107,7 +107,8 @@ def at_frequency(system, i):
     step = step_constants(r, system.zeta, system.steps)
     return OneMass(
         step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _RECURRENCE_THRESHOLD,
-        _RECURRENCE_THRESHOLD, oscillator, step, step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
+        _RECURRENCE_THRESHOLD, oscillator, step,
+        step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
         make_memory(step.h, 1), make_log(LOGGED), make_scratch(), np.zeros(NEIGHBOUR), np.empty((0, 0)),
     )  # fmt: skip
 

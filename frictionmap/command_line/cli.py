@@ -353,8 +353,9 @@ def _plot(options: Options) -> None:
     from ..files.places import claimed
     from ..plot import check_picture, pictured, save_picture
 
+    if options.output is not None:
+        check_picture(options.output)
     path = options.output or Path(f"{options.file.stem}.png")
-    check_picture(path)
     names, along = pictured(options.quantity), options.against is not None
     ds = _maps_along(options, names["map"]) if along else _chosen(options, names)
     given: Any = {name: getattr(options, name) for name in FIGURE if getattr(options, name) is not None}
@@ -381,8 +382,9 @@ def _export(options: Options) -> None:
     if options.output == STREAM:
         _print(csv_of(_chosen(options)).rstrip("\n"))
         return
+    if options.output is not None:
+        check_export(options.output)
     path = options.output or Path(f"{options.file.stem}.csv")
-    check_export(path)
     with claimed(path, options.overwrite, [options.file]) as output:
         ds = _chosen(options)
         output.fill(lambda scratch: write_export(ds, scratch, options.command_line))

@@ -174,10 +174,10 @@ def _outputs() -> list[tuple[str, Words]]:
         "folder",
         "nothere/p.png",
         "-",
-        "p.gif",
         "p.jpgx",
     ):
         lines.append((f"plot m.nc -o {output}", ((output,),)))
+    lines.append(("plot m.nc -o p.gif", (("a map as a moving picture",),)))
     return lines
 
 

@@ -190,6 +190,14 @@ def test_configurations_of_designs(path):
     assert fm.load_config(path).r.size > 10  # the same file is one of a map
 
 
+def test_a_curve_of_zeros_is_drawn(answers):
+    """As of a part of a file in which nothing moves: an axis from 0 to 0 would be one from -0.05 to 0.05."""
+    ds = read(answers["least-peak"])
+    ds["peak_of_beta"], ds["peak"] = 0.0 * ds.peak_of_beta, 0.0 * ds.peak
+    ax = fm.plot_design(ds.drop_vars("limit", errors="ignore"))[0]
+    assert ax.get_ylim() == (0.0, 1.0)
+
+
 def test_a_working_point_is_drawn_where_it_is(answers):
     ds = read(answers["margin"])
     (ax,) = fm.plot_design(ds)

@@ -309,6 +309,10 @@ plot axes.nc --over damping_ratios --at damping_ratios=0
     cannot use --at damping_ratios with --over damping_ratios: --over takes all its points; use --at for other axes
 plot map.nc -o map.jpg
     -o must end in .png, .pdf, .svg, .gif, .mp4; got map.jpg
+plot ''
+    cannot read .: it is not a file; give a file written by frictionmap
+export ''
+    cannot read .: it is not a file; give a file written by frictionmap
 plot map.nc -o map.gif
     cannot write a map as a moving picture: only responses move; use .png, .pdf, .svg
 plot map.nc --quantity amplitude

@@ -40,7 +40,7 @@ def draw_performance(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     wide = max([_FRICTION_SHOWN * best, *(1.2 * ends[np.isfinite(ends)])])
     right = min(float(beta[-1]), wide) if wide > 0.0 else float(beta[-1])
     limit = float(ds["limit"]) if "limit" in ds else 0.0
-    top = max(_RESPONSE_SHOWN * least, 1.5 * limit) or float(size[np.isfinite(size)].max())
+    top = max(_RESPONSE_SHOWN * least, 1.5 * limit) or float(size[np.isfinite(size)].max()) or 1.0
     handles = _draw_ranges(ax, ds, right)
     ax.plot(beta, np.minimum(size, HIGH * top), color="black", linewidth=1.4)
     handles.append(Line2D([], [], color="black", linewidth=1.4, label=_curve_label(ds)))

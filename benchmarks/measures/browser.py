@@ -9,13 +9,24 @@ import contextlib
 import os
 import shutil
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
+
+from ..report.record import save
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 
 class NoBrowser(Exception):
     """No browser, or no driver for it, is available."""
+
+
+def skipped(name: str, missing: NoBrowser, results: Path) -> dict:
+    """Say and save that a benchmark needs a browser; return what is saved."""
+    content: dict = {"no browser": str(missing)}
+    print(f"skipped: {missing}")
+    save(name, content, results)
+    return content
 
 
 @contextlib.contextmanager

@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Any
 
 from .. import ROOT
-from ..report.figures import new_figure, save_figure
+from ..report.figures import mark_limit, new_figure, save_bars
 from ..report.record import save, spread, table
-from .browser import NoBrowser, chromium
+from .browser import NoBrowser, chromium, skipped
 
 #: Pixels of the map each way.
 PIXELS = 500
@@ -219,14 +219,14 @@ def draw(scenes: dict, path: Path) -> None:
         axes.plot([entry["least"], entry["most"]], [place, place], color="black", linewidth=1.0)
         axes.text(1.1 * entry["most"], place, f"{entry['median']:.3g} ms", va="center", fontsize=9)
         if (scene, what) in GOALS:
-            axes.plot([GOALS[scene, what]] * 2, [place - 0.4, place + 0.4], color="#d98032", linewidth=2.0)
+            mark_limit(axes, place, GOALS[scene, what])
     axes.set_xscale("log")
     axes.set_xlim(right=4.0 * max(entry["most"] for *_, entry in rows))
-    axes.invert_yaxis()
-    axes.set_xlabel("time [ms]; line: least to most; orange: what it should take at most")
-    axes.set_title(f"From an input to what answers it, {PIXELS} x {PIXELS} pixels")
-    axes.grid(alpha=0.25, axis="x")
-    save_figure(figure, path)
+    words = (
+        "time [ms]; line: least to most; orange: what it should take at most",
+        f"From an input to what answers it, {PIXELS} x {PIXELS} pixels",
+    )
+    save_bars(figure, axes, words, path)
 
 
 def run(quick: bool, results: Path) -> dict:
@@ -237,10 +237,7 @@ def run(quick: bool, results: Path) -> dict:
             names = [ONE] if quick else [ONE, FIVE]
             found = {name: _scene(browser, name, ROUNDS[quick], INPUTS[quick]) for name in names}
     except NoBrowser as missing:
-        content: dict = {"no browser": str(missing)}
-        print(f"skipped: {missing}")
-        save("explore", content, results)
-        return content
+        return skipped("explore", missing, results)
     scenes = {name: {what: spread(times) for what, times in taken.items()} for name, taken in found.items()}
     rows = [
         (

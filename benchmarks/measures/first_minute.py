@@ -21,9 +21,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import ROOT
-from ..report.figures import new_figure, save_figure
+from ..report.figures import mark_limit, new_figure, save_bars
 from ..report.record import save, spread, table, timed
-from .browser import NoBrowser, chromium
+from .browser import NoBrowser, chromium, skipped
 
 CONFIG = "fig-3-12.toml"
 
@@ -275,13 +275,13 @@ def draw(seconds: dict, path: Path) -> None:
     for place, (name, entry) in enumerate(seconds.items()):
         axes.text(entry["median"], place, f" {entry['median']:.2g} s", va="center", fontsize=9)
         if name in GOALS:
-            axes.plot([GOALS[name]] * 2, [place - 0.4, place + 0.4], color="#d98032", linewidth=2.0)
+            mark_limit(axes, place, GOALS[name])
     axes.margins(x=0.15)
-    axes.invert_yaxis()
-    axes.set_xlabel("time [s]; boundaries to motion: since the start of the server; orange: limit")
-    axes.set_title("The first minute: from a clone to a running motion")
-    axes.grid(alpha=0.25, axis="x")
-    save_figure(figure, path)
+    words = (
+        "time [s]; boundaries to motion: since the start of the server; orange: limit",
+        "The first minute: from a clone to a running motion",
+    )
+    save_bars(figure, axes, words, path)
 
 
 def run(quick: bool, results: Path) -> dict:
@@ -291,10 +291,7 @@ def run(quick: bool, results: Path) -> dict:
             version = browser.version
             rounds = [_round(browser, quick) for _ in range(ROUNDS[quick])]
     except NoBrowser as missing:
-        content: dict = {"no browser": str(missing)}
-        print(f"skipped: {missing}")
-        save("first_minute", content, results)
-        return content
+        return skipped("first_minute", missing, results)
     seconds = {name: spread([taken[name] for taken, _ in rounds]) for name in rounds[0][0]}
     noted = rounds[0][1]
     table(("second", "on the screen", "requests without an answer"), by_seconds(noted))

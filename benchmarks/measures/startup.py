@@ -15,7 +15,7 @@ from pathlib import Path
 import xarray as xr
 
 from .. import ROOT
-from ..report.figures import new_figure, save_figure
+from ..report.figures import new_figure, save_bars
 from ..report.record import pinned, save, spread, table, timed
 
 ONE_MASS, STRUCTURE = (ROOT / "configs" / name for name in ("fig-3-12.toml", "fig-7-7-zeta-0.1.toml"))
@@ -86,11 +86,8 @@ def draw(seconds: dict, path: Path) -> None:
         axes.text(1.1 * entry["most"], place, f"{entry['median']:.2g} s", va="center", fontsize=9)
     axes.set_xscale("log")
     axes.set_xlim(right=3.0 * max(entry["most"] for entry in seconds.values()))
-    axes.invert_yaxis()
-    axes.set_xlabel("time of a fresh process [s]; line: least to most")
-    axes.set_title("Only the first run compiles (orange)")
-    axes.grid(alpha=0.25, axis="x")
-    save_figure(figure, path)
+    words = "time of a fresh process [s]; line: least to most", "Only the first run compiles (orange)"
+    save_bars(figure, axes, words, path)
 
 
 def run(quick: bool, results: Path) -> dict:

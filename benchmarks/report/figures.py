@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
@@ -15,6 +16,20 @@ def new_figure(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
+
+
+def mark_limit(axes: Axes, place: float, limit: float) -> None:
+    """Mark on a horizontal bar what its value should be at most."""
+    axes.plot([limit] * 2, [place - 0.4, place + 0.4], color="#d98032", linewidth=2.0)
+
+
+def save_bars(figure: Figure, axes: Axes, words: tuple[str, str], path: Path) -> Path:
+    """Write a figure of horizontal bars, the first on top; words: what they show, and the title."""
+    axes.invert_yaxis()
+    axes.set_xlabel(words[0])
+    axes.set_title(words[1])
+    axes.grid(alpha=0.25, axis="x")
+    return save_figure(figure, path)
 
 
 def save_figure(figure: Figure, path: Path) -> Path:

@@ -71,6 +71,7 @@ _SLIDES_WITHOUT_STOP = 8
 _ROUNDING = 1e-12
 
 #: Time in tau after which a motion that has not come very near an orbit is taken to approach it slowly.
+#: After 64 or 128 periods some still only pass by an orbit; without this limit, slow ones end as irregular.
 _LATE = 256.0 * TURN
 
 #: Largest number of slides between two comparisons with the continuous orbit, and the share of the predicted

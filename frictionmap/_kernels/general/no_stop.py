@@ -131,16 +131,24 @@ def _end(problem, i, search, m, inside, outside, friction, tools, kept):
 
 
 @kernel
-def _ends_within(i, search, m, kept, last):
-    """How many intervals without stops end between the nodes 0..last."""
-    count = 0
-    margin = _margin(search, m, _node(search.top[i], 0), kept, 0)
-    for k in range(1, last + 1):
-        now = _margin(search, m, _node(search.top[i], k), kept, k)
-        if margin > 0.0 and now <= 0.0:
-            count += 1
-        margin = now
-    return count
+def _ends_at(i, search, m, kept, k):
+    """Whether an interval without stops ends between the nodes k - 1 and k."""
+    if k == 0 or _margin(search, m, _node(search.top[i], k), kept, k) > 0.0:
+        return False
+    return _margin(search, m, _node(search.top[i], k - 1), kept, k - 1) > 0.0
+
+
+@kernel
+def _enough_end(i, search, wanted, kept, last):
+    """Whether the wanted number of intervals ends between the nodes 0..last, for every mu."""
+    for m in range(search.static.shape[0]):
+        count = 0
+        for k in range(1, last + 1):
+            if _ends_at(i, search, m, kept, k):
+                count += 1
+        if count < wanted:
+            return False
+    return True
 
 
 @kernel
@@ -159,10 +167,10 @@ def _try_nodes(problem, i, search, wanted, friction, tools, kept):
             kept[k, 0] = 1.0
         else:
             near = _try(problem, i, search, _node(search.top[i], k), near, friction, tools, kept, k)
-        fewest = wanted
+        ended = False
         for m in range(search.static.shape[0]):
-            fewest = min(fewest, _ends_within(i, search, m, kept, k))
-        if fewest == wanted:
+            ended = ended or _ends_at(i, search, m, kept, k)
+        if ended and _enough_end(i, search, wanted, kept, k):  # the number changes where one ends
             return k
     return NODES
 

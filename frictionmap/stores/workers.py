@@ -31,6 +31,12 @@ _WAITING = 2
 #: Attempts to start local workers: if one is lost while it starts, all end.
 _STARTS = 3
 
+#: Arguments of a local cluster: no dashboard, and its scheduler's server on any free port of this machine.
+#: Without a port dask takes 8787 and warns where another cluster has it.
+NO_DASHBOARD: dict[str, Any] = {
+    "dashboard_address": None, "scheduler_kwargs": {"dashboard_address": "127.0.0.1:0"}
+}  # fmt: skip
+
 #: Number of lost workers after which a block is considered the cause.
 _LOSSES = 20
 
@@ -167,8 +173,8 @@ def _cluster(workers: int) -> "LocalCluster":
         starts += 1
         try:
             return _distributed().LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
-                silence_logs="CRITICAL",
+                n_workers=workers, threads_per_worker=1, processes=True, silence_logs="CRITICAL",
+                **NO_DASHBOARD,
             )  # fmt: skip
         except RuntimeError as error:
             if starts == _STARTS:

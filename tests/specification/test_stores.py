@@ -1,11 +1,13 @@
 """Stores: block by block the same bytes as at once, however a run was stopped."""
 
+import contextlib
 import filecmp
 import os
 import random
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -476,7 +478,7 @@ def test_a_store_that_was_replaced_meanwhile(tmp_path):
 def test_workers_that_come_later_have_work(tmp_path, monkeypatch):
     distributed = pytest.importorskip("distributed")
     from frictionmap.stores import store
-    from frictionmap.stores.workers import _on
+    from frictionmap.stores.workers import NO_DASHBOARD, _on
 
     path, asked = tmp_path / "map.zarr", study(ONE, 40)
     monkeypatch.setattr(store, "study_of", lambda *given: replace(study_of(*given), block_cells=40))
@@ -484,7 +486,7 @@ def test_workers_that_come_later_have_work(tmp_path, monkeypatch):
     submitted = []
     with (
         distributed.LocalCluster(
-            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+            n_workers=1, threads_per_worker=1, processes=False, **NO_DASHBOARD
         ) as cluster,
         distributed.Client(cluster) as client,
     ):
@@ -502,11 +504,26 @@ def test_workers_that_come_later_have_work(tmp_path, monkeypatch):
     same_files(path, tmp_path / "well.zarr")
 
 
+def test_workers_start_beside_another_cluster():
+    """Dask's usual port is taken; a warning would be an error here."""
+    pytest.importorskip("distributed")
+    from frictionmap.stores.workers import _cluster
+
+    with socket.socket() as other:
+        with contextlib.suppress(OSError):  # another process has it already
+            other.bind(("", 8787))
+            other.listen()
+        with _cluster(1) as cluster:
+            assert cluster.scheduler.http_server.port != 8787
+
+
 @pytest.fixture
 def scheduler():
     distributed = pytest.importorskip("distributed")
+    from frictionmap.stores.workers import NO_DASHBOARD
+
     with distributed.LocalCluster(
-        n_workers=0, protocol="tcp://", dashboard_address=None, silence_logs="CRITICAL"
+        n_workers=0, protocol="tcp://", silence_logs="CRITICAL", **NO_DASHBOARD
     ) as cluster:
         yield cluster.scheduler_address
 
@@ -560,9 +577,9 @@ def test_workers_that_never_come(tmp_path, scheduler, monkeypatch):
 
 def test_a_worker_of_another_version_is_named():
     distributed = pytest.importorskip("distributed")
-    from frictionmap.stores.workers import task
+    from frictionmap.stores.workers import NO_DASHBOARD, task
 
-    with distributed.Client(processes=False, n_workers=1, dashboard_address=None) as client:
+    with distributed.Client(processes=False, n_workers=1, **NO_DASHBOARD) as client:
         sent = client.submit(task("0.0.1"), "map.zarr", "digest", (0, 0))
         words = rf"\[dask\] 0\.0\.1 \(frictionmap has version {re.escape(fm.__version__)} there\)"
         with pytest.raises(OSError, match=words):

@@ -12,10 +12,11 @@ import numpy as np
 from ...regimes import IRREGULAR
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
+from ..compiler.vectors import LANES
 from ..logs import mean_and_error
 from ..structure.events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
 from ..structure.newton import Workspace, free_motion, make_workspace, through_event
-from ..structure.oscillators import FELL, Scratch, make_scratch
+from ..structure.oscillators import FELL, Scratch, make_scratch, padded
 from ..structure.state import StructureAtFrequency, W, make_structure
 from .records import TURN, stops_at, turns_at
 
@@ -26,7 +27,7 @@ class Tools(NamedTuple):
     st: StructureAtFrequency
     work: Workspace
     scratch: Scratch
-    tangent: np.ndarray  # (2n, 1)
+    tangent: np.ndarray  # (2n, padded(2n)) the disturbance, in the first column
 
 
 @kernel
@@ -59,7 +60,7 @@ def _follow_growth(st, beta, mu_beta, state, phase, moves, growth, tangent, work
     phase : (cos, sin) of the load there
     moves : whether the initial state has a velocity
     growth : (cycles, 1) filled; NaN in cycles that cannot be used
-    tangent : (2n, 1) initial disturbance, overwritten
+    tangent : (2n, padded(2n)) initial disturbance in the first column, overwritten
     work, scratch : Workspace, Scratch
 
     Returns
@@ -77,7 +78,7 @@ def _follow_growth(st, beta, mu_beta, state, phase, moves, growth, tangent, work
             if code != FELL:
                 return time + steps * st.h >= end
             time += steps * st.h
-            free_motion(st.free, st.n, steps * st.h / st.r, tangent, 1)
+            free_motion(st.free, st.n, steps * st.h / st.r, tangent, LANES)
         slides = True
         event, c, s, force, wait, load, slope = after_slide(
             st, beta, mu_beta, state, work.held, c, s, end - time, scratch
@@ -86,7 +87,7 @@ def _follow_growth(st, beta, mu_beta, state, phase, moves, growth, tangent, work
             return True
         if not (stops_at(event) or turns_at(event)):
             return False
-        through_event(st, beta, mu_beta, event, load, wait, slope, tangent, work.stopped, work.row, 1)
+        through_event(st, beta, mu_beta, event, load, wait, slope, tangent, work.stopped, LANES)
         time += wait
         cycle = int(time / TURN)
         more = _rescaled(st, tangent)
@@ -153,7 +154,7 @@ def fill_exponents(row, axes, common, starts, moves, out, cancel):
         return
     st = make_structure(common.model, common.loads, i, axes.r[i], common.steps)
     n = st.n
-    tools = Tools(st, make_workspace(n), make_scratch(n), np.empty((2 * n, 1)))
+    tools = Tools(st, make_workspace(n), make_scratch(n), np.zeros((2 * n, padded(2 * n))))
     for j in range(axes.beta.size):
         if cancel[0] != 0:
             return

@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..closed_form import decay
-from ..compiler import entry, kernel
+from ..compiler import entry, inner_kernel, kernel
+from ..compiler.vectors import LANES, filled, load, store
 from ..event_codes import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
 from ..newton_limits import MAX_NEWTON, NEAR_END, next_step_negligible
 from .events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
@@ -39,11 +40,10 @@ class Workspace(NamedTuple):
     held: np.ndarray  # (2, padded(m)) state in a stop
     middle: np.ndarray  # (2, padded(n)) unknown of Newton's method
     moved: np.ndarray  # (2, padded(n)) its image under the return map
-    flow: np.ndarray  # (2n, 2n) derivative of the state with respect to the unknown
-    stopped: np.ndarray  # (2m + 1, 2n) derivative of the held state in a stop; last row: of z
+    flow: np.ndarray  # (2n, padded(2n)) derivative of the state with respect to the unknown
+    stopped: np.ndarray  # (2m + 1, padded(2n)) derivative of the held state in a stop; last row: of z
     square: np.ndarray  # (2n, 2n)
     step: np.ndarray  # (2n,)
-    row: np.ndarray  # (2n,)
     start: np.ndarray  # (2, padded(n)) first guess of Newton's method
     anchor: np.ndarray  # (2, padded(n))
     table: np.ndarray  # (n + 1, COLUMNS)
@@ -59,8 +59,8 @@ def make_workspace(n):
     """Allocate a workspace for n free modes."""
     m = n - 1
     return Workspace(
-        make_state(m), make_state(n), make_state(n), np.zeros((2 * n, 2 * n)),
-        np.zeros((2 * m + 1, 2 * n)), np.zeros((2 * n, 2 * n)), np.zeros(2 * n), np.zeros(2 * n),
+        make_state(m), make_state(n), make_state(n), np.zeros((2 * n, padded(2 * n))),
+        np.zeros((2 * m + 1, padded(2 * n))), np.zeros((2 * n, 2 * n)), np.zeros(2 * n),
         make_state(n), make_state(n), np.zeros((n + 1, COLUMNS)), np.zeros(LONGEST_SEQUENCE),
         make_state(n), make_state(n), make_state(n), np.zeros(ANCHORED),
     )  # fmt: skip
@@ -78,37 +78,84 @@ def copy_state(source, target, n):
 def free_motion(table, n, time, rows, columns):
     """Propagate derivatives by the free motion of n oscillators over `time` in t = tau/r.
 
-    Row i holds a coordinate, row n + i its velocity in t.
+    Row i holds a coordinate, row n + i its velocity in t; `columns` is a multiple of LANES.
     """
+    width = rows.shape[1]
     for i in range(n):
         omega = table[i, OMEGA]
         q, e = decay(table[i, ZETA], omega * time)
         d = e + 2.0 * table[i, ZETA] * q
         q_over = q / omega
         q_times = q * omega
-        for j in range(columns):
-            z = rows[i, j]
-            v = rows[n + i, j]
-            rows[i, j] = d * z + q_over * v
-            rows[n + i, j] = e * v - q_times * z
+        for first in range(0, columns, LANES):
+            of_z, of_v = i * width + first, (n + i) * width + first
+            z = load(rows, of_z)
+            v = load(rows, of_v)
+            store(d * z + q_over * v, rows, of_z)
+            store(e * v - q_times * z, rows, of_v)
 
 
-@kernel
-def _contact_row(st, coordinate_row, rate, rows, columns, out):
-    """Project rows of coordinates and velocities onto the contact by two rows of `st.modes`, Z or SPEED and
-    its rate.
+@inner_kernel
+def _at_contact(st, coordinate_row, rate, rows, first):
+    """Eight columns of derivatives at the contact, by two rows of `st.modes`: Z or SPEED, and its rate."""
+    n, width = st.n, rows.shape[1]
+    out = filled(0.0)
+    for i in range(n):
+        out = out + st.modes[coordinate_row, i] * load(rows, i * width + first)
+        out = out + st.modes[rate, i] * load(rows, (n + i) * width + first)
+    return out
+
+
+@inner_kernel
+def _kick(st, share, flow, first):
+    """Subtract `share` of an impulse at the contact from the velocities of eight columns."""
+    n, width = st.n, flow.shape[1]
+    for i in range(n):
+        place = (n + i) * width + first
+        store(load(flow, place) - st.modes[PUSH, i] * share, flow, place)
+
+
+@inner_kernel
+def _into_stop(st, flow, stopped, first):
+    """Derivatives of the held state at the start of a stop, and of z, from those of the free state."""
+    n, m, width = st.n, st.m, flow.shape[1]
+    z = _at_contact(st, Z, Z_RATE, flow, first)
+    store(z, stopped, 2 * m * width + first)
+    for k in range(2 * m):
+        of_k = k if k < m else padded(m) - m + k
+        out = filled(0.0)
+        for i in range(n):
+            a = st.into_held[i, of_k]
+            b = st.into_held[n + i, of_k]
+            u = load(flow, i * width + first)
+            v = load(flow, (n + i) * width + first)
+            out = out + (a * u + b * v - (a * st.modes[STATIC_SHAPE, i]) * z)
+        store(out, stopped, k * width + first)
+
+
+@inner_kernel
+def _out_of_stop(st, flow, stopped, first):
+    """Derivatives of the free state at the end of a stop, from those of the held state and of z; return
+    those of the load.
     """
-    for j in range(columns):
-        out[j] = 0.0
-    for i in range(st.n):
-        for row, part in ((i, st.modes[coordinate_row, i]), (st.n + i, st.modes[rate, i])):
-            if part != 0.0:
-                for j in range(columns):
-                    out[j] += part * rows[row, j]
+    n, m, width = st.n, st.m, flow.shape[1]
+    z = load(stopped, 2 * m * width + first)
+    pull = st.stiffness * z
+    for k in range(m):
+        y = load(stopped, k * width + first)
+        p = load(stopped, (m + k) * width + first)
+        pull = pull + (st.held[k, OZ] * y + (st.held[k, OW] / st.rate) * p)
+    for i in range(2 * n):
+        of_i = i if i < n else padded(n) - n + i
+        out = (st.modes[STATIC_SHAPE, i] if i < n else 0.0) * z
+        for k in range(2 * m):
+            out = out + st.into_free[k, of_i] * load(stopped, k * width + first)
+        store(out, flow, i * width + first)
+    return pull
 
 
 @kernel
-def through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, row, columns):
+def through_event(st, beta, mu_beta, code, contact_load, wait, slope, flow, stopped, columns):
     """Propagate the derivative through an event that ended an upward slide; see `events.after_slide`.
 
     Parameters
@@ -116,61 +163,31 @@ def through_event(st, beta, mu_beta, code, load, wait, slope, flow, stopped, row
     st : StructureAtFrequency
     beta, mu_beta : kinetic and static friction force
     code : event code
-    load : load in the contact at the end of the slide
+    contact_load : load in the contact at the end of the slide
     wait : duration of the stop in tau
     slope : dload/dx at the end of the stop
-    flow : (2n, columns) derivative of the state, updated
-    stopped : (2m + 1, columns) work array, the derivative during the stop
-    row : (columns,) work array
-    columns : number of columns
+    flow : (2n, width) derivative of the state, updated
+    stopped : (2m + 1, width) work array, the derivative during the stop
+    columns : number of columns that are used, a multiple of LANES
     """
-    n, m = st.n, st.m
-    _contact_row(st, SPEED, SPEED_RATE, flow, columns, row)
     # a stop removes the contact's velocity, a turn 2 beta/(load + beta) of it
-    share = (2.0 * beta / (load + beta) if code == REVERSE else 1.0) / st.inverse_mass
-    for i in range(n):
-        part = st.modes[PUSH, i] * share
-        for j in range(columns):
-            flow[n + i, j] -= part * row[j]
+    share = (2.0 * beta / (contact_load + beta) if code == REVERSE else 1.0) / st.inverse_mass
+    for first in range(0, columns, LANES):
+        _kick(st, share * _at_contact(st, SPEED, SPEED_RATE, flow, first), flow, first)
     if code != REVERSE:
-        _contact_row(st, Z, Z_RATE, flow, columns, stopped[2 * m])
-        for k in range(2 * m):
-            of_k = k if k < m else padded(m) - m + k
-            for j in range(columns):
-                stopped[k, j] = 0.0
-            for i in range(n):
-                a = st.into_held[i, of_k]
-                b = st.into_held[n + i, of_k]
-                shift = a * st.modes[STATIC_SHAPE, i]
-                for j in range(columns):
-                    stopped[k, j] += a * flow[i, j] + b * flow[n + i, j] - shift * stopped[2 * m, j]
-        free_motion(st.held, m, wait / st.r, stopped, columns)
-        for j in range(columns):
-            row[j] = st.stiffness * stopped[2 * m, j]
-        for k in range(m):
-            for j in range(columns):
-                row[j] += st.held[k, OZ] * stopped[k, j] + st.held[k, OW] * stopped[m + k, j] / st.rate
-        for i in range(2 * n):
-            shape = st.modes[STATIC_SHAPE, i] if i < n else 0.0
-            of_i = i if i < n else padded(n) - n + i
-            for j in range(columns):
-                flow[i, j] = shape * stopped[2 * m, j]
-            for k in range(2 * m):
-                a = st.into_free[k, of_i]
-                for j in range(columns):
-                    flow[i, j] += a * stopped[k, j]
+        for first in range(0, columns, LANES):
+            _into_stop(st, flow, stopped, first)
+        free_motion(st.held, st.m, wait / st.r, stopped, columns)
         # the stop ends where the load reaches mu beta: earlier by the excess of the load over its rate
         jump = (mu_beta - beta) / (slope * st.rate)
-        if code == STOP_THEN_BACK:
+        if code == STOP_THEN_ON:
             jump = -jump
-        for i in range(n):
-            part = st.modes[PUSH, i] * jump
-            for j in range(columns):
-                flow[n + i, j] += part * row[j]
+        for first in range(0, columns, LANES):
+            _kick(st, jump * _out_of_stop(st, flow, stopped, first), flow, first)
     if code == REVERSE or code == STOP_THEN_BACK:
-        for i in range(2 * n):
-            for j in range(columns):
-                flow[i, j] = -flow[i, j]
+        for i in range(2 * st.n):
+            for first in range(i * flow.shape[1], i * flow.shape[1] + columns, LANES):
+                store(-1.0 * load(flow, first), flow, first)
 
 
 @kernel
@@ -192,10 +209,10 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
     -------
     bool : whether the events fit the sequence
     """
-    size = 2 * st.n
+    columns = work.flow.shape[1]
     if derive:
-        for i in range(size):
-            for j in range(size):
+        for i in range(2 * st.n):
+            for j in range(columns):
                 work.flow[i, j] = 1.0 if i == j else 0.0
     whole = math.pi * halves
     limit = whole / st.h + 1.0
@@ -211,8 +228,8 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
             return False
         time += n * st.h
         if derive:
-            free_motion(st.free, st.n, n * st.h / st.r, work.flow, size)
-        code, c, s, contact_force, wait, load, slope = after_slide(
+            free_motion(st.free, st.n, n * st.h / st.r, work.flow, columns)
+        code, c, s, contact_force, wait, pull, slope = after_slide(
             st, beta, mu_beta, state, work.held, c, s, whole, scratch
         )
         if code != int(events[(sequence.first + m) % events.size]):
@@ -223,7 +240,7 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
         if code != STOP_THEN_ON:
             mirrored = not mirrored
         if derive:
-            through_event(st, beta, mu_beta, code, load, wait, slope, work.flow, work.stopped, work.row, size)
+            through_event(st, beta, mu_beta, code, pull, wait, slope, work.flow, work.stopped, columns)
     if mirrored != odd:
         return False
     # the remaining time, as exactly as the load phase gives it
@@ -235,7 +252,7 @@ def return_map(st, beta, mu_beta, state, c, s, sequence, halves, derive, work, s
     if end != AT_LIMIT:
         return False
     if derive:
-        free_motion(st.free, st.n, remaining / st.r, work.flow, size)
+        free_motion(st.free, st.n, remaining / st.r, work.flow, columns)
     return True
 
 
@@ -341,7 +358,7 @@ def spectral_radius(matrix, n, a, precision):
         log += math.log(norm)
         radius = math.exp(log / power)
         # the error halves with every squaring
-        if squarings == _SQUARINGS or (radius < 1.0 and last - radius < precision * (1.0 - radius)):
+        if squarings == _SQUARINGS or (radius < 1.0 and last - radius <= precision * (1.0 - radius)):
             return radius
         last = radius
         log *= 2.0
@@ -356,6 +373,19 @@ def spectral_radius(matrix, n, a, precision):
                 for j in range(n):
                     matrix[i, j] += a[i, k] * a[k, j]
     return last
+
+
+@kernel
+def contracts(matrix, n, a):
+    """Whether all eigenvalues of a matrix lie inside the unit circle.
+
+    Parameters
+    ----------
+    matrix : (n, n), overwritten
+    n : its size
+    a : (n, n) scratch
+    """
+    return spectral_radius(matrix, n, a, math.inf) < 1.0
 
 
 @kernel

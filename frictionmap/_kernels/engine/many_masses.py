@@ -13,6 +13,8 @@ from ..compiler import entry, inner_kernel, kernel
 from ..continuous_motion import continuous_amplitude, orbit_phase
 from ..event_codes import NO_END, STOP_THEN_BACK, EventSequence
 from ..logs import make_log
+from ..long_periods import RETURNED_AFTER_LONG
+from ..structure.event_margin import event_margin
 from ..structure.events import UNDER_WAY, after_slide, slide_on
 from ..structure.newton import (
     BETA,
@@ -23,13 +25,12 @@ from ..structure.newton import (
     SIDE,
     SLIDES,
     Workspace,
+    contracts,
     copy_state,
     follow_events,
     make_workspace,
     newton_step,
-    return_map,
     solve_return,
-    spectral_radius,
 )
 from ..structure.oscillators import FELL, Scratch, make_scratch, make_state, padded
 from ..structure.sliding_orbit import Continuous, orbit_state, stop_free_radius
@@ -46,7 +47,7 @@ from ..structure.state import (
     vibrates_in_step,
 )
 from .cycle_log import LOGGED
-from .memory import STATE, Memory, Recurrence, make_memory, turned
+from .memory import CLOSER, SHARE, STATE, Memory, Recurrence, make_memory, turned
 from .policies import FINE_STEPS, SLOTS
 from .records import TURN, Contact, ContactState, known_orbit, no_orbit, turns_at, undefined_state
 from .segment_table import put_state
@@ -60,18 +61,8 @@ _LONGEST_SLIDE = 8.0 * math.pi
 #: Largest number of event sequences tried from a neighbour's orbit.
 _MOST_ORDERS = 8
 
-#: Recurrence distance, relative to the motion, below which Newton's method is tried.  A motion may come near
-#: a stable orbit and leave it, as an event changes before it arrives: at 0.01 one cell in 25,000 ended in an
-#: orbit that its motion only passes by, at 0.001 one in 600,000.  Above 0.01 no time is gained.
-#: A motion that is still further away after many periods approaches slowly.
-_RECURRENCE_THRESHOLD, _LATE_THRESHOLD = 0.001, 0.01
-
-#: Where several steady states exist the orbit found must be the one that the motion approaches: its distance
-#: may exceed the one expected from the last recurrence and the contraction by at most this factor.
-_HEADING = 4.0
-
-#: Error of the contraction of an orbit, relative to its distance from 1: it decides how far the orbit may be.
-_CONTRACTION_PRECISION = 0.01
+#: Recurrence distance, relative to the motion, below which Newton's method is tried.
+_RECURRENCE_THRESHOLD = 0.01
 
 #: Largest extrapolation along the line through the last two orbits, in units of their distance in beta.
 _FURTHEST = 2.0
@@ -116,7 +107,6 @@ class ManyMasses(NamedTuple):
     v_abs: float
     marginal: bool  # whether the continuous motions form a continuum
     recurrence_threshold: float
-    late_threshold: float
     i: int  # index of the frequency
     st: StructureAtFrequency
     fine: StructureAtFrequency  # with scan steps at least as short, for bounds over a whole orbit
@@ -138,7 +128,7 @@ def at_frequency(system, i):
     fine = make_structure(system.model, system.loads, i, r, max(system.steps, FINE_STEPS))
     n = st.n
     return ManyMasses(
-        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _RECURRENCE_THRESHOLD, _LATE_THRESHOLD, i,
+        st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _RECURRENCE_THRESHOLD, i,
         st, fine, system.orbit, make_state(n), np.zeros((SLOTS, 2, padded(n))), make_memory(st.h, 2 * n),
         make_log(LOGGED), make_workspace(n), make_scratch(n), np.empty((0, 0)),
     )  # fmt: skip
@@ -233,11 +223,13 @@ def motion_size(motion, contact_state):
 
 
 @kernel
-def recurrence_distance(motion, now, then, size):
+def recurrence_distance(motion, now, then, size, most):
     """See `motion.recurrence_distance`."""
     turn = turned(motion.memory, now, then)
     if turn > _NEAR_PHASE:
         return math.inf
+    if turn > most:
+        return turn
     st = motion.st
     one, other = motion.memory.anchors[now], motion.memory.anchors[then]
     total = 0.0
@@ -335,25 +327,28 @@ def _converge(motion, contact, anchored, sign, sequence, recurrence, limits):
 
 @kernel
 def _attracts(motion, contact, anchored, sequence, recurrence):
-    """Whether the orbit in work.middle is stable, and close enough for the motion to be approaching it from
-    work.start.
+    """Whether the orbit in work.middle, solved for last, is stable, and the motion in work.start so close to
+    it that it keeps the orbit's events on its way there.
 
-    The approach of an undamped structure to its orbit is not monotonic, so recurrences alone cannot decide
-    this.
+    A motion may come near a stable orbit and leave it, as an event changes before it arrives.  Where that is
+    possible, a recurrence is asked for that is so much closer.
     """
-    st, work, n = motion.st, motion.work, motion.st.n
-    copy_state(work.middle, work.moved, n)
-    if not return_map(
-        st, contact.b, contact.mu_b, work.moved, anchored.cos, anchored.sin, sequence, recurrence.halves,
-        True, work, motion.scratch,
-    ):  # fmt: skip
-        return False
-    contraction = spectral_radius(work.flow, 2 * n, work.square, _CONTRACTION_PRECISION)
-    for i in range(n):
-        work.moved[0, i] = work.middle[0, i] - work.start[0, i]
-        work.moved[1, i] = work.middle[1, i] - work.start[1, i]
-    expected = recurrence.distance * energy(st, work.middle) / (1.0 - contraction)
-    return contraction < 1.0 and energy(st, work.moved) <= _HEADING * expected
+    st, work, memory, n = motion.st, motion.work, motion.memory, motion.st.n
+    if recurrence.distance > RETURNED_AFTER_LONG:
+        for i in range(n):
+            work.moved[0, i] = work.middle[0, i] - work.start[0, i]
+            work.moved[1, i] = work.middle[1, i] - work.start[1, i]
+        distance = energy(st, work.moved)
+        copy_state(work.middle, work.moved, n)
+        margin = event_margin(
+            st, contact.b, contact.mu_b, work.moved, anchored.cos, anchored.sin, sequence.count, work,
+            motion.scratch,
+        )  # fmt: skip
+        if not distance <= memory.wanted[SHARE] * margin:
+            closer = memory.wanted[SHARE] * margin / distance
+            memory.wanted[CLOSER] = max(closer * recurrence.distance, RETURNED_AFTER_LONG)
+            return False
+    return contracts(work.flow, 2 * n, work.square)
 
 
 @kernel

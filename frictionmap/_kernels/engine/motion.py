@@ -7,9 +7,8 @@ kind of motion; the functions below update these arrays.
 
 The solver reads these fields: `h`, the scan step in tau; `r`; `v_abs`, the response function of the contact;
 `marginal`, whether the continuous motions form a continuum; `memory`; `load`, the unit of forces and
-displacements; `recurrence_threshold` and `late_threshold`, the recurrence distances below which an orbit is
-sought; `scratch`, whose `left` holds the number of scan steps that may still be taken; and `no_table`, an
-empty segment table.
+displacements; `recurrence_threshold`, the recurrence distance below which an orbit is sought; `scratch`,
+whose `left` holds the number of scan steps that may still be taken; and `no_table`, an empty segment table.
 """
 
 from ..compiler import by_class
@@ -92,8 +91,10 @@ def motion_size(motion, contact_state):
 
 
 @by_class(*_both("recurrence_distance"))
-def recurrence_distance(motion, now, then, size):
-    """Distance between two recorded anchors relative to the motion; infinite if it is no recurrence."""
+def recurrence_distance(motion, now, then, size, most):
+    """Distance between two recorded anchors relative to the motion, or a lower bound on it that is above
+    `most`; infinite if it is no recurrence.
+    """
 
 
 @by_class(*_both("creeps"))

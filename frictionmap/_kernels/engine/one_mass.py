@@ -87,7 +87,6 @@ class OneMass(NamedTuple):
     v_abs: float
     marginal: bool  # whether the continuous motions form a continuum
     recurrence_threshold: float
-    late_threshold: float
     oscillator: Oscillator
     step: Step
     fine: Step  # a step at least as short, for bounds over a whole orbit
@@ -107,7 +106,7 @@ def at_frequency(system, i):
     step = step_constants(r, system.zeta, system.steps)
     return OneMass(
         step.h, r, f.load[i], f.phase[i], system.chi, f.v_abs[i], f.marginal[i], _RECURRENCE_THRESHOLD,
-        _RECURRENCE_THRESHOLD, oscillator, step,
+        oscillator, step,
         step_constants(r, system.zeta, max(system.steps, FINE_STEPS)),
         make_memory(step.h, 1), make_log(LOGGED), make_scratch(), np.zeros(NEIGHBOUR), np.empty((0, 0)),
     )  # fmt: skip
@@ -206,7 +205,7 @@ def motion_size(motion, contact_state):
 
 
 @kernel
-def recurrence_distance(motion, now, then, size):
+def recurrence_distance(motion, now, then, size, most):
     """See `motion.recurrence_distance`; at a stop the load phase is a function of the displacement."""
     memory = motion.memory
     distance = abs(memory.anchors[now, STATE] - memory.anchors[then, STATE])

@@ -4,7 +4,7 @@ import math
 
 from ..compiler import kernel
 from ..long_periods import LONGEST_RECURRENCE, RETURNED_AFTER_LONG
-from .memory import TIME, Recurrence, halves_between
+from .memory import CLOSER, TIME, Recurrence, halves_between
 from .motion import motion_size, recurrence_distance
 from .periods import full_period
 
@@ -17,7 +17,7 @@ _MOST_RECURRENCES = 4
 
 
 @kernel
-def find_recurrence(motion, contact_state, events, any_will_do, shortest, late):
+def find_recurrence(motion, contact_state, events, any_will_do, shortest):
     """Find the earlier anchor that the present one nearly equals, as a `Recurrence`.
 
     Parameters
@@ -27,10 +27,8 @@ def find_recurrence(motion, contact_state, events, any_will_do, shortest, late):
     events : number of anchors so far
     any_will_do : True accepts any distance, because the steady state is unique
     shortest : True stops the search at the first recurrence
-    late : whether the motion has been followed for long
     """
-    threshold = motion.late_threshold if late else motion.recurrence_threshold
-    threshold = math.inf if any_will_do else threshold
+    threshold = math.inf if any_will_do else min(motion.recurrence_threshold, motion.memory.wanted[CLOSER])
     return _nearest(motion, contact_state, events, threshold, _LONGEST_SOON, shortest)
 
 
@@ -71,7 +69,7 @@ def _nearest(motion, contact_state, events, threshold, longest, shortest):
         halves = halves_between(memory, now, then)
         if halves < 1 or full_period(halves) > longest // 2:
             continue
-        distance = recurrence_distance(motion, now, then, size)
+        distance = recurrence_distance(motion, now, then, size, threshold)
         if distance < math.inf:
             returns += 1
             if distance <= threshold:

@@ -8,6 +8,7 @@ block          the same for eight scan steps at once
 state          free and held oscillators at one frequency; conversion between them
 events         the end of a slide, and what follows it
 newton         periodic orbits by Newton's method on the return map
+event_margin   how far from an orbit a motion may be and still have the orbit's events
 sliding_orbit  the continuous orbit, and the distance from it within which no motion can stop
 =============  ==============================================================================
 """

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from ..compiler import kernel
 from ..logs import CAPACITY, LENGTH, USED, Mean, is_stationary, mean_stops, mean_stuck, opened
+from ..long_periods import enough_cycles
 from .records import SHORTEST_STOP, TURN
 
 #: Columns of a log: stops, time stuck in tau, which are added; largest displacement; and their number.
@@ -24,6 +25,14 @@ class Averages(NamedTuple):
     stuck: Mean
     largest: float
     stationary: bool  # whether both halves of that time agree
+
+
+@kernel
+def first_averaged(cycles):
+    """Time in tau before which nothing needs to be logged, of a motion that may be followed for `cycles`: the
+    averages begin at a third of the time followed.
+    """
+    return TURN * math.floor(0.25 * min(cycles, enough_cycles(cycles)))
 
 
 @kernel

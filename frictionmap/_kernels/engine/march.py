@@ -24,7 +24,7 @@ from ..event_codes import GRAZING, NO_END, STUCK
 from ..logs import clear_log
 from ..long_periods import enough_cycles, first_search, next_search
 from ..structure.events import NO_RELEASE
-from .cycle_log import averages, log_event, log_stop
+from .cycle_log import averages, first_averaged, log_event, log_stop
 from .measure import measure, proven_stops
 from .memory import Recurrence, forget_orbits, record_anchor, settle_for_less, settled
 from .motion import (
@@ -110,7 +110,7 @@ class OrbitCheck(NamedTuple):
 
 
 @inner_kernel
-def _next_anchor(motion, contact, contact_state, history, moves, end, most_steps):
+def _next_anchor(motion, contact, contact_state, history, moves, logged, end, most_steps):
     """Follow one slide and what comes after it.
 
     Parameters
@@ -120,6 +120,7 @@ def _next_anchor(motion, contact, contact_state, history, moves, end, most_steps
     contact_state : ContactState at the present anchor
     history : MotionHistory
     moves : whether the motion starts with a velocity
+    logged : time in tau from which on events are logged
     end : time in tau at which to give up
     most_steps : largest number of scan steps
 
@@ -139,7 +140,8 @@ def _next_anchor(motion, contact, contact_state, history, moves, end, most_steps
     event, contact_state, wait = after_turn(motion, contact, contact_state, end - time)
     sign = -history.sign if turns_at(event) else history.sign
     stopped = stops_at(event)
-    log_event(motion.log, time, size, stopped, wait)
+    if time + wait >= logged:
+        log_event(motion.log, time, size, stopped, wait)
     if event == NO_RELEASE:  # within the time left
         log_stop(motion.log, time, end - time)
         time = end
@@ -357,7 +359,7 @@ def _unfinished(motion, contact, time, end):
 @kernel
 def _follow(motion, contact, contact_state, moves, limits, cancel):
     """Follow the motion from a contact state to the steady state."""
-    end = TURN * limits.cycles
+    end, logged = TURN * limits.cycles, first_averaged(limits.cycles)
     most_steps = end / motion.h + 1.0
     most_events = _EVENTS_PER_CYCLE * limits.cycles * max(1.0, 0.25 / motion.h)
     vibrates = lasting_vibration(motion)
@@ -375,7 +377,7 @@ def _follow(motion, contact, contact_state, moves, limits, cancel):
         if cancel[0] != 0:
             return unresolved(NOT_COMPUTED, history.time)
         event, z, contact_state, history = _next_anchor(
-            motion, contact, contact_state, history, moves, end, most_steps
+            motion, contact, contact_state, history, moves, logged, end, most_steps
         )
         if event == STUCK:
             return stuck_cell(INTEGRATED, MARGINAL if vibrates else RESOLVED, history.time, z, history.sign)

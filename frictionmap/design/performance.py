@@ -42,10 +42,17 @@ class Peaks(NamedTuple):
 
     def above(self, least: float) -> "Peaks":
         """The peaks of at least this size."""
-        kept = self.size >= least
-        return Peaks(
-            self.beta, self.r[kept], self.size[kept], None if self.owner is None else self.owner[kept]
-        )
+        return self._chosen(np.flatnonzero(self.size >= least))
+
+    def by_frequency(self, tolerance: float) -> "Peaks":
+        """Peaks that are equal to a relative tolerance by frequency: which is larger is rounding."""
+        smaller = self.size[1:] < self.size[:-1] * (1.0 - tolerance)
+        return self._chosen(np.lexsort((self.r, np.append(0, np.cumsum(smaller)))))
+
+    def _chosen(self, which: np.ndarray) -> "Peaks":
+        """Some of the peaks, in this order."""
+        owner = None if self.owner is None else self.owner[which]
+        return Peaks(self.beta, self.r[which], self.size[which], owner)
 
 
 class PerformanceCurve(Protocol):

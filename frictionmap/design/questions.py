@@ -16,7 +16,7 @@ from .answers import answer
 from .at_most import find_ranges
 from .band import Band, checked_band, peak_samples
 from .force_plane import checked_plane, find_in_plane
-from .least_peak import Minimum, Optimum, find_optimum, find_robust, largest
+from .least_peak import TWO_PEAKS, Minimum, Optimum, find_optimum, find_robust, largest
 from .limits import (
     boundary_samples,
     has_no_stop_limit,
@@ -400,7 +400,7 @@ def _answer(
 ) -> xr.Dataset:  # fmt: skip
     """Build the dataset of a question about the largest response."""
     best, peaks = optimum.best, optimum.peaks
-    listed = peaks.above(_LISTED * peaks.largest)
+    listed = peaks.above(_LISTED * peaks.largest).by_frequency(TWO_PEAKS)
     states = curve.states(listed)
     second = optimum.second or Minimum(np.nan, np.nan, "")
     points = optimum.points

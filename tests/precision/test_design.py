@@ -8,6 +8,7 @@ import pytest
 from general_systems import reference
 
 import frictionmap as fm
+from frictionmap.design.performance import Peaks
 
 #: Rows of an independent program: question, system, arguments, friction ratio, largest response.
 CHAIN = {"contact_masses": [2], "mass_ratios": [1, 1], "stiffness_ratios": [1, 1]}
@@ -299,3 +300,11 @@ def test_scattered_cells_are_those_of_maps():
             cell = responses.on_grid(r[k : k + 1], beta[k : k + 1])
             assert at.size[k] == pytest.approx(cell.size[0, 0], rel=1e-10)
             assert at.regime[k] == cell.regime[0, 0]
+
+
+def test_equal_peaks_are_listed_by_frequency():
+    """Which of two is larger by rounding must not decide their order."""
+    size = np.array([2.0 * (1.0 + 1e-12), 2.0, 1.5, 1.5 * (1.0 - 1e-11), 1.0])
+    peaks = Peaks(0.3, np.array([1.4, 0.6, 1.9, 1.7, 0.5]), size).by_frequency(1e-8)
+    assert peaks.r.tolist() == [0.6, 1.4, 1.7, 1.9, 0.5]
+    assert peaks.size.tolist() == size[[1, 0, 3, 2, 4]].tolist()

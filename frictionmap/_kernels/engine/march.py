@@ -212,6 +212,8 @@ def _may_recur(event, history, continuous, unbounded):
 @kernel
 def _nearest_recurrence(motion, contact, contact_state, history, schedule, newton):
     """Find the nearest recurrence; if the shortest one led to no orbit, the closest one is tried."""
+    if history.time > _LATE:
+        settle_for_less(motion.memory)
     shortest = newton and schedule.made % 2 == 0  # the shortest is better conditioned
     recurrence = find_recurrence(motion, contact_state, history.events, contact.unique and newton, shortest)
     if history.slides > 0 and history.slides < 2 * recurrence.lag:
@@ -357,6 +359,13 @@ def _unfinished(motion, contact, time, end):
 
 
 @kernel
+def _forget(motion):
+    """Forget the motion before."""
+    clear_log(motion.log)
+    forget_orbits(motion.memory)
+
+
+@kernel
 def _follow(motion, contact, contact_state, moves, limits, cancel):
     """Follow the motion from a contact state to the steady state."""
     end, logged = TURN * limits.cycles, first_averaged(limits.cycles)
@@ -365,8 +374,7 @@ def _follow(motion, contact, contact_state, moves, limits, cancel):
     vibrates = lasting_vibration(motion)
     unbounded = math.isinf(motion.v_abs) and contact.b < contact.b_lim
     continuous = _continuous_orbit(motion, contact)
-    clear_log(motion.log)
-    forget_orbits(motion.memory)
+    _forget(motion)
     check = OrbitCheck(False, math.inf, 0, 0)
     history = MotionHistory(0.0, 0, 1.0, 0, 0, 0.0)
     schedule = first_schedule()
@@ -397,8 +405,6 @@ def _follow(motion, contact, contact_state, moves, limits, cancel):
             )
             if check.arrived:
                 return continuous_cell(continuous.amplitude, motion.marginal, INTEGRATED, history.time)
-        if history.time > _LATE:
-            settle_for_less(motion.memory)
         now = int(history.time / math.pi)
         if now == half or not _may_recur(event, history, continuous, unbounded):
             continue  # one search per half period is enough

@@ -22,8 +22,8 @@ CLOSER, SHARE = 0, 1
 _WANTED = 2
 
 #: The share at first, and of a motion that approaches slowly.  With 0.3 all of 650,000 random cells ended as
-#: they do where Newton's method waits for a recurrence of 1e-5, with 0.5 all but one, with 1 from the beginning
-#: all but four; marching ends those that differed as waiting does.
+#: they do where Newton's method waits for a recurrence of 1e-5, with 0.5 all but one, with 1 from the
+#: beginning all but four; marching ends those that differed as waiting does.
 _WELL_WITHIN, _WITHIN = 0.3, 1.0
 
 

@@ -45,7 +45,10 @@ class Peaks(NamedTuple):
         return self._chosen(np.flatnonzero(self.size >= least))
 
     def by_frequency(self, tolerance: float) -> "Peaks":
-        """Peaks that are equal to a relative tolerance by frequency: which is larger is rounding."""
+        """Order the peaks by size, and those that agree to a relative tolerance by frequency.
+
+        Which of two equal peaks is larger depends on rounding.
+        """
         smaller = self.size[1:] < self.size[:-1] * (1.0 - tolerance)
         return self._chosen(np.lexsort((self.r, np.append(0, np.cumsum(smaller)))))
 

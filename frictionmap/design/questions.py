@@ -87,7 +87,8 @@ def least_peak(
     -------
     xarray.Dataset
         `beta`, the friction ratio; on `peak` the largest responses over frequency there, from the highest
-        down, with `peak_r`, `peak_regime` and `peak_stops`; `kind` of the optimum; `second_beta` and
+        down (equal ones by frequency), with `peak_r`, `peak_regime` and `peak_stops`; `kind` of the optimum;
+        `second_beta` and
         `second_peak` of another minimum within 5 %; `peak_at_offset`, the response with 2 % and 20 % more and
         less friction; `peak_of_beta` on `beta_search`, the performance curve; `beta_no_stop` and
         `beta_stuck` of the band; `response_of_r` (curve, r_search), response curves.  With units also

@@ -79,7 +79,7 @@ def test_motions_well_within_the_margin_have_the_events():
         if not same_events(start):
             continue
         margin = event_margin(st, beta, mu * beta, start.copy(), c, s, count, work, scratch)
-        if margin == 0.0:  # the contact sticks for good before the slides are over
+        if margin == 0.0:  # the contact grazes or sticks permanently before the slides are over
             continue
         for _ in range(20):
             away = np.zeros_like(start)
@@ -90,3 +90,12 @@ def test_motions_well_within_the_margin_have_the_events():
     assert len(kept) > 300
     assert all(kept)
     assert np.mean(lost) > 0.5  # it is a margin, not a bound for every case
+
+
+@pytest.mark.parametrize("mu", [1.1, 2.0])
+def test_no_margin_where_the_contact_sticks_permanently(mu):
+    """A moving start slides a few times and then stays stuck: there is no orbit to follow to its end."""
+    system = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1], contact_masses=[2], damping_ratios=0.05)
+    beta = 0.99 * fm.boundaries(system, [0.5]).beta_stick.item()
+    _, st, start, c, s, work, scratch = set_moving(system, 0.5, beta, mu)
+    assert event_margin(st, beta, mu * beta, start, c, s, 1000, work, scratch) == 0.0

@@ -348,6 +348,7 @@ def _attracts(motion, contact, anchored, sequence, recurrence):
             closer = memory.wanted[SHARE] * margin / distance
             memory.wanted[CLOSER] = max(closer * recurrence.distance, RETURNED_AFTER_LONG)
             return False
+    # the derivative is that of the last Newton step, at most one step away from the orbit
     return contracts(work.flow, 2 * n, work.square)
 
 

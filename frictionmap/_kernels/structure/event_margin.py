@@ -10,7 +10,7 @@ margin.
 import math
 
 from ..compiler import kernel
-from ..event_codes import REVERSE
+from ..event_codes import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
 from .events import UNDER_WAY, after_slide, slide_on
 from .newton import copy_state
 from .oscillators import F1, FC, FELL, FS, YC, YS, D, K, derivatives, step_on, turned
@@ -136,7 +136,8 @@ def event_margin(st, beta, mu_beta, state, c, s, slides, work, scratch):
 
     Returns
     -------
-    float : 0 where the orbit is not followed to its end
+    float : 0 where the orbit is not followed to its end, because of a grazing event or a contact that sticks
+        permanently
     """
     margin = math.inf
     contact_force = UNDER_WAY
@@ -152,8 +153,10 @@ def event_margin(st, beta, mu_beta, state, c, s, slides, work, scratch):
         event, c, s, contact_force, wait, _, _ = after_slide(
             st, beta, mu_beta, state, work.held, c, s, _LONGEST, scratch
         )
-        if event != REVERSE:
+        if event == STOP_THEN_BACK or event == STOP_THEN_ON:
             margin = min(
                 margin, _stop_margin(st, mu_beta, work.trial, ended[0], ended[1], wait, work.held, scratch)
             )
+        elif event != REVERSE:
+            return 0.0
     return margin

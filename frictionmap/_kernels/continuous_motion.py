@@ -1,8 +1,10 @@
-"""Continuous motion of one mass in closed form: amplitude T(2.34), (7.20), phase, time since a maximum."""
+"""Continuous motion of one mass in closed form: amplitude T(2.34), (7.20), phase, time since a maximum; how
+far from a continuous motion the contact stops.
+"""
 
 import math
 
-from .compiler import entry, kernel
+from .compiler import entry, inner_kernel, kernel
 
 
 @kernel
@@ -31,3 +33,20 @@ def since_maximum(c, s, phase):
     if tau > math.pi:
         return tau - math.pi, -1.0
     return tau, 1.0
+
+
+@inner_kernel
+def least_deviation(speed, load, overlap):
+    """Least norm of a deviation that changes the velocity of a contact and the load in it as much as a stop
+    requires.
+
+    Parameters
+    ----------
+    speed, load : norms of the least deviations that change either of them enough; not positive where none is
+        needed
+    overlap : modulus of the cosine of the angle between these two
+    """
+    less, more = min(speed, load), max(speed, load)
+    if less <= overlap * more:  # the deviation that changes one of them changes the other enough
+        return more
+    return math.sqrt((less * less + more * more - 2.0 * overlap * less * more) / (1.0 - overlap * overlap))

@@ -72,7 +72,7 @@ def _model(modes: ModalModel, which: np.ndarray, held: HeldStructure) -> Model:
         table, held.omega, held.zeta, watch,
         np.ascontiguousarray(free.to_oscillators @ held.to_free),
         np.ascontiguousarray(held.to_held @ free.to_modes), 1.0 / mass, held.stiffness, reach,
-        free.norm(w),
+        abs(float(chi @ load_rate)) * math.sqrt(mass) / reach, free.norm(w),
     )  # fmt: skip
 
 

@@ -19,6 +19,8 @@ pytestmark = pytest.mark.plain
 scan = callable_kernel(block.scan)
 one_by_one = callable_kernel(scalar_scan.scan)
 value = callable_kernel(oscillators.value)
+extremes = callable_kernel(block.extremes)
+step_on = callable_kernel(oscillators.step_on)
 
 
 def structure_at(system, r):
@@ -112,3 +114,30 @@ def test_every_lane_can_hold_the_event():
         assert_alike(results, 1.0)
         seen.add(int(results[0][0][0]))
     assert len(seen) > 8
+
+
+def test_extremes_are_those_of_the_nodes_one_by_one():
+    """Minima and maxima among the nodes inside; the first and the last node have only one neighbour."""
+    rng = np.random.default_rng(11)
+    found = []
+    for _ in range(20):
+        system, _ = random_chain(rng, float(rng.choice([0.0, 0.02, 0.4])))
+        st = structure_at(system, float(rng.uniform(0.2, 3.0)))
+        for table, eight, n in ((st.free, st.free_block, st.n), (st.held, st.held_block, st.m)):
+            for steps in (0.5, 1.0, 2.2, 7.9, 8.0, 9.3, 40.0):
+                state, before = make_state(n), make_state(n)
+                state[:, :n] = rng.normal(size=(2, n)) * np.array([[1.0], [st.h]])
+                tau, beta = float(rng.uniform(0.0, 6.0)), float(rng.uniform(0.0, 1.0))
+                moved, y = state.copy(), [value(table, state, math.cos(tau), math.sin(tau))]
+                for k in range(int(steps)):
+                    phase = tau + k * st.h
+                    step_on(table, n, beta, moved, before, math.cos(phase), math.sin(phase))
+                    phase += st.h
+                    y.append(value(table, moved, math.cos(phase), math.sin(phase)))
+                inside = np.array(y[1:-1])
+                low = inside[(inside <= y[:-2]) & (inside <= y[2:])].min(initial=math.inf)
+                high = inside[(inside >= y[:-2]) & (inside >= y[2:])].max(initial=-math.inf)
+                got = extremes(table, eight, beta, state, math.cos(tau), math.sin(tau), steps)
+                np.testing.assert_allclose(got, (low, high), rtol=1e-9, atol=1e-9 * np.abs(y).max())
+                found.append(math.isfinite(low) or math.isfinite(high))
+    assert 0.3 < np.mean(found) < 0.9

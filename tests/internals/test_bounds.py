@@ -6,6 +6,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from kernels import callable_kernel
+from structures import random_chain
 
 import frictionmap as fm
 from frictionmap._kernels import closed_form, continuous_motion, taylor_series
@@ -13,12 +14,18 @@ from frictionmap._kernels.continuous_motion import orbit_phase
 from frictionmap._kernels.one_mass import events, sliding_orbit
 from frictionmap._kernels.one_mass.scan_step import step_constants
 from frictionmap._kernels.one_mass.sliding_orbit import Oscillator
+from frictionmap._kernels.structure import sliding_orbit as structure_orbit
+from frictionmap._kernels.structure.oscillators import COLUMNS, make_state
+from frictionmap._kernels.structure.state import LOAD, SPEED, W, make_structure
 from frictionmap._kernels.taylor_series import MAX_TERMS
+from frictionmap.steady.cells import Cells
 from frictionmap.theory.boundary_curves import one_mass_curves
 
 decay = callable_kernel(closed_form.decay)
 continuous_amplitude = callable_kernel(continuous_motion.continuous_amplitude)
 stop_free_radius = callable_kernel(sliding_orbit.stop_free_radius)
+structure_radius = callable_kernel(structure_orbit.stop_free_radius)
+orbit_state = callable_kernel(structure_orbit.orbit_state)
 first_root = callable_kernel(taylor_series.first_root)
 slide = callable_kernel(events.slide)
 
@@ -50,7 +57,9 @@ def test_first_root_of_random_polynomials():
 
 
 def test_nothing_can_stop_within_the_radius():
-    """The radius never exceeds the least max(r |z'|, |load| - mu b) over the orbit, sampled densely."""
+    """The radius never exceeds the least deviation that makes z' zero and |load| mu b on the orbit, sampled
+    densely.
+    """
     rng = np.random.default_rng(3)
     positive = 0
     for _ in range(400):
@@ -69,10 +78,53 @@ def test_nothing_can_stop_within_the_radius():
         g1, from_cos, swing = 1.0 + oscillator.g, amplitude + b * oscillator.g, b * oscillator.u
         z = from_cos * np.cos(tau) + swing * np.sin(tau) + b * (1.0 - g1 * (e + 2 * zeta * q)) - swing * r * q
         v = swing * (np.cos(tau) - e) - from_cos * np.sin(tau) + b * g1 * q / r
-        least = np.maximum(r * np.abs(v), np.abs(z - np.cos(tau + phase)) - mu * b).min()
+        least = np.hypot(r * v, np.maximum(np.abs(z - np.cos(tau + phase)) - mu * b, 0.0)).min()
         assert radius <= least * (1.0 + 1e-2) + 1e-9, (zeta, r, mu, b)
         positive += radius > 0.0
     assert positive > 200
+
+
+def _least_deviation(st, state, c, s, mu_beta):
+    """Least energy norm of a deviation of this state that makes z' zero and |load| at most mu beta."""
+    n, w = st.n, st.modes[W, : st.n]
+    coordinates = np.concatenate((state[0, :n] * w, state[1, :n] * st.rate))  # their norm is the energy norm
+    rows = [np.concatenate((st.modes[k, :n] / w, st.modes[k + 1, :n])) for k in (SPEED, LOAD)]
+    speed = rows[0] @ coordinates
+    load = rows[1] @ coordinates + st.free_cos * c + st.free_sin * s
+    least = -rows[0] * speed / (rows[0] @ rows[0])
+    after = load + rows[1] @ least
+    if abs(after) > mu_beta:  # both, the load just to its limit
+        asked = np.array([-speed, math.copysign(mu_beta, after) - load])
+        least = np.linalg.lstsq(np.array(rows), asked, rcond=None)[0]
+    return np.linalg.norm(least)
+
+
+def test_nothing_of_a_structure_can_stop_within_the_radius():
+    """As for one mass; the radius is close to the least deviation where the scan steps are short."""
+    rng = np.random.default_rng(7)
+    ratios = []
+    for _ in range(80):
+        system, _ = random_chain(rng, float(rng.choice([0.0, 0.02, 0.4, 1.3])))
+        r, mu = float(rng.uniform(0.2, 2.0)), float(rng.choice([1.0, rng.uniform(1.0, 3.0)]))
+        beta = fm.boundaries(system, [r], [mu]).beta_lim.item() * float(rng.uniform(0.2, 0.95))
+        if not beta > 0.0:
+            continue
+        found = Cells(system, np.array([r]), np.array([beta]), np.array([mu]), fm.Solver()).structure_arrays
+        st = make_structure(found.model, found.loads, 0, r, 200.0)
+        orbit, n = found.orbit, st.n
+        phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], beta)
+        state, before, table = make_state(n), make_state(n), np.zeros((n + 1, COLUMNS))
+        radius = structure_radius(st, orbit, 0, beta, mu * beta, phase, table, state, before)
+        least = math.inf
+        for tau in np.linspace(-math.pi, 0.0, 601) - phase:
+            c, s = math.cos(tau), math.sin(tau)
+            orbit_state(st, orbit, 0, beta, phase, c, s, state)
+            least = min(least, _least_deviation(st, state, c, s, mu * beta))
+        assert radius <= least * (1.0 + 1e-2) + 1e-9
+        if radius > 0.0:
+            ratios.append(radius / least)
+    assert len(ratios) > 30
+    assert np.median(ratios) > 0.95
 
 
 @pytest.mark.parametrize(

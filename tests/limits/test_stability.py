@@ -9,6 +9,7 @@ from kernels import callable_kernel
 from structures import random_chain
 
 import frictionmap as fm
+from frictionmap._kernels import spectral_radius as radii
 from frictionmap._kernels.event_codes import REVERSE, EventSequence
 from frictionmap._kernels.structure import events as follow
 from frictionmap._kernels.structure import newton as returns
@@ -21,7 +22,7 @@ from frictionmap.steady.cells import Cells
 after_slide = callable_kernel(follow.after_slide)
 slide_on = callable_kernel(follow.slide_on)
 return_map = callable_kernel(returns.return_map)
-spectral_radius = callable_kernel(returns.spectral_radius)
+spectral_radius = callable_kernel(radii.spectral_radius)
 
 OUTPUTS = ("regime", "status", "multiplier", "asymmetry", "stops_per_cycle", "period")
 BASE = fm.System(contact="joined-base-wall")
@@ -156,19 +157,56 @@ def next_events(st, beta, mu_beta, state, c, s, count, work, scratch):
     return events
 
 
+def _of_eigenvalues(rng, values, orthogonal):
+    """A real matrix with these eigenvalues, complex ones with their conjugates."""
+    blocks = [
+        np.array([[v.real, v.imag], [-v.imag, v.real]]) if np.iscomplex(v) else np.array([[v.real]])
+        for v in np.atleast_1d(values).astype(complex)
+    ]
+    n = sum(block.shape[0] for block in blocks)
+    matrix, at = np.zeros((n, n)), 0
+    for block in blocks:
+        matrix[at : at + block.shape[0], at : at + block.shape[0]] = block
+        at += block.shape[0]
+    basis = np.linalg.qr(rng.normal(size=(n, n)))[0] if orthogonal else rng.normal(size=(n, n))
+    return basis @ matrix @ np.linalg.inv(basis)
+
+
 def test_spectral_radius():
     rng = np.random.default_rng(0)
     for n in (1, 2, 5, 12):
         for _ in range(20):
             matrix = rng.normal(size=(n, n))
             exact = np.abs(np.linalg.eigvals(matrix)).max()
-            assert spectral_radius(matrix.copy(), n, np.empty((n, n)), 0.0) == pytest.approx(exact, rel=1e-9)
+            found = spectral_radius(matrix.copy(), n, np.empty((n, n)), 0.0)
+            assert found == pytest.approx(exact, rel=1e-11)
             matrix *= rng.uniform(0.5, 0.999) / exact
             exact = np.abs(np.linalg.eigvals(matrix)).max()
             quick = spectral_radius(matrix.copy(), n, np.empty((n, n)), 0.01)
             assert abs(quick - exact) <= 0.05 * (1.0 - exact)
     assert spectral_radius(np.zeros((3, 3)), 3, np.empty((3, 3)), 0.0) == 0.0
     assert spectral_radius(np.array([[0.0, 1.0], [0.0, 0.0]]), 2, np.empty((2, 2)), 0.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        [0.9, 0.1, 0.0, 0.0], [0.9, -0.9, 0.5, -0.5], [0.9, 0.9, 0.2], [0.9, 0.9, 0.9, 0.9],
+        [0.9, 0.8999, 0.8998, 0.1], [0.6 + 0.6j, 0.2j, 0.3], [0.6 + 0.6j, 0.6 - 0.59j, 0.84],
+        [1j, 0.6 + 0.8j, -0.8 + 0.6j], [0.9j, -0.9, 0.9], [1e-9, 1e-12, 1e-12j], [1e5, 1e5 + 1j, -1e-5],
+        [0.0, 0.0, 0.7], [0.5 + 1e-9j, 0.5, 0.1],
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("orthogonal", [True, False])
+def test_spectral_radius_of_known_eigenvalues(values, orthogonal):
+    """Simple, double, complex, close and equal in size; defective ones by a small eigenvalue of another."""
+    rng = np.random.default_rng(5)
+    exact = np.abs(values).max()
+    for _ in range(10):
+        matrix = _of_eigenvalues(rng, values, orthogonal)
+        n = matrix.shape[0]
+        error = 1e-11 * (1.0 if orthogonal else np.linalg.cond(np.linalg.eig(matrix)[1]))
+        assert spectral_radius(matrix.copy(), n, np.empty((n, n)), 0.0) == pytest.approx(exact, rel=error)
 
 
 def test_steady_states_are_stable_and_antiperiodic_where_unique():

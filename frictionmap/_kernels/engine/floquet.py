@@ -7,8 +7,9 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..continuous_motion import orbit_phase
 from ..event_codes import REVERSE, EventSequence
+from ..spectral_radius import spectral_radius
 from ..structure.events import slide_on
-from ..structure.newton import copy_state, return_map, spectral_radius
+from ..structure.newton import copy_state, return_map
 from ..structure.sliding_orbit import orbit_state
 from .periods import half_periods
 from .segment_table import CONTACT_FORCE, COS, EVENT, LENGTH, SENSE, SIN, Z_END, take_start

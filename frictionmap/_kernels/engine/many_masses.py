@@ -14,6 +14,7 @@ from ..continuous_motion import continuous_amplitude, orbit_phase
 from ..event_codes import NO_END, STOP_THEN_BACK, EventSequence
 from ..logs import make_log
 from ..long_periods import RETURNED_AFTER_LONG
+from ..spectral_radius import contracts
 from ..structure.event_margin import event_margin
 from ..structure.events import UNDER_WAY, after_slide, slide_on
 from ..structure.newton import (
@@ -25,7 +26,6 @@ from ..structure.newton import (
     SIDE,
     SLIDES,
     Workspace,
-    contracts,
     copy_state,
     follow_events,
     make_workspace,

@@ -60,8 +60,9 @@ def _nearest(motion, contact_state, events, threshold, longest, shortest):
     size = motion_size(motion, contact_state)
     best = Recurrence(0, math.inf, 0)
     returns = 0
+    then = now
     for lag in range(1, min(events, length)):
-        then = (events - 1 - lag) % length
+        then = then - 1 if then > 0 else length - 1  # a remainder of a division takes as long as all else
         if memory.anchors[now, TIME] - memory.anchors[then, TIME] > (longest + 0.5) * math.pi:
             break
         if memory.events[then] != memory.events[now]:

@@ -4,7 +4,8 @@ import math
 from typing import NamedTuple
 
 from ..compiler import kernel
-from ..structure.newton import solve_linear, spectral_radius
+from ..spectral_radius import spectral_radius
+from ..structure.newton import solve_linear
 from .follow import FOLLOWED
 from .problem import state_size
 from .return_map import fill_newton, go_round, motion_size, neutral_rows, return_distance, take_step

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..closed_form import decay
 from ..compiler import kernel
-from ..continuous_motion import since_maximum
+from ..continuous_motion import least_deviation, since_maximum
 
 
 class Oscillator(NamedTuple):
@@ -52,8 +52,8 @@ def distance_to_orbit(oscillator, b, amplitude, phase, z, c, s):
 def stop_free_radius(step, oscillator, b, mu_b, amplitude, phase):
     """Distance (energy norm) from the continuous orbit within which no motion can stop.
 
-    A stop at distance eps requires r |z'| <= eps and |load| <= mu b + eps on the orbit; the least max(r |z'|,
-    |load| - mu b) over half a period is bounded below from scan steps and their curvature.
+    A stop requires deviations r z' and z that make z' zero and |load| at most mu b at the same time; the
+    least norm of both over half a period is bounded below from scan steps and their curvature.
     """
     c = -math.cos(phase)
     s = -math.sin(phase)
@@ -80,7 +80,7 @@ def stop_free_radius(step, oscillator, b, mu_b, amplitude, phase):
         # a load that changes sign within the step is zero there
         least = min(abs(load), abs(load1)) if load * load1 > 0.0 else 0.0
         loaded = least - 0.125 * (energy / omega + square) - mu_b
-        radius = min(radius, max(fast, loaded))
+        radius = min(radius, least_deviation(fast, loaded, 0.0))
         z = z1
         w = w1
         load = load1

@@ -248,6 +248,32 @@ def _begin(block, n, friction, state, c, s):
 
 
 @inner_kernel
+def _at_nodes(block, n, friction, state, c, s):
+    """y and dy/dx at the next eight nodes.
+
+    Parameters
+    ----------
+    block, n : the oscillators as a block, and their number
+    friction : friction force on the oscillators
+    state : (2, padded(n)) state at the present node
+    c, s : cosine and sine of the load phase there
+    """
+    at = _rows_at(n)
+    y = c * load(block, at) + s * load(block, at + 2 * LANES)
+    slope = c * load(block, at + LANES) + s * load(block, at + 3 * LANES)
+    y_of_w = friction * load(block, at + 4 * LANES)
+    slope_of_w = friction * load(block, at + 5 * LANES)
+    for i in range(n):
+        at += 4 * LANES if i > 0 else 6 * LANES
+        z, w = state[0, i], state[1, i]
+        y = y + z * load(block, at)
+        slope = slope + z * load(block, at + LANES)
+        y_of_w = y_of_w + w * load(block, at + 2 * LANES)
+        slope_of_w = slope_of_w + w * load(block, at + 3 * LANES)
+    return y + y_of_w, slope + slope_of_w
+
+
+@inner_kernel
 def _steps_inside(block, n, friction, state, c, s, here, low, high, fourth, first, second):
     """How many of the next eight steps y certainly stays in its range.
 
@@ -269,20 +295,7 @@ def _steps_inside(block, n, friction, state, c, s, here, low, high, fourth, firs
     -------
     (passed, before, after) : number of steps; (y, dy/dx) at the node after them and at the node after that
     """
-    at = _rows_at(n)
-    y = c * load(block, at) + s * load(block, at + 2 * LANES)
-    slope = c * load(block, at + LANES) + s * load(block, at + 3 * LANES)
-    y_of_w = friction * load(block, at + 4 * LANES)
-    slope_of_w = friction * load(block, at + 5 * LANES)
-    for i in range(n):
-        at += 4 * LANES if i > 0 else 6 * LANES
-        z, w = state[0, i], state[1, i]
-        y = y + z * load(block, at)
-        slope = slope + z * load(block, at + LANES)
-        y_of_w = y_of_w + w * load(block, at + 2 * LANES)
-        slope_of_w = slope_of_w + w * load(block, at + 3 * LANES)
-    y = y + y_of_w
-    slope = slope + slope_of_w
+    y, slope = _at_nodes(block, n, friction, state, c, s)
     start = delayed(here[0], y)
     left = start + delayed(here[1], slope) * (1.0 / 3.0)
     right = y - slope * (1.0 / 3.0)
@@ -466,7 +479,7 @@ def _at_crossing(block, n, friction, level, x, done, start, now, state, before):
 
     Returns
     -------
-    (found, x, slope) : not found where y only touches the level
+    (found, x, slope, cos, sin) : not found where y only touches the level; the load phase there
     """
     for _ in range(MAX_POLISH):
         _move_inside(block, n, friction, before, now[0], now[1], x, state)
@@ -479,8 +492,12 @@ def _at_crossing(block, n, friction, level, x, done, start, now, state, before):
         x += move
         if abs(move) < ONE_STEP:
             _move_slightly(block, n, friction, state, c, s, move)
-            return True, x, slope + move * (bend + 0.5 * move * third)
-    return False, x, 0.0
+            # the angle is so small that its fourth power is rounding error
+            angle = move * block[STEP]
+            turn_c, turn_s = 1.0 - 0.5 * angle * angle, angle - (1.0 / 6.0) * angle * angle * angle
+            c, s = turn_c * c - turn_s * s, turn_c * s + turn_s * c
+            return True, x, slope + move * (bend + 0.5 * move * third), c, s
+    return False, x, 0.0, now[0], now[1]
 
 
 @kernel
@@ -502,7 +519,8 @@ def _look(table, block, friction, ends, low, high, rise, third, done, start, now
 
     Returns
     -------
-    (x, end, slope) : x = 2 if y does not leave the range; FELL, ROSE or AT_LIMIT; dy/dx
+    (x, end, slope, cos, sin) : x = 2 if y does not leave the range; FELL, ROSE or AT_LIMIT; dy/dx; the load
+        phase there
     """
     n = table.shape[0] - 1
     (y, dy), (y1, dy1) = ends
@@ -514,14 +532,16 @@ def _look(table, block, friction, ends, low, high, rise, third, done, start, now
         if falls or rises:
             sign, level = (1.0, low) if falls else (-1.0, high)
             x = cubic_root(sign * (y - level), sign * dy, sign * (y1 - level), sign * dy1)
-            found, x, slope = _at_crossing(
+            found, x, slope, c, s = _at_crossing(
                 block, n, friction, level, x, done, start, now, state, scratch.next
             )
             if found:
-                return x, FELL if falls else ROSE, slope
+                return x, FELL if falls else ROSE, slope, c, s
             _copy(scratch.next, state, n)
     step_on(table, n, friction, state, scratch.next, now[0], now[1])
-    return leave_range(table, friction, low, high, rise, done, start, now, state, scratch)
+    x, end, slope = leave_range(table, friction, low, high, rise, done, start, now, state, scratch)
+    c, s = turned(start[0], start[1], (done + x) * block[STEP])
+    return x, end, slope, c, s
 
 
 @kernel
@@ -582,9 +602,9 @@ def scan(table, block, friction, low, high, rise, state, c, s, limit, scratch):
             here = before
             continue
         remaining = min(limit - done, 1.0)
-        x, end, slope = 2.0, AT_LIMIT, 0.0
+        x, end, slope, exit_c, exit_s = 2.0, AT_LIMIT, 0.0, c, s
         if steps == passed:
-            x, end, slope = _look(
+            x, end, slope, exit_c, exit_s = _look(
                 table, block, friction, (before, after), low, high, rise if from_rest else STARTS_INSIDE,
                 third, done, start, (c, s), state, scratch,
             )  # fmt: skip
@@ -593,10 +613,10 @@ def scan(table, block, friction, low, high, rise, state, c, s, limit, scratch):
         if x > remaining and remaining < 1.0:
             x, end = remaining, AT_LIMIT
             _move_inside(block, n, friction, scratch.next, c, s, x, state)
+            exit_c, exit_s = turned(start[0], start[1], (done + x) * block[STEP])
         if x <= remaining:
-            c, s = turned(start[0], start[1], (done + x) * block[STEP])
             scratch.left[0] = left - done - 1.0
-            return done + x, end, c, s, slope
+            return done + x, end, exit_c, exit_s, slope
         turn_c, turn_s = block[TURNS], block[TURNS + LANES]
         c, s = turn_c * c - turn_s * s, turn_c * s + turn_s * c
         done += 1.0
@@ -605,3 +625,48 @@ def scan(table, block, friction, low, high, rise, state, c, s, limit, scratch):
         here = after
     scratch.left[0] = left - done - 1.0
     return done, FAILED, c, s, 0.0
+
+
+@kernel
+def extremes(table, block, friction, state, c, s, steps):
+    """Least minimum and largest maximum of y among the nodes inside the next scan steps.
+
+    Parameters
+    ----------
+    table, block : the oscillators
+    friction : friction force on the oscillators
+    state : (2, padded(n)) state at the present node, moved on
+    c, s : cosine and sine of the load phase there
+    steps : scan steps, including a fraction
+
+    Returns
+    -------
+    (low, high) : inf and -inf where there are none
+    """
+    n = table.shape[0] - 1
+    low, high = math.inf, -math.inf
+    y0, _, _, _ = _derivatives(block, n, friction, state, c, s)
+    before = y0
+    inside = -2  # the present node has none before it
+    turn_c, turn_s = block[TURNS + LANES - 1], block[TURNS + 2 * LANES - 1]
+    left = int(steps)
+    while left > 0:
+        y, _ = _at_nodes(block, n, friction, state, c, s)
+        here = delayed(y0, y)
+        earlier = delayed(before, here)
+        inside &= (1 << min(left, LANES)) - 1
+        lows = inside & ~(mask_above(here, earlier) | mask_above(here, y))
+        highs = inside & ~(mask_above(earlier, here) | mask_above(y, here))
+        if lows | highs != 0:
+            for k in range(LANES):
+                if lows >> k & 1 != 0:
+                    low = min(low, lane(here, k))
+                if highs >> k & 1 != 0:
+                    high = max(high, lane(here, k))
+        before, y0 = lane(here, LANES - 1), lane(y, LANES - 1)
+        inside = -1
+        left -= LANES
+        if left > 0:
+            _jump(block, n, LANES, friction, state, c, s)
+            c, s = turn_c * c - turn_s * s, turn_c * s + turn_s * c
+    return low, high

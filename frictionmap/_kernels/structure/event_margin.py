@@ -11,47 +11,14 @@ import math
 
 from ..compiler import kernel
 from ..event_codes import REVERSE, STOP_THEN_BACK, STOP_THEN_ON
+from .block import extremes
 from .events import UNDER_WAY, after_slide, slide_on
 from .newton import copy_state
-from .oscillators import F1, FC, FELL, FS, YC, YS, D, K, derivatives, step_on, turned
+from .oscillators import F1, FC, FELL, FS, D, K, derivatives, turned
 from .state import LOAD, LOAD_RATE, contact_displacement, contact_load, hold
 
 #: Longest slide or stop of an orbit, in tau: the longest period that is looked for.
 _LONGEST = 512.0 * math.pi
-
-
-@kernel
-def _extremes(table, friction, state, c, s, steps, h, before):
-    """Least minimum and largest maximum of the watched sum among the nodes inside `steps` scan steps.
-
-    Parameters
-    ----------
-    table : (n + 1, COLUMNS) table of oscillators
-    friction : friction force on them
-    state : (2, padded(n)) state at the start, moved on
-    c, s : cosine and sine of the load phase there
-    steps : scan steps, including a fraction
-    h : scan step in tau
-    before : (2, padded(n)) work array
-
-    Returns
-    -------
-    (low, high) : inf and -inf where there are none
-    """
-    n = table.shape[0] - 1
-    turn_c, turn_s = math.cos(h), math.sin(h)
-    low, high = math.inf, -math.inf
-    earlier = last = math.nan
-    for _ in range(int(steps)):
-        y = step_on(table, n, friction, state, before, c, s)
-        c, s = turn_c * c - turn_s * s, turn_c * s + turn_s * c
-        y += table[n, YC] * c + table[n, YS] * s
-        if last <= earlier and last <= y:
-            low = min(low, last)
-        if last >= earlier and last >= y:
-            high = max(high, last)
-        earlier, last = last, y
-    return low, high
 
 
 @kernel
@@ -73,7 +40,7 @@ def _passed_by(slope, bend):
 
 
 @kernel
-def _slide_margin(st, beta, mu_beta, begin, began, steps, state, c, s, scratch):
+def _slide_margin(st, beta, mu_beta, begin, began, steps, state, c, s):
     """Margin of a slide and of what follows its end, as an energy norm.
 
     Parameters
@@ -84,10 +51,9 @@ def _slide_margin(st, beta, mu_beta, begin, began, steps, state, c, s, scratch):
     began : load phase (cos, sin) at the start
     steps : scan steps of the slide
     c, s : cosine and sine of the load phase at the end
-    scratch : Scratch
     """
     per_speed = st.rate / math.sqrt(st.inverse_mass)  # energy per velocity in one scan step
-    low, _ = _extremes(st.free, beta, begin, began[0], began[1], steps, st.h, scratch.next)
+    low, _ = extremes(st.free, st.free_block, beta, begin, began[0], began[1], steps)
     _, slope, bend, _ = derivatives(st.free, beta, state, c, s)
     load = contact_load(st, state, c, s)
     # the end moves in time, and the load with it
@@ -98,7 +64,7 @@ def _slide_margin(st, beta, mu_beta, begin, began, steps, state, c, s, scratch):
 
 
 @kernel
-def _stop_margin(st, mu_beta, begin, c, s, wait, held, scratch):
+def _stop_margin(st, mu_beta, begin, c, s, wait, held):
     """Margin of a stop, as an energy norm.
 
     Parameters
@@ -109,7 +75,6 @@ def _stop_margin(st, mu_beta, begin, c, s, wait, held, scratch):
     c, s : cosine and sine of the load phase there
     wait : duration in tau
     held : (2, m) held state at the end, overwritten
-    scratch : Scratch
     """
     z = contact_displacement(st, begin, c, s)
     level = st.stiffness * z
@@ -117,7 +82,7 @@ def _stop_margin(st, mu_beta, begin, c, s, wait, held, scratch):
     _, slope, bend, _ = derivatives(st.held, 0.0, held, c_end, s_end)
     release = _passed_by(slope, -bend if slope > 0.0 else bend)
     hold(st, begin, z, c, s, held)
-    low, high = _extremes(st.held, 0.0, held, c, s, wait / st.h, st.h, scratch.next)
+    low, high = extremes(st.held, st.held_block, 0.0, held, c, s, wait / st.h)
     return min(release, mu_beta - level - high, mu_beta + level + low) / st.reach
 
 
@@ -147,16 +112,14 @@ def event_margin(st, beta, mu_beta, state, c, s, slides, work, scratch):
         steps, end, c, s, _ = slide_on(st, beta, contact_force, state, c, s, _LONGEST / st.h, scratch)
         if end != FELL:
             return 0.0
-        margin = min(margin, _slide_margin(st, beta, mu_beta, work.trial, began, steps, state, c, s, scratch))
+        margin = min(margin, _slide_margin(st, beta, mu_beta, work.trial, began, steps, state, c, s))
         copy_state(state, work.trial, st.n)
         ended = (c, s)
         event, c, s, contact_force, wait, _, _ = after_slide(
             st, beta, mu_beta, state, work.held, c, s, _LONGEST, scratch
         )
         if event == STOP_THEN_BACK or event == STOP_THEN_ON:
-            margin = min(
-                margin, _stop_margin(st, mu_beta, work.trial, ended[0], ended[1], wait, work.held, scratch)
-            )
+            margin = min(margin, _stop_margin(st, mu_beta, work.trial, ended[0], ended[1], wait, work.held))
         elif event != REVERSE:
             return 0.0
     return margin

@@ -28,9 +28,6 @@ LONGEST_SEQUENCE = 64
 HALVES, PHASE_COS, PHASE_SIN, SIDE, SLIDES, BETA, EARLIER_BETA = 0, 1, 2, 3, 4, 5, 6
 ANCHORED = 7
 
-#: Squarings of the derivative for its spectral radius: the root of this power is exact to rounding.
-_SQUARINGS = 40
-
 _TURN = 2.0 * math.pi
 
 
@@ -323,69 +320,6 @@ def solve_linear(matrix, right, n):
             right[k] -= matrix[k, j] * right[j]
         right[k] /= matrix[k, k]
     return True
-
-
-@kernel
-def _frobenius(matrix, n):
-    """Root of the sum of the squares of the entries of a matrix."""
-    total = 0.0
-    for i in range(n):
-        for j in range(n):
-            total += matrix[i, j] * matrix[i, j]
-    return math.sqrt(total)
-
-
-@kernel
-def spectral_radius(matrix, n, a, precision):
-    """Largest modulus of the eigenvalues, from the root of the norm of a high power.
-
-    The root never increases from one squaring to the next, and never falls below the radius.
-
-    Parameters
-    ----------
-    matrix : (n, n), overwritten
-    n : its size
-    a : (n, n) scratch
-    precision : error allowed, relative to the distance of the radius from 1, if it is below 1; 0 for rounding
-    """
-    log = 0.0
-    power = 1.0
-    last = math.inf
-    for squarings in range(_SQUARINGS + 1):
-        norm = _frobenius(matrix, n)
-        if norm == 0.0:
-            return 0.0
-        log += math.log(norm)
-        radius = math.exp(log / power)
-        # the error halves with every squaring
-        if squarings == _SQUARINGS or (radius < 1.0 and last - radius <= precision * (1.0 - radius)):
-            return radius
-        last = radius
-        log *= 2.0
-        power *= 2.0
-        for i in range(n):
-            for j in range(n):
-                a[i, j] = matrix[i, j] / norm
-        for i in range(n):
-            for j in range(n):
-                matrix[i, j] = 0.0
-            for k in range(n):
-                for j in range(n):
-                    matrix[i, j] += a[i, k] * a[k, j]
-    return last
-
-
-@kernel
-def contracts(matrix, n, a):
-    """Whether all eigenvalues of a matrix lie inside the unit circle.
-
-    Parameters
-    ----------
-    matrix : (n, n), overwritten
-    n : its size
-    a : (n, n) scratch
-    """
-    return spectral_radius(matrix, n, a, math.inf) < 1.0
 
 
 @kernel

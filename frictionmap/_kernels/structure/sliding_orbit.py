@@ -7,7 +7,7 @@ import numpy as np
 
 from ..closed_form import decay
 from ..compiler import kernel
-from ..continuous_motion import since_maximum
+from ..continuous_motion import least_deviation, since_maximum
 from .oscillators import OW, OZ, YC, YS, bounds, step_on, watch_load
 from .state import DAMPING, LOAD, LOAD_RATE, PUSH, W, contact_load
 
@@ -59,9 +59,8 @@ def orbit_state(st, orbit, i, beta, phase, c, s, out):
 def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, before):
     """Distance (energy norm) from the continuous orbit within which no motion can stop.
 
-    A stop at distance eps requires |z'| <= a eps and |load| <= mu beta + b eps on the orbit, by the
-    Cauchy-Schwarz inequality; the least maximum of both over half a period is bounded below from scan steps
-    and curvature.
+    A stop requires a deviation that makes z' zero and |load| at most mu beta at the same time; the least one
+    over half a period is bounded below from scan steps and curvature.
 
     Parameters
     ----------
@@ -97,7 +96,8 @@ def stop_free_radius(st, orbit, i, beta, mu_beta, phase, loaded, state, before):
         fast = fast_per * (min(speed, speed1) - 0.125 * curve)
         # a load that changes sign within the step is zero there
         least = min(abs(load), abs(load1)) if load * load1 > 0.0 else 0.0
-        radius = min(radius, max(fast, (least - 0.125 * bend - mu_beta) / st.reach))
+        loaded = (least - 0.125 * bend - mu_beta) / st.reach
+        radius = min(radius, least_deviation(fast, loaded, st.overlap))
         curve += curve_growth
         bend += bend_growth
         speed = speed1

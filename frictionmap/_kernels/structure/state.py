@@ -64,6 +64,7 @@ class StructureAtFrequency(NamedTuple):
     inverse_mass: float  # 1/m_eff
     stiffness: float  # static stiffness at the contact
     reach: float  # largest load in the contact of a motion of unit energy
+    overlap: float  # cosine of the angle in this norm between motions with the most load, and the most speed
     norm: float  # upper bound on the energy norm over that of the free oscillators; 1 for modes
     free_cos: float  # load in the contact while it slides, without the oscillators' part
     free_sin: float
@@ -91,6 +92,7 @@ class Model(NamedTuple):
     inverse_mass: float
     stiffness: float
     reach: float
+    overlap: float
     norm: float
 
 
@@ -211,7 +213,8 @@ def make_structure(model, loads, i, r, steps):
     load_cos, load_sin = _feedthrough(modes, LOAD_RATE)
     displacement_cos, displacement_sin = _feedthrough(modes, Z_RATE)
     return StructureAtFrequency(
-        n, m, r, h, r / h, terms, model.inverse_mass, model.stiffness, model.reach, model.norm,
+        n, m, r, h, r / h, terms, model.inverse_mass, model.stiffness, model.reach,
+        model.overlap, model.norm,
         load_cos - loads.contact_cos[i], load_sin - loads.contact_sin[i], displacement_cos, displacement_sin,
         modes, free, held, free_block, held_block, feedthrough,
         _in_columns(model.to_held.T, 2 * n, 2, m), _in_columns(model.to_free.T, 2 * m, 2, n),

@@ -3,7 +3,7 @@
 from .compiler import kernel
 
 #: Cells that point to the next one, and the farthest that it may be, in steps between the last two.
-CELLS = 3
+CELLS = 5
 _FARTHEST = 3.0
 
 

@@ -1,10 +1,13 @@
 """Other solvers on the same cells: time against error.
 
 Random stick-slip cells of every scene with rigid contacts, from rest, mu = 1.  frictionmap ends when the
-steady state is found, and computes all constants of a cell again.  For one mass the other solvers march 200
-periods, as in the thesis.  For more masses they are given the number of periods after which a disturbance has
-decayed to 1e-10, by the multiplier that frictionmap computes, and ten more.  Cells that need more than 200
-periods, or more than `_MOST_PERIODS` with more masses, are left out.
+steady state is found, and computes all constants of a cell again.  In a map it begins at the steady states of
+the cells beside: the time of a cell in rows of a map at the same frequencies is given, too.
+
+For one mass the other solvers march 200 periods, as in the thesis.  For more masses they are given the
+number of periods after which a disturbance has decayed to 1e-10, by the multiplier that frictionmap computes,
+and ten more.  Cells that need more than 200 periods, or more than `_MOST_PERIODS` with more masses, are left
+out.
 
 Errors are those of the ranges max z - min z of the contacts, over the largest range in the cell, relative to
 frictionmap.  The tests compare frictionmap with steady states that were computed by independent programs.
@@ -16,16 +19,21 @@ from typing import NamedTuple
 
 import numpy as np
 
+import frictionmap as fm
+
 from ...peers import heyoka, moreau, solve_ivp
 from ...peers.contacts import ContactBody, ContactCell, ContactOutcome, ContactPeer, largest_difference
 from ...report.record import spread, table, timed
 from .cost import stick_slip_range
-from .kernels import Found, single_cells
+from .kernels import Found, map_row, open_share, single_cells
 from .scenes import E1, E2, FIVE, ONE, SCENES, SQUARE, TWO, Scene
 
 #: Scenes that are compared, and cells of each, by quick.
 COMPARED = (ONE, TWO, SQUARE, FIVE, E1, E2)
 _CELLS = {False: 3, True: 1}
+
+#: Cells of a row of a map.
+_ROW = 200
 
 #: Periods that are marched: one mass; more masses, at most.
 _THESIS = 200
@@ -80,6 +88,8 @@ class _Sample(NamedTuple):
     periods: list[int]
     solve: Callable[[], None]
     found: Found
+    rows: Callable[[], None]  # solves rows of a map at the same frequencies
+    in_rows: int  # stick-slip cells in these
 
 
 def periods_needed(multiplier: float) -> int:
@@ -87,6 +97,24 @@ def periods_needed(multiplier: float) -> int:
     if not multiplier > 0.0:
         return _EXTRA
     return _EXTRA + math.ceil(math.log(_DECAYED) / math.log(min(multiplier, 1.0 - 1e-12)))
+
+
+def _rows_at(system: fm.System, frequencies: list[float]) -> tuple[Callable[[], None], int]:
+    """Function that solves a row of a map at each frequency; the stick-slip cells in them."""
+    solvers, cells = [], 0
+    for r in frequencies:
+        ends = stick_slip_range(system, r)
+        if ends is not None:
+            solve, row = map_row(system, r, np.linspace(*ends, _ROW))
+            solve()
+            solvers.append(solve)
+            cells += int(open_share(row).sum())
+
+    def solve_all() -> None:
+        for solve in solvers:
+            solve()
+
+    return solve_all, cells
 
 
 def _sample(scene: Scene, quick: bool, rng: np.random.Generator) -> tuple[_Sample, int]:
@@ -112,7 +140,7 @@ def _sample(scene: Scene, quick: bool, rng: np.random.Generator) -> tuple[_Sampl
         periods.append(needed if scene.body.masses > 1 else _THESIS)
     solve, found = single_cells(system, *(np.array(column) for column in zip(*cells, strict=True)))
     solve()
-    return _Sample(cells, periods, solve, found), left_out
+    return _Sample(cells, periods, solve, found, *_rows_at(system, [cell.r for cell in cells])), left_out
 
 
 def _outcomes(peer: ContactPeer, sample: _Sample) -> list[ContactOutcome | None]:
@@ -153,6 +181,7 @@ def _point(peer: ContactPeer, sample: _Sample, runs: int) -> dict:
 def _measure(scene: Scene, sample: _Sample, quick: bool) -> dict:
     """Times and errors of all solvers on the cells of a scene."""
     ours = spread([timed(sample.solve)[0] / len(sample.cells) for _ in range(_OURS[quick])])
+    in_rows = spread([timed(sample.rows)[0] / sample.in_rows for _ in range(_THEIRS[quick])])
     methods: dict[str, dict] = {}
     for method in METHODS:
         why = method.kind.why_missing()
@@ -163,12 +192,13 @@ def _measure(scene: Scene, sample: _Sample, quick: bool) -> dict:
         points = []
         for setting in method.quick if quick else method.settings:
             point = _point(method.make(scene.body, setting), sample, _THEIRS[quick])
-            ratio = point["seconds a cell"]["median"] / ours["median"]
-            points.append({method.setting: setting, **point, "ratio": ratio})
+            theirs = point["seconds a cell"]["median"]
+            ratios = {"ratio": theirs / ours["median"], "ratio in rows": theirs / in_rows["median"]}
+            points.append({method.setting: setting, **point, **ratios})
         methods[method.kind.name] = {
             "version": method.kind.version(), "setting": method.setting, "points": points
         }  # fmt: skip
-    return {"our seconds a cell": ours, "methods": methods}
+    return {"our seconds a cell": ours, "our seconds a cell in rows": in_rows, "methods": methods}
 
 
 def _rows(name: str, entry: dict) -> list[tuple]:
@@ -181,7 +211,8 @@ def _rows(name: str, entry: dict) -> list[tuple]:
                 (
                     name, f"{method}, {found['setting']} {point[found['setting']]:.3g}",
                     1e3 * point["seconds a cell"]["median"], 1e6 * entry["our seconds a cell"]["median"],
-                    f"{point['ratio']:,.0f}", float(np.median(errors)) if errors else math.nan,
+                    f"{point['ratio']:,.0f}", f"{point['ratio in rows']:,.0f}",
+                    float(np.median(errors)) if errors else math.nan,
                     max(errors, default=math.nan), point["cells with other stop counts"],
                 )
             )  # fmt: skip
@@ -204,8 +235,6 @@ def other_solvers(quick: bool) -> dict:
             **_measure(scene, sample, quick),
         }
         rows += _rows(name, content[name])
-    table(
-        ("cells", "solver", "ms a cell", "ours, us", "ratio", "error, median", "largest", "other stops"),
-        rows,
-    )
+    heads = "cells", "solver", "ms a cell", "ours, us", "ratio", "in rows", "error, median", "largest"
+    table((*heads, "other stops"), rows)
     return content

@@ -1,9 +1,11 @@
 """Arrays as labelled variables, and datasets with their global attributes."""
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 import xarray as xr
+from xarray.indexes import PandasIndex
 
 from ..model.settings import Solver
 from ..model.system import System
@@ -12,6 +14,9 @@ from ..version import __version__
 from .labels import BESIDE, COORDINATES, REFERENCES, attributes, labels_of
 from .provenance import excitation_of, made_by
 
+#: Indexes that are kept, and the most values of an axis whose index is.
+_KEPT_INDEXES, _LONGEST_KEPT = 16, 4096
+
 
 def coordinate(name: str, values: np.ndarray | float) -> xr.Variable:
     """Build a labelled axis, or a labelled scalar."""
@@ -19,6 +24,28 @@ def coordinate(name: str, values: np.ndarray | float) -> xr.Variable:
     dims = label.dims if np.ndim(values) else ()
     units = {} if label.texts else {"units": label.units}
     return xr.Variable(dims, values, {"long_name": label.long_name, **units})
+
+
+@lru_cache(maxsize=_KEPT_INDEXES)
+def _index(dim: str, dtype: str, values: bytes) -> PandasIndex:
+    """Index of an axis with these values."""
+    return PandasIndex(np.frombuffer(values, dtype), dim)
+
+
+def indexed(axes: Mapping[str, xr.Variable]) -> xr.Coordinates:
+    """Coordinates of axes, one dimension each.
+
+    The indexes of short axes are kept between calls: to build three of them takes as long as to compute a few
+    cells of one mass.
+    """
+    indexes, variables = {}, {}
+    for name, axis in axes.items():
+        if axis.size > _LONGEST_KEPT:
+            indexes[name] = PandasIndex(axis.values, name)
+        else:
+            indexes[name] = _index(name, axis.dtype.str, axis.values.tobytes())
+        variables |= indexes[name].create_variables({name: axis})
+    return xr.Coordinates(variables, indexes=indexes)
 
 
 def coordinate_of_study(dim: str, meaning: str, values: np.ndarray) -> xr.Variable:

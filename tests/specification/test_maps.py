@@ -272,3 +272,24 @@ def test_memory_of_a_large_map():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert int(done.stdout) < 1024 * 1024  # kB
+
+
+def test_maps_share_no_labels():
+    """Indexes of axes are kept between calls; what belongs to a dataset is its own."""
+    axes = [0.4, 0.9], [0.2, 0.6], [1.0, 1.5]
+    first = fm.sweep(fm.System(), *axes, outputs=("regime", "amplitude"))
+    kept = first.copy(deep=True)
+    plain = xr.Dataset(
+        {name: first[name].variable for name in first.data_vars},
+        {name: (name, first[name].values.copy(), first[name].attrs) for name in first.coords},
+        first.attrs,
+    )
+    assert first.identical(plain)
+    first.r.attrs["long_name"] = "changed"
+    first["r"] = first.r * 2.0
+    second = fm.sweep(fm.System(), *axes, outputs=("regime", "amplitude"))
+    assert second.drop_attrs().identical(kept.drop_attrs())
+    assert second.r.attrs == kept.r.attrs
+    assert second.sel(r=0.9, beta=0.2, mu=1.5).r == 0.9
+    longer = fm.sweep(fm.System(), np.linspace(0.3, 0.9, 5000), [0.2], [1.2])
+    assert longer.sel(r=0.9).r == 0.9

@@ -1,6 +1,6 @@
 """Arrays as labelled variables, and datasets with their global attributes."""
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from functools import lru_cache
 
 import numpy as np
@@ -38,7 +38,8 @@ def indexed(axes: Mapping[str, xr.Variable]) -> xr.Coordinates:
     The indexes of short axes are kept between calls: to build three of them takes as long as to compute a few
     cells of one mass.
     """
-    indexes, variables = {}, {}
+    indexes: dict[str, PandasIndex] = {}
+    variables: dict[Hashable, xr.Variable] = {}
     for name, axis in axes.items():
         if axis.size > _LONGEST_KEPT:
             indexes[name] = PandasIndex(axis.values, name)

@@ -308,6 +308,9 @@ def _steps_inside(block, n, friction, state, c, s, here, low, high, fourth, firs
         if first == 1 and lane(y, 0) + 0.125 * second < high:
             inside = inside | 1
     passed = LEADING[inside]
+    if passed == LANES:  # a lane that is known in advance is read from its register
+        there = (lane(y, LANES - 1), lane(slope, LANES - 1))
+        return passed, there, there
     after = min(passed, LANES - 1)
     there = (lane(y, after), lane(slope, after))
     if passed == 0:

@@ -137,8 +137,8 @@ def general_lines(general: dict) -> list[str]:
         "Errors are those of max z - min z in the contacts, relative to frictionmap.",
         *markdown(
             (
-                "stick-slip cell", "solver", "frictionmap, from rest", "in a row", "other solver", "ratio",
-                "in a row", "error", "different stop counts",
+                "stick-slip cell", "solver", "frictionmap, from rest", "frictionmap, in a row",
+                "other solver", "ratio, from rest", "ratio, in a row", "error", "different stop counts",
             ),
             list(_solver_rows(general)),
         ),

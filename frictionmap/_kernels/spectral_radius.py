@@ -4,7 +4,7 @@ import math
 
 from .compiler import kernel
 
-#: Squarings at most: the root of the norm of this power is exact to rounding, and relative error that is.
+#: Squarings at most, and the relative error that is allowed: that of the root of the norm of the last power.
 _SQUARINGS = 40
 _EXACT = 2.0**-_SQUARINGS
 
@@ -80,6 +80,7 @@ def _of_two(a, square, n, power):
     radius = 0.5 * (abs(sum_) + gap) if square_gap >= 0.0 else math.sqrt(product)
     move = _EXACT * power * radius  # allowed of the larger root; of a double one it is the square root
     allowed = radius * move * max(gap, move)
+    # a sum of n products has this rounding error, so that less cannot be shown
     if not max(abs(three), n * _EPS) <= allowed:
         return -1.0
     return radius if _miss(a, square, n, sum_, product) <= allowed else -1.0
@@ -90,7 +91,8 @@ def spectral_radius(matrix, n, a, precision):
     """Largest modulus of the eigenvalues, from a high power: its own where two eigenvalues are left, else
     the root of its norm.
 
-    The root of the norm never increases from one squaring to the next, and never falls below the radius.
+    The root of the norm never increases from one squaring to the next, and never falls below the radius.  A
+    double eigenvalue of a defective matrix is exact to 1e-6 only, as the squarings amplify rounding errors.
 
     Parameters
     ----------

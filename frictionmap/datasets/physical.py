@@ -23,8 +23,8 @@ def with_units(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
     The ratios are unchanged; the names of the added variables end in their unit.
     """
     known = scale_attributes(scales)
-    given = [name for name, unit in KINDS.items() if getattr(scales, unit) is not None and name in ds.coords]
-    axes = physical_axes({name: ds[name].values for name in given}, scales)
+    own = ds.variables  # ds[name] would build an array with coordinates
+    axes = physical_axes({name: own[name].values for name in KINDS if name in own}, scales)
     if not known and not axes:
         return ds  # a copy would take a third of the time of a small map
     return in_si_too(ds.assign_attrs(known).assign_coords(axes))

@@ -158,7 +158,7 @@ def next_events(st, beta, mu_beta, state, c, s, count, work, scratch):
 
 
 def _of_eigenvalues(rng, values, orthogonal):
-    """A real matrix with these eigenvalues, complex ones with their conjugates."""
+    """A real matrix with these eigenvalues, complex ones with their conjugates; condition of the basis."""
     blocks = [
         np.array([[v.real, v.imag], [-v.imag, v.real]]) if np.iscomplex(v) else np.array([[v.real]])
         for v in np.atleast_1d(values).astype(complex)
@@ -169,7 +169,7 @@ def _of_eigenvalues(rng, values, orthogonal):
         matrix[at : at + block.shape[0], at : at + block.shape[0]] = block
         at += block.shape[0]
     basis = np.linalg.qr(rng.normal(size=(n, n)))[0] if orthogonal else rng.normal(size=(n, n))
-    return basis @ matrix @ np.linalg.inv(basis)
+    return basis @ matrix @ np.linalg.inv(basis), np.linalg.cond(basis)
 
 
 def test_spectral_radius():
@@ -199,14 +199,26 @@ def test_spectral_radius():
 )  # fmt: skip
 @pytest.mark.parametrize("orthogonal", [True, False])
 def test_spectral_radius_of_known_eigenvalues(values, orthogonal):
-    """Simple, double, complex, close and equal in size; defective ones by a small eigenvalue of another."""
+    """Simple, double, complex ones, some of them close or of the same modulus."""
     rng = np.random.default_rng(5)
     exact = np.abs(values).max()
     for _ in range(10):
-        matrix = _of_eigenvalues(rng, values, orthogonal)
+        matrix, condition = _of_eigenvalues(rng, values, orthogonal)
         n = matrix.shape[0]
-        error = 1e-11 * (1.0 if orthogonal else np.linalg.cond(np.linalg.eig(matrix)[1]))
-        assert spectral_radius(matrix.copy(), n, np.empty((n, n)), 0.0) == pytest.approx(exact, rel=error)
+        found = spectral_radius(matrix, n, np.empty((n, n)), 0.0)
+        assert found == pytest.approx(exact, rel=1e-11 * condition)
+
+
+@pytest.mark.parametrize("others", [[], [0.5], [0.9, 0.1]])
+def test_spectral_radius_of_a_defective_matrix(others):
+    """A Jordan block: rounding errors of every squaring split the double eigenvalue."""
+    basis = np.linalg.qr(np.random.default_rng(6).normal(size=(2 + len(others),) * 2))[0]
+    matrix = np.diag([0.9, 0.9, *others])
+    matrix[0, 1] = 1.0
+    matrix = basis @ matrix @ basis.T
+    n = matrix.shape[0]
+    # 2e-7 to 1.1e-6 over random bases, as from the norm of the last power alone
+    assert spectral_radius(matrix, n, np.empty((n, n)), 0.0) == pytest.approx(0.9, rel=5e-6)
 
 
 def test_steady_states_are_stable_and_antiperiodic_where_unique():

@@ -19,13 +19,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-import frictionmap as fm
-
 from ...peers import heyoka, moreau, solve_ivp
 from ...peers.contacts import ContactBody, ContactCell, ContactOutcome, ContactPeer, largest_difference
 from ...report.record import spread, table, timed
-from .cost import stick_slip_range
-from .kernels import Found, map_row, open_share, single_cells
+from .cost import Row, rows_at, seconds_a_cell, stick_slip_range
+from .kernels import Found, single_cells
 from .scenes import E1, E2, FIVE, ONE, SCENES, SQUARE, TWO, Scene
 
 #: Scenes that are compared, and cells of each, by quick.
@@ -88,8 +86,7 @@ class _Sample(NamedTuple):
     periods: list[int]
     solve: Callable[[], None]
     found: Found
-    rows: Callable[[], None]  # solves rows of a map at the same frequencies
-    in_rows: int  # stick-slip cells in these
+    rows: list[Row]  # of a map, at the same frequencies
 
 
 def periods_needed(multiplier: float) -> int:
@@ -97,24 +94,6 @@ def periods_needed(multiplier: float) -> int:
     if not multiplier > 0.0:
         return _EXTRA
     return _EXTRA + math.ceil(math.log(_DECAYED) / math.log(min(multiplier, 1.0 - 1e-12)))
-
-
-def _rows_at(system: fm.System, frequencies: list[float]) -> tuple[Callable[[], None], int]:
-    """Function that solves a row of a map at each frequency; the stick-slip cells in them."""
-    solvers, cells = [], 0
-    for r in frequencies:
-        ends = stick_slip_range(system, r)
-        if ends is not None:
-            solve, row = map_row(system, r, np.linspace(*ends, _ROW))
-            solve()
-            solvers.append(solve)
-            cells += int(open_share(row).sum())
-
-    def solve_all() -> None:
-        for solve in solvers:
-            solve()
-
-    return solve_all, cells
 
 
 def _sample(scene: Scene, quick: bool, rng: np.random.Generator) -> tuple[_Sample, int]:
@@ -140,7 +119,8 @@ def _sample(scene: Scene, quick: bool, rng: np.random.Generator) -> tuple[_Sampl
         periods.append(needed if scene.body.masses > 1 else _THESIS)
     solve, found = single_cells(system, *(np.array(column) for column in zip(*cells, strict=True)))
     solve()
-    return _Sample(cells, periods, solve, found, *_rows_at(system, [cell.r for cell in cells])), left_out
+    rows = rows_at(system, [cell.r for cell in cells], _ROW)
+    return _Sample(cells, periods, solve, found, rows), left_out
 
 
 def _outcomes(peer: ContactPeer, sample: _Sample) -> list[ContactOutcome | None]:
@@ -181,7 +161,7 @@ def _point(peer: ContactPeer, sample: _Sample, runs: int) -> dict:
 def _measure(scene: Scene, sample: _Sample, quick: bool) -> dict:
     """Times and errors of all solvers on the cells of a scene."""
     ours = spread([timed(sample.solve)[0] / len(sample.cells) for _ in range(_OURS[quick])])
-    in_rows = spread([timed(sample.rows)[0] / sample.in_rows for _ in range(_THEIRS[quick])])
+    in_rows = spread([seconds_a_cell(sample.rows) for _ in range(_THEIRS[quick])])
     methods: dict[str, dict] = {}
     for method in METHODS:
         why = method.kind.why_missing()

@@ -5,7 +5,7 @@ neighbour in beta.  Its friction ratios cover the longest range of stick-slip at
 nearly every cell of the row is one.  The boundaries of the frequency are not part of the time, see `whole`.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +35,7 @@ _COARSE, _LARGEST = 64, 4.0
 _CONTACTS = range(1, 9)
 _MANY = (0.25, 1.5)  # frequencies of the systems with many contacts
 
-_Row = tuple[Callable[[], None], np.ndarray]
+Row = tuple[Callable[[], None], np.ndarray]
 
 
 def _longest_run(flags: np.ndarray) -> tuple[int, int]:
@@ -58,10 +58,10 @@ def stick_slip_range(system: fm.System, r: float) -> tuple[float, float] | None:
     return (float(beta[first]), float(beta[last])) if last > first else None
 
 
-def _rows(system: fm.System, frequencies: tuple[float, float], count: int, cells: int) -> list[_Row]:
-    """Rows at frequencies in geometric progression, as functions that solve them, with their cells."""
+def rows_at(system: fm.System, frequencies: Iterable[float], cells: int) -> list[Row]:
+    """Rows at these frequencies, as functions that solve them, with whether each cell is open."""
     found = []
-    for r in np.geomspace(*frequencies, count):
+    for r in frequencies:
         ends = stick_slip_range(system, float(r))
         if ends is not None:
             solve, out = map_row(system, float(r), np.linspace(*ends, cells))
@@ -70,13 +70,18 @@ def _rows(system: fm.System, frequencies: tuple[float, float], count: int, cells
     return found
 
 
+def seconds_a_cell(rows: list[Row]) -> float:
+    """Time to solve rows, over their open cells."""
+    return sum(timed(solve)[0] for solve, _ in rows) / int(sum(flags.sum() for _, flags in rows))
+
+
 def _cell_cost(system: fm.System, frequencies: tuple[float, float], count: _Count) -> dict:
     """Time per stick-slip cell of all rows, over rounds."""
-    rows = _rows(system, frequencies, count.rows, count.cells)
+    rows = rows_at(system, np.geomspace(*frequencies, count.rows), count.cells)
     cells = int(sum(flags.sum() for _, flags in rows))
     seconds = []
     for _ in range(count.rounds):
-        seconds.append(sum(timed(solve)[0] for solve, _ in rows) / cells)
+        seconds.append(seconds_a_cell(rows))
     return {
         "rows": len(rows),
         "cells": int(sum(flags.size for _, flags in rows)),

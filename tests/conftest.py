@@ -14,6 +14,7 @@ ROOT = Path(__file__).resolve().parent.parent
 # Compiled once for all runs of the tests, wherever the package lies; every state of the kernels has its own.
 os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(tempfile.gettempdir()) / "frictionmap-kernels"))
 os.environ.setdefault("MPLBACKEND", "agg")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the program does, before numpy is imported
 
 # A shell lets what it starts in the background ignore interrupts, and children inherit that: tests send some.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

@@ -1,6 +1,7 @@
 """The fall-back of the compiler: another numba, or a forced choice, costs compile time and no answers."""
 
 import ast
+import gc
 import json
 import os
 import re
@@ -11,6 +12,7 @@ from pathlib import Path
 import example_kernels
 import numba
 import pytest
+from numba.core import event
 
 import frictionmap as fm
 from frictionmap._kernels.closed_form import damping_functions
@@ -174,6 +176,56 @@ def test_a_kernel_that_no_compiler_takes_is_at_fault_itself(caplog):
         decorators.entry(call, keep=False)(1.0)
     assert decorators.compiler_in_use() == "fast"
     assert caplog.messages == []
+
+
+# Python's search for circular garbage
+
+
+def _compile_a_new_entry():
+    """Compile an entry; whether the search was on when compilers were at work."""
+    seen = []
+
+    class Listener(event.Listener):
+        def on_start(self, event):
+            seen.append(gc.isenabled())
+
+        def on_end(self, event):
+            seen.append(gc.isenabled())
+
+    listener = Listener()
+    with event.install_listener("numba:compile", listener):
+        assert decorators.entry(lambda x: x + 1.0, keep=False)(1.0) == 2.0
+    return seen
+
+
+@pytest.mark.parametrize("on", [True, False])
+def test_garbage_is_not_searched_for_during_a_compilation(on):
+    """Afterwards it is again, if it was before."""
+    was_on = gc.isenabled()
+    try:
+        (gc.enable if on else gc.disable)()
+        assert set(_compile_a_new_entry()) == {False}
+        assert gc.isenabled() is on
+    finally:
+        (gc.enable if was_on else gc.disable)()
+
+
+def test_garbage_is_searched_for_after_a_failure():
+    with pytest.raises(numba.TypingError):
+        decorators.entry(lambda x: _wrong(x), keep=False)(1.0)
+    assert gc.isenabled()
+
+
+def test_frozen_objects_stay_frozen():
+    gc.freeze()
+    try:
+        frozen = gc.get_freeze_count()
+        _compile_a_new_entry()
+        assert 0 < gc.get_freeze_count() <= frozen
+    finally:
+        gc.unfreeze()
+    _compile_a_new_entry()
+    assert gc.get_freeze_count() == 0
 
 
 # The choice

@@ -97,8 +97,7 @@ def _store_continuous(out, m, i, last, axes, closed):
 @kernel
 def _fill_closed_row(row, cells, axes, closed, out, further):
     """Fill the cells of one row that closed forms decide; see `fill_closed`."""
-    cells, axes, closed = packed(cells), packed(axes), packed(closed)
-    out, further = packed(out), packed(further)
+    further = packed(further)
     m = row // axes.r.size
     i = row % axes.r.size
     low, high, end = cells.low[row], cells.high[row], axes.beta.size
@@ -130,6 +129,7 @@ def fill_closed(first, last, cells, axes, closed, out, requested):
     out : named tuple of arrays (n_mu, n_r, n_beta, ...), one for every output
     requested : Requested, see `further`
     """
+    cells, axes, closed, out = packed(cells), packed(axes), packed(closed), packed(out)
     for row in range(first, last):
         further = requested_at(requested, row % axes.r.size)
         _fill_closed_row(row, cells, axes, closed, out, further)
@@ -182,8 +182,7 @@ def _fill_cells(place, low, positions, axes, system, motion, limits, moving, out
     motion : a kind of motion
     further : RequestedAtFrequency
     """
-    axes, system, motion = packed(axes), packed(system), packed(motion)
-    out, further = packed(out), packed(further)
+    motion, further = packed(motion), packed(further)
     m, i = place
     for position in range(positions[0], positions[1]):
         if cancel[0] != 0:
@@ -215,6 +214,7 @@ def fill_open(first, last, cells, axes, system, limits, moving, out, requested, 
     requested : Requested, see `further`
     cancel : (1,) set by another thread to end the computation
     """
+    cells, axes, system, out = packed(cells), packed(axes), packed(system), packed(out)
     n_r = axes.r.size
     k = _row_of(cells, first)
     cell = first

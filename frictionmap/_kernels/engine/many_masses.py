@@ -232,11 +232,14 @@ def recurrence_distance(motion, now, then, size, most):
         return turn
     st = motion.st
     one, other = motion.memory.anchors[now], motion.memory.anchors[then]
+    far = 2.0 * (most * size / st.norm) ** 2  # well beyond `most`, so that rounding decides nothing
     total = 0.0
     for i in range(st.n):
         z = one[STATE + i] - other[STATE + i]
         v = one[STATE + st.n + i] - other[STATE + st.n + i]
         total += (st.modes[W, i] * z) ** 2 + (st.rate * v) ** 2
+        if total > far:
+            break
     return turn + st.norm * math.sqrt(total) / size
 
 

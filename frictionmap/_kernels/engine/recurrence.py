@@ -57,15 +57,16 @@ def _nearest(motion, contact_state, events, threshold, longest, shortest):
     memory = motion.memory
     length = memory.events.size
     now = (events - 1) % length
+    event, time = memory.events[now], memory.anchors[now, TIME]
     size = motion_size(motion, contact_state)
     best = Recurrence(0, math.inf, 0)
     returns = 0
     then = now
     for lag in range(1, min(events, length)):
         then = then - 1 if then > 0 else length - 1  # a remainder of a division takes as long as all else
-        if memory.anchors[now, TIME] - memory.anchors[then, TIME] > (longest + 0.5) * math.pi:
+        if time - memory.anchors[then, TIME] > (longest + 0.5) * math.pi:
             break
-        if memory.events[then] != memory.events[now]:
+        if memory.events[then] != event:
             continue
         halves = halves_between(memory, now, then)
         if halves < 1 or full_period(halves) > longest // 2:

@@ -50,7 +50,7 @@ def run() -> int:
         status = int(ending.code or 0)
     status = _flush() or status
     interrupts.ignore()
-    gc.freeze()  # all memory is about to be returned: without a last search for circular garbage (0.2 s)
+    gc.freeze()  # the process ends: a last garbage collection would take 0.2 s
     return status
 
 

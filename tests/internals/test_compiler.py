@@ -178,11 +178,11 @@ def test_a_kernel_that_no_compiler_takes_is_at_fault_itself(caplog):
     assert caplog.messages == []
 
 
-# Python's search for circular garbage
+# Python's garbage collector
 
 
 def _compile_a_new_entry():
-    """Compile an entry; whether the search was on when compilers were at work."""
+    """Compile an entry; whether the collector was on whenever a compilation began or ended."""
     seen = []
 
     class Listener(event.Listener):
@@ -192,15 +192,14 @@ def _compile_a_new_entry():
         def on_end(self, event):
             seen.append(gc.isenabled())
 
-    listener = Listener()
-    with event.install_listener("numba:compile", listener):
+    with event.install_listener("numba:compile", Listener()):
         assert decorators.entry(lambda x: x + 1.0, keep=False)(1.0) == 2.0
     return seen
 
 
 @pytest.mark.parametrize("on", [True, False])
-def test_garbage_is_not_searched_for_during_a_compilation(on):
-    """Afterwards it is again, if it was before."""
+def test_the_garbage_collector_is_off_during_a_compilation(on):
+    """Afterwards it is on again, if it was before."""
     was_on = gc.isenabled()
     try:
         (gc.enable if on else gc.disable)()
@@ -210,7 +209,7 @@ def test_garbage_is_not_searched_for_during_a_compilation(on):
         (gc.enable if was_on else gc.disable)()
 
 
-def test_garbage_is_searched_for_after_a_failure():
+def test_the_garbage_collector_is_on_after_a_failure():
     with pytest.raises(numba.TypingError):
         decorators.entry(lambda x: _wrong(x), keep=False)(1.0)
     assert gc.isenabled()

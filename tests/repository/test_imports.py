@@ -57,6 +57,22 @@ print([name for name in {HEAVY!r} if name in sys.modules])
     assert run(code) == "[]\n"
 
 
+@pytest.mark.parametrize(("given", "expected"), [(None, "1"), ("3", "3")])
+def test_the_program_uses_one_blas_thread_unless_it_is_told_otherwise(given, expected, monkeypatch):
+    """This is settled before numpy is imported, which would not see it later."""
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    if given:
+        monkeypatch.setenv("OPENBLAS_NUM_THREADS", given)
+    code = """
+import os, sys
+import frictionmap.__main__ as program
+sys.argv = ["frictionmap", "--version"]
+program.run()
+print(os.environ["OPENBLAS_NUM_THREADS"], "numpy" in sys.modules)
+"""
+    assert run(code).splitlines()[-1] == f"{expected} False"
+
+
 def test_a_configuration_is_checked_without_anything_heavy(tmp_path):
     (tmp_path / "bad.toml").write_text("[sistem]")
     code = f"""

@@ -70,23 +70,23 @@ def rows_at(system: fm.System, frequencies: Iterable[float], cells: int) -> list
     return found
 
 
+def _open_cells(rows: list[Row]) -> int:
+    return int(sum(flags.sum() for _, flags in rows))
+
+
 def seconds_a_cell(rows: list[Row]) -> float:
     """Time to solve rows, over their open cells."""
-    return sum(timed(solve)[0] for solve, _ in rows) / int(sum(flags.sum() for _, flags in rows))
+    return sum(timed(solve)[0] for solve, _ in rows) / _open_cells(rows)
 
 
 def _cell_cost(system: fm.System, frequencies: tuple[float, float], count: _Count) -> dict:
     """Time per stick-slip cell of all rows, over rounds."""
     rows = rows_at(system, np.geomspace(*frequencies, count.rows), count.cells)
-    cells = int(sum(flags.sum() for _, flags in rows))
-    seconds = []
-    for _ in range(count.rounds):
-        seconds.append(seconds_a_cell(rows))
     return {
         "rows": len(rows),
         "cells": int(sum(flags.size for _, flags in rows)),
-        "stick-slip cells": cells,
-        "seconds a cell": spread(seconds),
+        "stick-slip cells": _open_cells(rows),
+        "seconds a cell": spread([seconds_a_cell(rows) for _ in range(count.rounds)]),
     }
 
 

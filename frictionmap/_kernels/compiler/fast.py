@@ -43,10 +43,10 @@ _KERNEL_RULES = {**_RULES, "no_cpython_wrapper": True, "no_cfunc_wrapper": True,
 
 @contextmanager
 def _without_collector() -> Iterator[None]:
-    """Switch off Python's search for circular garbage, which takes an eighth of a compilation.
+    """Switch off Python's garbage collector, which takes an eighth of a compilation.
 
     The compiler makes millions of objects and keeps most of them.  Afterwards they count as old, so that the
-    next searches pass over them; objects that a program has frozen stay frozen.
+    next collections pass over them; objects that a program has frozen stay frozen.
     """
     was_on = gc.isenabled()
     gc.disable()

@@ -32,7 +32,9 @@ def packed(group: _Group) -> _Group:
     once and not in every turn of a loop.  For the same reason `packed` must not be called in a loop: all its
     turns would share one place in memory.
 
-    Only kernels call it: references of the arrays are not counted, and the entry that made them keeps them.
+    References of the arrays are not counted, so that somebody else must keep them.  A kernel may pack
+    anything, because the entry that made the arrays keeps them; an entry only its arguments, which its caller
+    keeps.
     """
     return group
 

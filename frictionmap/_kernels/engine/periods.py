@@ -4,14 +4,11 @@ import math
 
 from ..compiler import kernel
 
-#: Half periods of the excitation per unit of tau.
-_PER_HALF_PERIOD = 1.0 / math.pi
-
 
 @kernel
 def half_periods(time):
     """Number of half periods of the excitation nearest to a time in tau."""
-    return int(math.floor(time * _PER_HALF_PERIOD + 0.5))
+    return int(math.floor(time / math.pi + 0.5))
 
 
 @kernel

@@ -311,8 +311,7 @@ def _steps_inside(block, n, friction, state, c, s, here, low, high, fourth, firs
     if passed == LANES:  # a lane that is known in advance is read from its register
         there = (lane(y, LANES - 1), lane(slope, LANES - 1))
         return passed, there, there
-    after = min(passed, LANES - 1)
-    there = (lane(y, after), lane(slope, after))
+    there = (lane(y, passed), lane(slope, passed))
     if passed == 0:
         return passed, here, there
     return passed, (lane(y, passed - 1), lane(slope, passed - 1)), there

@@ -7,14 +7,14 @@ import math
 
 from ..compiler import kernel
 from ..event_codes import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
-from .block import STEADY, STEADY_LOAD, scan
+from .block import scan
 from .oscillators import AT_LIMIT, FAILED, ROSE, STARTS_INSIDE
 from .state import (
     contact_displacement,
     contact_load,
     held_period,
     hold,
-    largest_load_to_come,
+    load_never_exceeds,
     mirror,
     release,
     vibrates_in_step,
@@ -56,14 +56,6 @@ def slide_on(st, beta, contact_force, state, c, s, limit, scratch):
 
 
 @kernel
-def _never_exceeds(st, held, z, c, s, most):
-    """Whether the load in the contact, as long as it is held, is certain not to exceed `most` in size."""
-    if st.held_block[STEADY] != 0.0 and st.held_block[STEADY_LOAD] > most:
-        return False  # below beta_stick, where this part of the bound is too large already
-    return largest_load_to_come(st, held, z, c, s) <= most
-
-
-@kernel
 def wait_for_release(st, mu_beta, z, held, c, s, allowed, scratch):
     """Follow a stop at z until the load exceeds mu beta.
 
@@ -90,7 +82,7 @@ def wait_for_release(st, mu_beta, z, held, c, s, allowed, scratch):
     # resonant with the load, the motion creeps by ever shorter slides to where the load never exceeds mu beta
     most = mu_beta * (1.0 + _CREEPING) if vibrates_in_step(st) else mu_beta
     while True:
-        if _never_exceeds(st, held, z, c, s, most):
+        if load_never_exceeds(st, held, z, c, s, most):
             return AT_LIMIT, c, s, wait, 0.0
         n, end, c, s, slope = scan(
             st.held, st.held_block, 0.0, -mu_beta - level, mu_beta - level, STARTS_INSIDE, held, c, s, period,

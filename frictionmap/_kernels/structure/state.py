@@ -336,7 +336,7 @@ def vibrates_in_step(st):
 def held_period(st):
     """Load periods after which the load and all held oscillators repeat; infinite if they do not.
 
-    A load that has not released the contact within this time never will.  `largest_load_to_come` cannot show
+    A load that has not released the contact within this time never will.  `_largest_load_to_come` cannot show
     this, because it adds the amplitudes of the oscillators as if their maxima coincided.
     """
     for k in range(st.m):
@@ -409,7 +409,7 @@ def _free_load(st, held, c, s):
 
 
 @kernel
-def largest_load_to_come(st, held, z, c, s):
+def _largest_load_to_come(st, held, z, c, s):
     """Upper bound on the load in the contact as long as it is held; infinite at an undamped resonance."""
     if st.held_block[STEADY] != 0.0:
         return st.held_block[STEADY_LOAD] + abs(st.stiffness * z) + _free_load(st, held, c, s)
@@ -431,6 +431,14 @@ def largest_load_to_come(st, held, z, c, s):
         y_im += table[k, OZ] * a_im + table[k, OW] * h * a_re
         free += _reach(table, k) * math.sqrt(table[k, K] * z_off * z_off + w_off * w_off)
     return math.hypot(y_re, y_im) + abs(st.stiffness * z) + free
+
+
+@kernel
+def load_never_exceeds(st, held, z, c, s, most):
+    """Whether the load in the contact, as long as it is held, is certain not to exceed `most` in size."""
+    if st.held_block[STEADY] != 0.0 and st.held_block[STEADY_LOAD] > most:
+        return False  # below beta_stick, where this part of the bound is too large already
+    return _largest_load_to_come(st, held, z, c, s) <= most
 
 
 @kernel

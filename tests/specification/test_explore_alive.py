@@ -236,6 +236,21 @@ def test_changes_are_undone_and_done_again(browser, one):
         page.wait_for_function("() => document.querySelector('input[name=mu]').value === '1'")
 
 
+def test_a_change_undone_is_done_again_at_once(browser, one):
+    with page_of(browser, one.url) as page:
+        page.wait_for_timeout(300)
+        repainted(page, lambda: page.evaluate(MOVE, ["mu", 225]))
+        page.wait_for_function("() => location.hash.includes('mu=1.45')")
+        page.evaluate("""() => new Promise((done) => {
+          addEventListener('popstate', () => { history.forward(); done(); }, { once: true });
+          history.back();
+        })""")
+        page.wait_for_timeout(600)  # until a view that was to replace the address would have
+        assert of_hash(page, "mu") == page.input_value("input[name=mu]") == "1.45"
+        assert page.is_disabled("#redo")
+        assert page.is_enabled("#undo")
+
+
 def test_sliders_state_their_units(browser, tmp_path):
     text = TWO.replace("ratio = 0.5\n", "force = 0.5\n").replace(
         "[grid]",

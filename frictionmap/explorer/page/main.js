@@ -157,7 +157,6 @@ class Page {
     part("save").addEventListener("keydown", (event) => event.key === "Escape" && this.#closeMenu(event));
     document.addEventListener("click", (event) => part("save").contains(event.target) || part("save").removeAttribute("open"));
     window.addEventListener("popstate", (event) => this.#onStep(event));
-    window.addEventListener("hashchange", () => this.#onAddress());
     part("undo").addEventListener("click", () => history.back());
     part("redo").addEventListener("click", () => history.forward());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#redraw());
@@ -311,6 +310,7 @@ class Page {
     this.step = state?.step ?? this.step + 1;
     this.last = Math.max(this.last, this.step);
     this.#offerSteps();
+    this.#onAddress(); // at once: a view that settles before the address is read would replace it
   }
 
   /** Offer the quantities of the cells: a reduced structure has other masses for another contact. */
@@ -322,6 +322,7 @@ class Page {
 
   #onAddress() {
     if (location.hash === this.hash) return;
+    this.hash = location.hash;
     this.#readAddress();
     this.controls.offer("quantity", this.quantities, this.view);
     this.update(true);

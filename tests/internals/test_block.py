@@ -1,7 +1,9 @@
 """Eight scan steps at once against the scan that takes one after the other."""
 
+import cmath
 import math
 
+import mpmath
 import numpy as np
 import pytest
 import scalar_scan
@@ -21,6 +23,7 @@ one_by_one = callable_kernel(scalar_scan.scan)
 value = callable_kernel(oscillators.value)
 extremes = callable_kernel(block.extremes)
 step_on = callable_kernel(oscillators.step_on)
+phase_at = callable_kernel(oscillators.phase_at)
 
 
 def structure_at(system, r):
@@ -141,3 +144,16 @@ def test_extremes_are_those_of_the_nodes_one_by_one():
                 np.testing.assert_allclose(got, (low, high), rtol=1e-9, atol=1e-9 * np.abs(y).max())
                 found.append(math.isfinite(low) or math.isfinite(high))
     assert 0.3 < np.mean(found) < 0.9
+
+
+@pytest.mark.parametrize("done", [0.0, 63.0, 64.0, 1e6])
+@pytest.mark.parametrize("h", [0.01, 0.3, 0.499, 1.5])
+def test_load_phase_inside_a_step(done, h):
+    """Against 30 digits, after few and many steps, by the series and by the library's functions."""
+    rng = np.random.default_rng(5)
+    for tau, x in rng.uniform([0.0, -0.1], [6.0, 1.1], (100, 2)):
+        start, now = (cmath.exp(1j * angle) for angle in (tau, tau + done * h))
+        with mpmath.workdps(30):
+            exact = complex(mpmath.expj(mpmath.mpf(tau) + (done + mpmath.mpf(x)) * mpmath.mpf(h)))
+        found = phase_at((start.real, start.imag), (now.real, now.imag), done, x, h)
+        assert abs(complex(*found) - exact) < 5e-16 + 2e-16 * done * h

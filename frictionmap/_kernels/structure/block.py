@@ -73,8 +73,8 @@ from .oscillators import (
     K,
     leave_range,
     padded,
+    phase_at,
     step_on,
-    turned,
 )
 from .oscillators import TERMS as TABLE_TERMS
 
@@ -485,7 +485,7 @@ def _at_crossing(block, n, friction, level, x, done, start, now, state, before):
     """
     for _ in range(MAX_POLISH):
         _move_inside(block, n, friction, before, now[0], now[1], x, state)
-        c, s = turned(start[0], start[1], (done + x) * block[STEP])
+        c, s = phase_at(start, now, done, x, block[STEP])
         y, slope, bend, third = _derivatives(block, n, friction, state, c, s)
         y -= level
         if not abs(y) < NEARLY * abs(slope) or not abs(y * bend) < NEARLY * slope * slope:
@@ -542,7 +542,7 @@ def _look(table, block, friction, ends, low, high, rise, third, done, start, now
             _copy(scratch.next, state, n)
     step_on(table, n, friction, state, scratch.next, now[0], now[1])
     x, end, slope = leave_range(table, friction, low, high, rise, done, start, now, state, scratch)
-    c, s = turned(start[0], start[1], (done + x) * block[STEP])
+    c, s = phase_at(start, now, done, x, block[STEP])
     return x, end, slope, c, s
 
 
@@ -615,7 +615,7 @@ def scan(table, block, friction, low, high, rise, state, c, s, limit, scratch):
         if x > remaining and remaining < 1.0:
             x, end = remaining, AT_LIMIT
             _move_inside(block, n, friction, scratch.next, c, s, x, state)
-            exit_c, exit_s = turned(start[0], start[1], (done + x) * block[STEP])
+            exit_c, exit_s = phase_at(start, (c, s), done, x, block[STEP])
         if x <= remaining:
             scratch.left[0] = left - done - 1.0
             return done + x, end, exit_c, exit_s, slope

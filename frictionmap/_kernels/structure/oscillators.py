@@ -37,6 +37,11 @@ AT_LIMIT, FELL, ROSE, FAILED = 0, 1, 2, 3
 #: Value of `rise` for a scan whose y starts inside its range.
 STARTS_INSIDE = -1.0
 
+#: Steps of a scan after which the load phase, turned step by step, is still exact to a few roundings; angle
+#: below which the Taylor series of `phase_at` is.
+_FEW_STEPS = 64.0
+_SMALL_ANGLE = 0.5
+
 
 class Scratch(NamedTuple):
     """Work arrays of the kernels."""
@@ -293,14 +298,49 @@ def bounds(table, friction, state, c, s):
     return second, third, fourth, second_growth, third_growth, fourth_growth
 
 
+@inner_kernel
+def _to_circle(c, s):
+    """Remove the rounding error of a cosine and a sine from the sum of their squares."""
+    norm = 1.5 - 0.5 * (c * c + s * s)
+    return norm * c, norm * s
+
+
 @kernel
 def turned(c, s, angle):
     """Rotate the load phase (cos, sin) by an angle, keeping it on the unit circle."""
     turn_c, turn_s = math.cos(angle), math.sin(angle)
-    c1 = turn_c * c - turn_s * s
-    s1 = turn_c * s + turn_s * c
-    norm = 1.5 - 0.5 * (c1 * c1 + s1 * s1)
-    return norm * c1, norm * s1
+    return _to_circle(turn_c * c - turn_s * s, turn_c * s + turn_s * c)
+
+
+@inner_kernel
+def phase_at(start, now, done, x, h):
+    """Load phase (cos, sin) inside a step of a scan.
+
+    Parameters
+    ----------
+    start, now : load phase (cos, sin) at the start of the scan and of this step
+    done : scan steps before this one
+    x : part of the step
+    h : scan step in tau
+    """
+    angle = x * h
+    if not (done < _FEW_STEPS and abs(angle) < _SMALL_ANGLE):
+        return turned(start[0], start[1], (done + x) * h)
+    # the series in pairs: a chain of dependent operations would take as long as the library's cosine
+    a2 = angle * angle
+    a4 = a2 * a2
+    a8 = a4 * a4
+    turn_c = (
+        (1.0 - a2 * (1.0 / 2.0) + a4 * (1.0 / 24.0 - a2 * (1.0 / 720.0)))
+        + a8 * (1.0 / 40320.0 - a2 * (1.0 / 3628800.0))
+        + a8 * a4 * (1.0 / 479001600.0 - a2 * (1.0 / 87178291200.0))
+    )  # fmt: skip
+    turn_s = angle * (
+        (1.0 - a2 * (1.0 / 6.0) + a4 * (1.0 / 120.0 - a2 * (1.0 / 5040.0)))
+        + a8 * (1.0 / 362880.0 - a2 * (1.0 / 39916800.0))
+        + a8 * a4 * (1.0 / 6227020800.0)
+    )  # fmt: skip
+    return _to_circle(turn_c * now[0] - turn_s * now[1], turn_c * now[1] + turn_s * now[0])
 
 
 @kernel
@@ -331,7 +371,7 @@ def leave_range(table, friction, low, high, rise, done, start, now, state, scrat
     if end == AT_LIMIT:
         return 2.0, end, 0.0
     advance(scratch.series, n, terms, x, state)
-    c, s = turned(start[0], start[1], (done + x) * table[n, H])
+    c, s = phase_at(start, now, done, x, table[n, H])
     return x, end, derivatives(table, friction, state, c, s)[1]
 
 

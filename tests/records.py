@@ -1,5 +1,7 @@
 """Records of one mass on a shaken base for tests: its equation of motion integrated, and noise on top."""
 
+import cmath
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -34,11 +36,17 @@ class Cycle(NamedTuple):
     state: np.ndarray  # x and its velocity at its end
 
 
+@functools.cache
+def _waves(truth, derivative):
+    """Angular frequencies [rad/s] of the base's harmonics, and the phasors of a derivative of it by time."""
+    rates = 2.0 * np.pi * truth.f * np.arange(len(truth.base))
+    return rates, np.array(truth.base) * (1j * rates) ** derivative
+
+
 def base_at(truth, t, derivative=0):
     """The base, or a derivative of it by time."""
-    n = np.arange(len(truth.base))
-    phasors = np.array(truth.base) * (2j * np.pi * truth.f * n) ** derivative
-    return (np.exp(2j * np.pi * truth.f * np.multiply.outer(t, n)) @ phasors).real
+    rates, phasors = _waves(truth, derivative)
+    return (np.exp(1j * np.multiply.outer(t, rates)) @ phasors).real
 
 
 def _acceleration(truth, t, x, v):
@@ -79,26 +87,34 @@ def _stop(truth, begin, end, x):
     return brentq(left, grid[k], grid[k + 1], xtol=1e-15), place
 
 
-def _slide(truth, begin, end, state, sense):
-    """Until when it slides, the motion, and the state there."""
+def _slide(truth, begin, end, state, sense, dense):
+    """Until when it slides, the motion (if it is asked for), and the state there."""
     w = 2.0 * np.pi * truth.f_n
+    # x'' is linear in x and v, under waves of the base: plain numbers are quicker than arrays
+    rates, base = _waves(truth, 0)
+    shaken = truth.damping_reference == "base"
+    load = w**2 * base + (2.0 * truth.zeta * w * _waves(truth, 1)[1] if shaken else 0.0)
+    waves = list(zip((1j * rates).tolist(), load.tolist(), strict=True))
+    pull = w**2 * (truth.offset_x - truth.x_F * sense)
 
     def slope(t, y):
-        return [y[1], _acceleration(truth, t, y[0], y[1]) - w**2 * truth.x_F * sense]
+        x, v = y.tolist()
+        push = sum((phasor * cmath.exp(rate * t)).real for rate, phasor in waves)
+        return [v, push + pull - w**2 * x - 2.0 * truth.zeta * w * v]
 
     def turn(t, y):
         return y[1] - _wall(truth, t, 1)
 
     turn.terminal, turn.direction = True, -sense
     run = solve_ivp(
-        slope, (begin, end), state, "DOP853", events=turn, dense_output=True, rtol=3e-13, atol=1e-13,
+        slope, (begin, end), state, "DOP853", events=turn, dense_output=dense, rtol=3e-13, atol=1e-13,
         max_step=0.02 / max(truth.f_n, truth.f),
     )  # fmt: skip
     return run.t[-1], lambda t: run.sol(t)[0], run.y[:, -1], run.status == 1
 
 
-def cycle(truth, state, stuck):
-    """One cycle from a state: what happened, and the state after it."""
+def cycle(truth, state, stuck, dense=True):
+    """One cycle from a state: what happened, and the state after it; without `dense` no places in slides."""
     period, t = 1.0 / truth.f, 0.0
     parts, stops = [], 0
     sense = np.sign(state[1] - _wall(truth, 0.0, 1))
@@ -111,7 +127,7 @@ def cycle(truth, state, stuck):
             stuck = t >= period
         else:
             begin = t
-            t, place, state, turned = _slide(truth, begin, period, state, sense)
+            t, place, state, turned = _slide(truth, begin, period, state, sense, dense)
             if turned:
                 pull = _pull(truth, t, *state)
                 state[1] = _wall(truth, t, 1)
@@ -126,11 +142,13 @@ def steady(truth, cycles=60, accuracy=1e-10, start=None):
     stuck = False
     state = np.array([truth.offset_x, 0.1 * truth.f * abs(truth.base[1])]) if start is None else start
     for _ in range(cycles):
-        parts, stops, after, stuck = cycle(truth, state, stuck)
+        before = state, stuck
+        _, stops, after, stuck = cycle(truth, state, stuck, dense=False)
         change = float(np.max(np.abs(after - state) / [1.0, 2.0 * np.pi * truth.f]))
         state = after
         if change < accuracy:
             break
+    parts = cycle(truth, *before)[0]  # the last one again, with its places
     return Cycle(parts, stops, change, state)
 
 

@@ -1,5 +1,6 @@
 """The spring in a contact as an unknown of `forced` and `record`: motions found without the package."""
 
+import functools
 import json
 
 import numpy as np
@@ -21,6 +22,7 @@ OF_RECORD = ["f_n", "zeta", "x_F", "contact_stiffness", "offset_x"]
 RIG = Rig(3.13, 0.01, 0.9, 1.0, -0.1, 1.001, (0.0, 1.82 * np.exp(0.7j), 0.02 * np.exp(2.0j)), spring=3.0)
 
 
+@functools.cache
 def table(spring, betas, zeta=0.01, wall_moves=False, f_n=3.1):
     """Frequency, lag [deg], amplitude and set of every friction at every ratio, marched."""
     found = [

@@ -151,18 +151,21 @@ def fit_record(
     few = slice(None, None, max(1, samples.time.size // _SAMPLES))
     coarse = shaken(contact, damping_reference, phasors, samples.time[few], elastic)
     mass = shaken(contact, damping_reference, phasors, samples.time, elastic)
-    near = _nearest(coarse, samples.near[few], phasors, known if elastic else {"mu": 1.0, **known})
+    held = known if elastic else {"mu": 1.0, **known}
+    begins = starts(contact, damping_reference, phasors, held, elastic)
+    near = _nearest(coarse, samples.near[few], held, begins[:_FOLLOWED])
     scatter = float(np.sqrt(near.sum / samples.near[few].size))
     begin = _begin(near, samples)
     at_one = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
     if elastic and at_one.model_error > 1.0:
-        begin = _begin(_nearest(coarse, samples.near[few], phasors, known, _MORE_FOLLOWED), samples)
+        begin = _begin(_nearest(coarse, samples.near[few], known, begins[:_MORE_FOLLOWED]), samples)
         other = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
         at_one = min(at_one, other, key=lambda fit: float(np.sum(fit.residual**2)))
     starting = [at_one.solution.values]
     with_mu = not elastic and "mu" not in known
     if with_mu and at_one.model_error > 1.0:  # else nothing far away can be much nearer
-        starting.append(_begin(_nearest(coarse, samples.near[few], phasors, known), samples))
+        begins = starts(contact, damping_reference, phasors, known)
+        starting.append(_begin(_nearest(coarse, samples.near[few], known, begins[:_FOLLOWED]), samples))
     fit = _with_static(at_one, phasors, starting)
     # without outliers once more if mu is fitted: what errors of the base do was computed for mu = 1
     for _ in range(_ROUNDS if samples.scale else int(fit.static == FITTED)):
@@ -280,15 +283,12 @@ def _begin(near: Solution, samples: Samples) -> np.ndarray:
     return np.concatenate((near.values, slow))
 
 
-def _nearest(
-    mass: Shaken, x: np.ndarray, phasors: Phasors, known: Mapping[str, float], followed: int = _FOLLOWED
-) -> Solution:
+def _nearest(mass: Shaken, x: np.ndarray, known: Mapping[str, float], begins: list[np.ndarray]) -> Solution:
     """The least sum from several starts, of samples without drift and outliers."""
     none = np.zeros((x.size, 0))
     samples = Samples(np.zeros(x.size), x, x, x, none, none, None)
     free, elastic = _free(known, samples, mass.elastic), mass.elastic
-    candidates = starts(mass.contact, mass.damping_reference, phasors, known, elastic)[:followed]
-    fitted = [inner(start, elastic) for start in candidates]
+    fitted = [inner(start, elastic) for start in begins]
     problems = [(_problem(mass, samples, free, start), start) for start in fitted]
     return min((minimise(_within(task), start) for task, start in problems), key=lambda found: found.sum)
 

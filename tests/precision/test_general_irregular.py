@@ -18,8 +18,8 @@ from scipy.optimize import brentq
 import frictionmap as fm
 from frictionmap import regimes
 
-#: Steps of the grid per period of the load, and terms of the polynomials.
-GRID, TERMS = 512, 16
+#: Steps of the grid per period of the load, those that are looked at together, and terms of the polynomials.
+GRID, AHEAD, TERMS = 512, 64, 16
 
 OUTPUTS = (
     "regime", "status", "period", "stops_per_cycle", "turns_per_cycle", "stuck_fraction", "contact_amplitude",
@@ -52,11 +52,13 @@ class Chain(NamedTuple):
 
 
 class Pattern(NamedTuple):
-    """The motion with given contacts held: y' = flow y, over a step, and the forces in all contacts."""
+    """The motion with given contacts held: y' = flow y, over steps, and the forces in all contacts."""
 
     flow: np.ndarray
-    step: np.ndarray
+    ahead: np.ndarray  # (AHEAD, 7, 7), over 1, 2, ... steps
     forces: np.ndarray
+    contacts: list  # of the margins
+    rows: np.ndarray  # of margins, which are positive until an event
 
 
 class Marcher:
@@ -103,10 +105,12 @@ class Marcher:
             flow[:2, 2:4] = np.eye(2)
             flow[2:4] = self.free - self.w @ forces / self.r**2
             flow[4, 5], flow[5, 4] = -1.0, 1.0
-            self.patterns[key] = Pattern(flow, expm(flow * self.h), forces)
+            ahead = np.array([expm(k * self.h * flow) for k in range(1, AHEAD + 1)])
+            contacts, rows = zip(*self.margins(forces), strict=True)
+            self.patterns[key] = Pattern(flow, ahead, forces, list(contacts), np.array(rows))
         return self.patterns[key]
 
-    def margins(self, pattern):
+    def margins(self, forces):
         """Rows that are positive until an event: (contact, row)."""
         for j in range(2):
             if self.sense[j]:
@@ -115,7 +119,7 @@ class Marcher:
                 yield j, row
             else:
                 for side in (1.0, -1.0):
-                    row = -side * pattern.forces[j]
+                    row = -side * forces[j]
                     row[6] += self.static[j]
                     yield j, row
 
@@ -177,7 +181,7 @@ class Marcher:
         for n in range(1, TERMS):
             powers.append(pattern.flow @ powers[-1] / n)
         best, which = rest, None
-        for j, row in self.margins(pattern):
+        for j, row in zip(pattern.contacts, pattern.rows, strict=True):
             terms = np.array([row @ power for power in powers])
             fresh = self.sense[j] != 0 and abs(terms[0]) < 1e-9
             series = np.polynomial.Polynomial(terms[1:] if fresh else terms)
@@ -186,26 +190,37 @@ class Marcher:
         scale = best ** np.arange(TERMS)
         return best, which, scale @ np.array(powers)
 
-    def move(self, time, y):
-        """Take the state `time` later."""
+    def move(self, time, states):
+        """Go through some states, (k, 7), the last of them `time` later."""
         self.stuck += time * (self.sense == 0)
-        z = self.w.T @ y[:2]
-        self.way += np.abs(z - self.w.T @ self.y[:2])
-        self.y = y
-        self.lowest, self.highest = np.minimum(self.lowest, z), np.maximum(self.highest, z)
+        z = np.vstack((self.y[:2], states[:, :2])) @ self.w
+        self.way += np.abs(np.diff(z, axis=0)).sum(axis=0)
+        self.y = states[-1].copy()
+        self.lowest, self.highest = (
+            np.minimum(self.lowest, z.min(axis=0)),
+            np.maximum(self.highest, z.max(axis=0)),
+        )
 
-    def step(self):
-        """One step of the grid, with the events in it."""
+    def advance(self, most):
+        """Some steps of the grid up to the first one with events in it, but no more than `most`; how many."""
         pattern = self.pattern()
-        y = pattern.step @ self.y
-        if all(row @ y > 0.0 for _, row in self.margins(pattern)):
-            self.move(self.h, y)
-            return
+        states = pattern.ahead[:most] @ self.y
+        over = np.flatnonzero((states @ pattern.rows.T <= 0.0).any(axis=1))
+        free = int(over[0]) if over.size else len(states)
+        if free:
+            self.move(free * self.h, states[:free])
+        if not over.size:
+            return free
+        self.events()
+        return free + 1
+
+    def events(self):
+        """One step of the grid, with the events in it."""
         rest = self.h
         while rest > 0.0:
             pattern = self.pattern()
             time, which, y = self.crossing(pattern, rest)
-            self.move(time, y)
+            self.move(time, y[np.newaxis])
             rest -= time
             if which is None:
                 return
@@ -213,19 +228,21 @@ class Marcher:
             self.settle(open_, [which] if self.sense[which] == 0 else [])
 
     def march(self, cycles):
-        for _ in range(GRID * cycles):
-            self.step()
+        left = GRID * cycles
+        while left:
+            left -= self.advance(left)
         self.y[4:6] = 1.0, 0.0
 
 
 def locked(marcher, most):
     """March until the last states have come back three times in a row; the smallest period."""
-    states = []
+    states = np.empty((0, 7))
     while len(states) < most:
         marcher.march(1)
-        states.append(marcher.y.copy())
-        for p in range(1, len(states) // 2):
-            if all(np.abs(states[-1 - k] - states[-1 - k - p]).max() < 1e-9 for k in range(3)):
+        states = np.vstack((states, marcher.y))
+        back = states[::-1]
+        for p in 1 + np.flatnonzero(np.abs(back[1 : len(back) // 2] - back[0]).max(axis=1) < 1e-9):
+            if np.abs(back[:3] - back[p : p + 3]).max() < 1e-9:
                 return p
     raise AssertionError("no period")
 

@@ -23,6 +23,11 @@ def mark_limit(axes: Axes, place: float, limit: float) -> None:
     axes.plot([limit] * 2, [place - 0.4, place + 0.4], color="#d98032", linewidth=2.0)
 
 
+def name_value(axes: Axes, place: float, text: str) -> None:
+    """Write the value of a horizontal bar to the right of the axes, away from spreads and limits."""
+    axes.text(1.01, place, text, va="center", fontsize=9, transform=axes.get_yaxis_transform())
+
+
 def save_bars(figure: Figure, axes: Axes, words: tuple[str, str], path: Path) -> Path:
     """Write a figure of horizontal bars, the first on top; words: what they show, and the title."""
     axes.invert_yaxis()

@@ -1,4 +1,4 @@
-"""What README and guides show runs as it stands, type checkers agree with README, links lead somewhere."""
+"""What README and guides show runs, type checkers agree with README, links lead somewhere."""
 
 import importlib.util
 import os

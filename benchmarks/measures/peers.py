@@ -231,13 +231,13 @@ def whole_map(quick: bool, rng: np.random.Generator) -> dict:
     peer = None if why else OneMassHeyoka(BODY)
     for mu in (1.0, 1.5):
         fm.sweep(system, R[10:12], BETA[5:40], mu, threads=1)  # compiles
-        cells = sample_cells(20 if quick else 200, False, rng, mu)
+        cells = sample_cells(20 if quick else 4000, False, rng, mu)  # costs of cells differ a lot
         ours: list[float] = []
         theirs = np.zeros(len(cells))
-        for k, cell in enumerate(cells):  # alternating: a run of ours after every tenth cell of theirs
+        for k, cell in enumerate(cells):  # alternating: a run of ours after some cells of theirs
             if peer is not None:
                 theirs[k] = timed(lambda c=cell, p=peer: p.run(c, CYCLES))[0]
-            if k % 10 == 0:
+            if k % (10 if quick else 100) == 0:
                 ours.append(timed(lambda m=mu: fm.sweep(system, R, BETA, m, threads=1))[0])
         entry: dict = {"cells": R.size * BETA.size, "seconds": spread(ours)}
         if peer is None:

@@ -51,14 +51,15 @@ _FIVE = {
     "damping_ratios": 0.02,
 }  # fmt: skip
 
-#: Scenes; the last two are calls with a few cells, as in a loop over designs.
+#: Scenes; those that take milliseconds are computed several times by each process.  The last two are calls
+#: with a few cells, as in a loop over designs.
 SCENES: dict[str, dict] = {
-    "five masses, mu = 1": {"system": _FIVE, "cells": 400, "mu": [1.0]},
+    "five masses, mu = 1": {"system": _FIVE, "cells": 400, "mu": [1.0], "calls": 5},
     "five masses, mu = 1.3": {"system": _FIVE, "cells": 400, "mu": [1.3]},
     "T Fig. 6.7": {"config": "fig-6-7.toml"},
     "T Fig. 6.14": {"config": "fig-6-14.toml"},
-    "T Fig. 3.12, mu = 1": {"config": "fig-3-12.toml", "mu": [1.0]},
-    "T Fig. 3.12, mu = 1.5": {"config": "fig-3-12.toml", "mu": [1.5]},
+    "T Fig. 3.12, mu = 1": {"config": "fig-3-12.toml", "mu": [1.0], "calls": 25},
+    "T Fig. 3.12, mu = 1.5": {"config": "fig-3-12.toml", "mu": [1.5], "calls": 25},
     "one mass, 4 cells": {"system": {}, "cells": 2, "mu": [1.3], "calls": 300, "every": 1},
     "five masses, 4 cells": {"system": _FIVE, "cells": 2, "mu": [1.3], "calls": 300, "every": 1},
 }

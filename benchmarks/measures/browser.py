@@ -1,9 +1,9 @@
 """Headless Chromium for measurements and tests of the interactive page.
 
 playwright drives a browser of the system: the one that CHROMIUM names, or the first of `NAMES` that is there.
-Debian's `chromium-headless-shell` has no window, and its pages take two thirds of the time. playwright is the
-only driver that emulates touch, colour schemes and high-resolution screens, and it needs no second program
-that matches the browser.
+Debian's `chromium-headless-shell` can open no window; tests of the page take two thirds of the time in it.
+playwright is the only driver that emulates touch, colour schemes and high-resolution screens, and it needs no
+second program that matches the browser.
 """
 
 import contextlib

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import ROOT
-from ..report.figures import mark_limit, name_value, new_figure, save_bars
+from ..report.figures import mark_limit, name_time, new_figure, save_bars
 from ..report.record import save, spread, table
 from .browser import NoBrowser, chromium, skipped
 
@@ -217,7 +217,7 @@ def draw(scenes: dict, path: Path) -> None:
     axes.barh(names, [entry["median"] for *_, entry in rows], color="#2c5aa0")
     for place, (scene, what, entry) in enumerate(rows):
         axes.plot([entry["least"], entry["most"]], [place, place], color="black", linewidth=1.0)
-        name_value(axes, place, f"{entry['median']:,.{0 if entry['median'] >= 100.0 else 1}f} ms")
+        name_time(axes, place, 1e-3 * entry["median"])
         if (scene, what) in GOALS:
             mark_limit(axes, place, GOALS[scene, what])
     axes.set_xscale("log")

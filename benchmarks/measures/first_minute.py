@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import ROOT
-from ..report.figures import mark_limit, name_value, new_figure, save_bars
+from ..report.figures import mark_limit, name_time, new_figure, save_bars
 from ..report.record import save, spread, table, timed
 from .browser import NoBrowser, chromium, skipped
 
@@ -273,7 +273,7 @@ def draw(seconds: dict, path: Path) -> None:
     axes = figure.subplots()
     axes.barh(list(seconds), [entry["median"] for entry in seconds.values()], color="#2c5aa0")
     for place, (name, entry) in enumerate(seconds.items()):
-        name_value(axes, place, f"{entry['median']:.2g} s")
+        name_time(axes, place, entry["median"])
         if name in GOALS:
             mark_limit(axes, place, GOALS[name])
     words = (

@@ -15,7 +15,7 @@ from pathlib import Path
 import xarray as xr
 
 from .. import ROOT
-from ..report.figures import name_value, new_figure, save_bars
+from ..report.figures import name_time, new_figure, save_bars
 from ..report.record import pinned, save, spread, table, timed
 
 ONE_MASS, STRUCTURE = (ROOT / "configs" / name for name in ("fig-3-12.toml", "fig-7-7-zeta-0.1.toml"))
@@ -83,7 +83,7 @@ def draw(seconds: dict, path: Path) -> None:
     axes.barh(names, medians, color=colours)
     for place, entry in enumerate(seconds.values()):
         axes.plot([entry["least"], entry["most"]], [place, place], color="black", linewidth=1.0)
-        name_value(axes, place, f"{entry['median']:.2g} s")
+        name_time(axes, place, entry["median"])
     axes.set_xscale("log")
     words = "time of a fresh process [s]; line: least to most", "Only the first run compiles (orange)"
     save_bars(figure, axes, words, path)

@@ -7,6 +7,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
+from .quoting import duration
+
 #: Colours of a picture: lines and text need few, and the file is a third as large.
 _COLOURS = 256
 
@@ -23,9 +25,9 @@ def mark_limit(axes: Axes, place: float, limit: float) -> None:
     axes.plot([limit] * 2, [place - 0.4, place + 0.4], color="#d98032", linewidth=2.0)
 
 
-def name_value(axes: Axes, place: float, text: str) -> None:
-    """Write the value of a horizontal bar to the right of the axes, away from spreads and limits."""
-    axes.text(1.01, place, text, va="center", fontsize=9, transform=axes.get_yaxis_transform())
+def name_time(axes: Axes, place: float, seconds: float) -> None:
+    """Write the time of a horizontal bar to the right of the axes, away from spreads and limits."""
+    axes.text(1.01, place, duration(seconds), va="center", fontsize=9, transform=axes.get_yaxis_transform())
 
 
 def save_bars(figure: Figure, axes: Axes, words: tuple[str, str], path: Path) -> Path:

@@ -37,9 +37,11 @@ AT_LIMIT, FELL, ROSE, FAILED = 0, 1, 2, 3
 #: Value of `rise` for a scan whose y starts inside its range.
 STARTS_INSIDE = -1.0
 
-#: Steps of a scan after which the load phase, turned step by step, is still exact to a few roundings; angle
-#: below which the Taylor series of `phase_at` is.
+#: Number of scan steps below which the load phase is still exact to some roundings: at most 8 + 7 rotations
+#: by tabulated angles have led there, whose errors add up.
 _FEW_STEPS = 64.0
+
+#: Angle below which the first omitted term of the series in `phase_at`, 0.5^14/15!, is below half a rounding.
 _SMALL_ANGLE = 0.5
 
 
@@ -322,6 +324,10 @@ def phase_at(start, now, done, x, h):
     done : scan steps before this one
     x : part of the step
     h : scan step in tau
+
+    Returns
+    -------
+    (cos, sin)
     """
     angle = x * h
     if not (done < _FEW_STEPS and abs(angle) < _SMALL_ANGLE):

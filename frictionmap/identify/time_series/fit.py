@@ -152,20 +152,20 @@ def fit_record(
     coarse = shaken(contact, damping_reference, phasors, samples.time[few], elastic)
     mass = shaken(contact, damping_reference, phasors, samples.time, elastic)
     held = known if elastic else {"mu": 1.0, **known}
-    begins = starts(contact, damping_reference, phasors, held, elastic)
-    near = _nearest(coarse, samples.near[few], held, begins[:_FOLLOWED])
+    candidates = starts(contact, damping_reference, phasors, held, elastic)
+    near = _nearest(coarse, samples.near[few], held, candidates[:_FOLLOWED])
     scatter = float(np.sqrt(near.sum / samples.near[few].size))
     begin = _begin(near, samples)
     at_one = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
     if elastic and at_one.model_error > 1.0:
-        begin = _begin(_nearest(coarse, samples.near[few], known, begins[:_MORE_FOLLOWED]), samples)
+        begin = _begin(_nearest(coarse, samples.near[few], known, candidates[:_MORE_FOLLOWED]), samples)
         other = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
         at_one = min(at_one, other, key=lambda fit: float(np.sum(fit.residual**2)))
     starting = [at_one.solution.values]
     with_mu = not elastic and "mu" not in known
     if with_mu and at_one.model_error > 1.0:  # else nothing far away can be much nearer
-        begins = starts(contact, damping_reference, phasors, known)
-        starting.append(_begin(_nearest(coarse, samples.near[few], known, begins[:_FOLLOWED]), samples))
+        candidates = starts(contact, damping_reference, phasors, known)
+        starting.append(_begin(_nearest(coarse, samples.near[few], known, candidates[:_FOLLOWED]), samples))
     fit = _with_static(at_one, phasors, starting)
     # without outliers once more if mu is fitted: what errors of the base do was computed for mu = 1
     for _ in range(_ROUNDS if samples.scale else int(fit.static == FITTED)):
@@ -283,12 +283,14 @@ def _begin(near: Solution, samples: Samples) -> np.ndarray:
     return np.concatenate((near.values, slow))
 
 
-def _nearest(mass: Shaken, x: np.ndarray, known: Mapping[str, float], begins: list[np.ndarray]) -> Solution:
+def _nearest(
+    mass: Shaken, x: np.ndarray, known: Mapping[str, float], candidates: list[np.ndarray]
+) -> Solution:
     """The least sum from several starts, of samples without drift and outliers."""
     none = np.zeros((x.size, 0))
     samples = Samples(np.zeros(x.size), x, x, x, none, none, None)
     free, elastic = _free(known, samples, mass.elastic), mass.elastic
-    fitted = [inner(start, elastic) for start in begins]
+    fitted = [inner(start, elastic) for start in candidates]
     problems = [(_problem(mass, samples, free, start), start) for start in fitted]
     return min((minimise(_within(task), start) for task, start in problems), key=lambda found: found.sum)
 

@@ -135,16 +135,25 @@ def axis(values: object, name: str, *, least: float, most: float = math.inf) -> 
     if result.size == 0:
         raise InputError(f"{name} must have at least one value; got none")
 
+    first, last = float(result[0]), float(result[-1])
+    increasing = bool((result[1:] > result[:-1]).all())
+    if not (increasing and math.isfinite(first) and math.isfinite(last) and least <= first and last <= most):
+        _refuse_axis(result, name, least, most)
+    return result
+
+
+def _refuse_axis(values: np.ndarray, name: str, least: float, most: float) -> None:
+    """Refuse an axis for its first wrong value."""
+
     def refuse(wrong: np.ndarray, valid: str) -> None:
         if wrong.any():
             index = int(np.argmax(wrong))
-            raise InputError(f"{name} must be {valid}; got {result[index]} at index {index}")
+            raise InputError(f"{name} must be {valid}; got {values[index]} at index {index}")
 
-    refuse(~np.isfinite(result), "finite")
-    refuse(result < least, f">= {least:g}")
-    refuse(result > most, f"<= {most:g}")
-    refuse(np.concatenate(([False], np.diff(result) <= 0.0)), "increasing")
-    return result
+    refuse(~np.isfinite(values), "finite")
+    refuse(values < least, f">= {least:g}")
+    refuse(values > most, f"<= {most:g}")
+    refuse(np.concatenate(([False], np.diff(values) <= 0.0)), "increasing")
 
 
 def cells(n_mu: int, n_r: int, n_beta: int, name: str = "grid", points: int = 1) -> None:

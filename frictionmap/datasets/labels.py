@@ -4,6 +4,7 @@ They are stored in files: new ones may be added, existing ones must not change.
 """
 
 import re
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -826,9 +827,16 @@ def labels_of(what: str) -> dict[str, Label]:
 
 def attributes(label: Label) -> dict[str, object]:
     """CF attributes of a variable."""
+    return _attributes(label).copy()
+
+
+@lru_cache(maxsize=256)
+def _attributes(label: Label) -> dict[str, object]:
     result: dict[str, object] = {"long_name": label.long_name}
     if label.codes:
-        result[label.flags] = np.array([code.value for code in label.codes], dtype=label.dtype)
+        codes: np.ndarray = np.array([code.value for code in label.codes], dtype=label.dtype)
+        codes.setflags(write=False)  # all variables with this label share it
+        result[label.flags] = codes
         result["flag_meanings"] = " ".join(code.name for code in label.codes)
         result["comment"] = "; ".join(f"{code.name}: {code.meaning}" for code in label.codes)
     else:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import UTC, datetime
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -93,7 +94,7 @@ def configuration(
     if "beta" not in axes:
         lines.append("beta = 1.0  # boundaries need none")
     if solver is not None:
-        lines += ["", "[solver]", *(f"{key} = {value_text(value)}" for key, value in asdict(solver).items())]
+        lines += ["", "[solver]", *_solver_lines(solver)]
     if curves is not None:
         lines += ["", "[curves]", *(f"{key} = {value_text(value)}" for key, value in curves.items())]
     if study is not None:
@@ -101,10 +102,15 @@ def configuration(
     return "\n".join(lines) + "\n"
 
 
+@lru_cache(maxsize=16)
+def _solver_lines(solver: "Solver") -> tuple[str, ...]:
+    return tuple(f"{key} = {value_text(value)}" for key, value in asdict(solver).items())
+
+
 def _format_axis(values: np.ndarray) -> str:
     """Format the values of an axis: up to three of them, or the range."""
     if values.size <= 3:
-        return ", ".join(f"{value:g}" for value in values)
+        return ", ".join(f"{value:g}" for value in values.tolist())
     return f"{values[0]:g} to {values[-1]:g} ({values.size} values)"
 
 

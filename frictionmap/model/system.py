@@ -638,6 +638,10 @@ class System:
 
     def describe(self) -> str:
         """Describe the system in one line."""
+        return self._description
+
+    @cached_property
+    def _description(self) -> str:
         if self.n == 1 and self.matrices is None:
             return (
                 f"one mass; {self._describe_contact()}, {self._describe_load()}; {self._describe_damping()}"

@@ -63,7 +63,7 @@ class Cells:
             self.curves = many_mode_curves(system, r, mu)
             self.no_load = (r == 0.0) & bool(system.base_motion)
 
-    @property
+    @cached_property
     def _needs(self) -> set[str]:
         needs = {CELL_VARIABLES[name].needs for name in self._solver.outputs}
         return needs | {"details"} if "exponent" in needs else needs

@@ -40,6 +40,13 @@ _AT_ONCE = 16 * FOLLOWED
 _NAMES = tuple(name for name, label in CELL_VARIABLES.items() if label.needs != "cycle")
 Arrays = namedtuple("Arrays", _NAMES)  # type: ignore[misc]
 
+#: Arrays in the place of outputs that are not requested.
+_EMPTY: dict[str, np.ndarray] = {
+    name: np.empty([0] * len(label.dims), label.dtype)
+    for name, label in CELL_VARIABLES.items()
+    if name in _NAMES
+}
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -92,8 +99,7 @@ def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: 
     """
     beta_lim, beta_stick = cells.curves.beta_lim, cells.curves.beta_stick
     shape = beta_lim.shape
-    no_load = np.broadcast_to(cells.no_load, shape)
-    no_motion = np.broadcast_to(r == 0.0, shape)
+    no_motion = r == 0.0
     low = np.full(shape, int(beta[0] == 0.0))
     high = np.full(shape, beta.size)
     stuck_from = np.searchsorted(beta, beta_stick)
@@ -104,7 +110,7 @@ def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: 
         sliding = np.where(unique, beta_lim, _no_friction(beta_lim, beta_stick))
         low = np.maximum(low, np.searchsorted(beta, sliding))
     high = np.where(no_motion, stuck_from, high)
-    low = np.where(no_load, 0, np.minimum(low, high))
+    low = np.where(cells.no_load, 0, np.minimum(low, high))
     open_cells = np.where(no_motion, 0, high - low).ravel()
     rows = np.flatnonzero(open_cells)
     return Plan(low.ravel(), high.ravel(), rows, np.cumsum(open_cells[rows]))
@@ -113,12 +119,12 @@ def plan(cells: Cells, r: np.ndarray, mu: np.ndarray, beta: np.ndarray, solver: 
 def allocate(shape: tuple[int, int, int], dofs: int, names: Sequence[str]) -> Any:
     """Allocate these outputs, unresolved until filled; other outputs have size 0."""
     sizes = dict(zip((*CELL, "dof"), (*shape, dofs), strict=True))
-    arrays: list[np.ndarray] = []
-    for name in _NAMES:
-        label = CELL_VARIABLES[name]
-        kept = name in names
-        arrays.append(np.full([kept * sizes[dim] for dim in label.dims], label.unresolved, label.dtype))
-    return Arrays(*arrays)
+    kept: dict[str, np.ndarray] = {}
+    for name in names:
+        if name in _EMPTY:
+            label = CELL_VARIABLES[name]
+            kept[name] = np.full([sizes[dim] for dim in label.dims], label.unresolved, label.dtype)
+    return Arrays(**(_EMPTY | kept))
 
 
 def _fill(
@@ -141,9 +147,10 @@ def _fill(
         costs.append(FOLLOWED * (last - first))
 
     others = cells.reachable(out, cancel)
-    jobs += others
-    per_row = columns * np.repeat(np.where(unique, SEARCHED_UNIQUE, SEARCHED), shape[1])
-    costs += per_row.tolist()[: len(others)]
+    if others:
+        jobs += others
+        per_row = columns * np.repeat(np.where(unique, SEARCHED_UNIQUE, SEARCHED), shape[1])
+        costs += per_row.tolist()
 
     spent, total = 0, sum(costs)
 

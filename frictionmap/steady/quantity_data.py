@@ -120,8 +120,9 @@ def results(cells: tuple[int, int, int], masses: int, request: QuantityRequest) 
     """Allocate the requested results over (mu, r, beta), NaN until they are filled."""
 
     def array(kind: str, *further: int, dtype: type = float) -> np.ndarray:
-        shape = (*cells, *further) if kind in request.kinds else (0,) * (3 + len(further))
-        return np.full(shape, np.nan, dtype)
+        if kind not in request.kinds:
+            return np.empty((0,) * (3 + len(further)), dtype)
+        return np.full((*cells, *further), np.nan, dtype)
 
     rows = masses + 2
     return Results(

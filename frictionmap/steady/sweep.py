@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from .. import checks
 from ..datasets.labels import GENERAL_VARIABLES, NAMES
 from ..datasets.physical import with_units
-from ..datasets.variables import coordinate, coordinate_of_study, indexed, label_variable, stamp
+from ..datasets.variables import coordinate_of_study, indexed, label_variable, stamp
 from ..errors import InputError
 from ..jobs import Progress, Watch
 from ..model.settings import Solver, SolverSettings, merged
@@ -145,8 +145,7 @@ def regime_map(
     found, curves = solve_map(system, axes, solver, threads, progress, watch)
     variables = {name: label_variable(name, values) for name, values in found.items()}
     sizes = {"dof": np.array(system.dofs.numbers)} if "amplitude" in solver.outputs else {}
-    coords = {name: coordinate(name, values) for name, values in {**axes, **sizes}.items()}
-    return xr.Dataset(variables | boundary_variables(curves), coords=indexed(coords))
+    return xr.Dataset(variables | boundary_variables(curves), coords=indexed({**axes, **sizes}))
 
 
 def _study(

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -23,6 +23,7 @@ class Dofs:
     labels: tuple[Label, ...] | None = None
 
     @classmethod
+    @lru_cache(maxsize=16)
     def counted(cls, n: int, labels: tuple[Label, ...] | None = None) -> "Dofs":
         """Number the degrees of freedom from 1 to n."""
         return cls(tuple(range(1, n + 1)), labels)

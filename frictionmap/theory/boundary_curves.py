@@ -96,11 +96,11 @@ def _refuse_low(r: np.ndarray, omega: np.ndarray, zeta: np.ndarray) -> None:
     """Refuse 0 < r far below the rates of free motion of oscillators."""
     rates = omega * np.where(zeta > 1.0, 2.0 * zeta, 1.0)
     least = _LEAST_RATIO * float(rates.max())
-    small = (r > 0.0) & (r < least)
-    if small.any():
+    small = r[r < least]
+    if small.any():  # any but 0
         raise InputError(
             f"r must be 0, or >= {least:.3g} for this system: below, a period of the load has more than 10^6 "
-            f"periods of the fastest free motion; got {r[small][0]:g}"
+            f"periods of the fastest free motion; got {small[small > 0.0][0]:g}"
         )
 
 

@@ -293,3 +293,15 @@ def test_maps_share_no_labels():
     assert second.sel(r=0.9, beta=0.2, mu=1.5).r == 0.9
     longer = fm.sweep(fm.System(), np.linspace(0.3, 0.9, 5000), [0.2], [1.2])
     assert longer.sel(r=0.9).r == 0.9
+
+
+def test_a_dataset_is_not_changed_through_an_earlier_one_with_the_same_axes() -> None:
+    first = fm.sweep(fm.System(), [0.5, 1.0], [0.1, 0.2])
+    kept = first.copy(deep=True)
+    first.r.attrs["long_name"] = "changed"
+    first.attrs["config"] = "changed"
+    first["r"] = first.r * 2.0
+    first.beta_lim[:] = 0.0
+    again = fm.sweep(fm.System(), [0.5, 1.0], [0.1, 0.2])
+    again.attrs["history"] = kept.attrs["history"]  # its time
+    assert again.identical(kept)

@@ -87,7 +87,10 @@ def draw(rows: list[dict], path: Path) -> None:
         for kind, colour, marker in (("store", "#2c5aa0", "o"), ("file", "#d98032", "s")):
             there = [row for row in rows if kind in row]
             cells = [row["n"] ** 2 for row in there]
-            axes.loglog(cells, [row[kind][key] for row in there], marker=marker, color=colour, label=kind)
+            axes.semilogx(cells, [row[kind][key] for row in there], marker=marker, color=colour, label=kind)
+        axes.set_xticks([row["n"] ** 2 for row in rows], [f"{row['n']:,} x {row['n']:,}" for row in rows])
+        axes.minorticks_off()
+        axes.set_ylim(bottom=0.0)
         axes.set_xlabel("cells of T Fig. 3.12, mu = 1")
         axes.set_ylabel(f"{'largest memory' if key == 'MB' else 'time of the command'} [{unit}]")
         axes.grid(alpha=0.25)

@@ -1,6 +1,6 @@
 """Settings of the steady-state solver, and of response curves."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, TypedDict, get_args
 
@@ -117,9 +117,13 @@ class Solver:
 
     def __post_init__(self) -> None:
         checks.choice(self.start, "start", get_args(Start))
-        checks.whole(self.cycles, "cycles", **RANGES["cycles"])
-        checks.number(self.tolerance, "tolerance", **RANGES["tolerance"])
-        checks.whole(self.steps, "steps", **RANGES["steps"])
+        numbers: dict[str, Callable[..., float]] = {
+            "cycles": checks.whole,
+            "tolerance": checks.number,
+            "steps": checks.whole,
+        }
+        for name, check in numbers.items():  # kept as plain numbers, which a configuration can hold
+            object.__setattr__(self, name, check(getattr(self, name), name, **RANGES[name]))
         checks.choice(self.skip, "skip", get_args(Skip))
         checks.choice(self.steady, "steady", get_args(Steady))
         if isinstance(self.outputs, str) or not isinstance(self.outputs, Sequence):

@@ -77,6 +77,12 @@ def test_the_configuration_makes_the_same_map(axes, tmp_path):
     xr.testing.assert_identical(again.drop_attrs(), ds.drop_attrs())
 
 
+def test_settings_as_numbers_of_numpy_are_plain_numbers_in_the_configuration(tmp_path):
+    given = fm.Solver(cycles=np.int64(1500), tolerance=np.float64(1e-11), steps=np.int32(20))
+    ds = fm.sweep(fm.System(), [0.5], [0.1], solver=given)
+    assert reload(ds, tmp_path).solver == fm.Solver(cycles=1500, tolerance=1e-11, steps=20)
+
+
 def test_a_response_is_of_its_cell(tmp_path):
     config = reload(fm.response(fm.System(), 0.3, 0.5, 1.2, start="moving"), tmp_path)
     assert (config.r, config.beta, config.mu) == (0.3, 0.5, 1.2)

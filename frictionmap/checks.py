@@ -135,7 +135,7 @@ def axis(values: object, name: str, *, least: float, most: float = math.inf) -> 
     if result.size == 0:
         raise InputError(f"{name} must have at least one value; got none")
 
-    first, last = float(result[0]), float(result[-1])
+    first, last = float(result[0]), float(result[-1])  # of a good axis they bound all others
     increasing = bool((result[1:] > result[:-1]).all())
     if not (increasing and math.isfinite(first) and math.isfinite(last) and least <= first and last <= most):
         _refuse_axis(result, name, least, most)
@@ -143,7 +143,7 @@ def axis(values: object, name: str, *, least: float, most: float = math.inf) -> 
 
 
 def _refuse_axis(values: np.ndarray, name: str, least: float, most: float) -> None:
-    """Refuse an axis for its first wrong value."""
+    """Say which value of a wrong axis is wrong."""
 
     def refuse(wrong: np.ndarray, valid: str) -> None:
         if wrong.any():

@@ -60,8 +60,8 @@ SCENES: dict[str, dict] = {
     "T Fig. 6.14": {"config": "fig-6-14.toml"},
     "T Fig. 3.12, mu = 1": {"config": "fig-3-12.toml", "mu": [1.0], "calls": 25},
     "T Fig. 3.12, mu = 1.5": {"config": "fig-3-12.toml", "mu": [1.5], "calls": 25},
-    "one mass, 4 cells": {"system": {}, "cells": 2, "mu": [1.3], "calls": 300, "every": 1},
-    "five masses, 4 cells": {"system": _FIVE, "cells": 2, "mu": [1.3], "calls": 300, "every": 1},
+    "one mass, design loop": {"system": {}, "cells": 2, "mu": [1.3], "calls": 300, "every": 1},
+    "five masses, design loop": {"system": _FIVE, "cells": 2, "mu": [1.3], "calls": 300, "every": 1},
 }
 
 #: Repetitions, and the part of the grid; by quick.
@@ -69,7 +69,7 @@ _ROUNDS = {False: 3, True: 1}
 _EVERY = {False: 1, True: 10}
 
 #: Scenes of the quick form: a configuration of one mass, and repeated calls with a structure.
-_QUICK = ("T Fig. 3.12, mu = 1", "five masses, 4 cells")
+_QUICK = ("T Fig. 3.12, mu = 1", "five masses, design loop")
 
 
 def _computed(package: Path, scene: dict, folder: Path) -> tuple[float, dict[str, np.ndarray]]:

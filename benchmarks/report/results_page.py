@@ -272,9 +272,8 @@ def _large_rows(large: dict) -> Iterator[tuple[str, ...]]:
 def _static_rows(static: dict) -> Iterator[tuple[str, ...]]:
     for name, entry in static["scenes"].items():
         faster = f", {two_digits(entry['ratio'])} times as fast as version 0.2" if "ratio" in entry else ""
-        cells = "" if name.endswith(" cells") else f", {entry['cells']:,} cells"
         yield (
-            f"map of {name}{cells}, one thread",
+            f"map of {name}, {entry['cells']:,} cells, one thread",
             (f"{duration(entry['seconds']['this']['median'])}{faster}"),
         )
 

@@ -42,9 +42,7 @@ Arrays = namedtuple("Arrays", _NAMES)  # type: ignore[misc]
 
 #: Arrays in the place of outputs that are not requested.
 _EMPTY: dict[str, np.ndarray] = {
-    name: np.empty([0] * len(label.dims), label.dtype)
-    for name, label in CELL_VARIABLES.items()
-    if name in _NAMES
+    name: np.empty([0] * len(CELL_VARIABLES[name].dims), CELL_VARIABLES[name].dtype) for name in _NAMES
 }
 
 

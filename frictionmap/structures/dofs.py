@@ -23,7 +23,7 @@ class Dofs:
     labels: tuple[Label, ...] | None = None
 
     @classmethod
-    @lru_cache(maxsize=16)
+    @lru_cache(maxsize=16)  # a system asks for them with every call
     def counted(cls, n: int, labels: tuple[Label, ...] | None = None) -> "Dofs":
         """Number the degrees of freedom from 1 to n."""
         return cls(tuple(range(1, n + 1)), labels)

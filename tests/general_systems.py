@@ -82,7 +82,7 @@ class Solved:
             start = np.asarray(further["state"], dtype=float)
         kinetic, static = (np.asarray(values, dtype=float) for values in friction)
         self.found, halves, self.multiplier, self.counts, self.record, _ = one_steady_state(
-            problem, 0, Friction(kinetic, static), start, 2000.0, 1e-12, np.ascontiguousarray(phi), 0
+            problem, 0, Friction(kinetic, static), start, 2000.0, 1e-12, np.ascontiguousarray(phi), 0, True
         )
         self.resolved = self.found.status == REPEATS
         self.period = halves // 2

@@ -31,6 +31,9 @@ _ELASTIC = {"stops_per_cycle": "slips_per_cycle", "stuck_fraction": "elastic_fra
 
 _OF_MASSES = ("amplitude", "peak_to_peak", "midpoint")
 
+#: Outputs that depend on the places of contacts at rest; that of a rigid one at rest is 0 by definition.
+_PLACED = {"amplitude", "midpoint", "contact_midpoint", "contact_amplitude"}
+
 
 def outputs_of(general: General, solver: Solver) -> tuple[str, ...]:
     """The outputs of a map: those asked for, with their counterparts for elastic contacts.
@@ -158,7 +161,10 @@ def general_map(
     masses = any(name in _OF_MASSES for name in names)
     threads = checks.threads(threads)
     limits = find_boundaries(system, axes["r"], axes["mu"], threads, watch)
-    found = solve_cells(system, axes, limits.beta_stick, solver, threads, progress, watch, masses)
+    placed = _PLACED if general.elastic.any() else _PLACED - {"contact_amplitude"}
+    found = solve_cells(
+        system, axes, limits.beta_stick, solver, threads, progress, watch, masses, bool(placed & set(names))
+    )
     variables: dict[str, xr.Variable] = {}
     for name in names:
         if name in PER_CONTACT:

@@ -62,7 +62,7 @@ def _follow(
         force = kinetic @ np.array([beta[k], 1.0])
         state, _, _, counts, record, h, steps = recorded_state(
             problem, index[k], Friction(force, force), starts[index[k]], (solver.cycles, solver.tolerance),
-            no_masses,
+            no_masses, settled=False,
         )  # fmt: skip
         if state.status != REPEATS:
             continue

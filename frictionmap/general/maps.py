@@ -43,17 +43,18 @@ def _put_r_zero(found: Cells, at_zero: int, beta: np.ndarray, stick: np.ndarray)
 
 
 def _put_stuck(system: System, r: np.ndarray, found: Cells) -> None:
-    """Fill displacements of cells that closed forms prove to stick: those of the held structure."""
+    """Add the displacements of the held structure in cells that closed forms prove to stick."""
     low, high = held_ranges(system, r)
     stuck = (found.regime == regimes.PERMANENT_STICKING) & (found.origin == regimes.CLOSED_FORM)
     m, i, b = np.nonzero(stuck)
     kept = found.lowest.shape[-1]  # contacts, and masses where they are wanted
-    found.highest[m, i, b], found.lowest[m, i, b] = high[i, :kept], low[i, :kept]
+    found.highest[m, i, b] += high[i, :kept]
+    found.lowest[m, i, b] += low[i, :kept]
 
 
 def solve_cells(
     system: System, axes: Mapping[str, np.ndarray], beta_stick: np.ndarray, solver: Solver, threads: int,
-    progress: Progress | None, watch: Watch | None, masses: bool,
+    progress: Progress | None, watch: Watch | None, masses: bool, places: bool = True,
 ) -> Cells:  # fmt: skip
     """Compute all cells of a grid.
 
@@ -66,6 +67,7 @@ def solve_cells(
     threads : number of threads
     progress, watch : as in `sweep`
     masses : whether displacements of the masses are wanted, after those in the contacts
+    places : whether displacements are wanted that depend on the places of contacts at rest
     """
     mu, r = axes["mu"], axes["r"]
     beta = np.tile(axes["beta"], (r.size, 1)) if axes["beta"].ndim == 1 else axes["beta"]
@@ -79,7 +81,7 @@ def solve_cells(
     starts = rest_states(system, modal, r)
     if solver.start == "moving":
         starts = sliding_states(problem, r, MOVING_START)
-    grid = Grid(beta, kinetic, static, stuck_from, starts, float(solver.cycles), solver.tolerance)
+    grid = Grid(beta, kinetic, static, stuck_from, starts, places, float(solver.cycles), solver.tolerance)
     count = system.n if masses else 0
     found = allocate((mu.size, r.size, many), general.count, count)
     outputs = np.ascontiguousarray(modal.phi) if masses else np.empty((0, modal.phi.shape[1]))

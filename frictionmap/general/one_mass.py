@@ -71,7 +71,7 @@ def steady_motion(
     forces = Friction(np.array([friction]), np.array([mu * friction]))
     most = int(4.0 * math.pi * problem.rates[0] / TURN) + _EVENTS
     found, halves, _, counts, record, h, steps = recorded_state(
-        problem, 0, forces, state, (cycles, _TOLERANCE), np.empty((0, 1)), most
+        problem, 0, forces, state, (cycles, _TOLERANCE), np.empty((0, 1)), most, False
     )
     period = halves // 2
     places = np.empty(phases.size)

@@ -27,7 +27,7 @@ class Recorded(NamedTuple):
 
 def recorded_state(
     problem: Problem, i: int, friction: Friction, start: np.ndarray, limits: tuple[int, float],
-    masses: np.ndarray, most: int = _FIRST,
+    masses: np.ndarray, most: int = _FIRST, settled: bool = True,
 ) -> Recorded:  # fmt: skip
     """Find the steady state of one cell; where there is no room for all its steps, once more with more.
 
@@ -37,11 +37,12 @@ def recorded_state(
     start : (2, m) modes and their velocities q' at tau = 0
     limits : periods followed at most, and tolerance
     most : steps for which there is room at first
+    settled : see `one_steady_state`
     """
     cycles, tolerance = limits
     while True:
         found, halves, multiplier, counts, record, h = one_steady_state(
-            problem, i, friction, start, float(cycles), tolerance, masses, most
+            problem, i, friction, start, float(cycles), tolerance, masses, most, settled
         )
         steps = int(record.count[0])
         if steps <= most:

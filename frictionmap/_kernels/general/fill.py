@@ -25,11 +25,19 @@ from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from ..extrapolation import CELLS, reaches, weight
 from .follow import MOVED, RELEASE_ORDER, REVERSALS, SLIPS, STOPS, STOPS_ERROR, STUCK, STUCK_ERROR, TURNS
+from .places import fill_needs, keep_held, place_after_start
 from .problem import padded
-from .record import LEAST_SLIP, RANGES
-from .return_map import copy_motion, copy_state, steady_period
+from .record import LEAST_SLIP, NOTHING, RANGES
+from .return_map import copy_motion, copy_state, from_rest, steady_period
 from .series import Friction
-from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, from_rest, make_tools, solve
+from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, make_tools, solve_from
+
+#: Multiplier from which on a steady state may be one of many beside each other, of which the start decides.
+_ISOLATED = 1.0 - 1e-9
+
+
+#: Contacts of a row that stick permanently: not known yet, some slip after the start, none does from here on.
+_UNKNOWN, _SLIPS, _STAYS = 0, 1, 2
 
 
 class Grid(NamedTuple):
@@ -40,6 +48,7 @@ class Grid(NamedTuple):
     static: np.ndarray  # (n_mu, N, 2)
     stuck_from: np.ndarray  # (n_mu, n_r) index of the first cell that is proved to stick permanently
     starts: np.ndarray  # (n_r, 2, m) modes and their velocities at tau = 0
+    places: bool  # whether displacements are wanted that depend on the places of contacts at rest
     cycles: float
     tolerance: float
 
@@ -176,8 +185,8 @@ def _store(problem, out, m, i, b, found, measured, counts, record):
 
 @kernel
 def _store_stuck(out, m, i, b):
-    """Store a cell that closed forms prove to stick permanently; its displacements are those of the held
-    structure and filled elsewhere.
+    """Store a cell that closed forms prove to stick permanently; its displacements beside those of the
+    structure held at the place 0, which are added elsewhere, are 0.
     """
     out.regime[m, i, b] = PERMANENT_STICKING
     out.status[m, i, b] = RESOLVED
@@ -196,6 +205,49 @@ def _store_stuck(out, m, i, b):
         out.distance[m, i, b, j] = 0.0
         out.works[m, i, b, j] = 0.0
         out.wall_works[m, i, b, j] = 0.0
+    for k in range(out.lowest.shape[3]):
+        out.lowest[m, i, b, k] = out.highest[m, i, b, k] = 0.0
+
+
+@kernel
+def _place_stuck(problem, grid, m, i, b, friction, tools, place, out):
+    """Store the displacements at the places to which the start leads in a cell that sticks permanently.
+
+    Parameters
+    ----------
+    problem, grid : Problem, Grid
+    m, i, b : indices of mu, r and beta
+    friction, tools : Friction, replaced; Tools
+    place : _UNKNOWN, _SLIPS or _STAYS: what is known of the row before this cell
+    out : Cells
+
+    Returns
+    -------
+    int : what is known of the row
+    """
+    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    places, needs = tools.places, tools.needs
+    if place == _STAYS:
+        return _STAYS
+    state = grid.starts[i]
+    if place == _UNKNOWN:
+        if not keep_held(problem, row, friction, grid.tolerance, work, memory, record, places):
+            return _STAYS
+        fill_needs(problem, row, friction, state, work, memory, record, places, needs)
+    _set_friction(grid, m, i, b, friction)
+    stays = True
+    for j in range(needs.size):
+        stays = stays and friction.static[j] >= needs[j]
+    if stays:
+        return _STAYS
+    shift = out.lowest[m, i, b]
+    if not place_after_start(problem, row, friction, state, grid.cycles, work, memory, record, places, shift):
+        out.status[m, i, b] = NOT_REACHED
+        for k in range(shift.size):
+            shift[k] = math.nan
+    for k in range(shift.size):
+        out.highest[m, i, b, k] = shift[k]
+    return _SLIPS
 
 
 @kernel
@@ -250,27 +302,31 @@ def _begin_ahead(beta, trail, memory):
 
 
 @kernel
-def _solve_cell(problem, grid, i, b, unique, friction, tools, trail):
+def _solve_cell(problem, grid, m, i, b, friction, tools, trail):
     """Find the steady state of a cell: from where the last cells point, if that leads to it, or from rest.
 
     Parameters
     ----------
     problem, grid : Problem, Grid
-    i, b : indices of r and beta
-    unique : whether the start does not matter
-    friction, tools, trail : Friction of the cell, Tools, Trail
+    m, i, b : indices of mu, r and beta
+    friction, tools, trail : Friction, filled with that of the cell; Tools, Trail
 
     Returns
     -------
     Steady, half periods measured, multiplier
     """
+    state, row, memory = grid.starts[i], tools.row, tools.memory
+    unique = _set_friction(grid, m, i, b, friction)
     if unique and trail.count[0] > 0:
-        _begin_ahead(grid.beta[i, b], trail, tools.memory)
-        found, halves, multiplier = solve(problem, friction, grid.cycles, grid.tolerance, tools, RANGES)
-        if found.status == REPEATS:
+        _begin_ahead(grid.beta[i, b], trail, memory)
+        found, halves, multiplier = solve_from(
+            problem, friction, state, grid.cycles, grid.tolerance, tools, RANGES, True
+        )
+        if found.status == REPEATS and multiplier < _ISOLATED:
             return found, halves, multiplier
-    from_rest(problem, tools.row, friction, grid.starts[i], tools.work, tools.memory, tools.record)
-    return solve(problem, friction, grid.cycles, grid.tolerance, tools, RANGES)
+        _set_friction(grid, m, i, b, friction)
+    from_rest(problem, row, friction, state, tools.work, memory, tools.record, NOTHING)
+    return solve_from(problem, friction, state, grid.cycles, grid.tolerance, tools, RANGES, True)
 
 
 @kernel
@@ -291,14 +347,15 @@ def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
             continue
         begin_row(problem, i, tools)
         trail.count[0] = 0
+        place = _UNKNOWN if grid.places else _STAYS
         for b in range(grid.beta.shape[1]):
             if cancel[0] != 0:
                 return
             if b >= grid.stuck_from[m, i]:
                 _store_stuck(out, m, i, b)
+                place = _place_stuck(problem, grid, m, i, b, friction, tools, place, out)
                 continue
-            unique = _set_friction(grid, m, i, b, friction)
-            found, halves, multiplier = _solve_cell(problem, grid, i, b, unique, friction, tools, trail)
+            found, halves, multiplier = _solve_cell(problem, grid, m, i, b, friction, tools, trail)
             if found.status == REPEATS:
                 _remember(tools.memory, grid.beta[i, b], trail)
             else:

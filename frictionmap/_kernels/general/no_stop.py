@@ -77,7 +77,7 @@ def _try(problem, i, search, beta, near, friction, tools, kept, k):
         friction.kinetic[j] = search.kinetic[j, 0] * beta + search.kinetic[j, 1]
         friction.static[j] = friction.kinetic[j]
     if not near:
-        from_rest(problem, tools.row, friction, search.starts[i], tools.work, memory, tools.record)
+        from_rest(problem, tools.row, friction, search.starts[i], tools.work, memory, tools.record, NOTHING)
     found, _, _ = solve(problem, friction, search.cycles, search.tolerance, tools, NOTHING)
     kept[k, 0] = math.nan
     if found.status != REPEATS:

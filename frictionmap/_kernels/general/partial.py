@@ -7,9 +7,10 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from .problem import set_row
-from .record import FORCES
+from .record import FORCES, NOTHING
+from .return_map import from_rest
 from .series import Friction
-from .steady import REPEATS, WITHOUT_LIMIT, find, from_rest, make_tools, measure
+from .steady import REPEATS, WITHOUT_LIMIT, find, make_tools, measure
 
 
 @kernel
@@ -33,7 +34,7 @@ def _fill(problem, i, contact, lines, values, state, limits, tools, friction, ou
             friction.kinetic[j] = force
             friction.static[j] = force
         if not near:
-            from_rest(problem, row, friction, state, work, memory, record)
+            from_rest(problem, row, friction, state, work, memory, record, NOTHING)
         found = find(
             problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course
         )

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from .follow import (
+    BEFORE,
     COUNT_ROWS,
     FIRST_SENSE,
     FOLLOWED,
@@ -16,8 +17,14 @@ from .follow import (
     REVERSALS,
     follow,
 )
+from .pattern import begin
 from .problem import padded, state_size
+from .record import NOTHING
 from .tangent import identity
+
+#: Bits that coordinates are rounded to before a steady state is found anew.  Newton's method then takes two
+#: steps; and of states that differ by rounding errors, 2^-50, hardly one in 10^9 is rounded to another one.
+_BITS = 16
 
 
 class Return(NamedTuple):
@@ -127,6 +134,72 @@ def go_round(problem, row, friction, halves, work, memory, record, derive):
             memory.counts[REVERSALS, j] += 1.0
     take_state(work, memory.end, memory.end_senses, sign)
     return code
+
+
+@kernel
+def _put_start(problem, row, state, work):
+    """Set the state at tau = 0; elastic contacts begin without force."""
+    for m in range(problem.push.shape[0]):
+        work.state[0, m] = state[0, m]
+        work.state[1, m] = row.numbers[0] * state[1, m]
+    for j in range(problem.spring.size):
+        work.state[2, j] = 0.0
+
+
+@kernel
+def begins_held(problem, row, friction, state, work, memory):
+    """Whether no contact moves at tau = 0."""
+    _put_start(problem, row, state, work)
+    if not begin(problem, row, friction, 0.0, work, memory.law):
+        return False
+    moving = 0
+    for j in range(work.sense.size):
+        moving += abs(work.sense[j])
+    return moving == 0
+
+
+@kernel
+def from_rest(problem, row, friction, state, work, memory, record, what):
+    """Follow a motion from tau = 0 to the section.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    state : (2, m) modes and their velocities q' at tau = 0; elastic contacts begin without force
+    work, memory, record : Work, Return, Record
+    what : NOTHING or FORCES, what is recorded
+    """
+    _put_start(problem, row, state, work)
+    record.active[0] = what
+    if begin(problem, row, friction, 0.0, work, memory.law):
+        follow(problem, row, friction, BEFORE, work, memory.law, memory.counts, record, False)
+    record.active[0] = NOTHING
+    take_state(work, memory.start, memory.senses, 1.0)
+
+
+@kernel
+def raster(size):
+    """Distance of the values that coordinates of this size are rounded to."""
+    return math.ldexp(1.0, math.frexp(size)[1] - _BITS) if size > 0.0 else 1.0
+
+
+@kernel
+def rounded(value, step):
+    """The multiple of a power of two that is next to a value."""
+    return step * math.floor(value / step + 0.5)
+
+
+@kernel
+def round_state(memory):
+    """Round the coordinates of the state in `memory.start`; forces of contacts that slip are given."""
+    for part in range(3):
+        size = 0.0
+        for i in range(memory.start.shape[1]):
+            size = max(size, abs(memory.start[part, i]))
+        step = raster(size)
+        for i in range(memory.start.shape[1]):
+            if part < 2 or (i < memory.senses.size and memory.senses[i] == 0):
+                memory.start[part, i] = rounded(memory.start[part, i], step)
 
 
 @kernel

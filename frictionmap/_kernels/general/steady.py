@@ -7,6 +7,8 @@ then the result.
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from ..long_periods import WINDOW, enough_cycles, first_search, next_search
@@ -21,18 +23,32 @@ from .course import (
     window_is_stationary,
     window_stops,
 )
-from .follow import BEFORE, FOLLOWED, STUCK, follow
+from .follow import FOLLOWED, STUCK
 from .orbits import AVERAGED, MEASURED, NO_REPEAT, REPEATS, Steady, largest_multiplier, newton
-from .pattern import begin, stop_exactly
+from .pattern import stop_exactly
+from .places import (
+    WITHOUT_LIMIT,
+    Places,
+    find_rests,
+    keep_limits,
+    keep_orbit_anew,
+    make_places,
+    restore_limits,
+    settle_places,
+    stop_contacts,
+)
 from .problem import SECTION, Row, Work, make_row, make_work, set_channels, set_row
 from .record import FORCES, NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
 from .return_map import (
     Return,
     base_halves,
+    copy_motion,
+    from_rest,
     go_round,
     make_return,
     put_state,
     return_distance,
+    round_state,
     steady_period,
     take_end,
     take_state,
@@ -45,6 +61,7 @@ from .returns import (
     long_recurrence,
     make_ring,
     recurrence,
+    take_orbit,
 )
 from .series import factor_held
 from .single_mass import solve_single
@@ -53,8 +70,7 @@ from .single_tables import Single, fits_row, forget_row, make_single
 #: Measurements until the error is below MEASURED.
 _MOST_REPEATED = 2
 
-#: Friction of a contact that is held, and attempts of Newton's method after which contacts are held.
-WITHOUT_LIMIT = 1e200
+#: Attempts of Newton's method after which contacts are held.
 _CREEPS = 6
 
 
@@ -68,6 +84,8 @@ class Tools(NamedTuple):
     record: Record
     single: Single
     course: Course
+    places: Places
+    needs: np.ndarray  # (N,) static friction with which no contact slips from the start on
 
 
 @entry
@@ -76,7 +94,7 @@ def make_tools(problem, masses, most):
     return Tools(
         make_row(problem), make_work(problem), make_return(problem), make_ring(problem),
         make_record(problem, masses, most), make_single(problem, masses.shape[0]),
-        make_course(problem, masses),
+        make_course(problem, masses), make_places(problem), np.zeros(problem.spring.size),
     )  # fmt: skip
 
 
@@ -401,33 +419,135 @@ def solve(problem, friction, cycles, tolerance, tools, what):
 
 
 @kernel
-def from_rest(problem, row, friction, state, work, memory, record):
-    """Follow a motion from tau = 0 to the section.
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction
-    state : (2, m) modes and their velocities q' at tau = 0; elastic contacts begin without force
-    work, memory, record : Work, Return, Record
-    """
-    for m in range(problem.push.shape[0]):
-        work.state[0, m] = state[0, m]
-        work.state[1, m] = row.numbers[0] * state[1, m]
-    for j in range(problem.spring.size):
-        work.state[2, j] = 0.0
-    record.active[0] = NOTHING
-    if begin(problem, row, friction, 0.0, work, memory.law):
-        follow(problem, row, friction, BEFORE, work, memory.law, memory.counts, record, False)
-    take_state(work, memory.start, memory.senses, 1.0)
+def is_unique(friction):
+    """Whether the velocities of the steady state do not depend on the start: mu = 1 in all contacts."""
+    unique = True
+    for j in range(friction.static.size):
+        unique = unique and friction.static[j] <= friction.kinetic[j]
+    return unique
 
 
 @kernel
-def _one(problem, i, friction, state, cycles, tolerance, tools):
+def _find_anew(problem, friction, halves, tolerance, tools):
+    """Find a steady state anew from its rounded state in `tools.memory.start`; the periods followed.
+
+    Parameters
+    ----------
+    problem, friction : Problem, Friction
+    halves : half periods after which it returns
+    tolerance : see `find`
+    tools : Tools
+    """
+    row, work, memory, ring = tools.row, tools.work, tools.memory, tools.ring
+    if stop_contacts(problem, row, work, memory):
+        status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, tools.record)
+        if status == REPEATS:
+            return cycles
+    take_orbit(memory, ring)
+    return 0.0
+
+
+@kernel
+def _settle(problem, friction, state, found, cycles, tolerance, tools):
+    """Give the contacts at rest the places to which the motion leads from its start.
+
+    Parameters
+    ----------
+    problem, friction : Problem, Friction
+    state : (2, m) modes and their velocities q' at tau = 0
+    found : Steady, the one in `tools.memory.start`
+    cycles, tolerance : see `find`
+    tools : Tools after `find_rests`
+
+    Returns
+    -------
+    Steady
+    """
+    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    places = tools.places
+    halves = found.halves if found.halves % 2 == 0 else 2 * found.halves
+    kept, spent = keep_orbit_anew(problem, row, friction, halves, tolerance, work, memory, record, places)
+    spent += found.cycles
+    if not kept:
+        return Steady(NO_REPEAT, 0, spent)
+    if is_unique(friction):
+        from_rest(problem, row, friction, state, work, memory, record, NOTHING)
+    else:
+        go_back(memory, tools.ring, 0)
+    known, more = settle_places(problem, row, friction, halves, cycles, work, memory, record, places)
+    return Steady(REPEATS if known else NO_REPEAT, halves, spent + more)
+
+
+@kernel
+def _locate(problem, friction, cycles, tolerance, tools, by_tables):
+    """Find a steady state from `tools.memory.start`.
+
+    Parameters
+    ----------
+    problem, friction, cycles, tolerance, tools : see `solve_from`
+    by_tables : whether the tables of one mass can be used
+    """
+    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    if by_tables:
+        located, spent, _ = solve_single(problem, row, tools.single, friction.kinetic[0], memory, record)
+        if located:
+            return Steady(REPEATS, base_halves(problem), spent)
+    return find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course)
+
+
+@kernel
+def solve_from(problem, friction, state, cycles, tolerance, tools, what, settled):
+    """Find and measure the steady state that the motion from a state at tau = 0 reaches.
+
+    It is looked for from the state in `tools.memory.start`, on which it does not depend for mu = 1.
+
+    Parameters
+    ----------
+    problem, friction : Problem, Friction; contacts at rest get a friction without limit
+    state : (2, m) modes and their velocities q' at tau = 0
+    cycles, tolerance : see `find`
+    tools : Tools after `begin_row`
+    what : see `measure`
+    settled : whether the places of contacts at rest are wanted, and bits that do not depend on the way
+
+    Returns
+    -------
+    Steady, half periods measured, multiplier
+    """
+    row, memory, record = tools.row, tools.memory, tools.record
+    base, unique = base_halves(problem), is_unique(friction)
+    by_tables = what == RANGES and unique and fits_row(problem, row, tools.single, base)
+    keep_limits(friction, tools.places)
+    found = _locate(problem, friction, cycles, tolerance, tools, by_tables)
+    if found.status == REPEATS and settled:
+        restore_limits(friction, tools.places)
+        copy_motion(memory.start, memory.senses, tools.ring.orbit, tools.ring.orbit_senses)
+        if find_rests(memory, tools.places) > 0:
+            found = _settle(problem, friction, state, found, cycles, tolerance, tools)
+        elif unique:
+            round_state(memory)
+            if by_tables:
+                solved, spent, multiplier = solve_single(
+                    problem, row, tools.single, friction.kinetic[0], memory, record
+                )
+                if solved:
+                    return Steady(REPEATS, base, found.cycles + spent), base, multiplier
+            spent = _find_anew(problem, friction, found.halves, tolerance, tools)
+            found = Steady(REPEATS, found.halves, found.cycles + spent)
+    if found.status != REPEATS:
+        return found, 0, math.nan
+    halves, multiplier = measure(problem, row, friction, found.halves, tools.work, memory, record, what)
+    return found, halves, multiplier
+
+
+@kernel
+def _one(problem, i, friction, state, limits, tools, settled):
     """Find the steady state of one cell, and record it.
 
     Parameters
     ----------
-    problem, i, friction, state, cycles, tolerance : see `one_steady_state`
+    problem, i, friction, state, settled : see `one_steady_state`
+    limits : cycles, tolerance
     tools : Tools
 
     Returns
@@ -436,13 +556,13 @@ def _one(problem, i, friction, state, cycles, tolerance, tools):
     """
     problem, friction, tools = packed(problem), packed(friction), packed(tools)
     row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
-    set_row(problem, i, row)
-    from_rest(problem, row, friction, state, work, memory, record)
-    found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course)
-    halves, multiplier = 2, math.nan
+    cycles, tolerance = limits
+    begin_row(problem, i, tools)
+    from_rest(problem, row, friction, state, work, memory, record, NOTHING)
+    found, halves, multiplier = solve_from(problem, friction, state, cycles, tolerance, tools, STEPS, settled)
     if found.status == REPEATS:
-        halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, STEPS)
         return found, halves, multiplier
+    halves = 2
     if found.status == AVERAGED:  # the first phase shown is a maximum of the load, after the first section
         halves = 2 * (WINDOW + 1)
         go_back_cycles(problem, memory, tools.ring, WINDOW + 1)
@@ -455,7 +575,7 @@ def _one(problem, i, friction, state, cycles, tolerance, tools):
 
 
 @entry
-def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, most):
+def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, most, settled):
     """Find the steady state of one cell, with the series of its steps.
 
     Parameters
@@ -466,6 +586,7 @@ def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, mos
     cycles, tolerance : see `find`
     masses : (n, m) displacement of the masses per mode
     most : number of steps that are kept
+    settled : whether the places of contacts at rest are wanted, else any at which they can rest
 
     Returns
     -------
@@ -473,5 +594,5 @@ def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, mos
     them if there are averages), multiplier, counts (see `follow`), Record, h
     """
     tools = make_tools(problem, masses, most)
-    found, halves, multiplier = _one(problem, i, friction, state, cycles, tolerance, tools)
+    found, halves, multiplier = _one(problem, i, friction, state, (cycles, tolerance), tools, settled)
     return found, halves, multiplier, tools.memory.counts, tools.record, tools.row.numbers[0]

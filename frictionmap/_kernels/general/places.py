@@ -1,0 +1,551 @@
+"""Places of contacts that rest: those to which the motion leads from its start.
+
+A contact that rests permanently keeps its place, and an elastic one the offset of its slider.  Every place
+for which its force stays within its friction is that of a steady state.  These states differ by the static
+displacements under constant forces in the contacts at rest; all else is the same in them.  Which of them is
+reached depends on the start: the motion is followed from there until no contact at rest can slip any more.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiler import entry, kernel
+from ..structure.newton import solve_linear
+from .follow import FOLLOWED, MOVED
+from .orbits import REPEATS, newton
+from .pattern import stop_exactly
+from .problem import SECTION, padded, set_channels
+from .record import FORCES, NOTHING, clear_record
+from .return_map import (
+    begins_held,
+    copy_motion,
+    from_rest,
+    go_round,
+    put_state,
+    round_state,
+    take_end,
+    take_state,
+)
+from .series import factor_held, solve_held
+
+#: Friction of a contact that is held.
+WITHOUT_LIMIT = 1e200
+
+#: Margin that a contact at rest must have, over the force that the present difference from the steady state
+#: can cause: where other contacts slide, they turn a little earlier or later than in the steady state, which
+#: that estimate leaves out.  Without them it is a bound.
+_SAFETY = 4.0
+
+#: A contact whose force exceeds its friction by e slides by about e^2 each period, ever more slowly.  Where e
+#: is below this share of the friction, and all other changes cause forces below this share of e, the place
+#: where that ends is known.
+_CREEPS = 1e-2
+
+#: Share of the friction that is rounding error of the forces, and the one to which they are wanted.
+_ROUNDING = 1e-12
+_PRECISE = 1e-10
+
+#: Periods without slip after which a contact counts as settled in any case: without damping, vibrations from
+#: the start never end.
+_STILL = 128
+
+#: Sweeps over the contacts at rest in which their forces are brought within their friction.
+_SWEEPS = 100
+
+
+class Places(NamedTuple):
+    """The contacts at rest in a steady state, and what is known of its forces."""
+
+    rests: np.ndarray  # (N,) int: 1 for contacts that rest permanently
+    limits: np.ndarray  # (2, N) kinetic and static friction, where contacts are held
+    orbit: np.ndarray  # (3, ...) the steady state at the section
+    senses: np.ndarray  # (N,) its pattern there
+    at: np.ndarray  # (N,) places in it
+    forces: np.ndarray  # (2, N) lowest and highest forces in it
+    flexibility: np.ndarray  # (N, N) places per constant force, with a sign
+    gains: np.ndarray  # (N,) largest force over the size of a difference of two motions, see `_difference`
+    change: np.ndarray  # (N,) constant forces by which the places of a motion differ from those in the orbit
+    moved: np.ndarray  # (M,) displacement of the modes under these
+    matrix: np.ndarray  # (N, N) scratch
+    columns: np.ndarray  # (M,) scratch
+
+
+@entry
+def make_places(problem):
+    """Allocate the memory for places."""
+    contacts, modes = problem.chi.shape
+    width = padded(max(modes, contacts))
+    square = (contacts, contacts)
+    return Places(
+        np.zeros(contacts, np.int64), np.zeros((2, contacts)), np.zeros((3, width)),
+        np.zeros(contacts, np.int64), np.zeros(contacts), np.zeros((2, contacts)), np.zeros(square),
+        np.zeros(contacts), np.zeros(contacts), np.zeros(width), np.zeros(square), np.zeros(width),
+    )  # fmt: skip
+
+
+@kernel
+def find_rests(memory, places):
+    """List the contacts that did not move on the last way; how many."""
+    count = 0
+    for j in range(memory.senses.size):
+        places.rests[j] = 1 if memory.counts[MOVED, j] == 0.0 else 0
+        count += places.rests[j]
+    return count
+
+
+@kernel
+def keep_limits(friction, places):
+    """Keep the friction of a cell, which contacts have again after `restore_limits`."""
+    for j in range(places.rests.size):
+        places.limits[0, j], places.limits[1, j] = friction.kinetic[j], friction.static[j]
+
+
+@kernel
+def restore_limits(friction, places):
+    """Give the contacts the friction that was kept."""
+    for j in range(places.rests.size):
+        friction.kinetic[j], friction.static[j] = places.limits[0, j], places.limits[1, j]
+
+
+@kernel
+def _lift_limits(friction, places):
+    """Hold the contacts at rest, whatever their force."""
+    for j in range(places.rests.size):
+        if places.rests[j] != 0:
+            friction.kinetic[j] = friction.static[j] = WITHOUT_LIMIT
+
+
+@kernel
+def stop_contacts(problem, row, work, memory):
+    """Take the velocities of held contacts from the state in `memory.start`; False if they close a loop."""
+    put_state(memory.start, memory.senses, work)
+    work.clock[0] = math.nan
+    set_channels(problem, row, SECTION, 0, work)
+    if not factor_held(problem, row, work):
+        return False
+    stop_exactly(problem, row, work)
+    take_state(work, memory.start, memory.senses, 1.0)
+    return True
+
+
+@kernel
+def _place(problem, state, work, j):
+    """Place of a contact, of an elastic one that of its slider; the channels are those of the section."""
+    modes, channels = problem.push.shape
+    place = 0.0
+    for m in range(modes):
+        place += problem.chi[j, m] * state[0, m]
+    for d in range(channels):
+        place -= problem.base[j, d] * work.series[modes + d, 0]
+    if problem.spring[j] != 0.0:
+        place -= state[2, j] / problem.spring[j]
+    return place
+
+
+@kernel
+def _fill_flexibility(problem, places):
+    """Fill the change of places, with its sign turned, by constant forces in the contacts at rest."""
+    contacts, modes = problem.chi.shape
+    for a in range(contacts):
+        for b in range(contacts):
+            places.flexibility[a, b] = 1.0 if a == b else 0.0
+            if places.rests[a] == 0 or places.rests[b] == 0:
+                continue
+            places.flexibility[a, b] = 0.0
+            for m in range(modes):
+                places.flexibility[a, b] += problem.chi[a, m] * problem.chi[b, m] / problem.squares[m]
+            if a == b and problem.spring[a] != 0.0:
+                places.flexibility[a, a] += 1.0 / problem.spring[a]
+
+
+@kernel
+def _forces_of(places, change):
+    """Replace changes of places by the changes of the forces in the contacts at rest."""
+    contacts = places.rests.size
+    for a in range(contacts):
+        change[a] = -change[a] if places.rests[a] != 0 else 0.0
+        for b in range(contacts):
+            places.matrix[a, b] = places.flexibility[a, b]
+    return solve_linear(places.matrix, change, contacts)
+
+
+@kernel
+def _fill_moved(problem, change, moved):
+    """Displacement of the modes under constant forces in the contacts at rest."""
+    contacts, modes = problem.chi.shape
+    for m in range(modes):
+        moved[m] = 0.0
+        for j in range(contacts):
+            moved[m] -= problem.chi[j, m] * change[j] / problem.squares[m]
+
+
+@kernel
+def _gain(problem, row, work, places, j):
+    """Largest force in contact j at rest, over the size of a difference of two motions; see `_difference`.
+
+    The force that holds a rigid contact depends linearly on the displacements, the velocities and the forces
+    of elastic contacts.
+    """
+    contacts, modes = problem.chi.shape
+    if problem.spring[j] != 0.0:
+        return math.sqrt(problem.spring[j] * row.numbers[1] ** 2 / row.numbers[0] ** 2)
+    right = work.solve[contacts]
+    for a in range(work.held[contacts]):
+        right[a] = 1.0 if work.held[a] == j else 0.0
+    solve_held(work, right)
+    for m in range(modes):
+        places.columns[m] = 0.0
+        for a in range(work.held[contacts]):
+            places.columns[m] += right[a] * problem.chi[work.held[a], m]
+    square = 0.0
+    for m in range(modes):
+        square += places.columns[m] ** 2 * row.stiffness[m]
+        rate = 0.0
+        for other in range(modes):
+            rate += places.columns[other] * row.damping[other, m]
+        square += rate * rate
+    for other in range(contacts):
+        if problem.spring[other] != 0.0:
+            push = 0.0
+            for m in range(modes):
+                push += places.columns[m] * row.reaction[other, m]
+            square += push * push * problem.spring[other] * row.numbers[1] ** 2 / row.numbers[0] ** 2
+    return math.sqrt(square)
+
+
+@kernel
+def _fill_gains(problem, row, work, places):
+    """Fill the gains, with the contacts at rest held and no others."""
+    for j in range(places.rests.size):
+        work.sense[j] = 1 - places.rests[j]
+    if not factor_held(problem, row, work):
+        return False
+    for j in range(places.rests.size):
+        places.gains[j] = _gain(problem, row, work, places, j) if places.rests[j] != 0 else 0.0
+    return True
+
+
+@kernel
+def keep_orbit(problem, row, friction, halves, work, memory, record, places):
+    """Keep the steady state in `memory.start`, with the forces in its contacts at rest; False if that fails.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    halves : even number of half periods after which it returns
+    work, memory, record, places : Work, Return, Record, Places with the contacts at rest, their flexibility
+    """
+    copy_motion(memory.start, memory.senses, places.orbit, places.senses)
+    if not _fill_gains(problem, row, work, places):
+        return False
+    keep_limits(friction, places)
+    _lift_limits(friction, places)
+    clear_record(record)
+    record.active[0] = FORCES
+    code = go_round(problem, row, friction, halves, work, memory, record, False)
+    record.active[0] = NOTHING
+    restore_limits(friction, places)
+    work.clock[0] = math.nan
+    set_channels(problem, row, SECTION, 0, work)
+    for j in range(places.rests.size):
+        places.at[j] = _place(problem, places.orbit, work, j)
+        places.forces[0, j], places.forces[1, j] = record.forces[0, j], record.forces[1, j]
+    return code == FOLLOWED
+
+
+@kernel
+def _difference(problem, row, memory, places):
+    """Size of the difference of the motion in `memory.start` from the steady state with its places.
+
+    Its square is twice the energy of the difference, in units of the interval; for mu = 1 it never grows.
+    """
+    contacts, modes = problem.chi.shape
+    square = 0.0
+    for m in range(modes):
+        place = memory.start[0, m] - places.orbit[0, m] - places.moved[m]
+        velocity = memory.start[1, m] - places.orbit[1, m]
+        square += velocity * velocity + row.stiffness[m] * place * place
+    for j in range(contacts):
+        if problem.spring[j] != 0.0:
+            force = memory.start[2, j] - places.orbit[2, j] - places.change[j]
+            square += force * force * row.numbers[0] ** 2 / (row.numbers[1] ** 2 * problem.spring[j])
+    return math.sqrt(square)
+
+
+@kernel
+def _compare(problem, row, work, memory, places):
+    """Fill `places.change` of the motion in `memory.start`; the size of its difference otherwise."""
+    work.clock[0] = math.nan
+    set_channels(problem, row, SECTION, 0, work)
+    for j in range(places.rests.size):
+        places.change[j] = _place(problem, memory.start, work, j) - places.at[j]
+    if not _forces_of(places, places.change):
+        return math.inf
+    _fill_moved(problem, places.change, places.moved)
+    return _difference(problem, row, memory, places)
+
+
+@kernel
+def _excess(friction, places, j):
+    """Force in a contact at rest in the steady state with the places of the motion, above its friction."""
+    high = places.forces[1, j] + places.change[j]
+    low = places.forces[0, j] + places.change[j]
+    return max(high, -low) - friction.static[j]
+
+
+@kernel
+def _is_settled(friction, difference, safety, places):
+    """Whether the places are known that the contacts at rest end at.
+
+    Parameters
+    ----------
+    friction : Friction
+    difference : size of the difference from the steady state, see `_difference`
+    safety : see `_SAFETY`
+    places : Places after `_compare`
+    """
+    for j in range(places.rests.size):
+        if places.rests[j] == 0:
+            continue
+        excess = _excess(friction, places, j)
+        reach = safety * places.gains[j] * difference
+        fits = excess + reach <= _ROUNDING * friction.static[j]
+        creeps = 0.0 < excess <= _CREEPS * friction.static[j] and reach <= _CREEPS * excess
+        if not (fits or creeps or reach <= _PRECISE * friction.static[j]):
+            return False
+    return True
+
+
+@kernel
+def _unload(friction, places):
+    """Slide the contacts at rest, one after the other, until no force exceeds its friction.
+
+    The places of all others stay; `places.change` becomes that of the places where it ends.
+    """
+    contacts = places.rests.size
+    step = places.columns
+    for _ in range(_SWEEPS):
+        worst = 0.0
+        for j in range(contacts):
+            if places.rests[j] == 0:
+                continue
+            excess = _excess(friction, places, j)
+            worst = max(worst, excess - _ROUNDING * friction.static[j])
+            if excess <= 0.0:
+                continue
+            for k in range(contacts):
+                step[k] = -1.0 if k == j else 0.0
+            if not _forces_of(places, step):
+                return
+            high = places.forces[1, j] + places.change[j]
+            side = -1.0 if high - friction.static[j] >= excess else 1.0
+            scale = side * excess / step[j]
+            for k in range(contacts):
+                places.change[k] += scale * step[k]
+        if worst <= 0.0:
+            return
+
+
+@kernel
+def follow_to_rest(problem, row, friction, halves, cycles, safety, work, memory, record, places):
+    """Follow the motion from `memory.start` until the places of the contacts at rest are known.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    halves : even number of half periods after which the steady state returns
+    cycles : periods of the load to follow at most
+    safety : see `_SAFETY`; 1 where all contacts rest
+    work, memory, record, places : Work, Return, Record, Places after `keep_orbit`; `places.change` becomes
+        that of the places of the motion
+
+    Returns
+    -------
+    (known, cycles) : whether the places are known, after `_unload`; periods followed
+    """
+    followed, still = 0.0, 0.0
+    while True:
+        difference = _compare(problem, row, work, memory, places)
+        if _is_settled(friction, difference, safety, places) or still >= _STILL:
+            return True, followed
+        if followed >= cycles:
+            return False, followed
+        if go_round(problem, row, friction, halves, work, memory, record, False) != FOLLOWED:
+            return False, followed
+        take_end(memory)
+        followed += 0.5 * halves
+        still += 0.5 * halves
+        for j in range(places.rests.size):
+            if places.rests[j] != 0 and memory.counts[MOVED, j] != 0.0:
+                still = 0.0
+
+
+@kernel
+def _move(problem, memory, places):
+    """Move the state in `memory.start` by the constant forces `places.change` in the contacts at rest."""
+    _fill_moved(problem, places.change, places.moved)
+    for m in range(problem.push.shape[0]):
+        memory.start[0, m] += places.moved[m]
+    for j in range(places.rests.size):
+        if problem.spring[j] != 0.0:
+            memory.start[2, j] += places.change[j]
+
+
+@kernel
+def _move_to_zero(problem, row, work, memory, places):
+    """Move the state in `memory.start` so that the contacts at rest are at the place 0."""
+    work.clock[0] = math.nan
+    set_channels(problem, row, SECTION, 0, work)
+    for j in range(places.rests.size):
+        places.change[j] = -_place(problem, memory.start, work, j)
+    if _forces_of(places, places.change):
+        _move(problem, memory, places)
+
+
+@kernel
+def keep_orbit_anew(problem, row, friction, halves, tolerance, work, memory, record, places):
+    """Keep a steady state as `keep_orbit` does, with bits that do not depend on how it was found.
+
+    It is found anew from its rounded state at the place 0.
+
+    Parameters
+    ----------
+    problem, row, friction, halves, work, memory, record, places : see `keep_orbit`
+    tolerance : see `steady.find`
+
+    Returns
+    -------
+    (kept, cycles) : whether that was possible; periods followed
+    """
+    _fill_flexibility(problem, places)
+    _move_to_zero(problem, row, work, memory, places)
+    round_state(memory)
+    if not stop_contacts(problem, row, work, memory):
+        return False, 0.0
+    keep_limits(friction, places)
+    _lift_limits(friction, places)
+    status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, record)
+    restore_limits(friction, places)
+    if status != REPEATS:
+        return False, cycles
+    kept = keep_orbit(problem, row, friction, halves, work, memory, record, places)
+    return kept, cycles + 0.5 * halves
+
+
+@kernel
+def settle_places(problem, row, friction, halves, cycles, work, memory, record, places):
+    """Find the steady state with the places that the motion from `memory.start` leads to.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction; contacts at rest get a friction without limit
+    halves : even number of half periods after which the steady state returns
+    cycles : periods of the load to follow at most
+    work, memory, record, places : Work, Return, Record, Places after `keep_orbit`; `memory.start` is replaced
+        by the steady state
+
+    Returns
+    -------
+    (known, cycles) : whether the places are known; periods followed
+    """
+    slide = 0
+    for j in range(places.rests.size):
+        slide += 1 - places.rests[j]
+    known, followed = follow_to_rest(
+        problem, row, friction, halves, cycles, _SAFETY if slide > 0 else 1.0, work, memory, record, places
+    )
+    _unload(friction, places)
+    _lift_limits(friction, places)
+    copy_motion(places.orbit, places.senses, memory.start, memory.senses)
+    _move(problem, memory, places)
+    return known, followed
+
+
+@kernel
+def _hold_all(friction, memory, places):
+    """Hold all contacts, whatever their force, and begin at the section with no displacement."""
+    for part in range(3):
+        for i in range(memory.start.shape[1]):
+            memory.start[part, i] = 0.0
+    for j in range(places.rests.size):
+        places.rests[j] = 1
+        memory.senses[j] = 0
+        friction.kinetic[j] = friction.static[j] = WITHOUT_LIMIT
+
+
+@kernel
+def keep_held(problem, row, friction, tolerance, work, memory, record, places):
+    """Keep the steady state in which all contacts rest at the place 0; False if none was found.
+
+    Parameters
+    ----------
+    problem, row : Problem, Row
+    friction : Friction, replaced
+    tolerance : see `steady.find`
+    work, memory, record, places : Work, Return, Record, Places
+    """
+    _hold_all(friction, memory, places)
+    _fill_flexibility(problem, places)
+    if not stop_contacts(problem, row, work, memory):
+        return False
+    status, _ = newton(problem, row, friction, 2, tolerance, work, memory, record)
+    _move_to_zero(problem, row, work, memory, places)
+    return status == REPEATS and keep_orbit(problem, row, friction, 2, work, memory, record, places)
+
+
+@kernel
+def fill_needs(problem, row, friction, state, work, memory, record, places, needs):
+    """Fill the static friction of each contact with which none ever slips; inf if one moves at the start.
+
+    Parameters
+    ----------
+    problem, row : Problem, Row
+    friction : Friction, replaced
+    state : (2, m) modes and their velocities q' at tau = 0
+    work, memory, record, places : Work, Return, Record, Places after `keep_held`
+    needs : (N,)
+    """
+    for j in range(places.rests.size):
+        friction.kinetic[j] = friction.static[j] = WITHOUT_LIMIT
+        needs[j] = math.inf
+    if not begins_held(problem, row, friction, state, work, memory):
+        return
+    clear_record(record)
+    from_rest(problem, row, friction, state, work, memory, record, FORCES)
+    difference = _compare(problem, row, work, memory, places)
+    for j in range(places.rests.size):
+        most = max(places.forces[1, j], -places.forces[0, j]) + places.gains[j] * difference
+        needs[j] = max(most, max(record.forces[1, j], -record.forces[0, j]))
+
+
+@kernel
+def place_after_start(problem, row, friction, state, cycles, work, memory, record, places, shift):
+    """Fill the displacements of contacts and masses that all rest, at the places to which the start leads.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    state : (2, m) modes and their velocities q' at tau = 0
+    cycles : periods of the load to follow at most
+    work, memory, record, places : Work, Return, Record, Places after `keep_held`
+    shift : (N + n,) filled with the displacements beside those at the place 0
+
+    Returns
+    -------
+    bool : whether the places are known
+    """
+    contacts, modes = problem.chi.shape
+    from_rest(problem, row, friction, state, work, memory, record, NOTHING)
+    known, _ = follow_to_rest(problem, row, friction, 2, cycles, 1.0, work, memory, record, places)
+    if not known:
+        return False
+    _unload(friction, places)
+    _fill_moved(problem, places.change, places.moved)
+    for i in range(shift.size):
+        shift[i] = 0.0
+        for m in range(modes):
+            share = problem.chi[i, m] if i < contacts else record.masses[i - contacts, m]
+            shift[i] += share * places.moved[m]
+    return True

@@ -13,7 +13,7 @@ from ..model.system import System
 _HIGHEST_RATE = 1e4
 
 
-#: A sum of vectors of contacts that leaves less of another one, relative to the size of its terms, is that one:
+#: A sum of vectors that leaves less of another vector, relative to the size of its terms, is equal to it:
 #: vectors hold whole numbers, or those of a reduced structure with its rounding error.
 _TIED = 1e-12
 

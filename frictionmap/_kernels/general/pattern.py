@@ -298,7 +298,7 @@ def rest_springs(problem, friction, work, order):
     """Bring springs to rest between ends that are at rest now, and let those go whose ends are not any more.
 
     Between ends at rest the velocity is zero for as long as they rest, and the force constant: neither is
-    watched, because what is computed of them is rounding error.  A slip has ended with the motion of the ends.
+    watched, because what is computed of them is rounding error.  A slip ends with the motion of the ends.
     A force that is at its limit when an end lets go either slips on or falls; which of them is decided by the
     first term of the velocity that is not zero.
 

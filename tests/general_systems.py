@@ -10,6 +10,7 @@ import frictionmap as fm
 from frictionmap._kernels.general.problem import Problem
 from frictionmap._kernels.general.series import Friction
 from frictionmap._kernels.general.steady import REPEATS, one_steady_state
+from frictionmap.general.problem import ties
 
 KINDS = {"wall": "fixed-wall", "base": "joined-base-wall", "masses": "between-masses"}
 
@@ -72,7 +73,8 @@ class Solved:
             np.ascontiguousarray(phi.T @ np.array([one[0] for one in channels]).T),
             np.ascontiguousarray(np.array([one[1] for one in channels]).T),
             np.ascontiguousarray(np.array([one[2] for one in channels]).T),
-            spring, belt, np.array(orders, dtype=float), np.array([r]), table, np.array([rate]),
+            spring, belt, ties(w.T, walls, belt, spring), np.array(orders, dtype=float), np.array([r]), table,
+            np.array([rate]),
             np.array([np.abs(list(loads.values())).max() / (squares[0] + r * r)]),
             bool(odd and even and not belt.any()),
         )  # fmt: skip

@@ -44,7 +44,7 @@ def _problem(r: float, zeta: float, load: np.ndarray, spring: float) -> Problem:
     parts = np.stack((phasors.real, -phasors.imag))[np.newaxis, :, np.newaxis]
     return Problem(
         np.ones(1), np.full((1, 1), damping), False, _ONE, _ONE, _NONE, _NONE, np.array([spring]),
-        np.zeros(1), orders.astype(float), np.array([r]), parts,
+        np.zeros(1), np.zeros((1, 1), dtype=bool), orders.astype(float), np.array([r]), parts,
         np.array([max(fastest, float(orders[-1]))]), np.array([size or 1.0]), False,
     )  # fmt: skip
 

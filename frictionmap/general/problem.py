@@ -13,6 +13,11 @@ from ..model.system import System
 _HIGHEST_RATE = 1e4
 
 
+#: A sum of vectors that leaves less of another vector, relative to the size of its terms, is equal to it:
+#: vectors hold whole numbers, or those of a reduced structure with its rounding error.
+_TIED = 1e-12
+
+
 class Channel(NamedTuple):
     """A function of time and what it drives, see `_kernels.general.problem`."""
 
@@ -140,6 +145,33 @@ def _refuse_low(rates: np.ndarray, r: np.ndarray) -> None:
         )
 
 
+def ties(vectors: np.ndarray, moved: np.ndarray, belt: np.ndarray, spring: np.ndarray) -> np.ndarray:
+    """The rigid contacts that together keep both ends of a spring at rest, (N, N) bool, a row per spring.
+
+    The vector of the spring is a sum of theirs, and the motion of its wall is the same sum of those of their
+    walls.  The sum is unique, because rigid contacts do not close loops.  Rows without one are False.
+
+    Parameters
+    ----------
+    vectors : (N, n)
+    moved : (N,) 1 for walls that move with the base, else 0
+    belt : (N,) velocities of the walls
+    spring : (N,) stiffness, 0 for rigid contacts
+    """
+    found = np.zeros((spring.size, spring.size), dtype=bool)
+    rigid, n = np.flatnonzero(spring == 0.0), vectors.shape[1]
+    whole = np.column_stack((vectors, moved, belt))
+    for j in np.flatnonzero(spring != 0.0) if rigid.size else ():
+        shares = np.linalg.lstsq(vectors[rigid].T, vectors[j])[0]
+        shares[np.abs(shares) <= _TIED * np.abs(shares).max()] = 0.0
+        rest = np.abs(whole[j] - shares @ whole[rigid])
+        size = np.abs(whole[j]) + np.abs(shares) @ np.abs(whole[rigid])
+        size[:n] = size[:n].max()
+        if (rest <= _TIED * size).all():
+            found[j, rigid] = shares != 0.0
+    return found
+
+
 def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
     """Build the arrays of a system over r; values at r = 0 are placeholders."""
     general = general_of(system)
@@ -153,13 +185,14 @@ def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
     push = modal.phi.T @ np.array([channel.push for channel in channels]).T
     load = np.abs(push[np.newaxis]) @ np.hypot(phasors[:, 0], phasors[:, 1]).sum(axis=2)[:, :, np.newaxis]
     sizes = (load[:, :, 0] / (modal.squares + (r * r)[:, np.newaxis])).max(axis=1)
+    belt = np.array([group.first.wall_velocity for group in general.groups])
+    moved = np.array([float(group.base) for group in general.groups])
     problem = Problem(
         modal.squares, modal.damping, bool((modal.damping != np.diag(np.diag(modal.damping))).any()),
         np.ascontiguousarray(modal.chi), np.ascontiguousarray(push),
         np.ascontiguousarray(np.array([channel.base for channel in channels]).T),
         np.ascontiguousarray(np.array([channel.normal for channel in channels]).T),
-        spring, np.array([group.first.wall_velocity for group in general.groups]),
-        np.array(orders, dtype=float), r, phasors, rates,
-        np.where(sizes > 0.0, sizes, 1.0), _symmetric(general),
+        spring, belt, ties(general.vectors, moved, belt, spring), np.array(orders, dtype=float), r, phasors,
+        rates, np.where(sizes > 0.0, sizes, 1.0), _symmetric(general),
     )  # fmt: skip
     return problem, modal

@@ -122,7 +122,7 @@ def try_return(problem, row, friction, halves, tolerance, work, memory, ring, re
     base = base_halves(problem)
     status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, record)
     if status == REPEATS:
-        contraction = largest_multiplier(problem, halves, _STABLE_PRECISION, work, memory)
+        contraction = largest_multiplier(problem, row, halves, _STABLE_PRECISION, work, memory)
         if _heads_for(problem, row, halves, contraction, memory, ring):
             approaches, more = _approaches(
                 problem, row, friction, halves, contraction, work, memory, ring, record

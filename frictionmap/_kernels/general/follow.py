@@ -6,7 +6,7 @@ from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, load, store
 from .crossings import NONE, first_zero, slope_at, value_at
 from .glide import can_glide, glide
-from .pattern import settle
+from .pattern import rest_springs, settle
 from .problem import SECTION, TERMS, WIDTH
 from .record import record_step
 from .series import advance, expand, factor_held, first_contact_row
@@ -65,6 +65,8 @@ def _within(series, force, nu, size, sign, shift, scratch):
         at = k + shift
         limit = load(series, nu * WIDTH + at) * size
         store(limit - load(series, force * WIDTH + at) * sign, scratch, k)
+    if shift > 0 and scratch[0, 0] < 0.0:
+        return 0.0  # at its limit, and about to exceed it
     return first_zero(scratch, 0)
 
 
@@ -84,8 +86,10 @@ def _first_event(problem, friction, work, end):
             if x < found:
                 found, contact, side = x, j, 0
             continue
+        if work.idle[j]:
+            continue
         for sign in (1, -1):
-            shift = 2 if work.fresh[j] == 2 * sign else 0
+            shift = max(0, sign * work.fresh[j])
             x = _within(work.series, force, nu, friction.static[j], float(sign), shift, work.scratch)
             if x < found:
                 found, contact, side = x, j, sign
@@ -134,7 +138,7 @@ def _after_elastic(problem, friction, work, x, contact, side):
     if side != 0:
         work.state[2, contact] = side * friction.kinetic[contact]
         work.sense[contact] = side
-        work.fresh[contact] = 0
+        work.fresh[contact] = max(0, side * work.fresh[contact] - 1)  # the force's zeros less one of w
         return
     for j in range(contacts):
         slips = problem.spring[j] != 0.0 and work.sense[j] != 0
@@ -250,6 +254,7 @@ def _event(problem, row, friction, tau, work, law, counts, event, derive):
             scratch[4, j] = value_at(series, first + 3 * contacts + j, x)
     if not _change_pattern(problem, row, friction, tau, work, law, x, contact, side):
         return False
+    rest_springs(problem, friction, work, 1 if settles else 2)
     _count(problem, work, law, before, counts)
     if settles:
         for j in range(contacts):
@@ -334,6 +339,9 @@ def follow(problem, row, friction, part, work, law, counts, record, derive):
     """
     h = row.numbers[0]
     work.clock[0] = math.nan
+    for j in range(work.idle.size):
+        work.idle[j] = False
+    rest_springs(problem, friction, work, 0)
     if not factor_held(problem, row, work):
         return UNDETERMINED
     if derive:

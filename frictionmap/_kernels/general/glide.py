@@ -240,6 +240,8 @@ def glide(problem, row, friction, interval, work):
     _coordinates(problem, friction, work)
     units = size + contacts
     for j in range(contacts):
+        if work.idle[j]:
+            continue
         first = (slot * contacts + j) * units
         if not _stays(row, friction, work, j, first, units, at * contacts + j):
             return False
@@ -261,5 +263,5 @@ def _move(problem, row, work, slot, at):
                 end += parts.ends[slot * contacts + j, a] * work.units[size + j]
         if a < 2 * modes:
             work.state[a // modes, a % modes] = end
-        elif work.sense[a - 2 * modes] == 0:
+        elif work.sense[a - 2 * modes] == 0 and not work.idle[a - 2 * modes]:
             work.state[2, a - 2 * modes] = end

@@ -8,7 +8,7 @@ from ..spectral_radius import spectral_radius
 from ..structure.newton import solve_linear
 from .follow import FOLLOWED
 from .problem import state_size
-from .return_map import fill_newton, go_round, motion_size, neutral_rows, return_distance, take_step
+from .return_map import fill_newton, go_round, keep_places, motion_size, return_distance, take_step
 
 #: Kinds of `Steady`; AVERAGED: the motion stops and starts without returning, see `course`.
 REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED, AVERAGED = 0, 1, 2, 3, 4
@@ -51,12 +51,12 @@ def radius_of_two(a, b, c, d):
 
 
 @kernel
-def largest_multiplier(problem, halves, precision, work, memory):
+def largest_multiplier(problem, row, halves, precision, work, memory):
     """Largest modulus of the multipliers, without those of contacts that rest; see `spectral_radius`."""
     size = state_size(problem)
-    fill_newton(problem, halves, work, memory)
+    fill_newton(problem, row, halves, work, memory)
     if halves % 2 == 1:  # a place where a contact rests becomes its mirror image
-        neutral_rows(problem, memory, memory.matrix, -1.0)
+        keep_places(problem, row, work, memory, memory.matrix, -1.0)
     for a in range(size):
         for b in range(size):
             memory.matrix[a, b] = (1.0 if a == b else 0.0) - memory.matrix[a, b]
@@ -98,7 +98,7 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
                 return REPEATS, cycles
             return NO_REPEAT, cycles
         last = distance
-        fill_newton(problem, halves, work, memory)
+        fill_newton(problem, row, halves, work, memory)
         if not solve_linear(memory.matrix, memory.right, size):
             return NO_REPEAT, cycles
         step = take_step(problem, row, memory)

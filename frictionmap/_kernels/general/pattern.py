@@ -282,6 +282,49 @@ def settle(problem, row, friction, tau, work, law, arrived, released):
 
 
 @kernel
+def _ends_rest(problem, work, j):
+    """Whether the contacts that keep both ends of a spring at rest are all held."""
+    tied = False
+    for i in range(work.sense.size):
+        if problem.ties[j, i]:
+            tied = True
+            if work.sense[i] != 0:
+                return False
+    return tied
+
+
+@kernel
+def rest_springs(problem, friction, work, order):
+    """Bring springs to rest between ends that are at rest now, and let those go whose ends are not any more.
+
+    Between ends at rest the velocity is zero for as long as they rest, and the force constant: neither is
+    watched, because what is computed of them is rounding error.  A slip ends with the motion of the ends.
+    A force that is at its limit when an end lets go either slips on or falls; which of them is decided by the
+    first term of the velocity that is not zero.
+
+    Parameters
+    ----------
+    problem, friction : Problem, Friction
+    work : Work; senses, forces and `fresh` of the springs are set
+    order : number of leading terms of the velocities that are zero where ends begin to move: 1 after a jump
+        of a force, else 2
+    """
+    for j in range(work.sense.size):
+        rests = _ends_rest(problem, work, j)
+        limit = friction.kinetic[j]
+        if rests and work.sense[j] != 0:
+            work.state[2, j] = work.sense[j] * limit
+            work.sense[j] = 0
+        if rests:
+            work.fresh[j] = 0
+        elif work.idle[j] and abs(work.state[2, j]) >= limit:  # beyond it by rounding error
+            sign = 1 if work.state[2, j] > 0.0 else -1
+            work.state[2, j] = sign * limit
+            work.fresh[j] = sign * (1 + order)
+        work.idle[j] = rests
+
+
+@kernel
 def begin(problem, row, friction, tau, work, law):
     """Decide the pattern of a state at the start, from its velocities; elastic contacts begin at rest, their
     springs unloaded.

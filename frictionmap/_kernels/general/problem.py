@@ -54,6 +54,7 @@ class Problem(NamedTuple):
     normal: np.ndarray  # (N, D) variation of the normal load per channel
     spring: np.ndarray  # (N,) contact stiffness; 0: rigid
     belt: np.ndarray  # (N,) velocity of the wall, over tau
+    ties: np.ndarray  # (N, N) bool: row of a spring, the rigid contacts that keep both its ends at rest
     orders: np.ndarray  # (H,) orders n of the harmonics
     r: np.ndarray  # (n_r,)
     phasors: np.ndarray  # (n_r, 2, D, H) cos and sin parts of the channels
@@ -120,7 +121,9 @@ class Work(NamedTuple):
 
     state: np.ndarray  # (3, ...): q, p, and the force of every elastic contact
     sense: np.ndarray  # (N,) int: 1, -1 sliding up, down; 0 held
-    fresh: np.ndarray  # (N,) int: leading coefficients of the watched series that are zero by definition
+    fresh: np.ndarray  # (N,) int: leading coefficients of the watched series that are zero by definition; of
+    # a spring at its limit with the sign of that
+    idle: np.ndarray  # (N,) bool: springs whose ends are both at rest, see `pattern.rest_springs`
     series: np.ndarray  # (m + D + 4 N, WIDTH)
     moves: np.ndarray  # (LONG, M) the displacements of modes, term by term
     solve: np.ndarray  # (N + 1, N) factors of the mobility of held contacts; its last row is scratch
@@ -209,7 +212,8 @@ def make_work(problem):
     rows = padded(size)
     return Work(
         np.zeros((3, padded(max(modes, contacts)))), np.zeros(contacts, np.int64),
-        np.zeros(contacts, np.int64), np.zeros((modes + problem.push.shape[1] + 4 * contacts + 1, WIDTH)),
+        np.zeros(contacts, np.int64), np.zeros(contacts, np.bool_),
+        np.zeros((modes + problem.push.shape[1] + 4 * contacts + 1, WIDTH)),
         np.zeros((LONG, width)), np.zeros((contacts + 1, contacts)), np.zeros(contacts + 1, np.int64),
         np.zeros((8, WIDTH)), np.zeros(1), np.zeros((size, rows)), np.zeros((2, size, rows)),
         np.zeros((contacts, rows)), np.zeros(rows), np.zeros(size + contacts),

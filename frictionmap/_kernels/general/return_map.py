@@ -20,6 +20,7 @@ from .follow import (
 from .pattern import begin
 from .problem import padded, state_size
 from .record import NOTHING
+from .series import factor_held, solve_held
 from .tangent import identity
 
 #: Bits that coordinates are rounded to before a steady state is found anew.  Newton's method then takes two
@@ -232,33 +233,64 @@ def return_distance(problem, row, memory):
 
 
 @kernel
-def neutral_rows(problem, memory, matrix, weight):
-    """Add weight l^T l/|l|^2 for every contact that rests; the map keeps its place z (elastic: z - f/k)."""
-    modes = problem.push.shape[0]
-    for j in range(memory.senses.size):
-        if memory.counts[MOVED, j] != 0.0:
-            continue
-        square = 0.0
-        for m in range(modes):
-            square += problem.chi[j, m] * problem.chi[j, m]
-        force = 0.0
-        if problem.spring[j] != 0.0:
-            force = -1.0 / problem.spring[j]
-            square += force * force
-        last = 2 * modes + j
-        for a in range(modes):
-            for b in range(modes):
-                matrix[a, b] += weight * problem.chi[j, a] * problem.chi[j, b] / square
-            if force != 0.0:
-                matrix[a, last] += weight * problem.chi[j, a] * force / square
-                matrix[last, a] += weight * problem.chi[j, a] * force / square
-        if force != 0.0:
-            matrix[last, last] += weight * force * force / square
+def _place_column(problem, row, work, b):
+    """Fill work.watched with what a displacement of mode b moves in the contacts listed by `factor_held`.
+
+    It is the motion with the least kinetic energy that displaces these contacts as much: its Gram matrix is
+    their mobility.
+    """
+    modes, contacts = problem.push.shape[0], problem.spring.size
+    right = work.solve[contacts]
+    for a in range(work.held[contacts]):
+        right[a] = problem.chi[work.held[a], b]
+    solve_held(work, right)
+    for m in range(modes):
+        work.watched[m] = 0.0
+        for a in range(work.held[contacts]):
+            work.watched[m] += row.reaction[work.held[a], m] * right[a]
 
 
 @kernel
-def fill_newton(problem, halves, work, memory):
-    """Fill the linear equations of a Newton step; the derivatives are in `work.tangent`."""
+def keep_places(problem, row, work, memory, matrix, weight):
+    """Add weight U L, with L U = 1: L are the places that the return map keeps, of contacts that rest.
+
+    They are z of rigid contacts, and z - f/k of springs.  L J = L and L U = 1 leave every other multiplier of
+    J - U L as it is, and make those of L zero; they leave L d = 0 for a Newton step d.  U displaces the rigid
+    contacts at rest, without a change of the springs' L, and changes the springs' forces.
+
+    Parameters
+    ----------
+    problem, row : Problem, Row
+    work : Work; its pattern and the factors of its held contacts are replaced
+    memory : Return
+    matrix : (size, size)
+    weight : 1.0 or -1.0
+    """
+    modes, contacts = problem.push.shape[0], problem.spring.size
+    for j in range(contacts):
+        work.sense[j] = 1 if memory.counts[MOVED, j] != 0.0 else 0
+    factor_held(problem, row, work)  # as when all of them were held
+    for b in range(modes):
+        _place_column(problem, row, work, b)
+        for m in range(modes):
+            matrix[m, b] += weight * work.watched[m]
+        for j in range(contacts):
+            if problem.spring[j] != 0.0 and work.sense[j] == 0:
+                left = problem.chi[j, b]
+                for m in range(modes):
+                    left -= problem.chi[j, m] * work.watched[m]
+                matrix[2 * modes + j, b] -= weight * problem.spring[j] * left
+    for j in range(contacts):
+        if problem.spring[j] != 0.0 and work.sense[j] == 0:
+            matrix[2 * modes + j, 2 * modes + j] += weight
+
+
+@kernel
+def fill_newton(problem, row, halves, work, memory):
+    """Fill the linear equations of a Newton step; the derivatives are in `work.tangent`.
+
+    The pattern in `work` is replaced.
+    """
     modes = problem.push.shape[0]
     contacts = memory.senses.size
     size = state_size(problem)
@@ -274,7 +306,7 @@ def fill_newton(problem, halves, work, memory):
                 memory.matrix[a, 2 * modes + j] = 0.0
             memory.matrix[2 * modes + j, 2 * modes + j] = 1.0
     if halves % 2 == 0:
-        neutral_rows(problem, memory, memory.matrix, 1.0)
+        keep_places(problem, row, work, memory, memory.matrix, 1.0)
     for m in range(modes):
         memory.right[m] = memory.end[0, m] - memory.start[0, m]
         memory.right[modes + m] = memory.end[1, m] - memory.start[1, m]

@@ -100,12 +100,15 @@ def _known_forces(problem, friction, work, first):
 
 @inner_kernel
 def _elastic_forces(problem, row, k, work, first):
-    """Fill term k > 0 of the forces of elastic contacts that are held, from that of the modes."""
+    """Fill term k > 0 of the forces of elastic contacts that are held, from that of the modes.
+
+    Those of springs between ends at rest are constant: their terms stay zero.
+    """
     modes, channels = problem.push.shape
     contacts = problem.spring.size
     width = row.chi.shape[1]
     for j in range(contacts):
-        if work.sense[j] == 0 and problem.spring[j] != 0.0:
+        if work.sense[j] == 0 and problem.spring[j] != 0.0 and not work.idle[j]:
             z = 0.0
             for m in range(0, width, LANES):
                 z += total(load(row.chi, j * width + m) * load(work.moves, k * width + m))

@@ -370,7 +370,7 @@ def measure(problem, row, friction, halves, work, memory, record, what):
         record.active[0] = NOTHING
         most = MEASURED
         if what != NOTHING:
-            multiplier = largest_multiplier(problem, both, 0.0, work, memory)
+            multiplier = largest_multiplier(problem, row, both, 0.0, work, memory)
             most *= min(1.0, abs(1.0 - multiplier))
         if return_distance(problem, row, memory) <= most or repeat == _MOST_REPEATED - 1:
             break

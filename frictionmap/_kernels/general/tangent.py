@@ -49,7 +49,7 @@ def _elastic_term(problem, row, work, k, first):
     columns, size = row.columns, work.tangent.shape[1]
     inverse = INVERSE[k]
     for j in range(problem.spring.size):
-        if problem.spring[j] == 0.0 or work.sense[j] != 0:
+        if problem.spring[j] == 0.0 or work.sense[j] != 0 or work.idle[j]:
             continue
         for i in range(0, size, LANES):
             force = filled(0.0)
@@ -143,7 +143,7 @@ def _onward(problem, row, work, slot, x, table, at):
     for j in range(contacts):
         for i in range(size):
             force = 1.0 if i == 2 * modes + j else 0.0
-            if problem.spring[j] != 0.0 and work.sense[j] == 0:
+            if problem.spring[j] != 0.0 and work.sense[j] == 0 and not work.idle[j]:
                 for m in range(modes):
                     moved = table[at, m, i] - (1.0 if i == m else 0.0)
                     force += problem.spring[j] * problem.chi[j, m] * moved

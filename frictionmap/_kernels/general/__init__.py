@@ -18,6 +18,7 @@ follow         the motion from one phase of the load to another
 return_map     the state after some half periods, and Newton steps to one that returns
 returns        states at the section that are kept, and how long ago the motion was where it is now
 orbits         steady states by Newton's method, their multipliers and periods
+creep          contacts that slide ever less, and in the end rest
 places         places of contacts that rest, from the motion that leads there
 approach       whether a motion goes to a steady state, for mu > 1
 course         what a motion does in every period of the load, and its averages if it does not return

@@ -6,8 +6,9 @@ For mu > 1 several steady states may attract, and a motion may pass one by for s
 import math
 
 from ..compiler import kernel
+from .creep import find_rest, let_go
 from .follow import FOLLOWED, SLIPS, STOPS, TURNS
-from .orbits import NO_REPEAT, REPEATS, RETURNED, Steady, largest_multiplier, least_period, newton
+from .orbits import NO_REPEAT, REPEATS, RETURNED, Steady, largest_multiplier, least_period
 from .return_map import base_halves, go_round, motion_size, take_end
 from .returns import distance_back, distance_from_last, distance_from_orbit, go_back, put_orbit, take_orbit
 
@@ -120,7 +121,7 @@ def try_return(problem, row, friction, halves, tolerance, work, memory, ring, re
     Steady : REPEATS or NO_REPEAT
     """
     base = base_halves(problem)
-    status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, record)
+    status, cycles = find_rest(problem, row, friction, halves, tolerance, work, memory, record, ring)
     if status == REPEATS:
         contraction = largest_multiplier(problem, row, halves, _STABLE_PRECISION, work, memory)
         if _heads_for(problem, row, halves, contraction, memory, ring):
@@ -131,5 +132,6 @@ def try_return(problem, row, friction, halves, tolerance, work, memory, ring, re
             if approaches:
                 least, more = least_period(problem, row, friction, halves, base, work, memory, record)
                 return Steady(REPEATS, least, cycles + more)
+        let_go(friction, ring)
     go_back(memory, ring, 0)
     return Steady(NO_REPEAT, 0, cycles)

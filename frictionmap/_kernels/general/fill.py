@@ -27,7 +27,7 @@ from ..extrapolation import CELLS, reaches, weight
 from .follow import MOVED, RELEASE_ORDER, REVERSALS, SLIPS, STOPS, STOPS_ERROR, STUCK, STUCK_ERROR, TURNS
 from .places import fill_needs, keep_held, place_after_start
 from .problem import padded
-from .record import LEAST_SLIP, NOTHING, RANGES
+from .record import LEAST_SLIP, NOTHING, RANGES, varies
 from .return_map import copy_motion, copy_state, from_rest, steady_period
 from .series import Friction
 from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, make_tools, solve_from
@@ -230,7 +230,11 @@ def _place_stuck(problem, grid, m, i, b, friction, tools, place, out):
     if place == _STAYS:
         return _STAYS
     state = grid.starts[i]
-    if place == _UNKNOWN:
+    _set_friction(grid, m, i, b, friction)
+    changes = False  # whether a normal load varies: what is kept then depends on the friction
+    for j in range(needs.size):
+        changes = changes or varies(problem, j)
+    if place == _UNKNOWN or changes:
         if not keep_held(problem, row, friction, grid.tolerance, work, memory, record, places):
             return _STAYS
         fill_needs(problem, row, friction, state, work, memory, record, places, needs)

@@ -26,7 +26,8 @@ _TOGETHER = 1e-11
 
 #: Rows of `law` and `counts`.
 LAW_ROWS = 10
-STOPS, TURNS, STUCK, SLIPS, REVERSALS, LAST_SENSE, MOVED = 0, 1, 2, 3, 4, 5, 6
+STOPS, TURNS, STUCK, SLIPS, REVERSALS, LAST_SENSE = 0, 1, 2, 3, 4, 5
+MOVED = 6  # 0: at rest; 1, 2: slid up, down; 3: both
 NEAREST_STOP = 7  # largest share that friction has of the force that would hold a contact at a turn
 FIRST_SENSE = 8  # of the slips of an elastic contact; 0 before the first
 RELEASE_ORDER = 9  # 1 where releasing all overloaded contacts at once would leave it in another state
@@ -128,24 +129,51 @@ def _comes_to_rest(work, w, sense, x):
 
 
 @kernel
+def _arrives_instead(problem, work, x, contact):
+    """A rigid contact that comes to rest where the slip of an elastic one ends, or that one.
+
+    Both have one velocity where they are side by side; what the rigid one does decides what follows.
+    """
+    first_w = first_contact_row(problem) + problem.spring.size
+    for j in range(work.sense.size):
+        slides = problem.spring[j] == 0.0 and work.sense[j] != 0
+        if slides and _comes_to_rest(work, first_w + j, work.sense[j], x):
+            return j
+    return contact
+
+
+@kernel
+def _end_slip(friction, work, j):
+    """Let the slider of an elastic contact rest."""
+    work.state[2, j] = work.sense[j] * friction.kinetic[j]
+    work.fresh[j] = 2 * work.sense[j]
+    work.sense[j] = 0
+
+
+@kernel
+def _end_slips(problem, friction, work, x):
+    """End the slips of elastic contacts whose velocities are zero at x of the present step."""
+    contacts = problem.spring.size
+    first_w = first_contact_row(problem) + contacts
+    for j in range(contacts):
+        slips = problem.spring[j] != 0.0 and work.sense[j] != 0
+        if slips and _comes_to_rest(work, first_w + j, work.sense[j], x):
+            _end_slip(friction, work, j)
+
+
+@kernel
 def _after_elastic(problem, friction, work, x, contact, side):
     """Change the pattern of an elastic contact, and of all others that stop slipping with it.
 
     Elements of a bank slip together, and so do contacts of a symmetric structure.
     """
-    contacts = problem.spring.size
-    first_w = first_contact_row(problem) + contacts
     if side != 0:
         work.state[2, contact] = side * friction.kinetic[contact]
         work.sense[contact] = side
         work.fresh[contact] = max(0, side * work.fresh[contact] - 1)  # the force's zeros less one of w
         return
-    for j in range(contacts):
-        slips = problem.spring[j] != 0.0 and work.sense[j] != 0
-        if j == contact or (slips and _comes_to_rest(work, first_w + j, work.sense[j], x)):
-            work.state[2, j] = work.sense[j] * friction.kinetic[j]
-            work.fresh[j] = 2 * work.sense[j]
-            work.sense[j] = 0
+    _end_slip(friction, work, contact)
+    _end_slips(problem, friction, work, x)
 
 
 @kernel
@@ -171,6 +199,7 @@ def _change_pattern(problem, row, friction, tau, work, law, x, contact, side):
     for j in range(work.sense.size):
         if law[3, j] != 0.0:
             work.fresh[j] = 1 if work.sense[j] != 0 else 0
+    _end_slips(problem, friction, work, x)
     return True
 
 
@@ -198,11 +227,13 @@ def _count(problem, work, law, before, counts):
 
 @inner_kernel
 def _count_time(work, counts, time):
+    """Add a time > 0 in which the pattern was the present one."""
     for j in range(work.sense.size):
         if work.sense[j] == 0:
             counts[STUCK, j] += time
         else:
-            counts[MOVED, j] = 1.0
+            way = 1.0 if work.sense[j] > 0 else 2.0
+            counts[MOVED, j] = way if counts[MOVED, j] in (0.0, way) else 3.0
 
 
 @kernel
@@ -231,6 +262,8 @@ def _event(problem, row, friction, tau, work, law, counts, event, derive):
     bool : False if the contacts do not determine their forces
     """
     x, contact, side = event
+    if side == 0 and problem.spring[contact] != 0.0:
+        contact = _arrives_instead(problem, work, x, contact)
     contacts = problem.spring.size
     first = first_contact_row(problem)
     series, scratch = work.series, work.scratch
@@ -302,8 +335,8 @@ def _cross(problem, row, friction, begin, interval, length, work, law, counts, r
             record_step(problem, row, work, step, record)
         if derive and step > 0.0:
             advance_tangent(problem, row, work, step)
-        _count_time(work, counts, step * h)
         if step > 0.0:
+            _count_time(work, counts, step * h)
             advance(problem, row, step, work)
             for j in range(work.fresh.size):
                 work.fresh[j] = 0

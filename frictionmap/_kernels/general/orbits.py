@@ -6,12 +6,15 @@ from typing import NamedTuple
 from ..compiler import kernel
 from ..spectral_radius import spectral_radius
 from ..structure.newton import solve_linear
-from .follow import FOLLOWED
+from .follow import FOLLOWED, MOVED
 from .problem import state_size
 from .return_map import fill_newton, go_round, keep_places, motion_size, return_distance, take_step
 
 #: Kinds of `Steady`; AVERAGED: the motion stops and starts without returning, see `course`.
 REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED, AVERAGED = 0, 1, 2, 3, 4
+
+#: Outcome of Newton's method: a contact slides in one direction, ever less; see `creep`.
+DRIFTS = 5
 
 #: Newton steps at most, and the largest part of the distance before that may be left after each.
 _MOST_STEPS = 12
@@ -68,6 +71,16 @@ def largest_multiplier(problem, row, halves, precision, work, memory):
 
 
 @kernel
+def drifts(problem, counts, halves, j):
+    """Whether a contact slid, on the last way, in one direction where it must come back: at a wall at rest.
+
+    On half periods it comes back in the other half, which mirrors this one.
+    """
+    slid_one_way = counts[MOVED, j] == 1.0 or counts[MOVED, j] == 2.0
+    return slid_one_way and problem.belt[j] == 0.0 and halves % 2 == 0
+
+
+@kernel
 def newton(problem, row, friction, halves, tolerance, work, memory, record):
     """Find the state that returns after some half periods, from the one in `memory.start`.
 
@@ -80,22 +93,24 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
 
     Returns
     -------
-    (status, cycles) : REPEATS or NO_REPEAT; periods followed
+    (status, cycles) : REPEATS, DRIFTS or NO_REPEAT; periods followed
     """
     last = math.inf
     cycles = 0.0
     size = state_size(problem)
+    drifting = False
     for _ in range(_MOST_STEPS):
         code = go_round(problem, row, friction, halves, work, memory, record, True)
         cycles += 0.5 * halves
         if code != FOLLOWED:
             return NO_REPEAT, cycles
+        drifting = False
+        for j in range(memory.senses.size):
+            drifting = drifting or drifts(problem, memory.counts, halves, j)
         distance = return_distance(problem, row, memory)
-        if distance == 0.0:
-            return REPEATS, cycles
-        if not distance < _LESS * last:
+        if distance == 0.0 or not distance < _LESS * last:
             if distance <= tolerance:
-                return REPEATS, cycles
+                return DRIFTS if drifting else REPEATS, cycles
             return NO_REPEAT, cycles
         last = distance
         fill_newton(problem, row, halves, work, memory)
@@ -104,9 +119,9 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
         step = take_step(problem, row, memory)
         if not (step <= LARGEST and motion_size(problem, row, memory) <= LARGEST * row.numbers[2]):
             return NO_REPEAT, cycles
-        if step <= max(tolerance, _LAST):
+        if step <= max(tolerance, _LAST) and not drifting:
             return REPEATS, cycles
-    return NO_REPEAT, cycles
+    return DRIFTS if drifting else NO_REPEAT, cycles
 
 
 @kernel

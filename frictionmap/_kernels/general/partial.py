@@ -6,11 +6,12 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
+from .creep import WITHOUT_LIMIT
 from .problem import set_row
 from .record import FORCES, NOTHING
 from .return_map import from_rest
 from .series import Friction
-from .steady import REPEATS, WITHOUT_LIMIT, find, make_tools, measure
+from .steady import REPEATS, find, make_tools, measure
 
 
 @kernel
@@ -38,10 +39,12 @@ def _fill(problem, i, contact, lines, values, state, limits, tools, friction, ou
         found = find(
             problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course
         )
-        near = found.status == REPEATS
+        halves = 0
+        if found.status == REPEATS:
+            halves, _ = measure(problem, row, friction, found.halves, work, memory, record, FORCES)
+        near = halves > 0
         out[k] = math.nan
         if near:
-            measure(problem, row, friction, found.halves, work, memory, record, FORCES)
             out[k] = 0.5 * (record.forces[1, contact] - record.forces[0, contact])
 
 

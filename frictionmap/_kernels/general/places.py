@@ -13,11 +13,12 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from ..structure.newton import solve_linear
+from .creep import WITHOUT_LIMIT
 from .follow import FOLLOWED, MOVED
 from .orbits import REPEATS, newton
 from .pattern import stop_exactly
 from .problem import SECTION, padded, set_channels
-from .record import FORCES, NOTHING, clear_record
+from .record import FORCES, NOTHING, clear_record, varies
 from .return_map import (
     begins_held,
     copy_motion,
@@ -29,9 +30,6 @@ from .return_map import (
     take_state,
 )
 from .series import factor_held, solve_held
-
-#: Friction of a contact that is held.
-WITHOUT_LIMIT = 1e200
 
 #: Margin that a contact at rest must have, over the force that the present difference from the steady state
 #: can cause: where other contacts slide, they turn a little earlier or later than in the steady state, which
@@ -63,7 +61,9 @@ class Places(NamedTuple):
     orbit: np.ndarray  # (3, ...) the steady state at the section
     senses: np.ndarray  # (N,) its pattern there
     at: np.ndarray  # (N,) places in it
-    forces: np.ndarray  # (2, N) lowest and highest forces in it
+    forces: (
+        np.ndarray
+    )  # (2, N) lowest f + limit nu and highest f - limit nu in it; limits of 0 for a constant nu
     flexibility: np.ndarray  # (N, N) places per constant force, with a sign
     gains: np.ndarray  # (N,) largest force over the size of a difference of two motions, see `_difference`
     change: np.ndarray  # (N,) constant forces by which the places of a motion differ from those in the orbit
@@ -241,6 +241,9 @@ def keep_orbit(problem, row, friction, halves, work, memory, record, places):
     if not _fill_gains(problem, row, work, places):
         return False
     keep_limits(friction, places)
+    contacts = places.rests.size
+    for j in range(contacts):
+        record.limits[j] = friction.static[j] if varies(problem, j) else 0.0
     _lift_limits(friction, places)
     clear_record(record)
     record.active[0] = FORCES
@@ -249,9 +252,10 @@ def keep_orbit(problem, row, friction, halves, work, memory, record, places):
     restore_limits(friction, places)
     work.clock[0] = math.nan
     set_channels(problem, row, SECTION, 0, work)
-    for j in range(places.rests.size):
+    for j in range(contacts):
         places.at[j] = _place(problem, places.orbit, work, j)
-        places.forces[0, j], places.forces[1, j] = record.forces[0, j], record.forces[1, j]
+        places.forces[0, j], places.forces[1, j] = record.forces[0, contacts + j], record.forces[1, j]
+        record.limits[j] = 0.0
     return code == FOLLOWED
 
 
@@ -288,20 +292,21 @@ def _compare(problem, row, work, memory, places):
 
 
 @kernel
-def _excess(friction, places, j):
-    """Force in a contact at rest in the steady state with the places of the motion, above its friction."""
-    high = places.forces[1, j] + places.change[j]
-    low = places.forces[0, j] + places.change[j]
-    return max(high, -low) - friction.static[j]
+def _sides(problem, friction, places, j):
+    """Largest forces of both signs in a contact at rest, above its friction, at the places of the motion."""
+    limit = 0.0 if varies(problem, j) else friction.static[j]
+    high = places.forces[1, j] + places.change[j] - limit
+    low = places.forces[0, j] + places.change[j] + limit
+    return high, -low
 
 
 @kernel
-def _is_settled(friction, difference, safety, places):
+def _is_settled(problem, friction, difference, safety, places):
     """Whether the places are known that the contacts at rest end at.
 
     Parameters
     ----------
-    friction : Friction
+    problem, friction : Problem, Friction
     difference : size of the difference from the steady state, see `_difference`
     safety : see `_SAFETY`
     places : Places after `_compare`
@@ -309,7 +314,8 @@ def _is_settled(friction, difference, safety, places):
     for j in range(places.rests.size):
         if places.rests[j] == 0:
             continue
-        excess = _excess(friction, places, j)
+        high, low = _sides(problem, friction, places, j)
+        excess = max(high, low)
         reach = safety * places.gains[j] * difference
         fits = excess + reach <= _ROUNDING * friction.static[j]
         creeps = 0.0 < excess <= _CREEPS * friction.static[j] and reach <= _CREEPS * excess
@@ -319,7 +325,7 @@ def _is_settled(friction, difference, safety, places):
 
 
 @kernel
-def _unload(friction, places):
+def _unload(problem, friction, places):
     """Slide the contacts at rest, one after the other, until no force exceeds its friction.
 
     The places of all others stay; `places.change` becomes that of the places where it ends.
@@ -331,7 +337,8 @@ def _unload(friction, places):
         for j in range(contacts):
             if places.rests[j] == 0:
                 continue
-            excess = _excess(friction, places, j)
+            high, low = _sides(problem, friction, places, j)
+            excess = max(high, low)
             worst = max(worst, excess - _ROUNDING * friction.static[j])
             if excess <= 0.0:
                 continue
@@ -339,9 +346,7 @@ def _unload(friction, places):
                 step[k] = -1.0 if k == j else 0.0
             if not _forces_of(places, step):
                 return
-            high = places.forces[1, j] + places.change[j]
-            side = -1.0 if high - friction.static[j] >= excess else 1.0
-            scale = side * excess / step[j]
+            scale = (-excess if high > low else excess) / step[j]
             for k in range(contacts):
                 places.change[k] += scale * step[k]
         if worst <= 0.0:
@@ -368,7 +373,7 @@ def follow_to_rest(problem, row, friction, halves, cycles, safety, work, memory,
     followed, still = 0.0, 0.0
     while True:
         difference = _compare(problem, row, work, memory, places)
-        if _is_settled(friction, difference, safety, places) or still >= _STILL:
+        if _is_settled(problem, friction, difference, safety, places) or still >= _STILL:
             return True, followed
         if followed >= cycles:
             return False, followed
@@ -456,7 +461,7 @@ def settle_places(problem, row, friction, halves, cycles, work, memory, record, 
     known, followed = follow_to_rest(
         problem, row, friction, halves, cycles, _SAFETY if slide > 0 else 1.0, work, memory, record, places
     )
-    _unload(friction, places)
+    _unload(problem, friction, places)
     _lift_limits(friction, places)
     copy_motion(places.orbit, places.senses, memory.start, memory.senses)
     _move(problem, memory, places)
@@ -481,23 +486,25 @@ def keep_held(problem, row, friction, tolerance, work, memory, record, places):
 
     Parameters
     ----------
-    problem, row : Problem, Row
-    friction : Friction, replaced
+    problem, row, friction : Problem, Row, Friction
     tolerance : see `steady.find`
     work, memory, record, places : Work, Return, Record, Places
     """
+    keep_limits(friction, places)
     _hold_all(friction, memory, places)
     _fill_flexibility(problem, places)
     if not stop_contacts(problem, row, work, memory):
         return False
     status, _ = newton(problem, row, friction, 2, tolerance, work, memory, record)
+    restore_limits(friction, places)
     _move_to_zero(problem, row, work, memory, places)
     return status == REPEATS and keep_orbit(problem, row, friction, 2, work, memory, record, places)
 
 
 @kernel
 def fill_needs(problem, row, friction, state, work, memory, record, places, needs):
-    """Fill the static friction of each contact with which none ever slips; inf if one moves at the start.
+    """Fill the static friction of each contact with which none ever slips; inf if one moves at the start, or
+    where the normal load varies.
 
     Parameters
     ----------
@@ -516,8 +523,9 @@ def fill_needs(problem, row, friction, state, work, memory, record, places, need
     from_rest(problem, row, friction, state, work, memory, record, FORCES)
     difference = _compare(problem, row, work, memory, places)
     for j in range(places.rests.size):
-        most = max(places.forces[1, j], -places.forces[0, j]) + places.gains[j] * difference
-        needs[j] = max(most, max(record.forces[1, j], -record.forces[0, j]))
+        if not varies(problem, j):
+            most = max(places.forces[1, j], -places.forces[0, j]) + places.gains[j] * difference
+            needs[j] = max(most, max(record.forces[1, j], -record.forces[0, j]))
 
 
 @kernel
@@ -541,7 +549,7 @@ def place_after_start(problem, row, friction, state, cycles, work, memory, recor
     known, _ = follow_to_rest(problem, row, friction, 2, cycles, 1.0, work, memory, record, places)
     if not known:
         return False
-    _unload(friction, places)
+    _unload(problem, friction, places)
     _fill_moved(problem, places.change, places.moved)
     for i in range(shift.size):
         shift[i] = 0.0

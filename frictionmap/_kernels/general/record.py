@@ -38,7 +38,8 @@ class Record(NamedTuple):
     steps: np.ndarray  # (most, rows, WIDTH) the series of every step
     patterns: np.ndarray  # (most, N + 1) sense of every contact, then the length of the step in x
     count: np.ndarray  # (1,) steps there were; more than `most` do not fit
-    forces: np.ndarray  # (2, N) lowest and highest force of every contact, where FORCES are kept
+    forces: np.ndarray  # (2, 2 N) lowest and highest f - limit nu, f + limit nu, where FORCES are kept
+    limits: np.ndarray  # (N,) limit of every contact; 0: lowest and highest force
 
 
 @entry
@@ -50,7 +51,7 @@ def make_record(problem, masses, most):
     return Record(
         np.zeros(1, np.int64), np.zeros((2, size)), np.zeros(contacts), np.zeros((3, contacts)),
         np.zeros((2, contacts)), masses, np.zeros((most, rows, WIDTH)), np.zeros((most, contacts + 1)),
-        np.zeros(1, np.int64), np.zeros((2, contacts)),
+        np.zeros(1, np.int64), np.zeros((2, 2 * contacts)), np.zeros(contacts),
     )  # fmt: skip
 
 
@@ -74,8 +75,9 @@ def clear_record(record):
     for j in range(record.distance.size):
         record.slips[_PRESENT, j] = 0.0
         record.slips[_EDGE, j] = np.inf
-        record.forces[0, j] = np.inf
-        record.forces[1, j] = -np.inf
+    for i in range(record.forces.shape[1]):
+        record.forces[0, i] = np.inf
+        record.forces[1, i] = -np.inf
     record.count[0] = 0
 
 
@@ -176,7 +178,7 @@ def _integral_of_product(series, a, b, end):
 
 
 @kernel
-def _varies(problem, j):
+def varies(problem, j):
     """Whether the normal load of a contact varies."""
     varies = False
     for d in range(problem.normal.shape[1]):
@@ -229,7 +231,7 @@ def _keep_works(problem, row, work, end, record, first):
             way = value_at(series, first + j, end) - series[first + j, 0] - belt * end
             record.distance[j] += abs(way)
             record.slips[_PRESENT, j] += abs(way)
-            if _varies(problem, j):
+            if varies(problem, j):
                 record.works[0, j] += _integral_of_product(series, force, first + contacts + j, end)
             else:
                 record.works[0, j] += series[force, 0] * way
@@ -255,11 +257,17 @@ def _keep_step(work, end, record):
 
 @kernel
 def _keep_forces(problem, work, end, record):
-    """Include the forces of the present step."""
+    """Include the forces of the present step, less and plus the limits."""
     contacts = problem.spring.size
     first = first_contact_row(problem)
-    for j in range(contacts):
-        _keep_range(work.series, first + 2 * contacts + j, end, 0.0, record.forces, j, work.scratch)
+    series, scratch = work.series, work.scratch
+    for i in range(2 * contacts):
+        j = i % contacts
+        limit = record.limits[j] if i >= contacts else -record.limits[j]
+        force, nu = (first + 2 * contacts + j) * WIDTH, (first + 3 * contacts + j) * WIDTH
+        for k in range(0, WIDTH, LANES):
+            store(load(series, force + k) + load(series, nu + k) * limit, scratch, _VALUE * WIDTH + k)
+        _keep_range(scratch, _VALUE, end, 0.0, record.forces, i, scratch)
 
 
 @kernel

@@ -29,7 +29,7 @@ class Ring(NamedTuple):
     states: np.ndarray  # (_KEPT, 3, ...)
     senses: np.ndarray  # (_KEPT, N)
     count: np.ndarray  # (1,) states kept so far
-    friction: np.ndarray  # (2, N) friction of contacts while they are held
+    friction: np.ndarray  # (4, N) friction of contacts while they are held, see `creep`
     orbit: np.ndarray  # (3, ...) state of a steady state that the motion may go to
     orbit_senses: np.ndarray  # (N,) the pattern there
     orbit_counts: np.ndarray  # counters of it
@@ -42,7 +42,7 @@ def make_ring(problem):
     width = padded(max(modes, contacts))
     return Ring(
         np.zeros((_KEPT, 3, width)), np.zeros((_KEPT, contacts), np.int64), np.zeros(1, np.int64),
-        np.zeros((2, contacts)), np.zeros((3, width)), np.zeros(contacts, np.int64),
+        np.zeros((4, contacts)), np.zeros((3, width)), np.zeros(contacts, np.int64),
         np.zeros((COUNT_ROWS, contacts)),
     )  # fmt: skip
 

@@ -23,11 +23,10 @@ from .course import (
     window_is_stationary,
     window_stops,
 )
-from .follow import FOLLOWED, STUCK
-from .orbits import AVERAGED, MEASURED, NO_REPEAT, REPEATS, Steady, largest_multiplier, newton
-from .pattern import stop_exactly
+from .creep import end_creep, find_held, find_rest
+from .follow import FOLLOWED
+from .orbits import AVERAGED, CHATTERS, MEASURED, NO_REPEAT, REPEATS, Steady, largest_multiplier, newton
 from .places import (
-    WITHOUT_LIMIT,
     Places,
     find_rests,
     keep_limits,
@@ -37,8 +36,8 @@ from .places import (
     settle_places,
     stop_contacts,
 )
-from .problem import SECTION, Row, Work, make_row, make_work, set_channels, set_row
-from .record import FORCES, NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
+from .problem import Row, Work, make_row, make_work, set_row
+from .record import NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
 from .return_map import (
     Return,
     base_halves,
@@ -46,12 +45,10 @@ from .return_map import (
     from_rest,
     go_round,
     make_return,
-    put_state,
     return_distance,
     round_state,
     steady_period,
     take_end,
-    take_state,
 )
 from .returns import (
     Ring,
@@ -63,14 +60,13 @@ from .returns import (
     recurrence,
     take_orbit,
 )
-from .series import factor_held
 from .single_mass import solve_single
 from .single_tables import Single, fits_row, forget_row, make_single
 
 #: Measurements until the error is below MEASURED.
 _MOST_REPEATED = 2
 
-#: Attempts of Newton's method after which contacts are held.
+#: Attempts of Newton's method after which contacts that creep are held.
 _CREEPS = 6
 
 
@@ -96,108 +92,6 @@ def make_tools(problem, masses, most):
         make_record(problem, masses, most), make_single(problem, masses.shape[0]),
         make_course(problem, masses), make_places(problem), np.zeros(problem.spring.size),
     )  # fmt: skip
-
-
-@kernel
-def _hold_some(problem, row, friction, share, work, memory, kept):
-    """Hold the contacts that were stuck for more than a share of the last way; how many.
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction
-    share : of the time followed
-    work, memory : Work, Return; `memory.start` is changed
-    kept : (2, N) filled with the friction before
-    """
-    whole = 0.0
-    for j in range(memory.senses.size):
-        whole = max(whole, memory.counts[STUCK, j])
-    put_state(memory.start, memory.senses, work)
-    count = 0
-    for j in range(memory.senses.size):
-        kept[0, j], kept[1, j] = friction.kinetic[j], friction.static[j]
-        if whole > 0.0 and memory.counts[STUCK, j] > share * whole:
-            friction.kinetic[j] = friction.static[j] = WITHOUT_LIMIT
-            work.sense[j] = 0
-            count += 1
-    if count > 0:
-        work.clock[0] = math.nan
-        set_channels(problem, row, SECTION, 0, work)
-        if not factor_held(problem, row, work):
-            return 0
-        stop_exactly(problem, row, work)
-        take_state(work, memory.start, memory.senses, 1.0)
-    return count
-
-
-@kernel
-def _let_go(friction, kept):
-    """Give the contacts the friction back that they had."""
-    for j in range(friction.kinetic.size):
-        friction.kinetic[j], friction.static[j] = kept[0, j], kept[1, j]
-
-
-@kernel
-def _can_rest(problem, row, friction, work, memory, record, kept):
-    """Whether half the range of the force of every contact held is within its friction (theory.md 11).
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction, with contacts held
-    work, memory, record : Work, Return, Record
-    kept : (2, N) the friction of the contacts
-    """
-    clear_record(record)
-    record.active[0] = FORCES
-    go_round(problem, row, friction, 2, work, memory, record, False)
-    record.active[0] = NOTHING
-    for j in range(memory.senses.size):
-        if friction.kinetic[j] == WITHOUT_LIMIT:
-            for d in range(problem.push.shape[1]):
-                if problem.normal[j, d] != 0.0:
-                    return False
-            if 0.5 * (record.forces[1, j] - record.forces[0, j]) > kept[0, j]:
-                return False
-    return True
-
-
-@kernel
-def _by_holding(problem, row, friction, base, tolerance, work, memory, ring, record):
-    """Find the steady state of contacts that creep: held, they rest, or show where to begin.
-
-    A contact whose load hardly exceeds its limit slides ever less each cycle, and no motion gets to the end
-    of that.  Where it rests, `friction` is such that it does; its place depends on the start.
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction
-    base : half periods of the return map
-    tolerance : see `find`
-    work, memory, ring, record : Work, Return, Ring, Record
-
-    Returns
-    -------
-    (found, cycles) : whether the state in `memory.start` is the steady state; periods followed
-    """
-    kept = ring.friction
-    cycles = 0.0
-    for share in (0.98, 0.5):
-        go_back(memory, ring, 0)
-        go_round(problem, row, friction, 2, work, memory, record, False)
-        cycles += 1.0
-        if _hold_some(problem, row, friction, share, work, memory, kept) == 0:
-            continue
-        status, more = newton(problem, row, friction, base, tolerance, work, memory, record)
-        cycles += more
-        if status == REPEATS and _can_rest(problem, row, friction, work, memory, record, kept):
-            return True, cycles + 1.0
-        _let_go(friction, kept)
-        if status == REPEATS:
-            status, more = newton(problem, row, friction, base, tolerance, work, memory, record)
-            cycles += more
-            if status == REPEATS:
-                return True, cycles
-    return False, cycles
 
 
 @kernel
@@ -230,19 +124,16 @@ def _find_unique(problem, row, friction, cycles, tolerance, work, memory, ring, 
     pause = 0
     while spent < cycles:
         if wait == 0:
-            status, more = newton(problem, row, friction, base, tolerance, work, memory, record)
+            status, more = find_rest(problem, row, friction, base, tolerance, work, memory, record, ring)
             spent += more
-            if status == REPEATS:
-                return Steady(REPEATS, base, spent)
             pause += 1
             wait = pause
-            if pause in (_CREEPS, 2 * _CREEPS):
-                settled, more = _by_holding(
-                    problem, row, friction, base, tolerance, work, memory, ring, record
-                )
+            if status != REPEATS and pause in (_CREEPS, 2 * _CREEPS):
+                status, more = find_held(problem, row, friction, base, tolerance, work, memory, record, ring)
                 spent += more
-                if settled:
-                    return Steady(REPEATS, base, spent)
+            if status == REPEATS:
+                end_creep(problem, friction, memory, record, ring)
+                return Steady(REPEATS, base, spent)
             go_back(memory, ring, 0)
         code = _go_on(problem, row, friction, base, work, memory, ring, record)
         spent += 0.5 * base
@@ -358,16 +249,18 @@ def measure(problem, row, friction, halves, work, memory, record, what):
 
     Returns
     -------
-    (followed, multiplier) : half periods followed, and the largest modulus of the multipliers over the steady
-        period, NaN where NOTHING is kept
+    (followed, multiplier) : half periods followed, 0 where the motion could not be; the largest modulus of
+        the multipliers over the steady period, NaN where NOTHING is kept
     """
     both = halves if halves % 2 == 0 or what == NOTHING or what == RANGES else 2 * halves
     multiplier = math.nan
     for repeat in range(_MOST_REPEATED):
         clear_record(record)
         record.active[0] = what
-        go_round(problem, row, friction, both, work, memory, record, what != NOTHING)
+        code = go_round(problem, row, friction, both, work, memory, record, what != NOTHING)
         record.active[0] = NOTHING
+        if code != FOLLOWED:
+            return 0, math.nan
         most = MEASURED
         if what != NOTHING:
             multiplier = largest_multiplier(problem, row, both, 0.0, work, memory)
@@ -415,6 +308,8 @@ def solve(problem, friction, cycles, tolerance, tools, what):
     if found.status != REPEATS:
         return found, 0, math.nan
     halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, what)
+    if halves == 0:
+        found = Steady(CHATTERS, 0, found.cycles)
     return found, halves, multiplier
 
 

@@ -1,0 +1,275 @@
+"""Contacts that creep: held, they rest, or show where to begin.
+
+A contact whose load hardly exceeds its limit slides ever less each cycle, always in one direction, and no
+motion gets to the end of that.  Sliding in one direction does not repeat on a wall at rest: either the
+contact rests in the steady state, which the force that holds it decides (theory.md 11), or it will slide both
+ways.
+"""
+
+import math
+
+from ..compiler import kernel
+from .follow import FOLLOWED, MOVED, STUCK
+from .orbits import DRIFTS, NO_REPEAT, REPEATS, drifts, newton
+from .pattern import stop_exactly
+from .problem import SECTION, set_channels
+from .record import FORCES, NOTHING, clear_record
+from .return_map import copy_motion, go_round, put_state, take_end, take_state
+from .returns import go_back
+from .series import factor_held
+
+#: Friction of a contact that is held.
+WITHOUT_LIMIT = 1e200
+
+#: Rows of `Ring.friction`.  Marks: a contact was let go again, or rests all the same.  Ways: in which of
+#: the two directions a contact that is held was sliding, 0 for both.
+_KINETIC, _STATIC, _MARK, _WAY = 0, 1, 2, 3
+_LET_GO, _RESTS = 1.0, 2.0
+
+#: Contacts are held that slide in one direction, then those that are stuck for more than a share of the time.
+_HELD = (0.0, 0.98, 0.5)
+
+#: Attempts of Newton's method with contacts held, after 0, 1, 1 + 2, ... returns: without those that creep,
+#: the motion approaches its steady state fast.
+_ATTEMPTS = 8
+
+
+@kernel
+def _keep(friction, kept):
+    """Keep the friction of the contacts, of which none is held, in `kept` (4, N)."""
+    for j in range(friction.kinetic.size):
+        kept[_KINETIC, j], kept[_STATIC, j] = friction.kinetic[j], friction.static[j]
+        kept[_MARK, j] = kept[_WAY, j] = 0.0
+
+
+@kernel
+def let_go(friction, ring):
+    """Give the contacts the friction back that they had."""
+    for j in range(friction.kinetic.size):
+        friction.kinetic[j], friction.static[j] = ring.friction[_KINETIC, j], ring.friction[_STATIC, j]
+
+
+@kernel
+def _creeps(problem, memory, share, whole, j):
+    """Whether a contact slid in one direction on the last way; for a share > 0: was stuck for more of it."""
+    if share > 0.0:
+        return memory.counts[STUCK, j] > share * whole
+    return drifts(problem, memory.counts, 2, j)
+
+
+@kernel
+def _hold(problem, row, friction, share, work, memory, kept):
+    """Hold the contacts that creep, see `_creeps`; return how many more are held than before.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction
+    share : see `_creeps`
+    work, memory : Work, Return; `memory.start` is changed
+    kept : see `_keep`
+    """
+    whole = 0.0
+    for j in range(memory.senses.size):
+        whole = max(whole, memory.counts[STUCK, j])
+    put_state(memory.start, memory.senses, work)
+    count = 0
+    for j in range(memory.senses.size):
+        if friction.kinetic[j] != WITHOUT_LIMIT and _creeps(problem, memory, share, whole, j):
+            friction.kinetic[j] = friction.static[j] = WITHOUT_LIMIT
+            kept[_WAY, j] = 0.0
+            if drifts(problem, memory.counts, 2, j):
+                kept[_WAY, j] = 1.0 if memory.counts[MOVED, j] == 1.0 else -1.0
+            if kept[_MARK, j] == _LET_GO:
+                kept[_MARK, j] = _RESTS
+            if work.sense[j] != 0 and problem.spring[j] != 0.0:
+                work.state[2, j] = work.sense[j] * kept[_KINETIC, j]
+            work.sense[j] = 0
+            count += 1
+    if count > 0:
+        work.clock[0] = math.nan
+        set_channels(problem, row, SECTION, 0, work)
+        if not factor_held(problem, row, work):
+            return 0
+        stop_exactly(problem, row, work)
+        take_state(work, memory.start, memory.senses, 1.0)
+    return count
+
+
+@kernel
+def _release_overloaded(problem, row, friction, work, memory, record, kept):
+    """Let contacts go that cannot rest in the steady state in `memory.start`; how many, -1 where unknown.
+
+    A contact can rest if a constant is within the range [f - mu beta nu, f + mu beta nu] at every phase: that
+    is what another place changes its force f by.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction, with contacts held
+    work, memory, record : Work, Return, Record
+    kept : see `_keep`
+    """
+    contacts = memory.senses.size
+    for j in range(contacts):
+        record.limits[j] = kept[_STATIC, j]
+    clear_record(record)
+    record.active[0] = FORCES
+    code = go_round(problem, row, friction, 2, work, memory, record, False)
+    record.active[0] = NOTHING
+    count = 0
+    for j in range(contacts):
+        record.limits[j] = 0.0
+        overloaded = not record.forces[1, j] <= record.forces[0, contacts + j]
+        if friction.kinetic[j] == WITHOUT_LIMIT and overloaded and kept[_MARK, j] != _RESTS:
+            friction.kinetic[j], friction.static[j] = kept[_KINETIC, j], kept[_STATIC, j]
+            kept[_MARK, j] = _LET_GO
+            count += 1
+    return count if code == FOLLOWED else -1
+
+
+@kernel
+def _newton_later(problem, row, friction, halves, tolerance, work, memory, record, ring):
+    """Newton's method from the state in `memory.start`, or where it fails from those that follow.
+
+    Parameters
+    ----------
+    problem, row, friction, halves, tolerance, work, memory, record, ring : see `_settle`
+
+    Returns
+    -------
+    (status, cycles) : see `newton`
+    """
+    cycles = 0.0
+    for count in range(1, _ATTEMPTS + 1):
+        copy_motion(memory.start, memory.senses, ring.orbit, ring.orbit_senses)
+        status, more = newton(problem, row, friction, halves, tolerance, work, memory, record)
+        cycles += more
+        if status != NO_REPEAT:
+            return status, cycles
+        copy_motion(ring.orbit, ring.orbit_senses, memory.start, memory.senses)
+        for _ in range(count):
+            if go_round(problem, row, friction, halves, work, memory, record, False) != FOLLOWED:
+                return NO_REPEAT, cycles
+            cycles += 0.5 * halves
+            take_end(memory)
+    return NO_REPEAT, cycles
+
+
+@kernel
+def _settle(problem, row, friction, halves, tolerance, work, memory, record, ring):
+    """Find a steady state by Newton's method; contacts that drift are held, those that cannot rest let go.
+
+    A contact that was let go, and drifts again, rests: its load exceeds its limit by so little that it slides
+    by less than rounding error.
+
+    Parameters
+    ----------
+    problem, row, friction : Problem, Row, Friction; contacts that rest keep a friction without limit
+    halves : half periods after which it returns
+    tolerance : see `steady.find`
+    work, memory, record, ring : Work, Return, Record, Ring, whose friction is that before, see `_keep`
+
+    Returns
+    -------
+    (status, cycles) : REPEATS or NO_REPEAT; periods followed
+    """
+    cycles = 0.0
+    held = 0
+    for j in range(memory.senses.size):
+        held += friction.kinetic[j] == WITHOUT_LIMIT
+    for _ in range(3 * memory.senses.size + 1):  # each contact is held, let go, and held again
+        if held == 0:
+            status, more = newton(problem, row, friction, halves, tolerance, work, memory, record)
+        else:
+            status, more = _newton_later(
+                problem, row, friction, halves, tolerance, work, memory, record, ring
+            )
+        cycles += more
+        if status == DRIFTS:
+            more_held = _hold(problem, row, friction, 0.0, work, memory, ring.friction)
+            if more_held == 0:
+                break
+            held += more_held
+        elif status != REPEATS or held == 0:
+            return status, cycles
+        else:
+            released = _release_overloaded(problem, row, friction, work, memory, record, ring.friction)
+            cycles += 1.0
+            if released < 0:
+                break
+            if released == 0:
+                return REPEATS, cycles
+            held -= released
+    return NO_REPEAT, cycles
+
+
+@kernel
+def find_rest(problem, row, friction, halves, tolerance, work, memory, record, ring):
+    """Find the steady state by Newton's method, and the contacts that rest in it.
+
+    Parameters
+    ----------
+    problem, row, friction, halves, tolerance, work, memory, record, ring : see `_settle`
+
+    Returns
+    -------
+    (status, cycles) : REPEATS or NO_REPEAT, then with the friction as it was; periods followed
+    """
+    _keep(friction, ring.friction)
+    status, cycles = _settle(problem, row, friction, halves, tolerance, work, memory, record, ring)
+    if status != REPEATS:
+        let_go(friction, ring)
+    return status, cycles
+
+
+@kernel
+def find_held(problem, row, friction, halves, tolerance, work, memory, record, ring):
+    """Find the steady state from the one of the structure that is held where it creeps; see `find_rest`.
+
+    Parameters
+    ----------
+    problem, row, friction, halves, tolerance, work, memory, record : see `find_rest`
+    ring : Ring; the motion is that of its last state
+
+    Returns
+    -------
+    (status, cycles) : see `find_rest`
+    """
+    cycles = 0.0
+    for share in _HELD:
+        go_back(memory, ring, 0)
+        code = go_round(problem, row, friction, 2, work, memory, record, False)
+        cycles += 1.0
+        _keep(friction, ring.friction)
+        if code == FOLLOWED and _hold(problem, row, friction, share, work, memory, ring.friction) > 0:
+            status, more = _settle(problem, row, friction, halves, tolerance, work, memory, record, ring)
+            cycles += more
+            if status == REPEATS:
+                return status, cycles
+        let_go(friction, ring)
+    return NO_REPEAT, cycles
+
+
+@kernel
+def end_creep(problem, friction, memory, record, ring):
+    """Move the contacts that crept, and were held, to where that ends: their forces just reach their limits.
+
+    Constant forces in contacts displace the structure, and change nothing else in a steady state.
+
+    Parameters
+    ----------
+    problem, friction, memory : Problem, Friction, Return after `find_rest` or `find_held`
+    record, ring : Record, with the forces in the steady state; Ring
+    """
+    contacts = memory.senses.size
+    for m in range(problem.push.shape[0]):
+        if problem.squares[m] <= 0.0:
+            return  # nothing holds the structure against a constant force
+    for j in range(contacts):
+        way = ring.friction[_WAY, j]
+        if friction.kinetic[j] != WITHOUT_LIMIT or way == 0.0:
+            continue
+        change = -record.forces[1, j] if way > 0.0 else -record.forces[0, contacts + j]
+        for m in range(problem.push.shape[0]):
+            memory.start[0, m] -= problem.chi[j, m] * change / problem.squares[m]
+        if problem.spring[j] != 0.0:
+            memory.start[2, j] += change

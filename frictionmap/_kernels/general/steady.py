@@ -23,7 +23,17 @@ from .course import (
 )
 from .creep import end_creep, find_held, find_rest
 from .follow import BEFORE, FOLLOWED, follow
-from .orbits import AVERAGED, CHATTERS, MEASURED, NO_REPEAT, REPEATS, Steady, largest_multiplier, newton
+from .orbits import (
+    AVERAGED,
+    CHATTERS,
+    MEASURED,
+    NO_REPEAT,
+    REPEATS,
+    Steady,
+    any_drifts,
+    largest_multiplier,
+    newton,
+)
 from .pattern import begin
 from .problem import Row, Work, make_row, make_work, set_row
 from .record import NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
@@ -219,16 +229,16 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record, 
 
 
 @kernel
-def measure(problem, row, friction, halves, work, memory, record, what):
+def measure(problem, row, friction, halves, work, memory, record, ring, what):
     """Follow the steady state once more, into `record` and `memory.counts`.
 
-    Where it does not quite return, it is solved once more.
+    Where it does not quite return, or a contact only touches its limits, it is solved once more.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
     halves : half periods after which it returns
-    work, memory, record : Work, Return, Record
+    work, memory, record, ring : Work, Return, Record, Ring
     what : NOTHING, RANGES, STEPS or FORCES, what is kept; STEPS and FORCES are kept of whole periods
 
     Returns
@@ -249,9 +259,18 @@ def measure(problem, row, friction, halves, work, memory, record, what):
         if what != NOTHING:
             multiplier = largest_multiplier(problem, row, both, 0.0, work, memory)
             most *= min(1.0, abs(1.0 - multiplier))
-        if return_distance(problem, row, memory) <= most or repeat == _MOST_REPEATED - 1:
+        drifting = any_drifts(problem, memory.counts, both)
+        near = return_distance(problem, row, memory) <= most
+        if near and not drifting:
             break
-        newton(problem, row, friction, halves, MEASURED, work, memory, record)
+        if repeat == _MOST_REPEATED - 1:
+            if drifting:
+                return 0, math.nan
+            break
+        if drifting:
+            find_rest(problem, row, friction, halves, MEASURED, work, memory, record, ring)
+        else:
+            newton(problem, row, friction, halves, MEASURED, work, memory, record)
     join_slips(record, both)
     if both % 2 == 1:
         mirror(record)
@@ -291,7 +310,7 @@ def solve(problem, friction, cycles, tolerance, tools, what):
     found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course)
     if found.status != REPEATS:
         return found, 0, math.nan
-    halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, what)
+    halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, tools.ring, what)
     if halves == 0:
         found = Steady(CHATTERS, 0, found.cycles)
     return found, halves, multiplier
@@ -338,7 +357,9 @@ def _one(problem, i, friction, state, cycles, tolerance, tools):
     found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course)
     halves, multiplier = 2, math.nan
     if found.status == REPEATS:
-        halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, STEPS)
+        halves, multiplier = measure(
+            problem, row, friction, found.halves, work, memory, record, tools.ring, STEPS
+        )
         if halves > 0:
             return found, halves, multiplier
         found, halves = Steady(CHATTERS, 0, found.cycles), 2

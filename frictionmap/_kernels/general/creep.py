@@ -6,17 +6,12 @@ contact rests in the steady state, which the force that holds it decides (theory
 ways.
 """
 
-import math
-
 from ..compiler import kernel
 from .follow import FOLLOWED, MOVED, STUCK
 from .orbits import DRIFTS, NO_REPEAT, REPEATS, drifts, newton
-from .pattern import stop_exactly
-from .problem import SECTION, set_channels
 from .record import FORCES, NOTHING, clear_record
-from .return_map import copy_motion, go_round, put_state, take_end, take_state
+from .return_map import copy_motion, go_round, take_end
 from .returns import go_back
-from .series import factor_held
 
 #: Friction of a contact that is held.
 WITHOUT_LIMIT = 1e200
@@ -58,20 +53,19 @@ def _creeps(problem, memory, share, whole, j):
 
 
 @kernel
-def _hold(problem, row, friction, share, work, memory, kept):
+def _hold(problem, friction, share, memory, kept):
     """Hold the contacts that creep, see `_creeps`; return how many more are held than before.
 
     Parameters
     ----------
-    problem, row, friction : Problem, Row, Friction
+    problem, friction : Problem, Friction
     share : see `_creeps`
-    work, memory : Work, Return; `memory.start` is changed
+    memory : Return; its pattern and the forces of springs are changed
     kept : see `_keep`
     """
     whole = 0.0
     for j in range(memory.senses.size):
         whole = max(whole, memory.counts[STUCK, j])
-    put_state(memory.start, memory.senses, work)
     count = 0
     for j in range(memory.senses.size):
         if friction.kinetic[j] != WITHOUT_LIMIT and _creeps(problem, memory, share, whole, j):
@@ -81,18 +75,27 @@ def _hold(problem, row, friction, share, work, memory, kept):
                 kept[_WAY, j] = 1.0 if memory.counts[MOVED, j] == 1.0 else -1.0
             if kept[_MARK, j] == _LET_GO:
                 kept[_MARK, j] = _RESTS
-            if work.sense[j] != 0 and problem.spring[j] != 0.0:
-                work.state[2, j] = work.sense[j] * kept[_KINETIC, j]
-            work.sense[j] = 0
+            if memory.senses[j] != 0 and problem.spring[j] != 0.0:
+                memory.start[2, j] = memory.senses[j] * kept[_KINETIC, j]
+            memory.senses[j] = 0
             count += 1
-    if count > 0:
-        work.clock[0] = math.nan
-        set_channels(problem, row, SECTION, 0, work)
-        if not factor_held(problem, row, work):
-            return 0
-        stop_exactly(problem, row, work)
-        take_state(work, memory.start, memory.senses, 1.0)
     return count
+
+
+@kernel
+def _displace(problem, memory, j, change):
+    """Change the force of a contact at rest by a constant: its place, or its slider's, and nothing else.
+
+    A structure that nothing holds against a constant force stays where it is.
+    """
+    modes = problem.push.shape[0]
+    for m in range(modes):
+        if problem.squares[m] <= 0.0:
+            return
+    for m in range(modes):
+        memory.start[0, m] -= problem.chi[j, m] * change / problem.squares[m]
+    if problem.spring[j] != 0.0:
+        memory.start[2, j] += change
 
 
 @kernel
@@ -100,7 +103,8 @@ def _release_overloaded(problem, row, friction, work, memory, record, kept):
     """Let contacts go that cannot rest in the steady state in `memory.start`; how many, -1 where unknown.
 
     A contact can rest if a constant is within the range [f - mu beta nu, f + mu beta nu] at every phase: that
-    is what another place changes its force f by.
+    is what another place changes its force f by.  One that cannot is moved to where its force exceeds both
+    limits by as much: it will slide both ways.
 
     Parameters
     ----------
@@ -120,6 +124,7 @@ def _release_overloaded(problem, row, friction, work, memory, record, kept):
         record.limits[j] = 0.0
         overloaded = not record.forces[1, j] <= record.forces[0, contacts + j]
         if friction.kinetic[j] == WITHOUT_LIMIT and overloaded and kept[_MARK, j] != _RESTS:
+            _displace(problem, memory, j, -0.5 * (record.forces[1, j] + record.forces[0, contacts + j]))
             friction.kinetic[j], friction.static[j] = kept[_KINETIC, j], kept[_STATIC, j]
             kept[_MARK, j] = _LET_GO
             count += 1
@@ -185,7 +190,7 @@ def _settle(problem, row, friction, halves, tolerance, work, memory, record, rin
             )
         cycles += more
         if status == DRIFTS:
-            more_held = _hold(problem, row, friction, 0.0, work, memory, ring.friction)
+            more_held = _hold(problem, friction, 0.0, memory, ring.friction)
             if more_held == 0:
                 break
             held += more_held
@@ -240,7 +245,7 @@ def find_held(problem, row, friction, halves, tolerance, work, memory, record, r
         code = go_round(problem, row, friction, 2, work, memory, record, False)
         cycles += 1.0
         _keep(friction, ring.friction)
-        if code == FOLLOWED and _hold(problem, row, friction, share, work, memory, ring.friction) > 0:
+        if code == FOLLOWED and _hold(problem, friction, share, memory, ring.friction) > 0:
             status, more = _settle(problem, row, friction, halves, tolerance, work, memory, record, ring)
             cycles += more
             if status == REPEATS:
@@ -261,15 +266,8 @@ def end_creep(problem, friction, memory, record, ring):
     record, ring : Record, with the forces in the steady state; Ring
     """
     contacts = memory.senses.size
-    for m in range(problem.push.shape[0]):
-        if problem.squares[m] <= 0.0:
-            return  # nothing holds the structure against a constant force
     for j in range(contacts):
         way = ring.friction[_WAY, j]
-        if friction.kinetic[j] != WITHOUT_LIMIT or way == 0.0:
-            continue
-        change = -record.forces[1, j] if way > 0.0 else -record.forces[0, contacts + j]
-        for m in range(problem.push.shape[0]):
-            memory.start[0, m] -= problem.chi[j, m] * change / problem.squares[m]
-        if problem.spring[j] != 0.0:
-            memory.start[2, j] += change
+        if friction.kinetic[j] == WITHOUT_LIMIT and way != 0.0:
+            change = -record.forces[1, j] if way > 0.0 else -record.forces[0, contacts + j]
+            _displace(problem, memory, j, change)

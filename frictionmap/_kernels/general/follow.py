@@ -6,8 +6,8 @@ from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, load, store
 from .crossings import NONE, first_zero, slope_at, value_at
 from .glide import can_glide, glide
-from .pattern import rest_springs, settle
-from .problem import SECTION, TERMS, WIDTH
+from .pattern import rest_springs, settle, stop_exactly
+from .problem import SECTION, TERMS, WIDTH, set_channels
 from .record import record_step
 from .series import advance, expand, factor_held, first_contact_row
 from .tangent import advance_tangent, hold_tangent, through_event, watched_row
@@ -377,9 +377,12 @@ def follow(problem, row, friction, part, work, law, counts, record, derive):
     rest_springs(problem, friction, work, 0)
     if not factor_held(problem, row, work):
         return UNDETERMINED
+    intervals = row.intervals[0]
+    if part != BEFORE:  # a state that Newton's method or other states led to, with their errors
+        set_channels(problem, row, SECTION + part * intervals * h, part * intervals, work)
+        stop_exactly(problem, row, work)
     if derive:
         hold_tangent(problem, row, work)
-    intervals = row.intervals[0]
     count = int(math.ceil(SECTION / h)) if part == BEFORE else intervals
     glides = part != BEFORE and record.active[0] == 0 and can_glide(problem, row)
     for k in range(count):

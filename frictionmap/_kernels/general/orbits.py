@@ -81,6 +81,15 @@ def drifts(problem, counts, halves, j):
 
 
 @kernel
+def any_drifts(problem, counts, halves):
+    """Whether any contact drifts, see `drifts`."""
+    any_ = False
+    for j in range(counts.shape[1]):
+        any_ = any_ or drifts(problem, counts, halves, j)
+    return any_
+
+
+@kernel
 def newton(problem, row, friction, halves, tolerance, work, memory, record):
     """Find the state that returns after some half periods, from the one in `memory.start`.
 
@@ -104,9 +113,7 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
         cycles += 0.5 * halves
         if code != FOLLOWED:
             return NO_REPEAT, cycles
-        drifting = False
-        for j in range(memory.senses.size):
-            drifting = drifting or drifts(problem, memory.counts, halves, j)
+        drifting = any_drifts(problem, memory.counts, halves)
         distance = return_distance(problem, row, memory)
         if distance == 0.0 or not distance < _LESS * last:
             if distance <= tolerance:
@@ -119,8 +126,8 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
         step = take_step(problem, row, memory)
         if not (step <= LARGEST and motion_size(problem, row, memory) <= LARGEST * row.numbers[2]):
             return NO_REPEAT, cycles
-        if step <= max(tolerance, _LAST) and not drifting:
-            return REPEATS, cycles
+        if step <= max(tolerance, _LAST):
+            return DRIFTS if drifting else REPEATS, cycles
     return DRIFTS if drifting else NO_REPEAT, cycles
 
 

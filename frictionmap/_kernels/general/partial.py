@@ -41,7 +41,9 @@ def _fill(problem, i, contact, lines, values, state, limits, tools, friction, ou
         )
         halves = 0
         if found.status == REPEATS:
-            halves, _ = measure(problem, row, friction, found.halves, work, memory, record, FORCES)
+            halves, _ = measure(
+                problem, row, friction, found.halves, work, memory, record, tools.ring, FORCES
+            )
         near = halves > 0
         out[k] = math.nan
         if near:

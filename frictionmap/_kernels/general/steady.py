@@ -25,7 +25,17 @@ from .course import (
 )
 from .creep import end_creep, find_held, find_rest
 from .follow import FOLLOWED
-from .orbits import AVERAGED, CHATTERS, MEASURED, NO_REPEAT, REPEATS, Steady, largest_multiplier, newton
+from .orbits import (
+    AVERAGED,
+    CHATTERS,
+    MEASURED,
+    NO_REPEAT,
+    REPEATS,
+    Steady,
+    any_drifts,
+    largest_multiplier,
+    newton,
+)
 from .places import (
     Places,
     find_rests,
@@ -235,16 +245,16 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record, 
 
 
 @kernel
-def measure(problem, row, friction, halves, work, memory, record, what):
+def measure(problem, row, friction, halves, work, memory, record, ring, what):
     """Follow the steady state once more, into `record` and `memory.counts`.
 
-    Where it does not quite return, it is solved once more.
+    Where it does not quite return, or a contact only touches its limits, it is solved once more.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
     halves : half periods after which it returns
-    work, memory, record : Work, Return, Record
+    work, memory, record, ring : Work, Return, Record, Ring
     what : NOTHING, RANGES, STEPS or FORCES, what is kept; STEPS and FORCES are kept of whole periods
 
     Returns
@@ -265,9 +275,18 @@ def measure(problem, row, friction, halves, work, memory, record, what):
         if what != NOTHING:
             multiplier = largest_multiplier(problem, row, both, 0.0, work, memory)
             most *= min(1.0, abs(1.0 - multiplier))
-        if return_distance(problem, row, memory) <= most or repeat == _MOST_REPEATED - 1:
+        drifting = any_drifts(problem, memory.counts, both)
+        near = return_distance(problem, row, memory) <= most
+        if near and not drifting:
             break
-        newton(problem, row, friction, halves, MEASURED, work, memory, record)
+        if repeat == _MOST_REPEATED - 1:
+            if drifting:
+                return 0, math.nan
+            break
+        if drifting:
+            find_rest(problem, row, friction, halves, MEASURED, work, memory, record, ring)
+        else:
+            newton(problem, row, friction, halves, MEASURED, work, memory, record)
     join_slips(record, both)
     if both % 2 == 1:
         mirror(record)
@@ -307,7 +326,7 @@ def solve(problem, friction, cycles, tolerance, tools, what):
     found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course)
     if found.status != REPEATS:
         return found, 0, math.nan
-    halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, what)
+    halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, tools.ring, what)
     if halves == 0:
         found = Steady(CHATTERS, 0, found.cycles)
     return found, halves, multiplier

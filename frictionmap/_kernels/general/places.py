@@ -36,10 +36,11 @@ from .series import factor_held, solve_held
 #: that estimate leaves out.  Without them it is a bound.
 _SAFETY = 4.0
 
-#: A contact whose force exceeds its friction by e slides by about e^2 each period, ever more slowly.  Where e
-#: is below this share of the friction, and all other changes cause forces below this share of e, the place
-#: where that ends is known.
-_CREEPS = 1e-2
+#: A contact whose force exceeds its friction by a share e slides by about e^2 each period, always in one
+#: direction and ever more slowly: after n periods e is about 1/n, and all that changes otherwise is far less.
+#: Where e is below the first share, and the forces by other changes are below the second share of e, it ends
+#: where the force just reaches its limit.
+_CREEPS, _STEADILY = 1e-2, 0.2
 
 #: Share of the friction that is rounding error of the forces, and the one to which they are wanted.
 _ROUNDING = 1e-12
@@ -301,7 +302,7 @@ def _sides(problem, friction, places, j):
 
 
 @kernel
-def _is_settled(problem, friction, difference, safety, places):
+def _is_settled(problem, friction, difference, safety, memory, places):
     """Whether the places are known that the contacts at rest end at.
 
     Parameters
@@ -309,17 +310,19 @@ def _is_settled(problem, friction, difference, safety, places):
     problem, friction : Problem, Friction
     difference : size of the difference from the steady state, see `_difference`
     safety : see `_SAFETY`
+    memory : Return after the last way of the motion
     places : Places after `_compare`
     """
     for j in range(places.rests.size):
         if places.rests[j] == 0:
             continue
+        limit = friction.static[j]
         high, low = _sides(problem, friction, places, j)
-        excess = max(high, low)
-        reach = safety * places.gains[j] * difference
-        fits = excess + reach <= _ROUNDING * friction.static[j]
-        creeps = 0.0 < excess <= _CREEPS * friction.static[j] and reach <= _CREEPS * excess
-        if not (fits or creeps or reach <= _PRECISE * friction.static[j]):
+        excess, way = max(high, low), 1.0 if high > low else 2.0
+        reach = places.gains[j] * difference
+        creeps = memory.counts[MOVED, j] == way and 0.0 < excess <= _CREEPS * limit
+        fits = excess + safety * reach <= _ROUNDING * limit or reach <= _PRECISE * limit
+        if not fits and not (creeps and reach <= _STEADILY * excess):
             return False
     return True
 
@@ -373,7 +376,7 @@ def follow_to_rest(problem, row, friction, halves, cycles, safety, work, memory,
     followed, still = 0.0, 0.0
     while True:
         difference = _compare(problem, row, work, memory, places)
-        if _is_settled(problem, friction, difference, safety, places) or still >= _STILL:
+        if _is_settled(problem, friction, difference, safety, memory, places) or still >= _STILL:
             return True, followed
         if followed >= cycles:
             return False, followed

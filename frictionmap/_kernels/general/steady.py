@@ -450,7 +450,9 @@ def solve_from(problem, friction, state, cycles, tolerance, tools, what, settled
             found = Steady(REPEATS, found.halves, found.cycles + spent)
     if found.status != REPEATS:
         return found, 0, math.nan
-    halves, multiplier = measure(problem, row, friction, found.halves, tools.work, memory, record, what)
+    halves, multiplier = measure(
+        problem, row, friction, found.halves, tools.work, memory, record, tools.ring, what
+    )
     return found, halves, multiplier
 
 

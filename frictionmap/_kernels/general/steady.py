@@ -31,10 +31,10 @@ from .orbits import (
     MEASURED,
     NO_REPEAT,
     REPEATS,
+    RETURNED,
     Steady,
     any_drifts,
     largest_multiplier,
-    newton,
 )
 from .places import (
     Places,
@@ -73,8 +73,9 @@ from .returns import (
 from .single_mass import solve_single
 from .single_tables import Single, fits_row, forget_row, make_single
 
-#: Measurements until the error is below MEASURED.
+#: Measurements until the error is below MEASURED; and all, until the state returns and no contact drifts.
 _MOST_REPEATED = 2
+_MOST_MEASURED = 10
 
 #: Attempts of Newton's method after which contacts that creep are held.
 _CREEPS = 6
@@ -245,6 +246,24 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record, 
 
 
 @kernel
+def _refine(problem, row, friction, halves, count, work, memory, record, ring):
+    """Bring the state in `memory.start` nearer to the one that returns.
+
+    That is done by Newton's method; where a contact at the edge of its limits misleads it, by the motion.
+
+    Parameters
+    ----------
+    problem, row, friction, halves, work, memory, record, ring : see `measure`
+    count : returns that the motion is followed for
+    """
+    status, _ = find_rest(problem, row, friction, halves, MEASURED, work, memory, record, ring)
+    if status != REPEATS:
+        for _ in range(count):
+            if go_round(problem, row, friction, halves, work, memory, record, False) == FOLLOWED:
+                take_end(memory)
+
+
+@kernel
 def measure(problem, row, friction, halves, work, memory, record, ring, what):
     """Follow the steady state once more, into `record` and `memory.counts`.
 
@@ -264,7 +283,8 @@ def measure(problem, row, friction, halves, work, memory, record, ring, what):
     """
     both = halves if halves % 2 == 0 or what == NOTHING or what == RANGES else 2 * halves
     multiplier = math.nan
-    for repeat in range(_MOST_REPEATED):
+    found = False
+    for count in range(1, _MOST_MEASURED + 1):
         clear_record(record)
         record.active[0] = what
         code = go_round(problem, row, friction, both, work, memory, record, what != NOTHING)
@@ -275,18 +295,14 @@ def measure(problem, row, friction, halves, work, memory, record, ring, what):
         if what != NOTHING:
             multiplier = largest_multiplier(problem, row, both, 0.0, work, memory)
             most *= min(1.0, abs(1.0 - multiplier))
-        drifting = any_drifts(problem, memory.counts, both)
-        near = return_distance(problem, row, memory) <= most
-        if near and not drifting:
+        enough = most if count < _MOST_REPEATED else max(most, RETURNED)
+        returns = return_distance(problem, row, memory) <= enough
+        found = returns and not any_drifts(problem, memory.counts, both)
+        if found:
             break
-        if repeat == _MOST_REPEATED - 1:
-            if drifting:
-                return 0, math.nan
-            break
-        if drifting:
-            find_rest(problem, row, friction, halves, MEASURED, work, memory, record, ring)
-        else:
-            newton(problem, row, friction, halves, MEASURED, work, memory, record)
+        _refine(problem, row, friction, halves, count, work, memory, record, ring)
+    if not found:
+        return 0, math.nan
     join_slips(record, both)
     if both % 2 == 1:
         mirror(record)

@@ -35,6 +35,7 @@ from .orbits import (
     Steady,
     any_drifts,
     largest_multiplier,
+    newton,
 )
 from .places import (
     Places,

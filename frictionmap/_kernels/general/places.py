@@ -36,11 +36,13 @@ from .series import factor_held, solve_held
 #: that estimate leaves out.  Without them it is a bound.
 _SAFETY = 4.0
 
-#: A contact whose force exceeds its friction by a share e slides by about e^2 each period, always in one
-#: direction and ever more slowly: after n periods e is about 1/n, and all that changes otherwise is far less.
-#: Where e is below the first share, and the forces by other changes are below the second share of e, it ends
-#: where the force just reaches its limit.
-_CREEPS, _STEADILY = 1e-2, 0.2
+#: A contact whose force hardly exceeds its friction slides ever more slowly, in one direction, to where it no
+#: longer does.  One that slid so in this many periods, after which more than this share of the excess is left,
+#: ends there: all that changes faster, and could move it beyond, is over by then.
+_CREEPS, _LEFT = 16, 0.5
+
+#: Rows of `Places.creep`: periods in which a contact slid in one direction, and its excess before.
+_PERIODS, _BEFORE = 0, 1
 
 #: Share of the friction that is rounding error of the forces, and the one to which they are wanted.
 _ROUNDING = 1e-12
@@ -67,6 +69,7 @@ class Places(NamedTuple):
     )  # (2, N) lowest f + limit nu and highest f - limit nu in it; limits of 0 for a constant nu
     flexibility: np.ndarray  # (N, N) places per constant force, with a sign
     gains: np.ndarray  # (N,) largest force over the size of a difference of two motions, see `_difference`
+    creep: np.ndarray  # (2, N), see `_note_creep`
     change: np.ndarray  # (N,) constant forces by which the places of a motion differ from those in the orbit
     moved: np.ndarray  # (M,) displacement of the modes under these
     matrix: np.ndarray  # (N, N) scratch
@@ -82,7 +85,8 @@ def make_places(problem):
     return Places(
         np.zeros(contacts, np.int64), np.zeros((2, contacts)), np.zeros((3, width)),
         np.zeros(contacts, np.int64), np.zeros(contacts), np.zeros((2, contacts)), np.zeros(square),
-        np.zeros(contacts), np.zeros(contacts), np.zeros(width), np.zeros(square), np.zeros(width),
+        np.zeros(contacts), np.zeros((2, contacts)), np.zeros(contacts), np.zeros(width), np.zeros(square),
+        np.zeros(width),
     )  # fmt: skip
 
 
@@ -302,7 +306,35 @@ def _sides(problem, friction, places, j):
 
 
 @kernel
-def _is_settled(problem, friction, difference, safety, memory, places):
+def _note_creep(problem, friction, memory, places):
+    """Count the periods in which each contact at rest slid to where its force no longer exceeds its friction.
+
+    Parameters
+    ----------
+    problem, friction : Problem, Friction
+    memory : Return after the last way of the motion
+    places : Places after `_compare`
+    """
+    creep = places.creep
+    for j in range(places.rests.size):
+        high, low = _sides(problem, friction, places, j)
+        excess, way = max(high, low), 1.0 if high > low else 2.0
+        if memory.counts[MOVED, j] != way or excess <= 0.0:
+            creep[_PERIODS, j] = 0.0
+            continue
+        if creep[_PERIODS, j] == 0.0 or creep[_PERIODS, j] == _CREEPS:
+            creep[_PERIODS, j], creep[_BEFORE, j] = 0.0, excess
+        creep[_PERIODS, j] += 1.0
+
+
+@kernel
+def _creeps(excess, places, j):
+    """Whether a contact ends where its force just reaches its friction."""
+    return places.creep[_PERIODS, j] == _CREEPS and excess >= _LEFT * places.creep[_BEFORE, j]
+
+
+@kernel
+def _is_settled(problem, friction, difference, safety, places):
     """Whether the places are known that the contacts at rest end at.
 
     Parameters
@@ -310,20 +342,16 @@ def _is_settled(problem, friction, difference, safety, memory, places):
     problem, friction : Problem, Friction
     difference : size of the difference from the steady state, see `_difference`
     safety : see `_SAFETY`
-    memory : Return after the last way of the motion
-    places : Places after `_compare`
+    places : Places after `_note_creep`
     """
     for j in range(places.rests.size):
-        if places.rests[j] == 0:
-            continue
-        limit = friction.static[j]
-        high, low = _sides(problem, friction, places, j)
-        excess, way = max(high, low), 1.0 if high > low else 2.0
-        reach = places.gains[j] * difference
-        creeps = memory.counts[MOVED, j] == way and 0.0 < excess <= _CREEPS * limit
-        fits = excess + safety * reach <= _ROUNDING * limit or reach <= _PRECISE * limit
-        if not fits and not (creeps and reach <= _STEADILY * excess):
-            return False
+        if places.rests[j] != 0:
+            limit = friction.static[j]
+            high, low = _sides(problem, friction, places, j)
+            excess, reach = max(high, low), places.gains[j] * difference
+            fits = excess + safety * reach <= _ROUNDING * limit or reach <= _PRECISE * limit
+            if not fits and not _creeps(excess, places, j):
+                return False
     return True
 
 
@@ -374,9 +402,13 @@ def follow_to_rest(problem, row, friction, halves, cycles, safety, work, memory,
     (known, cycles) : whether the places are known, after `_unload`; periods followed
     """
     followed, still = 0.0, 0.0
+    for j in range(places.rests.size):
+        places.creep[_PERIODS, j] = 0.0
     while True:
         difference = _compare(problem, row, work, memory, places)
-        if _is_settled(problem, friction, difference, safety, memory, places) or still >= _STILL:
+        if followed > 0.0:
+            _note_creep(problem, friction, memory, places)
+        if _is_settled(problem, friction, difference, safety, places) or still >= _STILL:
             return True, followed
         if followed >= cycles:
             return False, followed

@@ -16,8 +16,8 @@ REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED, AVERAGED = 0, 1, 2, 3, 4
 #: Outcome of Newton's method: a contact slides in one direction, ever less; see `creep`.
 DRIFTS = 5
 
-#: Newton steps at most, and the largest part of the distance before that may be left after each.  More may be
-#: left once where the distance is below _LAST: next to a slide of no length it is large beside its own change.
+#: Newton steps at most, and the largest part of the distance before that may be left after each.  Below _LAST
+#: more may be left once: the velocity of a contact that hardly slides depends on the square of the rest.
 _MOST_STEPS = 12
 _LESS = 0.5
 

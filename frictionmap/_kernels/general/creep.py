@@ -181,8 +181,8 @@ def _settle(problem, row, friction, halves, tolerance, work, memory, record, rin
     held = 0
     for j in range(memory.senses.size):
         held += friction.kinetic[j] == WITHOUT_LIMIT
-    for _ in range(3 * memory.senses.size + 1):  # each contact is held, let go, and held again
-        if held == 0:
+    for turn in range(3 * memory.senses.size + 1):  # each contact is held, let go, and held again
+        if turn == 0 and held == 0:
             status, more = newton(problem, row, friction, halves, tolerance, work, memory, record)
         else:
             status, more = _newton_later(

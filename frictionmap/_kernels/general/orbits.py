@@ -16,7 +16,8 @@ REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED, AVERAGED = 0, 1, 2, 3, 4
 #: Outcome of Newton's method: a contact slides in one direction, ever less; see `creep`.
 DRIFTS = 5
 
-#: Newton steps at most, and the largest part of the distance before that may be left after each.
+#: Newton steps at most, and the largest part of the distance before that may be left after each.  Below _LAST
+#: more may be left once: the velocity of a contact that hardly slides depends on the square of the rest.
 _MOST_STEPS = 12
 _LESS = 0.5
 
@@ -107,7 +108,7 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
     last = math.inf
     cycles = 0.0
     size = state_size(problem)
-    drifting = False
+    drifting = missed = False
     for _ in range(_MOST_STEPS):
         code = go_round(problem, row, friction, halves, work, memory, record, True)
         cycles += 0.5 * halves
@@ -118,7 +119,9 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
         if distance == 0.0 or not distance < _LESS * last:
             if distance <= tolerance:
                 return DRIFTS if drifting else REPEATS, cycles
-            return NO_REPEAT, cycles
+            if missed or not distance < _LAST:
+                return NO_REPEAT, cycles
+            missed = True
         last = distance
         fill_newton(problem, row, halves, work, memory)
         if not solve_linear(memory.matrix, memory.right, size):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from general_systems import KINDS, reference
+from general_systems import KINDS
 
 import frictionmap as fm
 
@@ -262,9 +262,9 @@ def test_stiff_contacts_approach_the_rigid_one():
     assert 50.0 < errors[0] / errors[1] < 200.0
 
 
-def test_partial_sticking_begins_at_half_the_range_of_the_force():
+def test_partial_sticking_begins_at_half_the_range_of_the_force(reference_table):
     """A contact rests beside others that slide from this friction on (theory.md 11)."""
-    for row in reference("contacts.json")["partial"]:
+    for row in reference_table("contacts.json")["partial"]:
         given = {key: np.array(row[name]) for key, name in (("M", "M"), ("K", "K"), ("C", "C1"))}
         for factor, regime in ((1.0 - 1e-3, 1), (1.0 + 1e-3, 0)):
             contacts = []

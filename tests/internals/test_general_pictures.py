@@ -219,6 +219,18 @@ def test_boundaries_of_elastic_contacts():
     assert len([one for one in axes[0].collections if isinstance(one, PolyCollection)]) == 2
 
 
+@pytest.mark.parametrize(("own", "mu", "exact"), [(2.0, 1.0, False), (1.0, 1.5, True), (None, 1.5, False)])
+def test_regions_are_exact_where_the_contacts_have_no_static_excess(own, mu, exact):
+    """What counts is the mu of each contact; that of the grid is for those without their own."""
+    contacts = [fm.Contact("fixed-wall", 1, mu=own), fm.Contact("between-masses", (1, 2), mu=own)]
+    ds = fm.boundaries(
+        fm.System(contacts=contacts, mass_ratios=[1, 1], stiffness_ratios=[1, 1]), [0.5, 0.8], mu
+    )
+    axes = plot.plot_boundaries(ds)
+    assert ("permanent sticking" in labels_of(axes)) == exact
+    assert ("sticking possible" in labels_of(axes)) != exact
+
+
 # Files
 
 

@@ -9,6 +9,7 @@ import pytest
 from general_systems import KINDS
 
 import frictionmap as fm
+from frictionmap.design.responses import Response, Responses
 
 OUTPUTS = [
     "regime",
@@ -310,3 +311,34 @@ def test_elements_of_a_bank_stop_slipping_together():
     )  # fmt: skip
     assert (ds.regime >= 0).all()
     assert ds.slips_per_cycle.max() <= 8.0
+
+
+@pytest.mark.parametrize(
+    ("own", "mu"),
+    [
+        ([("fixed-wall", 1, 1.0, 2.0), ("fixed-wall", 2, 0.5, 2.0)], 2.0),
+        ([("fixed-wall", 1, 0.75, 1.0), ("fixed-wall", 1, 0.25, 3.0), ("fixed-wall", 2, 0.5, 1.5)], 1.5),
+    ],
+)
+def test_a_mu_of_the_contacts_themselves_is_a_mu_of_the_grid(own, mu):
+    """Parallel contacts have the sum of their static friction; whatever asks for mu is answered alike."""
+    shared = {"mass_ratios": [1.0, 1.0], "stiffness_ratios": [1.0, 1.0], "damping_ratios": 0.02}
+    contacts = [fm.Contact(kind, mass, ratio=ratio, mu=given) for kind, mass, ratio, given in own]
+    by_contact = fm.System(contacts=contacts, **shared)
+    walls = [fm.Contact("fixed-wall", 1), fm.Contact("fixed-wall", 2, ratio=0.5)]
+    by_grid = fm.System(contacts=walls, **shared)
+    r, beta = [0.5], [0.51, 0.7]
+    for function, further in (
+        (fm.sweep, {"start": "moving"}),
+        (fm.sweep, {}),
+        (fm.curves, {"start": "moving", "quantities": ["amplitude"]}),
+    ):
+        found = function(by_contact, r, beta, 1.0, **further)
+        wanted = function(by_grid, r, beta, mu, **further)
+        for name in wanted.data_vars:
+            np.testing.assert_array_equal(found[name], wanted[name], name)
+    # questions of design count both starts where they matter
+    response = Response("amplitude", 1, 1)
+    assert len(Responses(by_contact, response, 1.0, None)._solvers) == 2
+    equal = fm.System(contacts=[replace(one, mu=1.0) for one in contacts], **shared)
+    assert len(Responses(equal, response, mu, None)._solvers) == 1

@@ -1,6 +1,5 @@
 """Long periods and irregular motion at mu > 1, against another program that marched up to 50,000 cycles."""
 
-
 import numpy as np
 import pytest
 

@@ -10,6 +10,8 @@ from general_systems import KINDS
 
 import frictionmap as fm
 from frictionmap.design.responses import Response, Responses
+from frictionmap.general.problem import problem_of
+from frictionmap.general.starts import initial_states
 
 OUTPUTS = [
     "regime",
@@ -72,6 +74,23 @@ def test_one_rigid_contact_is_that_of_the_other_engine(kind, masses, system):
     limits, wanted = fm.boundaries(general, r, [1.0, 1.4]), fm.boundaries(plain, r, [1.0, 1.4])
     assert np.allclose(limits.beta_stick, wanted.beta_stick, rtol=1e-11, atol=1e-12)
     assert np.allclose(limits.beta_lim, wanted.beta_lim, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("kind", "masses", "system"),
+    [*ONE_CONTACT, ("fixed-wall", (2,), {**CHAIN, "excitation": "base", "damping_reference": "base"})],
+)
+def test_the_moving_start_is_that_of_the_other_engine(kind, masses, system):
+    """At mu = 2, where the start decides in many cells."""
+    plain = fm.System(kind, masses, **system)
+    general = fm.System(contacts=[fm.Contact(kind, masses)], **system)
+    r, beta = np.linspace(0.23, 2.2, 9), np.linspace(0.02, 1.6, 9)
+    for mu in (1.4, 2.0):
+        found, wanted = (
+            fm.sweep(one, r, beta, mu, outputs=OUTPUTS, start="moving") for one in (general, plain)
+        )
+        agree(found, wanted)
+        np.testing.assert_array_equal(found.regime, wanted.regime)
 
 
 def test_harmonics_and_works_are_those_of_the_other_engine():
@@ -140,6 +159,31 @@ def test_the_order_of_contacts_does_not_matter():
     for name in ("stops_per_cycle", "contact_amplitude", "stuck_fraction"):
         turned = b[name].isel(contact=[1, 0]).values
         assert np.allclose(a[name].values, turned, rtol=0.0, atol=1e-12, equal_nan=True), name
+
+
+@pytest.mark.parametrize("load", [{}, {"load_harmonics": {1: [0.5, 1.0], 2: [0.4, 0.0]}}])
+def test_the_moving_start_does_not_depend_on_the_order_of_contacts(load):
+    """It has no displacement in any contact, and slides one of them upwards, whichever is named first."""
+    wall, joint = fm.Contact("fixed-wall", 1), fm.Contact("between-masses", (1, 2), ratio=0.4)
+    r = np.array([0.45, 0.9, 1.5])
+    found = []
+    for contacts in ([wall, joint], [joint, wall]):
+        system = two(contacts, **load)
+        problem, modal = problem_of(system, r)
+        state = initial_states(system, problem, modal, "moving")
+        x, v = state[:, 0] @ modal.phi.T, state[:, 1] @ modal.phi.T
+        assert not x.any()
+        z = v @ system.general.vectors.T
+        assert (z.max(axis=1) > 0.0).all()
+        assert (state[:, 2] == state[:, 2, :1]).all()
+        found.append((v, state[:, 2]))
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-12)
+    a, b = (
+        cells(two(contacts, **load), mu=1.8, start="moving") for contacts in ([wall, joint], [joint, wall])
+    )
+    np.testing.assert_array_equal(a.regime, b.regime)
+    np.testing.assert_array_equal(a.contact_regime, b.contact_regime.isel(contact=[1, 0]))
 
 
 def test_a_load_turned_by_half_a_period_turns_the_motion():

@@ -21,7 +21,7 @@ from .course import (
     window_is_stationary,
     window_stops,
 )
-from .follow import BEFORE, FOLLOWED, STUCK, follow
+from .follow import FOLLOWED, STUCK, follow_to_section
 from .orbits import AVERAGED, MEASURED, NO_REPEAT, REPEATS, Steady, largest_multiplier, newton
 from .pattern import begin, stop_exactly
 from .problem import SECTION, Row, Work, make_row, make_work, set_channels, set_row
@@ -402,12 +402,13 @@ def solve(problem, friction, cycles, tolerance, tools, what):
 
 @kernel
 def from_rest(problem, row, friction, state, work, memory, record):
-    """Follow a motion from tau = 0 to the section.
+    """Follow a motion from its start to the section.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
-    state : (2, m) modes and their velocities q' at tau = 0; elastic contacts begin without force
+    state : (2, m) modes and their velocities q' at tau = 0, or (3, m), at the phase state[2, 0]; elastic
+        contacts begin without force
     work, memory, record : Work, Return, Record
     """
     for m in range(problem.push.shape[0]):
@@ -416,8 +417,9 @@ def from_rest(problem, row, friction, state, work, memory, record):
     for j in range(problem.spring.size):
         work.state[2, j] = 0.0
     record.active[0] = NOTHING
-    if begin(problem, row, friction, 0.0, work, memory.law):
-        follow(problem, row, friction, BEFORE, work, memory.law, memory.counts, record, False)
+    tau = state[2, 0] if state.shape[0] == 3 else 0.0
+    if begin(problem, row, friction, tau, work, memory.law):
+        follow_to_section(problem, row, friction, tau, work, memory.law, memory.counts, record)
     take_state(work, memory.start, memory.senses, 1.0)
 
 
@@ -462,7 +464,7 @@ def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, mos
     ----------
     problem, i : Problem, index of r
     friction : Friction
-    state : (2, m) modes and their velocities q' at tau = 0
+    state : see `from_rest`
     cycles, tolerance : see `find`
     masses : (n, m) displacement of the masses per mode
     most : number of steps that are kept

@@ -74,7 +74,9 @@ COORDINATES = {
         np.int64, "harmonic of the excitation frequency; 0 is the mean", ("harmonic",), least=0
     ),
     "part": Label(np.str_, "part of a complex number", ("part",), texts=("real", "imaginary")),
-    "outcome": Label(np.str_, "regime", ("outcome",), texts=tuple(code.name for code in regimes.REGIMES)),
+    "outcome": Label(
+        np.str_, "regime", ("outcome",), texts=tuple(code.name for code in regimes.BELT_REGIMES)
+    ),
     "quantile": Label(np.float64, "share of the samples below", ("quantile",), least=0.0, most=1.0),
 }
 

@@ -16,6 +16,7 @@ from frictionmap.files.storage import write_netcdf
 from frictionmap.pictures import classes, palette
 from frictionmap.pictures.grids import Grid
 from frictionmap.pictures.maps.boundary_curves import further_ranges, through_cells
+from frictionmap.pictures.maps.quantity_map import QuantityImage
 from frictionmap.pictures.maps.regime_map import RegimeImage
 from frictionmap.pictures.motions.history import plot_response
 from frictionmap.pictures.motions.traces import load_trace, traces_of
@@ -144,6 +145,17 @@ def test_a_chosen_contact_has_its_own_stops_and_name():
     assert palette.STICK["label"] not in labels_of(axes)
     (own,) = [line for line in axes[0].lines if line.get_label() == palette.STICK_CONTACT["label"]]
     np.testing.assert_array_equal(own.get_ydata(), [0.1, 0.2])
+
+
+def test_numbers_of_contacts_are_beside_classes_of_their_own():
+    """A contact that is stuck while the other one moves has no number of stops, and is coloured as stuck."""
+    axes = plot.plot_quantity(two_contacts(), "stops_per_cycle")
+    images = [one for ax in axes[:2] for one in ax.get_children() if isinstance(one, QuantityImage)]
+    stuck = palette.colour_table()[palette.STUCK]
+    found = [(image.colours() == stuck).all(axis=-1).tolist() for image in images]
+    assert found == [[[False, True], [True, False]], [[False, True], [False, False]]]
+    assert [line.get_label() for line in axes[0].lines].count(palette.STICK_CONTACT["label"]) == 1
+    assert "permanent sticking" in labels_of(axes)
 
 
 def test_contacts_with_and_without_spring_count_what_they_have():

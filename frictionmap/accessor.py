@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from . import checks, regimes
-from .datasets.variables import regime_of_choice
+from .datasets.labels import regime_of_choice
 from .errors import InputError
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from . import checks, regimes
-from .datasets.labels import BESIDE, CELL, LABELS, MARKS, REFERENCES, SCALES
+from .datasets.labels import BESIDE, CELL, LABELS, MARKS, REFERENCES, SCALES, regime_of_choice
 from .datasets.schema import check_structure, kind
-from .datasets.variables import coordinate, label_variable, regime_of_choice
+from .datasets.variables import coordinate, label_variable
 from .errors import InputError
 from .files.reading import opened
 from .files.slices import choose, further_axes

@@ -5,11 +5,14 @@ They are stored in files: new ones may be added, existing ones must not change.
 
 import re
 from functools import lru_cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from .. import checks, regimes
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 REFERENCES = (
     "Dynamic analysis of mechanical systems with Coulomb friction, doctoral thesis, University of "
@@ -369,6 +372,12 @@ def with_contact(dims: tuple[str, ...]) -> tuple[str, ...]:
     """Dimensions of a variable that has one value per contact: `contact` follows those of the cells."""
     cell = tuple(dim for dim in dims if dim in CELL)
     return (*cell, "contact", *dims[len(cell) :])
+
+
+def regime_of_choice(ds: "xr.Dataset") -> str:
+    """Name of the variable with the regimes: of the contact that was chosen, or of all together."""
+    chosen = "contact_regime" in ds and "contact" not in ds["contact_regime"].dims
+    return "contact_regime" if chosen else "regime"
 
 
 _PLATEAU = "the load's phase, counted from its maximum; NaN where the maximum is not held over a stop"

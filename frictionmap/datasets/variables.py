@@ -51,12 +51,6 @@ def _coordinates(axes: Mapping[str, np.ndarray]) -> xr.Coordinates:
     return xr.Coordinates(variables, indexes=indexes)
 
 
-def regime_of_choice(ds: xr.Dataset) -> str:
-    """Name of the variable with the regimes: of the contact that was chosen, or of all together."""
-    chosen = "contact_regime" in ds and "contact" not in ds["contact_regime"].dims
-    return "contact_regime" if chosen else "regime"
-
-
 def coordinate_of_study(dim: str, meaning: str, values: np.ndarray) -> xr.Variable:
     """Build an axis of a study, or a coordinate along it: values of a parameter, or points counted from 0."""
     return xr.Variable((dim,), values, {"long_name": meaning, "units": "1"})

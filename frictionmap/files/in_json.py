@@ -5,9 +5,8 @@ import json
 import numpy as np
 import xarray as xr
 
-from ..datasets.labels import LABELS
+from ..datasets.labels import LABELS, regime_of_choice
 from ..datasets.schema import kind
-from ..datasets.variables import regime_of_choice
 
 #: Attributes of a file that the summary repeats.
 _ATTRIBUTES = ("title", "system", "source", "history")

@@ -7,10 +7,9 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from ..datasets.labels import CELL, IN_SI, LABELS, OLDER_NAMES
+from ..datasets.labels import CELL, IN_SI, LABELS, OLDER_NAMES, regime_of_choice
 from ..datasets.physical import describe_scales
 from ..datasets.schema import TEXTS, kind
-from ..datasets.variables import regime_of_choice
 from .designs import describe_design
 from .estimates import describe_estimates, source_of_data
 from .reading import standard_form

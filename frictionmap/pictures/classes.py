@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import regimes
-from ..datasets.variables import regime_of_choice
+from ..datasets.labels import regime_of_choice
 from .palette import (  # fmt: skip
     CLASSES,
     CONTINUOUS,

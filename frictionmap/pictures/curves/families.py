@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ... import regimes
-from ...datasets.variables import regime_of_choice
+from ...datasets.labels import regime_of_choice
 from ...files.stored import stored_system
 from ...model.system import System
 from ..grids import Grid

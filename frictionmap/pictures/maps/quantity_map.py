@@ -12,8 +12,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from ... import checks
-from ...datasets.labels import LABELS
-from ...datasets.variables import regime_of_choice
+from ...datasets.labels import LABELS, regime_of_choice
 from ...errors import InputError
 from ..classes import Counted, classes, counted
 from ..drawing import with_options

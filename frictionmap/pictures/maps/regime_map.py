@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from ...datasets.variables import regime_of_choice
+from ...datasets.labels import regime_of_choice
 from ...errors import InputError
 from ..classes import Counted, classes, count, counted, legend_label, stops_range
 from ..drawing import with_options

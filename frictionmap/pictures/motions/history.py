@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ... import regimes
-from ...datasets.variables import regime_of_choice
+from ...datasets.labels import regime_of_choice
 from ...errors import InputError
 from ...files.stored import stored_general
 from ..drawing import with_options
